@@ -1,0 +1,1 @@
+"""Axisymmetric finite element model of a rigid sphere on a coated elastic half-space."""

@@ -1,0 +1,1 @@
+"""Semi-analytical contact of a rigid indenter on a coated elastic half-space."""

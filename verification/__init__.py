@@ -1,0 +1,1 @@
+"""Verification harness above the two contact methods."""

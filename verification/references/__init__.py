@@ -1,0 +1,1 @@
+"""Exact and published references, computed without either method."""
