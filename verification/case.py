@@ -1,0 +1,257 @@
+"""A case: one coated contact with the claims made about it, read from a TOML file."""
+
+import tomllib
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Annotated, Any
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
+
+from verification.problem import CoatedContact
+from verification.profile import SCALARS, Line, line_of, lines_of
+from verification.verdict import Claim
+
+__all__ = ["METHODS", "Case", "CaseError", "read_case", "shipped_cases", "sources_of", "standard_claims"]
+
+METHODS = ("semianalytic", "fem_reference")
+CASES = Path(__file__).parent / "cases"
+MAX_BYTES = 1_000_000
+
+# Caps as fractions of the scale of each comparison: the value itself for the scalars, p_h for the lines.
+CAPS = {"peak_pressure": 1e-3, "contact_radius": 5e-3, "approach": 1e-3}
+LINE_CAP = 5e-3
+# The pressure falls to zero with a vertical tangent, so no method has a meaningful value within a few
+# patches of the edge; this fraction of a is left unjudged on the surface.
+EDGE = 0.05
+
+
+class CaseError(ValueError):
+    """A case file that cannot be used; the message names file and key."""
+
+
+@dataclass(frozen=True)
+class Case:
+    """``problem`` with the ``claims`` about it; ``numerics`` holds each method's own keywords.
+
+    text : the file it was read from, kept with the results so that they carry their full input.
+    """
+
+    name: str
+    title: str
+    problem: CoatedContact
+    claims: tuple[Claim, ...]
+    source: str = ""
+    numerics: dict[str, dict[str, Any]] = field(default_factory=dict)
+    text: str = ""
+
+    @property
+    def lines(self) -> tuple[Line, ...]:
+        """The lines of the plane y = 0 on which this case is looked at."""
+        return lines_of(self.problem)
+
+
+def sources_of(problem: CoatedContact) -> tuple[str, ...]:
+    """Whatever speaks about a problem: both methods, then every reference that holds for it."""
+    exact = () if problem.friction else ("integral_equation",)
+    closed = ("hertz",) if problem.homogeneous and not problem.friction else ()
+    return (*METHODS, *exact, *closed)
+
+
+def standard_claims(problem: CoatedContact) -> tuple[Claim, ...]:
+    """Every quantity on every line, method against method, then each source against the best reference."""
+    sources = sources_of(problem)
+    pairs = [METHODS] + [(source, sources[-1]) for source in sources[:-1] if sources[-1] not in METHODS]
+    if "hertz" in sources:
+        pairs[1:1] = [(method, "integral_equation") for method in METHODS]
+    claims = [
+        Claim(name, "contact", pair, CAPS[name], "scalars of the contact, from one number each")
+        for pair in pairs
+        for name in SCALARS
+    ]
+    for line in lines_of(problem):
+        for quantity in _quantities(line, problem):
+            edge = EDGE if line.name == "surface" else 0.0
+            claims += [
+                Claim(quantity, line.name, pair, LINE_CAP, "the stress a coating cracks or peels by", edge)
+                for pair in pairs
+            ]
+    return tuple(claims)
+
+
+def _quantities(line: Line, problem: CoatedContact) -> tuple[str, ...]:
+    if line.name == "surface":
+        # sigma_zz = -p and sigma_xz = -f p hold by construction there; the pressure says it all.
+        return ("pressure", "sigma_xx", "sigma_yy")
+    if line.name == "axis":
+        return ("sigma_xx", "sigma_zz", *(("sigma_xz",) if problem.friction else ()))
+    return ("sigma_xx", "sigma_yy", "sigma_zz", "sigma_xz")
+
+
+class _Strict(BaseModel):
+    model_config = ConfigDict(extra="forbid", strict=True, frozen=True, allow_inf_nan=False)
+
+
+Modulus = Annotated[float, Field(gt=0)]
+Poisson = Annotated[float, Field(gt=-1, lt=0.5)]
+Length = Annotated[float, Field(gt=0)]
+Text = Annotated[str, Field(min_length=1, max_length=500)]
+
+
+class _Substrate(_Strict):
+    E: Modulus
+    nu: Poisson
+
+
+class _Coating(_Substrate):
+    thickness: Length
+
+
+class _Problem(_Strict):
+    radius: Length
+    load: Annotated[float, Field(gt=0)]
+    friction: Annotated[float, Field(ge=0, le=2)] = 0.0
+    substrate: _Substrate
+    coatings: Annotated[list[_Coating], Field(max_length=50)] = []
+
+
+class _Claim(_Strict):
+    quantity: Text
+    line: Text
+    between: Annotated[list[Text], Field(min_length=2, max_length=2)]
+    cap: Annotated[float, Field(gt=0, le=1)]
+    why: Text
+    edge: Annotated[float, Field(ge=0, lt=1)] | None = None
+
+
+class _SemianalyticNumerics(_Strict):
+    patches: Annotated[int, Field(ge=16, le=4096)] | None = None
+    conversion: Text | None = None
+
+
+class _FemNumerics(_Strict):
+    order: Annotated[int, Field(ge=2, le=4)] | None = None
+    quality: Text | None = None
+
+
+class _CaseFile(_Strict):
+    title: Text
+    source: Text = "no source stated"
+    problem: _Problem
+    semianalytic: _SemianalyticNumerics = _SemianalyticNumerics()
+    fem_reference: _FemNumerics = _FemNumerics()
+    claim: Annotated[list[_Claim], Field(max_length=1000)] = []
+
+
+def read_case(path: Path) -> Case:
+    """Read and check one case file. Raises CaseError: one sentence with file and key."""
+    try:
+        raw = path.read_bytes()[: MAX_BYTES + 1]
+    except OSError as error:
+        raise CaseError(f"{path}: {error.strerror}; give the path of a .toml case file") from None
+    if len(raw) > MAX_BYTES:
+        raise CaseError(f"{path}: larger than {MAX_BYTES} bytes; a case file holds one problem")
+    try:
+        text = raw.decode("utf-8")
+        data = tomllib.loads(text)
+        checked = _CaseFile.model_validate(data)
+        p = checked.problem
+        problem = CoatedContact(
+            radius=p.radius,
+            load=p.load,
+            coatings=tuple((c.E, c.nu, c.thickness) for c in p.coatings),
+            substrate=(p.substrate.E, p.substrate.nu),
+            friction=p.friction,
+        )
+    except UnicodeDecodeError:
+        raise CaseError(f"{path}: not UTF-8 text; a case file is TOML") from None
+    except (tomllib.TOMLDecodeError, RecursionError) as error:
+        raise CaseError(f"{path}: not TOML: {str(error) or 'nested too deeply'}") from None
+    except ValidationError as error:
+        raise CaseError(f"{path}: {_first_complaint(error)}") from None
+    except ValueError as error:
+        raise CaseError(f"{path}: problem: {error}") from None
+    _refuse_unfit_scales(path, problem)
+    return Case(
+        name=path.stem,
+        title=checked.title,
+        problem=problem,
+        claims=_claims(path, checked, problem),
+        source=checked.source,
+        numerics={
+            "semianalytic": checked.semianalytic.model_dump(exclude_none=True),
+            "fem_reference": checked.fem_reference.model_dump(exclude_none=True),
+        },
+        text=text,
+    )
+
+
+def _refuse_unfit_scales(path: Path, problem: CoatedContact) -> None:
+    # Beyond these the parabolic sphere, or floating point itself, no longer describes a contact.
+    if not 1e-12 < problem.a_h < 1e3:
+        raise CaseError(
+            f"{path}: problem: contact radius a_h = {problem.a_h:.3g} m; check units of radius, load, E"
+        )
+    if problem.a_h > problem.radius:
+        raise CaseError(
+            f"{path}: problem.load: gives a contact radius of {problem.a_h:.3g} m on a sphere of "
+            f"{problem.radius:.3g} m; lower the load"
+        )
+    for i, (_, _, thickness) in enumerate(problem.coatings):
+        if not 1e-3 <= thickness / problem.a_h <= 1e3:
+            raise CaseError(
+                f"{path}: problem.coatings.{i}.thickness: {thickness / problem.a_h:.3g} times the contact "
+                f"radius {problem.a_h:.3g} m; both methods are made for 1e-3 to 1e3"
+            )
+    stiffest = max([E for E, _, _ in problem.coatings] + [problem.substrate[0]])
+    softest = min([E for E, _, _ in problem.coatings] + [problem.substrate[0]])
+    if stiffest > 1e4 * softest:
+        raise CaseError(
+            f"{path}: problem: moduli differ {stiffest / softest:.3g} times; at most 1e4 is supported"
+        )
+
+
+def _claims(path: Path, checked: _CaseFile, problem: CoatedContact) -> tuple[Claim, ...]:
+    if not checked.claim:
+        return standard_claims(problem)
+    known = {(c.quantity, c.line) for c in standard_claims(problem)}
+    sources = sources_of(problem)
+    claims = []
+    for i, claim in enumerate(checked.claim):
+        key = f"{path}: claim.{i}"
+        if claim.line != "contact":
+            try:
+                line_of(claim.line, problem)
+            except ValueError as error:
+                raise CaseError(f"{key}.{error}") from None
+        if (claim.quantity, claim.line) not in known:
+            fit = sorted(q for q, line in known if line == claim.line)
+            raise CaseError(f"{key}.quantity = {claim.quantity!r}; on {claim.line} there is {', '.join(fit)}")
+        first, second = claim.between
+        if first == second or not {first, second} <= set(sources):
+            raise CaseError(f"{key}.between = {claim.between}; give two of {', '.join(sources)}")
+        edge = claim.edge if claim.edge is not None else (EDGE if claim.line == "surface" else 0.0)
+        claims.append(Claim(claim.quantity, claim.line, (first, second), claim.cap, claim.why, edge))
+    return tuple(claims)
+
+
+def _first_complaint(error: ValidationError) -> str:
+    first = error.errors(include_url=False)[0]
+    key = ".".join(str(part) for part in first["loc"]) or "top level"
+    said = {
+        "missing": "is missing",
+        "extra_forbidden": "is an unknown key",
+        "finite_number": "must be a finite number",
+        "float_type": "must be a number",
+        "int_type": "must be a whole number",
+        "string_type": "must be text",
+    }.get(first["type"], first["msg"][0].lower() + first["msg"][1:])
+    shown = repr(first["input"])
+    if first["type"] not in ("missing", "extra_forbidden") and not isinstance(first["input"], dict | list):
+        said += f", not {shown if len(shown) <= 60 else shown[:57] + '...'}"
+    more = error.error_count() - 1
+    return f"{key} {said}" + (f" (and {more} more)" if more else "")
+
+
+def shipped_cases() -> dict[str, Path]:
+    """The cases of the default run, by name, in the order of their file names."""
+    return {path.stem: path for path in sorted(CASES.glob("*.toml"))}

@@ -1,0 +1,111 @@
+"""The physical problem: a rigid sphere pressed on a coated elastic half-space.
+
+Origin at first contact, ``x`` along sliding, ``z`` into the solid, surface at z = 0. Tension positive,
+pressure and load positive in compression. SI units.
+"""
+
+from dataclasses import dataclass
+from math import isfinite, pi
+from typing import Any, Protocol
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+__all__ = ["CoatedContact", "Solution"]
+
+
+@dataclass(frozen=True)
+class CoatedContact:
+    """Sphere of ``radius`` [m] under ``load`` [N] on ``coatings`` bonded to ``substrate``.
+
+    coatings : ((E [Pa], nu, thickness [m]), ...) from the surface down; () is the uncoated solid.
+    substrate : (E [Pa], nu).   friction : f in q = f p, traction on the solid in +x.
+
+    Raises ValueError with one sentence naming the quantity and its value.
+    """
+
+    radius: float
+    load: float
+    coatings: tuple[tuple[float, float, float], ...]
+    substrate: tuple[float, float]
+    friction: float = 0.0
+
+    def __post_init__(self) -> None:
+        _require_positive("radius", self.radius)
+        _require_positive("load", self.load)
+        for i, (E, nu, thickness) in enumerate(self.coatings):
+            _require_positive(f"coatings[{i}].E", E)
+            _require_poisson(f"coatings[{i}].nu", nu)
+            _require_positive(f"coatings[{i}].thickness", thickness)
+        _require_positive("substrate.E", self.substrate[0])
+        _require_poisson("substrate.nu", self.substrate[1])
+        if not (isfinite(self.friction) and self.friction >= 0):
+            raise ValueError(f"friction = {self.friction:g}; Coulomb's coefficient is zero or positive")
+
+    @property
+    def E_star(self) -> float:
+        """Contact modulus of the bare substrate under a rigid sphere, E/(1 - nu^2) [Pa]."""
+        E, nu = self.substrate
+        return E / (1 - nu**2)
+
+    @property
+    def a_h(self) -> float:
+        """Hertz contact radius of the bare substrate, (3 W R / 4 E*)^(1/3) [m]. Johnson (4.22)."""
+        return (3 * self.load * self.radius / (4 * self.E_star)) ** (1 / 3)
+
+    @property
+    def p_h(self) -> float:
+        """Hertz peak pressure of the bare substrate, 3 W / (2 pi a_h^2) [Pa]. Johnson (4.24)."""
+        return 3 * self.load / (2 * pi * self.a_h**2)
+
+    @property
+    def delta_h(self) -> float:
+        """Hertz approach of the bare substrate, a_h^2 / R [m]. Johnson (4.23)."""
+        return self.a_h**2 / self.radius
+
+    @property
+    def interfaces(self) -> tuple[float, ...]:
+        """Depth of each interface [m], from the surface down."""
+        return tuple(float(z) for z in np.cumsum([thickness for _, _, thickness in self.coatings]))
+
+    @property
+    def homogeneous(self) -> bool:
+        """True where every layer has the substrate's moduli, so that Hertz holds."""
+        return all((E, nu) == self.substrate for E, nu, _ in self.coatings)
+
+
+class Solution(Protocol):
+    """What both methods and the exact reference return; see each method for its own record."""
+
+    @property
+    def contact_radius(self) -> float: ...
+    @property
+    def approach(self) -> float: ...
+    @property
+    def peak_pressure(self) -> float: ...
+    @property
+    def uncertainty(self) -> Any: ...
+    @property
+    def diagnostics(self) -> Any: ...
+    @property
+    def surface_nodes(self) -> NDArray[np.float64]: ...
+    def pressure(self, x: ArrayLike, y: ArrayLike = 0.0) -> NDArray[np.float64]: ...
+    def stress(
+        self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None
+    ) -> NDArray[np.float64]: ...
+    def displacement(self, x: ArrayLike, y: ArrayLike, z: ArrayLike) -> NDArray[np.float64]: ...
+    def pressure_uncertainty(self, x: ArrayLike, y: ArrayLike = 0.0) -> NDArray[np.float64]: ...
+    def stress_uncertainty(
+        self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None
+    ) -> NDArray[np.float64]: ...
+
+
+def _require_positive(name: str, value: float) -> None:
+    if not (isfinite(value) and value > 0):
+        raise ValueError(f"{name} = {value:g}; it must be a positive finite number")
+
+
+def _require_poisson(name: str, nu: float) -> None:
+    # nu = 1/2 makes displacements of the finite element model indeterminate; both methods stay below.
+    if not -1 < nu < 0.5:
+        raise ValueError(f"{name} = {nu:g}; an isotropic compressible solid has -1 < nu < 0.5")
