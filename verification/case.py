@@ -1,17 +1,26 @@
 """A case: one coated contact with the claims made about it, read from a TOML file."""
 
 import tomllib
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Annotated, Any
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
 from verification.problem import CoatedContact
 from verification.profile import SCALARS, Line, line_of, lines_of
 from verification.verdict import Claim
 
-__all__ = ["METHODS", "Case", "CaseError", "read_case", "shipped_cases", "sources_of", "standard_claims"]
+__all__ = [
+    "METHODS",
+    "Case",
+    "CaseError",
+    "parse_case",
+    "read_case",
+    "shipped_cases",
+    "sources_of",
+    "standard_claims",
+]
 
 METHODS = ("semianalytic", "fem_reference")
 CASES = Path(__file__).parent / "cases"
@@ -52,17 +61,16 @@ class Case:
 
 def sources_of(problem: CoatedContact) -> tuple[str, ...]:
     """Whatever speaks about a problem: both methods, then every reference that holds for it."""
-    exact = () if problem.friction else ("integral_equation",)
     closed = ("hertz",) if problem.homogeneous and not problem.friction else ()
-    return (*METHODS, *exact, *closed)
+    return (*METHODS, "integral_equation", *closed)
 
 
 def standard_claims(problem: CoatedContact) -> tuple[Claim, ...]:
-    """Every quantity on every line, method against method, then each source against the best reference."""
+    """Every quantity on every line, method against method, then against every reference."""
     sources = sources_of(problem)
-    pairs = [METHODS] + [(source, sources[-1]) for source in sources[:-1] if sources[-1] not in METHODS]
+    pairs = [METHODS, *((method, reference) for reference in sources[2:] for method in METHODS)]
     if "hertz" in sources:
-        pairs[1:1] = [(method, "integral_equation") for method in METHODS]
+        pairs.append(("integral_equation", "hertz"))
     claims = [
         Claim(name, "contact", pair, CAPS[name], "scalars of the contact, from one number each")
         for pair in pairs
@@ -103,7 +111,17 @@ class _Substrate(_Strict):
 
 
 class _Coating(_Substrate):
-    thickness: Length
+    thickness: Length | None = None
+    thickness_over_a_h: Length | None = None
+
+    @model_validator(mode="after")
+    def _one_thickness(self) -> "_Coating":
+        if (self.thickness is None) == (self.thickness_over_a_h is None):
+            raise ValueError("needs exactly one of thickness [m] or thickness_over_a_h")
+        return self
+
+    def in_metres(self, a_h: float) -> float:
+        return self.thickness if self.thickness is not None else a_h * (self.thickness_over_a_h or 0.0)
 
 
 class _Problem(_Strict):
@@ -145,23 +163,28 @@ class _CaseFile(_Strict):
 def read_case(path: Path) -> Case:
     """Read and check one case file. Raises CaseError: one sentence with file and key."""
     try:
-        raw = path.read_bytes()[: MAX_BYTES + 1]
-    except OSError as error:
-        raise CaseError(f"{path}: {error.strerror}; give the path of a .toml case file") from None
+        if not path.is_file():
+            what = "is a directory" if path.is_dir() else "there is no such file"
+            raise CaseError(f"{path}: {what}; give the path of a .toml case file")
+        with path.open("rb") as file:
+            raw = file.read(MAX_BYTES + 1)
+    except (OSError, ValueError) as error:
+        if isinstance(error, CaseError):
+            raise
+        raise CaseError(f"{path}: {error}; give the path of a .toml case file") from None
     if len(raw) > MAX_BYTES:
         raise CaseError(f"{path}: larger than {MAX_BYTES} bytes; a case file holds one problem")
+    return parse_case(raw, path)
+
+
+def parse_case(raw: bytes, path: Path) -> Case:
+    """Check the content of a case file; ``path`` names it in complaints. Raises CaseError."""
     try:
         text = raw.decode("utf-8")
-        data = tomllib.loads(text)
-        checked = _CaseFile.model_validate(data)
+        checked = _CaseFile.model_validate(tomllib.loads(text))
         p = checked.problem
-        problem = CoatedContact(
-            radius=p.radius,
-            load=p.load,
-            coatings=tuple((c.E, c.nu, c.thickness) for c in p.coatings),
-            substrate=(p.substrate.E, p.substrate.nu),
-            friction=p.friction,
-        )
+        bare = CoatedContact(p.radius, p.load, (), (p.substrate.E, p.substrate.nu), p.friction)
+        problem = replace(bare, coatings=tuple((c.E, c.nu, c.in_metres(bare.a_h)) for c in p.coatings))
     except UnicodeDecodeError:
         raise CaseError(f"{path}: not UTF-8 text; a case file is TOML") from None
     except (tomllib.TOMLDecodeError, RecursionError) as error:

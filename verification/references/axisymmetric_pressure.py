@@ -1,0 +1,99 @@
+"""An axisymmetric contact pressure given by its Abel potential phi on 0 <= t <= a.
+
+    p(r) = -int_r^a phi'(t) / sqrt(t^2 - r^2) dt,    phi(a) = 0
+    phat(k) = int_0^a p(r) J0(kr) r dr = int_0^a phi(t) cos(kt) dt,    W = 2 pi int_0^a phi dt
+
+phi is a sum of even Legendre polynomials, so that every integral below is exact to rounding.
+Hertz: phi = p0 (a^2 - t^2)/(2a). Sneddon, Int. J. Engng Sci. 3 (1965) 47-57.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.polynomial import legendre
+from numpy.typing import ArrayLike, NDArray
+from scipy.special import spherical_jn
+
+__all__ = ["AbelPressure"]
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class AbelPressure:
+    """phi(t) = sum_n c[n] P_2n(t/a) [N/m]; ``a`` [m]."""
+
+    a: float
+    c: Array
+
+    @classmethod
+    def from_nodes(cls, a: float, s: Array, weight: Array, phi: Array) -> "AbelPressure":
+        """From values at Gauss-Legendre nodes ``s`` = t/a on [0, 1] with their ``weight``."""
+        n = np.arange(s.size)
+        P = legendre.legvander(s, 2 * s.size - 2)[:, ::2]
+        return cls(a, (4 * n + 1) * (P.T @ (weight * phi)))
+
+    @property
+    def load(self) -> float:
+        """W = 2 pi int_0^a phi dt [N]: only P_0 has a mean."""
+        return float(2 * np.pi * self.a * self.c[0])
+
+    @property
+    def peak(self) -> float:
+        """p(0) [Pa]."""
+        return float(self.pressure(0.0))
+
+    def pressure(self, r: ArrayLike) -> Array:
+        """p(r) [Pa], 0 outside; shape of ``r``."""
+        return self._over_ring(np.asarray(r, dtype=float), power=0)
+
+    def resultant(self, r: ArrayLike) -> Array:
+        """int_0^r p(s) s ds [N/rad], the load inside ``r`` over 2 pi; shape of ``r``."""
+        return self.load / (2 * np.pi) - self._over_ring(np.asarray(r, dtype=float), power=2)
+
+    def transform(self, k: Array) -> Array:
+        """phat(k) [N]: int_0^1 P_2n(s) cos(ks) ds = (-1)^n j_2n(k)."""
+        total = np.zeros_like(k)
+        for n in np.flatnonzero(np.abs(self.c) > 1e-17 * np.abs(self.c).max()):
+            total += self.c[n] * (-1) ** n * spherical_jn(2 * int(n), k * self.a)
+        return self.a * total
+
+    def bessel_integral(self, order: int, r: Array) -> Array:
+        """int_0^inf phat(k) J_order(kr) k dk [Pa] for odd ``order``; shape of ``r``.
+
+        = -int_0^min(r,a) phi'(t) sin(order asin(t/r)) / sqrt(r^2 - t^2) dt, with t = r sin(psi).
+        """
+        psi_max = np.arcsin(np.minimum(self.a / np.maximum(r, 1e-300), 1.0))
+        x, weight = legendre.leggauss(max(64, 2 * self.c.size))
+        psi = 0.5 * psi_max[..., None] * (1 + x)
+        slope = self._slope_over_t(r[..., None] * np.sin(psi)) * r[..., None] * np.sin(psi)
+        return -0.5 * psi_max * (slope * np.sin(order * psi) @ weight)
+
+    def inverse_distance(self, r: Array) -> Array:
+        """int_0^inf phat(k) J0(kr) dk = int_0^min(r,a) phi(t)/sqrt(r^2 - t^2) dt [N/m]."""
+        psi_max = np.arcsin(np.minimum(self.a / np.maximum(r, 1e-300), 1.0))
+        x, weight = legendre.leggauss(max(64, 2 * self.c.size))
+        psi = 0.5 * psi_max[..., None] * (1 + x)
+        coefficients = np.zeros(2 * self.c.size - 1)
+        coefficients[::2] = self.c
+        return 0.5 * psi_max * (legendre.legval(r[..., None] * np.sin(psi) / self.a, coefficients) @ weight)
+
+    def _over_ring(self, r: Array, power: int) -> Array:
+        """-int_r^a phi'(t) (t^2 - r^2)^((power-1)/2) dt, with s^2 = t^2 - r^2."""
+        reach = np.sqrt(np.maximum(self.a**2 - r**2, 0.0))
+        x, weight = legendre.leggauss(max(64, 2 * self.c.size))
+        s = 0.5 * reach[..., None] * (1 + x)
+        t = np.minimum(np.hypot(r[..., None], s), self.a)
+        return -0.5 * reach * ((self._slope_over_t(t) * s**power) @ weight)
+
+    def _slope_over_t(self, t: Array) -> Array:
+        """phi'(t)/t, an even polynomial."""
+        coefficients = np.zeros(2 * self.c.size - 1)
+        coefficients[::2] = self.c
+        slope = legendre.legder(coefficients)
+        s = t / self.a
+        # At t = 0 the quotient is phi''(0).
+        small = s < 1e-6
+        safe = np.where(small, 1.0, s)
+        curvature = legendre.legval(0.0, legendre.legder(slope)) if slope.size > 1 else 0.0
+        return np.where(small, curvature, legendre.legval(safe, slope) / safe) / self.a**2
