@@ -1,29 +1,29 @@
 """Frequency response functions of an elastic half-space under any number of bonded coatings.
 
-In the frame of the wave vector, L along k, T across it, z down, all fields vary as exp(i k L). In each layer the
-Papkovich-Neuber potentials of the plane problem (L, z) are written as
+In the frame of the wave vector, L along k, T across it, z down, all fields vary as exp(i k L). In each
+layer the Papkovich-Neuber potentials of the plane problem (L, z) are written as
 
-    phi + s psi = d1 / k^2,  psi = d2 / k      going down,  d(s) = e^{-ks} [[1, ks], [0, 1]] d(0),   s from the top,
-    phi - t psi = g1 / k^2,  psi = g2 / k      going up,    g(t) = e^{-kt} [[1,-kt], [0, 1]] g(0),   t from the bottom,
+    phi + s psi = d1 / k^2,  psi = d2 / k,  d(s) = e^{-ks} [[1, ks], [0, 1]] d(0)    down, s from the top
+    phi - t psi = g1 / k^2,  psi = g2 / k,  g(t) = e^{-kt} [[1,-kt], [0, 1]] g(0)    up, t from the bottom
 
-and every field is then a combination of (d1, d2, g1, g2) at its depth with coefficients free of k (theory sheet,
-eqs. of 2.1, with the origin moved to the top and to the bottom of the layer). What lies below a layer enters as a
-reflection g = R d at its bottom. R is carried from the substrate up, the amplitudes from the surface down; each step is
-a 2 x 2 matrix, and no exponential exceeds one, so that k h = 1e-6 is as safe as 1e4.
+so that every field is a combination of (d1, d2, g1, g2) at its depth with coefficients free of k (theory
+sheet, eqs. of 2.1, with the origin moved to the top, respectively the bottom, of the layer). What lies below
+a layer enters as a reflection g = R d at its bottom. R is carried from the substrate up, the amplitudes from
+the surface down; each step is a 2 x 2 matrix without any growing exponential: k h = 1e-6 is as safe as 1e4.
 
-Signs: stress positive in tension, sigma_zz = -p, sigma_Lz = i T0 and sigma_Tz = t at z = 0; u_z into the solid.
-``coatings`` ((E, nu, thickness), ...) from the surface down, ``substrate`` (E, nu); Pa and m.
+Signs: stress positive in tension, sigma_zz = -p, sigma_Lz = i T0, sigma_Tz = t at z = 0; u_z into the solid.
+``coatings`` ((E, nu, thickness), ...) from the surface down, ``substrate`` (E, nu); Pa, m.
 """
 
 from collections.abc import Sequence
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 __all__ = ["compliance", "compliance_excess", "displacement_frf", "stress_frf"]
 
-Array = NDArray[np.float64]
+Array = NDArray[Any]
 Coatings = Sequence[tuple[float, float, float]]
 Load = Literal["normal", "in-plane", "anti-plane"]
 
@@ -91,9 +91,9 @@ def stress_frf(
         in-plane, T0 = 1  :  s_zz, s_Lz / i, s_LL, s_TT
         anti-plane, t = 1 :  s_Tz, s_LT / i
 
-    Theory sheet 2.1; any number of coatings by reflection matrices. A traction q on the solid in +x is T0 = i q cos(a)
-    with t = q sin(a), a the direction of the wave vector. ``excess`` leaves out the homogeneous half-space made of the
-    first coating (only there, layer 0), computed without cancellation.
+    Theory sheet 2.1; any number of coatings by reflection matrices. A traction q on the solid in +x is
+    T0 = i q cos(a), t = q sin(a), with a the direction of the wave vector. ``excess`` leaves out the
+    homogeneous half-space made of the first coating (in layer 0 only), computed without cancellation.
 
     k : wavenumbers [rad/m], (nk,).  z : depths [m], (nz,), each inside the closed layer.
     layer : 0 at the surface, len(coatings) is the substrate.  Returns [-], (4 or 2, nz, nk).
@@ -112,9 +112,10 @@ def displacement_frf(
     load: Load,
     excess: bool = False,
 ) -> Array:
-    """Displacement amplitudes times k: (k u_z, k u_L / i) in plane, (k u_T,) anti-plane; arguments as `stress_frf`.
+    """Displacement amplitudes times k: (k u_z, k u_L / i) in plane, (k u_T,) anti-plane.
 
-    The factor k keeps the amplitude finite at k = 0.  Returns [1/Pa], (2 or 1, nz, nk).
+    Theory sheet 2.1, arguments as in `stress_frf`. The factor k keeps the amplitude finite at k = 0.
+    Returns [1/Pa], (2 or 1, nz, nk).
     """
     material = (*coatings, substrate)[layer]
     G = material[0] / (2 * (1 + material[1]))
@@ -123,7 +124,7 @@ def displacement_frf(
     return scale * _fields(k, z, layer, coatings, substrate, load, rows, excess)
 
 
-# ---------------------------------------------------------------- the fields as rows acting on (d1, d2) and (g1, g2)
+# ---------------------------------------------------- the fields as rows acting on (d1, d2) and (g1, g2)
 def _rows_stress(nu: float) -> tuple[Array, Array]:
     """s_zz, s_Lz / i, s_LL, s_TT from (d1, d2) and from (g1, g2)."""
     down = np.array([[1, 2 * (1 - nu)], [-1, -(1 - 2 * nu)], [-1, 2 * nu], [0, 2 * nu]])
@@ -192,7 +193,8 @@ def _amplitudes(k, layer, coatings, substrate, load, excess) -> tuple[Array, Arr
     """
     n = 1 if load == "anti-plane" else 2
     layers = (*coatings, (*substrate, np.inf))
-    reflect, transmit = [], []  # of interface j, from the lowest one up
+    reflect: list[Array] = []  # of interface j, from the lowest one up
+    transmit: list[Array] = []
     below = np.zeros((n, n, k.size))
     for j in range(len(coatings) - 1, -1, -1):
         jump = _interface(layers[j][:2], layers[j + 1][:2], n)
