@@ -1,1 +1,13 @@
-"""Axisymmetric finite element model of a rigid sphere on a coated elastic half-space."""
+"""Axisymmetric finite element model of a rigid sphere on a coated elastic half-space.
+
+>>> from fem_reference import solve
+>>> steel = (210e9, 0.3)
+>>> contact = solve(radius=10e-3, load=20.0, coatings=((420e9, 0.3, 70e-6),), substrate=steel, quality="fast")
+>>> bool(contact.contact_radius < 86.7e-6)  # stiffer than bare steel
+True
+"""
+
+from .solution import Diagnostics, NotConverged, Solution, Uncertainty
+from .solver import solve
+
+__all__ = ["Diagnostics", "NotConverged", "Solution", "Uncertainty", "solve"]

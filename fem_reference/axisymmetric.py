@@ -1,0 +1,163 @@
+"""Elasticity of a body of revolution under loads of Fourier harmonic 0 or 1.
+
+Harmonic 0 has two fields on the meridian plane, harmonic 1 has three:
+
+    0:  u_r = U,             u_theta = 0,             u_z = Z
+    1:  u_r = U cos(theta),  u_theta = V sin(theta),  u_z = Z cos(theta),     with S = U + V
+
+Harmonic 1 is carried as (S, V, Z): regularity on the axis, u_theta = -u_r and u_z = 0, then reads S = Z = 0,
+and no strain divides anything by r that does not vanish there. Each strain is linear in the fields,
+
+    eps = A_r du/dr + A_z du/dz + A_0 u / r,
+
+with engineering shear. Components in the order rr, theta theta, zz, rz (harmonic 0), then r theta, theta z
+(harmonic 1, these two times sin(theta), the others times cos(theta)).
+O. C. Zienkiewicz and R. L. Taylor, The Finite Element Method for Solid and Structural Mechanics, ch. 9.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import scipy.sparse as sp
+from skfem import Basis, ElementTriP1, ElementTriP2, ElementTriP3, ElementTriP4, FacetBasis, MeshTri
+
+from .mesh import MeridianMesh
+
+__all__ = ["ELEMENTS", "Discretisation", "elasticity", "strain_operator"]
+
+ELEMENTS = {1: ElementTriP1, 2: ElementTriP2, 3: ElementTriP3, 4: ElementTriP4}
+
+
+def strain_operator(harmonic: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """The matrices (A_r, A_z, A_0), each of shape (strains, fields).
+
+    Harmonic 0, fields (U, Z):  rr = U,r   tt = U/r   zz = Z,z   rz = U,z + Z,r
+    Harmonic 1, fields (S, V, Z), U = S - V:
+        rr = U,r   tt = S/r   zz = Z,z   rz = U,z + Z,r   rt = V,r - S/r   tz = V,z - Z/r
+    """
+    if harmonic == 0:
+        A_r, A_z, A_0 = np.zeros((3, 4, 2))
+        A_r[0, 0] = A_r[3, 1] = 1
+        A_z[2, 1] = A_z[3, 0] = 1
+        A_0[1, 0] = 1
+        return A_r, A_z, A_0
+    A_r, A_z, A_0 = np.zeros((3, 6, 3))
+    A_r[0, 0], A_r[0, 1], A_r[3, 2], A_r[4, 1] = 1, -1, 1, 1
+    A_z[2, 2], A_z[3, 0], A_z[3, 1], A_z[5, 1] = 1, 1, -1, 1
+    A_0[1, 0], A_0[4, 0], A_0[5, 2] = 1, -1, -1
+    return A_r, A_z, A_0
+
+
+def elasticity(E: float, nu: float, harmonic: int) -> np.ndarray:
+    """Hooke's law as a matrix from strain to stress, in the component order of the module.
+
+    sigma = lambda tr(eps) I + 2 G eps;  engineering shears carry G alone. Units of ``E``.
+    """
+    G = E / (2 * (1 + nu))
+    lame = 2 * G * nu / (1 - 2 * nu)
+    D = np.diag([2 * G] * 3 + [G] * (1 if harmonic == 0 else 3))
+    D[:3, :3] += lame
+    return D
+
+
+@dataclass(frozen=True, eq=False)
+class Discretisation:
+    """Lagrange elements of one ``order`` on a meridian mesh, and everything assembled from them.
+
+    A field vector stacks the fields one after the other: entry ``field * N + i`` is the value of that field at
+    ``locations[:, i]``.
+    """
+
+    mesh: MeridianMesh
+    order: int
+
+    @cached_property
+    def triangulation(self) -> MeshTri:
+        # sort_t: scikit-fem needs ascending vertex numbers to match edge unknowns of order 3 and above
+        return MeshTri(self.mesh.points, self.mesh.triangles, sort_t=True)
+
+    @cached_property
+    def basis(self) -> Basis:
+        return Basis(self.triangulation, ELEMENTS[self.order](), intorder=2 * self.order)
+
+    @property
+    def N(self) -> int:
+        """Unknowns per field."""
+        return int(self.basis.N)
+
+    @property
+    def locations(self) -> np.ndarray:
+        """Positions (r, z) of the unknowns, shape (2, N)."""
+        return np.asarray(self.basis.doflocs)
+
+    def facets(self, where: Callable[[np.ndarray], np.ndarray]) -> np.ndarray:
+        """Boundary edges whose midpoint satisfies ``where``."""
+        return np.asarray(self.triangulation.facets_satisfying(where, boundaries_only=True))
+
+    def on(self, facets: np.ndarray) -> np.ndarray:
+        """Numbers of the unknowns (of one field) on the edges ``facets``."""
+        return np.asarray(self.basis.get_dofs(facets).all())
+
+    @cached_property
+    def axis(self) -> np.ndarray:
+        return self.on(self.facets(lambda x: x[0] == 0))
+
+    @cached_property
+    def outer(self) -> np.ndarray:
+        far = self.locations.max(axis=1)[:, None] * (1 - 1e-9)
+        return self.on(self.facets(lambda x: np.any(x >= far, axis=0)))
+
+    def stiffness(self, materials: tuple[tuple[float, float], ...], harmonic: int) -> sp.csc_matrix:
+        """Stiffness matrix: virtual work per angle, divided by the angular factor common to all terms.
+
+            v^T K u = int eps(v) : D(layer) eps(u) r dr dz
+
+        Harmonic 0 carries the factor 2 pi, harmonic 1 the factor pi. ``materials`` = (E, nu) per layer.
+        """
+        A_r, A_z, A_0 = strain_operator(harmonic)
+        fields = A_r.shape[1]
+        r = self.basis.global_coordinates().value[0]
+        weight = r * self.basis.dx
+        triangles, points = weight.shape
+        local = len(self.basis.basis)
+        phi = np.stack([np.broadcast_to(b[0].value, r.shape) for b in self.basis.basis], axis=-1)
+        dphi = [np.stack([b[0].grad[i] for b in self.basis.basis], axis=-1) for i in (0, 1)]
+        # strain of every (field, shape function) at every quadrature point
+        B = np.zeros((triangles, points, A_r.shape[0], fields, local))
+        for A, shape in ((A_r, dphi[0]), (A_z, dphi[1]), (A_0, phi / r[..., None])):
+            for s, field in zip(*np.nonzero(A), strict=True):
+                B[:, :, s, field] += A[s, field] * shape
+        D = np.stack([elasticity(E, nu, harmonic) for E, nu in materials])[self.mesh.layer]
+        flat = B.reshape(triangles, points, A_r.shape[0], fields * local)
+        stress = np.matmul(D[:, None], flat) * weight[..., None, None]
+        rows = points * A_r.shape[0]
+        K = np.matmul(
+            flat.reshape(triangles, rows, -1).transpose(0, 2, 1), stress.reshape(triangles, rows, -1)
+        )
+        dofs = np.asarray(self.basis.element_dofs).T
+        numbers = (np.arange(fields)[:, None] * self.N + dofs[:, None, :]).reshape(triangles, -1)
+        i = np.repeat(numbers, numbers.shape[1], axis=1)
+        j = np.tile(numbers, (1, numbers.shape[1]))
+        shape = (fields * self.N, fields * self.N)
+        return sp.coo_matrix((K.ravel(), (i.ravel(), j.ravel())), shape=shape).tocsc()
+
+    def surface_basis(self, facets: np.ndarray, order: int) -> FacetBasis:
+        """Shape functions of ``order`` on surface edges, with quadrature exact for products with r."""
+        return FacetBasis(
+            self.triangulation,
+            ELEMENTS[order](),
+            facets=facets,
+            intorder=self.order + max(order, self.order) + 1,
+        )
+
+    def surface_load(self, facets: np.ndarray, traction: Callable[[np.ndarray], np.ndarray]) -> np.ndarray:
+        """Load vector of one field, int traction(r) v r dr over the surface edges ``facets``; shape (N,)."""
+        basis = self.surface_basis(facets, self.order)
+        r = basis.global_coordinates().value[0]
+        weight = traction(r) * r * basis.dx
+        load = np.zeros(self.N)
+        for i, b in enumerate(basis.basis):
+            np.add.at(load, basis.element_dofs[i], np.sum(b[0].value * weight, axis=-1))
+        return load

@@ -1,0 +1,89 @@
+"""Pointwise uncertainty from the difference between a solution and a coarser companion.
+
+The difference of two solutions crosses zero at points where neither is exact, so it is not taken point by point:
+the bound at a vertex is the largest difference found in the triangles around it, and between vertices it is linear.
+The companion is coarser, hence the difference is about the error of the companion, which exceeds the error sought.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from .recovery import HarmonicField
+
+__all__ = ["StressBound", "line_bound"]
+
+# samples in the reference triangle, strictly inside so that every sample has one layer
+_SAMPLES = np.array(
+    [[0.02, 0.96, 0.02, 0.49, 0.49, 0.02, 1 / 3], [0.02, 0.02, 0.96, 0.02, 0.49, 0.49, 1 / 3]],
+)
+
+
+def line_bound(
+    difference: Callable[[np.ndarray], np.ndarray], vertices: np.ndarray, samples: int = 5
+) -> tuple[np.ndarray, np.ndarray]:
+    """Largest |difference| around each of the increasing ``vertices`` of a line.
+
+    difference : (n,) positions -> (..., n).  Returns (vertices, bound of shape (..., vertices)).
+    """
+    t = (np.arange(samples) + 0.5) / samples
+    points = vertices[:-1, None] + np.diff(vertices)[:, None] * t
+    values = np.abs(difference(points.ravel()))
+    worst = values.reshape(*values.shape[:-1], *points.shape).max(axis=-1)
+    left = np.concatenate([worst[..., :1], worst], axis=-1)
+    right = np.concatenate([worst, worst[..., -1:]], axis=-1)
+    return vertices, np.maximum(left, right)
+
+
+@dataclass(frozen=True, eq=False)
+class StressBound:
+    """Bound of |stress - companion's stress| as a function of position, for one harmonic."""
+
+    field: HarmonicField
+    companion: HarmonicField
+
+    def _difference(self, r: np.ndarray, z: np.ndarray, layer: np.ndarray) -> np.ndarray:
+        return np.abs(self.field(r, z, layer)[1] - self.companion(r, z, layer)[1])
+
+    @cached_property
+    def _corners(self) -> np.ndarray:
+        """Bound at the corners of each triangle, (6, 3, triangles); a vertex has one value per layer."""
+        d = self.field.discretisation
+        t = d.triangulation.t
+        s1, s2 = _SAMPLES
+        shape = np.stack([1 - s1 - s2, s1, s2])
+        r, z = np.einsum("cp,dct->dpt", shape, d.mesh.points[:, t])
+        layer = np.broadcast_to(d.mesh.layer, r.shape)
+        reach = self.companion.discretisation.mesh.points.max()
+        inside = np.minimum(r, reach).ravel(), np.minimum(z, reach).ravel()
+        worst = self._difference(*inside, layer.ravel()).reshape(6, *r.shape).max(axis=1)
+        vertices = t + d.mesh.layer * d.mesh.points.shape[1]
+        bound = np.zeros((6, int(vertices.max()) + 1))
+        for corner in vertices:
+            for component in range(6):
+                np.maximum.at(bound[component], corner, worst[component])
+        return bound[:, vertices]
+
+    @cached_property
+    def _surface(self) -> tuple[np.ndarray, np.ndarray]:
+        mesh = self.field.discretisation.mesh
+        vertices = np.sort(mesh.points[0, mesh.points[1] == 0])
+
+        def difference(r: np.ndarray) -> np.ndarray:
+            return self._difference(r, np.zeros(r.shape), np.zeros(r.shape, dtype=int))
+
+        return line_bound(difference, vertices[vertices < 0.9 * mesh.far])
+
+    def __call__(self, r: np.ndarray, z: np.ndarray, layer: np.ndarray) -> np.ndarray:
+        """Bound (6, n) at points of shape (n,)."""
+        cells, X = self.field.locate(r, z, layer)
+        X = np.clip(X, 0, 1)
+        shape = np.stack([np.clip(1 - X[0] - X[1], 0, 1), X[0], X[1]])
+        bound = np.einsum("sct,ct->st", self._corners[:, :, cells], shape)
+        on_surface = z == 0
+        if np.any(on_surface):
+            vertices, values = self._surface
+            bound[:, on_surface] = [np.interp(r[on_surface], vertices, row) for row in values]
+        return bound

@@ -1,0 +1,84 @@
+"""A private gmsh session that leaves no trace in the process.
+
+gmsh is one global object per process: one list of models, one set of options, one log. Its Python
+module can be imported only where a handful of system libraries exist. Everything that touches it goes
+through ``session``, which takes turns between threads and puts back what it found.
+"""
+
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
+from types import ModuleType
+from typing import Any
+
+__all__ = ["session"]
+
+# gmsh offers no second instance, so threads of one process must take turns.
+_TURN = threading.Lock()
+
+_MISSING = (
+    "gmsh cannot be loaded ({reason}); on a bare Debian or Ubuntu run: "
+    "apt-get install libglu1-mesa libxrender1 libxcursor1 libxft2 libxinerama1 libgl1"
+)
+
+_OPTIONS = {
+    "General.Terminal": 0,
+    "General.Verbosity": 0,
+    "General.NumThreads": 1,
+    "General.AbortOnError": 2,
+    "Mesh.Algorithm": 6,  # frontal Delaunay
+    "Mesh.ElementOrder": 1,
+    "Mesh.RandomSeed": 1,
+    "Mesh.SaveAll": 0,
+    "Mesh.MeshSizeExtendFromBoundary": 0,
+    "Mesh.MeshSizeFromPoints": 0,
+    "Mesh.MeshSizeFromCurvature": 0,
+    "Mesh.MeshSizeMin": 0,
+    "Mesh.MeshSizeMax": 1e22,
+    "Mesh.MeshSizeFactor": 1,
+    "Mesh.Optimize": 1,
+    "Mesh.RecombineAll": 0,
+    "Mesh.SubdivisionAlgorithm": 0,
+}
+
+
+def _load() -> ModuleType:
+    """The gmsh module, or an ImportError whose text names the missing system packages."""
+    try:
+        import gmsh
+    except (ImportError, OSError) as error:
+        raise ImportError(_MISSING.format(reason=error)) from error
+    return gmsh
+
+
+@contextmanager
+def session(name: str) -> Iterator[Any]:
+    """A gmsh with one fresh model called ``name``, silent, with defaults of its own.
+
+    Where the caller's process already runs gmsh, its models stay, its current model stays current and its
+    options return to what they were; otherwise gmsh is started without signal handlers or configuration
+    files, so that it may run in any thread, and is shut down again.
+    Raises ImportError (naming the apt packages) when gmsh's system libraries are missing.
+    """
+    with _TURN:
+        gmsh = _load()
+        running = bool(gmsh.isInitialized())
+        if not running:
+            gmsh.initialize([], readConfigFiles=False, interruptible=False)
+        before = {option: gmsh.option.getNumber(option) for option in _OPTIONS}
+        current = gmsh.model.getCurrent() if running else None
+        try:
+            for option, value in _OPTIONS.items():
+                gmsh.option.setNumber(option, value)
+            gmsh.model.add(name)
+            yield gmsh
+        finally:
+            if running:
+                gmsh.model.setCurrent(name)
+                gmsh.model.remove()
+                if current is not None and current in gmsh.model.list():
+                    gmsh.model.setCurrent(current)
+                for option, value in before.items():
+                    gmsh.option.setNumber(option, value)
+            else:
+                gmsh.finalize()

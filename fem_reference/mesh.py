@@ -1,0 +1,196 @@
+"""Meridian plane of a coated half-space, meshed by gmsh with grading to the contact edge.
+
+The mesher works in a stretched plane (xi, zeta) in which the whole problem has one length scale,
+
+    r - a = l sinh(xi),      z = l sinh(zeta),      l = min(a, thickness of the top coating),
+
+so that triangles near the edge r = a, z = 0 are fine, thin coatings far out are resolved by flat triangles instead of
+by many, and the outer boundary costs the logarithm of its distance. Towards the edge the size falls in
+proportion to the distance, down to ``edge_size``. All lengths are in one unit of the caller's choice.
+"""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from .gmsh_session import session
+
+__all__ = ["Grading", "MeridianMesh", "meridian_mesh"]
+
+MAX_LAYERS = 50
+
+
+@dataclass(frozen=True)
+class Grading:
+    """How fine the mesh is.
+
+    size      : size of a triangle over its distance from the edge, in the contact and the coatings
+    edge_rate : the same ratio in the fan of triangles around the contact edge
+    edge_size : smallest triangle, at the edge, over the contact radius
+    axis_size : the same at the point of first touch
+    far_size  : growth per triangle towards the outer boundary
+    """
+
+    size: float = 0.4
+    edge_rate: float = 0.5
+    edge_size: float = 1e-6
+    axis_size: float = 0.2
+    far_size: float = 0.8
+
+    def coarser(self, factor: float) -> "Grading":
+        """The same grading with every triangle ``factor`` times as large."""
+        return replace(
+            self,
+            size=self.size * factor,
+            edge_rate=min(self.edge_rate * factor, 1.0),
+            edge_size=self.edge_size * factor,
+            axis_size=self.axis_size * factor,
+            far_size=self.far_size * factor,
+        )
+
+
+@dataclass(frozen=True, eq=False)
+class MeridianMesh:
+    """Triangles in (r, z) with a layer number each.
+
+    points    : (2, n) vertices (r, z)
+    triangles : (3, m) vertex numbers
+    layer     : (m,) layer of each triangle, 0 at the surface, the last is the substrate
+    depths    : (number of coatings,) depth of each interface
+    contact_radius, far : radius with a vertex at the surface; extent of the solid in r and z
+    length, stretch : l of the stretched plane; factor applied to all radii since
+    """
+
+    points: np.ndarray
+    triangles: np.ndarray
+    layer: np.ndarray
+    depths: np.ndarray
+    contact_radius: float
+    far: float
+    length: float
+    stretch: float = 1.0
+
+    def stretched(self, factor: float) -> "MeridianMesh":
+        """The mesh with all radii multiplied by ``factor``, which moves the contact edge and keeps every depth."""
+        points = self.points * np.array([[factor], [1.0]])
+        return replace(
+            self,
+            points=points,
+            contact_radius=self.contact_radius * factor,
+            stretch=self.stretch * factor,
+        )
+
+    def plane(self, r: np.ndarray, z: np.ndarray) -> np.ndarray:
+        """Stretched-plane coordinates (xi, zeta) of the points (r, z); shape (2,) + points."""
+        offset = (r - self.contact_radius) / (self.stretch * self.length)
+        return np.stack([np.arcsinh(offset), np.arcsinh(z / self.length)])
+
+
+def meridian_mesh(
+    *, contact_radius: float, thicknesses: tuple[float, ...], far: float, grading: Grading
+) -> MeridianMesh:
+    """Triangulate 0 <= r, z <= ``far`` with a vertex at r = ``contact_radius`` on the surface.
+
+    One physical group per layer ("coating 1", ..., "substrate"). Raises ValueError when there are more
+    layers than a mesh can hold or when the contact does not fit into the half-space.
+    """
+    if len(thicknesses) > MAX_LAYERS:
+        raise ValueError(
+            f"{len(thicknesses)} coatings; the mesh holds at most {MAX_LAYERS}, merge thin ones into effective layers"
+        )
+    a = contact_radius
+    depths = np.cumsum(np.asarray(thicknesses, dtype=float))
+    if depths.size and not depths[-1] < 0.5 * far:
+        raise ValueError(
+            f"coatings reach {depths[-1]:g} deep in a half-space cut off at {far:g}; ask for a larger far boundary"
+        )
+    if not a < 0.1 * far:
+        raise ValueError(
+            f"contact radius {a:g} in a half-space cut off at {far:g}; ask for a larger far boundary"
+        )
+    length = min(a, *thicknesses[:1]) if thicknesses else a
+    xi = np.array([-np.arcsinh(a / length), 0.0, np.arcsinh((far - a) / length)])
+    zeta = np.concatenate([[0.0], np.arcsinh(depths / length), [np.arcsinh(far / length)]])
+
+    nodes, triangles, layer = _triangulate(xi, zeta, a / length, grading)
+    # Vertices meant to lie on the axis, the interfaces or the outer boundary lie there exactly.
+    r = a + length * np.sinh(nodes[0])
+    z = length * np.sinh(nodes[1])
+    r[np.isclose(nodes[0], xi[0], rtol=0, atol=1e-9)] = 0.0
+    r[np.abs(nodes[0]) < 1e-14] = a
+    r[np.isclose(nodes[0], xi[2], rtol=0, atol=1e-9)] = far
+    for level, depth in zip(zeta, (0.0, *depths, far), strict=True):
+        z[np.isclose(nodes[1], level, rtol=0, atol=1e-12 * zeta[-1])] = depth
+    points = np.ascontiguousarray([r, z])
+    area = _twice_area(points, triangles)
+    if np.any(area <= 0):
+        raise ValueError(
+            f"{np.count_nonzero(area <= 0)} triangles turned over when mapped to the meridian plane; "
+            f"ask for a finer mesh than size = {grading.size:g}, far_size = {grading.far_size:g}"
+        )
+    return MeridianMesh(points, triangles, layer, depths, a, far, length)
+
+
+def _twice_area(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:
+    """Signed doubled area of each triangle, positive when counter-clockwise in (r, z)."""
+    (r0, z0), (r1, z1), (r2, z2) = (points[:, corner] for corner in triangles)
+    return (r1 - r0) * (z2 - z0) - (r2 - r0) * (z1 - z0)
+
+
+def _triangulate(
+    xi: np.ndarray, zeta: np.ndarray, scale: float, grading: Grading
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Mesh the stretched plane; ``scale`` = a / l turns ``edge_size`` into units of l."""
+    with session("coated half-space") as gmsh:
+        geo = gmsh.model.geo
+        axis = [geo.addPoint(xi[0], level, 0) for level in zeta]
+        far = [geo.addPoint(xi[2], level, 0) for level in zeta]
+        edge = geo.addPoint(xi[1], 0, 0)
+        down_axis = [geo.addLine(p, q) for p, q in zip(axis[:-1], axis[1:], strict=True)]
+        down_far = [geo.addLine(p, q) for p, q in zip(far[:-1], far[1:], strict=True)]
+        across = [[geo.addLine(axis[0], edge), geo.addLine(edge, far[0])]]
+        across += [[geo.addLine(p, q)] for p, q in zip(axis[1:], far[1:], strict=True)]
+        layers = []
+        for k in range(len(zeta) - 1):
+            bottom = [-curve for curve in reversed(across[k + 1])]
+            loop = geo.addCurveLoop([*across[k], down_far[k], *bottom, -down_axis[k]])
+            layers.append(geo.addPlaneSurface([loop]))
+        geo.synchronize()
+        for k, surface in enumerate(layers):
+            name = "substrate" if k == len(layers) - 1 else f"coating {k + 1}"
+            gmsh.model.addPhysicalGroup(2, [surface], k + 1, name)
+        gmsh.model.addPhysicalGroup(1, [across[0][0]], 1, "contact")
+
+        field = gmsh.model.mesh.field
+        rho = "Sqrt(x*x+y*y)"
+        field.add("MathEval", 1)
+        field.setString(1, "F", f"{grading.edge_rate!r}*{rho}+{grading.edge_size * scale!r}")
+        field.add("MathEval", 2)
+        # uniform over the near field, growing with the logarithm of the distance beyond
+        growth = f"{grading.size!r}+{grading.far_size - grading.size!r}*{rho}/{float(xi[2])!r}"
+        field.setString(2, "F", growth)
+        # p(0) has no neighbours on its other side: finer triangles at the first touch
+        field.add("MathEval", 3)
+        origin = f"Sqrt((x-({float(xi[0])!r}))^2+y*y)"
+        field.setString(3, "F", f"{grading.axis_size!r}+0.3*{origin}")
+        field.add("Min", 4)
+        field.setNumbers(4, "FieldsList", [1, 2, 3])
+        field.setAsBackgroundMesh(4)
+        gmsh.model.mesh.generate(2)
+
+        tags, coordinates, _ = gmsh.model.mesh.getNodes()
+        number = np.full(int(tags.max()) + 1, -1)
+        number[tags.astype(int)] = np.arange(tags.size)
+        triangles, layer = [], []
+        for k in range(len(layers)):
+            for surface in gmsh.model.getEntitiesForPhysicalGroup(2, k + 1):
+                _, members = gmsh.model.mesh.getElementsByType(2, int(surface))
+                corners = number[members.astype(int)].reshape(-1, 3).T
+                triangles.append(corners)
+                layer.append(np.full(corners.shape[1], k))
+    nodes = coordinates.reshape(-1, 3).T[:2]
+    corners = np.concatenate(triangles, axis=1)
+    # gmsh returns the surfaces as oriented by their loop; make every triangle counter-clockwise
+    flip = _twice_area(nodes, corners) < 0
+    corners[1:, flip] = corners[:0:-1, flip]
+    return nodes, np.ascontiguousarray(corners), np.concatenate(layer)

@@ -1,0 +1,69 @@
+"""Checks of a stated problem, each failure one sentence."""
+
+import math
+from collections.abc import Sequence
+
+__all__ = ["check_choice", "check_materials", "check_positive"]
+
+MAX_COATINGS = 50
+MAX_CONTRAST = 1e4
+
+
+def check_positive(**quantities: float) -> None:
+    """Raise ValueError naming the first quantity that is not a positive finite number."""
+    for name, value in quantities.items():
+        if not _is_number(value) or not math.isfinite(value) or not value > 0:
+            raise ValueError(f"{name} = {value!r}; it has to be a positive finite number")
+
+
+def check_choice(name: str, value: object, choices: Sequence[object]) -> None:
+    """Raise ValueError when ``value`` is not one of ``choices``."""
+    if value not in choices:
+        raise ValueError(f"{name} = {value!r}; choose one of {', '.join(map(repr, choices))}")
+
+
+def check_materials(
+    coatings: Sequence[tuple[float, float, float]], substrate: tuple[float, float], friction: float
+) -> None:
+    """Raise ValueError for moduli, Poisson ratios, thicknesses or friction that make no elastic solid.
+
+    nu = 0.5 is refused: a displacement method cannot carry the undetermined pressure of an incompressible solid.
+    """
+    if not _is_number(friction) or not math.isfinite(friction):
+        raise ValueError(f"friction = {friction!r}; it has to be a finite number")
+    if not isinstance(coatings, Sequence) or isinstance(coatings, str):
+        raise ValueError(f"coatings = {coatings!r}; give a tuple of (E, nu, thickness), () for none")
+    if len(coatings) > MAX_COATINGS:
+        raise ValueError(
+            f"{len(coatings)} coatings; the mesh holds at most {MAX_COATINGS}, merge thin ones into effective layers"
+        )
+    if not isinstance(substrate, Sequence) or len(substrate) != 2:
+        raise ValueError(f"substrate = {substrate!r}; give (E, nu)")
+    for k, coating in enumerate(coatings, start=1):
+        if not isinstance(coating, Sequence) or len(coating) != 3:
+            raise ValueError(f"coating {k} = {coating!r}; give (E, nu, thickness)")
+        _check_material(f"of coating {k}", coating[0], coating[1])
+        check_positive(**{f"thickness of coating {k}": coating[2]})
+        contrast = coating[0] / substrate[0] if _is_number(substrate[0]) and substrate[0] > 0 else 1.0
+        if not 1 / MAX_CONTRAST <= contrast <= MAX_CONTRAST:
+            raise ValueError(
+                f"E of coating {k} is {contrast:g} times that of the substrate; the solver is good for ratios between "
+                f"{1 / MAX_CONTRAST:g} and {MAX_CONTRAST:g}, treat the stiffer solid as rigid instead"
+            )
+    _check_material("of the substrate", *substrate)
+
+
+def _check_material(where: str, E: float, nu: float) -> None:
+    check_positive(**{f"E {where}": E})
+    if not _is_number(nu) or not -1 < nu < 0.5:
+        raise ValueError(
+            f"nu {where} = {nu!r}; the finite element method needs -1 < nu < 0.5, use 0.499 for nearly incompressible"
+        )
+
+
+def _is_number(value: object) -> bool:
+    return isinstance(value, (int, float)) and not isinstance(value, bool) or _is_numpy_scalar(value)
+
+
+def _is_numpy_scalar(value: object) -> bool:
+    return hasattr(value, "dtype") and getattr(value, "shape", None) == () and hasattr(value, "__float__")
