@@ -1,0 +1,59 @@
+"""Square surface patches that hold the contact.
+
+Patch centres x_i = (i - (n-1)/2) d with n odd, so that the origin is a patch centre. Outside the box no
+pressure acts; the convolution is linear, so the box needs a margin for the contact to settle in and no more.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.interpolate import RectBivariateSpline
+
+__all__ = ["Grid", "carry_over", "odd"]
+
+Array = NDArray[np.floating]
+
+
+@dataclass(frozen=True)
+class Grid:
+    """n x n square patches of side d [m], centred at the origin; n odd."""
+
+    n: int
+    d: float
+
+    @property
+    def x(self) -> Array:
+        """Patch centres along one axis [m], shape (n,)."""
+        return (np.arange(self.n) - (self.n - 1) / 2) * self.d
+
+    @property
+    def half_width(self) -> float:
+        """Half the side of the box [m]."""
+        return self.n * self.d / 2
+
+    @property
+    def radius(self) -> Array:
+        """Distance of the patch centres from the origin [m], shape (n, n)."""
+        return np.hypot(self.x[:, None], self.x[None, :])
+
+
+def odd(n: float) -> int:
+    """Nearest odd integer, at least 3."""
+    return max(3, 2 * int(n // 2) + 1)
+
+
+def carry_over(pressure: Array, source: Grid, target: Grid) -> Array:
+    """Pressure of one grid as a first guess on another.
+
+    p falls as the square root of the distance to the contact edge, so p^2 is what interpolates well.
+
+    Returns p [Pa] on the target, shape (n, n); zero outside the source.
+    """
+    square = RectBivariateSpline(source.x, source.x, pressure**2, kx=1, ky=1)
+    x = np.clip(target.x, source.x[0], source.x[-1])
+    guess = np.sqrt(np.maximum(square(x, x), 0))
+    beyond = np.abs(target.x) > source.half_width
+    guess[beyond] = 0
+    guess[:, beyond] = 0
+    return guess
