@@ -1,0 +1,234 @@
+"""Case results made up from Hertz's closed forms with errors of known size, for tests of the report."""
+
+from typing import Any
+
+import numpy as np
+
+from verification.case import standard_claims
+from verification.problem import CoatedContact
+from verification.profile import SCALARS, STRESSES, Line, Profile, lines_of
+from verification.result import CaseResult, RunInfo, SourceResult
+from verification.verdict import Claim, Outcome, Verdict, compare, judge
+
+STEEL = (210e9, 0.3)
+INFO = RunInfo(
+    command="coatcheck run",
+    started="2026-11-21T08:00:00+00:00",
+    seconds=141.2,
+    jobs=2,
+    commit="a28aa40c1d2e",
+    machine="2 cores, Linux 6.1, x86_64",
+    versions={"coatcheck": "0.1.0", "python": "3.11.9", "numpy": "2.4.0", "scipy": "1.17.0"},
+)
+# Relative errors that the made-up methods have, and the uncertainty they state, as multiples of it.
+ERRORS = {"semianalytic": 1.5e-4, "fem_reference": 1.2e-5, "integral_equation": 1e-10, "hertz": 0.0}
+STATED = 2.5
+
+
+def contact(*coatings: tuple[float, float, float], substrate=STEEL, friction: float = 0.0) -> CoatedContact:
+    """A 10 mm sphere under 20 N; thicknesses are given in a_h of the bare substrate."""
+    bare = CoatedContact(10e-3, 20.0, (), substrate)
+    layers = tuple((E, nu, h * bare.a_h) for E, nu, h in coatings)
+    return CoatedContact(10e-3, 20.0, layers, substrate, friction)
+
+
+def result_of(
+    problem: CoatedContact,
+    *,
+    name: str = "stiff_coating",
+    title: str = "Stiff coating, E1/E2 = 2, h = a_h",
+    errors: dict[str, float] | None = None,
+    failures: dict[str, str] | None = None,
+    spoil: dict[tuple[str, str, str], float] | None = None,
+    stated: dict[str, float | None] | None = None,
+    points: int = 129,
+    text: str = "",
+) -> CaseResult:
+    """A case whose sources scatter about one closed form.
+
+    errors, stated : as ERRORS and STATED, by source; a stated None is an uncertainty not stated.
+    spoil : (quantity, line, source) -> number put into the middle of that profile, NaN for instance.
+    """
+    errors = {**ERRORS, **(errors or {})}
+    stated = {**dict.fromkeys(errors, STATED), **(stated or {})}
+    failures, spoil = failures or {}, spoil or {}
+    claims = standard_claims(problem)
+    names = list(dict.fromkeys(source for claim in claims for source in claim.between))
+    profiles: dict[tuple[str, str, str], Profile] = {}
+    for source in names:
+        if source in failures:
+            continue
+        random = np.random.default_rng([ord(letter) for letter in source])
+        for profile in _exact(problem, source, points):
+            scale = np.abs(profile.value) if profile.line == "contact" else problem.p_h
+            noise = errors[source] * scale * random.uniform(-1, 1, profile.value.shape)
+            value = profile.value + noise
+            key = (profile.quantity, profile.line, source)
+            if key in spoil:
+                value[value.size // 2] = spoil[key]
+            factor = stated[source]
+            spread = None if factor is None else factor * errors[source] * scale * np.ones(value.shape)
+            profiles[key] = Profile(profile.quantity, profile.line, profile.position, value, source, spread)
+    sources = tuple(
+        SourceResult(
+            source,
+            0.7 + number,
+            failures.get(source),
+            {"iterations": 31, "residual": 3.2e-11, "history": [10.0**-n for n in range(12)]},
+            tuple((q, k, s * errors[source]) for q in SCALARS for k, s in _knobs(problem, q))
+            if source in ("semianalytic", "fem_reference")
+            else (),
+        )
+        for number, source in enumerate(names)
+    )
+    return CaseResult(
+        name=name,
+        title=title,
+        source="O'Sullivan and King, J. Tribol. 110 (1988) 235-240",
+        problem=described(problem),
+        sources=sources,
+        profiles=tuple(profiles.values()),
+        verdicts=tuple((claim, _decide(claim, profiles, failures, problem)) for claim in claims),
+        seconds=3.4,
+        text=text,
+    )
+
+
+def described(problem: CoatedContact) -> dict[str, Any]:
+    """The record of the problem that a result carries."""
+    return {
+        "radius": problem.radius,
+        "load": problem.load,
+        "coatings": [list(layer) for layer in problem.coatings],
+        "substrate": list(problem.substrate),
+        "friction": problem.friction,
+        "a_h": problem.a_h,
+        "p_h": problem.p_h,
+        "delta_h": problem.delta_h,
+        "interfaces": list(problem.interfaces),
+    }
+
+
+def crashed(problem: CoatedContact, name: str, reason: str) -> CaseResult:
+    """A case whose process died before it had anything to show."""
+    verdicts = tuple((claim, Verdict(Outcome.NO_RESULT, reason)) for claim in standard_claims(problem))
+    source = (SourceResult("case", 1.0, reason),)
+    return CaseResult(name, name.title(), "", described(problem), source, (), verdicts, 1.0)
+
+
+def _decide(
+    claim: Claim,
+    profiles: dict[tuple[str, str, str], Profile],
+    failures: dict[str, str],
+    problem: CoatedContact,
+) -> Verdict:
+    for source in claim.between:
+        if source in failures:
+            return Verdict(Outcome.NO_RESULT, f"{source}: {failures[source]}")
+    a, b = (profiles[claim.quantity, claim.line, source] for source in claim.between)
+    scale = problem.p_h if claim.line != "contact" else float(abs(b.value[0]))
+    excluded = np.abs(np.abs(a.position) - problem.a_h) < claim.edge * problem.a_h
+    return judge(compare(a, b, scale=scale, excluded=excluded), claim.cap)
+
+
+def _knobs(problem: CoatedContact, quantity: str) -> list[tuple[str, float]]:
+    size = {"peak_pressure": problem.p_h, "contact_radius": problem.a_h, "approach": problem.delta_h}[
+        quantity
+    ]
+    return [
+        ("patch or element size", 1.9 * size),
+        ("conversion or order", 0.5 * size),
+        ("domain", 0.1 * size),
+    ]
+
+
+def _exact(problem: CoatedContact, source: str, points: int) -> list[Profile]:
+    a, p0, nu = problem.a_h, problem.p_h, problem.substrate[1]
+    origin = np.zeros(1)
+    found = [
+        Profile(name, "contact", origin, np.array([value]), source)
+        for name, value in zip(SCALARS, (p0, a, problem.delta_h), strict=True)
+    ]
+    for line in lines_of(problem):
+        position = np.linspace(
+            0 if line.depth is None else -2 * a, 3 * a if line.depth is None else 2 * a, points
+        )
+        fields = _fields(line, position / a, nu, problem, points)
+        if line.name == "surface":
+            pressure = p0 * np.sqrt(np.maximum(1 - (position / a) ** 2, 0))
+            found.append(Profile("pressure", line.name, position, pressure, source))
+        found += [Profile(n, line.name, position, p0 * fields[n], source) for n in STRESSES]
+    return found
+
+
+def _fields(
+    line: Line, s: np.ndarray, nu: float, problem: CoatedContact, points: int
+) -> dict[str, np.ndarray]:
+    if line.depth is None:
+        lateral = -(1 + nu) * (1 - s * np.arctan2(1, s)) + 0.5 / (1 + s**2)
+        return dict(sigma_xx=lateral, sigma_yy=lateral, sigma_zz=-1 / (1 + s**2), sigma_xz=np.zeros(points))
+    # Off the axis the report only needs curves of the right look.
+    depth = 0.3 + line.depth / problem.a_h
+    layers = [*problem.coatings, (*problem.substrate, 0.0)]
+    jump = layers[line.layer or 0][0] / problem.substrate[0]
+    bell = 1 / (1 + (s**2 + depth**2)) ** 1.5
+    return dict(
+        sigma_xx=jump * bell * (s**2 - 0.4),
+        sigma_yy=jump * bell * (0.3 * s**2 - 0.5),
+        sigma_zz=-bell,
+        sigma_xz=-1.2 * s * bell * depth,
+    )
+
+
+def showcase() -> list[CaseResult]:
+    """Twelve cases that show everything a report has to cope with."""
+    E, nu = STEEL
+    one = contact((2 * E, nu, 1.0))
+    return [
+        result_of(contact(), name="uncoated_steel", title="Uncoated steel (Hertz)"),
+        result_of(contact((E / 4, nu, 1.0)), name="soft_quarter", title="E1/E2 = 1/4, h = a_h"),
+        result_of(contact((E / 2, nu, 1.0)), name="soft_half", title="E1/E2 = 1/2, h = a_h"),
+        result_of(one, name="stiff_two", title="E1/E2 = 2, h = a_h", text="title = 'E1/E2 = 2'\n[problem]\n"),
+        result_of(
+            contact((4 * E, nu, 1.0)),
+            name="stiff_four",
+            title="E1/E2 = 4, h = a_h: the semi-analytical side is off by more than it states",
+            errors={"semianalytic": 2e-3},
+            stated={"semianalytic": 0.7},
+        ),
+        result_of(contact((2 * E, nu, 0.1)), name="thin", title="Thin coating, h = 0.1 a_h"),
+        result_of(
+            contact((2 * E, nu, 2.0)),
+            name="thick",
+            title="Thick coating, h = 2 a_h: uncertainty above the cap",
+            errors={"semianalytic": 4e-3},
+        ),
+        result_of(
+            contact((250e9, 0.2, 0.03), (279e9, 0.21, 0.012)),
+            name="dlc_chromium_steel",
+            title="DLC with a chromium interlayer on steel",
+        ),
+        result_of(
+            contact((110e9, 0.3, 0.5)),
+            name="mos2",
+            title="MoS2 on steel: the finite elements did not converge",
+            failures={
+                "fem_reference": "load balance off by 3e-3 after 40 iterations (asked for 1e-8); the contact "
+                "reaches the edge of the mesh at r = 4.0 a_h, widen it"
+            },
+        ),
+        result_of(
+            contact((83e9, 0.37, 0.2)),
+            name="silver",
+            title="Silver on steel: NaN in one stress",
+            spoil={("sigma_xx", "interface 1, upper side", "semianalytic"): float("nan")},
+        ),
+        result_of(
+            contact((370e9, 0.22, 0.3), substrate=(70e9, 0.33)),
+            name="alumina",
+            title="Alumina on aluminium, <script>alert('no')</script> & unequal Poisson ratios, with a title "
+            "so long that it has to break over several lines on any screen and still be readable",
+            stated={"fem_reference": None},
+        ),
+        crashed(contact((0.05 * E, 0.4, 0.5)), "polymer_on_glass", "killed after 300 s, its time limit"),
+    ]

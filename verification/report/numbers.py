@@ -1,0 +1,93 @@
+"""Numbers as a reader wants them: engineering prefixes, as many digits as the uncertainty supports."""
+
+from math import floor, isfinite, log10
+from typing import Any
+
+__all__ = ["engineering", "plain", "scientific", "seconds", "with_uncertainty"]
+
+_PREFIXES = {-15: "f", -12: "p", -9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G", 12: "T"}
+MOST_DIGITS = 9
+
+
+def engineering(value: Any, unit: str, digits: int = 4) -> str:
+    """``value`` in SI with an engineering prefix, e.g. 4.2e11, "Pa" -> "420 GPa"."""
+    number = _number(value)
+    if number is None:
+        return f"{value} {unit}"
+    factor, prefix = _prefix(number)
+    return f"{_minus(format(number / factor, f'.{digits}g'))} {prefix}{unit}"
+
+
+def with_uncertainty(value: Any, uncertainty: Any, unit: str) -> str:
+    """``value`` with +- ``uncertainty``, both with one prefix, cut where the uncertainty ends.
+
+    uncertainty : None is "not stated" (six digits are shown), 0 is "exact" (nine digits).
+    """
+    number, spread = _number(value), _number(uncertainty)
+    if number is None:
+        return "not finite"
+    factor, prefix = _prefix(number)
+    shown = f"{prefix}{unit}"
+    if spread is None:
+        return f"{_minus(format(number / factor, '.6g'))} {shown}"
+    if spread <= 0:
+        return f"{_minus(format(number / factor, f'.{MOST_DIGITS}g'))} {shown}"
+    # Two digits of the uncertainty; beyond nine of the value nothing is meant any more.
+    whole = floor(log10(abs(number / factor))) if number else 0
+    decimals = min(max(1 - floor(log10(spread / factor)), 0), max(MOST_DIGITS - 1 - whole, 0))
+    wide = spread / factor >= 0.5 * 10**-decimals
+    plus_minus = format(spread / factor, f".{decimals}f" if wide else ".1e")
+    return f"{_minus(format(number / factor, f'.{decimals}f'))} ± {plus_minus} {shown}"
+
+
+def scientific(value: Any, digits: int = 2, sign: bool = False) -> str:
+    """A fraction such as 3.1e-5, short enough for a cell; "–" where there is none."""
+    if value is None:
+        return "–"
+    number = _number(value)
+    if number is None:
+        return "not finite"
+    if number == 0:
+        return "0"
+    mantissa, exponent = format(number, f"{'+' if sign else ''}.{digits - 1}e").split("e")
+    return _minus(f"{mantissa}e{int(exponent)}")
+
+
+def plain(value: Any, digits: int = 4) -> str:
+    """A ratio or a count with ``digits`` significant digits."""
+    number = _number(value)
+    return str(value) if number is None else _minus(format(number, f".{digits}g"))
+
+
+def seconds(value: Any) -> str:
+    """A time: "0.43 s", "12.3 s", "2 min 05 s"."""
+    number = _number(value)
+    if number is None:
+        return "–"
+    if number >= 90:
+        minutes, rest = divmod(round(number), 60)
+        return f"{minutes} min {rest:02d} s"
+    return f"{number:.2f} s" if number < 10 else f"{number:.1f} s"
+
+
+def _number(value: Any) -> float | None:
+    try:
+        number = float(value)
+    except (TypeError, ValueError):
+        return None
+    return number if isfinite(number) else None
+
+
+def _prefix(number: float) -> tuple[float, str]:
+    if number == 0:
+        return 1.0, ""
+    # The nudge keeps 1000 from being read as 999.99... thousand.
+    power = 3 * floor((log10(abs(number)) + 1e-9) / 3)
+    power = min(max(power, min(_PREFIXES)), max(_PREFIXES))
+    return 10.0**power, _PREFIXES[power]
+
+
+def _minus(text: str) -> str:
+    return (
+        text.replace("-", "−") if "e" not in text else text.replace("-", "−", 1) if text[0] == "-" else text
+    )

@@ -1,0 +1,203 @@
+"""The report page: from case results to one HTML text that needs nothing else."""
+
+import base64
+import hashlib
+import shlex
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from jinja2 import Environment, FileSystemLoader, StrictUndefined
+from markupsafe import Markup
+
+from verification.report.accuracy import accuracy_overview, accuracy_sentence, accuracy_table
+from verification.report.cells import Table
+from verification.report.csvdata import embedded, line_csv
+from verification.report.matrix import verdict_matrix
+from verification.report.names import METHODS, OUTCOMES, OutcomeStyle, source_label
+from verification.report.numbers import engineering, plain, scientific, seconds
+from verification.report.panels import LineFigures, line_figures
+from verification.report.reading import lines, scale, slug
+from verification.report.sketch import sketch
+from verification.report.tables import (
+    budget_table,
+    contact_table,
+    diagnostics_table,
+    layer_table,
+    time_table,
+    verdict_table,
+)
+from verification.result import CaseResult, RunInfo
+from verification.verdict import Outcome
+
+__all__ = ["render"]
+
+HERE = Path(__file__).parent
+
+
+@dataclass(frozen=True)
+class LineView:
+    """One line of a case: its anchor, figures, and numbers."""
+
+    anchor: str
+    title: str
+    figures: LineFigures
+    csv: str
+    file: str
+
+
+@dataclass(frozen=True)
+class CaseView:
+    """All that the page says of one case."""
+
+    anchor: str
+    result: CaseResult
+    outcome: OutcomeStyle
+    sentence: str
+    command: str
+    facts: tuple[tuple[str, str], ...]
+    sketch: Markup
+    failures: tuple[tuple[str, str], ...]
+    layers: Table
+    contact: Table
+    contact_csv: str
+    contact_file: str
+    lines: tuple[LineView, ...]
+    accuracy: Table | None
+    failing: Table | None
+    verdicts: Table
+    budget: Table | None
+    diagnostics: Table | None
+
+
+def render(results: Sequence[CaseResult], info: RunInfo) -> str:
+    """The whole page as text. Every string of a result is escaped: a title "<script>" stays text."""
+    anchors = _anchors(results)
+    script = (HERE / "script.js").read_text(encoding="utf-8")
+    digest = base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()
+    environment = Environment(
+        loader=FileSystemLoader(HERE),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    overviews = [
+        (accuracy_sentence(results, source), accuracy_overview(results, anchors, source))
+        for source in METHODS
+    ]
+    return environment.get_template("page.html").render(
+        info=info,
+        style=Markup((HERE / "style.css").read_text(encoding="utf-8")),
+        script=Markup(script),
+        script_hash=digest,
+        summary=_summary(results),
+        counts=_counts(results),
+        matrix=verdict_matrix(results, anchors) if results else None,
+        outcomes=OUTCOMES.values(),
+        accuracy=[(sentence, table) for sentence, table in overviews if table is not None],
+        times=time_table(results, [f"#{anchors[number]}" for number in range(len(results))]),
+        cases=[_case(result, anchors[number]) for number, result in enumerate(results)],
+        seconds=seconds,
+    )
+
+
+def _anchors(results: Sequence[CaseResult]) -> Mapping[int, str]:
+    """A readable anchor for each case; two cases with one name get different ones."""
+    taken: Counter[str] = Counter()
+    anchors = {}
+    for number, result in enumerate(results):
+        name = f"case-{slug(result.name)}"
+        taken[name] += 1
+        anchors[number] = name if taken[name] == 1 else f"{name}--{taken[name]}"
+    return anchors
+
+
+def _counts(results: Sequence[CaseResult]) -> list[tuple[OutcomeStyle, int]]:
+    counted = Counter(verdict.outcome for result in results for _, verdict in result.verdicts)
+    return [(style, counted[outcome]) for outcome, style in reversed(OUTCOMES.items())]
+
+
+def _summary(results: Sequence[CaseResult]) -> str:
+    """What the run came to, in one sentence."""
+    if not results:
+        return "No case was run."
+    verdicts = [(c, v, result) for result in results for c, v in result.verdicts]
+    passed = [result for result in results if result.outcome is Outcome.AGREES]
+    number = "1 case" if len(results) == 1 else f"{len(results)} cases"
+    agreeing = sum(v.outcome is Outcome.AGREES for _, v, _ in verdicts)
+    if len(passed) == len(results):
+        text = f"Every comparison of {number} agrees within its numerical uncertainty, {agreeing} in all"
+    else:
+        text = (
+            f"{len(passed)} of {number} agree throughout; of {len(verdicts)} comparisons {agreeing} agree "
+            "within their numerical uncertainty"
+        )
+    stated = [(v.difference, c, r) for c, v, r in verdicts if v.difference is not None]
+    if stated:
+        largest, claim, result = max(stated, key=lambda item: item[0])
+        text += (
+            f"; the largest difference is {scientific(largest)}, {claim.quantity} on "
+            f"{'the contact' if claim.line == 'contact' else claim.line} in “{result.title}”"
+        )
+    return text + "."
+
+
+def _case(result: CaseResult, anchor: str) -> CaseView:
+    style = OUTCOMES[result.outcome]
+    bad = [item for item in result.verdicts if item[1].outcome is not Outcome.AGREES]
+    file = slug(result.name)
+    a_h = scale(result, "a_h")
+    return CaseView(
+        anchor=anchor,
+        result=result,
+        outcome=style,
+        sentence=_case_sentence(result, len(bad)),
+        command=f"coatcheck run {shlex.quote(result.name)}",
+        facts=_facts(result),
+        sketch=sketch(result),
+        failures=tuple((source_label(s.source), s.failure) for s in result.sources if s.failure is not None),
+        layers=layer_table(result),
+        contact=contact_table(result),
+        contact_csv=embedded(line_csv(result, "contact")),
+        contact_file=f"{file}-contact.csv",
+        lines=tuple(_line(result, line, anchor, file) for line in lines(result)),
+        accuracy=accuracy_table(result),
+        failing=verdict_table(bad, a_h) if bad else None,
+        verdicts=verdict_table(result.verdicts, a_h),
+        budget=budget_table(result),
+        diagnostics=diagnostics_table(result),
+    )
+
+
+def _line(result: CaseResult, line: str, anchor: str, file: str) -> LineView:
+    key = f"{anchor}-{slug(line)}"
+    return LineView(
+        anchor=key,
+        title=f"Along the {line}" if line in ("surface", "axis") else line.capitalize(),
+        figures=line_figures(result, line, key),
+        csv=embedded(line_csv(result, line)),
+        file=f"{file}-{slug(line)}.csv",
+    )
+
+
+def _case_sentence(result: CaseResult, bad: int) -> str:
+    total = len(result.verdicts)
+    if not total:
+        return "Nothing could be compared."
+    if not bad:
+        return f"All {total} comparisons agree."
+    return f"{bad} of {total} comparisons do not agree."
+
+
+def _facts(result: CaseResult) -> tuple[tuple[str, str], ...]:
+    problem = result.problem
+    return (
+        ("sphere radius R", engineering(problem.get("radius"), "m")),
+        ("load W", engineering(problem.get("load"), "N")),
+        ("friction f", plain(problem.get("friction", 0.0))),
+        ("a_h, Hertz contact radius", engineering(scale(result, "a_h"), "m")),
+        ("p_h, Hertz peak pressure", engineering(scale(result, "p_h"), "Pa")),
+        ("delta_h, Hertz approach", engineering(scale(result, "delta_h"), "m")),
+    )
