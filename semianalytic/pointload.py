@@ -1,0 +1,165 @@
+"""Stress below a point force on the layered half-space.
+
+A normal force 1 and a tangential force f in +x at the origin give, with the response functions of unit traction
+in the frame of the wave vector (zz, Lz, LL, TT of `frf.stress_frf`; A = s_Tz, B = s_LT of the anti-plane part),
+S = (LL + TT)/2, D = (LL - TT)/2 and H_m the Hankel transform of order m,
+
+    s_zz = H0[zz] - f cos t H1[zz]                 s_xz = -cos t H1[Lz] - f (H0[Lz + A] - cos 2t H2[Lz - A]) / 2
+    s_xx + s_yy = 2 H0[S] - 2 f cos t H1[S]        s_yz = -sin t H1[Lz] + f sin 2t H2[Lz - A] / 2
+    (s_xx - s_yy)/2 = -cos 2t H2[D] - f (cos t H1[D - B] - cos 3t H3[D + B]) / 2
+    s_xy            = -sin 2t H2[D] - f (sin t H1[D - B] - sin 3t H3[D + B]) / 2
+
+(x, y) = r (cos t, sin t); the terms without f take the response to p = 1, those with f the response to T0 = 1, t = 1.
+Displacements follow the same pattern, with U = u_L and V = u_T (theory sheet, end of section 2.1 and section 5):
+
+    u_z = H0[u_z] - f cos t H1[u_z]     u_x = -cos t H1[U] - f (H0[U + V] - cos 2t H2[U - V]) / 2
+                                        u_y = -sin t H1[U] + f sin 2t H2[U - V] / 2
+
+Every radial function is tabulated once per depth over asinh(r / L), which is fair to r = 0 as to large r.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.interpolate import CubicSpline
+
+from .hankel import RADII, WAVENUMBERS, hankel
+
+__all__ = ["PointLoad", "displacement_below", "stress_below"]
+
+Array = NDArray[Any]
+Response = Callable[..., Array]
+
+_FIRST = int(np.searchsorted(RADII, 1e-2))  # the transform is not used below r = 0.01 L, see `hankel`
+_NODES = np.concatenate([[0.0], np.arcsinh(RADII[_FIRST:])])
+
+
+@dataclass(frozen=True)
+class PointLoad:
+    """Field at one depth of a normal force 1 with a tangential force ``friction``, as radial tables."""
+
+    radial: CubicSpline
+    scale: float
+    friction: float
+    combine: Callable[[Array, Array, Array, float], Array]
+
+    def __call__(self, x: Array, y: Array) -> Array:
+        """Components at offsets (x, y) [m] from the force; (6 or 3,) + shape of ``x``.
+
+        Stress xx, yy, zz, xy, xz, yz [1/m^2]; displacement x, y, z [m/N].
+        """
+        r = np.hypot(x, y)
+        table = self.radial(np.arcsinh(r / self.scale))
+        r = np.maximum(r, np.finfo(float).tiny)  # on the axis the harmonics m > 0 vanish by their tables
+        return self.combine(np.moveaxis(table, -1, 0), x / r, y / r, self.friction)
+
+
+def stress_below(
+    z: Array,
+    layer: int,
+    scale: float,
+    *,
+    stress_frf: Response,
+    coatings: Sequence[tuple[float, float, float]],
+    substrate: tuple[float, float],
+    friction: float,
+    excess: bool = False,
+    smear: float = 0.0,
+) -> list[PointLoad]:
+    """Stress below a point force at each depth ``z`` of one layer.
+
+    z : (nz,) [m].  scale : L [m] such that the response dies at least like exp(-k L).
+    excess : leave out the homogeneous half-space of the first coating.
+    smear : side d [m] of a square over which the force is spread, to fourth order: exp(-(k d)^2 / 24).
+    """
+    k = WAVENUMBERS / scale
+    spread = np.exp(-((k * smear) ** 2) / 24)
+
+    def response(load: str) -> Array:
+        kwargs = {"coatings": coatings, "substrate": substrate, "load": load, "excess": excess}
+        return stress_frf(k, z, layer, **kwargs) * spread
+
+    zz, Lz, LL, TT = response("normal")
+    columns = [_radial(F, m, scale) for F, m in ((zz, 0), ((LL + TT) / 2, 0), (Lz, 1), ((LL - TT) / 2, 2))]
+    if friction:
+        zz, Lz, LL, TT = response("in-plane")
+        A, B = response("anti-plane")
+        D = (LL - TT) / 2
+        pairs = ((zz, 1), ((LL + TT) / 2, 1), (Lz + A, 0), (Lz - A, 2), (D - B, 1), (D + B, 3))
+        columns += [_radial(F, m, scale) for F, m in pairs]
+    return _tabulate(columns, scale, friction, _combine_stress)
+
+
+def displacement_below(
+    z: Array,
+    layer: int,
+    scale: float,
+    *,
+    displacement_frf: Response,
+    coatings: Sequence[tuple[float, float, float]],
+    substrate: tuple[float, float],
+    friction: float,
+    excess: bool = False,
+    smear: float = 0.0,
+) -> list[PointLoad]:
+    """Displacement below a point force at each depth ``z`` of one layer; arguments as in `stress_below`."""
+    k = WAVENUMBERS / scale
+    spread = np.exp(-((k * smear) ** 2) / 24)
+
+    def response(load: str) -> Array:
+        kwargs = {"coatings": coatings, "substrate": substrate, "load": load, "excess": excess}
+        return displacement_frf(k, z, layer, **kwargs) * spread
+
+    uz, U = response("normal")
+    columns = [_radial(uz, 0, scale, over_k=True), _radial(U, 1, scale, over_k=True)]
+    if friction:
+        uz, U = response("in-plane")
+        (V,) = response("anti-plane")
+        columns += [_radial(F, m, scale, over_k=True) for F, m in ((uz, 1), (U + V, 0), (U - V, 2))]
+    return _tabulate(columns, scale, friction, _combine_displacement)
+
+
+def _tabulate(columns: list[Array], scale: float, friction: float, combine: Callable) -> list[PointLoad]:
+    """Splines through the radial functions (nz, nr + 1, columns), the value on the axis first."""
+    tables = np.stack(columns, axis=-1)
+    return [PointLoad(CubicSpline(_NODES, table), scale, friction, combine) for table in tables]
+
+
+def _radial(F: Array, order: int, scale: float, *, over_k: bool = False) -> Array:
+    """The transform on the axis, then at scale * RADII[_FIRST:]; (nz, nr + 1)."""
+    off_axis = hankel(F, order, scale, over_k=over_k)[:, _FIRST:]
+    axis = np.zeros((len(F), 1))
+    if order == 0:  # a trapezoidal rule in log k, spectrally accurate
+        weight = np.log(WAVENUMBERS[1] / WAVENUMBERS[0]) * (WAVENUMBERS / scale) ** (1 if over_k else 2)
+        axis[:, 0] = F @ weight / (2 * np.pi)
+    return np.concatenate([axis, off_axis], axis=1)
+
+
+def _combine_stress(table: Array, c: Array, s: Array, f: float) -> Array:
+    """xx, yy, zz, xy, xz, yz from the radial functions and the direction (c, s)."""
+    Z, S, T, D = table[:4]
+    cos2, sin2 = c * c - s * s, 2 * c * s
+    mean, half, zz, xy = S, -cos2 * D, Z, -sin2 * D
+    xz, yz = -c * T, -s * T
+    if f:
+        Z1, S1, A0, B2, E1, G3 = f * table[4:]
+        cos3, sin3 = c * cos2 - s * sin2, s * cos2 + c * sin2
+        mean, zz = mean - c * S1, zz - c * Z1
+        half = half - (c * E1 - cos3 * G3) / 2
+        xy = xy - (s * E1 - sin3 * G3) / 2
+        xz, yz = xz - (A0 - cos2 * B2) / 2, yz + sin2 * B2 / 2
+    return np.stack([mean + half, mean - half, zz, xy, xz, yz])
+
+
+def _combine_displacement(table: Array, c: Array, s: Array, f: float) -> Array:
+    """x, y, z from the radial functions and the direction (c, s)."""
+    W, U = table[:2]
+    ux, uy, uz = -c * U, -s * U, W
+    if f:
+        W1, A0, B2 = f * table[2:]
+        ux = ux - (A0 - (c * c - s * s) * B2) / 2
+        uy, uz = uy + c * s * B2, uz - c * W1
+    return np.stack([ux, uy, uz])
