@@ -8,6 +8,7 @@ True
 """
 
 from .solution import Diagnostics, NotConverged, Solution, Uncertainty
-from .solver import solve
+from .solver import solve, solve_prescribed
+from .vtu import write_vtu
 
-__all__ = ["Diagnostics", "NotConverged", "Solution", "Uncertainty", "solve"]
+__all__ = ["Diagnostics", "NotConverged", "Solution", "Uncertainty", "solve", "solve_prescribed", "write_vtu"]

@@ -21,11 +21,23 @@ from functools import cached_property
 
 import numpy as np
 import scipy.sparse as sp
-from skfem import Basis, ElementTriP1, ElementTriP2, ElementTriP3, ElementTriP4, FacetBasis, MeshTri
+import scipy.sparse.linalg as sla
+from skfem import (
+    Basis,
+    BilinearForm,
+    ElementTriP1,
+    ElementTriP2,
+    ElementTriP3,
+    ElementTriP4,
+    FacetBasis,
+    LinearForm,
+    MeshTri,
+    asm,
+)
 
 from .mesh import MeridianMesh
 
-__all__ = ["ELEMENTS", "Discretisation", "elasticity", "strain_operator"]
+__all__ = ["ELEMENTS", "Discretisation", "constrained_solve", "elasticity", "strain_operator"]
 
 ELEMENTS = {1: ElementTriP1, 2: ElementTriP2, 3: ElementTriP3, 4: ElementTriP4}
 
@@ -101,6 +113,12 @@ class Discretisation:
         return np.asarray(self.basis.get_dofs(facets).all())
 
     @cached_property
+    def contact_vertices(self) -> np.ndarray:
+        """Increasing radii of the surface vertices from the axis to the contact edge."""
+        r, z = self.mesh.points
+        return np.sort(r[(z == 0) & (r <= self.mesh.contact_radius)])
+
+    @cached_property
     def axis(self) -> np.ndarray:
         return self.on(self.facets(lambda x: x[0] == 0))
 
@@ -143,21 +161,44 @@ class Discretisation:
         shape = (fields * self.N, fields * self.N)
         return sp.coo_matrix((K.ravel(), (i.ravel(), j.ravel())), shape=shape).tocsc()
 
-    def surface_basis(self, facets: np.ndarray, order: int) -> FacetBasis:
-        """Shape functions of ``order`` on surface edges, with quadrature exact for products with r."""
+    def surface_basis(self, facets: np.ndarray) -> FacetBasis:
+        """Shape functions on surface edges, with quadrature exact for products of two and r."""
         return FacetBasis(
-            self.triangulation,
-            ELEMENTS[order](),
-            facets=facets,
-            intorder=self.order + max(order, self.order) + 1,
+            self.triangulation, ELEMENTS[self.order](), facets=facets, intorder=2 * self.order + 1
         )
+
+    def surface_mass(self, facets: np.ndarray) -> sp.csr_matrix:
+        """Mass matrix of the surface edges ``facets``, int phi_i phi_j r dr; shape (N, N)."""
+        return asm(_mass, self.surface_basis(facets)).tocsr()
 
     def surface_load(self, facets: np.ndarray, traction: Callable[[np.ndarray], np.ndarray]) -> np.ndarray:
         """Load vector of one field, int traction(r) v r dr over the surface edges ``facets``; shape (N,)."""
-        basis = self.surface_basis(facets, self.order)
-        r = basis.global_coordinates().value[0]
-        weight = traction(r) * r * basis.dx
-        load = np.zeros(self.N)
-        for i, b in enumerate(basis.basis):
-            np.add.at(load, basis.element_dofs[i], np.sum(b[0].value * weight, axis=-1))
-        return load
+        return np.asarray(
+            asm(LinearForm(lambda v, w: traction(w.x[0]) * v * w.x[0]), self.surface_basis(facets))
+        )
+
+
+@BilinearForm
+def _mass(u, v, w):  # type: ignore[no-untyped-def]
+    return u * v * w.x[0]
+
+
+def constrained_solve(
+    K: sp.csc_matrix, given: np.ndarray, fixed: np.ndarray, load: np.ndarray | None = None
+) -> np.ndarray:
+    """Solve K u = load with u = ``given`` at the unknowns ``fixed``; several columns share one factorisation.
+
+    given, load : (n,) or (n, columns).  Returns u of the shape of ``given``.
+    """
+    u = np.array(given, dtype=float)
+    free = np.setdiff1d(np.arange(K.shape[0]), fixed)
+    rows = K[free]
+    rhs = -(rows[:, fixed] @ u[fixed])
+    if load is not None:
+        rhs = rhs + load[free]
+    A = rows[:, free].tocsc()
+    # symmetric mode with a symmetric minimum degree ordering: K is positive definite, pivoting only costs
+    lu = sla.splu(A, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
+    x = lu.solve(rhs)
+    u[free] = x + lu.solve(rhs - A @ x)
+    return u

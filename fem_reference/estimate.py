@@ -13,7 +13,7 @@ import numpy as np
 
 from .recovery import HarmonicField
 
-__all__ = ["StressBound", "line_bound"]
+__all__ = ["PressureBound", "StressBound", "line_bound"]
 
 # samples in the reference triangle, strictly inside so that every sample has one layer
 _SAMPLES = np.array(
@@ -35,6 +35,30 @@ def line_bound(
     left = np.concatenate([worst[..., :1], worst], axis=-1)
     right = np.concatenate([worst, worst[..., -1:]], axis=-1)
     return vertices, np.maximum(left, right)
+
+
+@dataclass(frozen=True, eq=False)
+class PressureBound:
+    """Bound of |p - companion's p| as a function of the radius.
+
+    radius_error : uncertainty of the contact radius; a shift of the whole edge by it is added, which covers the
+        ring between the two contact edges and the infinite slope of p beside it
+    """
+
+    pressure: Callable[[np.ndarray], np.ndarray]
+    companion: Callable[[np.ndarray], np.ndarray]
+    vertices: np.ndarray
+    radius_error: float
+
+    @cached_property
+    def _around(self) -> tuple[np.ndarray, np.ndarray]:
+        return line_bound(lambda r: self.pressure(r) - self.companion(r), self.vertices)
+
+    def __call__(self, r: np.ndarray) -> np.ndarray:
+        vertices, bound = self._around
+        p = self.pressure(r)
+        shifted = [self.pressure(np.abs(r + shift)) - p for shift in (-self.radius_error, self.radius_error)]
+        return np.interp(r, vertices, bound, right=0.0) + np.max(np.abs(shifted), axis=0)
 
 
 @dataclass(frozen=True, eq=False)

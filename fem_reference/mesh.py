@@ -10,6 +10,7 @@ proportion to the distance, down to ``edge_size``. All lengths are in one unit o
 """
 
 from dataclasses import dataclass, replace
+from itertools import pairwise
 
 import numpy as np
 
@@ -80,6 +81,28 @@ class MeridianMesh:
             stretch=self.stretch * factor,
         )
 
+    def scaled(self, unit: float) -> "MeridianMesh":
+        """The mesh in another unit of length."""
+        return replace(
+            self,
+            points=self.points * unit,
+            depths=self.depths * unit,
+            contact_radius=self.contact_radius * unit,
+            far=self.far * unit,
+            length=self.length * unit,
+        )
+
+    def drawn_in(self, factor: float) -> "MeridianMesh":
+        """The same triangles with the outer boundary ``factor`` times nearer and the near field untouched.
+
+        r -> r0 (r/r0)^alpha beyond r0 = 4 (a + depth of the coatings), and z likewise.
+        """
+        r0 = 4 * (self.contact_radius + float(self.depths[-1] if self.depths.size else 0.0))
+        alpha = 1 - np.log(factor) / np.log(self.far / r0)
+        beyond = np.maximum(self.points / r0, 1.0)
+        points = np.where(self.points > r0, r0 * beyond**alpha, self.points)
+        return replace(self, points=points, far=float(points.max()))
+
     def plane(self, r: np.ndarray, z: np.ndarray) -> np.ndarray:
         """Stretched-plane coordinates (xi, zeta) of the points (r, z); shape (2,) + points."""
         offset = (r - self.contact_radius) / (self.stretch * self.length)
@@ -146,8 +169,8 @@ def _triangulate(
         axis = [geo.addPoint(xi[0], level, 0) for level in zeta]
         far = [geo.addPoint(xi[2], level, 0) for level in zeta]
         edge = geo.addPoint(xi[1], 0, 0)
-        down_axis = [geo.addLine(p, q) for p, q in zip(axis[:-1], axis[1:], strict=True)]
-        down_far = [geo.addLine(p, q) for p, q in zip(far[:-1], far[1:], strict=True)]
+        down_axis = [geo.addLine(p, q) for p, q in pairwise(axis)]
+        down_far = [geo.addLine(p, q) for p, q in pairwise(far)]
         across = [[geo.addLine(axis[0], edge), geo.addLine(edge, far[0])]]
         across += [[geo.addLine(p, q)] for p, q in zip(axis[1:], far[1:], strict=True)]
         layers = []

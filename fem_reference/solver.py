@@ -1,343 +1,451 @@
 """Public entry of the finite element method: a physical problem in, a ``Solution`` out.
 
-Inside, lengths are in a_h, moduli in E of the substrate and the sphere has radius 1 in the sense of ``contact``:
-displacement in a_h^2/R, pressure in E a_h/R, load in E a_h^3/R, with a_h = (3 W R / 4 E*)^(1/3) of the substrate.
+Inside, every problem has one length, one pressure and the modulus of the substrate as units (``_Units``). For the
+sphere they are a_h = (3 W R / 4 E*)^(1/3) of the bare substrate and E a_h/R, as ``contact`` asks.
 
-Levels: a coarse one finds the contact radius roughly, a companion about 1.4 times coarser than the final mesh finds it closely
-and serves as the yardstick of the error, the final one gives the result. On every level radii are stretched until the
-load is the one asked for, so that a mesh vertex stands at the contact radius itself.
+Levels: a rough and a coarse mesh find the contact radius, a companion somewhat coarser than the final mesh finds it
+closely and is the yardstick of the error, the final one gives the result. A vertex stands at the contact radius of
+every level, and sliding friction is solved afterwards on the last two.
 """
 
-import math
 import time
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
+from functools import partial
+from typing import Any
 
 import numpy as np
 
 from .axisymmetric import Discretisation
 from .contact import Touch, touch
-from .estimate import StressBound, line_bound
-from .far_field import boussinesq
+from .estimate import PressureBound, StressBound
+from .far_field import boussinesq, cerruti
+from .load_control import carry_load
+from .loading import loaded, resultant
 from .mesh import Grading, MeridianMesh, meridian_mesh
 from .recovery import HarmonicField
 from .solution import Diagnostics, Meridian, NotConverged, Solution, Uncertainty
-from .validation import check_choice, check_materials, check_positive
+from .validation import check_choice, check_materials, check_positive, prescribed_pressure
 
-__all__ = ["QUALITY", "solve"]
+__all__ = ["QUALITY", "solve", "solve_prescribed"]
 
-# triangle size over distance from the contact edge
+Materials = tuple[tuple[float, float], ...]
+Coatings = tuple[tuple[float, float, float], ...]
+
+# triangle size over its distance from the contact edge
 QUALITY = {"fast": 0.40, "default": 0.20, "fine": 0.15}
+_COARSE = 0.5
 _COMPANION = 1.4
-_TOLERANCE = 1e-9
-
-
-@dataclass(frozen=True, eq=False)
-class _Scaled:
-    """The problem in the units of the module."""
-
-    materials: tuple[tuple[float, float], ...]
-    thicknesses: tuple[float, ...]
-    load: float
-    far: float
-
-    def far_displacement(self, r: np.ndarray, z: np.ndarray) -> np.ndarray:
-        return boussinesq(r, z, *self.materials[-1])
-
-
-@dataclass(frozen=True, eq=False)
-class _Level:
-    """One converged contact."""
-
-    discretisation: Discretisation
-    touch: Touch
-
-    def field(self, problem: _Scaled) -> HarmonicField:
-        p = self.touch.pressure
-        return HarmonicField(self.discretisation, self.touch.fields, problem.materials, 0, lambda r: -p(r))
+_LOAD_TOLERANCE = 2e-7
+_NEARER = 4.0
 
 
 def solve(
     *,
     radius: float,
     load: float,
-    coatings: tuple[tuple[float, float, float], ...],
+    coatings: Coatings,
     substrate: tuple[float, float],
     friction: float = 0.0,
     order: int = 4,
     quality: str = "default",
     far: float = 1000.0,
-    max_iterations: int = 40,
+    max_iterations: int = 30,
     estimate_uncertainty: bool = True,
 ) -> Solution:
-    """Rigid sphere on a coated half-space by finite elements on the meridian plane.
+    """Rigid sphere pressed on, and with friction slid over, a coated half-space.
 
-    radius [m], load [N], coatings ((E, nu, thickness), ...) from the surface down, () is uncoated, substrate
-    (E, nu), friction f in q = f p on the solid in +x.
-    order   : polynomial order of the displacement, 2 to 4; the contact pressure has one order less
-    quality : "fast" (about 1e-3), "default" (about 1e-5), "fine"
-    far     : outer boundary over (a_h + total coating thickness)
+    radius [m], load [N], coatings ((E, nu, thickness), ...) [Pa, -, m] from the surface down, () for none,
+    substrate (E, nu), friction f in q = f p, the traction on the solid in +x, taken not to change p (Goodman).
+    order   : polynomial order of the displacement, 2 to 4
+    quality : "fast" (about 1e-3), "default" (about 1e-5) or "fine"
+    far     : distance of the outer boundary over (a_h + thickness of all coatings)
+    max_iterations : contact solves allowed on each mesh level
+    Poisson ratios up to 0.49 do not lock at order 4; above, digits are lost as 1/(1 - 2 nu), and 0.5 is refused.
     Raises ValueError for bad input, NotConverged when no contact radius carries the load.
     """
     started = time.perf_counter()
-    check_positive(radius=radius, load=load, far=far)
+    check_positive(radius=radius, load=load, far=far, max_iterations=max_iterations)
     check_materials(coatings, substrate, friction)
     check_choice("order", order, (2, 3, 4))
     check_choice("quality", quality, tuple(QUALITY))
-    problem, a_h = _scaled(radius, load, coatings, substrate, far)
+    E, nu = substrate
+    a_h = (3 * load * radius * (1 - nu**2) / (4 * E)) ** (1 / 3)
+    unit = _Units(length=a_h, pressure=E * a_h / radius, modulus=E)
+    solid = _solid(coatings, substrate, a_h, far)
+    target = load / unit.load
+
     history: list[tuple[str, float, float]] = []
-    unit = _Units(a_h, radius, substrate[0])
+    a, slope = _first_radius(solid, target), 3.0
+
+    def level(name: str, size: float, order: int, tolerance: float) -> tuple[Touch, Discretisation]:
+        nonlocal a, slope
+        carried = carry_load(
+            target,
+            start=a,
+            slope=slope,
+            tolerance=tolerance,
+            max_iterations=max_iterations,
+            mesh_at=partial(_mesh, solid, _grading(size)),
+            solve_on=lambda mesh: _Placed(touch_on(mesh, order), mesh),
+        )
+        history.extend((name, x * a_h, W * unit.load) for x, W in carried.history)
+        if not carried.converged:
+            reached = carried.contact.load / target
+            raise NotConverged(
+                f"the contact radius did not settle on the {name} mesh: after {len(carried.history)} solves, at "
+                f"{carried.contact_radius:.4g} a_h, the load is {reached:.6g} of the one asked for; "
+                f"raise max_iterations, or check the thicknesses and the ratio of the moduli"
+            )
+        slope = carried.slope
+        # the next level starts where this one would carry exactly the load
+        a = carried.contact_radius * (target / carried.contact.load) ** (1 / slope)
+        return carried.contact.touch, Discretisation(carried.contact.mesh, order)
+
+    def touch_on(mesh: MeridianMesh, order: int) -> Touch:
+        return touch(
+            Discretisation(mesh, order), materials=solid.materials, far_displacement=solid.far_displacement
+        )
 
     size = QUALITY[quality]
-    fine = _grading(size)
-    rough_order = min(order, 3)
-    a0 = _first_radius(problem)
-    coarse = _converge(problem, a0, _grading(0.5), rough_order, 1e-4, max_iterations, history, "coarse")
-    a1 = coarse.touch.contact_radius
-    companion = None
+    level("rough", 0.6, 2, 0.02)
+    coarse, coarse_disc = level("coarse", _COARSE, order, 1e-3)
     if estimate_uncertainty:
-        companion = _converge(
-            problem, a1, fine.coarser(_COMPANION), order, _TOLERANCE, max_iterations, history, "companion"
+        companion, companion_disc = level("companion", _COMPANION * size, order, _LOAD_TOLERANCE)
+    final, final_disc = level("final", size, order, _LOAD_TOLERANCE)
+    penetration, tension = _complementarity(final, final_disc)
+    if max(penetration, tension) > 1e-3:
+        raise NotConverged(
+            f"the contact is not one disc: penetration outside is {penetration:.2g} of the approach, tension inside "
+            f"{tension:.2g} of the peak pressure; use quality='fine', or check that the layers are elastic solids"
         )
-        a1 = companion.touch.contact_radius
-    final = _converge(problem, a1, fine, order, _TOLERANCE, max_iterations, history, "final")
 
-    gap, pressure_residual = _complementarity(final, problem)
-    touched = final.touch
-    p_scale = unit.pressure
-    diagnostics = Diagnostics(
-        iterations=len(history),
-        dofs=2 * final.discretisation.N + touched.pressure.nodes.size,
-        triangles=int(final.discretisation.mesh.layer.size),
-        order=order,
-        residual_gap=touched.residuals[1],
-        residual_pressure=pressure_residual,
-        residual_load=abs(touched.load / problem.load - 1),
-        residual_equilibrium=touched.residuals[0],
-        seconds=time.perf_counter() - started,
-        history=tuple((name, a * a_h, W * unit.load) for name, a, W in history),
-    )
-    field = final.field(problem)
-    uncertainty, bounds = None, (None, None)
-    if companion is not None:
-        uncertainty, bounds = _estimate(problem, coarse, companion, final, unit)
-    meridian = Meridian(
-        normal=_in_si(field, unit),
-        tangential=None,
-        pressure=lambda r: touched.pressure(r / unit.length) * p_scale,
-        normal_bound=bounds[0],
-        tangential_bound=None,
-        pressure_bound=bounds[1],
-        depths=final.discretisation.mesh.depths * a_h,
-        far=problem.far * a_h,
-        mesh=final,
-    )
+    result = _state(solid, final_disc, final.fields, final.pressure, friction)
+    bounds = _NO_BOUNDS
+    if estimate_uncertainty:
+        other = _state(solid, companion_disc, companion.fields, companion.pressure, friction)
+        near = touch_on(coarse_disc.mesh.drawn_in(_NEARER), order)
+        # change of the scalars at fixed load: the load is taken back along the contact's own stiffness
+        missing = coarse.load - near.load
+        far_share = (
+            abs(missing / target / slope * coarse.contact_radius),
+            abs(near.approach - coarse.approach + missing / coarse.stiffness),
+            abs(near.pressure.values[0] - coarse.pressure.values[0]),
+        )
+        size_share = (
+            abs(final.contact_radius - companion.contact_radius),
+            abs(final.approach - companion.approach),
+        )
+        bounds = _bounds(result, other, unit, size_share, far_share, abs(final.load / target - 1))
     return Solution(
-        contact_radius=touched.contact_radius * unit.length,
-        approach=touched.approach * unit.displacement,
-        peak_pressure=float(np.max(touched.pressure.values)) * unit.pressure,
-        surface_nodes=_surface_nodes(final) * unit.length,
-        uncertainty=uncertainty,
-        diagnostics=replace(diagnostics, seconds=time.perf_counter() - started),
-        meridian=meridian,
+        contact_radius=final.contact_radius * unit.length,
+        approach=final.approach * unit.displacement,
+        peak_pressure=float(final.pressure.values.max()) * unit.pressure,
+        surface_nodes=_surface_nodes(final_disc) * unit.length,
+        uncertainty=bounds.scalars,
+        diagnostics=Diagnostics(
+            iterations=len(history),
+            dofs=2 * final_disc.N,
+            triangles=int(final_disc.mesh.layer.size),
+            order=order,
+            residual_gap=penetration,
+            residual_pressure=tension,
+            residual_load=abs(final.load / target - 1),
+            residual_equilibrium=final.residual,
+            seconds=time.perf_counter() - started,
+            history=tuple(history),
+        ),
+        meridian=_meridian(result, unit, bounds),
+    )
+
+
+def solve_prescribed(
+    *,
+    pressure: float | Callable[[np.ndarray], np.ndarray],
+    load_radius: float,
+    coatings: Coatings,
+    substrate: tuple[float, float],
+    friction: float = 0.0,
+    order: int = 4,
+    quality: str = "default",
+    far: float = 1000.0,
+    estimate_uncertainty: bool = True,
+) -> Solution:
+    """A coated half-space under a given pressure on the disc r <= ``load_radius``, with q = f p.
+
+    pressure : a number (uniform) or a callable p(r) [Pa] taking an array of radii [m]
+    The approach of the solution is u_z at the origin, its contact radius is ``load_radius``. Other arguments and
+    errors as for ``solve``.
+    """
+    started = time.perf_counter()
+    check_positive(load_radius=load_radius, far=far)
+    check_materials(coatings, substrate, friction)
+    check_choice("order", order, (2, 3, 4))
+    check_choice("quality", quality, tuple(QUALITY))
+    p_si, scale = prescribed_pressure(pressure, load_radius)
+    unit = _Units(length=load_radius, pressure=scale, modulus=substrate[0])
+    solid = _solid(coatings, substrate, load_radius, far)
+
+    def p(r: np.ndarray) -> np.ndarray:
+        return p_si(r * load_radius) / scale
+
+    def state(mesh: MeridianMesh) -> _State:
+        d = Discretisation(mesh, order)
+        fields = loaded(
+            d,
+            harmonic=0,
+            materials=solid.materials,
+            traction=p,
+            far_displacement=solid.far_displacement,
+        )
+        return _state(solid, d, fields, p, friction)
+
+    size = QUALITY[quality]
+    result = state(_mesh(solid, _grading(size), 1.0))
+    d = result.discretisation
+    bounds = _NO_BOUNDS
+    if estimate_uncertainty:
+        other = state(_mesh(solid, _grading(_COMPANION * size), 1.0))
+        coarse = _mesh(solid, _grading(_COARSE), 1.0)
+        far_share = (0.0, abs(state(coarse).sink - state(coarse.drawn_in(_NEARER)).sink), 0.0)
+        bounds = _bounds(result, other, unit, (0.0, abs(result.sink - other.sink)), far_share, 0.0)
+    nodes = _surface_nodes(d)
+    return Solution(
+        contact_radius=load_radius,
+        approach=result.sink * unit.displacement,
+        peak_pressure=float(np.max(p(nodes))) * unit.pressure,
+        surface_nodes=nodes * unit.length,
+        uncertainty=bounds.scalars,
+        diagnostics=Diagnostics(
+            iterations=1,
+            dofs=2 * d.N,
+            triangles=int(d.mesh.layer.size),
+            order=order,
+            residual_gap=0.0,
+            residual_pressure=0.0,
+            residual_load=0.0,
+            residual_equilibrium=0.0,
+            seconds=time.perf_counter() - started,
+            history=(("final", load_radius, resultant(d, p) * unit.load),),
+        ),
+        meridian=_meridian(result, unit, bounds),
     )
 
 
 @dataclass(frozen=True)
 class _Units:
-    """SI value of one unit of the module."""
+    """SI values of the units a problem is solved in."""
 
     length: float
-    radius: float
+    pressure: float
     modulus: float
 
     @property
     def displacement(self) -> float:
-        return self.length**2 / self.radius
-
-    @property
-    def pressure(self) -> float:
-        return self.modulus * self.length / self.radius
+        return self.length * self.pressure / self.modulus
 
     @property
     def load(self) -> float:
-        return self.modulus * self.length**3 / self.radius
+        return self.pressure * self.length**2
 
 
-def _scaled(radius, load, coatings, substrate, far):  # type: ignore[no-untyped-def]
+@dataclass(frozen=True)
+class _Solid:
+    """The layers in units: (E, nu) per layer, thickness per coating, extent of the mesh."""
+
+    materials: Materials
+    thicknesses: tuple[float, ...]
+    far: float
+
+    def far_displacement(self, r: np.ndarray, z: np.ndarray) -> np.ndarray:
+        return boussinesq(r, z, *self.materials[-1])
+
+    def far_sliding(self, r: np.ndarray, z: np.ndarray) -> np.ndarray:
+        return cerruti(r, z, *self.materials[-1])
+
+
+@dataclass(frozen=True, eq=False)
+class _Placed:
+    """A contact with the mesh it was found on."""
+
+    touch: Touch
+    mesh: MeridianMesh
+
+    @property
+    def load(self) -> float:
+        return self.touch.load
+
+
+@dataclass(frozen=True, eq=False)
+class _State:
+    """The fields of one level, in units."""
+
+    normal: HarmonicField
+    tangential: HarmonicField | None
+    pressure: Callable[[np.ndarray], np.ndarray]
+
+    @property
+    def discretisation(self) -> Discretisation:
+        return self.normal.discretisation
+
+    @property
+    def sink(self) -> float:
+        """u_z at the origin."""
+        d = self.discretisation
+        origin = np.flatnonzero((d.locations[0] == 0) & (d.locations[1] == 0))
+        return float(self.normal.fields[d.N + origin[0]])
+
+
+@dataclass(frozen=True, eq=False)
+class _Bounds:
+    scalars: Uncertainty | None
+    normal: StressBound | None
+    tangential: StressBound | None
+    pressure: PressureBound | None
+    everywhere: float
+
+
+_NO_BOUNDS = _Bounds(None, None, None, None, 0.0)
+
+
+def _solid(coatings: Coatings, substrate: tuple[float, float], length: float, far: float) -> _Solid:
     E, nu = substrate
-    E_star = E / (1 - nu**2)
-    a_h = (3 * load * radius / (4 * E_star)) ** (1 / 3)
-    thicknesses = tuple(h / a_h for _, _, h in coatings)
-    materials = (*((Ei / E, nui) for Ei, nui, _ in coatings), (1.0, nu))
-    return _Scaled(materials, thicknesses, 4 / (3 * (1 - nu**2)), far * (1 + sum(thicknesses))), a_h
+    thicknesses = tuple(h / length for _, _, h in coatings)
+    return _Solid(
+        materials=(*((E_k / E, nu_k) for E_k, nu_k, _ in coatings), (1.0, nu)),
+        thicknesses=thicknesses,
+        far=far * (1 + sum(thicknesses)),
+    )
 
 
 def _grading(size: float) -> Grading:
+    """All sizes of a mesh from one: the fan at the edge and the far field forgive coarser triangles."""
     return Grading(
         size=size, edge_rate=min(1.4 * size, 0.6), edge_size=1e-6, axis_size=0.65 * size, far_size=2 * size
     )
 
 
-def _first_radius(problem: _Scaled) -> float:
-    """Contact radius guessed from each layer's share of the compliance; the share above z is (2/pi) atan(z/a)."""
-    depths = np.cumsum([0.0, *problem.thicknesses])
+def _mesh(solid: _Solid, grading: Grading, a: float) -> MeridianMesh:
+    return meridian_mesh(contact_radius=a, thicknesses=solid.thicknesses, far=solid.far, grading=grading)
+
+
+def _first_radius(solid: _Solid, load: float) -> float:
+    """Contact radius if each layer gave its share of the compliance, that above z being (2/pi) atan(z/a)."""
+    depths = np.cumsum([0.0, *solid.thicknesses])
     a = 1.0
     for _ in range(30):
         share = np.diff(2 / np.pi * np.arctan(depths / a), append=1.0)
-        compliance = sum(s * (1 - nu**2) / E for s, (E, nu) in zip(share, problem.materials, strict=True))
-        a = (0.75 * problem.load * compliance) ** (1 / 3)
+        compliance = sum(s * (1 - nu**2) / E for s, (E, nu) in zip(share, solid.materials, strict=True))
+        a = (0.75 * load * compliance) ** (1 / 3)
     return float(a)
 
 
-def _converge(
-    problem: _Scaled,
-    a: float,
-    grading: Grading,
-    order: int,
-    tolerance: float,
-    max_iterations: int,
-    history: list[tuple[str, float, float]],
-    name: str,
-) -> _Level:
-    """Move the contact radius until the load is right: d log W / d log a by secants, 3 to begin with."""
-    slope = 3.0
-    mesh: MeridianMesh | None = None
-    built = a
-    previous: tuple[float, float] | None = None
-    for _ in range(max_iterations):
-        if mesh is None or not 0.95 < a / built < 1.05:
-            mesh = meridian_mesh(
-                contact_radius=a, thicknesses=problem.thicknesses, far=problem.far, grading=grading
-            )
-            built = a
-        discretisation = Discretisation(mesh.stretched(a / built), order)
-        solved = touch(
-            discretisation,
-            materials=problem.materials,
-            far_displacement=problem.far_displacement,
-            multiplier_order=order - 1,
-        )
-        history.append((name, a, solved.load))
-        if not solved.load > 0 or not math.isfinite(solved.load):
-            break
-        error = math.log(problem.load / solved.load)
-        if abs(error) <= tolerance:
-            return _Level(discretisation, solved)
-        here = (math.log(a), math.log(solved.load))
-        if previous is not None and abs(here[0] - previous[0]) > 1e-7:
-            slope = min(max((here[1] - previous[1]) / (here[0] - previous[0]), 1.0), 9.0)
-        previous = here
-        a *= math.exp(min(max(error / slope, -0.7), 0.7))
-    _, a, load = history[-1]
-    raise NotConverged(
-        f"the contact radius did not settle in {max_iterations} solves: at {a:g} a_h the load is {load / problem.load:g} "
-        f"of the one asked for; raise max_iterations, or check the ratio of moduli"
-    )
+def _state(
+    solid: _Solid,
+    d: Discretisation,
+    fields: np.ndarray,
+    pressure: Callable[[np.ndarray], np.ndarray],
+    friction: float,
+) -> _State:
+    """Wrap the normal fields, and solve for sliding where there is friction."""
+
+    def sigma_zz(r: np.ndarray) -> np.ndarray:
+        return -pressure(r)
+
+    def q(r: np.ndarray) -> np.ndarray:
+        return friction * pressure(r)
+
+    normal = HarmonicField(d, fields, solid.materials, 0, sigma_zz)
+    if friction == 0:
+        return _State(normal, None, pressure)
+    sliding = loaded(d, harmonic=1, materials=solid.materials, traction=q, far_displacement=solid.far_sliding)
+    tangential = HarmonicField(d, sliding, solid.materials, 1, lambda r: -q(r))
+    return _State(normal, tangential, pressure)
 
 
-def _surface_dofs(level: _Level) -> np.ndarray:
-    """Unknowns of one field on the surface, ordered by radius."""
-    d = level.discretisation
-    numbers = d.on(d.facets(lambda x: x[1] == 0))
-    return numbers[np.argsort(d.locations[0, numbers])]
-
-
-def _complementarity(level: _Level, problem: _Scaled) -> tuple[float, float]:
-    """(largest penetration outside over the approach, largest tension inside over the peak); both >= 0."""
-    d, touched = level.discretisation, level.touch
-    surface = _surface_dofs(level)
+def _complementarity(contact: Touch, d: Discretisation) -> tuple[float, float]:
+    """(deepest penetration outside over the approach, largest tension inside over the peak), both >= 0."""
+    surface = d.on(d.facets(lambda x: x[1] == 0))
     r = d.locations[0, surface]
-    gap = r**2 / 2 + touched.fields[d.N + surface] - touched.approach
-    outside = r > touched.contact_radius
-    penetration = max(0.0, -float(gap[outside].min())) / touched.approach
-    p = touched.pressure.values
-    tension = max(0.0, -float(p.min())) / float(p.max())
-    return penetration, tension
+    gap = r**2 / 2 + contact.fields[d.N + surface] - contact.approach
+    penetration = max(0.0, -float(gap[r > contact.contact_radius].min()))
+    p = contact.pressure.values
+    return penetration / contact.approach, max(0.0, -float(p.min())) / float(p.max())
 
 
-def _surface_nodes(level: _Level) -> np.ndarray:
-    """Radii of the pressure's own nodes and of the surface nodes beyond, to 3 contact radii, both signs."""
-    a = level.touch.contact_radius
-    beyond = level.discretisation.locations[0, _surface_dofs(level)]
-    r = np.concatenate([level.touch.pressure.nodes, beyond[(beyond > a * (1 + 1e-12)) & (beyond < 3 * a)]])
+def _surface_nodes(d: Discretisation) -> np.ndarray:
+    """Radii of the surface unknowns out to 3 contact radii, mirrored to both signs of x."""
+    surface = d.on(d.facets(lambda x: x[1] == 0))
+    r = np.sort(d.locations[0, surface])
+    r = r[r < 3 * d.mesh.contact_radius]
     return np.concatenate([-r[:0:-1], r])
 
 
-def _in_si(field: HarmonicField, unit: _Units):  # type: ignore[no-untyped-def]
-    """The field's amplitudes with SI units going in and coming out."""
+def _bounds(
+    result: _State,
+    companion: _State,
+    unit: _Units,
+    size_share: tuple[float, float],
+    far_share: tuple[float, float, float],
+    load_miss: float,
+) -> _Bounds:
+    """Uncertainties from the companion (element size), a nearer boundary and the load left over."""
+    d = result.discretisation
+    pressure = PressureBound(result.pressure, companion.pressure, d.contact_vertices, size_share[0])
+    peak = float(np.max(result.pressure(d.contact_vertices)))
+    a = d.mesh.contact_radius
+    budget = (
+        ("contact_radius", "element size", size_share[0] * unit.length),
+        ("contact_radius", "outer boundary", far_share[0] * unit.length),
+        ("contact_radius", "load balance", load_miss / 3 * a * unit.length),
+        ("approach", "element size", size_share[1] * unit.displacement),
+        ("approach", "outer boundary", far_share[1] * unit.displacement),
+        ("approach", "load balance", load_miss * result.sink * unit.displacement),
+        ("peak_pressure", "element size", float(pressure(np.zeros(1))[0]) * unit.pressure),
+        ("peak_pressure", "outer boundary", far_share[2] * unit.pressure),
+        ("peak_pressure", "load balance", load_miss / 3 * peak * unit.pressure),
+    )
+    total = {name: sum(value for quantity, _, value in budget if quantity == name) for name, _, _ in budget}
+    both = result.tangential is not None and companion.tangential is not None
+    return _Bounds(
+        scalars=Uncertainty(**total, budget=budget),
+        normal=StressBound(result.normal, companion.normal),
+        tangential=StressBound(result.tangential, companion.tangential) if both else None,
+        pressure=pressure,
+        everywhere=far_share[2] + load_miss / 3 * peak,
+    )
 
-    def amplitudes(r: np.ndarray, z: np.ndarray, layer: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        u, sigma = field(r / unit.length, _on_interfaces(field, z / unit.length), layer)
-        return u * unit.displacement, sigma * unit.pressure
 
-    return amplitudes
+def _meridian(state: _State, unit: _Units, bounds: _Bounds) -> Meridian:
+    """The state as functions of SI positions giving SI values."""
+    mesh = state.discretisation.mesh
 
+    def in_si(field: HarmonicField) -> Any:
+        def amplitudes(r: np.ndarray, z: np.ndarray, layer: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+            u, sigma = field(r / unit.length, z / unit.length, layer)
+            return u * unit.displacement, sigma * unit.pressure
 
-def _on_interfaces(field: HarmonicField, z: np.ndarray) -> np.ndarray:
-    """Depths with those within rounding of an interface put on it, so that each side finds its triangles."""
-    z = z.copy()
-    for depth in field.discretisation.mesh.depths:
-        z[np.abs(z - depth) <= 1e-12 * depth] = depth
-    return z
+        return amplitudes
 
-
-def _estimate(problem: _Scaled, coarse: _Level, companion: _Level, final: _Level, unit: _Units):  # type: ignore[no-untyped-def]
-    """Uncertainty record and the bounds of stress and pressure, from the companion and from a nearer boundary."""
-    near = replace(problem, far=problem.far / 4)
-    c = coarse.touch
-    other = _fixed_radius(near, coarse)
-    # change of the approach at fixed load: the load changes back along the contact's stiffness
-    far_approach = abs(other.approach - c.approach - (other.load - c.load) / c.stiffness)
-    far_radius = abs(math.log(other.load / c.load)) / 3 * c.contact_radius
-    far_peak = abs(other.pressure.values[0] - c.pressure.values[0])
-    size_radius = abs(final.touch.contact_radius - companion.touch.contact_radius)
-    size_approach = abs(final.touch.approach - companion.touch.approach)
-
-    p, q = final.touch.pressure, companion.touch.pressure
-    vertices, bound = line_bound(lambda r: p(r) - q(r), p.vertices)
-    U_a = size_radius
+    def bound_in_si(bound: StressBound | None, extra: float) -> Any:
+        if bound is None:
+            return None
+        return lambda r, z, layer: (bound(r / unit.length, z / unit.length, layer) + extra) * unit.pressure
 
     def pressure_bound(r: np.ndarray) -> np.ndarray:
-        r = np.asarray(r) / unit.length
-        shift = np.maximum(np.abs(p(r + U_a) - p(r)), np.abs(p(np.abs(r - U_a)) - p(r)))
-        return (np.interp(r, vertices, bound, right=0.0) + shift) * unit.pressure
+        assert bounds.pressure is not None
+        r = r / unit.length
+        inside = r <= mesh.contact_radius
+        return (bounds.pressure(r) + np.where(inside, bounds.everywhere, 0.0)) * unit.pressure
 
-    size_peak = float(bound[:2].max())
-    field = final.field(problem)
-    stress = StressBound(field, companion.field(problem))
-
-    def stress_bound(r: np.ndarray, z: np.ndarray, layer: np.ndarray) -> np.ndarray:
-        return stress(r / unit.length, _on_interfaces(field, z / unit.length), layer) * unit.pressure
-
-    L, u, s = unit.length, unit.displacement, unit.pressure
-    budget = (
-        ("contact_radius", "element size", size_radius * L),
-        ("contact_radius", "far boundary", far_radius * L),
-        ("approach", "element size", size_approach * u),
-        ("approach", "far boundary", far_approach * u),
-        ("peak_pressure", "element size", size_peak * s),
-        ("peak_pressure", "far boundary", far_peak * s),
-    )
-    total = {
-        name: sum(value for quantity, _, value in budget if quantity == name)
-        for name in ("contact_radius", "approach", "peak_pressure")
-    }
-    return Uncertainty(**total, budget=budget), (stress_bound, pressure_bound)
-
-
-def _fixed_radius(problem: _Scaled, level: _Level) -> Touch:
-    """The contact of ``level`` at the same radius on another domain."""
-    d = level.discretisation
-    mesh = meridian_mesh(
-        contact_radius=level.touch.contact_radius,
-        thicknesses=problem.thicknesses,
-        far=problem.far,
-        grading=_grading(0.5),
-    )
-    return touch(
-        Discretisation(mesh, d.order),
-        materials=problem.materials,
-        far_displacement=problem.far_displacement,
-        multiplier_order=d.order - 1,
+    return Meridian(
+        normal=in_si(state.normal),
+        tangential=None if state.tangential is None else in_si(state.tangential),
+        pressure=lambda r: state.pressure(r / unit.length) * unit.pressure,
+        normal_bound=bound_in_si(bounds.normal, bounds.everywhere),
+        tangential_bound=bound_in_si(bounds.tangential, 0.0),
+        pressure_bound=None if bounds.pressure is None else pressure_bound,
+        depths=mesh.depths * unit.length,
+        far=mesh.far * unit.length,
+        mesh=mesh.scaled(unit.length),
     )

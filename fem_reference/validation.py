@@ -1,9 +1,11 @@
 """Checks of a stated problem, each failure one sentence."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
-__all__ = ["check_choice", "check_materials", "check_positive"]
+import numpy as np
+
+__all__ = ["check_choice", "check_materials", "check_positive", "prescribed_pressure"]
 
 MAX_COATINGS = 50
 MAX_CONTRAST = 1e4
@@ -53,6 +55,38 @@ def check_materials(
     _check_material("of the substrate", *substrate)
 
 
+def prescribed_pressure(
+    pressure: float | Callable[[np.ndarray], np.ndarray], load_radius: float
+) -> tuple[Callable[[np.ndarray], np.ndarray], float]:
+    """The pressure as a function of r that vanishes beyond ``load_radius``, and its mean modulus as a scale.
+
+    Raises ValueError when a callable does not return finite numbers in the shape of its argument, or is zero.
+    """
+    if not callable(pressure):
+        check_positive(pressure=pressure)
+    given = pressure
+
+    def p(r: np.ndarray) -> np.ndarray:
+        r = np.asarray(r, dtype=float)
+        inside = r <= load_radius * (1 + 1e-12)
+        values = given(np.minimum(r, load_radius)) if callable(given) else given
+        return np.where(inside, values, 0.0)
+
+    # Gauss points avoid r = 0 and r = load_radius, where a callable may be singular
+    s, weight = np.polynomial.legendre.leggauss(40)
+    r = load_radius * (s + 1) / 2
+    try:
+        values = np.asarray(given(r) if callable(given) else np.full(r.shape, given), dtype=float)
+    except (TypeError, ValueError) as error:
+        raise ValueError(f"pressure(r) fails on an array of radii ({error}); write it with numpy") from error
+    if values.shape != r.shape or not np.all(np.isfinite(values)):
+        raise ValueError("pressure(r) has to return one finite number per radius on 0 < r < load_radius")
+    scale = float(np.sum(weight * np.abs(values) * r) / np.sum(weight * r))
+    if not scale > 0:
+        raise ValueError("pressure(r) is zero everywhere; there is nothing to solve")
+    return p, scale
+
+
 def _check_material(where: str, E: float, nu: float) -> None:
     check_positive(**{f"E {where}": E})
     if not _is_number(nu) or not -1 < nu < 0.5:
@@ -62,7 +96,7 @@ def _check_material(where: str, E: float, nu: float) -> None:
 
 
 def _is_number(value: object) -> bool:
-    return isinstance(value, (int, float)) and not isinstance(value, bool) or _is_numpy_scalar(value)
+    return (isinstance(value, (int, float)) and not isinstance(value, bool)) or _is_numpy_scalar(value)
 
 
 def _is_numpy_scalar(value: object) -> bool:

@@ -1,0 +1,64 @@
+"""Displacement of the solid under prescribed surface tractions, of harmonic 0 or 1.
+
+A pressure p(r) loads harmonic 0. A traction q(r) in +x loads harmonic 1,
+
+    q_r = q cos(theta),   q_theta = -q sin(theta),   virtual work  int q (U - V) r dr = int q (S - 2 V) r dr,
+
+which is all that sliding friction q = f p needs: no third dimension.
+"""
+
+from collections.abc import Callable
+
+import numpy as np
+
+from .axisymmetric import Discretisation, constrained_solve
+
+__all__ = ["loaded", "resultant"]
+
+Traction = Callable[[np.ndarray], np.ndarray]
+
+
+def resultant(discretisation: Discretisation, traction: Traction) -> float:
+    """Total force 2 pi int traction(r) r dr over the surface inside the mesh's contact radius."""
+    d = discretisation
+    return float(2 * np.pi * d.surface_load(_inside(d), traction).sum())
+
+
+def loaded(
+    discretisation: Discretisation,
+    *,
+    harmonic: int,
+    materials: tuple[tuple[float, float], ...],
+    traction: Traction,
+    far_displacement: Callable[[np.ndarray, np.ndarray], np.ndarray],
+) -> np.ndarray:
+    """Field vector (see ``axisymmetric``) under ``traction`` within the mesh's contact radius.
+
+    traction : r -> pressure (harmonic 0) or traction in +x (harmonic 1)
+    far_displacement : (r, z) -> amplitudes per unit force, (u_r, u_z) or (u_r, u_theta, u_z)
+    """
+    d, N = discretisation, discretisation.N
+    force = d.surface_load(_inside(d), traction)
+    far = 2 * np.pi * force.sum() * far_displacement(*d.locations[:, d.outer])
+    zero = np.zeros(N)
+    if harmonic == 0:
+        load = np.concatenate([zero, force])
+        fixed_fields: tuple[tuple[int, np.ndarray], ...] = ((0, far[0]), (1, far[1]))
+        on_axis: tuple[int, ...] = (0,)
+    else:
+        load = np.concatenate([force, -2 * force, zero])
+        fixed_fields = ((0, far[0] + far[1]), (1, far[1]), (2, far[2]))
+        on_axis = (0, 2)
+    given = np.zeros(load.size)
+    for field, values in fixed_fields:
+        given[field * N + d.outer] = values
+    for field in on_axis:
+        given[field * N + d.axis] = 0.0
+    fixed = [field * N + d.outer for field, _ in fixed_fields] + [field * N + d.axis for field in on_axis]
+    K = d.stiffness(materials, harmonic)
+    return constrained_solve(K, given, np.unique(np.concatenate(fixed)), load)
+
+
+def _inside(d: Discretisation) -> np.ndarray:
+    a = d.mesh.contact_radius
+    return d.facets(lambda x: (x[1] == 0) & (x[0] < a))

@@ -1,0 +1,75 @@
+"""ParaView files of a solution, through meshio alone.
+
+Vertices on an interface are written once per layer, so that the jump of sigma_xx stays a jump.
+"""
+
+from os import PathLike
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from .solution import Solution
+
+__all__ = ["write_vtu"]
+
+
+def write_vtu(solution: "Solution", path: str | PathLike[str]) -> Path:
+    """Write the plane y = 0 as quadratic triangles to ``path`` (.vtu); returns the path.
+
+    Cell data: ``layer``, 0 at the surface. Point data: ``displacement`` (3) [m] and the six stresses
+    ``sigma_xx`` ... ``sigma_xz`` [Pa]. With friction both halves x < 0 and x > 0 are written.
+    Raises ValueError when the name does not end in .vtu, OSError when the file cannot be written.
+    """
+    import meshio
+
+    path = Path(path)
+    if path.suffix != ".vtu":
+        raise ValueError(f"path = {path}; the file name has to end in .vtu")
+    mesh = solution.meridian.mesh
+    points, cells, layer = _quadratic(mesh.points, mesh.triangles, mesh.layer)
+    owner = np.zeros(points.shape[1], dtype=int)
+    owner[cells.ravel()] = np.repeat(layer, 6)
+    halves = (1.0, -1.0) if solution.meridian.tangential is not None else (1.0,)
+    x = np.concatenate([half * points[0] for half in halves])
+    z = np.tile(points[1], len(halves))
+    owner = np.tile(owner, len(halves))
+    # a mirrored triangle runs clockwise: swap two corners and their middles
+    mirrored = cells[:, [0, 2, 1, 5, 4, 3]]
+    blocks = [cells] if len(halves) == 1 else [cells, mirrored + points.shape[1]]
+    cells = np.concatenate(blocks)
+    layer = np.tile(layer, len(halves))
+
+    displacement = np.zeros((x.size, 3))
+    sigma = np.zeros((3, 3, x.size))
+    for k in range(mesh.depths.size + 1):
+        mine = owner == k
+        displacement[mine] = solution.displacement(x[mine], 0.0, z[mine]).T
+        sigma[:, :, mine] = solution.stress(x[mine], 0.0, z[mine], layer=k)
+    names = {"xx": (0, 0), "yy": (1, 1), "zz": (2, 2), "xy": (0, 1), "yz": (1, 2), "xz": (0, 2)}
+    meshio.Mesh(
+        np.stack([x, np.zeros(x.size), z], axis=1),
+        [("triangle6", cells)],
+        point_data={
+            "displacement": displacement,
+            **{f"sigma_{name}": sigma[ij] for name, ij in names.items()},
+        },
+        cell_data={"layer": [layer.astype(np.int32)]},
+    ).write(path)
+    return path
+
+
+def _quadratic(
+    points: np.ndarray, triangles: np.ndarray, layer: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Points (2, n), cells (m, 6) with edge middles, layer (m,); no node is shared between layers."""
+    count = points.shape[1]
+    a, b, c = triangles + layer * count
+    edges = np.sort(np.stack([[a, b], [b, c], [c, a]]), axis=1)
+    pairs, which = np.unique(edges.transpose(0, 2, 1).reshape(-1, 2), axis=0, return_inverse=True)
+    used, corner = np.unique(np.stack([a, b, c]), return_inverse=True)
+    middles = points[:, pairs % count].mean(axis=-1)
+    nodes = np.concatenate([points[:, used % count], middles], axis=1)
+    cells = np.concatenate([corner.reshape(3, -1), used.size + which.reshape(3, -1)])
+    return nodes, cells.T.copy(), layer
