@@ -4,10 +4,11 @@
 >>> steel = (210e9, 0.3)
 >>> contact = semianalytic.solve(radius=10e-3, load=20.0, coatings=(), substrate=steel, patches=65)
 >>> f"{contact.peak_pressure / 1e9:.2f} GPa"
-'1.01 GPa'
+'1.27 GPa'
 """
 
 from semianalytic.contact import NotConverged
-from semianalytic.solver import Diagnostics, Solution, Uncertainty, solve
+from semianalytic.solution import Diagnostics, Solution, Uncertainty
+from semianalytic.solver import solve
 
 __all__ = ["Diagnostics", "NotConverged", "Solution", "Uncertainty", "solve"]

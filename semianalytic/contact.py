@@ -77,7 +77,8 @@ def press(
     inside = p > 0
     u = deflection(p)
     convolutions = 1
-    step, slope, restart, set_changed = np.zeros_like(p), 1.0, True, True
+    step, last_r, slope = np.zeros_like(p), np.zeros_like(p), 1.0
+    restart = set_changed = True
     P_one = p
     history = []
     for iteration in range(max_iterations + 1):
@@ -104,7 +105,15 @@ def press(
             if max(open_inside, penetration) <= tolerance:
                 error = 0.0 if total is None else abs(float(p.sum()) / total - 1)
                 return Contact(
-                    p, u, float(delta), open_inside, penetration, error, iteration, convolutions, tuple(history)
+                    p,
+                    u,
+                    float(delta),
+                    open_inside,
+                    penetration,
+                    error,
+                    iteration,
+                    convolutions,
+                    tuple(history),
                 )
             restart = True
         enter = ~inside & (r < 0)
@@ -136,6 +145,6 @@ def press(
         else:
             u = u - alpha * Au
     raise NotConverged(
-        f"gap in contact {open_inside:.1e} and penetration {penetration:.1e} of the scale {scale:.3g} m after "
-        f"{max_iterations} iterations (asked for {tolerance:.0e}); raise max_iterations or tolerance"
+        f"gap in contact {open_inside:.1e} and penetration {penetration:.1e} of the scale {scale:.3g} m "
+        f"after {max_iterations} iterations (asked for {tolerance:.0e}); raise max_iterations or tolerance"
     )

@@ -72,9 +72,7 @@ def _apply_even(spectrum: Array, nx: int, ny: int, threads: int) -> Callable[[Ar
         wave[: half + 1] *= spectrum
         wave[half + 1 :] *= spectrum[half - 1 : 0 : -1]
         ducc0.fft.c2c(wave, axes=(0,), forward=False, nthreads=threads, out=wave)
-        ducc0.fft.c2r(
-            wave[:nx], axes=(1,), lastsize=my, forward=False, nthreads=threads, out=rows
-        )
+        ducc0.fft.c2r(wave[:nx], axes=(1,), lastsize=my, forward=False, nthreads=threads, out=rows)
         return rows[:, :ny].copy()
 
     return apply

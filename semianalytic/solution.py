@@ -1,0 +1,141 @@
+"""What a semi-analytical solve returns.
+
+A ``Solution`` carries its coarser companion, the same problem on half the patches. Every uncertainty of
+a field is read from the difference of the two at the points asked for, widened so that a chance
+agreement of the two does not pass for accuracy.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy.interpolate import RectBivariateSpline
+from scipy.ndimage import maximum_filter
+
+__all__ = ["Diagnostics", "Solution", "Uncertainty"]
+
+Array = NDArray[np.floating]
+Field = Callable[[ArrayLike, ArrayLike, ArrayLike, int | None], Array]
+Motion = Callable[[ArrayLike, ArrayLike, ArrayLike], Array]
+
+
+@dataclass(frozen=True)
+class Uncertainty:
+    """Numerical uncertainty in SI units; budget : rows (quantity, knob, value).
+
+    Knobs: patch size, conversion, domain, iteration. The three scalars are the sums of their rows.
+    """
+
+    contact_radius: float
+    approach: float
+    peak_pressure: float
+    budget: tuple[tuple[str, str, float], ...]
+
+
+@dataclass(frozen=True)
+class Diagnostics:
+    """What the solution took and how well the contact conditions are met.
+
+    gap_inside, penetration_outside : largest, over the approach; load_error : relative.
+    patches : loaded ones.  history : (gap, penetration) of every iteration on the finest grid.
+    """
+
+    iterations: int
+    convolutions: int
+    gap_inside: float
+    penetration_outside: float
+    load_error: float
+    patches: int
+    patches_per_side: int
+    patch_size: float
+    seconds: float
+    history: tuple[tuple[float, float], ...] = field(repr=False, default=())
+
+
+@dataclass(frozen=True, eq=False)
+class Solution:
+    """Contact of a rigid indenter on a coated half-space; SI, tension positive, z into the solid.
+
+    contact_radius [m] : where p vanishes; of a contact that is no disc, the radius of the disc of its area.
+    approach [m].  peak_pressure [Pa] : largest pressure, which sits off the axis under stiff thin coatings.
+    surface_nodes [m] : x on y = 0 at which no pressure is interpolated, past 2 contact radii.
+    """
+
+    contact_radius: float
+    approach: float
+    peak_pressure: float
+    surface_nodes: Array = field(repr=False)
+    diagnostics: Diagnostics
+    uncertainty: Uncertainty | None
+    nodes: Array = field(repr=False)  # patch centres along one axis [m]
+    patch_pressure: Array = field(repr=False)  # at the patch centres [Pa], (n, n)
+    coarser: "Solution | None" = field(repr=False)
+    _stress: Field = field(repr=False)
+    _displacement: Motion = field(repr=False)
+
+    def pressure(self, x: ArrayLike, y: ArrayLike = 0.0) -> Array:
+        """Contact pressure [Pa]; between nodes p^2 is interpolated, which is smooth up to the edge.
+
+        x, y : [m], broadcast.  Returns the pressure, 0 outside the contact.
+        """
+        return np.sqrt(np.maximum(_at(self.nodes, self.patch_pressure**2, x, y), 0))
+
+    def stress(self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None) -> Array:
+        """Stress tensor [Pa], shape (3, 3) + points.
+
+        x, y, z : [m], broadcast, z >= 0.  layer : 0 is the first coating, len(coatings) the substrate; it
+        picks the side of an interface, None the upper one.
+        Raises ValueError for z < 0, and for a layer that z does not lie in.
+        """
+        return self._stress(x, y, z, layer)
+
+    def displacement(self, x: ArrayLike, y: ArrayLike, z: ArrayLike) -> Array:
+        """Displacement [m], shape (3,) + points, u_z into the solid.
+
+        x, y, z : [m], broadcast, z >= 0.
+        """
+        return self._displacement(x, y, z)
+
+    def pressure_uncertainty(self, x: ArrayLike, y: ArrayLike = 0.0) -> Array:
+        """Uncertainty of the pressure [Pa] from the coarser companion.
+
+        The largest difference of the two within two coarse patches, plus what the other knobs do to the peak.
+        Raises ValueError where no uncertainty was estimated.
+        """
+        coarser, floor = self._companion()
+        difference = np.abs(self.patch_pressure - coarser.pressure(self.nodes[:, None], self.nodes[None, :]))
+        widened = maximum_filter(difference, size=9, mode="nearest")
+        return _at(self.nodes, widened, x, y, order=1) + floor * self.peak_pressure
+
+    def stress_uncertainty(self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None) -> Array:
+        """Uncertainty of the stress [Pa], shape (3, 3) + points, from the coarser companions.
+
+        The largest difference over the six components, of this grid and half of it or, a third of it, of half
+        and a quarter, for every component alike; plus what the other knobs do to the peak pressure.
+        Raises ValueError where no uncertainty was estimated.
+        """
+        coarser, floor = self._companion()
+        halved = coarser.stress(x, y, z, layer)
+        spread = np.abs(self.stress(x, y, z, layer) - halved).max(axis=(0, 1))
+        if coarser.coarser is not None:
+            quartered = coarser.coarser.stress(x, y, z, layer)
+            spread = np.maximum(spread, np.abs(halved - quartered).max(axis=(0, 1)) / 3)
+        return np.broadcast_to(spread + floor * self.peak_pressure, (3, 3, *spread.shape)).copy()
+
+    def _companion(self) -> tuple["Solution", float]:
+        if self.uncertainty is None or self.coarser is None:
+            raise ValueError("uncertainty was not estimated; solve with estimate_uncertainty=True")
+        rows = self.uncertainty.budget
+        other = sum(value for name, knob, value in rows if name == "peak_pressure" and knob != "patch size")
+        return self.coarser, other / self.peak_pressure
+
+
+def _at(nodes: Array, values: Array, x: ArrayLike, y: ArrayLike, order: int = 3) -> Array:
+    """Spline through the values at the nodes, 0 outside them."""
+    x, y = np.broadcast_arrays(np.asarray(x, dtype=float), np.asarray(y, dtype=float))
+    inside = np.maximum(np.abs(x), np.abs(y)) <= nodes[-1] * (1 + 1e-12)
+    value = np.zeros(x.shape)
+    spline = RectBivariateSpline(nodes, nodes, values, kx=order, ky=order)
+    value[inside] = spline(x[inside], y[inside], grid=False)
+    return value
