@@ -88,11 +88,11 @@ class Hertz:
     def surface_displacement(self, r: ArrayLike) -> Array:
         """u_z at z = 0 [m], positive into the solid. Johnson (3.41a), (3.42a)."""
         a, p0 = self.contact_radius, self.peak_pressure
-        r = np.abs(np.asarray(r, dtype=float))
-        s = np.minimum(a / np.maximum(r, a), 1.0)
-        inside = np.pi / 4 * (2 * a**2 - r**2) / a
-        outside = ((2 * a**2 - r**2) * np.arcsin(s) + r * a * np.sqrt(1 - s**2)) / (2 * a)
-        return p0 / self.E_star * np.where(r <= a, inside, outside)
+        rho = np.abs(np.asarray(r, dtype=float))
+        s = np.minimum(a / np.maximum(rho, a), 1.0)
+        inside = np.pi / 4 * (2 * a**2 - rho**2) / a
+        outside = ((2 * a**2 - rho**2) * np.arcsin(s) + rho * a * np.sqrt(1 - s**2)) / (2 * a)
+        return p0 / self.E_star * np.where(rho <= a, inside, outside)
 
     def stress(self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None) -> Array:
         """sigma[i, j, ...] [Pa], shape (3, 3) + points. Huber (1904); on the surface Johnson (3.43).

@@ -81,6 +81,11 @@ class ExactSolution:
         }
         return ExactUncertainty(**spread, budget=tuple((n, "quadrature", u) for n, u in spread.items()))
 
+    @property
+    def _rounding(self) -> float:
+        # Differentiating a series of degree m amplifies the rounding of its coefficients by m^2, m terms.
+        return float(np.finfo(float).eps * (2.0 * self.abel.c.size) ** 3)
+
     def pressure(self, x: ArrayLike, y: ArrayLike = 0.0) -> Array:
         """p [Pa], 0 outside the contact."""
         return self.abel.pressure(np.hypot(x, y))
@@ -96,7 +101,9 @@ class ExactSolution:
     def pressure_uncertainty(self, x: ArrayLike, y: ArrayLike = 0.0) -> Array:
         """Absolute [Pa]; raises ValueError where no companion was solved."""
         a, coarser = self.abel.a, self._companion()
-        spread = 2 * np.abs(self.pressure(x, y) - coarser.pressure(x, y)) + 1e-11 * self.peak_pressure
+        spread = (
+            2 * np.abs(self.pressure(x, y) - coarser.pressure(x, y)) + self._rounding * self.peak_pressure
+        )
         # The vertical tangent at the edge turns an uncertain radius into an uncertain pressure.
         edge = np.abs(np.hypot(x, y) - a) <= 2 * abs(a - coarser.abel.a)
         return np.where(
@@ -106,7 +113,7 @@ class ExactSolution:
     def stress_uncertainty(self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None) -> Array:
         """Absolute [Pa], shape (3, 3) + points; raises ValueError where no companion was solved."""
         coarser = self._companion().stress(x, y, z, layer)
-        return 2 * np.abs(self.stress(x, y, z, layer) - coarser) + 1e-11 * self.peak_pressure
+        return 2 * np.abs(self.stress(x, y, z, layer) - coarser) + self._rounding * self.peak_pressure
 
     def _companion(self) -> "ExactSolution":
         if self.coarser is None:

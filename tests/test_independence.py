@@ -1,0 +1,47 @@
+"""The two methods and the references know nothing of each other."""
+
+import subprocess
+import sys
+from dataclasses import fields
+from inspect import signature
+from pathlib import Path
+
+import pytest
+
+import fem_reference
+import semianalytic
+from verification.problem import CoatedContact
+from verification.references import integral_equation
+
+ROOT = Path(__file__).resolve().parent.parent
+
+
+@pytest.mark.parametrize("solve", [semianalytic.solve, fem_reference.solve, integral_equation.solve])
+def test_every_solver_takes_the_same_problem(solve):
+    names = [field.name for field in fields(CoatedContact)]
+    assert list(signature(solve).parameters)[: len(names)] == names
+
+
+def test_import_contracts_are_kept():
+    done = subprocess.run(
+        [str(Path(sys.executable).parent / "lint-imports")],
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+        timeout=120,
+    )
+    assert done.returncode == 0, done.stdout
+
+
+@pytest.mark.parametrize(
+    ("package", "strangers"),
+    [
+        ("semianalytic", ("fem_reference", "verification", "skfem", "gmsh")),
+        ("fem_reference", ("semianalytic", "verification", "ducc0")),
+        ("verification.references.integral_equation", ("semianalytic", "fem_reference", "skfem", "gmsh")),
+    ],
+)
+def test_each_part_is_usable_alone(package, strangers):
+    code = f"import sys, {package}; sys.exit(' '.join(m for m in {strangers!r} if m in sys.modules))"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=120)
+    assert done.returncode == 0, f"importing {package} also brings {done.stderr}"

@@ -1,0 +1,280 @@
+"""The command line of coatcheck.
+
+Exit codes: 0 all agree, 1 a disagreement, 2 bad input, 3 a missing result, 4 inconclusive.
+"""
+
+import datetime
+import json
+import sys
+import time
+from collections.abc import Sequence
+from importlib.metadata import version
+from pathlib import Path
+from typing import Annotated
+
+from cyclopts import App, CycloptsError, Parameter
+from rich.console import Console
+from rich.progress import (
+    BarColumn,
+    MofNCompleteColumn,
+    Progress,
+    TextColumn,
+    TimeElapsedColumn,
+    TimeRemainingColumn,
+)
+from rich.table import Table
+
+from verification.case import Case, CaseError, read_case, shipped_cases
+from verification.result import CaseResult, RunInfo, from_json
+from verification.schedule import cores, result_path, run_cases
+from verification.store import StoreError, locked, read_checked
+from verification.surroundings import commit, machine, missing_libraries, versions
+from verification.verdict import Outcome
+
+__all__ = ["app", "exit_code", "main"]
+
+BAD_INPUT = 2
+EXIT = {Outcome.DISAGREES: 1, Outcome.NO_RESULT: 3, Outcome.INCONCLUSIVE: 4, Outcome.AGREES: 0}
+STYLE = {
+    Outcome.AGREES: "green",
+    Outcome.DISAGREES: "bold red",
+    Outcome.NO_RESULT: "bold red",
+    Outcome.INCONCLUSIVE: "yellow",
+}
+
+app = App(
+    name="coatcheck",
+    help="Verify coated point contact: two independent methods, Hertz and an exact reference in one report.",
+    help_epilogue="Exit codes: 0 all agree, 1 disagreement, 2 bad input, 3 no result, 4 inconclusive.",
+    version=lambda: version("coatcheck"),
+    help_format="plaintext",
+)
+
+
+def exit_code(results: Sequence[CaseResult]) -> int:
+    """The code of the worst outcome: disagreement before a missing result before inconclusive."""
+    found = {result.outcome for result in results}
+    for outcome in (Outcome.DISAGREES, Outcome.NO_RESULT, Outcome.INCONCLUSIVE):
+        if outcome in found:
+            return EXIT[outcome]
+    return EXIT[Outcome.AGREES] if found else EXIT[Outcome.NO_RESULT]
+
+
+@app.command
+def run(
+    *cases: str,
+    output: Annotated[Path, Parameter(name=["--output", "-o"])] = Path("reports"),
+    jobs: Annotated[int | None, Parameter(name=["--jobs", "-j"])] = None,
+    time_limit: float = 600.0,
+    resume: Annotated[bool, Parameter(negative="")] = False,
+    quiet: Annotated[bool, Parameter(name=["--quiet", "-q"], negative="")] = False,
+    as_json: Annotated[bool, Parameter(name="--json", negative="")] = False,
+) -> int:
+    """Solve cases by every method and reference, judge every claim, write the report.
+
+    Without arguments all shipped cases are run. Examples:
+
+        coatcheck run
+        coatcheck run 05_ratio_4 my_coating.toml --output reports/mine
+
+    Parameters
+    ----------
+    cases
+        Names of shipped cases (see coatcheck list) or paths of .toml case files.
+    output
+        Directory of the report: report.html, report.json, junit.xml and one file per case.
+    jobs
+        Cases solved side by side; all cores unless given. Each gets its share of the threads.
+    time_limit
+        Seconds one case may take before it is stopped and reported as having no result.
+    resume
+        Keep the whole results already in the output directory that belong to the same case files.
+    quiet
+        Print nothing but complaints.
+    as_json
+        Print one JSON object with the outcome of each case instead of a table.
+    """
+    jobs = cores() if jobs is None else jobs
+    if jobs < 1 or not time_limit > 0:
+        return _complain(f"--jobs = {jobs}, --time-limit = {time_limit:g}; both must be positive")
+    try:
+        chosen = _choose(cases)
+    except CaseError as error:
+        return _complain(str(error))
+    lacking = missing_libraries()
+    if lacking:
+        _complain(f"gmsh lacks system libraries here; install them with: apt-get install {' '.join(lacking)}")
+        return EXIT[Outcome.NO_RESULT]
+
+    from verification.report import write_report  # matplotlib takes a second to load
+
+    begin, started = time.perf_counter(), datetime.datetime.now(datetime.UTC)
+    try:
+        with locked(output):
+            kept = {c.name: r for c in chosen if resume and (r := _stored(output, c)) is not None}
+            results = {
+                r.name: r
+                for r in _solve(
+                    [c for c in chosen if c.name not in kept], output, jobs, time_limit, quiet or as_json
+                )
+            }
+            ordered = [kept.get(case.name) or results[case.name] for case in chosen]
+            info = RunInfo(
+                command=" ".join(["coatcheck run", *cases]),
+                started=started.isoformat(timespec="seconds"),
+                seconds=time.perf_counter() - begin,
+                jobs=jobs,
+                commit=commit(),
+                machine=f"{machine()}, {cores()} cores",
+                versions=versions(),
+            )
+            page = write_report(ordered, output, info)
+    except StoreError as error:
+        return _complain(str(error))
+    if as_json:
+        sys.stdout.write(json.dumps(_summary(ordered, page), indent=2) + "\n")
+    elif not quiet:
+        _print_table(ordered, page, time.perf_counter() - begin)
+    return exit_code(ordered)
+
+
+@app.command(name="list")
+def list_cases(*, as_json: Annotated[bool, Parameter(name="--json", negative="")] = False) -> int:
+    """List the shipped cases with title and source.
+
+    Parameters
+    ----------
+    as_json
+        Print a JSON array instead of a table.
+    """
+    cases = [read_case(path) for path in shipped_cases().values()]
+    if as_json:
+        rows = [
+            {"name": c.name, "title": c.title, "source": c.source, "claims": len(c.claims)} for c in cases
+        ]
+        sys.stdout.write(json.dumps(rows, indent=2) + "\n")
+        return 0
+    table = Table("case", "title", "claims", "source", box=None, header_style="bold")
+    for case in cases:
+        table.add_row(case.name, case.title, str(len(case.claims)), case.source)
+    Console().print(table)
+    return 0
+
+
+def main() -> None:
+    """Entry of the ``coatcheck`` command."""
+    try:
+        code = app(exit_on_error=False, print_error=False, result_action="return_value")
+    except CycloptsError as error:
+        code = _complain(" ".join(str(error).split()) + " Try: coatcheck --help")
+    except KeyboardInterrupt:
+        sys.stderr.write("\ncoatcheck: stopped; finished cases are kept, go on with --resume\n")
+        code = 130
+    sys.exit(code)
+
+
+def _choose(names: Sequence[str]) -> list[Case]:
+    shipped = shipped_cases()
+    cases = []
+    for name in names or shipped:
+        if name in shipped:
+            cases.append(read_case(shipped[name]))
+        elif name.endswith(".toml") or "/" in name or Path(name).exists():
+            cases.append(read_case(Path(name)))
+        else:
+            raise CaseError(f"{name}: neither a shipped case (see coatcheck list) nor a .toml file")
+    twice = {case.name for case in cases if sum(other.name == case.name for other in cases) > 1}
+    if twice:
+        raise CaseError(f"{sorted(twice)[0]}: named twice; give each case file a name of its own")
+    return cases
+
+
+def _stored(output: Path, case: Case) -> CaseResult | None:
+    """A whole earlier result of the very same case file, or None."""
+    try:
+        result = from_json(read_checked(result_path(output, case)))
+    except (StoreError, ValueError, KeyError, TypeError):
+        return None
+    return result if result.text == case.text else None
+
+
+def _solve(cases: list[Case], output: Path, jobs: int, time_limit: float, silent: bool) -> list[CaseResult]:
+    console = Console(stderr=True)
+    bar = Progress(
+        TextColumn("{task.description}"),
+        BarColumn(),
+        MofNCompleteColumn(),
+        TimeElapsedColumn(),
+        TextColumn("left"),
+        TimeRemainingColumn(),
+        console=console,
+        transient=True,
+        disable=silent or not console.is_terminal,
+    )
+    at_work: list[str] = []
+    with bar:
+        task = bar.add_task("solving", total=len(cases))
+
+        def started(case: Case) -> None:
+            at_work.append(case.name)
+            bar.update(task, description=", ".join(at_work))
+
+        def finished(result: CaseResult) -> None:
+            at_work.remove(result.name)
+            bar.update(task, advance=1, description=", ".join(at_work) or "report")
+            if not silent:
+                colour = STYLE[result.outcome]
+                console.print(
+                    f"[{colour}]{result.outcome:<12}[/] {result.name}  {result.seconds:.1f} s",
+                    highlight=False,
+                )
+
+        return run_cases(cases, output, jobs=jobs, time_limit=time_limit, started=started, finished=finished)
+
+
+def _summary(results: Sequence[CaseResult], page: Path) -> dict[str, object]:
+    return {
+        "report": str(page),
+        "exit_code": exit_code(results),
+        "cases": {
+            result.name: {
+                "outcome": result.outcome,
+                "verdicts": {o: sum(v.outcome is o for _, v in result.verdicts) for o in Outcome},
+            }
+            for result in results
+        },
+    }
+
+
+def _print_table(results: Sequence[CaseResult], page: Path, seconds: float) -> None:
+    table = Table(
+        "case", *(outcome.lower() for outcome in Outcome), "largest difference", box=None, header_style="bold"
+    )
+    for result in results:
+        worst = max((v.difference for _, v in result.verdicts if v.difference is not None), default=None)
+        table.add_row(
+            result.name,
+            *(
+                f"[{STYLE[o]}]{n}[/]" if (n := sum(v.outcome is o for _, v in result.verdicts)) else "."
+                for o in Outcome
+            ),
+            "-" if worst is None else f"{worst:.1e}",
+        )
+    console = Console()
+    console.print(table)
+    for result in results:
+        for source in result.sources:
+            if source.failure:
+                console.print(
+                    f"[bold red]{result.name}, {source.source}:[/] {source.failure}", highlight=False
+                )
+    console.print(f"{len(results)} cases in {seconds:.0f} s; report: {page}", highlight=False)
+
+
+def _complain(sentence: str) -> int:
+    sys.stderr.write(f"coatcheck: {sentence}\n")
+    return BAD_INPUT
+
+
+if __name__ == "__main__":
+    main()
