@@ -134,7 +134,8 @@ def accuracy_overview(results: Sequence[CaseResult], anchors: Mapping[int, str],
         cells = [
             _overview_cell([i for i in found if name in (i.quantity, group_of(i.line))]) for name in columns
         ]
-        rows.append(Row(Cell(result.title, note=result.name, href=f"#{anchors[number]}-accuracy"), cells))
+        note = f"{result.title} ({result.name})"
+        rows.append(Row(Cell(result.title, note=note, href=f"#{anchors[number]}-accuracy"), cells))
     if not rows:
         return None
     return Table(

@@ -1,9 +1,9 @@
-"""The few shapes a report page is made of: cells, rows, tables."""
+"""The few shapes a report page is made of: cells, rows, tables, sections."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-__all__ = ["Cell", "Row", "Table"]
+__all__ = ["Cell", "Row", "Section", "Table"]
 
 
 @dataclass(frozen=True)
@@ -41,3 +41,12 @@ class Table:
     rows: Sequence[Row]
     groups: Sequence[tuple[str, int]] = ()
     css: str = ""
+
+
+@dataclass(frozen=True)
+class Section:
+    """A part of the page about the run as a whole: paragraphs, each with the tables it introduces."""
+
+    anchor: str
+    title: str
+    parts: Sequence[tuple[str, Sequence[Table]]]

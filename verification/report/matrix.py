@@ -31,7 +31,7 @@ def verdict_matrix(results: Sequence[CaseResult], anchors: Mapping[int, str]) ->
         for place in columns:
             found = [(c, v) for c, v in result.verdicts if _place(c) == place]
             cells.append(_cell(found, f"#{anchor}-{_target(result, place[1])}"))
-        rows.append(Row(Cell(result.title, note=result.name, href=f"#{anchor}"), cells))
+        rows.append(Row(Cell(result.title, note=f"{result.title} ({result.name})", href=f"#{anchor}"), cells))
     spans = [(title, sum(b == (rank, title) for b, _ in columns)) for rank, title in blocks]
     return Table(
         "Largest difference of each pair of sources, as a fraction of the value for p0, a and approach, "
@@ -44,10 +44,9 @@ def verdict_matrix(results: Sequence[CaseResult], anchors: Mapping[int, str]) ->
 
 
 def outcome_cell(outcome: Outcome, href: str = "") -> Cell:
-    """A verdict as letter, mark, word and colour; it sorts by how bad it is."""
+    """A verdict as letter, mark and colour, its word for a pointer; it sorts by how bad it is."""
     style = OUTCOMES[outcome]
-    text = f"{style.letter} {style.mark}" if href else f"{style.letter} {style.mark} {style.word}"
-    return Cell(text, float(style.rank), f"verdict {style.css}", style.word if href else "", href)
+    return Cell(f"{style.letter} {style.mark}", float(style.rank), f"verdict {style.css}", style.word, href)
 
 
 def _cell(found: Sequence[tuple[Claim, Verdict]], href: str) -> Cell:

@@ -12,7 +12,7 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 
 from verification.report.accuracy import accuracy_overview, accuracy_sentence, accuracy_table
-from verification.report.cells import Table
+from verification.report.cells import Section, Table
 from verification.report.csvdata import embedded, line_csv
 from verification.report.matrix import verdict_matrix
 from verification.report.names import METHODS, OUTCOMES, OutcomeStyle, source_label
@@ -34,6 +34,8 @@ from verification.verdict import Outcome
 __all__ = ["render"]
 
 HERE = Path(__file__).parent
+# A failed source fails every comparison; the figures should still be within reach.
+MOST_FAILING = 6
 
 
 @dataclass(frozen=True)
@@ -66,6 +68,7 @@ class CaseView:
     lines: tuple[LineView, ...]
     accuracy: Table | None
     failing: Table | None
+    more: int
     verdicts: Table
     budget: Table | None
     diagnostics: Table | None
@@ -83,10 +86,6 @@ def render(results: Sequence[CaseResult], info: RunInfo) -> str:
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    overviews = [
-        (accuracy_sentence(results, source), accuracy_overview(results, anchors, source))
-        for source in METHODS
-    ]
     return environment.get_template("page.html").render(
         info=info,
         style=Markup((HERE / "style.css").read_text(encoding="utf-8")),
@@ -96,8 +95,7 @@ def render(results: Sequence[CaseResult], info: RunInfo) -> str:
         counts=_counts(results),
         matrix=verdict_matrix(results, anchors) if results else None,
         outcomes=OUTCOMES.values(),
-        accuracy=[(sentence, table) for sentence, table in overviews if table is not None],
-        times=time_table(results, [f"#{anchors[number]}" for number in range(len(results))]),
+        sections=_sections(results, anchors),
         cases=[_case(result, anchors[number]) for number, result in enumerate(results)],
         seconds=seconds,
     )
@@ -112,6 +110,18 @@ def _anchors(results: Sequence[CaseResult]) -> Mapping[int, str]:
         taken[name] += 1
         anchors[number] = name if taken[name] == 1 else f"{name}--{taken[name]}"
     return anchors
+
+
+def _sections(results: Sequence[CaseResult], anchors: Mapping[int, str]) -> list[Section]:
+    """What is said of the run as a whole, between the verdicts and the cases."""
+    accuracy = [
+        (accuracy_sentence(results, source), [table])
+        for source in METHODS
+        if (table := accuracy_overview(results, anchors, source)) is not None
+    ]
+    times = time_table(results, [f"#{anchors[number]}" for number in range(len(results))])
+    sections = [Section("accuracy", "Accuracy against the exact reference", accuracy)] if accuracy else []
+    return [*sections, Section("times", "Run times", [("", [times])])] if results else []
 
 
 def _counts(results: Sequence[CaseResult]) -> list[tuple[OutcomeStyle, int]]:
@@ -164,7 +174,8 @@ def _case(result: CaseResult, anchor: str) -> CaseView:
         contact_file=f"{file}-contact.csv",
         lines=tuple(_line(result, line, anchor, file) for line in lines(result)),
         accuracy=accuracy_table(result),
-        failing=verdict_table(bad, a_h) if bad else None,
+        failing=verdict_table(bad, a_h, MOST_FAILING) if bad else None,
+        more=max(len(bad) - MOST_FAILING, 0),
         verdicts=verdict_table(result.verdicts, a_h),
         budget=budget_table(result),
         diagnostics=diagnostics_table(result),

@@ -122,7 +122,7 @@ def _panel(result: CaseResult, line: str, quantity: str, key: str) -> Panel:
     largest = max((v.difference for _, v in claims if v.difference is not None), default=None)
     note = f"largest judged difference {scientific(largest)}"
     if bad:
-        note = f"{len(bad)} of {len(claims)} comparisons do not agree; {note}"
+        note = f"{len(bad)} of {len(claims)} do not agree, difference {scientific(largest)}"
     title = "p / p_h" if quantity == "pressure" else f"{quantity} / p_h"
     return Panel(title, figure, note if claims else "not compared", "fails" if bad else "")
 

@@ -96,11 +96,10 @@ def _spread_note(spread: float | None) -> str:
     return "uncertainty not stated" if spread is None else "exact"
 
 
-def verdict_table(verdicts: Sequence[tuple[Claim, Verdict]], a_h: float) -> Table:
-    """All comparisons, the failing ones first."""
-    ordered = sorted(verdicts, key=lambda item: OUTCOMES[item[1].outcome].rank)
+def verdict_table(verdicts: Sequence[tuple[Claim, Verdict]], a_h: float, most: int | None = None) -> Table:
+    """The comparisons, the worst first; ``most`` keeps as many of them."""
     rows = []
-    for claim, verdict in ordered:
+    for claim, verdict in sorted(verdicts, key=lambda item: _badness(item[1]))[:most]:
         where = ""
         if verdict.worst is not None and claim.line != "contact" and a_h:
             where = f"{'z' if claim.line == 'axis' else 'x'} = {plain(verdict.worst / a_h, 3)} a_h"
@@ -111,12 +110,12 @@ def verdict_table(verdicts: Sequence[tuple[Claim, Verdict]], a_h: float) -> Tabl
                     Cell(claim.quantity, note=claim.why),
                     Cell(claim.line),
                     Cell(pair_label(claim.between)),
+                    Cell(verdict.reason, css="reason"),
                     Cell(scientific(verdict.difference), verdict.difference),
                     Cell(scientific(verdict.uncertainty), verdict.uncertainty),
                     Cell(scientific(claim.cap), claim.cap),
                     Cell(scientific(verdict.margin, sign=True), verdict.margin),
                     Cell(where, verdict.worst),
-                    Cell(verdict.reason, css="reason"),
                 ],
                 "" if verdict.outcome is Outcome.AGREES else OUTCOMES[verdict.outcome].css,
             )
@@ -124,10 +123,15 @@ def verdict_table(verdicts: Sequence[tuple[Claim, Verdict]], a_h: float) -> Tabl
     return Table(
         "Difference |A − B|, uncertainty U_A + U_B, cap on it, and margin U − |A − B|, all as fractions of "
         "the value (p0, a, approach) or of p_h; the point where the verdict is decided.",
-        ["verdict", "quantity", "line", "between", "|A − B|", "U", "cap", "margin", "at", "reason"],
+        ["verdict", "quantity", "line", "between", "reason", "|A − B|", "U", "cap", "margin", "at"],
         rows,
         css="verdicts",
     )
+
+
+def _badness(verdict: Verdict) -> tuple[int, float]:
+    margin = verdict.margin if verdict.margin is not None else 0.0
+    return OUTCOMES[verdict.outcome].rank, margin if isfinite(margin) else 0.0
 
 
 def budget_table(result: CaseResult) -> Table | None:
@@ -178,7 +182,7 @@ def time_table(results: Sequence[CaseResult], links: Sequence[str]) -> Table:
         times = {source.source: source for source in result.sources}
         cells = [_time_cell(times.get(name)) for name in names]
         cells.append(Cell(seconds(result.seconds), result.seconds))
-        rows.append(Row(Cell(result.title, note=result.name, href=link), cells))
+        rows.append(Row(Cell(result.title, note=f"{result.title} ({result.name})", href=link), cells))
     return Table(
         "Wall-clock seconds of each source with its uncertainty ladders; the case in total.",
         ["case", *(source_label(name) for name in names), "case in total"],
