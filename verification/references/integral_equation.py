@@ -161,7 +161,7 @@ def _solve(
     M = LayeredHalfSpace(coatings, substrate, k).compliance if coatings else np.ones_like(k)
     kernel = k_weight * (M - 1)
 
-    def contact(a: float) -> tuple[AbelPressure, float]:
+    def contact(a: float) -> tuple[Array, float]:
         x = a * s
         cosine = np.cos(k[:, None] * np.append(x, a))
         K = (2 / np.pi) * (cosine.T * kernel) @ cosine
@@ -171,10 +171,11 @@ def _solve(
         # Nystrom's interpolation gives phi at the edge, where it must vanish.
         edge = (E_star / np.pi) * np.array([1.0, a**2 / radius]) - (K[-1, :-1] * a * weight) @ phi
         delta = edge[1] / edge[0]
-        return AbelPressure.from_nodes(a, s, weight, phi @ np.array([delta, -1.0])), float(delta)
+        return phi @ np.array([delta, -1.0]), float(delta)
 
     def excess(log_a: float) -> float:
-        return float(np.log(contact(np.exp(log_a))[0].load / load))
+        a = float(np.exp(log_a))
+        return float(np.log(2 * np.pi * a * (weight @ contact(a)[0]) / load))
 
     span = np.log(1.5)
     low = high = np.log(guess)
@@ -187,7 +188,8 @@ def _solve(
             f"load = {load:g} N is carried by no contact radius near {guess:g} m; check the moduli"
         )
     a = float(np.exp(brentq(excess, low, high, xtol=1e-15, rtol=1e-14)))
-    abel, delta = contact(a)
+    phi, delta = contact(a)
+    abel = AbelPressure.from_nodes(a, s, weight, phi)
     return ExactSolution(
         abel,
         delta,
@@ -211,7 +213,7 @@ def _radius_guess(
 def _contact_nodes(nodes: int, a: float, coatings: Coatings) -> int:
     """The kernel varies over the first coating's thickness, so thin ones need nodes in proportion to a/h."""
     thinnest = min((h for _, _, h in coatings), default=a)
-    return int(nodes + 6 * a / thinnest * nodes / 80)
+    return int(nodes + 2 * a / thinnest * nodes / 80)
 
 
 def _kernel_wavenumbers(
