@@ -38,17 +38,6 @@ class Grading:
     axis_size: float = 0.2
     far_size: float = 0.8
 
-    def coarser(self, factor: float) -> "Grading":
-        """The same grading with every triangle ``factor`` times as large."""
-        return replace(
-            self,
-            size=self.size * factor,
-            edge_rate=min(self.edge_rate * factor, 1.0),
-            edge_size=self.edge_size * factor,
-            axis_size=self.axis_size * factor,
-            far_size=self.far_size * factor,
-        )
-
 
 @dataclass(frozen=True, eq=False)
 class MeridianMesh:
@@ -95,9 +84,9 @@ class MeridianMesh:
     def drawn_in(self, factor: float) -> "MeridianMesh":
         """The same triangles with the outer boundary ``factor`` times nearer and the near field untouched.
 
-        r -> r0 (r/r0)^alpha beyond r0 = 4 (a + depth of the coatings), and z likewise.
+        r -> r0 (r/r0)^alpha beyond r0 = far/10, and z likewise.
         """
-        r0 = 4 * (self.contact_radius + float(self.depths[-1] if self.depths.size else 0.0))
+        r0 = self.far / 10
         alpha = 1 - np.log(factor) / np.log(self.far / r0)
         beyond = np.maximum(self.points / r0, 1.0)
         points = np.where(self.points > r0, r0 * beyond**alpha, self.points)
