@@ -208,7 +208,7 @@ def test_differences_below_the_floor_are_drawn_on_it():
     pair = [part for part in text.split("<path")[1:] if "s-pair" in part]
     height = float(pair[-1].split('d="M')[1].split("l")[0].split()[1])
     assert height == pytest.approx(300 * (1 - 0.135), abs=0.1)
-    assert FLOOR == 1e-7
+    assert FLOOR == 1e-9
 
 
 def test_two_figures_share_no_identifier():

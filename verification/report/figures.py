@@ -20,7 +20,7 @@ from verification.report.svg import compact
 
 __all__ = ["FLOOR", "Curve", "Difference", "draw"]
 
-FLOOR = 1e-7
+FLOOR = 1e-9
 TOP = 1e-1
 WIDTH, HEIGHT = 320, 300
 
@@ -53,13 +53,17 @@ class Curve:
 
 @dataclass(frozen=True, eq=False)
 class Difference:
-    """|A - B| over the scale with the uncertainty of both; ``worst`` marks where a verdict failed."""
+    """|A - B| over the scale with the uncertainty of both.
+
+    worst : where a verdict failed, ringed on the difference, or on the uncertainty with ``vague``.
+    """
 
     position: NDArray[np.float64]
     value: NDArray[np.float64]
     uncertainty: NDArray[np.float64] | None
     style: Style
     worst: float | None = None
+    vague: bool = False
 
 
 def draw(
@@ -142,6 +146,8 @@ def _draw_differences(
         _line(axes, difference.position, height, difference.style, 1.0)
         if difference.worst is not None and difference.position.size:
             at = int(np.argmin(np.abs(difference.position - difference.worst)))
+            if difference.vague and difference.uncertainty is not None:
+                height = _logarithm(difference.uncertainty)
             if np.isfinite(height[at]):
                 axes.plot(
                     difference.position[at],

@@ -147,10 +147,9 @@ def _summary(results: Sequence[CaseResult]) -> str:
     stated = [(v.difference, c, r) for c, v, r in verdicts if v.difference is not None]
     if stated:
         largest, claim, result = max(stated, key=lambda item: item[0])
-        text += (
-            f"; the largest difference is {scientific(largest)}, {claim.quantity} on "
-            f"{'the contact' if claim.line == 'contact' else claim.line} in “{result.title}”"
-        )
+        where = "" if claim.line == "contact" else f" on {claim.line}"
+        quantity = claim.quantity.replace("_", " ") if claim.line == "contact" else claim.quantity
+        text += f"; the largest difference is {scientific(largest)}, {quantity}{where} in “{result.title}”"
     return text + "."
 
 

@@ -106,7 +106,8 @@ def _panel(result: CaseResult, line: str, quantity: str, key: str) -> Panel:
         gap, spread = found
         failed = verdict.outcome is not Outcome.AGREES and verdict.worst is not None
         worst = verdict.worst / a_h if failed and verdict.worst is not None else None
-        differences.append(Difference(first.position / a_h, gap, spread, pair_style(pair), worst))
+        vague = verdict.outcome is Outcome.INCONCLUSIVE
+        differences.append(Difference(first.position / a_h, gap, spread, pair_style(pair), worst, vague))
     cap = min((claim.cap for claim, _ in claims), default=None)
     zones = _unjudged(result, [claim for claim, _ in claims], curves)
     figure = draw(

@@ -121,9 +121,10 @@ def verdict_table(verdicts: Sequence[tuple[Claim, Verdict]], a_h: float, most: i
             )
         )
     return Table(
-        "Difference |A − B|, uncertainty U_A + U_B, cap on it, and margin U − |A − B|, all as fractions of "
-        "the value (p0, a, approach) or of p_h; the point where the verdict is decided.",
-        ["verdict", "quantity", "line", "between", "reason", "|A − B|", "U", "cap", "margin", "at"],
+        "Largest difference and largest uncertainty U = U_A + U_B over the judged points, the cap on U, the "
+        "smallest margin U − |A − B|, all as fractions of the value (p0, a, approach) or of p_h; the point "
+        "that decides.",
+        ["verdict", "quantity", "line", "between", "reason", "max |A − B|", "max U", "cap", "margin", "at"],
         rows,
         css="verdicts",
     )
