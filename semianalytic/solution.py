@@ -32,13 +32,35 @@ class Uncertainty:
     peak_pressure: float
     budget: tuple[tuple[str, str, float], ...]
 
+    @classmethod
+    def from_ladders(
+        cls,
+        fine: dict[str, float],
+        half: dict[str, float],
+        quarter: dict[str, float],
+        knobs: dict[str, dict[str, float]],
+    ) -> "Uncertainty":
+        """From the results on N, N/2, N/4 patches, and on N/2 with each other knob turned to the worse.
+
+        Patch size: the change from N/2 to N, or a third of that from N/4 to N/2 where the first is small by
+        chance; at order 1.5 and more the error left is below half of either.
+        """
+        rows = []
+        for name, value in fine.items():
+            change = max(abs(value - half[name]), abs(half[name] - quarter[name]) / 3)
+            rows.append((name, "patch size", change))
+            rows += [(name, knob, abs(result[name] - half[name])) for knob, result in knobs.items()]
+        total = {name: sum(row[2] for row in rows if row[0] == name) for name in fine}
+        return cls(**total, budget=tuple(rows))
+
 
 @dataclass(frozen=True)
 class Diagnostics:
     """What the solution took and how well the contact conditions are met.
 
-    gap_inside, penetration_outside : largest, over the approach; load_error : relative.
-    patches : loaded ones.  history : (gap, penetration) of every iteration on the finest grid.
+    gap_inside, penetration_outside : largest, over the depth of the indenter on the grid.
+    load_error : relative.  load : that the pressure carries [N].  patches : loaded ones.
+    history : (gap, penetration) of every iteration on the finest grid.
     """
 
     iterations: int
@@ -46,6 +68,7 @@ class Diagnostics:
     gap_inside: float
     penetration_outside: float
     load_error: float
+    load: float
     patches: int
     patches_per_side: int
     patch_size: float
@@ -71,15 +94,21 @@ class Solution:
     nodes: Array = field(repr=False)  # patch centres along one axis [m]
     patch_pressure: Array = field(repr=False)  # at the patch centres [Pa], (n, n)
     coarser: "Solution | None" = field(repr=False)
+    _profile: Callable[[Array], Array] | None = field(repr=False)
     _stress: Field = field(repr=False)
     _displacement: Motion = field(repr=False)
 
     def pressure(self, x: ArrayLike, y: ArrayLike = 0.0) -> Array:
-        """Contact pressure [Pa]; between nodes p^2 is interpolated, which is smooth up to the edge.
+        """Contact pressure [Pa], 0 outside; between nodes what is interpolated is smooth up to the edge.
 
-        x, y : [m], broadcast.  Returns the pressure, 0 outside the contact.
+        That is p less the profile its edge was corrected with or, where there is none, p^2.
+        x, y : [m], broadcast.
         """
-        return np.sqrt(np.maximum(_at(self.nodes, self.patch_pressure**2, x, y), 0))
+        if self._profile is None:
+            return np.sqrt(np.maximum(_at(self.nodes, self.patch_pressure**2, x, y), 0))
+        rest = self.patch_pressure - self._profile(np.hypot(self.nodes[:, None], self.nodes[None, :]))
+        value = self._profile(np.hypot(x, y)) + _at(self.nodes, rest, x, y, order=1)
+        return np.maximum(value, 0)
 
     def stress(self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None) -> Array:
         """Stress tensor [Pa], shape (3, 3) + points.

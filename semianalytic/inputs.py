@@ -1,0 +1,120 @@
+"""Checked input of the semi-analytical method."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+__all__ = ["Body", "Numerics", "check_positive"]
+
+COARSEST = 33  # patches a side below which a contact is not worth solving
+
+
+@dataclass(frozen=True)
+class Numerics:
+    """The knobs; those that move a result have ladders of their own.
+
+    patches : per side of the finest grid.  tolerance : gap and penetration over the approach.
+    conversion : "split", with ``hankel_points``; "split-fft" or "plain", with ``enlarge``.
+    fill : half-width of the grid over the contact radius.  edge_rounds : corrections of the contact edge.
+    """
+
+    patches: int = 257
+    tolerance: float = 1e-8
+    max_iterations: int = 200
+    conversion: str = "split"
+    hankel_points: int = 4096
+    enlarge: int = 4
+    fill: float = 1.12
+    edge_rounds: int = 3
+    threads: int = 1
+
+    def __post_init__(self) -> None:
+        if self.patches < COARSEST or self.patches % 2 == 0:
+            raise ValueError(f"patches = {self.patches}; it must be odd and at least {COARSEST}")
+        if not 1e-13 <= self.tolerance < 1:
+            raise ValueError(f"tolerance = {self.tolerance:g}; give 1e-13 or more, 1e-8 is the default")
+        if self.conversion not in ("split", "split-fft", "plain"):
+            raise ValueError(f"conversion = {self.conversion!r}; choose split, split-fft or plain")
+        if not 1.05 <= self.fill <= 10:
+            raise ValueError(f"fill = {self.fill:g}; the grid must exceed the contact, give 1.05 to 10")
+        for name in ("max_iterations", "enlarge", "threads"):
+            if getattr(self, name) < 1:
+                raise ValueError(f"{name} = {getattr(self, name)}; it must be at least 1")
+        if self.hankel_points < 256:
+            raise ValueError(f"hankel_points = {self.hankel_points}; give 256 or more, 4096 is the default")
+        if self.edge_rounds < 0:
+            raise ValueError(f"edge_rounds = {self.edge_rounds}; 0 leaves the contact edge a staircase")
+
+
+@dataclass(frozen=True)
+class Body:
+    """The coated half-space and the friction on it, as the public functions take them."""
+
+    coatings: tuple[tuple[float, float, float], ...]
+    substrate: tuple[float, float]
+    friction: float
+
+    def __post_init__(self) -> None:
+        if not np.isfinite(self.friction):
+            raise ValueError(f"friction = {self.friction:g}; it must be finite")
+        for i, material in enumerate(self.materials):
+            substrate = i == len(self.coatings)
+            what = "the substrate" if substrate else f"coating {i + 1}"
+            if len(material) != (2 if substrate else 3):
+                raise ValueError(
+                    f"{what} is {material!r}; give (E, nu, thickness), (E, nu) for the substrate"
+                )
+            E, nu = material[:2]
+            if not (np.isfinite(E) and E > 0):
+                raise ValueError(f"E = {E:g} Pa of {what}; it must be positive and finite")
+            if not -1 < nu <= 0.5:
+                raise ValueError(f"nu = {nu:g} of {what}; an isotropic solid has -1 < nu <= 0.5")
+            if not substrate:
+                check_positive(**{f"thickness of {what}": material[2]})
+
+    @property
+    def materials(self) -> tuple[tuple[float, ...], ...]:
+        """The coatings from the surface down, then the substrate."""
+        return (*self.coatings, self.substrate)
+
+    @property
+    def moduli(self) -> list[float]:
+        """E* = E/(1 - nu^2) of every material from the surface down [Pa]."""
+        return [material[0] / (1 - material[1] ** 2) for material in self.materials]
+
+    @property
+    def thickness(self) -> list[float]:
+        """Of every coating [m]."""
+        return [h for _, _, h in self.coatings]
+
+    def layer_of(self, z: ArrayLike, layer: int | None) -> NDArray[np.intp]:
+        """Index of the layer at each depth; on an interface the one named, or the upper one.
+
+        Raises ValueError for z < 0, and for a layer that does not hold z.
+        """
+        z = np.asarray(z, dtype=float)
+        if not np.all(z >= 0):
+            raise ValueError(f"z = {np.min(z):g} m is above the surface; depth counts down from 0")
+        interfaces = np.cumsum(self.thickness)
+        slack = 1e-9 * interfaces  # points given within rounding of an interface are meant to lie on it
+        above = np.searchsorted(interfaces + slack, z)
+        if layer is None:
+            return above
+        if not 0 <= layer <= len(self.coatings):
+            raise ValueError(f"layer = {layer}; layers count from 0 to {len(self.coatings)}, the substrate")
+        below = np.searchsorted(interfaces - slack, z, side="right")
+        strange = (layer < above) | (layer > below)
+        if np.any(strange):
+            raise ValueError(
+                f"layer = {layer} does not hold z = {z[strange].flat[0]:g} m; the interfaces lie at "
+                f"{', '.join(f'{i:g}' for i in interfaces) or 'no depth'} m"
+            )
+        return np.full(z.shape, layer)
+
+
+def check_positive(**values: float) -> None:
+    """Raise ValueError for whatever is not a positive, finite number."""
+    for name, value in values.items():
+        if not (np.isfinite(value) and value > 0):
+            raise ValueError(f"{name} = {value:g}; it must be positive and finite")
