@@ -210,14 +210,14 @@ def parse_case(raw: bytes, path: Path) -> Case:
 
 def _refuse_unfit_scales(path: Path, problem: CoatedContact) -> None:
     # Beyond these the parabolic sphere, or floating point itself, no longer describes a contact.
-    if not 1e-12 < problem.a_h < 1e3:
-        raise CaseError(
-            f"{path}: problem: contact radius a_h = {problem.a_h:.3g} m; check units of radius, load, E"
-        )
     if problem.a_h > problem.radius:
         raise CaseError(
             f"{path}: problem.load: gives a contact radius of {problem.a_h:.3g} m on a sphere of "
             f"{problem.radius:.3g} m; lower the load"
+        )
+    if not 1e-12 < problem.a_h < 1e3:
+        raise CaseError(
+            f"{path}: problem: contact radius a_h = {problem.a_h:.3g} m; check units of radius, load, E"
         )
     for i, (_, _, thickness) in enumerate(problem.coatings):
         if not 1e-3 <= thickness / problem.a_h <= 1e3:

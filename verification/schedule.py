@@ -105,6 +105,7 @@ class _Job:
     def stop(self) -> None:
         self.process.kill()
         self.process.wait()
+        self.said.close()
 
 
 def _death(code: int, said: IO[bytes]) -> str:

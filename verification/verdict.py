@@ -106,7 +106,6 @@ def judge(comparison: Comparison, cap: float) -> Verdict:
             Outcome.NO_RESULT, "no point lies outside the zone around the contact edge; refine the line"
         )
     position = comparison.a.position[judged]
-    difference = np.abs(comparison.difference[judged])
     for side in (comparison.a, comparison.b):
         bad = ~np.isfinite(side.value[judged])
         if side.uncertainty is not None:
@@ -120,6 +119,7 @@ def judge(comparison: Comparison, cap: float) -> Verdict:
     if not (np.isfinite(comparison.scale) and comparison.scale > 0):
         return Verdict(Outcome.NO_RESULT, f"the scale of the comparison is {comparison.scale:g}")
 
+    difference = np.abs(comparison.difference[judged])
     largest = float(difference.max())
     uncertainty = comparison.uncertainty
     if uncertainty is None:

@@ -1,0 +1,36 @@
+"""The shipped cases as tests, one item per comparison: pytest -m cases."""
+
+import functools
+
+import pytest
+
+from verification.case import read_case, shipped_cases
+from verification.result import CaseResult
+from verification.run import run
+from verification.verdict import Outcome
+
+CASES = {name: read_case(path) for name, path in shipped_cases().items()}
+
+
+@functools.cache
+def solved(name: str) -> CaseResult:
+    return run(CASES[name])
+
+
+@pytest.mark.cases
+@pytest.mark.parametrize(
+    ("name", "index"),
+    [
+        pytest.param(
+            name,
+            i,
+            id=f"{name}-{c.quantity}-{c.line}-{'-'.join(c.between)}",
+            marks=pytest.mark.xdist_group(name),
+        )
+        for name, case in CASES.items()
+        for i, c in enumerate(case.claims)
+    ],
+)
+def test_case_agrees(name, index):
+    _, verdict = solved(name).verdicts[index]
+    assert verdict.outcome is Outcome.AGREES, verdict.reason
