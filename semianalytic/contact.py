@@ -47,6 +47,11 @@ class Contact:
     convolutions: int
     history: tuple[tuple[float, float], ...]
 
+    @classmethod
+    def of_load(cls, pressure: Array) -> "Contact":
+        """A pressure that was prescribed: no condition to fulfil, nothing iterated."""
+        return cls(pressure, np.zeros_like(pressure), 0.0, 0.0, 0.0, 0.0, 0, 0, ())
+
 
 def press(
     deflection: Operator,

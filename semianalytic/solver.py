@@ -10,6 +10,7 @@ Assumed: small strains, perfect bond, the sphere's parabola, Coulomb friction q 
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -21,7 +22,7 @@ from semianalytic.grid import Grid, carry_over, odd
 from semianalytic.inputs import COARSEST, Body, Numerics, check_positive
 from semianalytic.solution import Diagnostics, Solution, Uncertainty
 
-__all__ = ["Diagnostics", "NotConverged", "Solution", "Uncertainty", "solve"]
+__all__ = ["Diagnostics", "NotConverged", "Solution", "Uncertainty", "solve", "solve_prescribed"]
 
 Array = NDArray[np.floating]
 Coatings = tuple[tuple[float, float, float], ...]
@@ -48,7 +49,7 @@ class Level:
 
     grid: Grid
     found: contact.Contact
-    shape: profile.Profile | None
+    shape: profile.Profile | profile.Prescribed | None
     load: float
     convolutions: int
 
@@ -67,13 +68,19 @@ class Level:
         }
 
     @property
-    def patch_mean(self) -> Array:
-        """Mean pressure of the patches, rim patches covered in part included; carries the whole load."""
-        p = self.found.pressure
+    def below(self) -> Array:
+        """Patch pressures that act in depth as the pressure itself does.
+
+        Means over the patches, partly covered ones at the rim included, carry the load; constant on patches
+        they lose the second moment d^2/12, which is given back: p - (d^2/12) laplacian(p).
+        """
+        p, d = self.found.pressure, self.grid.d
         if self.shape is None:
             return p
-        r = self.grid.radius
-        return p - self.shape.pressure(r) + profile.patch_mean(self.shape, self.grid.x, self.grid.d)
+        mean = p - self.shape.pressure(self.grid.radius) + profile.patch_mean(self.shape, self.grid.x, d)
+        q = np.pad(mean, 1)
+        around = q[2:, 1:-1] + q[:-2, 1:-1] + q[1:-1, 2:] + q[1:-1, :-2]
+        return mean - (around - 4 * mean) / 12
 
 
 def solve(
@@ -126,6 +133,74 @@ def solve(
         largest = (2 * radius * approach) ** 0.5  # the sphere's section at the surface
     first = _find_contact(fill * largest, sphere, body, numerics)
     return _refine(fill * first.radius, first, sphere, body, numerics, estimate_uncertainty, began)
+
+
+def solve_prescribed(
+    *,
+    pressure: float | Callable[[Array], Array],
+    load_radius: float,
+    coatings: Coatings,
+    substrate: Substrate,
+    friction: float = 0.0,
+    patches: int = 257,
+    conversion: str = "split",
+    hankel_points: int = 4096,
+    enlarge: int = 4,
+    estimate_uncertainty: bool = True,
+    threads: int = 1,
+) -> Solution:
+    """Load a disc of ``load_radius`` [m] with a known pressure: no contact, the same fields.
+
+    pressure : a uniform one [Pa], or p(r) [Pa] of an array r <= load_radius [m].  The others as in ``solve``.
+    The solution's contact_radius is load_radius, its approach the displacement u_z at the origin.
+
+    Raises ValueError for input without meaning.
+    """
+    began = time.perf_counter()
+    check_positive(load_radius=load_radius)
+    body = _body(coatings, substrate, friction)
+    numerics = Numerics(
+        patches=patches, conversion=conversion, hankel_points=hankel_points, enlarge=enlarge, threads=threads
+    )
+    if not callable(pressure):
+        if not np.isfinite(pressure):
+            raise ValueError(f"pressure = {pressure:g}; give a finite one [Pa], or a function of r")
+        pressure = partial(_uniform, float(pressure))
+    shape = profile.Prescribed(load_radius, pressure)
+
+    def level(n: int, wider: float, numerics: Numerics) -> Level:
+        return _loaded(Grid(odd(wider * n), 2.04 * load_radius / n), shape, body, numerics)
+
+    sizes = [odd(patches / 4), odd(patches / 2), patches] if estimate_uncertainty else [patches]
+    ladder = [level(n, 1, numerics) for n in sizes]
+    solution = None
+    for one in ladder:
+        solution = _as_solution(one, solution, body)
+    assert solution is not None
+    if estimate_uncertainty:
+        coarser = replace(numerics, hankel_points=hankel_points // 2, enlarge=enlarge // 2 or 1)
+        knobs = {
+            "conversion": level(sizes[1], 1, coarser).scalars,
+            "domain": level(sizes[1], WIDER, numerics).scalars,
+        }
+        fine, half, quarter = (one.scalars for one in ladder[::-1])
+        solution = replace(solution, uncertainty=Uncertainty.from_ladders(fine, half, quarter, knobs))
+    seconds = time.perf_counter() - began
+    return replace(solution, diagnostics=replace(solution.diagnostics, seconds=seconds))
+
+
+def _uniform(value: float, r: Array) -> Array:
+    return np.full(np.shape(r), value)
+
+
+def _loaded(grid: Grid, shape: profile.Prescribed, body: Body, numerics: Numerics) -> Level:
+    """Deflection under a prescribed pressure, as a contact that took no iteration."""
+    found = contact.Contact.of_load(shape.pressure(grid.radius))
+    level = Level(grid, found, shape, shape.load, 1)
+    deflection = convolution.even_convolution(_coefficients(grid, body, numerics), threads=numerics.threads)
+    u = deflection(level.below)
+    centre = float(u[grid.n // 2, grid.n // 2])
+    return replace(level, found=replace(found, deflection=u, approach=centre))
 
 
 def _refine(
@@ -280,26 +355,41 @@ def _coefficients(grid: Grid, body: Body, numerics: Numerics) -> Array:
 def _as_solution(level: Level, coarser: Solution | None, body: Body) -> Solution:
     grid, found = level.grid, level.found
     reach = int(np.ceil(2.05 * level.radius / grid.d))
-    loaded: dict[str, Any] = {
+    common: dict[str, Any] = {
         "grid_x": grid.x,
         "grid_y": grid.x,
-        "pressure": level.patch_mean,
         "friction": body.friction,
         "coatings": body.coatings,
         "substrate": body.substrate,
     }
+    below = level.below
+
+    def fields(evaluate: Callable[..., Array], x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: Any) -> Array:
+        """On the surface from the pressure at the patch centres, so that sigma_zz = -p there."""
+        x, y, z, layer = np.broadcast_arrays(x, y, z, body.layer_of(z, layer))
+        skin = z < 0.5 * grid.d
+        parts = []
+        for where, p in ((skin, found.pressure), (~skin, below)):
+            if where.any():
+                parts.append(
+                    (where, evaluate(x[where], y[where], z[where], layer[where], pressure=p, **common))
+                )
+        result = np.empty((*parts[0][1].shape[:-1], *z.shape))
+        for where, values in parts:
+            result[..., where] = values
+        return result
 
     def stress(x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None) -> Array:
         rectangle = (halfspace.normal_stress, halfspace.tangential_stress)
-        where = body.layer_of(z, layer)
-        return subsurface.stress(x, y, z, where, rectangle=rectangle, stress_frf=frf.stress_frf, **loaded)
+        evaluate = partial(subsurface.stress, rectangle=rectangle, stress_frf=frf.stress_frf)
+        return fields(evaluate, x, y, z, layer)
 
     def displacement(x: ArrayLike, y: ArrayLike, z: ArrayLike) -> Array:
         rectangle = (halfspace.normal_displacement, halfspace.tangential_displacement)
-        where = body.layer_of(z, None)
-        return subsurface.displacement(
-            x, y, z, where, rectangle=rectangle, displacement_frf=frf.displacement_frf, **loaded
+        evaluate = partial(
+            subsurface.displacement, rectangle=rectangle, displacement_frf=frf.displacement_frf
         )
+        return fields(evaluate, x, y, z, None)
 
     return Solution(
         **level.scalars,
