@@ -4,6 +4,7 @@ import base64
 import gzip
 import hashlib
 import re
+from dataclasses import replace
 from html.parser import HTMLParser
 
 import numpy as np
@@ -57,7 +58,7 @@ class Document(HTMLParser):
 
 @pytest.fixture(scope="module")
 def results() -> list[CaseResult]:
-    return showcase()
+    return showcase(points=101)
 
 
 @pytest.fixture(scope="module")
@@ -93,7 +94,7 @@ def test_the_content_security_policy_admits_the_one_script(page, document):
 
 
 def test_twelve_cases_stay_far_below_8_mb(page):
-    # Made-up noise compresses worse than real profiles do.
+    # A real profile has about a hundred points; made-up noise compresses worse than it does.
     assert len(page.encode()) < 5e6
 
 
@@ -233,6 +234,34 @@ def test_problem_is_told_in_real_units():
 
 def test_the_report_knows_the_methods_that_cases_know():
     assert names.METHODS == case.METHODS
+
+
+def test_no_number_whatever_keeps_a_report_from_being_written(results):
+    random = np.random.default_rng(7)
+    odd = np.array([1e308, -1e308, 5e-324, np.nan, np.inf, -np.inf, 0.0, -0.0, 1e30, 1e-30, -1.0])
+    base = result_of(contact((2 * STEEL[0], 0.3, 1.0)), points=7)
+
+    def spoiled(array, share):
+        return np.where(random.random(array.shape) < share, random.choice(odd, array.shape), array)
+
+    for share in (0.05, 0.3, 1.0):
+        profiles = tuple(
+            replace(
+                p,
+                position=spoiled(p.position, 0.2 * share),
+                value=spoiled(p.value, share),
+                uncertainty=spoiled(p.uncertainty, share),
+            )
+            for p in base.profiles
+        )
+        verdicts = tuple(
+            (claim, replace(verdict, **dict.fromkeys(("difference", "margin", "worst"), random.choice(odd))))
+            for claim, verdict in base.verdicts
+        )
+        problem = base.problem | {"a_h": random.choice(odd), "coatings": [["nan", 0.3, random.choice(odd)]]}
+        wrong = {0.05: base.problem, 0.3: problem, 1.0: {}}[share]
+        document = rendered(replace(base, profiles=profiles, verdicts=verdicts, problem=wrong))
+        assert len(document.all("article")) == 1
 
 
 @pytest.mark.parametrize("friction", [0.0, 0.3])

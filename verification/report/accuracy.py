@@ -84,8 +84,7 @@ def _accuracy(result: CaseResult, claim: Claim, source: str, exact: str) -> Accu
     worst = int(np.argmax(np.where(here, error, -1.0)))
     if spread is None:
         return Accuracy(source, claim.quantity, claim.line, float(error[worst]), None, None)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        ratio = np.where(error > 0, spread / error, np.inf)
+    ratio = np.where(error > 0, spread / np.where(error > 0, error, 1.0), np.inf)
     smallest = float(np.min(np.where(np.isfinite(spread), ratio, 0.0)[here]))
     estimate = float(spread[worst])
     return Accuracy(source, claim.quantity, claim.line, float(error[worst]), estimate, smallest)

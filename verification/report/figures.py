@@ -40,6 +40,8 @@ _SETTINGS: Any = {
 }
 # Fewer points than this were printed or measured, not computed along the line.
 FEW = 25
+# Beyond this a number is a failure, and a picture of it would only break.
+HUGE = 1e12
 
 
 @dataclass(frozen=True, eq=False)
@@ -103,13 +105,13 @@ def draw(
 
 def _span(curves: Sequence[Curve], differences: Sequence[Difference]) -> tuple[float, float]:
     positions = [curve.position for curve in curves] + [item.position for item in differences]
-    ends = [(float(x.min()), float(x.max())) for x in positions if x.size and np.isfinite(x).all()]
+    ends = [(float(x.min()), float(x.max())) for x in positions if x.size and (np.abs(x) < HUGE).all()]
     low, high = min((e[0] for e in ends), default=0.0), max((e[1] for e in ends), default=1.0)
     return (low, high) if high > low else (low - 0.5, high + 0.5)
 
 
 def _draw_curves(axes: Axes, curves: Sequence[Curve], span: tuple[float, float]) -> None:
-    finite = [curve.value[np.isfinite(curve.value)] for curve in curves]
+    finite = [curve.value[np.abs(curve.value) < HUGE] for curve in curves]
     values = np.concatenate([*finite, np.zeros(1)]) if curves else np.zeros(1)
     low, high = float(values.min()), float(values.max())
     if high - low < 1e-12:
@@ -127,7 +129,7 @@ def _draw_differences(
     axes: Axes, differences: Sequence[Difference], span: tuple[float, float], cap: float | None
 ) -> None:
     largest = max((float(np.nanmax(d.value, initial=0.0)) for d in differences), default=0.0)
-    top = log10(TOP) if not 0 < largest < 1e12 else max(log10(TOP), float(ceil(log10(largest))))
+    top = log10(TOP) if not 0 < largest < HUGE else max(log10(TOP), float(ceil(log10(largest))))
     bottom = log10(FLOOR)
     _frame(axes, span, (bottom, top))
     step = 2 if top - bottom <= 8 else 4
@@ -182,12 +184,12 @@ def _line(
         look |= {"marker": "o", "markersize": 3.5, "markeredgewidth": 0}
     if style.dash:
         look["dashes"] = style.dash
-    axes.plot(position, value, linewidth=style.width, **look)
+    axes.plot(position, np.where(np.abs(value) < HUGE, value, np.nan), linewidth=style.width, **look)
 
 
 def _logarithm(value: NDArray[np.float64]) -> NDArray[np.float64]:
     """log10 of ``value``, never below the floor of the figure; NaN stays a gap."""
-    return np.log10(np.where(np.isfinite(value), np.maximum(value, FLOOR), np.nan))
+    return np.log10(np.where(np.isfinite(value), np.clip(value, FLOOR, HUGE), np.nan))
 
 
 def _round_ticks(low: float, high: float, count: int) -> list[float]:

@@ -27,17 +27,22 @@ def with_uncertainty(value: Any, uncertainty: Any, unit: str) -> str:
     if number is None:
         return "not finite"
     factor, prefix = _prefix(number)
-    shown = f"{prefix}{unit}"
-    if spread is None:
-        return f"{_minus(format(number / factor, '.6g'))} {shown}"
-    if spread <= 0:
-        return f"{_minus(format(number / factor, f'.{MOST_DIGITS}g'))} {shown}"
+    mantissa, shown = number / factor, f"{prefix}{unit}"
+    if uncertainty is None:
+        return f"{_minus(format(mantissa, '.6g'))} {shown}"
+    if spread == 0:
+        return f"{_minus(format(mantissa, f'.{MOST_DIGITS}g'))} {shown}"
+    width = -1.0 if spread is None else spread / factor
+    if not 1e-30 < width < 1e30:
+        # Not finite, negative, or of no sensible size: shown as it is, for it needs looking at.
+        return f"{_minus(format(mantissa, '.6g'))} {shown} ± {uncertainty:.2g} {unit}"
     # Two digits of the uncertainty; beyond nine of the value nothing is meant any more.
-    whole = floor(log10(abs(number / factor))) if number else 0
-    decimals = min(max(1 - floor(log10(spread / factor)), 0), max(MOST_DIGITS - 1 - whole, 0))
-    wide = spread / factor >= 0.5 * 10**-decimals
-    plus_minus = format(spread / factor, f".{decimals}f" if wide else ".1e")
-    return f"{_minus(format(number / factor, f'.{decimals}f'))} ± {plus_minus} {shown}"
+    whole = floor(log10(abs(mantissa))) if mantissa else 0
+    decimals = min(max(1 - floor(log10(width)), 0), max(MOST_DIGITS - 1 - whole, 0))
+    # Numbers of absurd size keep their exponent instead of running over the page.
+    form = f".{decimals}f" if abs(mantissa) < 1e4 and decimals <= 12 else ".6g"
+    plus_minus = format(width, f".{decimals}f" if 0.5 * 10**-decimals <= width < 1e6 else ".1e")
+    return f"{_minus(format(mantissa, form))} ± {plus_minus} {shown}"
 
 
 def scientific(value: Any, digits: int = 2, sign: bool = False) -> str:

@@ -8,6 +8,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+import numpy as np
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 
@@ -76,6 +77,12 @@ class CaseView:
 
 def render(results: Sequence[CaseResult], info: RunInfo) -> str:
     """The whole page as text. Every string of a result is escaped: a title "<script>" stays text."""
+    # A report tells of numbers that overflow or are not finite; it must not stumble over them.
+    with np.errstate(all="ignore"):
+        return _render(results, info)
+
+
+def _render(results: Sequence[CaseResult], info: RunInfo) -> str:
     anchors = _anchors(results)
     script = (HERE / "script.js").read_text(encoding="utf-8")
     digest = base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()

@@ -20,6 +20,7 @@ __all__ = [
     "difference",
     "group_of",
     "judged",
+    "layers",
     "lines",
     "scalar",
     "scale",
@@ -61,21 +62,37 @@ def baseline(result: CaseResult) -> str | None:
     return None
 
 
-def scale(result: CaseResult, name: str) -> float:
+def scale(result: CaseResult, name: str) -> np.float64:
     """A Hertz scale of the case by name, "a_h", "p_h" or "delta_h"; NaN where it is not stated."""
     try:
-        return float(result.problem[name])
+        return np.float64(result.problem[name])
     except (KeyError, TypeError, ValueError):
-        return float("nan")
+        return np.float64("nan")
 
 
-def scalar(result: CaseResult, quantity: str, source: str) -> tuple[float, float | None] | None:
+def layers(result: CaseResult) -> list[tuple[float, float, float]]:
+    """(E [Pa], nu, thickness [m]) from the surface down, the substrate last with thickness infinity.
+
+    [] where the problem states anything else than finite numbers.
+    """
+    try:
+        coatings = [(float(E), float(nu), float(h)) for E, nu, h in result.problem["coatings"]]
+        E, nu = (float(value) for value in result.problem["substrate"])
+    except (KeyError, TypeError, ValueError):
+        return []
+    numbers = [number for layer in coatings for number in layer] + [E, nu]
+    if not np.isfinite(numbers).all() or min(E for E, _, _ in [*coatings, (E, nu, 0.0)]) <= 0:
+        return []
+    return [*coatings, (E, nu, float("inf"))]
+
+
+def scalar(result: CaseResult, quantity: str, source: str) -> tuple[np.float64, float | None] | None:
     """Value [SI] with uncertainty of a scalar of the contact; None where the source gave none."""
     profile = result.profile(quantity, "contact", source)
     if profile is None or profile.value.size == 0:
         return None
     spread = None if profile.uncertainty is None else float(profile.uncertainty[0])
-    return float(profile.value[0]), spread
+    return profile.value[0], spread
 
 
 def contact_radius(result: CaseResult) -> float | None:
@@ -119,11 +136,10 @@ def difference(
     reach: Any = scale(result, "p_h")
     if first.quantity in SCALARS:
         reach = np.abs(second.value)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        gap = np.abs(first.value - second.value) / reach
-        if first.uncertainty is None or second.uncertainty is None:
-            return gap, None
-        return gap, (first.uncertainty + second.uncertainty) / reach
+    gap = np.abs(first.value - second.value) / reach
+    if first.uncertainty is None or second.uncertainty is None:
+        return gap, None
+    return gap, (first.uncertainty + second.uncertainty) / reach
 
 
 def slug(text: str) -> str:

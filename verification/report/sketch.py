@@ -5,7 +5,7 @@ from math import isfinite, log, sqrt
 from markupsafe import Markup, escape
 
 from verification.report.numbers import engineering, plain
-from verification.report.reading import contact_radius, scale
+from verification.report.reading import contact_radius, layers, scale
 from verification.result import CaseResult
 
 __all__ = ["sketch"]
@@ -23,47 +23,36 @@ def sketch(result: CaseResult) -> Markup:
     The darker a layer, the stiffer. The sphere's radius is not to scale.
     """
     a_h = scale(result, "a_h")
-    layers = _layers(result, a_h)
-    if not layers:
+    found = [(E, nu, thickness / a_h) for E, nu, thickness in layers(result)]
+    total = sum(thickness for _, _, thickness in found[:-1])
+    if not found or not isfinite(total) or not a_h > 0:
         return Markup("")
-    total = sum(thickness for _, _, thickness in layers[:-1])
     depth = min(max(1.35 * total + 0.6, SHALLOWEST), DEEPEST)
     unit = (HEIGHT - 12 - SURFACE) / depth
     parts = [_sphere(unit)]
     labels = []
     top = float(SURFACE)
     stretched = False
-    moduli = [E for E, _, _ in layers]
-    for number, (E, nu, thickness) in enumerate(layers):
-        below = number == len(layers) - 1
+    moduli = [E for E, _, _ in found]
+    for number, (E, nu, thickness) in enumerate(found):
+        below = number == len(found) - 1
         height = HEIGHT - top if below else max(thickness * unit, THINNEST)
-        stretched |= not below and thickness * unit < THINNEST
+        stretched = stretched or (not below and float(thickness * unit) < THINNEST)
         height = max(min(height, HEIGHT - top), 0.0)
         if height > 0:
             parts.append(_layer(top, height, _shade(E, moduli)))
-        name = "substrate" if below else f"coating {number + 1}" if len(layers) > 2 else "coating"
+        name = "substrate" if below else f"coating {number + 1}" if len(found) > 2 else "coating"
         what = f"E {engineering(E, 'Pa', 3)}, nu {plain(nu, 3)}"
         size = "" if below else f"h {engineering(thickness * a_h, 'm', 3)} = {plain(thickness, 3)} a_h"
         labels.append((min(top + min(height / 2, 24.0), HEIGHT - 6.0), name, what, size))
         top += height
     parts += [_contact(result, a_h, unit), *_labels(labels)]
     note = "thin layers drawn thicker" if stretched else "depth and width to one scale"
-    text = f"Sphere on {len(layers) - 1} coating(s) on a substrate, {note}."
+    text = f"Sphere on {len(found) - 1} coating(s) on a substrate, {note}."
     inner = Markup("").join(parts)
     return Markup(
         '<svg class="figure sketch" viewBox="0 0 {} {}" role="img" aria-label="{}"><title>{}</title>{}</svg>'
     ).format(WIDTH, HEIGHT, text, text, inner)
-
-
-def _layers(result: CaseResult, a_h: float) -> list[tuple[float, float, float]]:
-    """(E, nu, h/a_h) from the surface down; [] where the problem states no finite numbers."""
-    try:
-        coatings = [(float(E), float(nu), float(h) / a_h) for E, nu, h in result.problem["coatings"]]
-        E, nu = (float(value) for value in result.problem["substrate"])
-    except (KeyError, TypeError, ValueError, ZeroDivisionError):
-        return []
-    layers = [*coatings, (E, nu, 0.0)]
-    return layers if all(isfinite(v) for layer in layers for v in layer) and E > 0 else []
 
 
 def _shade(E: float, moduli: list[float]) -> float:

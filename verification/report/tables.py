@@ -9,7 +9,7 @@ from verification.report.cells import Cell, Row, Table
 from verification.report.matrix import outcome_cell
 from verification.report.names import OUTCOMES, pair_label, source_label
 from verification.report.numbers import engineering, plain, scientific, seconds, with_uncertainty
-from verification.report.reading import baseline, scalar, scale
+from verification.report.reading import baseline, layers, scalar, scale
 from verification.result import CaseResult, SourceResult
 from verification.verdict import Claim, Outcome, Verdict
 
@@ -30,24 +30,18 @@ _SCALES = {"peak_pressure": "p_h", "contact_radius": "a_h", "approach": "delta_h
 def layer_table(result: CaseResult) -> Table:
     """The layers from the surface down, in real units and against the bare substrate."""
     a_h = scale(result, "a_h")
-    coatings = list(result.problem.get("coatings") or ())
-    substrate = tuple(result.problem.get("substrate") or (float("nan"), float("nan")))
+    found = layers(result)
     rows = []
-    for number, (E, nu, thickness) in enumerate(coatings, start=1):
-        rows.append(
-            Row(
-                Cell(f"coating {number}"),
-                [
-                    Cell(engineering(E, "Pa")),
-                    Cell(plain(E / substrate[0], 3)),
-                    Cell(plain(nu)),
-                    Cell(engineering(thickness, "m")),
-                    Cell(plain(thickness / a_h, 3)),
-                ],
-            )
-        )
-    last = [Cell(engineering(substrate[0], "Pa")), Cell("1"), Cell(plain(substrate[1])), Cell("∞"), Cell("∞")]
-    rows.append(Row(Cell("substrate"), last))
+    for number, (E, nu, thickness) in enumerate(found, start=1):
+        below = number == len(found)
+        cells = [
+            Cell(engineering(E, "Pa"), E),
+            Cell(plain(E / found[-1][0], 3), E),
+            Cell(plain(nu), nu),
+            Cell("∞" if below else engineering(thickness, "m"), thickness),
+            Cell("∞" if below else plain(thickness / a_h, 3), thickness),
+        ]
+        rows.append(Row(Cell("substrate" if below else f"coating {number}"), cells))
     return Table("Layers from the surface down.", ["layer", "E", "E / E_s", "nu", "h", "h / a_h"], rows)
 
 
