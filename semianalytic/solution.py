@@ -19,6 +19,8 @@ Array = NDArray[np.floating]
 Field = Callable[[ArrayLike, ArrayLike, ArrayLike, int | None], Array]
 Motion = Callable[[ArrayLike, ArrayLike, ArrayLike], Array]
 
+EVALUATION = 3e-6  # of the peak pressure: stresses in depth, held against Hankel quadrature
+
 
 @dataclass(frozen=True)
 class Uncertainty:
@@ -129,19 +131,20 @@ class Solution:
     def pressure_uncertainty(self, x: ArrayLike, y: ArrayLike = 0.0) -> Array:
         """Uncertainty of the pressure [Pa] from the coarser companion.
 
-        The largest difference of the two within two coarse patches, plus what the other knobs do to the peak.
-        Raises ValueError where no uncertainty was estimated.
+        Half the largest difference of the two within two coarse patches, plus what the other knobs do to the
+        peak. Raises ValueError where no uncertainty was estimated.
         """
         coarser, floor = self._companion()
         difference = np.abs(self.patch_pressure - coarser.pressure(self.nodes[:, None], self.nodes[None, :]))
         widened = maximum_filter(difference, size=9, mode="nearest")
-        return _at(self.nodes, widened, x, y, order=1) + floor * self.peak_pressure
+        return _at(self.nodes, widened, x, y, order=1) / 2 + floor * self.peak_pressure
 
     def stress_uncertainty(self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None) -> Array:
         """Uncertainty of the stress [Pa], shape (3, 3) + points, from the coarser companions.
 
-        The largest difference over the six components, of this grid and half of it or, a third of it, of half
-        and a quarter, for every component alike; plus what the other knobs do to the peak pressure.
+        Half the largest difference over the six components, of this grid and half of it or, an eighth of it,
+        of half and a quarter, for every component alike; plus what the other knobs do to the peak pressure,
+        and the error of the evaluation in depth, ``EVALUATION`` of the peak.
         Raises ValueError where no uncertainty was estimated.
         """
         coarser, floor = self._companion()
@@ -149,8 +152,9 @@ class Solution:
         spread = np.abs(self.stress(x, y, z, layer) - halved).max(axis=(0, 1))
         if coarser.coarser is not None:
             quartered = coarser.coarser.stress(x, y, z, layer)
-            spread = np.maximum(spread, np.abs(halved - quartered).max(axis=(0, 1)) / 3)
-        return np.broadcast_to(spread + floor * self.peak_pressure, (3, 3, *spread.shape)).copy()
+            spread = np.maximum(spread, np.abs(halved - quartered).max(axis=(0, 1)) / 8)
+        total = spread / 2 + (floor + EVALUATION) * self.peak_pressure
+        return np.broadcast_to(total, (3, 3, *spread.shape)).copy()
 
     def _companion(self) -> tuple["Solution", float]:
         if self.uncertainty is None or self.coarser is None:

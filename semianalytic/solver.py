@@ -68,19 +68,12 @@ class Level:
         }
 
     @property
-    def below(self) -> Array:
-        """Patch pressures that act in depth as the pressure itself does.
-
-        Means over the patches, partly covered ones at the rim included, carry the load; constant on patches
-        they lose the second moment d^2/12, which is given back: p - (d^2/12) laplacian(p).
-        """
-        p, d = self.found.pressure, self.grid.d
-        if self.shape is None:
+    def mean(self) -> Array:
+        """Pressure averaged over the patches [Pa], those the edge cuts included: the whole load."""
+        p, f = self.found.pressure, self.shape
+        if f is None:
             return p
-        mean = p - self.shape.pressure(self.grid.radius) + profile.patch_mean(self.shape, self.grid.x, d)
-        q = np.pad(mean, 1)
-        around = q[2:, 1:-1] + q[:-2, 1:-1] + q[1:-1, 2:] + q[1:-1, :-2]
-        return mean - (around - 4 * mean) / 12
+        return p - f.pressure(self.grid.radius) + profile.patch_mean(f, self.grid.x, self.grid.d)
 
 
 def solve(
@@ -198,9 +191,16 @@ def _loaded(grid: Grid, shape: profile.Prescribed, body: Body, numerics: Numeric
     found = contact.Contact.of_load(shape.pressure(grid.radius))
     level = Level(grid, found, shape, shape.load, 1)
     deflection = convolution.even_convolution(_coefficients(grid, body, numerics), threads=numerics.threads)
-    u = deflection(level.below)
+    u = deflection(_sharpened(level.mean))
     centre = float(u[grid.n // 2, grid.n // 2])
     return replace(level, found=replace(found, deflection=u, approach=centre))
+
+
+def _sharpened(mean: Array) -> Array:
+    """Constant patches blur what their means say by the second moment d^2/12: p - (d^2/12) laplacian(p)."""
+    q = np.pad(mean, 1)
+    around = q[2:, 1:-1] + q[:-2, 1:-1] + q[1:-1, 2:] + q[1:-1, :-2]
+    return mean - (around - 4 * mean) / 12
 
 
 def _refine(
@@ -355,41 +355,26 @@ def _coefficients(grid: Grid, body: Body, numerics: Numerics) -> Array:
 def _as_solution(level: Level, coarser: Solution | None, body: Body) -> Solution:
     grid, found = level.grid, level.found
     reach = int(np.ceil(2.05 * level.radius / grid.d))
-    common: dict[str, Any] = {
+    loaded: dict[str, Any] = {
         "grid_x": grid.x,
         "grid_y": grid.x,
+        "pressure": level.mean,
         "friction": body.friction,
         "coatings": body.coatings,
         "substrate": body.substrate,
     }
-    below = level.below
-
-    def fields(evaluate: Callable[..., Array], x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: Any) -> Array:
-        """On the surface from the pressure at the patch centres, so that sigma_zz = -p there."""
-        x, y, z, layer = np.broadcast_arrays(x, y, z, body.layer_of(z, layer))
-        skin = z < 0.5 * grid.d
-        parts = []
-        for where, p in ((skin, found.pressure), (~skin, below)):
-            if where.any():
-                parts.append(
-                    (where, evaluate(x[where], y[where], z[where], layer[where], pressure=p, **common))
-                )
-        result = np.empty((*parts[0][1].shape[:-1], *z.shape))
-        for where, values in parts:
-            result[..., where] = values
-        return result
 
     def stress(x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None) -> Array:
         rectangle = (halfspace.normal_stress, halfspace.tangential_stress)
-        evaluate = partial(subsurface.stress, rectangle=rectangle, stress_frf=frf.stress_frf)
-        return fields(evaluate, x, y, z, layer)
+        where = body.layer_of(z, layer)
+        return subsurface.stress(x, y, z, where, rectangle=rectangle, stress_frf=frf.stress_frf, **loaded)
 
     def displacement(x: ArrayLike, y: ArrayLike, z: ArrayLike) -> Array:
         rectangle = (halfspace.normal_displacement, halfspace.tangential_displacement)
-        evaluate = partial(
-            subsurface.displacement, rectangle=rectangle, displacement_frf=frf.displacement_frf
+        where = body.layer_of(z, None)
+        return subsurface.displacement(
+            x, y, z, where, rectangle=rectangle, displacement_frf=frf.displacement_frf, **loaded
         )
-        return fields(evaluate, x, y, z, None)
 
     return Solution(
         **level.scalars,
