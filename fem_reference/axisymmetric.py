@@ -78,8 +78,8 @@ def elasticity(E: float, nu: float, harmonic: int) -> np.ndarray:
 class Discretisation:
     """Lagrange elements of one ``order`` on a meridian mesh, and everything assembled from them.
 
-    A field vector stacks the fields one after the other: entry ``field * N + i`` is the value of that field at
-    ``locations[:, i]``.
+    A field vector stacks the fields one after the other: entry ``field * N + i`` is the value of that field
+    at ``locations[:, i]``.
     """
 
     mesh: MeridianMesh
@@ -136,11 +136,11 @@ class Discretisation:
         """
         A_r, A_z, A_0 = strain_operator(harmonic)
         fields = A_r.shape[1]
-        r = self.basis.global_coordinates().value[0]
+        r = np.asarray(self.basis.global_coordinates())[0]
         weight = r * self.basis.dx
         triangles, points = weight.shape
         local = len(self.basis.basis)
-        phi = np.stack([np.broadcast_to(b[0].value, r.shape) for b in self.basis.basis], axis=-1)
+        phi = np.stack([np.broadcast_to(np.asarray(b[0]), r.shape) for b in self.basis.basis], axis=-1)
         dphi = [np.stack([b[0].grad[i] for b in self.basis.basis], axis=-1) for i in (0, 1)]
         # strain of every (field, shape function) at every quadrature point
         B = np.zeros((triangles, points, A_r.shape[0], fields, local))
@@ -179,7 +179,7 @@ class Discretisation:
 
 
 @BilinearForm
-def _mass(u, v, w):  # type: ignore[no-untyped-def]
+def _mass(u, v, w):
     return u * v * w.x[0]
 
 

@@ -1,16 +1,19 @@
 """Frictionless contact of a rigid paraboloid with a meridian mesh whose vertex sits at the contact edge.
 
-Lengths in a unit L of the caller, moduli in a unit E_0, sphere radius 1: displacements are then in L^2/R, pressure
-in E_0 L/R, load in E_0 L^3/R. For a given contact radius a the contact condition is linear, a saddle system for the
-displacement u and the pressure multiplier p with the approach delta and the load W as parameters:
+Lengths in a unit L of the caller, moduli in a unit E_0, sphere radius 1: displacements are then in L^2/R,
+pressure in E_0 L/R, load in E_0 L^3/R. For a given contact radius a the contact condition is linear, a
+saddle system for the displacement u and the pressure multiplier p with the approach delta and the load W as
+parameters:
 
-    K u - B^T p = 0,     int q (u_z - delta + r^2/2) r dr = 0  for all q,     u = W u_far  on the outer boundary.
+    K u - B^T p = 0,     int q (u_z - delta + r^2/2) r dr = 0  for all q,     u = W u_far  on the outer
+    boundary.
 
-The multiplier has the order of u_z itself. Then the second line says u_z = delta - r^2/2 at every node, the paraboloid
-being a polynomial, and the first gives p from the nodal reactions through the mass matrix of the contact: the saddle
-system falls apart into one positive definite solve and one small one. (Dividing reactions by nodal weights instead
-would fail on the axis, where the weight vanishes.) delta and W follow from p(a) = 0 and int p = W, so one
-factorisation with three right-hand sides, flat punch, paraboloid and far field, gives everything.
+The multiplier has the order of u_z itself. Then the second line says u_z = delta - r^2/2 at every node, the
+paraboloid being a polynomial, and the first gives p from the nodal reactions through the mass matrix of the
+contact: the saddle system falls apart into one positive definite solve and one small one. (Dividing
+reactions by nodal weights instead would fail on the axis, where the weight vanishes.) delta and W follow
+from p(a) = 0 and int p = W, so one factorisation with three right-hand sides, flat punch, paraboloid and far
+field, gives everything.
 """
 
 from collections.abc import Callable

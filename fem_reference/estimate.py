@@ -1,9 +1,9 @@
 """Pointwise uncertainty from the difference between a solution and a coarser companion.
 
-The difference of two solutions crosses zero at points where neither is exact, so it is not taken point by point:
-the bound at a vertex is the largest difference found in the triangles around it, and between vertices it is linear.
-The companion is coarser, hence the difference is about the error of the companion, which exceeds the error sought;
-a factor of safety covers the places where it does not.
+The difference of two solutions crosses zero at points where neither is exact, so it is not taken point by
+point: the bound at a vertex is the largest difference found in the triangles around it, and between vertices
+it is linear. The companion is coarser, hence the difference is about the error of the companion, which
+exceeds the error sought; a factor of safety covers the places where it does not.
 """
 
 from collections.abc import Callable
@@ -16,7 +16,8 @@ from .recovery import HarmonicField
 
 __all__ = ["SAFETY", "PressureBound", "StressBound", "line_bound"]
 
-# Roache's factor of safety for two meshes is 3 on an error divided by (ratio^order - 1); here nothing is divided.
+# Roache's factor of safety for two meshes is 3 on an error divided by (ratio^order - 1); here nothing is
+# divided.
 SAFETY = 2.0
 
 # samples in the reference triangle, strictly inside so that every sample has one layer
@@ -45,7 +46,8 @@ def line_bound(
 class PressureBound:
     """Bound of |p - companion's p| as a function of the radius.
 
-    radius_error : uncertainty of the contact radius; a shift of the whole edge by it is added, which covers the
+    radius_error : uncertainty of the contact radius; a shift of the whole edge by it is added, which covers
+    the
         ring between the two contact edges and the infinite slope of p beside it
     """
 

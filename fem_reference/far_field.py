@@ -22,7 +22,7 @@ def boussinesq(r: np.ndarray, z: np.ndarray, E: float, nu: float) -> np.ndarray:
 
 
 def cerruti(r: np.ndarray, z: np.ndarray, E: float, nu: float) -> np.ndarray:
-    """Amplitudes (u_r, u_theta, u_z) of a unit force in +x at the origin, shape (3,) + points. Johnson (3.75).
+    """Amplitudes (u_r, u_theta, u_z) of a unit force in +x at the origin. Johnson (3.75).
 
     u_r = U cos, u_theta = V sin, u_z = Z cos, with c = (1+nu)/(2 pi E):
     U = c [1/rho + r^2/rho^3 + (1-2 nu) (1/(rho+z) - r^2/(rho (rho+z)^2))]

@@ -1,7 +1,8 @@
 """Search for the contact radius that carries a given load.
 
-The load of a rigid paraboloid rises with the contact radius, W ~ a^3 on a homogeneous solid, so log W is nearly
-linear in log a and secants converge in a few steps. Small moves stretch the mesh, large ones ask for a new one.
+The load of a rigid paraboloid rises with the contact radius, W ~ a^3 on a homogeneous solid, so log W is
+nearly linear in log a and secants converge in a few steps. Small moves stretch the mesh, large ones ask for
+a new one.
 """
 
 import math

@@ -4,9 +4,10 @@ The mesher works in a stretched plane (xi, zeta) in which the whole problem has 
 
     r - a = l sinh(xi),      z = l sinh(zeta),      l = min(a, thickness of the top coating),
 
-so that triangles near the edge r = a, z = 0 are fine, thin coatings far out are resolved by flat triangles instead of
-by many, and the outer boundary costs the logarithm of its distance. Towards the edge the size falls in
-proportion to the distance, down to ``edge_size``. All lengths are in one unit of the caller's choice.
+so that triangles near the edge r = a, z = 0 are fine, thin coatings far out are resolved by flat triangles
+instead of by many, and the outer boundary costs the logarithm of its distance. Towards the edge the size
+falls in proportion to the distance, down to ``edge_size``. All lengths are in one unit of the caller's
+choice.
 """
 
 from dataclasses import dataclass, replace
@@ -17,8 +18,6 @@ import numpy as np
 from .gmsh_session import session
 
 __all__ = ["Grading", "MeridianMesh", "meridian_mesh"]
-
-MAX_LAYERS = 50
 
 
 @dataclass(frozen=True)
@@ -61,7 +60,7 @@ class MeridianMesh:
     stretch: float = 1.0
 
     def stretched(self, factor: float) -> "MeridianMesh":
-        """The mesh with all radii multiplied by ``factor``, which moves the contact edge and keeps every depth."""
+        """The mesh with all radii multiplied by ``factor``: the contact edge moves, no depth does."""
         points = self.points * np.array([[factor], [1.0]])
         return replace(
             self,
@@ -103,18 +102,15 @@ def meridian_mesh(
 ) -> MeridianMesh:
     """Triangulate 0 <= r, z <= ``far`` with a vertex at r = ``contact_radius`` on the surface.
 
-    One physical group per layer ("coating 1", ..., "substrate"). Raises ValueError when there are more
-    layers than a mesh can hold or when the contact does not fit into the half-space.
+    One physical group per layer ("coating 1", ..., "substrate"). Raises ValueError when the contact or the
+    coatings do not fit into the half-space.
     """
-    if len(thicknesses) > MAX_LAYERS:
-        raise ValueError(
-            f"{len(thicknesses)} coatings; the mesh holds at most {MAX_LAYERS}, merge thin ones into effective layers"
-        )
     a = contact_radius
     depths = np.cumsum(np.asarray(thicknesses, dtype=float))
     if depths.size and not depths[-1] < 0.5 * far:
         raise ValueError(
-            f"coatings reach {depths[-1]:g} deep in a half-space cut off at {far:g}; ask for a larger far boundary"
+            f"coatings reach {depths[-1]:g} deep in a half-space cut off at {far:g}; ask for a larger "
+            "far boundary"
         )
     if not a < 0.1 * far:
         raise ValueError(

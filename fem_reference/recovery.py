@@ -1,8 +1,9 @@
 """Displacements and stresses of one harmonic anywhere in the meridian plane.
 
 Strains are the derivatives of the shape functions in the triangle that holds the point, so each side of an
-interface keeps its own value. On the loaded surface the stresses that involve the normal direction are the tractions
-themselves, and the others follow from the surface strains, which are far more accurate there than sigma_zz:
+interface keeps its own value. On the loaded surface the stresses that involve the normal direction are the
+tractions themselves, and the others follow from the surface strains, which are far more accurate there than
+sigma_zz:
 
     sigma_rr = E/(1-nu^2) (eps_rr + nu eps_tt) + nu/(1-nu) sigma_zz,   sigma_zz = -p
 """

@@ -79,7 +79,7 @@ class Meridian:
     mesh: Any
 
     def points(self, x: Any, y: Any, z: Any, layer: int | None) -> "_Points":
-        """Broadcast and check the points, put those within rounding of an interface on it, find their layers."""
+        """Broadcast and check the points, snap them to interfaces within rounding, find their layers."""
         x, y, z = np.broadcast_arrays(*(np.asarray(c, dtype=float) for c in (x, y, z)))
         shape = x.shape
         x, y, z = x.ravel(), y.ravel(), z.ravel().copy()
@@ -95,9 +95,9 @@ class Meridian:
             raise ValueError(
                 f"z = {worst:g} m is not inside the solid; depth counts down from 0 at the surface"
             )
-        if z.size and max(z.max(), r.max()) > 0.5 * self.far:
+        if z.size and max(z.max(), r.max()) > self.far * (1 + 1e-9):
             raise ValueError(
-                f"a point {max(z.max(), r.max()):g} m out is beyond half the meshed solid ({self.far:g} m); "
+                f"a point {max(z.max(), r.max()):g} m out is beyond the meshed solid ({self.far:g} m); "
                 f"ask for a larger far boundary"
             )
         found = np.searchsorted(self.depths, z, side="left")
@@ -151,7 +151,10 @@ class Solution:
         return self.meridian.pressure(_radius(x, y))
 
     def pressure_uncertainty(self, x: Any, y: Any = 0.0) -> np.ndarray:
-        """Absolute numerical uncertainty of ``pressure`` [Pa], same shape. Raises ValueError if not estimated."""
+        """Absolute numerical uncertainty of ``pressure`` [Pa], same shape.
+
+        Raises ValueError when the solution was solved without an estimate.
+        """
         if self.meridian.pressure_bound is None:
             raise ValueError(_NOT_ESTIMATED)
         return self.meridian.pressure_bound(_radius(x, y))
@@ -159,7 +162,8 @@ class Solution:
     def stress(self, x: Any, y: Any, z: Any, layer: int | None = None) -> np.ndarray:
         """Stress tensor sigma[i, j, ...] [Pa] in x, y, z; shape (3, 3) + broadcast shape of the points.
 
-        layer : 0 at the surface to the number of coatings in the substrate; picks the side of an interface, None
+        layer : 0 at the surface to the number of coatings in the substrate; picks the side of an interface,
+        None
             means the upper one. Raises ValueError for a point outside the solid or outside its ``layer``.
         """
         at = self.meridian.points(x, y, z, layer)
@@ -183,11 +187,11 @@ class Solution:
             bound = bound + self.meridian.tangential_bound(at.r, at.z, at.layer) * np.stack(
                 [cos] * 4 + [sin] * 2
             )
-        # minus sign of sin: every product in the rotation counts with its modulus
-        return np.abs(_tensor(bound, cos, sin, sign=1.0)).reshape(3, 3, *at.shape)
+        # every product in the rotation counts with its modulus
+        return _tensor(bound, cos, sin, sign=1.0).reshape(3, 3, *at.shape)
 
     def displacement(self, x: Any, y: Any, z: Any) -> np.ndarray:
-        """Displacement (u_x, u_y, u_z) [m], u_z into the solid; shape (3,) + broadcast shape of the points."""
+        """Displacement (u_x, u_y, u_z) [m], u_z into the solid; shape (3,) + that of the points."""
         at = self.meridian.points(x, y, z, None)
         u, _ = self.meridian.normal(at.r, at.z, at.layer)
         if self.meridian.tangential is not None:
@@ -202,7 +206,7 @@ def _radius(x: Any, y: Any) -> np.ndarray:
 
 
 def _tensor(s: np.ndarray, cos: np.ndarray, sin: np.ndarray, sign: float = -1.0) -> np.ndarray:
-    """Rotate (rr, tt, zz, rz, rt, tz) to the tensor in x, y, z; ``sign`` = 1 adds where a rotation subtracts."""
+    """Rotate (rr, tt, zz, rz, rt, tz) to x, y, z; ``sign`` = 1 adds where a rotation subtracts."""
     rr, tt, zz, rz, rt, tz = s
     cross = cos * sin
     xx = cos**2 * rr + sin**2 * tt + sign * 2 * cross * rt

@@ -1,11 +1,11 @@
 """Public entry of the finite element method: a physical problem in, a ``Solution`` out.
 
-Inside, every problem has one length, one pressure and the modulus of the substrate as units (``_Units``). For the
-sphere they are a_h = (3 W R / 4 E*)^(1/3) of the bare substrate and E a_h/R, as ``contact`` asks.
+Inside, every problem has one length, one pressure and the modulus of the substrate as units (``_Units``).
+For the sphere they are a_h = (3 W R / 4 E*)^(1/3) of the bare substrate and E a_h/R, as ``contact`` asks.
 
-Levels: a rough and a coarse mesh find the contact radius, a companion somewhat coarser than the final mesh finds it
-closely and is the yardstick of the error, the final one gives the result. A vertex stands at the contact radius of
-every level, and sliding friction is solved afterwards on the last two.
+Levels: a rough and a coarse mesh find the contact radius, a companion somewhat coarser than the final mesh
+finds it closely and is the yardstick of the error, the final one gives the result. A vertex stands at the
+contact radius of every level, and sliding friction is solved afterwards on the last two.
 """
 
 import time
@@ -25,7 +25,7 @@ from .loading import loaded, resultant
 from .mesh import Grading, MeridianMesh, meridian_mesh
 from .recovery import HarmonicField
 from .solution import Diagnostics, Meridian, NotConverged, Solution, Uncertainty
-from .validation import check_choice, check_materials, check_positive, prescribed_pressure
+from .validation import check_choice, check_materials, check_positive, check_proportions, prescribed_pressure
 
 __all__ = ["QUALITY", "solve", "solve_prescribed"]
 
@@ -39,8 +39,8 @@ _COMPANION = 1.4
 _LOAD_TOLERANCE = 2e-7
 _NEARER = 2.0
 _EDGE_SIZE = 1e-6
-# The last triangle misplaces the edge by this share of its size, whatever the solid: close to the edge all contacts look alike.
-# Measured 0.01 between edge sizes of 1e-3 and 1e-6 of the contact radius.
+# The last triangle misplaces the edge by this share of its size, whatever the solid: close to the edge all
+# contacts look alike. # Measured 0.01 between edge sizes of 1e-3 and 1e-6 of the contact radius.
 _EDGE_SHARE = 0.03
 
 
@@ -60,13 +60,14 @@ def solve(
     """Rigid sphere pressed on, and with friction slid over, a coated half-space.
 
     radius [m], load [N], coatings ((E, nu, thickness), ...) [Pa, -, m] from the surface down, () for none,
-    substrate (E, nu), friction f in q = f p, the traction on the solid in +x, taken not to change p (Goodman).
+    substrate (E, nu), friction f in q = f p, the traction on the solid in +x, taken not to change p
+    (Goodman).
     order   : polynomial order of the displacement, 2 to 4
     quality : "fast" (about 1e-3), "default" (about 1e-5) or "fine"
     far     : distance of the outer boundary over (a_h + thickness of all coatings)
     max_iterations : contact solves allowed on each mesh level
-    Poisson ratios up to 0.49 do not lock at order 4; above, digits are lost as 1/(1 - 2 nu), and 0.5 is refused.
-    Raises ValueError for bad input, NotConverged when no contact radius carries the load.
+    Poisson ratios up to 0.49 do not lock at order 4; above, digits are lost as 1/(1 - 2 nu), and 0.5 is
+    refused. Raises ValueError for bad input, NotConverged when no contact radius carries the load.
     """
     started = time.perf_counter()
     check_positive(radius=radius, load=load, far=far, max_iterations=max_iterations)
@@ -77,6 +78,7 @@ def solve(
     a_h = (3 * load * radius * (1 - nu**2) / (4 * E)) ** (1 / 3)
     unit = _Units(length=a_h, pressure=E * a_h / radius, modulus=E)
     solid = _solid(coatings, substrate, a_h, far)
+    check_proportions(solid.thicknesses, "a_h")
     target = load / unit.load
 
     history: list[tuple[str, float, float]] = []
@@ -97,7 +99,8 @@ def solve(
         if not carried.converged:
             reached = carried.contact.load / target
             raise NotConverged(
-                f"the contact radius did not settle on the {name} mesh: after {len(carried.history)} solves, at "
+                f"the contact radius did not settle on the {name} mesh: after {len(carried.history)} "
+                "solves, at "
                 f"{carried.contact_radius:.4g} a_h, the load is {reached:.6g} of the one asked for; "
                 f"raise max_iterations, or check the thicknesses and the ratio of the moduli"
             )
@@ -118,10 +121,18 @@ def solve(
         companion, companion_disc = level("companion", _companion(size), order, _LOAD_TOLERANCE)
     final, final_disc = level("final", _grading(size), order, _LOAD_TOLERANCE)
     penetration, tension = _complementarity(final, final_disc)
+    if final.contact_radius * unit.length >= radius:
+        raise ValueError(
+            f"load = {load:g} N presses the contact radius to {final.contact_radius * unit.length:g} m, "
+            "beyond the "
+            f"radius of the sphere, {radius:g} m; small strains need a far smaller load"
+        )
     if max(penetration, tension) > 1e-3:
         raise NotConverged(
-            f"the contact is not one disc: penetration outside is {penetration:.2g} of the approach, tension inside "
-            f"{tension:.2g} of the peak pressure; use quality='fine', or check that the layers are elastic solids"
+            f"the contact is not one disc: penetration outside is {penetration:.2g} of the approach, "
+            "tension inside "
+            f"{tension:.2g} of the peak pressure; use quality='fine', or check that the layers are "
+            "elastic solids"
         )
 
     result = _state(solid, final_disc, final.fields, final.pressure, friction)
@@ -178,8 +189,8 @@ def solve_prescribed(
     """A coated half-space under a given pressure on the disc r <= ``load_radius``, with q = f p.
 
     pressure : a number (uniform) or a callable p(r) [Pa] taking an array of radii [m]
-    The approach of the solution is u_z at the origin, its contact radius is ``load_radius``. Other arguments and
-    errors as for ``solve``.
+    The approach of the solution is u_z at the origin, its contact radius is ``load_radius``. Other arguments
+    and errors as for ``solve``.
     """
     started = time.perf_counter()
     check_positive(load_radius=load_radius, far=far)
@@ -189,6 +200,7 @@ def solve_prescribed(
     p_si, scale = prescribed_pressure(pressure, load_radius)
     unit = _Units(length=load_radius, pressure=scale, modulus=substrate[0])
     solid = _solid(coatings, substrate, load_radius, far)
+    check_proportions(solid.thicknesses, "load_radius")
 
     def p(r: np.ndarray) -> np.ndarray:
         return p_si(r * load_radius) / scale
@@ -217,7 +229,7 @@ def solve_prescribed(
     return Solution(
         contact_radius=load_radius,
         approach=result.sink * unit.displacement,
-        peak_pressure=float(np.max(p(nodes))) * unit.pressure,
+        peak_pressure=float(np.max(p(np.abs(nodes)))) * unit.pressure,
         surface_nodes=nodes * unit.length,
         uncertainty=bounds.scalars,
         diagnostics=Diagnostics(
@@ -348,7 +360,7 @@ def _mesh(solid: _Solid, grading: Grading, a: float) -> MeridianMesh:
 
 
 def _first_radius(solid: _Solid, load: float) -> float:
-    """Contact radius if each layer gave its share of the compliance, that above z being (2/pi) atan(z/a)."""
+    """Contact radius if the layers above z gave the share (2/pi) atan(z/a) of the compliance."""
     depths = np.cumsum([0.0, *solid.thicknesses])
     a = 1.0
     for _ in range(30):
@@ -425,11 +437,13 @@ def _bounds(
         ("peak_pressure", "load balance", load_miss / 3 * peak * unit.pressure),
     )
     total = {name: sum(value for quantity, _, value in budget if quantity == name) for name, _, _ in budget}
-    both = result.tangential is not None and companion.tangential is not None
+    sliding = None
+    if result.tangential is not None and companion.tangential is not None:
+        sliding = StressBound(result.tangential, companion.tangential)
     return _Bounds(
         scalars=Uncertainty(**total, budget=budget),
         normal=StressBound(result.normal, companion.normal),
-        tangential=StressBound(result.tangential, companion.tangential) if both else None,
+        tangential=sliding,
         pressure=pressure,
         everywhere=far_share[2] + load_miss / 3 * peak,
     )

@@ -5,10 +5,12 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-__all__ = ["check_choice", "check_materials", "check_positive", "prescribed_pressure"]
+__all__ = ["check_choice", "check_materials", "check_positive", "check_proportions", "prescribed_pressure"]
 
 MAX_COATINGS = 50
 MAX_CONTRAST = 1e4
+MIN_THICKNESS = 1e-4
+MAX_THICKNESS = 1e4
 
 
 def check_positive(**quantities: float) -> None:
@@ -29,7 +31,8 @@ def check_materials(
 ) -> None:
     """Raise ValueError for moduli, Poisson ratios, thicknesses or friction that make no elastic solid.
 
-    nu = 0.5 is refused: a displacement method cannot carry the undetermined pressure of an incompressible solid.
+    nu = 0.5 is refused: a displacement method cannot carry the undetermined pressure of an incompressible
+    solid.
     """
     if not _is_number(friction) or not math.isfinite(friction):
         raise ValueError(f"friction = {friction!r}; it has to be a finite number")
@@ -37,7 +40,8 @@ def check_materials(
         raise ValueError(f"coatings = {coatings!r}; give a tuple of (E, nu, thickness), () for none")
     if len(coatings) > MAX_COATINGS:
         raise ValueError(
-            f"{len(coatings)} coatings; the mesh holds at most {MAX_COATINGS}, merge thin ones into effective layers"
+            f"{len(coatings)} coatings; the mesh holds at most {MAX_COATINGS}, merge thin ones into "
+            "effective layers"
         )
     if not isinstance(substrate, Sequence) or len(substrate) != 2:
         raise ValueError(f"substrate = {substrate!r}; give (E, nu)")
@@ -49,10 +53,27 @@ def check_materials(
         contrast = coating[0] / substrate[0] if _is_number(substrate[0]) and substrate[0] > 0 else 1.0
         if not 1 / MAX_CONTRAST <= contrast <= MAX_CONTRAST:
             raise ValueError(
-                f"E of coating {k} is {contrast:g} times that of the substrate; the solver is good for ratios between "
+                f"E of coating {k} is {contrast:g} times that of the substrate; the solver is good for "
+                "ratios between "
                 f"{1 / MAX_CONTRAST:g} and {MAX_CONTRAST:g}, treat the stiffer solid as rigid instead"
             )
     _check_material("of the substrate", *substrate)
+
+
+def check_proportions(thicknesses: Sequence[float], unit: str) -> None:
+    """Raise ValueError for coatings too thin or too thick to mesh beside a contact of radius 1 ``unit``."""
+    for k, h in enumerate(thicknesses, start=1):
+        if h < MIN_THICKNESS:
+            raise ValueError(
+                f"thickness of coating {k} is {h:.3g} {unit}, which no stress can feel; leave the "
+                "coating out, "
+                f"or keep it above {MIN_THICKNESS:g} {unit}"
+            )
+        if h > MAX_THICKNESS:
+            raise ValueError(
+                f"thickness of coating {k} is {h:.3g} {unit}; take its material for the substrate instead, "
+                f"or keep it below {MAX_THICKNESS:g} {unit}"
+            )
 
 
 def prescribed_pressure(
@@ -69,8 +90,10 @@ def prescribed_pressure(
     def p(r: np.ndarray) -> np.ndarray:
         r = np.asarray(r, dtype=float)
         inside = r <= load_radius * (1 + 1e-12)
-        values = given(np.minimum(r, load_radius)) if callable(given) else given
-        return np.where(inside, values, 0.0)
+        values = np.zeros(r.shape)
+        # a callable need not be defined beyond the load
+        values[inside] = given(np.minimum(r[inside], load_radius)) if callable(given) else given
+        return values
 
     # Gauss points avoid r = 0 and r = load_radius, where a callable may be singular
     s, weight = np.polynomial.legendre.leggauss(40)
@@ -91,7 +114,8 @@ def _check_material(where: str, E: float, nu: float) -> None:
     check_positive(**{f"E {where}": E})
     if not _is_number(nu) or not -1 < nu < 0.5:
         raise ValueError(
-            f"nu {where} = {nu!r}; the finite element method needs -1 < nu < 0.5, use 0.499 for nearly incompressible"
+            f"nu {where} = {nu!r}; the finite element method needs -1 < nu < 0.5, use 0.499 for nearly "
+            "incompressible"
         )
 
 
