@@ -7,8 +7,10 @@ from math import inf, nan
 
 import numpy as np
 import pytest
+from markupsafe import Markup
 from synthetic_results import STEEL, contact, result_of
 
+from verification.report import panels
 from verification.report.accuracy import accuracies, accuracy_sentence
 from verification.report.csvdata import embedded, line_csv
 from verification.report.figures import FLOOR, Curve, Difference, draw
@@ -226,6 +228,34 @@ def test_two_figures_share_no_identifier():
 def test_labels_are_text_not_markup():
     text = compact("<svg viewBox='0 0 1 1'><g/></svg>", key="k", colours={}, label='"><script>')
     assert "<script>" not in text
+
+
+def test_figures_are_drawn_in_the_scales_of_the_bare_substrate(monkeypatch):
+    drawn = []
+
+    def record(curves, differences, **more):
+        drawn.append((curves, differences, more))
+        return Markup("")
+
+    monkeypatch.setattr(panels, "draw", record)
+    result = result_of(COATED, errors={"semianalytic": 2e-3}, stated={"semianalytic": 0.7}, points=201)
+    line_figures(result, "surface", "k")
+    curves, differences, more = drawn[0]
+    assert len(curves) == len(differences) == 3
+    for curve in curves:
+        assert (curve.position.min(), curve.position.max()) == pytest.approx((-2, 2), rel=1e-12)
+        assert curve.value.max() == pytest.approx(1, abs=5e-3)
+    ours, theirs = (result.profile("pressure", "surface", s) for s in ("semianalytic", "integral_equation"))
+    error = next(d for d in differences if d.style == pair_style(("semianalytic", "integral_equation")))
+    assert error.value == pytest.approx(np.abs(ours.value - theirs.value) / COATED.p_h, rel=1e-12)
+    assert error.uncertainty == pytest.approx(0.7 * 2e-3, rel=1e-3)
+    verdict = next(
+        v for c, v in result.verdicts if (c.quantity, c.between[1]) == ("pressure", "integral_equation")
+    )
+    assert error.worst == verdict.worst / COATED.a_h
+    assert more["cap"] == 5e-3
+    assert more["coordinate"] == "x / a_h"
+    assert np.array(more["unjudged"]) == pytest.approx(np.array([(-1.05, -0.95), (0.95, 1.05)]), rel=1e-6)
 
 
 def test_a_claimless_line_shows_what_was_sampled():
