@@ -9,6 +9,6 @@
 
 from semianalytic.contact import NotConverged
 from semianalytic.solution import Diagnostics, Solution, Uncertainty
-from semianalytic.solver import solve, solve_prescribed
+from semianalytic.solver import indent, solve, solve_prescribed
 
-__all__ = ["Diagnostics", "NotConverged", "Solution", "Uncertainty", "solve", "solve_prescribed"]
+__all__ = ["Diagnostics", "NotConverged", "Solution", "Uncertainty", "indent", "solve", "solve_prescribed"]

@@ -37,6 +37,19 @@ class Grid:
         """Distance of the patch centres from the origin [m], shape (n, n)."""
         return np.hypot(self.x[:, None], self.x[None, :])
 
+    def sample(self, heights: Array, half_width: float) -> Array:
+        """Heights given on m x m patches that fill the square of ``half_width``, at these patch centres.
+
+        Between the given centres a linear interpolation, beyond the last ones the last ones.
+        """
+        m = heights.shape[0]
+        if m == self.n:
+            return heights
+        given = (np.arange(m) - (m - 1) / 2) * (2 * half_width / m)
+        spline = RectBivariateSpline(given, given, heights, kx=1, ky=1)
+        x = np.clip(self.x, given[0], given[-1])
+        return spline(x, x)
+
 
 def odd(n: float) -> int:
     """Nearest odd integer, at least 3."""

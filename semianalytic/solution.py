@@ -19,7 +19,8 @@ Array = NDArray[np.floating]
 Field = Callable[[ArrayLike, ArrayLike, ArrayLike, int | None], Array]
 Motion = Callable[[ArrayLike, ArrayLike, ArrayLike], Array]
 
-EVALUATION = 3e-6  # of the peak pressure: stresses in depth, held against Hankel quadrature
+# error of the stress of a given pressure, over its peak, against Hankel quadrature: above 4 patches, below
+EVALUATION = (2e-5, 3e-6)
 
 
 @dataclass(frozen=True)
@@ -153,7 +154,8 @@ class Solution:
         if coarser.coarser is not None:
             quartered = coarser.coarser.stress(x, y, z, layer)
             spread = np.maximum(spread, np.abs(halved - quartered).max(axis=(0, 1)) / 8)
-        total = spread / 2 + (floor + EVALUATION) * self.peak_pressure
+        shallow = np.asarray(z) < 4 * self.diagnostics.patch_size
+        total = spread / 2 + (floor + np.where(shallow, *EVALUATION)) * self.peak_pressure
         return np.broadcast_to(total, (3, 3, *spread.shape)).copy()
 
     def _companion(self) -> tuple["Solution", float]:

@@ -16,13 +16,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from semianalytic import contact, convolution, disc, frf, halfspace, influence, profile, subsurface
+from semianalytic import contact, convolution, disc, frf, halfspace, influence, subsurface
+from semianalytic import profile as edge_profile
 from semianalytic.contact import NotConverged
 from semianalytic.grid import Grid, carry_over, odd
 from semianalytic.inputs import COARSEST, Body, Numerics, check_positive
 from semianalytic.solution import Diagnostics, Solution, Uncertainty
 
-__all__ = ["Diagnostics", "NotConverged", "Solution", "Uncertainty", "solve", "solve_prescribed"]
+__all__ = ["Diagnostics", "NotConverged", "Solution", "Uncertainty", "indent", "solve", "solve_prescribed"]
 
 Array = NDArray[np.floating]
 Coatings = tuple[tuple[float, float, float], ...]
@@ -49,7 +50,7 @@ class Level:
 
     grid: Grid
     found: contact.Contact
-    shape: profile.Profile | profile.Prescribed | None
+    shape: edge_profile.Profile | edge_profile.Prescribed | None
     load: float
     convolutions: int
 
@@ -73,7 +74,7 @@ class Level:
         p, f = self.found.pressure, self.shape
         if f is None:
             return p
-        return p - f.pressure(self.grid.radius) + profile.patch_mean(f, self.grid.x, self.grid.d)
+        return p - f.pressure(self.grid.radius) + edge_profile.patch_mean(f, self.grid.x, self.grid.d)
 
 
 def solve(
@@ -128,6 +129,78 @@ def solve(
     return _refine(fill * first.radius, first, sphere, body, numerics, estimate_uncertainty, began)
 
 
+def indent(
+    *,
+    profile: Callable[[Array, Array], Array] | Array,
+    half_width: float,
+    load: float | None,
+    coatings: Coatings,
+    substrate: Substrate,
+    friction: float = 0.0,
+    approach: float | None = None,
+    patches: int = 257,
+    tolerance: float = 1e-8,
+    max_iterations: int = 500,
+    conversion: str = "split",
+    hankel_points: int = 4096,
+    enlarge: int = 4,
+    estimate_uncertainty: bool = True,
+    threads: int = 1,
+) -> Solution:
+    """Press a rigid indenter of any shape into a coated half-space, over a fixed square.
+
+    profile : height of the indenter's surface above its lowest point [m], as z(x, y) of arrays x, y [m], or
+    as an (n, n) array at the centres of n x n patches that fill the square, n odd, in place of ``patches``.
+    half_width : half the side of the square [m]; no contact beyond it.  load [N] or approach [m], the
+    other None; the approach counts from the first touch.  The others as in ``solve``.
+
+    An ellipsoid x^2/2A + y^2/2B, a cone, a punch with a round edge, a measured surface are profiles. Unlike
+    the sphere's, the edge of their contact stays a staircase, where the pressure is of first order in the
+    patch size; contact_radius is that of the disc with the contact's area.
+
+    Raises ValueError for input without meaning, NotConverged when the iteration stops short.
+    """
+    began = time.perf_counter()
+    _check_control(load, approach)
+    check_positive(half_width=half_width)
+    body = _body(coatings, substrate, friction)
+    heights = None if callable(profile) else np.asarray(profile, dtype=float)
+    if heights is not None:
+        patches = heights.shape[0]
+        if heights.shape != (patches, patches) or not np.all(np.isfinite(heights)):
+            raise ValueError(f"profile of shape {heights.shape}; give finite heights on n x n patches, n odd")
+    numerics = Numerics(
+        patches=patches,
+        tolerance=tolerance,
+        max_iterations=max_iterations,
+        conversion=conversion,
+        hankel_points=hankel_points,
+        enlarge=enlarge,
+        edge_rounds=0,
+        threads=threads,
+    )
+
+    def gap(grid: Grid) -> Array:
+        if heights is not None:
+            z = grid.sample(heights, half_width)
+        else:
+            assert callable(profile)
+            z = np.asarray(profile(grid.x[:, None], grid.x[None, :]), dtype=float)
+            z = np.broadcast_to(z, (grid.n, grid.n))
+            if not np.all(np.isfinite(z)):
+                raise ValueError("profile(x, y) must return finite heights [m] all over the square")
+        return z - z.min()
+
+    indenter = Indenter(gap, load, approach, round=False)
+    solution = _refine(half_width, None, indenter, body, numerics, estimate_uncertainty, began)
+    if heights is None and _touches_rim(solution.patch_pressure):
+        raise NotConverged(
+            f"the contact reaches the rim of the square, half_width = {half_width:g} m; widen it, or give the "
+            "profile as an array if it has no surface beyond"
+        )
+    return solution
+
+
 def solve_prescribed(
     *,
     pressure: float | Callable[[Array], Array],
@@ -159,7 +232,7 @@ def solve_prescribed(
         if not np.isfinite(pressure):
             raise ValueError(f"pressure = {pressure:g}; give a finite one [Pa], or a function of r")
         pressure = partial(_uniform, float(pressure))
-    shape = profile.Prescribed(load_radius, pressure)
+    shape = edge_profile.Prescribed(load_radius, pressure)
 
     def level(n: int, wider: float, numerics: Numerics) -> Level:
         return _loaded(Grid(odd(wider * n), 2.04 * load_radius / n), shape, body, numerics)
@@ -186,7 +259,7 @@ def _uniform(value: float, r: Array) -> Array:
     return np.full(np.shape(r), value)
 
 
-def _loaded(grid: Grid, shape: profile.Prescribed, body: Body, numerics: Numerics) -> Level:
+def _loaded(grid: Grid, shape: edge_profile.Prescribed, body: Body, numerics: Numerics) -> Level:
     """Deflection under a prescribed pressure, as a contact that took no iteration."""
     found = contact.Contact.of_load(shape.pressure(grid.radius))
     level = Level(grid, found, shape, shape.load, 1)
@@ -274,7 +347,7 @@ def _press(grid: Grid, before: Level | None, indenter: Indenter, body: Body, num
             approach=indenter.approach,
             start=start,
             precondition=precondition,
-            scale=float(np.ptp(gap)),
+            scale=indenter.approach or float(np.ptp(gap)),
             tolerance=tolerance,
             max_iterations=numerics.max_iterations,
         )
@@ -308,7 +381,7 @@ def _press(grid: Grid, before: Level | None, indenter: Indenter, body: Body, num
     return Level(grid, found, shape, float(found.pressure.sum() * grid.d**2) + missing, convolutions)
 
 
-def _fit(grid: Grid, pressure: Array, body: Body, skip: float) -> profile.Profile | None:
+def _fit(grid: Grid, pressure: Array, body: Body, skip: float) -> edge_profile.Profile | None:
     """Profile of the pressure, None where it has none to within ``MISFIT`` of its peak."""
     c = grid.n // 2
     p, r = pressure[c:, c:], grid.radius[c:, c:]
@@ -318,7 +391,7 @@ def _fit(grid: Grid, pressure: Array, body: Body, skip: float) -> profile.Profil
     terms = int(min(terms, 16, a / grid.d / 2.5))
     if terms < 3:
         return None
-    shape = profile.fit(p, r, grid.d, radius=a, terms=terms, skip=skip)
+    shape = edge_profile.fit(p, r, grid.d, radius=a, terms=terms, skip=skip)
     used = r < shape.radius - skip * grid.d
     misfit = float(np.max(np.abs(p - shape.pressure(r)), where=used, initial=0))
     return shape if misfit < MISFIT * float(p.max()) else None
