@@ -1,21 +1,24 @@
 """Stress below a point force on the layered half-space.
 
-A normal force 1 and a tangential force f in +x at the origin give, with the response functions of unit traction
-in the frame of the wave vector (zz, Lz, LL, TT of `frf.stress_frf`; A = s_Tz, B = s_LT of the anti-plane part),
-S = (LL + TT)/2, D = (LL - TT)/2 and H_m the Hankel transform of order m,
+A normal force 1 and a tangential force f in +x at the origin give, with the response functions of unit
+traction in the frame of the wave vector (zz, Lz, LL, TT of `frf.stress_frf`; A = s_Tz, B = s_LT of the
+anti-plane part), S = (LL + TT)/2, D = (LL - TT)/2 and H_m the Hankel transform of order m,
 
-    s_zz = H0[zz] - f cos t H1[zz]                 s_xz = -cos t H1[Lz] - f (H0[Lz + A] - cos 2t H2[Lz - A]) / 2
-    s_xx + s_yy = 2 H0[S] - 2 f cos t H1[S]        s_yz = -sin t H1[Lz] + f sin 2t H2[Lz - A] / 2
+    s_zz = H0[zz] - f cos t H1[zz]
+    s_xz = -cos t H1[Lz] - f (H0[Lz + A] - cos 2t H2[Lz - A]) / 2
+    s_yz = -sin t H1[Lz] + f sin 2t H2[Lz - A] / 2
+    (s_xx + s_yy)/2 = H0[S] - f cos t H1[S]
     (s_xx - s_yy)/2 = -cos 2t H2[D] - f (cos t H1[D - B] - cos 3t H3[D + B]) / 2
     s_xy            = -sin 2t H2[D] - f (sin t H1[D - B] - sin 3t H3[D + B]) / 2
 
-(x, y) = r (cos t, sin t); the terms without f take the response to p = 1, those with f the response to T0 = 1, t = 1.
-Displacements follow the same pattern, with U = u_L and V = u_T (theory sheet, end of section 2.1 and section 5):
+(x, y) = r (cos t, sin t); the terms without f take the response to p = 1, those with f the response to
+T0 = 1, t = 1. Displacements follow the same pattern, with U = u_L and V = u_T (theory sheet, end of
+section 2.1 and section 5):
 
     u_z = H0[u_z] - f cos t H1[u_z]     u_x = -cos t H1[U] - f (H0[U + V] - cos 2t H2[U - V]) / 2
                                         u_y = -sin t H1[U] + f sin 2t H2[U - V] / 2
 
-Every radial function is tabulated once per depth over asinh(r / L), which is fair to r = 0 as to large r.
+Every radial function is tabulated once per depth over asinh(r / L), fair to r = 0 as to large r.
 """
 
 from collections.abc import Callable, Sequence
@@ -28,10 +31,17 @@ from scipy.interpolate import CubicSpline
 
 from .hankel import RADII, WAVENUMBERS, hankel
 
-__all__ = ["PointLoad", "displacement_below", "stress_below"]
+__all__ = [
+    "PointLoad",
+    "displacement_below",
+    "displacement_from_lines",
+    "stress_below",
+    "stress_from_lines",
+]
 
 Array = NDArray[Any]
 Response = Callable[..., Array]
+Field = Callable[[Array, Array], Array]
 
 _FIRST = int(np.searchsorted(RADII, 1e-2))  # the transform is not used below r = 0.01 L, see `hankel`
 _NODES = np.concatenate([[0.0], np.arcsinh(RADII[_FIRST:])])
@@ -67,20 +77,17 @@ def stress_below(
     substrate: tuple[float, float],
     friction: float,
     excess: bool = False,
-    smear: float = 0.0,
 ) -> list[PointLoad]:
     """Stress below a point force at each depth ``z`` of one layer.
 
     z : (nz,) [m].  scale : L [m] such that the response dies at least like exp(-k L).
     excess : leave out the homogeneous half-space of the first coating.
-    smear : side d [m] of a square over which the force is spread, to fourth order: exp(-(k d)^2 / 24).
     """
     k = WAVENUMBERS / scale
-    spread = np.exp(-((k * smear) ** 2) / 24)
 
     def response(load: str) -> Array:
         kwargs = {"coatings": coatings, "substrate": substrate, "load": load, "excess": excess}
-        return stress_frf(k, z, layer, **kwargs) * spread
+        return stress_frf(k, z, layer, **kwargs)
 
     zz, Lz, LL, TT = response("normal")
     columns = [_radial(F, m, scale) for F, m in ((zz, 0), ((LL + TT) / 2, 0), (Lz, 1), ((LL - TT) / 2, 2))]
@@ -103,15 +110,13 @@ def displacement_below(
     substrate: tuple[float, float],
     friction: float,
     excess: bool = False,
-    smear: float = 0.0,
 ) -> list[PointLoad]:
     """Displacement below a point force at each depth ``z`` of one layer; arguments as in `stress_below`."""
     k = WAVENUMBERS / scale
-    spread = np.exp(-((k * smear) ** 2) / 24)
 
     def response(load: str) -> Array:
         kwargs = {"coatings": coatings, "substrate": substrate, "load": load, "excess": excess}
-        return displacement_frf(k, z, layer, **kwargs) * spread
+        return displacement_frf(k, z, layer, **kwargs)
 
     uz, U = response("normal")
     columns = [_radial(uz, 0, scale, over_k=True), _radial(U, 1, scale, over_k=True)]
@@ -120,6 +125,39 @@ def displacement_below(
         (V,) = response("anti-plane")
         columns += [_radial(F, m, scale, over_k=True) for F, m in ((uz, 1), (U + V, 0), (U - V, 2))]
     return _tabulate(columns, scale, friction, _combine_displacement)
+
+
+def stress_from_lines(field: Field, reach: Array, friction: float) -> PointLoad:
+    """Radial tables of a point force away from it, from its stress on the two axes.
+
+    field(x, y) : xx, yy, zz, xy, xz, yz below a normal and below a tangential unit force, (2, 6, n).
+    reach : radii [m] of the table, increasing; the first is the unit of its scale.
+    """
+    zero = np.zeros_like(reach)
+    (xx, yy, zz, _, xz, _), (xx_t, yy_t, zz_t, _, xz_t, _) = field(reach, zero)
+    _, (_, _, _, xy_90, xz_90, _) = field(zero, reach)
+    columns = [zz, (xx + yy) / 2, -xz, (yy - xx) / 2]
+    if friction:
+        E_less_G, E_plus_G = yy_t - xx_t, -2 * xy_90
+        columns += [-zz_t, -(xx_t + yy_t) / 2, -xz_t - xz_90, xz_t - xz_90]
+        columns += [(E_plus_G + E_less_G) / 2, (E_plus_G - E_less_G) / 2]
+    return _outer(columns, reach, friction, _combine_stress)
+
+
+def displacement_from_lines(field: Field, reach: Array, friction: float) -> PointLoad:
+    """As `stress_from_lines`, from the displacements (2, 3, n)."""
+    zero = np.zeros_like(reach)
+    (ux, _, uz), (ux_t, _, uz_t) = field(reach, zero)
+    _, (ux_90, _, _) = field(zero, reach)
+    columns = [uz, -ux]
+    if friction:
+        columns += [-uz_t, -ux_t - ux_90, ux_t - ux_90]
+    return _outer(columns, reach, friction, _combine_displacement)
+
+
+def _outer(columns: list[Array], reach: Array, friction: float, combine: Callable) -> PointLoad:
+    table = np.stack(columns, axis=-1)
+    return PointLoad(CubicSpline(np.arcsinh(reach / reach[0]), table), float(reach[0]), friction, combine)
 
 
 def _tabulate(columns: list[Array], scale: float, friction: float, combine: Callable) -> list[PointLoad]:

@@ -1,41 +1,51 @@
-"""Stress below the patches of a loaded grid.
+"""Stress below a loaded grid.
 
-Each patch carries the pressure p and the traction q = f p on the solid in +x. At a depth z the field is a discrete
-convolution of p with the influence of one patch, which is found in one of two ways (d the patch, L the scale on
-which the response of the solid dies, exp(-k L)):
+The pressure between patch centres is the cubic convolution of its values there, q = f p. At a depth z the
+field is then a discrete convolution of the nodal forces with the influence of one node, found in one of two
+ways (d the patch, L the scale on which the response of the solid dies, exp(-k L)):
 
-- z >= 3 d. The patch is a point force: the lattice sum of a function of scale z differs from the sum over patches by
-  its aliases, exp(-2 pi z/d), once the force is smeared to fourth order. Deeper down the forces are first
-  gathered on a lattice of spacing up to z/8 with the weights of quintic interpolation, which keep moments up to five.
-- z < 3 d. In the first coating (or the uncoated solid) the rectangle on a homogeneous half-space of that material in
-  closed form, with the rest of the response, of scale 2h - z, averaged over the patch by Gauss points.
-  In a deeper layer the whole response so, its scale being z >= h.
+- z >= 3 d. A node is a point force, tabulated for the layered solid: the lattice sum of a function of scale z
+  differs from an integral by its aliases, exp(-2 pi z/d). Deeper down the forces are first gathered on
+  lattices of spacing up to z/8.
+- z < 3 d. In the first coating (or the uncoated solid) the closed forms of the homogeneous half-space of
+  that material, and the rest of the response, which is smooth on the scale 2h - z >= h, from tables. In a
+  deeper layer the whole response from tables of scale z >= h.
 
-A constant pressure per patch has steps of p' d, and its stress near the surface has their logarithms, but at
-the patch centres both are of second order. Close to the surface the stress is therefore evaluated below
-patch centres, and interpolated between them by cubics.
+Patches of constant pressure would do below, but not near the surface: the steps of p put sigma_xx of a
+sliding load off by p' d even at the patch centres. With p continuous the field is smooth enough to be found
+below patch centres only, and interpolated between them by cubics.
 
-Source: source paper, eqs. 1-4; theory sheet, section 3.2. Axes: z down; tension positive; SI units.
+Sources: source paper, eqs. 1-4; theory sheet, section 3.2. Axes: z down; tension positive; SI units.
 """
 
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.fft import irfft2, next_fast_len, rfft2
 
-from .pointload import PointLoad, displacement_below, stress_below
+from .lattice import Influence, Lattice, at_points, between_sites, influence_table
+from .node import near_influence
+from .pointload import (
+    PointLoad,
+    displacement_below,
+    displacement_from_lines,
+    stress_below,
+    stress_from_lines,
+)
 
-__all__ = ["displacement", "stress"]
+__all__ = ["StressPlane", "displacement", "stress", "stress_plane"]
 
 Array = NDArray[Any]
-Influence = Callable[[Array, Array], Array]
+Field = Callable[..., Array]
 Coatings = Sequence[tuple[float, float, float]]
 
-SHALLOW = 3.0  # patches; above this depth a patch is not yet a point force: aliases exp(-6 pi) = 7e-9
+SHALLOW = 3.0  # patches; above this depth a node is not yet a point force: aliases exp(-6 pi) = 7e-9
 COARSE = 8.0  # depth over lattice spacing; the sixth-order interpolation then errs by 1e-5
-PAIRS = 200_000  # points times forces held at a time
+SIX = ((0, 1, 2, 0, 0, 1), (0, 1, 2, 1, 2, 2))  # xx, yy, zz, xy, xz, yz
 
 
 def stress(
@@ -50,42 +60,19 @@ def stress(
     friction: float,
     coatings: Coatings,
     substrate: tuple[float, float],
-    rectangle: tuple[Callable[..., Array], Callable[..., Array]],
-    stress_frf: Callable[..., Array],
+    rectangle: tuple[Field, Field],
+    stress_frf: Field,
 ) -> Array:
     """Stress at points (x, y, z) of the layers named, under pressure p with traction q = f p in +x.
 
     x, y, z : points [m], broadcast.  layer : which side is meant at an interface, integers, broadcast.
-    pressure : p [Pa], (nx, ny), constant on patches centred at grid_x, grid_y [m], which are uniform.
+    pressure : mean of p over each patch [Pa], (nx, ny), centred at grid_x, grid_y [m], which are uniform.
     rectangle : normal and tangential stress of a uniformly loaded rectangle, as in `halfspace`.
     stress_frf : response functions, as in `frf`.
     Returns sigma[i, j, ...] [Pa], shape (3, 3) + points.
     """
-
-    def below(z: Array, layer: int, scale: float, excess: bool, smear: float) -> list[PointLoad]:
-        return stress_below(
-            z,
-            layer,
-            scale,
-            stress_frf=stress_frf,
-            coatings=coatings,
-            substrate=substrate,
-            friction=friction,
-            excess=excess,
-            smear=smear,
-        )
-
-    nu = (*coatings, substrate)[0][1]
-    normal, tangential = rectangle
-
-    def closed(X: Array, Y: Array, z: float, dx: float, dy: float) -> Array:
-        s = normal(X, Y, z, dx, dy, nu)
-        if friction:
-            s = s + friction * tangential(X, Y, z, dx, dy, nu)
-        return s[(0, 1, 2, 0, 0, 1), (0, 1, 2, 1, 2, 2)]
-
-    parts = _evaluate(x, y, z, layer, grid_x, grid_y, pressure, coatings, below, closed, odd_in_y=(3, 5))
-    xx, yy, zz, xy, xz, yz = parts
+    body = _stress_body(friction, coatings, substrate, rectangle, stress_frf)
+    xx, yy, zz, xy, xz, yz = _evaluate(x, y, z, layer, _nodal_forces(grid_x, grid_y, pressure), body)
     return np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
 
 
@@ -101,233 +88,206 @@ def displacement(
     friction: float,
     coatings: Coatings,
     substrate: tuple[float, float],
-    rectangle: tuple[Callable[..., Array], Callable[..., Array]],
-    displacement_frf: Callable[..., Array],
+    rectangle: tuple[Field, Field],
+    displacement_frf: Field,
 ) -> Array:
-    """Displacement at points (x, y, z), arguments as in `stress` with the displacements of the rectangle.
+    """Displacement at points (x, y, z); arguments as in `stress`, ``rectangle`` the two displacements.
 
     Returns u[i, ...] [m], shape (3,) + points; u_z into the solid.
     """
-
-    def below(z: Array, layer: int, scale: float, excess: bool, smear: float) -> list[PointLoad]:
-        return displacement_below(
-            z,
-            layer,
-            scale,
-            displacement_frf=displacement_frf,
-            coatings=coatings,
-            substrate=substrate,
-            friction=friction,
-            excess=excess,
-            smear=smear,
-        )
-
     E, nu = (*coatings, substrate)[0][:2]
-    normal, tangential = rectangle
+    shared: dict[str, Any] = {"coatings": coatings, "substrate": substrate, "friction": friction}
+    body = _Body(
+        coatings,
+        partial(displacement_below, displacement_frf=displacement_frf, **shared),
+        partial(_closed, rectangle, friction, (E, nu), (...,)),
+        displacement_from_lines,
+        friction,
+        odd_in_y=(1,),
+    )
+    return _evaluate(x, y, z, layer, _nodal_forces(grid_x, grid_y, pressure), body)
 
-    def closed(X: Array, Y: Array, z: float, dx: float, dy: float) -> Array:
-        u = normal(X, Y, z, dx, dy, E, nu)
-        return u + friction * tangential(X, Y, z, dx, dy, E, nu) if friction else u
 
-    return _evaluate(x, y, z, layer, grid_x, grid_y, pressure, coatings, below, closed, odd_in_y=(1,))
+@dataclass(frozen=True, eq=False)
+class StressPlane:
+    """Six stresses at one depth below every patch centre, for any pressure on the grid.
+
+    spectrum : transformed influence of a node, (6, mx, my/2 + 1).  size : (mx, my).  shape : (nx, ny).
+    """
+
+    spectrum: Array
+    size: tuple[int, int]
+    shape: tuple[int, int]
+    area: float
+
+    def __call__(self, pressure: Array, *, threads: int = 1) -> Array:
+        """Stresses xx, yy, zz, xy, xz, yz [Pa], (6, nx, ny), of pressures [Pa], (nx, ny): seven FFTs."""
+        if pressure.shape != self.shape:
+            raise ValueError(f"pressure has shape {pressure.shape}; this plane was set up for {self.shape}")
+        nx, ny = self.shape
+        force = rfft2(_samples(pressure) * self.area, self.size, workers=threads)
+        out = np.empty((6, nx, ny))
+        for component, part in zip(out, self.spectrum, strict=True):
+            component[:] = irfft2(part * force, self.size, workers=threads)[
+                nx + 1 : 2 * nx + 1, ny + 1 : 2 * ny + 1
+            ]
+        return out
 
 
-def _evaluate(x, y, z, layer, grid_x, grid_y, pressure, coatings, below, closed, odd_in_y) -> Array:
+def stress_plane(
+    z: float,
+    layer: int,
+    *,
+    grid_x: Array,
+    grid_y: Array,
+    friction: float,
+    coatings: Coatings,
+    substrate: tuple[float, float],
+    rectangle: tuple[Field, Field],
+    stress_frf: Field,
+) -> StressPlane:
+    """Set up the convolution for all patch centres at depth z [m]; arguments as in `stress`."""
+    body = _stress_body(friction, coatings, substrate, rectangle, stress_frf)
+    nx, ny = len(grid_x), len(grid_y)
+    unit = _nodal_forces(grid_x, grid_y, np.ones((nx, ny)))
+    ((_, shallow, tables),) = _tables(np.array([z]), layer, max(unit.dx, unit.dy), body)
+    influence = _near(tables[0], layer == 0, z, unit, body) if shallow else _as_points(tables[0], unit)
+    # forces reach one patch beyond the grid, see `_samples`
+    table = influence_table(influence, np.arange(-nx, nx + 1), np.arange(-ny, ny + 1), body.odd_in_y)
+    size = (next_fast_len(2 * nx + 1, real=True), next_fast_len(2 * ny + 1, real=True))
+    return StressPlane(rfft2(table, size), size, (nx, ny), unit.dx * unit.dy)
+
+
+@dataclass(frozen=True, eq=False)
+class _Body:
+    """What the sums need to know of the solid and of the field that is asked for.
+
+    below(z, layer, scale, excess=) : point-load tables at depths z.
+    closed(X, Y, z, dx, dy) : field of unit forces on a rectangle, normal then tangential, (2, n, ...).
+    from_lines : point-load table of the same away from the force.  odd_in_y : components odd in y.
+    """
+
+    coatings: Coatings
+    below: Callable[..., list[PointLoad]]
+    closed: Field
+    from_lines: Callable[..., PointLoad]
+    friction: float
+    odd_in_y: tuple[int, ...]
+
+
+def _stress_body(friction, coatings, substrate, rectangle, stress_frf) -> _Body:
+    shared: dict[str, Any] = {"coatings": coatings, "substrate": substrate, "friction": friction}
+    return _Body(
+        coatings,
+        partial(stress_below, stress_frf=stress_frf, **shared),
+        partial(_closed, rectangle, friction, (*coatings, substrate)[0][1:2], SIX),
+        stress_from_lines,
+        friction,
+        odd_in_y=(3, 5),
+    )
+
+
+def _closed(rectangle, friction, moduli, components, X, Y, z: float, dx: float, dy: float) -> Array:
+    """Fields of unit forces on a rectangle of the uncoated solid, normal and tangential, (2, n, ...)."""
+    used = rectangle if friction else rectangle[:1]
+    fields = [field(X, Y, z, dx, dy, *moduli)[components] / (dx * dy) for field in used]
+    return np.array(fields if friction else [*fields, np.zeros_like(fields[0])])
+
+
+def _nodal_forces(grid_x: Array, grid_y: Array, pressure: Array) -> Lattice:
+    """Forces of the loaded box of the grid."""
+    grid_x, grid_y = np.asarray(grid_x, dtype=float), np.asarray(grid_y, dtype=float)
+    dx = float(grid_x[-1] - grid_x[0]) / (grid_x.size - 1)
+    dy = float(grid_y[-1] - grid_y[0]) / (grid_y.size - 1)
+    rows, columns = np.flatnonzero(pressure.any(axis=1)), np.flatnonzero(pressure.any(axis=0))
+    if not rows.size:
+        rows = columns = np.array([0])
+    box = pressure[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1]
+    return Lattice(grid_x[rows[0]] - dx, grid_y[columns[0]] - dy, dx, dy, _samples(box) * (dx * dy))
+
+
+def _samples(mean: Array) -> Array:
+    """Values of p at the centres from its means over patches, mean = p + (d^2/24) lap p; one patch wider.
+
+    Written as a difference the correction keeps the load.
+    """
+    padded = np.pad(mean, 2)
+    middle = padded[1:-1, 1:-1]
+    across = padded[2:, 1:-1] + padded[:-2, 1:-1] + padded[1:-1, 2:] + padded[1:-1, :-2]
+    return middle - (across - 4 * middle) / 24
+
+
+def _evaluate(x, y, z, layer, fine: Lattice, body: _Body) -> Array:
     """Field components (n,) + points, depth by depth."""
     x, y, z, layer = np.broadcast_arrays(*(np.asarray(v) for v in (x, y, z, layer)))
     shape = z.shape
     x, y, z, layer = (v.ravel() for v in (x, y, z, layer))
-    levels = _lattices(grid_x, grid_y, pressure)
-    dx, dy = levels[0].dx, levels[0].dy
-    d = max(dx, dy)
-    out: Array | None = None
+    d = max(fine.dx, fine.dy)
+    lattices = [fine]
+    while max(lattices[-1].force.shape) > 24:
+        lattices.append(lattices[-1].coarser())
+    parts: list[tuple[Array, Array]] = []
     for number in np.unique(layer):
-        depths, which = np.unique(np.where(layer == number, z, np.nan), return_inverse=True)
-        depths = depths[np.isfinite(depths)]
-        for start, stop, scale, shallow in _groups(depths, int(number), d, coatings):
-            zs = depths[start:stop]
-            excess = shallow and number == 0
-            smear = 0.0 if shallow else np.sqrt((dx**2 + dy**2) / 2)
-            kernels: list[Any] = [None] * len(zs)
-            if not (excess and not coatings):
-                kernels = below(zs, int(number), scale, excess, smear)
-            for i, (depth, kernel) in enumerate(zip(zs, kernels, strict=True)):
-                at = np.flatnonzero((which == start + i) & (layer == number))
+        here = np.flatnonzero(layer == number)
+        depths, which = np.unique(z[here], return_inverse=True)
+        for start, shallow, tables in _tables(depths, int(number), d, body):
+            for i, table in enumerate(tables, start):
+                at, depth = here[which == i], float(depths[i])
                 if shallow:
-                    influence = _of_patch(kernel, closed if excess else None, depth, dx, dy, scale)
-                    part = _between_centres(x[at], y[at], levels[0], influence, odd_in_y, 4)
+                    influence = _near(table, number == 0, depth, fine, body)
+                    field = between_sites(x[at], y[at], fine, influence, body.odd_in_y, order=4)
                 else:
-                    level = int(np.clip(np.log2(max(depth / (COARSE * d), 1)), 0, len(levels) - 1))
-                    part = _below_forces(x[at], y[at], levels[level], kernel, odd_in_y)
-                if out is None:
-                    out = np.zeros((len(part), z.size))
-                out[:, at] = part
-    assert out is not None
+                    level = int(np.clip(np.log2(max(depth / (COARSE * d), 1)), 0, len(lattices) - 1))
+                    field = at_points(x[at], y[at], lattices[level], table, body.odd_in_y)
+                parts.append((at, field))
+    out = np.zeros((len(parts[0][1]) if parts else 0, z.size))
+    for at, field in parts:
+        out[:, at] = field
     return out.reshape(-1, *shape)
 
 
-def _groups(depths: Array, layer: int, d: float, coatings: Coatings) -> list[tuple[int, int, float, bool]]:
-    """Runs of depths that share a table of wavenumbers: first, last + 1, scale L, whether shallow."""
-    runs: list[tuple[int, int, float, bool]] = []
-    for i, z in enumerate(depths):
+def _tables(depths: Array, layer: int, d: float, body: _Body):
+    """Point-load tables by runs of depths that share a ladder of wavenumbers: first index, shallow, tables.
+
+    Shallow in the first layer, the tables hold what the homogeneous solid lacks: nothing, None, if uncoated.
+    """
+    coatings = body.coatings
+    keys = []
+    for z in depths:
         shallow = bool(z < SHALLOW * d)
         reach = z
         if shallow and layer == 0:
             reach = 2 * coatings[0][2] - z if coatings else d
-        scale = 2.0 ** np.floor(np.log2(reach))
-        if runs and runs[-1][2:] == (scale, shallow) and i - runs[-1][0] < 64:
-            runs[-1] = (runs[-1][0], i + 1, scale, shallow)
+        keys.append((2.0 ** np.floor(np.log2(reach)), shallow))
+    start = 0
+    while start < len(keys):
+        scale, shallow = keys[start]
+        stop = start + 1
+        while stop < min(len(keys), start + 64) and keys[stop] == keys[start]:
+            stop += 1
+        excess = shallow and layer == 0
+        if excess and not coatings:
+            yield start, shallow, [None] * (stop - start)
         else:
-            runs.append((i, i + 1, scale, shallow))
-    return runs
+            yield start, shallow, body.below(depths[start:stop], layer, scale, excess=excess)
+        start = stop
 
 
-class _Lattice:
-    """Forces [N] on a uniform lattice: x = x0 + i dx, y = y0 + j dy."""
+def _near(table: PointLoad | None, first: bool, z: float, lattice: Lattice, body: _Body) -> Influence:
+    """Influence of a node of the grid at a shallow depth."""
+    dx, dy = lattice.dx, lattice.dy
 
-    def __init__(self, x0: float, y0: float, dx: float, dy: float, force: Array):
-        self.x0, self.y0, self.dx, self.dy, self.force = x0, y0, dx, dy, force
+    def rectangle(X: Array, Y: Array) -> Array:
+        normal, tangential = body.closed(X, Y, z, dx, dy)
+        return normal + body.friction * tangential
 
-    def coarser(self) -> "_Lattice":
-        """The same forces on twice the spacing, by the adjoint of quintic interpolation."""
-        force = _gather(_gather(self.force).T).T
-        return _Lattice(self.x0 - 6 * self.dx, self.y0 - 6 * self.dy, 2 * self.dx, 2 * self.dy, force)
-
-
-def _gather(force: Array) -> Array:
-    """Every second row takes over the forces of all, moments up to five kept; starts 6 rows before the first."""
-    n = force.shape[0]
-    padded = np.zeros((n + 24, force.shape[1]))
-    padded[11 : 11 + n] = force
-    count = (n + 1) // 2 + 6
-    weights = {0: 256, 1: 150, 3: -25, 5: 3}
-    out = np.zeros((count, force.shape[1]))
-    for offset in (-5, -3, -1, 0, 1, 3, 5):
-        begin = 5 + offset
-        out += weights[abs(offset)] / 256 * padded[begin : begin + 2 * count : 2]
-    return out
+    if not first:
+        return near_influence(None, None, table, dx, dy, body.odd_in_y)
+    # a rectangle of d/50 is a point from some patches on
+    reach = 6 * max(dx, dy) * np.exp(np.arange(0, 8.5, 0.02))
+    outside = body.from_lines(partial(body.closed, z=z, dx=dx / 50, dy=dy / 50), reach, body.friction)
+    return near_influence(rectangle, outside, table, dx, dy, body.odd_in_y)
 
 
-def _lattices(grid_x: Array, grid_y: Array, pressure: Array) -> list[_Lattice]:
-    """The loaded box of the grid as point forces, then coarser and coarser."""
-    grid_x, grid_y = np.asarray(grid_x, dtype=float), np.asarray(grid_y, dtype=float)
-    dx = (grid_x[-1] - grid_x[0]) / (grid_x.size - 1)
-    dy = (grid_y[-1] - grid_y[0]) / (grid_y.size - 1)
-    rows, columns = np.flatnonzero(pressure.any(axis=1)), np.flatnonzero(pressure.any(axis=0))
-    if not rows.size:
-        rows = columns = np.array([0])
-    box = slice(rows[0], rows[-1] + 1), slice(columns[0], columns[-1] + 1)
-    levels = [_Lattice(grid_x[rows[0]], grid_y[columns[0]], dx, dy, pressure[box] * (dx * dy))]
-    while max(levels[-1].force.shape) > 24:
-        levels.append(levels[-1].coarser())
-    return levels
-
-
-def _of_patch(kernel, closed, z: float, dx: float, dy: float, scale: float) -> Influence:
-    """Influence of unit force on a patch close by: closed form where there is one, the rest by Gauss points."""
-    d = max(dx, dy)
-    # nearest singularity of the kernel at distance L, half a patch d/2: the rule gains L/d digits a point
-    fine = int(np.clip(np.ceil(1 + 4.5 * d / scale), 2, 12))
-
-    def influence(X: Array, Y: Array) -> Array:
-        total = 0.0
-        if closed is not None:
-            total = closed(X, Y, z, dx, dy) / (dx * dy)
-        if kernel is None:
-            return total
-        near = np.maximum(np.abs(X), np.abs(Y)) < 6.5 * d
-        rest = np.zeros_like(_averaged(kernel, X, Y, dx, dy, 2)) if fine == 2 else None
-        if rest is None:
-            rest = _averaged(kernel, X, Y, dx, dy, 2)
-            rest[:, near] = _averaged(kernel, X[near], Y[near], dx, dy, fine)
-        else:
-            rest = _averaged(kernel, X, Y, dx, dy, 2)
-        return total + rest
-
-    return influence
-
-
-def _averaged(kernel: Influence, X: Array, Y: Array, dx: float, dy: float, n: int) -> Array:
-    """Mean of a kernel over the patch by n x n Gauss points."""
-    s, w = np.polynomial.legendre.leggauss(n)
-    total: Array | float = 0.0
-    for si, wi in zip(s, w, strict=True):
-        for sj, wj in zip(s, w, strict=True):
-            total = total + wi * wj / 4 * kernel(X - si * dx / 2, Y - sj * dy / 2)
-    return np.asarray(total)
-
-
-def _below_forces(x: Array, y: Array, lattice: _Lattice, kernel: PointLoad, odd_in_y) -> Array:
-    """Sum over the forces at points of one depth: directly for few points, else on the lattice and between."""
-    i, j = np.nonzero(lattice.force)
-    if x.size > 64:
-        return _between_centres(x, y, lattice, kernel, odd_in_y, 6)
-    X, Y, force = lattice.x0 + i * lattice.dx, lattice.y0 + j * lattice.dy, lattice.force[i, j]
-    step = max(1, PAIRS // max(force.size, 1))
-    parts = []
-    for begin in range(0, x.size, step):
-        xs, ys = x[begin : begin + step, None], y[begin : begin + step, None]
-        parts.append(kernel(xs - X, ys - Y) @ force)
-    return np.concatenate(parts, axis=1)
-
-
-def _between_centres(x: Array, y: Array, lattice: _Lattice, influence: Influence, odd_in_y, order: int) -> Array:
-    """Field below the lattice sites around each point, interpolated by polynomials of ``order`` sites."""
-    i, wx = _stencil((x - lattice.x0) / lattice.dx, order)
-    j, wy = _stencil((y - lattice.y0) / lattice.dy, order)
-    weight = wx[:, :, None] * wy[:, None, :]
-    point, a, b = np.nonzero(weight)
-    sites, inverse = np.unique(np.stack([i[point, a], j[point, b]]), axis=1, return_inverse=True)
-    field = _at_sites(sites, lattice, influence, odd_in_y)
-    out = np.zeros((len(field), x.size))
-    contribution = field[:, inverse.ravel()] * weight[point, a, b]
-    for component, part in zip(out, contribution, strict=True):
-        component[:] = np.bincount(point, part, minlength=x.size)
-    return out
-
-
-def _stencil(s: Array, order: int) -> tuple[Array, Array]:
-    """Sites (n, order) around positions ``s``, and Lagrange weights; one site alone when ``s`` is on it."""
-    nearest = np.round(s)
-    s = np.where(np.abs(s - nearest) < 1e-7, nearest, s)
-    first = np.floor(s).astype(int) - (order // 2 - 1)
-    sites = first[:, None] + np.arange(order)
-    t = s - first
-    weights = np.ones((s.size, order))
-    for a in range(order):
-        for b in range(order):
-            if a != b:
-                weights[:, a] *= (t - b) / (a - b)
-    return sites, weights
-
-
-def _at_sites(sites: Array, lattice: _Lattice, influence: Influence, odd_in_y) -> Array:
-    """Discrete convolution at lattice sites (2, n): term by term for a few, by FFT for many."""
-    force = lattice.force
-    low, high = sites.min(axis=1), sites.max(axis=1)
-    # offsets site - force, from the least to the greatest
-    m = np.arange(low[0] - (force.shape[0] - 1), high[0] + 1)
-    n = np.arange(low[1] - (force.shape[1] - 1), high[1] + 1)
-    table = _table(influence, m * lattice.dx, n, lattice.dy, odd_in_y)
-    if sites.shape[1] <= 32:
-        out = np.empty((len(table), sites.shape[1]))
-        flipped = force[::-1, ::-1]
-        for c, (i, j) in enumerate((sites - low[:, None]).T):
-            window = table[:, i : i + force.shape[0], j : j + force.shape[1]]
-            out[:, c] = np.tensordot(window, flipped, 2)
-        return out
-    size = (next_fast_len(m.size, real=True), next_fast_len(n.size, real=True))
-    spectrum = rfft2(force, size)
-    begin = sites - low[:, None] + np.array(force.shape)[:, None] - 1
-    return np.array([irfft2(rfft2(part, size) * spectrum, size)[begin[0], begin[1]] for part in table])
-
-
-def _table(influence: Influence, X: Array, n: Array, dy: float, odd_in_y) -> Array:
-    """Influence at all offsets, computed for y >= 0 and mirrored."""
-    distinct, where = np.unique(np.abs(n), return_inverse=True)
-    XX, YY = np.meshgrid(X, distinct * dy, indexing="ij")
-    half = influence(XX.ravel(), YY.ravel()).reshape(-1, *XX.shape)
-    table = half[:, :, where]
-    for component in odd_in_y:
-        table[component] *= np.where(n < 0, -1.0, 1.0)
-    return table
+def _as_points(table: PointLoad, lattice: Lattice) -> Influence:
+    return lambda m, n: table(m * lattice.dx, n * lattice.dy)
