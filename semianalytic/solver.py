@@ -195,8 +195,8 @@ def indent(
     solution = _refine(half_width, None, indenter, body, numerics, estimate_uncertainty, began)
     if heights is None and _touches_rim(solution.patch_pressure):
         raise NotConverged(
-            f"the contact reaches the rim of the square, half_width = {half_width:g} m; widen it, or give the "
-            "profile as an array if it has no surface beyond"
+            f"the contact reaches the rim of the square, half_width = {half_width:g} m; widen it, or give "
+            "the profile as an array if it has no surface beyond"
         )
     return solution
 
