@@ -15,7 +15,7 @@ from verification.run import run
 from verification.verdict import Outcome
 
 CASE = b"""
-title = "Two coatings"
+title = "One coating"
 [problem]
 radius = 10e-3
 load = 20
@@ -23,10 +23,6 @@ substrate = { E = 210e9, nu = 0.3 }
 [[problem.coatings]]
 E = 420e9
 nu = 0.25
-thickness_over_a_h = 0.5
-[[problem.coatings]]
-E = 100e9
-nu = 0.35
 thickness_over_a_h = 0.5
 """
 
@@ -59,7 +55,7 @@ def verdicts(result, source):
 def test_sources_that_are_the_same_agree_in_every_claim(case):
     result = run(case, sources())
     assert result.outcome is Outcome.AGREES
-    assert len(result.verdicts) == len(case.claims) == 3 * (3 + 3 + 2 + 4 * 4)
+    assert len(result.verdicts) == len(case.claims) == 3 * (3 + 3 + 2 + 4 * 2)
 
 
 def test_source_that_raises_is_no_result_with_its_sentence_and_the_others_go_on(case):

@@ -1,0 +1,49 @@
+"""What a newcomer types: the README's lines, the pinned versions, what continuous integration runs."""
+
+import re
+import tomllib
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+PINNED = [line for line in (ROOT / "constraints.txt").read_text().splitlines() if line]
+
+
+def test_continuous_integration_runs_the_test_line_of_the_readme():
+    lines = [
+        line for line in (ROOT / "README.md").read_text().splitlines() if ".venv/bin/pytest -n 2" in line
+    ]
+    assert len(lines) == 1
+    assert lines[0] in (ROOT / ".ci" / "run").read_text().splitlines()
+
+
+def test_lock_constraints_and_uv_pin_the_same_versions():
+    lock = (ROOT / "requirements.lock").read_text()
+    locked = [
+        re.sub(r" \\$", "", line) for line in lock.splitlines() if "==" in line and not line.startswith(" ")
+    ]
+    assert locked == PINNED
+    pyproject = tomllib.loads((ROOT / "pyproject.toml").read_text())
+    assert [line.replace("'", '"') for line in pyproject["tool"]["uv"]["constraint-dependencies"]] == [
+        line.replace("'", '"') for line in PINNED
+    ]
+
+
+def test_every_dependency_is_pinned():
+    pyproject = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
+    asked = pyproject["dependencies"] + [
+        d for extra in pyproject["optional-dependencies"].values() for d in extra
+    ]
+    names = {re.split(r"[=<>;\[ ]", line)[0] for line in PINNED}
+    assert {re.split(r"[=<>;\[ ]", dependency)[0] for dependency in asked} <= names
+
+
+def test_nothing_names_a_registry_or_a_path_of_one_machine():
+    for path in (
+        ROOT / "requirements.lock",
+        ROOT / "constraints.txt",
+        ROOT / "pyproject.toml",
+        ROOT / "README.md",
+    ):
+        assert not re.search(r"pypi\.org|pythonhosted|file://|index-url|/opt/|/root/", path.read_text()), (
+            path.name
+        )
