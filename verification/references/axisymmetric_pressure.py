@@ -13,7 +13,6 @@ import numpy as np
 from numpy.polynomial import legendre
 from numpy.typing import ArrayLike, NDArray
 from scipy.optimize import minimize_scalar
-from scipy.special import spherical_jn
 
 __all__ = ["AbelPressure"]
 
@@ -65,10 +64,8 @@ class AbelPressure:
 
     def transform(self, k: Array) -> Array:
         """phat(k) [N]: int_0^1 P_2n(s) cos(ks) ds = (-1)^n j_2n(k)."""
-        total = np.zeros_like(k)
-        for n, c in enumerate(self.c):
-            total += c * (-1) ** n * spherical_jn(2 * n, k * self.a)
-        return self.a * total
+        signed = self.c * (-1.0) ** np.arange(self.c.size)
+        return self.a * (signed @ _even_spherical_bessel(self.c.size, k * self.a))
 
     def bessel_integral(self, order: int, r: Array) -> Array:
         """int_0^inf phat(k) J_order(kr) k dk [Pa] for odd ``order``; shape of ``r``.
@@ -109,3 +106,43 @@ class AbelPressure:
         safe = np.where(small, 1.0, s)
         curvature = legendre.legval(0.0, legendre.legder(slope)) if slope.size > 1 else 0.0
         return np.where(small, curvature, legendre.legval(safe, slope) / safe) / self.a**2
+
+
+def _even_spherical_bessel(count: int, x: Array) -> Array:
+    """j_0, j_2, ... j_2(count-1) of ``x`` > 0, shape (count,) + x.shape; all orders from one recurrence.
+
+    j_{n+1} = (2n+1)/x j_n - j_{n-1}, upwards where x exceeds every order, downwards (Miller) elsewhere.
+    """
+    top = 2 * count
+    found = np.empty((count, *x.shape))
+    up = x > top
+    far = x[up]
+    below, here = np.sin(far) / far, np.sin(far) / far**2 - np.cos(far) / far
+    for n in range(top):
+        if n % 2 == 0:
+            found[n // 2][up] = below
+        below, here = here, (2 * n + 3) / far * here - below
+    near = np.maximum(x[~up], 1e-8)
+    above, here = np.zeros_like(near), np.full_like(near, 1e-280)
+    scratch = np.zeros((count, near.size))
+    # 40 orders above the largest argument the start is forgotten to rounding.
+    for n in range(top + 40, -1, -1):
+        if n % 2 == 0 and n < top:
+            scratch[n // 2] = here
+        if n:
+            above, here = here, (2 * n + 1) / near * here - above
+            large = np.abs(here) > 1e200
+            above[large], here[large] = above[large] * 1e-250, here[large] * 1e-250
+            scratch[:, large] *= 1e-250
+    # j_0 vanishes at multiples of pi, where j_1 does not: normalise by whichever is larger.
+    j0, j1 = (
+        np.sin(near) / near,
+        np.where(near > 1e-3, np.sin(near) / near**2 - np.cos(near) / near, near / 3),
+    )
+    ratio = np.where(np.abs(j0) >= np.abs(j1), j0 / _or_one(here), j1 / _or_one(above))
+    found[:, ~up] = scratch * ratio
+    return found
+
+
+def _or_one(values: Array) -> Array:
+    return np.where(values == 0, 1.0, values)
