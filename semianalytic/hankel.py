@@ -8,7 +8,7 @@ be smooth at k = 0. What it does there, F_0 + F_1 k, is taken off first in close
     int_0^inf e^{-kL} J_m(k r) dk = t^m / rho,     rho = sqrt(r^2 + L^2),   t = (rho - L) / r,
 
 with its derivatives by L, because the logarithmic grid has to end somewhere above k = 0: a rest of order
-k^3 then leaves errors of 1e-9 of the largest value, weighted with (1 + r/L)^2, over 0.01 < r/L < 1000.
+k^3 then leaves errors of 2e-8 of the largest value, weighted with (1 + r/L)^2, over 0.01 < r/L < 1000.
 
 Sources
 -------

@@ -171,7 +171,10 @@ def _radial(F: Array, order: int, scale: float, *, over_k: bool = False) -> Arra
     off_axis = hankel(F, order, scale, over_k=over_k)[:, _FIRST:]
     axis = np.zeros((len(F), 1))
     if order == 0:  # a trapezoidal rule in log k, spectrally accurate
-        weight = np.log(WAVENUMBERS[1] / WAVENUMBERS[0]) * (WAVENUMBERS / scale) ** (1 if over_k else 2)
+        power = 1 if over_k else 2
+        k = WAVENUMBERS / scale
+        weight = np.log(k[1] / k[0]) * k**power
+        weight[0] = weight[0] / 2 + k[0] ** power / power  # and what lies below the first wavenumber
         axis[:, 0] = F @ weight / (2 * np.pi)
     return np.concatenate([axis, off_axis], axis=1)
 
