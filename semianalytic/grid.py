@@ -56,16 +56,25 @@ def odd(n: float) -> int:
     return max(3, 2 * int(n // 2) + 1)
 
 
-def carry_over(pressure: Array, source: Grid, target: Grid) -> Array:
-    """Pressure of one grid as a first guess on another.
+def carry_over(pressure: Array, gap: Array, source: Grid, target: Grid, E_star: float) -> Array:
+    """Pressure of one grid as a first guess on another, its contact edge between the patches.
 
-    p falls as the square root of the distance to the contact edge, so p^2 is what interpolates well.
+    At the edge of a contact p = K sqrt(s) inside, and outside the gap opens as g = 4 K s^(3/2) / (3 E*),
+    s the distance. p^2 inside and minus K^2 s outside is therefore smooth across the edge and is what is
+    interpolated; K is taken as one for the whole edge.
 
-    Returns p [Pa] on the target, shape (n, n); zero outside the source.
+    pressure [Pa], gap [m] : on the source.  E_star [Pa].  Returns p [Pa] on the target, (n, n); 0 beyond.
     """
-    square = RectBivariateSpline(source.x, source.x, pressure**2, kx=1, ky=1)
+    loaded = np.pad(pressure > 0, 1)
+    inner = loaded[2:, 1:-1] & loaded[:-2, 1:-1] & loaded[1:-1, 2:] & loaded[1:-1, :-2]
+    rim = loaded[1:-1, 1:-1] & ~inner
+    # a rim patch lies 0.6 d from the edge on average
+    K2 = float(np.mean(pressure[rim] ** 2)) / (0.6 * source.d)
+    opening = (np.maximum(gap, 0) * (0.75 * E_star) / np.sqrt(K2)) ** (2 / 3)
+    level = np.where(loaded[1:-1, 1:-1], pressure**2, -K2 * opening)
+    spline = RectBivariateSpline(source.x, source.x, level, kx=1, ky=1)
     x = np.clip(target.x, source.x[0], source.x[-1])
-    guess = np.sqrt(np.maximum(square(x, x), 0))
+    guess = np.sqrt(np.maximum(spline(x, x), 0))
     beyond = np.abs(target.x) > source.half_width
     guess[beyond] = 0
     guess[:, beyond] = 0

@@ -261,12 +261,11 @@ def _uniform(value: float, r: Array) -> Array:
 
 def _loaded(grid: Grid, shape: edge_profile.Prescribed, body: Body, numerics: Numerics) -> Level:
     """Deflection under a prescribed pressure, as a contact that took no iteration."""
-    found = contact.Contact.of_load(shape.pressure(grid.radius))
-    level = Level(grid, found, shape, shape.load, 1)
+    level = Level(grid, contact.Contact.of_load(shape.pressure(grid.radius)), shape, shape.load, 1)
     deflection = convolution.even_convolution(_coefficients(grid, body, numerics), threads=numerics.threads)
     u = deflection(_sharpened(level.mean))
     centre = float(u[grid.n // 2, grid.n // 2])
-    return replace(level, found=replace(found, deflection=u, approach=centre))
+    return replace(level, found=replace(level.found, gap=u - centre, approach=centre))
 
 
 def _sharpened(mean: Array) -> Array:
@@ -353,7 +352,7 @@ def _press(grid: Grid, before: Level | None, indenter: Indenter, body: Body, num
         )
 
     if before is not None:
-        start = carry_over(before.found.pressure, before.grid, grid)
+        start = carry_over(before.found.pressure, before.found.gap, before.grid, grid, body.moduli[0])
     else:
         depth = indenter.approach or 0.25 * float(np.ptp(gap))
         start = np.maximum(precondition(np.maximum(gap.min() + depth - gap, 0)), 0)
