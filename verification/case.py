@@ -61,7 +61,7 @@ class Case:
 
 def sources_of(problem: CoatedContact) -> tuple[str, ...]:
     """Whatever speaks about a problem: both methods, then every reference that holds for it."""
-    closed = ("hertz",) if problem.homogeneous and not problem.friction else ()
+    closed = ("hamilton" if problem.friction else "hertz",) if problem.homogeneous else ()
     return (*METHODS, "integral_equation", *closed)
 
 
@@ -69,8 +69,7 @@ def standard_claims(problem: CoatedContact) -> tuple[Claim, ...]:
     """Every quantity on every line, method against method, then against every reference."""
     sources = sources_of(problem)
     pairs = [METHODS, *((method, reference) for reference in sources[2:] for method in METHODS)]
-    if "hertz" in sources:
-        pairs.append(("integral_equation", "hertz"))
+    pairs += [("integral_equation", closed) for closed in sources[3:]]
     claims = [
         Claim(name, "contact", pair, CAPS[name], "scalars of the contact, from one number each")
         for pair in pairs
@@ -144,6 +143,7 @@ class _Claim(_Strict):
 class _SemianalyticNumerics(_Strict):
     patches: Annotated[int, Field(ge=16, le=4096)] | None = None
     conversion: Text | None = None
+    max_iterations: Annotated[int, Field(ge=1, le=100_000)] | None = None
 
 
 class _FemNumerics(_Strict):

@@ -1,6 +1,7 @@
 """The command line: exit codes, complaints in one sentence, nothing written on bad input."""
 
 import json
+import os
 import subprocess
 import sys
 
@@ -131,3 +132,43 @@ def test_help_and_list_answer_quickly_and_well(tmp_path):
         assert done.stdout.strip()
     names = [row["name"] for row in json.loads(coatcheck("list", "--json", cwd=tmp_path).stdout)]
     assert names == list(shipped_cases())
+
+
+def test_missing_system_library_names_the_packages_and_writes_nothing(tmp_path):
+    (tmp_path / "fake").mkdir()
+    (tmp_path / "fake" / "gmsh.py").write_text(
+        "raise OSError('libGLU.so.1: cannot open shared object file: No such file or directory')\n"
+    )
+    (tmp_path / "quick.toml").write_text(FAST)
+    done = subprocess.run(
+        [*COMMAND, "run", "quick.toml"],
+        cwd=tmp_path,
+        env=os.environ | {"PYTHONPATH": str(tmp_path / "fake")},
+        capture_output=True,
+        text=True,
+        timeout=120,
+    )
+    assert done.returncode == 3
+    assert "apt-get install" in done.stderr
+    assert "libglu1-mesa" in done.stderr
+    assert len(done.stderr.strip().splitlines()) == 1
+    assert not (tmp_path / "reports").exists()
+
+
+def test_solver_that_does_not_converge_is_a_row_and_the_other_case_still_finishes(tmp_path):
+    (tmp_path / "quick.toml").write_text(FAST)
+    # Three iterations cannot converge; the claims of this case stand on the semi-analytical method.
+    (tmp_path / "hopeless.toml").write_text(
+        FAST.replace('"integral_equation"', '"semianalytic"').replace(
+            "[problem]", "[semianalytic]\nmax_iterations = 3\n[problem]"
+        )
+    )
+    done = coatcheck("run", "hopeless.toml", "quick.toml", "--json", cwd=tmp_path)
+    assert done.returncode == 3, done.stderr
+    cases = json.loads(done.stdout)["cases"]
+    assert (cases["hopeless"]["outcome"], cases["quick"]["outcome"]) == ("NO_RESULT", "AGREES")
+    report = json.loads((tmp_path / "reports" / "report.json").read_text())
+    reason = report["cases"][0]["verdicts"][0]["verdict"]["reason"]
+    assert reason.startswith("semianalytic: ")
+    assert "max_iterations" in reason
+    assert "Traceback" not in done.stderr + reason
