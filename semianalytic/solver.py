@@ -29,6 +29,8 @@ Array = NDArray[np.floating]
 Coatings = tuple[tuple[float, float, float], ...]
 Substrate = tuple[float, float]
 
+USUAL, MOST = 257, 385  # patches a side
+PER_COATING = 8  # patches that the pressure needs to follow a coating at the contact edge
 WIDER = 1.25  # the box of the domain ladder over the box in use
 SKIPS = (2.5, 1.5, 1.0)  # patches inside the edge that the profile is not fitted to, round by round
 MISFIT = 0.02  # of the peak: a contact whose pressure is that far from a profile has no such edge
@@ -85,7 +87,7 @@ def solve(
     substrate: Substrate,
     friction: float = 0.0,
     approach: float | None = None,
-    patches: int = 257,
+    patches: int | None = None,
     tolerance: float = 1e-8,
     max_iterations: int = 200,
     conversion: str = "split",
@@ -100,7 +102,8 @@ def solve(
 
     coatings ((E, nu, thickness), ...) from the surface down; substrate (E, nu); friction f in q = f p.
     approach : delta [m] instead of the load, which then is None.
-    Numerics: ``inputs.Numerics``; of the conversions see ``influence``, of the edge ``disc``.
+    patches : per side of the finest grid, odd; None takes 257, or up to 385 where a first coating is thin
+    enough to need them. The other numerics: ``inputs.Numerics``; the conversions ``influence``.
 
     Raises ValueError for input without meaning, NotConverged when the iteration stops short.
     """
@@ -109,7 +112,7 @@ def solve(
     check_positive(radius=radius)
     body = _body(coatings, substrate, friction)
     numerics = Numerics(
-        patches=patches,
+        patches=patches or USUAL,
         tolerance=tolerance,
         max_iterations=max_iterations,
         conversion=conversion,
@@ -126,7 +129,11 @@ def solve(
         assert approach is not None
         largest = (2 * radius * approach) ** 0.5  # the sphere's section at the surface
     first = _find_contact(fill * largest, sphere, body, numerics)
-    return _refine(fill * first.radius, first, sphere, body, numerics, estimate_uncertainty, began)
+    half_width = fill * first.radius
+    if patches is None and coatings:
+        resolved = odd(PER_COATING * 2 * half_width / body.thickness[0])
+        numerics = replace(numerics, patches=min(max(USUAL, resolved), MOST))
+    return _refine(half_width, first, sphere, body, numerics, estimate_uncertainty, began)
 
 
 def indent(
