@@ -27,13 +27,13 @@ __all__ = ["RADII", "WAVENUMBERS", "hankel"]
 
 Array = NDArray[Any]
 
-_N = 1200
-_STEP = np.log(3e8) / (_N - 1)
-_CENTRE = np.sqrt(1e-6 * 3e2)
+_N = 1500
+_STEP = np.log(3e10) / (_N - 1)
+_CENTRE = np.sqrt(1e-8 * 3e2)
 _LADDER = np.exp(_STEP * (np.arange(_N) - (_N - 1) / 2))
 
-WAVENUMBERS: Array = _CENTRE * _LADDER  # k L, from 1e-6 to 3e2
-RADII: Array = _LADDER / _CENTRE  # r / L, from 3e-3 to 1e6
+WAVENUMBERS: Array = _CENTRE * _LADDER  # k L, from 1e-8 to 3e2
+RADII: Array = _LADDER / _CENTRE  # r / L, from 3e-3 to 1e8
 # balance what the finite grid cuts off at its two ends, per order
 _BIAS = (0.7, 0.25, 0.0, 0.0)
 _BIAS_OVER_K = (0.25, 0.0, -0.25, -0.25)
@@ -64,7 +64,7 @@ def hankel(F: Array, order: int, scale: float, *, over_k: bool = False) -> Array
 
 def _at_zero(F: Array) -> tuple[Array, Array]:
     """F and dF/dx at x = 0 by the parabola through three small x."""
-    nodes = np.searchsorted(WAVENUMBERS, [0, 1e-5, 2e-5])
-    inverse = np.linalg.inv(np.vander(WAVENUMBERS[nodes] * 1e5, 3, increasing=True))
+    nodes = np.searchsorted(WAVENUMBERS, [0, 1e-7, 2e-7])
+    inverse = np.linalg.inv(np.vander(WAVENUMBERS[nodes] * 1e7, 3, increasing=True))
     F_0, slope, _ = np.moveaxis(F[..., nodes] @ inverse.T, -1, 0)[..., None]
-    return F_0, slope * 1e5
+    return F_0, slope * 1e7
