@@ -25,6 +25,7 @@ def solvers() -> dict[str, Solver]:
     import fem_reference
     import semianalytic
     from verification.references import integral_equation
+    from verification.references.hamilton import Hamilton
     from verification.references.hertz import Hertz
 
     def method(solve: Callable[..., Any]) -> Solver:
@@ -42,6 +43,9 @@ def solvers() -> dict[str, Solver]:
         "fem_reference": method(fem_reference.solve),
         "integral_equation": method(integral_equation.solve),
         "hertz": lambda problem, _: Hertz(problem.radius, problem.load, *problem.substrate),
+        "hamilton": lambda problem, _: Hamilton(
+            problem.radius, problem.load, *problem.substrate, problem.friction
+        ),
     }
 
 

@@ -17,7 +17,7 @@ __all__ = [
 ]
 
 METHODS = ("semianalytic", "fem_reference")
-EXACT = ("integral_equation", "hertz")
+EXACT = ("integral_equation", "hertz", "hamilton")
 
 _LABELS = {
     "semianalytic": "semi-analytical",
