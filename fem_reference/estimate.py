@@ -97,23 +97,31 @@ class StressBound:
         return bound[:, vertices]
 
     @cached_property
-    def _surface(self) -> tuple[np.ndarray, np.ndarray]:
+    def _planes(self) -> dict[tuple[float, int], tuple[np.ndarray, np.ndarray]]:
+        """Bounds along the surface and along both sides of each interface, keyed by (depth, layer)."""
         mesh = self.field.discretisation.mesh
-        vertices = np.sort(mesh.points[0, mesh.points[1] == 0])
+        reach = 0.9 * self.companion.discretisation.mesh.far
+        sides = [(0.0, 0)]
+        for upper, depth in enumerate(mesh.depths):
+            sides += [(float(depth), upper), (float(depth), upper + 1)]
+        planes = {}
+        for depth, layer in sides:
 
-        def difference(r: np.ndarray) -> np.ndarray:
-            return self._difference(r, np.zeros(r.shape), np.zeros(r.shape, dtype=int))
+            def difference(r: np.ndarray, depth: float = depth, layer: int = layer) -> np.ndarray:
+                return self._difference(r, np.full(r.shape, depth), np.full(r.shape, layer))
 
-        return line_bound(difference, vertices[vertices < 0.9 * mesh.far])
+            vertices = np.sort(mesh.points[0, mesh.points[1] == depth])
+            planes[depth, layer] = line_bound(difference, vertices[vertices < reach])
+        return planes
 
     def __call__(self, r: np.ndarray, z: np.ndarray, layer: np.ndarray) -> np.ndarray:
         """Bound (6, n) at points of shape (n,)."""
+        z = self.field.snapped(z)
         cells, X = self.field.locate(r, z, layer)
         X = np.clip(X, 0, 1)
         shape = np.stack([np.clip(1 - X[0] - X[1], 0, 1), X[0], X[1]])
         bound = np.einsum("sct,ct->st", self._corners[:, :, cells], shape)
-        on_surface = z == 0
-        if np.any(on_surface):
-            vertices, values = self._surface
-            bound[:, on_surface] = [np.interp(r[on_surface], vertices, row) for row in values]
+        for (depth, side), (vertices, values) in self._planes.items():
+            here = (z == depth) & (layer == side)
+            bound[:, here] = [np.interp(r[here], vertices, row) for row in values]
         return bound

@@ -1,11 +1,13 @@
 """Displacements and stresses of one harmonic anywhere in the meridian plane.
 
 Strains are the derivatives of the shape functions in the triangle that holds the point, so each side of an
-interface keeps its own value. On the loaded surface the stresses that involve the normal direction are the
-tractions themselves, and the others follow from the surface strains, which are far more accurate there than
-sigma_zz:
+interface keeps its own value. On a plane z = const whose tractions are known better than by differentiation,
+the in-plane strains, which differentiate only along the plane, give the rest:
 
-    sigma_rr = E/(1-nu^2) (eps_rr + nu eps_tt) + nu/(1-nu) sigma_zz,   sigma_zz = -p
+    sigma_rr = E/(1-nu^2) (eps_rr + nu eps_tt) + nu/(1-nu) sigma_zz,     sigma_tt with rr and tt swapped.
+
+On the surface the tractions are the applied ones, sigma_zz = -p. On an interface the stiffer side takes them
+from the more compliant one, where an error of strain costs less stress.
 """
 
 from collections.abc import Callable
@@ -96,13 +98,20 @@ class HarmonicField:
         mesh = self.discretisation.mesh
         # u/r on the axis is the limit from outside; this far in it is exact to rounding
         r = np.maximum(r, 1e-7 * mesh.contact_radius)
+        z = self.snapped(z)
         values, strain = self._fields_and_strains(r, z, layer)
-        D = np.stack([elasticity(E, nu, self.harmonic) for E, nu in self.materials])[layer]
-        stress = np.zeros((6, r.size))
-        stress[: strain.shape[0]] = np.einsum("nst,tn->sn", D, strain)
+        stress = self._hooke(strain, layer)
         surface = z == 0
         if np.any(surface):
-            stress[:, surface] = self._surface_stress(r[surface], strain[:, surface])
+            stress[:, surface] = self._on_plane(0, strain[:, surface], self._applied(r[surface]))
+        for upper, depth in enumerate(mesh.depths):
+            soft, stiff = sorted((upper, upper + 1), key=self._rise)
+            here = (z == depth) & (layer == stiff)
+            if np.any(here):
+                side = np.full(int(here.sum()), soft)
+                _, other = self._fields_and_strains(r[here], z[here], side)
+                tractions = self._hooke(other, side)[[2, 3, 5]]
+                stress[:, here] = self._on_plane(stiff, strain[:, here], tractions)
         displacement = np.zeros((3, r.size))
         if self.harmonic == 0:
             displacement[0], displacement[2] = values
@@ -110,20 +119,41 @@ class HarmonicField:
             displacement[:] = values[0] - values[1], values[1], values[2]
         return displacement, stress
 
-    def _surface_stress(self, r: np.ndarray, strain: np.ndarray) -> np.ndarray:
-        """Stress (6, n) on z = 0 from the in-plane strains and the applied tractions."""
-        E, nu = self.materials[0]
-        stress = np.zeros((6, r.size))
-        traction = self.traction(r)
-        normal = traction if self.harmonic == 0 else np.zeros(r.size)
-        stress[0] = E / (1 - nu**2) * (strain[0] + nu * strain[1]) + nu / (1 - nu) * normal
-        stress[1] = E / (1 - nu**2) * (strain[1] + nu * strain[0]) + nu / (1 - nu) * normal
-        stress[2] = normal
-        if self.harmonic == 1:
-            # q in +x: q_r = q cos, q_theta = -q sin on the solid, whose outward normal is -z
-            stress[3], stress[5] = traction, -traction
-            stress[4] = E / (2 * (1 + nu)) * strain[4]
+    def snapped(self, z: np.ndarray) -> np.ndarray:
+        """Depths with those within rounding of an interface put on it."""
+        z = z.copy()
+        for depth in self.discretisation.mesh.depths:
+            z[np.abs(z - depth) <= 1e-12 * depth] = depth
+        return z
+
+    def _rise(self, layer: int) -> float:
+        """sigma_zz per eps_zz at fixed width: what an error of eps_zz costs."""
+        E, nu = self.materials[layer]
+        return E * (1 - nu) / ((1 + nu) * (1 - 2 * nu))
+
+    def _hooke(self, strain: np.ndarray, layer: np.ndarray) -> np.ndarray:
+        """Stress (6, n) of the strains of ``_fields_and_strains``."""
+        D = np.stack([elasticity(E, nu, self.harmonic) for E, nu in self.materials])[layer]
+        stress = np.zeros((6, layer.size))
+        stress[: strain.shape[0]] = np.einsum("nst,tn->sn", D, strain)
         return stress
+
+    def _applied(self, r: np.ndarray) -> np.ndarray:
+        """(sigma_zz, sigma_rz, sigma_tz) on the surface, shape (3, n)."""
+        traction, zero = self.traction(r), np.zeros(r.size)
+        if self.harmonic == 0:
+            return np.stack([traction, zero, zero])
+        # q in +x: q_r = q cos, q_theta = -q sin on the solid, whose outward normal is -z
+        return np.stack([zero, traction, -traction])
+
+    def _on_plane(self, layer: int, strain: np.ndarray, tractions: np.ndarray) -> np.ndarray:
+        """Stress (6, n) on a plane z = const from the in-plane strains and the tractions on it."""
+        E, nu = self.materials[layer]
+        zz, rz, tz = tractions
+        rr = E / (1 - nu**2) * (strain[0] + nu * strain[1]) + nu / (1 - nu) * zz
+        tt = E / (1 - nu**2) * (strain[1] + nu * strain[0]) + nu / (1 - nu) * zz
+        rt = E / (2 * (1 + nu)) * strain[4] if self.harmonic == 1 else np.zeros(rr.shape)
+        return np.stack([rr, tt, zz, rz, rt, tz])
 
 
 def _reference(points: np.ndarray, triangles: np.ndarray, r: np.ndarray, z: np.ndarray) -> np.ndarray:

@@ -479,6 +479,6 @@ def _meridian(state: _State, unit: _Units, bounds: _Bounds) -> Meridian:
         tangential_bound=bound_in_si(bounds.tangential, 0.0),
         pressure_bound=None if bounds.pressure is None else pressure_bound,
         depths=mesh.depths * unit.length,
-        far=mesh.far * unit.length,
+        far=float(mesh.points.max()) * unit.length,
         mesh=mesh.scaled(unit.length),
     )

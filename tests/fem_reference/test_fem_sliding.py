@@ -38,7 +38,7 @@ def sliding_part(x, y, z):
 
 
 def test_full_tensor_is_that_of_distributed_point_forces():
-    """q = f p0 sqrt(1 - r^2/a^2) summed over Cerruti's point force, at depths where the sum converges fast."""
+    """q = f p0 sqrt(1 - r^2/a^2) summed over Cerruti's point force, deep enough for the sum to converge."""
     rng = np.random.default_rng(3)
     x, y, z = rng.uniform(-1.5, 1.5, 40), rng.uniform(-1.5, 1.5, 40), rng.uniform(0.25, 2, 40)
     s, weight = np.polynomial.legendre.leggauss(60)
@@ -120,8 +120,9 @@ def test_three_dimensional_equilibrium_holds_in_every_layer(depth):
 def test_tractions_are_continuous_across_the_interface_when_sliding():
     s = sliding(coatings=COATED)
     x, y = np.linspace(-2, 2, 41) * A_H, 0.4 * A_H
-    upper, lower = (s.stress(x, y, COATED[0][2], layer=k) for k in (0, 1))
-    assert np.abs(upper[:, 2] - lower[:, 2]).max() < 1e-4 * s.peak_pressure
+    # a hair off the interface each side differentiates alone
+    above, below = (s.stress(x, y, COATED[0][2] * side) for side in (1 - 1e-6, 1 + 1e-6))
+    assert np.abs(above[:, 2] - below[:, 2]).max() < 2e-4 * s.peak_pressure
 
 
 def test_stress_is_the_gradient_of_the_displacement():

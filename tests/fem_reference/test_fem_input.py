@@ -1,0 +1,92 @@
+"""Bad and hopeless input is answered by one sentence that names the quantity."""
+
+import re
+
+import pytest
+
+from fem_reference import NotConverged, solve
+
+E = 210e9
+GOOD = {"radius": 1e-2, "load": 20.0, "coatings": (), "substrate": (E, 0.3)}
+
+BAD = [
+    ({"load": 0.0}, "load = 0.0"),
+    ({"load": float("nan")}, "load = nan"),
+    ({"radius": -1.0}, "radius = -1.0"),
+    ({"radius": "a"}, "radius = 'a'"),
+    ({"friction": float("inf")}, "friction = inf"),
+    ({"substrate": (E, 0.5)}, "nu of the substrate = 0.5"),
+    ({"substrate": (E,)}, "substrate"),
+    ({"coatings": ((E, 0.5, 1e-5),)}, "nu of coating 1 = 0.5"),
+    ({"coatings": ((E, 0.3, 0.0),)}, "thickness of coating 1 = 0.0"),
+    ({"coatings": ((E, 0.3, 1e-5), (E, 0.3, -1e-5))}, "thickness of coating 2"),
+    ({"coatings": ((-E, 0.3, 1e-5),)}, "E of coating 1"),
+    ({"coatings": ((E, 0.3),)}, "coating 1"),
+    ({"coatings": 5}, "coatings = 5"),
+    ({"coatings": ((E, 0.3, 1e-5),) * 2000}, "2000 coatings"),
+    ({"coatings": ((1e6 * E, 0.3, 1e-5),)}, "times that of the substrate"),
+    ({"coatings": ((E, 0.3, 1e-12),)}, "no stress can feel"),
+    ({"coatings": ((E, 0.3, 10.0),)}, "for the substrate instead"),
+    ({"order": 5}, "order = 5"),
+    ({"quality": "superb"}, "quality = 'superb'"),
+    ({"far": 5.0}, "larger far boundary"),
+    ({"load": 1e9}, "radius of the sphere"),
+]
+
+
+@pytest.mark.parametrize(("change", "says"), BAD, ids=[says for _, says in BAD])
+def test_bad_input_is_refused_in_one_sentence(change, says):
+    with pytest.raises(ValueError, match=re.escape(says)) as caught:
+        solve(**{**GOOD, **change}, **({} if "quality" in change else {"quality": "fast"}))
+    assert "\n" not in str(caught.value)
+
+
+def test_too_few_iterations_say_what_was_reached_and_what_to_try():
+    coatings = ((4 * E, 0.3, 5e-5),)
+    with pytest.raises(NotConverged, match=r"after 2 solves.*of the one asked for; raise max_iterations"):
+        solve(**{**GOOD, "coatings": coatings}, max_iterations=2)
+
+
+@pytest.fixture(scope="module")
+def coated():
+    return solve(**{**GOOD, "coatings": ((2 * E, 0.3, 4e-5),)}, quality="fast", estimate_uncertainty=False)
+
+
+@pytest.mark.parametrize(
+    ("point", "says"),
+    [
+        ({"z": -1e-6}, "depth counts down"),
+        ({"z": float("nan")}, "not inside the solid"),
+        ({"z": 1.0}, "beyond the meshed solid"),
+        ({"z": 5e-5, "layer": 0}, "not in layer 0"),
+        ({"z": 1e-5, "layer": 1}, "not in layer 1"),
+        ({"z": 1e-5, "layer": 2}, "layers 0 to 1"),
+    ],
+)
+def test_points_outside_the_solid_or_the_layer_are_refused(coated, point, says):
+    with pytest.raises(ValueError, match=says):
+        coated.stress(0.0, 0.0, **point)
+
+
+def test_points_within_rounding_of_the_interface_lie_on_it(coated):
+    h = 4e-5
+    for z in (h * (1 - 5e-10), h, h * (1 + 5e-10)):
+        upper, lower = (coated.stress(1e-5, 0.0, z, layer=k) for k in (0, 1))
+        assert abs(upper[0, 0] - lower[0, 0]) > 0.01 * coated.peak_pressure
+        assert (coated.stress(1e-5, 0.0, z) == upper).all()
+
+
+def test_uncertainty_not_estimated_is_said_so(coated):
+    assert coated.uncertainty is None
+    with pytest.raises(ValueError, match="estimate_uncertainty=True"):
+        coated.stress_uncertainty(0.0, 0.0, 0.0)
+    with pytest.raises(ValueError, match="estimate_uncertainty=True"):
+        coated.pressure_uncertainty(0.0)
+
+
+def test_shapes_follow_broadcasting(coated):
+    assert coated.stress(0.0, 0.0, 0.0).shape == (3, 3)
+    assert coated.stress([[0.0], [1e-5]], 0.0, [1e-5, 2e-5, 3e-5]).shape == (3, 3, 2, 3)
+    assert coated.displacement([0.0, 1e-5], 0.0, 1e-5).shape == (3, 2)
+    assert coated.pressure(0.0).shape == ()
+    assert coated.pressure([[0.0, 1.0]], [[0.0], [1.0]]).shape == (2, 2)

@@ -1,0 +1,174 @@
+"""gmsh leaves no trace: not in the process, not on the terminal, not between threads."""
+
+import builtins
+import multiprocessing
+import signal
+import subprocess
+import sys
+import threading
+from concurrent.futures import ThreadPoolExecutor
+
+import gmsh
+import numpy as np
+import pytest
+
+from fem_reference import solve, write_vtu
+from fem_reference.gmsh_session import session
+from fem_reference.mesh import Grading, meridian_mesh
+
+COARSE = Grading(size=0.6, edge_rate=0.6, edge_size=1e-3, axis_size=0.6, far_size=1.0)
+
+
+def mesh(a=1.0, thicknesses=(0.5,)):
+    return meridian_mesh(contact_radius=a, thicknesses=thicknesses, far=500.0, grading=COARSE)
+
+
+def quick(thickness=5e-5, **keywords):
+    return solve(
+        radius=1e-2,
+        load=20.0,
+        coatings=((420e9, 0.3, thickness),),
+        substrate=(210e9, 0.3),
+        quality="fast",
+        estimate_uncertainty=False,
+        **keywords,
+    )
+
+
+def radius_of(thickness):
+    return quick(thickness).contact_radius
+
+
+def test_gmsh_is_shut_down_and_signals_are_untouched():
+    before = signal.getsignal(signal.SIGINT)
+    mesh()
+    assert not gmsh.isInitialized()
+    assert signal.getsignal(signal.SIGINT) is before
+
+
+def test_two_solves_in_one_process_agree_to_the_last_bit():
+    first, between, second = quick(), quick(2e-5), quick()
+    assert first.contact_radius == second.contact_radius != between.contact_radius
+    np.testing.assert_array_equal(first.surface_nodes, second.surface_nodes)
+
+
+def test_threads_and_processes_get_the_same_answers():
+    thicknesses = [2e-5, 5e-5, 9e-5]
+    expected = [radius_of(h) for h in thicknesses]
+    with ThreadPoolExecutor(3) as threads:
+        assert list(threads.map(radius_of, thicknesses)) == expected
+    with multiprocessing.get_context("spawn").Pool(2) as processes:
+        assert processes.map(radius_of, thicknesses) == expected
+
+
+def test_threads_take_turns_in_the_mesher():
+    meshes = []
+    workers = [threading.Thread(target=lambda: meshes.append(mesh())) for _ in range(6)]
+    for worker in workers:
+        worker.start()
+    for worker in workers:
+        worker.join()
+    assert len(meshes) == 6
+    assert all(np.array_equal(m.points, meshes[0].points) for m in meshes)
+
+
+def test_a_running_session_of_the_caller_survives():
+    gmsh.initialize(interruptible=False)
+    try:
+        gmsh.option.setNumber("General.Terminal", 0)
+        gmsh.option.setNumber("Mesh.Algorithm", 5)
+        gmsh.model.add("mine")
+        gmsh.model.occ.addBox(0, 0, 0, 1, 1, 1)
+        gmsh.model.occ.synchronize()
+        gmsh.model.add("other")
+        gmsh.model.setCurrent("mine")
+        mesh()
+        assert gmsh.isInitialized()
+        assert gmsh.model.getCurrent() == "mine"
+        assert sorted(gmsh.model.list()) == ["", "mine", "other"]
+        assert gmsh.option.getNumber("Mesh.Algorithm") == 5
+        assert len(gmsh.model.getEntities(3)) == 1
+    finally:
+        gmsh.finalize()
+
+
+def test_a_failing_mesh_leaves_nothing_behind():
+    with pytest.raises(RuntimeError, match="on purpose"), session("broken"):
+        raise RuntimeError("on purpose")
+    assert not gmsh.isInitialized()
+    assert mesh().layer.size > 0
+
+
+def test_nothing_reaches_the_terminal():
+    code = (
+        "from fem_reference import solve\n"
+        "solve(radius=1e-2, load=20.0, coatings=((4e11, 0.3, 5e-5),), substrate=(2e11, 0.3), "
+        "quality='fast')\n"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=120)
+    assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
+
+
+def test_missing_system_libraries_are_named(monkeypatch):
+    real = builtins.__import__
+
+    def refuse(name, *args, **keywords):
+        if name == "gmsh":
+            raise OSError("libGLU.so.1: cannot open shared object file: No such file or directory")
+        return real(name, *args, **keywords)
+
+    monkeypatch.setattr(builtins, "__import__", refuse)
+    with pytest.raises(ImportError, match=r"libGLU.*apt-get install.*libglu1-mesa") as caught, session("x"):
+        pass
+    assert "\n" not in str(caught.value)
+
+
+def test_importing_the_package_does_not_import_gmsh():
+    code = "import sys, fem_reference; sys.exit('gmsh' in sys.modules)"
+    assert subprocess.run([sys.executable, "-c", code], timeout=60).returncode == 0
+
+
+@pytest.mark.parametrize("thicknesses", [(), (0.01,), (20.0,), (0.01,) * 5, (1.0, 0.05, 0.01, 0.3, 2.0)])
+@pytest.mark.parametrize("a", [0.3, 3.0])
+def test_every_layer_is_filled_and_its_boundaries_are_met(thicknesses, a):
+    m = mesh(a, thicknesses)
+    corners = m.points[:, m.triangles]
+    (r0, z0), (r1, z1), (r2, z2) = corners.transpose(1, 0, 2)
+    area = ((r1 - r0) * (z2 - z0) - (r2 - r0) * (z1 - z0)) / 2
+    levels = np.array([0.0, *np.cumsum(thicknesses), m.far])
+    assert np.all(area > 0)
+    for k in range(len(levels) - 1):
+        mine = m.layer == k
+        # the triangles of a layer tile its rectangle
+        assert area[mine].sum() == pytest.approx(m.far * (levels[k + 1] - levels[k]), rel=1e-12)
+        assert corners[1][:, mine].min() == levels[k]
+        assert corners[1][:, mine].max() == levels[k + 1]
+    assert np.any((m.points[0] == a) & (m.points[1] == 0))
+
+
+def test_stretching_keeps_depths_and_moves_the_edge():
+    m = mesh().stretched(1.03)
+    assert m.contact_radius == 1.03
+    assert np.any((m.points[0] == 1.03) & (m.points[1] == 0))
+    assert np.any(m.points[1] == 0.5)
+
+
+def test_vtu_holds_layers_and_both_sides_of_the_interface(tmp_path):
+    import meshio
+
+    s = quick(friction=0.3)
+    path = write_vtu(s, tmp_path / "contact.vtu")
+    read = meshio.read(path)
+    layer = read.cell_data["layer"][0]
+    assert set(layer) == {0, 1}
+    cells = read.cells_dict["triangle6"]
+    x, _, z = read.points.T
+    on_interface = np.isclose(z, 5e-5, rtol=1e-12)
+    upper, lower = (np.intersect1d(np.flatnonzero(on_interface), cells[layer == k]) for k in (0, 1))
+    assert np.intersect1d(upper, lower).size == 0
+    near = upper[np.abs(x[upper]) < 1e-4]
+    expected = s.stress(x[near], 0.0, z[near], layer=0)[0, 0]
+    np.testing.assert_allclose(read.point_data["sigma_xx"][near], expected, rtol=1e-12)
+    assert x.min() < 0 < x.max()
+    with pytest.raises(ValueError, match=r"\.vtu"):
+        write_vtu(s, tmp_path / "contact.txt")
