@@ -31,7 +31,8 @@ class NotConverged(Exception):
 
 DECADE = 0.1  # fall of the residual on a fixed contact set that calls for its update
 PATIENCE = 6  # iterations on a fixed contact set
-CALM = 12  # updates of the set after which it is updated in every iteration, which cannot cycle
+CALM = 12  # updates of the set after which it is updated in every iteration
+STUBBORN = 60  # iterations after which the preconditioner is dropped: Polonsky and Keer's own iteration
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,7 +89,8 @@ def press(
         return p if total is None else p * (total / p.sum())
 
     def free(r: Array, inside: Mask) -> Array:
-        return np.where(inside, precondition(np.where(inside, r, 0.0)), 0.0)
+        r = np.where(inside, r, 0.0)
+        return r if iterations >= STUBBORN else np.where(inside, precondition(r), 0.0)
 
     def direction(g: Array, inside: Mask, P_one: Array) -> tuple[Array, float]:
         """z = P (g - delta) on the contact set, and the delta that keeps the load."""
@@ -104,12 +106,14 @@ def press(
     p = balanced(np.maximum(start, 0.0))
     u = deflection(p)
     inside = p > 0
-    P_one = of_one(inside)
     convolutions, updates, iterations, since, first = 1, 0, 0, 0, 0.0
+    P_one = of_one(inside)
     history: list[tuple[float, float]] = []
     step = last = p  # of no consequence before the first step
     slope, carried = 1.0, False
     while True:
+        if iterations == STUBBORN:
+            P_one, since, updates = of_one(inside), 0, CALM
         z, delta = direction(u + gap, inside, P_one)
         g = u + gap - delta
         r = np.where(inside, g, 0.0)

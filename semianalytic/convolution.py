@@ -46,7 +46,8 @@ def circulant_inverse(kernel: Array, *, threads: int = 1) -> Callable[[Array], A
     nx, ny = kernel.shape
     mx, my = good_size(nx), good_size(ny)
     spectrum = _even_spectrum(kernel[: mx // 2 + 1, : my // 2 + 1], mx, my, threads)
-    floor = 1e-3 * np.median(np.abs(spectrum))  # truncation can turn an eigenvalue negative, never usefully
+    # truncation can turn eigenvalues negative; true ones do not fall below those of the shortest waves
+    floor = 0.5 * np.median(np.abs(spectrum))
     return _apply_even(1 / np.maximum(spectrum, floor), nx, ny, threads)
 
 
