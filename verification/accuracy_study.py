@@ -1,0 +1,173 @@
+"""The accuracy study of a default run: convergence of both methods on two solids of known answer.
+
+A process of its own measures it beside the cases and leaves a checked file:
+
+python -m verification.accuracy_study accuracy.json
+"""
+
+import sys
+import time
+from collections.abc import Callable
+from dataclasses import asdict, dataclass
+from math import isfinite
+from pathlib import Path
+from typing import Any
+
+from verification.convergence import ConversionError, Ladder, Level, conversion_errors, elements, ladder
+from verification.problem import CoatedContact
+from verification.store import StoreError, read_checked, write_checked
+from verification.surroundings import commit, versions
+
+__all__ = [
+    "CORRECTED",
+    "PLAIN",
+    "SCHEMA",
+    "STAIRCASE",
+    "AccuracyStudy",
+    "failed",
+    "from_json",
+    "measure",
+    "path_in",
+    "stored",
+    "to_json",
+]
+
+SCHEMA = "coatcheck-accuracy/1"
+CORRECTED = "as it comes: split conversion, corrected edge"
+STAIRCASE = "split conversion, staircase edge"
+PLAIN = "the paper's: plain conversion, staircase edge"
+STEEL = (210e9, 0.3)
+BARE = CoatedContact(10e-3, 20.0, (), STEEL)
+COATED = CoatedContact(10e-3, 20.0, ((4 * STEEL[0], 0.3, BARE.a_h),), STEEL)
+SOLIDS = {"coated, E1/E2 = 4, h = a_h": COATED, "uncoated": BARE}
+
+
+@dataclass(frozen=True)
+class AccuracyStudy:
+    """What was measured, in what was stood on; ``failures`` are the sentences of what could not be had.
+
+    conversions : of the first solid.   commit : None outside a checkout.
+    """
+
+    ladders: tuple[Ladder, ...]
+    conversions: tuple[ConversionError, ...]
+    failures: tuple[str, ...]
+    seconds: float
+    commit: str | None
+    versions: dict[str, str]
+
+
+def measure() -> AccuracyStudy:
+    """Every ladder, then the conversions; what fails is a sentence, and the rest goes on."""
+    begin = time.perf_counter()
+    coated, uncoated = SOLIDS
+    ladders = [
+        ladder(COATED, solid=coated, setting=CORRECTED),
+        ladder(COATED, solid=coated, setting=STAIRCASE, edge_rounds=0),
+        # Its convolution kernel alone costs more than the rest, so it ends one level earlier.
+        ladder(COATED, (33, 65, 129), solid=coated, setting=PLAIN, edge_rounds=0, conversion="plain"),
+        ladder(BARE, solid=uncoated, setting=CORRECTED),
+        ladder(BARE, solid=uncoated, setting=STAIRCASE, edge_rounds=0),
+        *(elements(COATED, order, solid=coated) for order in (2, 3, 4)),
+    ]
+    failures = [f"{one.method}, {one.solid}, {one.setting}, {one.failure}" for one in ladders if one.failure]
+    conversions: tuple[ConversionError, ...] = ()
+    try:
+        conversions = conversion_errors(COATED)
+    except Exception as error:  # as in a ladder: a sentence of the report, not a traceback
+        failures.append(f"conversions of the influence coefficients: {' '.join(str(error).split())[:400]}")
+    return AccuracyStudy(
+        tuple(ladders), conversions, tuple(failures), time.perf_counter() - begin, commit(), versions()
+    )
+
+
+def failed(reason: str, seconds: float) -> AccuracyStudy:
+    """The study of a process that left nothing but the ``reason``."""
+    return AccuracyStudy((), (), (reason,), seconds, commit(), versions())
+
+
+def path_in(folder: Path) -> Path:
+    """Where the study of a run directory lies."""
+    return folder / "accuracy.json"
+
+
+def stored(
+    folder: Path, source: Callable[[], str | None] = commit, packages: Callable[[], dict[str, str]] = versions
+) -> AccuracyStudy | None:
+    """A whole earlier study without failures, of this very commit and these versions, or None.
+
+    A tree that was changed since its commit (marked "+") may have changed again, so its study is not kept.
+    """
+    try:
+        found = from_json(read_checked(path_in(folder)))
+    except (StoreError, ValueError, KeyError, TypeError):
+        return None
+    now = source()
+    same = (found.commit, found.versions) == (now, packages()) and not (now or "").endswith("+")
+    return found if same and not found.failures else None
+
+
+def to_json(study: AccuracyStudy) -> dict[str, Any]:
+    """Plain dictionaries, lists, numbers and text; NaN and infinity become text, so the JSON is strict."""
+    return {"schema": SCHEMA, **_plain(asdict(study))}
+
+
+def from_json(data: dict[str, Any]) -> AccuracyStudy:
+    """The inverse of ``to_json``. Raises ValueError where the schema is another one."""
+    if data.get("schema") != SCHEMA:
+        raise ValueError(f"schema = {data.get('schema')!r}; this version reads {SCHEMA!r}, run it again")
+    return AccuracyStudy(
+        ladders=tuple(
+            Ladder(
+                one["method"],
+                one["solid"],
+                one["setting"],
+                tuple(
+                    Level(
+                        level["name"],
+                        float(level["resolution"]),
+                        float(level["seconds"]),
+                        {name: float(error) for name, error in level["errors"].items()},
+                    )
+                    for level in one["levels"]
+                ),
+                one["failure"],
+            )
+            for one in data["ladders"]
+        ),
+        conversions=tuple(
+            ConversionError(
+                one["conversion"],
+                int(one["enlarge"]),
+                float(one["seconds"]),
+                tuple(float(value) for value in one["distance"]),
+                tuple(float(value) for value in one["error"]),
+                float(one["largest"]),
+                int(one["aliases"]),
+            )
+            for one in data["conversions"]
+        ),
+        failures=tuple(str(sentence) for sentence in data["failures"]),
+        seconds=float(data["seconds"]),
+        commit=data["commit"],
+        versions={str(name): str(version) for name, version in data["versions"].items()},
+    )
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, dict):
+        return {str(key): _plain(item) for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [_plain(item) for item in value]
+    if isinstance(value, float) and not isfinite(value):
+        return repr(value)
+    return value
+
+
+def main(path: str) -> None:
+    """Measure and store at ``path``."""
+    write_checked(Path(path), to_json(measure()))
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])

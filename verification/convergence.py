@@ -1,0 +1,283 @@
+"""How the error of each method against an exact answer falls with its resolution.
+
+Pure: a problem in, frozen records out. A ladder that stops short keeps the levels it reached and the
+sentence it failed with.
+"""
+
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from verification.problem import CoatedContact, Solution
+from verification.profile import lines_of
+from verification.references import integral_equation
+from verification.references.patch import surface_coefficient
+
+__all__ = [
+    "QUANTITIES",
+    "ConversionError",
+    "Ladder",
+    "Level",
+    "Yardstick",
+    "conversion_errors",
+    "elements",
+    "ladder",
+    "order_of",
+]
+
+Array = NDArray[np.floating]
+QUANTITIES = ("p0", "a", "approach", "pressure", "stress")
+# An error within this factor of the smallest of its ladder has stopped falling.
+SETTLED = 3.0
+
+
+@dataclass(frozen=True)
+class Level:
+    """One solution: its ``resolution``, what it cost, its error by quantity.
+
+    resolution : patches a side, or the square root of the degrees of freedom of finite elements.
+    errors : of p0, a and approach relative; of pressure (L2 over the disc) over p0; of stress over p_h.
+    """
+
+    name: str
+    resolution: float
+    seconds: float
+    errors: dict[str, float]
+
+
+@dataclass(frozen=True)
+class Ladder:
+    """Solutions of one problem by one ``method`` in one setting, coarse to fine.
+
+    solid : what the sphere is pressed on, in words.   failure : the sentence the next level failed with.
+    """
+
+    method: str
+    solid: str
+    setting: str
+    levels: tuple[Level, ...]
+    failure: str | None = None
+
+    def order(self, quantity: str) -> float | None:
+        """Observed order of ``quantity``, see ``order_of``."""
+        return order_of(
+            [level.resolution for level in self.levels], [level.errors[quantity] for level in self.levels]
+        )
+
+
+@dataclass(frozen=True)
+class ConversionError:
+    """Error of influence coefficients of the surface displacement by one conversion.
+
+    enlarge : the domain over the grid's, 0 for a conversion that has none.   aliases : summed on either side.
+    distance : of the patches, in contact radii.   error : |K - K_exact| / |K_exact| of each.
+    largest : of |K - K_exact| over the largest K.
+    """
+
+    conversion: str
+    enlarge: int
+    seconds: float
+    distance: tuple[float, ...]
+    error: tuple[float, ...]
+    largest: float
+    aliases: int = 0
+
+
+def order_of(resolution: Sequence[float], error: Sequence[float]) -> float | None:
+    """Slope s of error ~ resolution^-s by least squares, over the levels down to where the fall ends.
+
+    Each error counts as no smaller than that of any finer level, so that one which crosses zero by luck
+    promises nothing. Levels after the first within a factor ``SETTLED`` of the last are left out, for there
+    another knob has taken over. None where the fall is less than that factor.
+    """
+    found = np.asarray(error, dtype=float)
+    if found.size < 2 or not np.isfinite(found).all() or found.min() < 0 or found.max() == 0:
+        return None
+    envelope = np.maximum.accumulate(found[::-1])[::-1]
+    last = int(np.argmax(envelope <= SETTLED * envelope[-1]))
+    if last == 0 or envelope[last] == 0:
+        return None
+    N = np.log(np.asarray(resolution, dtype=float)[: last + 1])
+    return float(-np.polyfit(N, np.log(envelope[: last + 1]), 1)[0])
+
+
+@dataclass(frozen=True, eq=False)
+class Yardstick:
+    """The exact answer to ``problem`` at the points where solutions are held against it, evaluated once."""
+
+    problem: CoatedContact
+    exact: Solution
+
+    @cached_property
+    def _disc(self) -> tuple[Array, Array, Array]:
+        """r = a sin(phi), which resolves the vertical tangent at the edge; weights of dA / (pi a^2); p."""
+        s, w = np.polynomial.legendre.leggauss(96)
+        phi = np.pi / 4 * (s + 1)
+        r = self.exact.contact_radius * np.sin(phi)
+        return r, np.pi / 2 * w * np.sin(phi) * np.cos(phi), self.exact.pressure(r)
+
+    @cached_property
+    def _stressed(self) -> list[tuple[Array, Array, int | None, Array]]:
+        """x, z, layer, stress along the axis, inside the layers, and along both sides of each interface."""
+        a, deep = self.exact.contact_radius, self.problem.interfaces
+        bounds = np.array([0.0, *deep, max([4 * a, *(2 * z for z in deep)])])
+        z = (bounds[:-1, None] + np.diff(bounds)[:, None] * (np.arange(12) + 0.5) / 12).ravel()
+        x = 2.5 * a * np.linspace(0, 1, 26)
+        places: list[tuple[Array, Array, int | None]] = [(np.zeros_like(z), z, None)]
+        for line in lines_of(self.problem):
+            if line.layer is not None and line.depth:
+                places.append((x, np.full_like(x, line.depth), line.layer))
+        return [(x, z, layer, self.exact.stress(x, 0.0, z, layer)) for x, z, layer in places]
+
+    def errors(self, found: Solution) -> dict[str, float]:
+        """Error of each of ``QUANTITIES``: p0, a, approach relative, and
+
+        pressure = [ int (p - p_exact)^2 dA / (pi a^2) ]^(1/2) / p0  over the disc of the exact radius a
+        stress = max |sigma - sigma_exact| / p_h  on the axis and on both sides of each interface
+        """
+        exact, p0 = self.exact, self.exact.peak_pressure
+        r, weight, p = self._disc
+        # Square patches have eight mirror images of one sector.
+        turn = np.pi / 4 * (np.arange(8) + 0.5) / 8
+        gap = found.pressure(r[:, None] * np.cos(turn), r[:, None] * np.sin(turn)) - p[:, None]
+        worst = [np.abs(found.stress(x, 0.0, z, layer) - s).max() for x, z, layer, s in self._stressed]
+        return {
+            "p0": abs(found.peak_pressure / p0 - 1),
+            "a": abs(found.contact_radius / exact.contact_radius - 1),
+            "approach": abs(found.approach / exact.approach - 1),
+            "pressure": float(np.sqrt(weight @ np.mean(gap**2, axis=1))) / p0,
+            "stress": float(np.max(worst)) / self.problem.p_h,
+        }
+
+
+def ladder(
+    problem: CoatedContact,
+    patches: Sequence[int] = (33, 65, 129, 257),
+    *,
+    solid: str = "",
+    setting: str = "",
+    solve: Callable[..., Solution] | None = None,
+    **numerics: Any,
+) -> Ladder:
+    """``problem`` by the semi-analytical method at each number of ``patches`` a side.
+
+    Without the method's own estimate of its error, for which it would solve again.
+    numerics : any other keyword of semianalytic.solve.   solve : another solver of the same keywords.
+    """
+    import semianalytic
+
+    steps = [(f"N = {n}", {"patches": n, **numerics}, float(n)) for n in patches]
+    return _climb(problem, "semianalytic", solid, setting, solve or semianalytic.solve, steps)
+
+
+def elements(
+    problem: CoatedContact,
+    order: int,
+    quality: Sequence[str] = ("fast", "default"),
+    *,
+    solid: str = "",
+    solve: Callable[..., Solution] | None = None,
+) -> Ladder:
+    """``problem`` by elements of ``order`` on meshes of each ``quality``; ``solve`` as in ``ladder``."""
+    import fem_reference
+
+    steps = [(name, {"order": order, "quality": name}, None) for name in quality]
+    return _climb(problem, "fem_reference", solid, f"order {order}", solve or fem_reference.solve, steps)
+
+
+def _climb(
+    problem: CoatedContact,
+    method: str,
+    solid: str,
+    setting: str,
+    solve: Callable[..., Any],
+    steps: Sequence[tuple[str, dict[str, Any], float | None]],
+) -> Ladder:
+    levels: list[Level] = []
+    try:
+        keywords: dict[str, Any] = {
+            "radius": problem.radius,
+            "load": problem.load,
+            "coatings": problem.coatings,
+            "substrate": problem.substrate,
+            "estimate_uncertainty": False,
+        }
+        yardstick = Yardstick(problem, integral_equation.solve(**keywords))
+        for name, numerics, resolution in steps:
+            begin = time.perf_counter()
+            found = solve(**keywords, **numerics)
+            seconds = time.perf_counter() - begin
+            if resolution is None:
+                resolution = float(np.sqrt(found.diagnostics.dofs))
+            levels.append(Level(name, resolution, seconds, yardstick.errors(found)))
+    except Exception as error:  # a level that cannot be had is a sentence of the report, not a traceback
+        name = steps[len(levels)][0]
+        return Ladder(method, solid, setting, tuple(levels), f"{name}: {' '.join(str(error).split())[:400]}")
+    return Ladder(method, solid, setting, tuple(levels))
+
+
+def conversion_errors(
+    problem: CoatedContact, patches: int = 33, enlarge: Sequence[int] = (2, 4, 8, 16)
+) -> tuple[ConversionError, ...]:
+    """The influence coefficients of each conversion against direct quadrature.
+
+    plain, with no alias and with two on either side, and split-fft on each domain; split, which has none.
+    The grid fits the contact; the patches judged are the loaded one, some along a row, some along the
+    diagonal, out to the corner.
+    """
+    from semianalytic import frf, halfspace, influence
+
+    a = integral_equation.solve(
+        radius=problem.radius,
+        load=problem.load,
+        coatings=problem.coatings,
+        substrate=problem.substrate,
+        estimate_uncertainty=False,
+    ).contact_radius
+    n, d = patches, 2.24 * a / patches
+    E, nu = problem.coatings[0][:2] if problem.coatings else problem.substrate
+    scale = (1 - nu**2) / (np.pi * E)
+    thickness = [h for _, _, h in problem.coatings]
+    steps = np.unique(np.round(np.geomspace(1, n - 1, 9)).astype(int))
+    places = [(0, 0), *((int(i), 0) for i in steps), *((int(i), int(i)) for i in steps)]
+    places.sort(key=lambda place: np.hypot(*place))
+    exact = np.array(
+        [surface_coefficient(i * d, j * d, d, problem.coatings, problem.substrate) for i, j in places]
+    )
+    distance = tuple(float(np.hypot(i, j) * d / a) for i, j in places)
+
+    def excess(k: Array) -> Array:
+        return frf.compliance_excess(k, problem.coatings, problem.substrate)
+
+    def split(wide: int) -> Array:
+        C = halfspace.surface_deflection(n, n, d, d)
+        if not problem.coatings:
+            return C
+        image = influence.split_image(excess, thickness)
+        C = C + image[0] * halfspace.surface_deflection(n, n, d, d, image[1])
+        return C + influence.remainder_coefficients(n, d, excess, thickness, image, enlarge=wide)
+
+    def plain(wide: int, aliases: int) -> Array:
+        return influence.plain_coefficients(n, d, excess, enlarge=wide, aliases=aliases)
+
+    wanted: list[tuple[str, int, int, Callable[[], Array]]] = [("split", 0, 0, lambda: split(0))]
+    for wide in enlarge:
+        wanted.append(("plain", wide, 0, lambda wide=wide: plain(wide, 0)))  # type: ignore[misc]
+        wanted.append(("plain", wide, 2, lambda wide=wide: plain(wide, 2)))  # type: ignore[misc]
+        if problem.coatings:
+            wanted.append(("split-fft", wide, 2, lambda wide=wide: split(wide)))  # type: ignore[misc]
+    found = []
+    for conversion, wide, aliases, convert in wanted:
+        begin = time.perf_counter()
+        K = scale * convert()
+        seconds = time.perf_counter() - begin
+        gap = np.abs(np.array([K[place] for place in places]) - exact)
+        error = tuple(float(e) for e in gap / exact)
+        largest = float(gap.max() / exact[0])
+        found.append(ConversionError(conversion, wide, seconds, distance, error, largest, aliases))
+    return tuple(found)
