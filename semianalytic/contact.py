@@ -32,7 +32,7 @@ class NotConverged(Exception):
 DECADE = 0.1  # fall of the residual on a fixed contact set that calls for its update
 PATIENCE = 6  # iterations on a fixed contact set
 CALM = 12  # updates of the set after which it is updated in every iteration
-STUBBORN = 60  # iterations after which the preconditioner is dropped: Polonsky and Keer's own iteration
+STUBBORN = 50  # iterations after which the preconditioner is dropped: Polonsky and Keer's own iteration
 
 
 @dataclass(frozen=True, eq=False)
@@ -112,8 +112,12 @@ def press(
     step = last = p  # of no consequence before the first step
     slope, carried = 1.0, False
     while True:
-        if iterations == STUBBORN:
+        if iterations == STUBBORN and since:
+            # where the preconditioner misleads it has led far astray: begin again
+            p = balanced(np.maximum(start, 0.0))
+            u, inside, carried = deflection(p), p > 0, False
             P_one, since, updates = of_one(inside), 0, CALM
+            convolutions += 1
         z, delta = direction(u + gap, inside, P_one)
         g = u + gap - delta
         r = np.where(inside, g, 0.0)

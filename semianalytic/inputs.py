@@ -21,7 +21,7 @@ class Numerics:
 
     patches: int = 257
     tolerance: float = 1e-8
-    max_iterations: int = 1000
+    max_iterations: int = 600
     conversion: str = "split"
     hankel_points: int = 4096
     enlarge: int = 4
