@@ -54,15 +54,21 @@ def _gather(force: Array) -> Array:
 
 
 def at_points(
-    x: Array, y: Array, lattice: Lattice, kernel: Callable[[Array, Array], Array], odd_in_y: Sequence[int]
+    x: Array,
+    y: Array,
+    lattice: Lattice,
+    kernel: Callable[[Array, Array], Array],
+    odd_in_y: Sequence[int],
+    *,
+    order: int,
 ) -> Array:
     """Sum over all forces at points (x, y), (k,) each, of a kernel smooth over the lattice; (components, k).
 
-    Term by term for a few points; for many on the lattice, then between its sites.
+    Term by term for a few points; for many on the lattice, then between its sites with ``order`` of them.
     """
     if x.size > 2 * FEW:
         dx, dy = lattice.dx, lattice.dy
-        return between_sites(x, y, lattice, lambda m, n: kernel(m * dx, n * dy), odd_in_y, order=6)
+        return between_sites(x, y, lattice, lambda m, n: kernel(m * dx, n * dy), odd_in_y, order=order)
     i, j = np.nonzero(lattice.force)
     X, Y, force = lattice.x0 + i * lattice.dx, lattice.y0 + j * lattice.dy, lattice.force[i, j]
     step = max(1, PAIRS // max(force.size, 1))

@@ -36,16 +36,18 @@ def near_influence(
     table: PointLoad | None,
     dx: float,
     dy: float,
+    z: float,
     odd_in_y: Sequence[int],
 ) -> Callable[[Array, Array], Array]:
     """Influence of unit force on a node, a function of integer offsets (m, n).
 
     rectangle : field of unit force spread over a rectangle dx x dy, (x, y) -> (components, ...), or None.
     outside : the same for a point force, used beyond NEAR.  table : what has to be added, smooth, or None.
+    z : depth [m].
     """
     blocks, far = [], []
     if rectangle is not None and outside is not None:
-        blocks.append(_block_of_rectangle(rectangle, dx, dy))
+        blocks.append(_block_of_rectangle(rectangle, dx, dy, z))
         far.append(outside)
     if table is not None:
         blocks.append(_block_of_table(table, dx, dy))
@@ -65,17 +67,24 @@ def near_influence(
     return influence
 
 
-def _block_of_rectangle(rectangle: Field, dx: float, dy: float) -> Array:
+def _block_of_rectangle(rectangle: Field, dx: float, dy: float, z: float) -> Array:
     """The rectangle averaged with w w at |m| <= BLOCK, 0 <= n <= BLOCK; (components, 2 BLOCK + 1, BLOCK + 1).
 
     For integer offsets the edges of the rectangle come to lie on knots of w. Next to them the Gauss nodes
-    crowd towards the knots: logarithms and steps at z = 0 to 1e-7, the layer at z = d/20 to 1e-5.
+    crowd towards the knots, for the logarithms and steps at z = 0, and at 0 < z << d once more towards
+    the layer of width z: 1e-7 of the largest influence at any depth.
     """
     cell = np.meshgrid(np.arange(-BLOCK - 1, BLOCK + 2), np.arange(-1, BLOCK + 2), indexing="ij")
     i, j = cell[0].ravel(), cell[1].ravel()
     touched = (np.abs(i) <= 1) & (np.abs(j) <= 1)
-    u, weight = np.polynomial.legendre.leggauss(24)
-    crowded = (15 * u - 10 * u**3 + 3 * u**5) / 16, weight * 15 * (1 - u**2) ** 2 / 16
+    layer = 10 * z / min(dx, dy)
+    if 1e-8 < layer < 0.25:
+        ends, middle = _crowded(16, layer), _crowded(24, 1 - 2 * layer)
+        shift = (1 - layer) / 2
+        t = np.concatenate([ends[0] - shift, middle[0], ends[0] + shift])
+        crowded = t, np.concatenate([ends[1], middle[1], ends[1]])
+    else:
+        crowded = _crowded(24, 1.0)
     moments: Array | None = None
     for cells, (t, weight) in ((touched, crowded), (~touched, _gauss(6))):
         # w(s) = w(s + 1) - B'(s + 1/2) = -sum_k B'(s + 1/2 + k), s = c + t in the cells c = -1, 0, 1
@@ -137,6 +146,12 @@ def _keys_slope(t: Array) -> Array:
     """dB/dt."""
     a = np.abs(t)
     return np.sign(t) * np.where(a < 1, (4.5 * a - 5) * a, np.where(a < 2, (5 - 1.5 * a) * a - 4, 0.0))
+
+
+def _crowded(n: int, length: float) -> tuple[Array, Array]:
+    """Gauss nodes and weights on a side of ``length`` around 0, crowded towards both ends."""
+    u, w = np.polynomial.legendre.leggauss(n)
+    return length * (15 * u - 10 * u**3 + 3 * u**5) / 16, length * w * 15 * (1 - u**2) ** 2 / 16
 
 
 def _gauss(n: int) -> tuple[Array, Array]:

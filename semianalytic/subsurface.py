@@ -238,7 +238,9 @@ def _evaluate(x, y, z, layer, fine: Lattice, body: _Body) -> Array:
                     field = between_sites(x[at], y[at], fine, influence, body.odd_in_y, order=4)
                 else:
                     level = int(np.clip(np.log2(max(depth / (COARSE * d), 1)), 0, len(lattices) - 1))
-                    field = at_points(x[at], y[at], lattices[level], table, body.odd_in_y)
+                    # z/8 > spacing for sextic interpolation, z/3 for one of tenth order
+                    order = 6 if depth > COARSE * d else 10
+                    field = at_points(x[at], y[at], lattices[level], table, body.odd_in_y, order=order)
                 parts.append((at, field))
     out = np.zeros((len(parts[0][1]) if parts else 0, z.size))
     for at, field in parts:
@@ -282,11 +284,11 @@ def _near(table: PointLoad | None, first: bool, z: float, lattice: Lattice, body
         return normal + body.friction * tangential
 
     if not first:
-        return near_influence(None, None, table, dx, dy, body.odd_in_y)
+        return near_influence(None, None, table, dx, dy, z, body.odd_in_y)
     # a rectangle of d/50 is a point from some patches on
     reach = 6 * max(dx, dy) * np.exp(np.arange(0, 8.5, 0.02))
     outside = body.from_lines(partial(body.closed, z=z, dx=dx / 50, dy=dy / 50), reach, body.friction)
-    return near_influence(rectangle, outside, table, dx, dy, body.odd_in_y)
+    return near_influence(rectangle, outside, table, dx, dy, z, body.odd_in_y)
 
 
 def _as_points(table: PointLoad, lattice: Lattice) -> Influence:
