@@ -15,6 +15,7 @@ from typing import Any
 
 from verification.convergence import ConversionError, Ladder, Level, conversion_errors, elements, ladder
 from verification.problem import CoatedContact
+from verification.schedule import Task
 from verification.store import StoreError, read_checked, write_checked
 from verification.surroundings import commit, versions
 
@@ -29,6 +30,7 @@ __all__ = [
     "measure",
     "path_in",
     "stored",
+    "task",
     "to_json",
 ]
 
@@ -105,6 +107,12 @@ def stored(
     now = source()
     same = (found.commit, found.versions) == (now, packages()) and not (now or "").endswith("+")
     return found if same and not found.failures else None
+
+
+def task(folder: Path) -> Task[AccuracyStudy]:
+    """The study as a task beside the cases of a run."""
+    path = path_in(folder)
+    return Task("accuracy study", ("verification.accuracy_study", str(path)), path, from_json, failed)
 
 
 def to_json(study: AccuracyStudy) -> dict[str, Any]:

@@ -10,7 +10,7 @@ import time
 from collections.abc import Sequence
 from importlib.metadata import version
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, TypeVar
 
 from cyclopts import App, CycloptsError, Parameter
 from rich.console import Console
@@ -26,13 +26,14 @@ from rich.table import Table
 
 from verification.case import Case, CaseError, read_case, shipped_cases
 from verification.result import CaseResult, RunInfo, from_json
-from verification.schedule import cores, result_path, run_cases
+from verification.schedule import Task, case_task, cores, result_path, run_tasks
 from verification.store import StoreError, locked, read_checked
 from verification.surroundings import commit, machine, missing_libraries, versions
 from verification.verdict import Outcome
 
 __all__ = ["app", "exit_code", "main"]
 
+T = TypeVar("T")
 BAD_INPUT = 2
 EXIT = {Outcome.DISAGREES: 1, Outcome.NO_RESULT: 3, Outcome.INCONCLUSIVE: 4, Outcome.AGREES: 0}
 STYLE = {
@@ -72,7 +73,7 @@ def run(
 ) -> int:
     """Solve cases by every method and reference, judge every claim, write the report.
 
-    Without arguments all shipped cases are run. Examples:
+    Without arguments all shipped cases are run, and the convergence of both methods is measured. Examples:
 
         coatcheck run
         coatcheck run 05_ratio_4 my_coating.toml --output reports/mine
@@ -106,18 +107,22 @@ def run(
         _complain(f"gmsh lacks system libraries here; install them with: apt-get install {' '.join(lacking)}")
         return EXIT[Outcome.NO_RESULT]
 
-    from verification.report import write_report  # matplotlib takes a second to load
+    from verification import accuracy_study  # SciPy and matplotlib take a second to load
+    from verification.accuracy_study import AccuracyStudy
+    from verification.report import write_report
 
     begin, started = time.perf_counter(), datetime.datetime.now(datetime.UTC)
     try:
         with locked(output):
             kept = {c.name: r for c in chosen if resume and (r := _stored(output, c)) is not None}
-            results = {
-                r.name: r
-                for r in _solve(
-                    [c for c in chosen if c.name not in kept], output, jobs, time_limit, quiet or as_json
-                )
-            }
+            study = accuracy_study.stored(output) if resume and not cases else None
+            tasks: list[Task[CaseResult | AccuracyStudy]] = []
+            if not cases and study is None:
+                tasks.append(accuracy_study.task(output))
+            tasks += [case_task(c, output) for c in chosen if c.name not in kept]
+            solved = _solve(tasks, jobs, time_limit, quiet or as_json)
+            results = {r.name: r for r in solved if isinstance(r, CaseResult)}
+            study = next((r for r in solved if isinstance(r, AccuracyStudy)), study)
             ordered = [kept.get(case.name) or results[case.name] for case in chosen]
             info = RunInfo(
                 command=" ".join(["coatcheck run", *cases]),
@@ -128,7 +133,7 @@ def run(
                 machine=f"{machine()}, {cores()} cores",
                 versions=versions(),
             )
-            page = write_report(ordered, output, info)
+            page = write_report(ordered, output, info, study)
     except StoreError as error:
         return _complain(str(error))
     if as_json:
@@ -198,7 +203,7 @@ def _stored(output: Path, case: Case) -> CaseResult | None:
     return result if result.text == case.text else None
 
 
-def _solve(cases: list[Case], output: Path, jobs: int, time_limit: float, silent: bool) -> list[CaseResult]:
+def _solve(tasks: Sequence[Task[T]], jobs: int, time_limit: float, silent: bool) -> list[T]:
     console = Console(stderr=True)
     bar = Progress(
         TextColumn("{task.description}"),
@@ -213,23 +218,23 @@ def _solve(cases: list[Case], output: Path, jobs: int, time_limit: float, silent
     )
     at_work: list[str] = []
     with bar:
-        task = bar.add_task("solving", total=len(cases))
+        task = bar.add_task("solving", total=len(tasks))
 
-        def started(case: Case) -> None:
-            at_work.append(case.name)
+        def started(name: str) -> None:
+            at_work.append(name)
             bar.update(task, description=", ".join(at_work))
 
-        def finished(result: CaseResult) -> None:
-            at_work.remove(result.name)
+        def finished(name: str, result: T) -> None:
+            at_work.remove(name)
             bar.update(task, advance=1, description=", ".join(at_work) or "report")
-            if not silent:
+            if not silent and isinstance(result, CaseResult):
                 colour = STYLE[result.outcome]
                 console.print(
                     f"[{colour}]{result.outcome:<12}[/] {result.name}  {result.seconds:.1f} s",
                     highlight=False,
                 )
 
-        return run_cases(cases, output, jobs=jobs, time_limit=time_limit, started=started, finished=finished)
+        return run_tasks(tasks, jobs=jobs, time_limit=time_limit, started=started, finished=finished)
 
 
 def _summary(results: Sequence[CaseResult], page: Path) -> dict[str, object]:

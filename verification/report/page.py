@@ -12,6 +12,7 @@ import numpy as np
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 
+from verification.accuracy_study import AccuracyStudy
 from verification.report.accuracy import accuracy_overview, accuracy_sentence, accuracy_table
 from verification.report.cells import Section, Table
 from verification.report.csvdata import embedded, line_csv
@@ -75,14 +76,14 @@ class CaseView:
     diagnostics: Table | None
 
 
-def render(results: Sequence[CaseResult], info: RunInfo) -> str:
+def render(results: Sequence[CaseResult], info: RunInfo, study: AccuracyStudy | None = None) -> str:
     """The whole page as text. Every string of a result is escaped: a title "<script>" stays text."""
     # A report tells of numbers that overflow or are not finite; it must not stumble over them.
     with np.errstate(all="ignore"):
-        return _render(results, info)
+        return _render(results, info, study)
 
 
-def _render(results: Sequence[CaseResult], info: RunInfo) -> str:
+def _render(results: Sequence[CaseResult], info: RunInfo, study: AccuracyStudy | None) -> str:
     anchors = _anchors(results)
     script = (HERE / "script.js").read_text(encoding="utf-8")
     digest = base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()

@@ -6,6 +6,8 @@ import tempfile
 from collections.abc import Sequence
 from pathlib import Path
 
+from verification import accuracy_study
+from verification.accuracy_study import AccuracyStudy
 from verification.report.junit import junit_xml
 from verification.report.page import render
 from verification.result import SCHEMA, CaseResult, RunInfo, to_json
@@ -13,17 +15,21 @@ from verification.result import SCHEMA, CaseResult, RunInfo, to_json
 __all__ = ["report_json", "write_report"]
 
 
-def write_report(results: Sequence[CaseResult], folder: Path, info: RunInfo) -> Path:
+def write_report(
+    results: Sequence[CaseResult], folder: Path, info: RunInfo, study: AccuracyStudy | None = None
+) -> Path:
     """Write report.html, report.json and junit.xml into ``folder`` and return the path of the page.
+
+    study : how the errors of the methods fall with resolution, where that was measured.
 
     All three are made before the first is written, and each replaces its predecessor in one step, so
     that whatever goes wrong leaves the earlier report as it was. Raises OSError where the folder cannot
     be written.
     """
     texts = {
-        "report.json": report_json(results, info),
+        "report.json": report_json(results, info, study),
         "junit.xml": junit_xml(results, info),
-        "report.html": render(results, info),
+        "report.html": render(results, info, study),
     }
     folder.mkdir(parents=True, exist_ok=True)
     ready: dict[Path, Path] = {}
@@ -45,11 +51,12 @@ def write_report(results: Sequence[CaseResult], folder: Path, info: RunInfo) -> 
     return folder / "report.html"
 
 
-def report_json(results: Sequence[CaseResult], info: RunInfo) -> str:
+def report_json(results: Sequence[CaseResult], info: RunInfo, study: AccuracyStudy | None = None) -> str:
     """Everything the report is drawn from as strict JSON of schema ``coatcheck-report/1``."""
     data = {
         "schema": SCHEMA,
         "run": {**vars(info)},
         "cases": [to_json(result) for result in results],
+        "accuracy": None if study is None else accuracy_study.to_json(study),
     }
     return json.dumps(data, allow_nan=False, ensure_ascii=True, separators=(",", ":")) + "\n"
