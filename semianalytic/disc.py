@@ -72,7 +72,7 @@ def deflection(
     phi = np.linalg.solve(_abel(terms), coefficients) * a  # phi = x' sum phi_m P_m(2x' - 1), x' = 1 - (x/a)^2
     reach = float(np.max(r))
     inner = a * np.sin(np.linspace(0, np.pi / 2, 400))
-    outer = a + np.linspace(0, np.sqrt(max(reach - a, 0) + 1e-12 * a), 300) ** 2
+    outer = a + np.linspace(0, np.sqrt(max(reach - a, 1e-2 * a)), 300) ** 2
     # smooth in r inside, in sqrt(r - a) outside
     u = np.where(
         r <= a,

@@ -1,0 +1,140 @@
+"""Contact conditions, from conjugate gradients that know nothing of coatings."""
+
+import numpy as np
+import pytest
+
+from semianalytic import contact, convolution, halfspace
+
+N, D = 65, 2.4 / 65  # Hertz with E* = R = a = 1 on [-1.2, 1.2]^2
+X = (np.arange(N) - N // 2) * D
+R2 = X[:, None] ** 2 + X[None, :] ** 2
+KERNEL = halfspace.surface_deflection(N, N, D, D) / np.pi
+A = convolution.even_convolution(KERNEL)
+P = convolution.circulant_inverse(KERNEL)
+LOAD = 4 / 3
+
+
+def press(gap=R2 / 2, tolerance=1e-10, max_iterations=400, **control):
+    control = control or {"total": LOAD / D**2}
+    return contact.press(
+        A,
+        gap,
+        start=np.where(R2 < 1.3, 1.0, 0.0),
+        precondition=P,
+        scale=1.0,
+        tolerance=tolerance,
+        max_iterations=max_iterations,
+        **control,
+    )
+
+
+def rough():
+    rng = np.random.default_rng(3)
+    wave = np.fft.fft2(rng.normal(size=(N, N))) * np.exp(-((np.fft.fftfreq(N) * 20) ** 2))[:, None]
+    return R2 / 2 + 2e-3 * np.real(np.fft.ifft2(wave * np.exp(-((np.fft.fftfreq(N) * 20) ** 2))))
+
+
+@pytest.mark.parametrize("gap", [R2 / 2, rough()], ids=["sphere", "rough"])
+def test_gap_and_pressure_exclude_each_other(gap):
+    found = press(gap)
+    g = A(found.pressure) + gap - found.approach
+    loaded = found.pressure > 0
+    assert found.pressure.min() >= 0
+    # the end test's own tolerance
+    assert np.abs(g[loaded]).max() <= 1e-10
+    assert g[~loaded].min() >= -1e-10
+    assert found.pressure.sum() * D**2 == pytest.approx(LOAD, rel=1e-12)
+    np.testing.assert_allclose(found.gap, g, atol=1e-12)
+
+
+def test_sphere_gives_hertz():
+    found = press()
+    hertz = 2 / np.pi * np.sqrt(np.maximum(1 - R2, 0))
+    # 27 patches to the radius without edge correction: 1e-3 of p0 in the inner half, 3e-4 of the approach
+    assert np.abs(found.pressure - hertz)[R2 < 0.25].max() < 1e-3 * 2 / np.pi
+    assert found.approach == pytest.approx(1.0, abs=3e-4)
+
+
+def test_load_and_approach_control_find_the_same_contact():
+    by_load = press()
+    by_approach = press(approach=by_load.approach)
+    # condition of the map from approach to pressure times the tolerance
+    np.testing.assert_allclose(by_approach.pressure, by_load.pressure, atol=1e-6)
+
+
+def test_start_does_not_matter():
+    found = press()
+    again = contact.press(
+        A,
+        R2 / 2,
+        total=LOAD / D**2,
+        start=np.ones((N, N)),
+        precondition=P,
+        scale=1.0,
+        tolerance=1e-10,
+        max_iterations=400,
+    )
+    np.testing.assert_allclose(again.pressure, found.pressure, atol=1e-6)
+
+
+def test_a_useless_preconditioner_costs_iterations_but_no_accuracy():
+    found = press()
+    plain = contact.press(
+        A,
+        R2 / 2,
+        total=LOAD / D**2,
+        start=np.where(R2 < 1.3, 1.0, 0.0),
+        precondition=lambda r: r,
+        scale=1.0,
+        tolerance=1e-10,
+        max_iterations=400,
+    )
+    assert plain.iterations > 2 * found.iterations
+    np.testing.assert_allclose(plain.pressure, found.pressure, atol=1e-6)
+
+
+def test_a_solution_is_accepted_without_an_iteration():
+    found = press()
+    again = contact.press(
+        A,
+        R2 / 2,
+        total=LOAD / D**2,
+        start=found.pressure,
+        precondition=P,
+        scale=1.0,
+        tolerance=2e-10,
+        max_iterations=0,
+    )
+    assert again.iterations == 0
+
+
+def test_iterations_hardly_grow_with_the_grid():
+    counts = []
+    for n in (65, 257):
+        d = 2.4 / n
+        x = (np.arange(n) - n // 2) * d
+        r2 = x[:, None] ** 2 + x[None, :] ** 2
+        kernel = halfspace.surface_deflection(n, n, d, d) / np.pi
+        found = contact.press(
+            convolution.even_convolution(kernel),
+            r2 / 2,
+            total=LOAD / d**2,
+            start=np.sqrt(np.maximum(1 - r2, 0)),
+            precondition=convolution.circulant_inverse(kernel),
+            scale=1.0,
+            tolerance=1e-8,
+            max_iterations=100,
+        )
+        counts.append(found.iterations)
+    # the issue asks for 1.3 from 256 to 1024; without a preconditioner it is 2 from 65 to 257
+    assert counts[1] <= 1.3 * counts[0] + 1
+
+
+def test_stopping_short_is_an_exception_with_advice():
+    with pytest.raises(contact.NotConverged, match=r"after 2 iterations .* raise max_iterations"):
+        press(max_iterations=2)
+
+
+def test_exactly_one_of_load_and_approach_is_taken():
+    with pytest.raises(ValueError, match="either"):
+        press(total=1.0, approach=1.0)

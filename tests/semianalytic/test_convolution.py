@@ -1,0 +1,56 @@
+"""DC-FFT held against direct summation."""
+
+import numpy as np
+import pytest
+
+from semianalytic import convolution
+
+RNG = np.random.default_rng(7)
+
+
+@pytest.mark.parametrize("shape", [(9, 9), (8, 13), (31, 6)])
+@pytest.mark.parametrize("threads", [1, 2])
+def test_convolution_is_the_direct_sum(shape, threads):
+    nx, ny = shape
+    kernel, p = RNG.normal(size=shape), RNG.normal(size=shape)
+    i, j = np.arange(nx), np.arange(ny)
+    full = kernel[np.abs(i[:, None] - i)[:, :, None, None], np.abs(j[:, None] - j)[None, None]]
+    direct = np.einsum("ikjl,kl->ij", full, p)
+    u = convolution.even_convolution(kernel, threads=threads)(p)
+    # rounding of a few hundred terms of order one
+    np.testing.assert_allclose(u, direct, atol=1e-11)
+
+
+def test_nothing_wraps_around():
+    kernel, p = np.ones((16, 16)), np.zeros((16, 16))
+    kernel[8:] = 0
+    p[0, 0] = 1
+    u = convolution.even_convolution(kernel)(p)
+    # a circular convolution would bring the near rows back at the far end
+    np.testing.assert_allclose(u[8:], 0, atol=1e-14)
+    np.testing.assert_allclose(u[:8], 1, atol=1e-14)
+
+
+def test_convolution_is_symmetric():
+    r = np.hypot(*np.meshgrid(np.arange(21), np.arange(21)))
+    A = convolution.even_convolution(1 / (1 + r))
+    p, q = RNG.normal(size=(2, 21, 21))
+    # Maxwell's reciprocity: the work of p on the deflection of q and the other way round
+    assert np.vdot(p, A(q)) == pytest.approx(np.vdot(q, A(p)), rel=1e-12)
+
+
+def test_circulant_inverse_undoes_a_short_kernel():
+    kernel = np.zeros((24, 24))
+    kernel[0, 0], kernel[1, 0], kernel[0, 1] = 1.0, 0.05, 0.05
+    r = np.zeros((24, 24))
+    r[8:16, 8:16] = RNG.normal(size=(8, 8))
+    z = convolution.circulant_inverse(kernel)(r)
+    # the inverse of so short a kernel has died by 0.1^8 at the boundary, where circulant and linear differ
+    np.testing.assert_allclose(convolution.even_convolution(kernel)(z)[4:20, 4:20], r[4:20, 4:20], atol=1e-7)
+
+
+@pytest.mark.parametrize("n", [1, 2, 7, 101, 513, 1025, 4097])
+def test_good_size_is_even_and_near(n):
+    m = convolution.good_size(n)
+    assert m % 2 == 0
+    assert n <= m <= max(1.15 * n, n + 4)
