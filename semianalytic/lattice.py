@@ -15,12 +15,20 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.fft import irfft2, next_fast_len, rfft2
 
-__all__ = ["Influence", "Lattice", "at_points", "between_sites", "influence_table"]
+__all__ = [
+    "Influence",
+    "Lattice",
+    "at_points",
+    "between_sites",
+    "influence_table",
+    "nodal_forces",
+    "samples",
+]
 
 Array = NDArray[Any]
 Influence = Callable[[Array, Array], Array]  # of integer offsets (m, n), each (k,) -> (components, k)
 
-PAIRS = 200_000  # points times forces held at a time
+PAIRS = 200_000  # points times forces, or offsets, held at a time
 FEW = 32  # sites for which a plain sum is quicker than Fourier transforms
 
 
@@ -38,6 +46,29 @@ class Lattice:
         """The same forces on twice the spacing, by the adjoint of quintic interpolation."""
         force = _gather(_gather(self.force).T).T
         return Lattice(self.x0 - 6 * self.dx, self.y0 - 6 * self.dy, 2 * self.dx, 2 * self.dy, force)
+
+
+def nodal_forces(grid_x: Array, grid_y: Array, pressure: Array) -> Lattice:
+    """Forces of the loaded box of the grid."""
+    grid_x, grid_y = np.asarray(grid_x, dtype=float), np.asarray(grid_y, dtype=float)
+    dx = float(grid_x[-1] - grid_x[0]) / (grid_x.size - 1)
+    dy = float(grid_y[-1] - grid_y[0]) / (grid_y.size - 1)
+    rows, columns = np.flatnonzero(pressure.any(axis=1)), np.flatnonzero(pressure.any(axis=0))
+    if not rows.size:
+        rows = columns = np.array([0])
+    box = pressure[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1]
+    return Lattice(grid_x[rows[0]] - dx, grid_y[columns[0]] - dy, dx, dy, samples(box) * (dx * dy))
+
+
+def samples(mean: Array) -> Array:
+    """Values of p at the centres from its means over patches, mean = p + (d^2/24) lap p; one patch wider.
+
+    Written as a difference the correction keeps the load.
+    """
+    padded = np.pad(mean, 2)
+    middle = padded[1:-1, 1:-1]
+    across = padded[2:, 1:-1] + padded[:-2, 1:-1] + padded[1:-1, 2:] + padded[1:-1, :-2]
+    return middle - (across - 4 * middle) / 24
 
 
 def _gather(force: Array) -> Array:
@@ -130,8 +161,12 @@ def influence_table(influence: Influence, m: Array, n: Array, odd_in_y: Sequence
     """Influence at the offsets m x n, computed for n >= 0 and mirrored; (components, len(m), len(n))."""
     distinct, where = np.unique(np.abs(n), return_inverse=True)
     mm, nn = np.meshgrid(m, distinct, indexing="ij")
-    half = influence(mm.ravel(), nn.ravel()).reshape(-1, *mm.shape)
-    table = half[:, :, where]
+    rows = max(1, PAIRS // distinct.size)
+    blocks = [
+        influence(a.ravel(), b.ravel()).reshape(-1, *a.shape)
+        for a, b in ((mm[i : i + rows], nn[i : i + rows]) for i in range(0, m.size, rows))
+    ]
+    table = np.concatenate(blocks, axis=1)[:, :, where]
     for component in odd_in_y:
         table[component] *= np.where(n < 0, -1.0, 1.0)
     return table

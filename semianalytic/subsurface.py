@@ -18,7 +18,7 @@ below patch centres only, and interpolated between them by cubics.
 Sources: source paper, eqs. 1-4; theory sheet, section 3.2. Axes: z down; tension positive; SI units.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
 from typing import Any
@@ -27,7 +27,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.fft import irfft2, next_fast_len, rfft2
 
-from .lattice import Influence, Lattice, at_points, between_sites, influence_table
+from .lattice import Influence, Lattice, at_points, between_sites, influence_table, nodal_forces, samples
 from .node import near_influence
 from .pointload import (
     PointLoad,
@@ -45,6 +45,7 @@ Coatings = Sequence[tuple[float, float, float]]
 
 SHALLOW = 3.0  # patches; above this depth a node is not yet a point force: aliases exp(-6 pi) = 7e-9
 COARSE = 8.0  # depth over lattice spacing; the sixth-order interpolation then errs by 1e-5
+CHEBYSHEV = 10  # shallow depths; more than these are interpolated, to 1e-6 three patches from the edge
 SIX = ((0, 1, 2, 0, 0, 1), (0, 1, 2, 1, 2, 2))  # xx, yy, zz, xy, xz, yz
 
 
@@ -72,7 +73,7 @@ def stress(
     Returns sigma[i, j, ...] [Pa], shape (3, 3) + points.
     """
     body = _stress_body(friction, coatings, substrate, rectangle, stress_frf)
-    xx, yy, zz, xy, xz, yz = _evaluate(x, y, z, layer, _nodal_forces(grid_x, grid_y, pressure), body)
+    xx, yy, zz, xy, xz, yz = _evaluate(x, y, z, layer, nodal_forces(grid_x, grid_y, pressure), body)
     return np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
 
 
@@ -103,9 +104,10 @@ def displacement(
         partial(_closed, rectangle, friction, (E, nu), (...,)),
         displacement_from_lines,
         friction,
+        components=3,
         odd_in_y=(1,),
     )
-    return _evaluate(x, y, z, layer, _nodal_forces(grid_x, grid_y, pressure), body)
+    return _evaluate(x, y, z, layer, nodal_forces(grid_x, grid_y, pressure), body)
 
 
 @dataclass(frozen=True, eq=False)
@@ -125,7 +127,7 @@ class StressPlane:
         if pressure.shape != self.shape:
             raise ValueError(f"pressure has shape {pressure.shape}; this plane was set up for {self.shape}")
         nx, ny = self.shape
-        force = rfft2(_samples(pressure) * self.area, self.size, workers=threads)
+        force = rfft2(samples(pressure) * self.area, self.size, workers=threads)
         out = np.empty((6, nx, ny))
         for component, part in zip(out, self.spectrum, strict=True):
             component[:] = irfft2(part * force, self.size, workers=threads)[
@@ -149,10 +151,10 @@ def stress_plane(
     """Set up the convolution for all patch centres at depth z [m]; arguments as in `stress`."""
     body = _stress_body(friction, coatings, substrate, rectangle, stress_frf)
     nx, ny = len(grid_x), len(grid_y)
-    unit = _nodal_forces(grid_x, grid_y, np.ones((nx, ny)))
-    ((_, shallow, tables),) = _tables(np.array([z]), layer, max(unit.dx, unit.dy), body)
-    influence = _near(tables[0], layer == 0, z, unit, body) if shallow else _as_points(tables[0], unit)
-    # forces reach one patch beyond the grid, see `_samples`
+    unit = nodal_forces(grid_x, grid_y, np.ones((nx, ny)))
+    ((_, shallow, point),) = _tables(np.array([float(z)]), layer, max(unit.dx, unit.dy), body)
+    influence = _near(point, layer == 0, z, unit, body) if shallow else _as_points(point, unit)
+    # forces reach one patch beyond the grid, see `samples`
     table = influence_table(influence, np.arange(-nx, nx + 1), np.arange(-ny, ny + 1), body.odd_in_y)
     size = (next_fast_len(2 * nx + 1, real=True), next_fast_len(2 * ny + 1, real=True))
     return StressPlane(rfft2(table, size), size, (nx, ny), unit.dx * unit.dy)
@@ -172,6 +174,7 @@ class _Body:
     closed: Field
     from_lines: Callable[..., PointLoad]
     friction: float
+    components: int
     odd_in_y: tuple[int, ...]
 
 
@@ -183,6 +186,7 @@ def _stress_body(friction, coatings, substrate, rectangle, stress_frf) -> _Body:
         partial(_closed, rectangle, friction, (*coatings, substrate)[0][1:2], SIX),
         stress_from_lines,
         friction,
+        components=6,
         odd_in_y=(3, 5),
     )
 
@@ -194,62 +198,70 @@ def _closed(rectangle, friction, moduli, components, X, Y, z: float, dx: float, 
     return np.array(fields if friction else [*fields, np.zeros_like(fields[0])])
 
 
-def _nodal_forces(grid_x: Array, grid_y: Array, pressure: Array) -> Lattice:
-    """Forces of the loaded box of the grid."""
-    grid_x, grid_y = np.asarray(grid_x, dtype=float), np.asarray(grid_y, dtype=float)
-    dx = float(grid_x[-1] - grid_x[0]) / (grid_x.size - 1)
-    dy = float(grid_y[-1] - grid_y[0]) / (grid_y.size - 1)
-    rows, columns = np.flatnonzero(pressure.any(axis=1)), np.flatnonzero(pressure.any(axis=0))
-    if not rows.size:
-        rows = columns = np.array([0])
-    box = pressure[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1]
-    return Lattice(grid_x[rows[0]] - dx, grid_y[columns[0]] - dy, dx, dy, _samples(box) * (dx * dy))
-
-
-def _samples(mean: Array) -> Array:
-    """Values of p at the centres from its means over patches, mean = p + (d^2/24) lap p; one patch wider.
-
-    Written as a difference the correction keeps the load.
-    """
-    padded = np.pad(mean, 2)
-    middle = padded[1:-1, 1:-1]
-    across = padded[2:, 1:-1] + padded[:-2, 1:-1] + padded[1:-1, 2:] + padded[1:-1, :-2]
-    return middle - (across - 4 * middle) / 24
-
-
 def _evaluate(x, y, z, layer, fine: Lattice, body: _Body) -> Array:
-    """Field components (n,) + points, depth by depth."""
+    """Field components (n,) + points, layer by layer and depth by depth."""
     x, y, z, layer = np.broadcast_arrays(*(np.asarray(v) for v in (x, y, z, layer)))
     shape = z.shape
     x, y, z, layer = (v.ravel() for v in (x, y, z, layer))
-    d = max(fine.dx, fine.dy)
     lattices = [fine]
     while max(lattices[-1].force.shape) > 24:
         lattices.append(lattices[-1].coarser())
-    parts: list[tuple[Array, Array]] = []
+    shallow = z < SHALLOW * max(fine.dx, fine.dy)
+    out = np.zeros((body.components, z.size))
     for number in np.unique(layer):
-        here = np.flatnonzero(layer == number)
-        depths, which = np.unique(z[here], return_inverse=True)
-        for start, shallow, tables in _tables(depths, int(number), d, body):
-            for i, table in enumerate(tables, start):
-                at, depth = here[which == i], float(depths[i])
-                if shallow:
-                    influence = _near(table, number == 0, depth, fine, body)
-                    field = between_sites(x[at], y[at], fine, influence, body.odd_in_y, order=4)
-                else:
-                    level = int(np.clip(np.log2(max(depth / (COARSE * d), 1)), 0, len(lattices) - 1))
-                    # z/8 > spacing for sextic interpolation, z/3 for one of tenth order
-                    order = 6 if depth > COARSE * d else 10
-                    field = at_points(x[at], y[at], lattices[level], table, body.odd_in_y, order=order)
-                parts.append((at, field))
-    out = np.zeros((len(parts[0][1]) if parts else 0, z.size))
-    for at, field in parts:
-        out[:, at] = field
-    return out.reshape(-1, *shape)
+        for here in (
+            np.flatnonzero((layer == number) & shallow),
+            np.flatnonzero((layer == number) & ~shallow),
+        ):
+            depths, which = np.unique(z[here], return_inverse=True)
+            if shallow[here].any() and depths.size > CHEBYSHEV:
+                depths, weights = _between_depths(z[here])
+                for i, field in enumerate(_fields(depths, int(number), lattices, body)):
+                    out[:, here] += weights[:, i] * field(x[here], y[here])
+            else:
+                for i, field in enumerate(_fields(depths, int(number), lattices, body)):
+                    at = here[which == i]
+                    out[:, at] = field(x[at], y[at])
+    return out.reshape(body.components, *shape)
 
 
-def _tables(depths: Array, layer: int, d: float, body: _Body):
-    """Point-load tables by runs of depths that share a ladder of wavenumbers: first index, shallow, tables.
+def _between_depths(z: Array) -> tuple[Array, Array]:
+    """Chebyshev depths over the range of ``z``, and weights (k, depths) that interpolate to each of ``z``."""
+    theta = np.pi * np.arange(CHEBYSHEV) / (CHEBYSHEV - 1)
+    low, high = z.min(), z.max()
+    s = (2 * z - low - high) / (high - low)
+    # cardinal functions as sums of T_m(s) T_m(s_i), first and last terms halved
+    m = np.arange(CHEBYSHEV)
+    ends = np.where((m == 0) | (m == CHEBYSHEV - 1), 0.5, 1.0)
+    T = np.cos(m * np.arccos(np.clip(s, -1, 1))[:, None]) * ends
+    weights = 2 / (CHEBYSHEV - 1) * T @ np.cos(np.outer(m, theta)) * ends
+    return (low + high + (high - low) * np.cos(theta)) / 2, weights
+
+
+def _fields(
+    depths: Array, layer: int, lattices: list[Lattice], body: _Body
+) -> Iterator[Callable[..., Array]]:
+    """For each depth of one layer, the field as a function of x and y, (k,) -> (components, k)."""
+    fine = lattices[0]
+    d = max(fine.dx, fine.dy)
+    for z, shallow, table in _tables(depths, layer, d, body):
+        if shallow:
+            influence = _near(table, layer == 0, z, fine, body)
+            yield partial(between_sites, lattice=fine, influence=influence, odd_in_y=body.odd_in_y, order=4)
+        else:
+            level = int(np.clip(np.log2(max(z / (COARSE * d), 1)), 0, len(lattices) - 1))
+            # z/8 > spacing for sextic interpolation, z/3 for one of tenth order
+            order = 6 if z > COARSE * d else 10
+            assert table is not None
+            yield partial(
+                at_points, lattice=lattices[level], kernel=table, odd_in_y=body.odd_in_y, order=order
+            )
+
+
+def _tables(
+    depths: Array, layer: int, d: float, body: _Body
+) -> Iterator[tuple[float, bool, PointLoad | None]]:
+    """Each depth, whether it is shallow, and its point-load table; runs share a ladder of wavenumbers.
 
     Shallow in the first layer, the tables hold what the homogeneous solid lacks: nothing, None, if uncoated.
     """
@@ -267,11 +279,13 @@ def _tables(depths: Array, layer: int, d: float, body: _Body):
         stop = start + 1
         while stop < min(len(keys), start + 64) and keys[stop] == keys[start]:
             stop += 1
+        run = depths[start:stop]
         excess = shallow and layer == 0
-        if excess and not coatings:
-            yield start, shallow, [None] * (stop - start)
-        else:
-            yield start, shallow, body.below(depths[start:stop], layer, scale, excess=excess)
+        tables: Sequence[PointLoad | None] = [None] * run.size
+        if coatings or not excess:
+            tables = body.below(run, layer, scale, excess=excess)
+        for z, table in zip(run, tables, strict=True):
+            yield float(z), shallow, table
         start = stop
 
 
@@ -291,5 +305,6 @@ def _near(table: PointLoad | None, first: bool, z: float, lattice: Lattice, body
     return near_influence(rectangle, outside, table, dx, dy, z, body.odd_in_y)
 
 
-def _as_points(table: PointLoad, lattice: Lattice) -> Influence:
+def _as_points(table: PointLoad | None, lattice: Lattice) -> Influence:
+    assert table is not None
     return lambda m, n: table(m * lattice.dx, n * lattice.dy)

@@ -324,3 +324,17 @@ def test_coated_displacement_is_its_hankel_integral():
         u = displacement(r, 0.0, z, layer, coatings=coatings, substrate=substrate)
         np.testing.assert_allclose(u[2], j0(np.outer(r, k)) @ (weight * uz), atol=2e-5)
         np.testing.assert_allclose(u[0], -j1(np.outer(r, k)) @ (weight * U), atol=2e-5)
+
+
+def test_many_shallow_depths_are_interpolated_to_what_each_gives_alone():
+    rng = np.random.default_rng(11)
+    coatings, substrate = (((4.0, 0.25, 0.02), (0.3, 0.4, 0.15)), (1.0, 0.3))
+    x, y = rng.uniform(-0.6, 0.6, (2, 30))
+    z = rng.uniform(0, 0.02, 30)
+    together = sigma(x, y, z, 0, f=0.3, coatings=coatings, substrate=substrate)
+    alone = [sigma(x[i], y[i], z[i], 0, f=0.3, coatings=coatings, substrate=substrate) for i in range(5)]
+    np.testing.assert_allclose(together[..., :5], np.stack(alone, axis=-1), atol=2e-6)
+
+
+def test_no_points_give_no_stress():
+    assert sigma(np.zeros(0), 0.0, 0.0, 0).shape == (3, 3, 0)
