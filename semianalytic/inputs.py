@@ -41,8 +41,8 @@ class Numerics:
         for name in ("max_iterations", "enlarge", "threads"):
             if getattr(self, name) < 1:
                 raise ValueError(f"{name} = {getattr(self, name)}; it must be at least 1")
-        if self.hankel_points < 256:
-            raise ValueError(f"hankel_points = {self.hankel_points}; give 256 or more, 4096 is the default")
+        if self.hankel_points < 512:
+            raise ValueError(f"hankel_points = {self.hankel_points}; give 512 or more, 4096 is the default")
         if self.edge_rounds < 0:
             raise ValueError(f"edge_rounds = {self.edge_rounds}; 0 leaves the contact edge a staircase")
 

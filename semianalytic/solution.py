@@ -108,7 +108,9 @@ class Solution:
         x, y : [m], broadcast.
         """
         if self._profile is None:
-            return np.sqrt(np.maximum(_at(self.nodes, self.patch_pressure**2, x, y), 0))
+            square = self.patch_pressure**2
+            touched = _at(self.nodes, square, x, y, order=1) > 0  # where the cubic must not ring
+            return np.sqrt(np.maximum(np.where(touched, _at(self.nodes, square, x, y), 0), 0))
         rest = self.patch_pressure - self._profile(np.hypot(self.nodes[:, None], self.nodes[None, :]))
         value = self._profile(np.hypot(x, y)) + _at(self.nodes, rest, x, y, order=1)
         return np.maximum(value, 0)
@@ -132,20 +134,24 @@ class Solution:
     def pressure_uncertainty(self, x: ArrayLike, y: ArrayLike = 0.0) -> Array:
         """Uncertainty of the pressure [Pa] from the coarser companion.
 
-        Half the largest difference of the two within two coarse patches, plus what the other knobs do to the
-        peak. Raises ValueError where no uncertainty was estimated.
+        The largest difference of the two within two coarse patches, half of it where the edge was corrected
+        and twice where it is a staircase, plus what the other knobs do to the peak.
+        Raises ValueError where no uncertainty was estimated.
         """
         coarser, floor = self._companion()
         difference = np.abs(self.patch_pressure - coarser.pressure(self.nodes[:, None], self.nodes[None, :]))
         widened = maximum_filter(difference, size=9, mode="nearest")
-        return _at(self.nodes, widened, x, y, order=1) / 2 + floor * self.peak_pressure
+        return (
+            _at(self.nodes, widened, x, y, order=1) * (0.5 if self._profile else 2.0)
+            + floor * self.peak_pressure
+        )
 
     def stress_uncertainty(self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None) -> Array:
         """Uncertainty of the stress [Pa], shape (3, 3) + points, from the coarser companions.
 
-        Half the largest difference over the six components, of this grid and half of it or, an eighth of it,
-        of half and a quarter, for every component alike; plus what the other knobs do to the peak pressure,
-        and the error of the evaluation in depth, ``EVALUATION`` of the peak.
+        The largest difference over the six components, of this grid and half of it or, an eighth of it, of
+        half and a quarter, for every component alike, half of it where the edge was corrected; plus what the
+        other knobs do to the peak pressure, and the error of the evaluation, ``EVALUATION`` of the peak.
         Raises ValueError where no uncertainty was estimated.
         """
         coarser, floor = self._companion()
@@ -155,7 +161,10 @@ class Solution:
             quartered = coarser.coarser.stress(x, y, z, layer)
             spread = np.maximum(spread, np.abs(halved - quartered).max(axis=(0, 1)) / 8)
         shallow = np.asarray(z) < 4 * self.diagnostics.patch_size
-        total = spread / 2 + (floor + np.where(shallow, *EVALUATION)) * self.peak_pressure
+        total = (
+            spread * (0.5 if self._profile else 1.0)
+            + (floor + np.where(shallow, *EVALUATION)) * self.peak_pressure
+        )
         return np.broadcast_to(total, (3, 3, *spread.shape)).copy()
 
     def _companion(self) -> tuple["Solution", float]:

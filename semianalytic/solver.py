@@ -103,7 +103,8 @@ def solve(
     coatings ((E, nu, thickness), ...) from the surface down; substrate (E, nu); friction f in q = f p.
     approach : delta [m] instead of the load, which then is None.
     patches : per side of the finest grid, odd; None takes 257, or up to 385 where a first coating is thin
-    enough to need them. The other numerics: ``inputs.Numerics``; the conversions ``influence``.
+    enough to need them. The other numerics: ``inputs.Numerics``; the conversions: ``influence``. The
+    correction of the edge (edge_rounds > 0) takes the error of a poor conversion away with its own.
 
     Raises ValueError for input without meaning, NotConverged when the iteration stops short.
     """
@@ -251,7 +252,7 @@ def solve_prescribed(
         solution = _as_solution(one, solution, body)
     assert solution is not None
     if estimate_uncertainty:
-        coarser = replace(numerics, hankel_points=hankel_points // 2, enlarge=enlarge // 2 or 1)
+        coarser = _other_conversion(numerics)
         knobs = {
             "conversion": level(sizes[1], 1, coarser).scalars,
             "domain": level(sizes[1], WIDER, numerics).scalars,
@@ -394,7 +395,7 @@ def _fit(grid: Grid, pressure: Array, body: Body, skip: float) -> edge_profile.P
     a = float(np.sqrt(np.count_nonzero(pressure) / np.pi) * grid.d)
     # a coating much thinner than the contact bends the pressure within its thickness of the edge
     terms = 6 + 2.3 * np.sqrt(a / body.thickness[0]) if body.coatings else 6
-    terms = int(min(terms, 16, a / grid.d / 2.5))
+    terms = int(min(terms, 16, a / grid.d / 5))
     if terms < 3:
         return None
     shape = edge_profile.fit(p, r, grid.d, radius=a, terms=terms, skip=skip)
@@ -485,7 +486,7 @@ def _uncertainty(ladder: list[Level], indenter: Indenter, body: Body, numerics: 
     """One ladder per knob; all but the patch size on half the patches, from the same start."""
     fine, half, quarter = (level.scalars for level in ladder[:-4:-1])
     grid, start = ladder[-2].grid, ladder[-3]
-    coarser = replace(numerics, hankel_points=numerics.hankel_points // 2, enlarge=numerics.enlarge // 2 or 1)
+    coarser = _other_conversion(numerics)
     looser = replace(numerics, tolerance=min(100 * numerics.tolerance, 1e-2))
     wider = Grid(odd(WIDER * grid.n), grid.d)
     knobs = {
@@ -494,6 +495,13 @@ def _uncertainty(ladder: list[Level], indenter: Indenter, body: Body, numerics: 
         "iteration": _press(grid, start, indenter, body, looser).scalars,
     }
     return Uncertainty.from_ladders(fine, half, quarter, knobs)
+
+
+def _other_conversion(numerics: Numerics) -> Numerics:
+    """What a conversion is held against: on half its points, or the better one where there is one."""
+    if numerics.conversion == "split":
+        return replace(numerics, hankel_points=numerics.hankel_points // 2)
+    return replace(numerics, conversion="split")
 
 
 def _body(coatings: Coatings, substrate: Substrate, friction: float) -> Body:

@@ -1,0 +1,388 @@
+"""Laws and limits that a solution must obey, whatever the coating."""
+
+import numpy as np
+import pytest
+
+import semianalytic
+
+R, W = 10e-3, 20.0
+E, NU = 210e9, 0.3
+E_STAR = E / (1 - NU**2)
+A_H = (0.75 * W * R / E_STAR) ** (1 / 3)
+P_H = 1.5 * W / (np.pi * A_H**2)
+STEEL = (E, NU)
+STIFF = ((4 * E, 0.25, 0.5 * A_H),)
+
+
+def solve(coatings=(), *, radius=R, load: float | None = W, substrate=STEEL, patches=129, **options):
+    return semianalytic.solve(
+        radius=radius, load=load, coatings=coatings, substrate=substrate, patches=patches, **options
+    )
+
+
+@pytest.fixture(scope="module")
+def coated():
+    return solve(STIFF)
+
+
+@pytest.fixture(scope="module")
+def sliding():
+    return solve(STIFF, friction=0.25)
+
+
+@pytest.mark.parametrize("coatings", [(), ((E, NU, 0.3 * A_H),), ((E, NU, 0.1 * A_H), (E, NU, A_H))])
+def test_equal_moduli_give_hertz(coatings):
+    s = solve(coatings)
+    # the edge correction represents Hertz exactly; the iteration, 1e-8 of the gap, is left, and the noise of
+    # a fit with the terms a real coating of that thickness would need
+    assert s.contact_radius == pytest.approx(A_H, rel=1e-6 if len(coatings) < 2 else 2e-5)
+    assert s.approach == pytest.approx(A_H**2 / R, rel=5e-7)
+    assert s.peak_pressure == pytest.approx(P_H, rel=5e-7)
+    r = np.linspace(0, 0.97 * A_H, 50)
+    np.testing.assert_allclose(s.pressure(r), P_H * np.sqrt(1 - (r / A_H) ** 2), atol=2e-5 * P_H)
+
+
+def test_without_edge_correction_hertz_is_of_first_order():
+    s = solve(edge_rounds=0)
+    assert s.peak_pressure == pytest.approx(P_H, rel=1e-4)
+    # counted patches: one of 58 to the radius
+    assert s.contact_radius == pytest.approx(A_H, rel=1 / 58)
+
+
+@pytest.mark.parametrize("ratio", [0.1, 10.0])
+def test_thick_coating_gives_hertz_of_the_coating(ratio):
+    errors = []
+    for h in (30.0, 60.0):
+        s = solve(((ratio * E, NU, h * A_H),))
+        a = A_H * ratio ** (-1 / 3)
+        errors.append(abs(s.contact_radius / a - 1))
+    # the substrate is felt as (a/h)^3 by the curvature, so by 8 less at twice the thickness
+    assert errors[1] < errors[0] / 4 < 1e-4
+
+
+@pytest.mark.parametrize("ratio", [0.25, 4.0])
+def test_thin_coating_gives_hertz_of_the_substrate(ratio):
+    errors = [abs(solve(((ratio * E, NU, h * A_H),)).approach / (A_H**2 / R) - 1) for h in (0.02, 0.01)]
+    # linear in the thickness
+    assert errors[1] == pytest.approx(errors[0] / 2, rel=0.1)
+    assert errors[1] < 0.03
+
+
+def test_scaling_with_load_and_radius(coated):
+    # lengths times s, load times s^2: the same pressure, similar figures
+    s = 3.7
+    coatings = tuple((E1, nu1, s * h) for E1, nu1, h in STIFF)
+    similar = solve(coatings, radius=s * R, load=s**2 * W)
+    assert similar.contact_radius == pytest.approx(s * coated.contact_radius, rel=1e-9)
+    assert similar.approach == pytest.approx(s * coated.approach, rel=1e-9)
+    assert similar.peak_pressure == pytest.approx(coated.peak_pressure, rel=1e-9)
+    # moduli and load times c: the same displacements
+    c = 1e-3
+    soft = solve(tuple((c * E1, nu1, h) for E1, nu1, h in STIFF), load=c * W, substrate=(c * E, NU))
+    assert soft.approach == pytest.approx(coated.approach, rel=1e-9)
+
+
+def test_pressure_is_symmetric(coated):
+    x = np.linspace(0, 1, 9)[:, None] * A_H
+    y = np.linspace(0, 1, 7)[None, :] * A_H
+    p = coated.pressure(x, y)
+    for other in (coated.pressure(-x, y), coated.pressure(x, -y), coated.pressure(y.T, x.T).T):
+        # the iteration keeps the symmetry to rounding; edge values carry its square root
+        np.testing.assert_allclose(other, p, atol=1e-6 * P_H)
+
+
+def test_pressure_carries_the_load(coated):
+    r, w = np.polynomial.legendre.leggauss(400)
+    r = (1 - ((1 + r) / 2) ** 2) * coated.contact_radius
+    t = np.sqrt(1 - r / coated.contact_radius)
+    integral = 2 * np.pi * coated.contact_radius * np.sum(w * t * r * coated.pressure(r))
+    # trapezoids between the patches of what the profile leaves
+    assert integral == pytest.approx(W, rel=1e-5)
+    assert coated.diagnostics.load == pytest.approx(W, rel=1e-12)
+    assert coated.diagnostics.gap_inside <= 1e-8
+    assert coated.diagnostics.penetration_outside <= 1e-8
+
+
+def test_stress_on_the_surface_is_the_traction(sliding):
+    x = sliding.nodes[
+        np.abs(np.abs(sliding.nodes) - sliding.contact_radius) > 3 * sliding.diagnostics.patch_size
+    ]
+    sigma = sliding.stress(x, 0.0, 0.0)
+    p = sliding.pressure(x)
+    # interpolation of the pressure between patches, third order, three patches from the edge
+    np.testing.assert_allclose(sigma[2, 2], -p, atol=3e-4 * P_H)
+    np.testing.assert_allclose(sigma[0, 2], -0.25 * p, atol=1e-4 * P_H)
+    np.testing.assert_allclose(sigma[1, 2], 0, atol=1e-9 * P_H)
+
+
+def test_tractions_are_continuous_across_the_interface(sliding):
+    x = np.linspace(-2, 2, 31) * A_H
+    h = STIFF[0][2]
+    upper, lower = sliding.stress(x, 0.3 * A_H, h, layer=0), sliding.stress(x, 0.3 * A_H, h, layer=1)
+    # tables of the two layers are computed apart: 1e-6 of the largest
+    np.testing.assert_allclose(upper[2], lower[2], atol=3e-6 * P_H)
+    assert np.abs(upper[0, 0] - lower[0, 0]).max() > 0.1 * P_H
+    np.testing.assert_array_equal(sliding.stress(x, 0.3 * A_H, h), upper)
+
+
+def test_vertical_force_is_carried_at_every_depth(coated):
+    r = np.linspace(0, 40, 400) ** 2 / 1600 * 60 * A_H
+    for z in (0.3 * A_H, 2 * A_H):
+        force = -2 * np.pi * np.trapezoid(r * coated.stress(r, 0.0, z)[2, 2], r)
+        # trapezoids, and z^3/r^3 of the load beyond 60 a_h
+        assert force == pytest.approx(W, rel=2e-3)
+
+
+def test_friction_leaves_the_pressure_alone(coated, sliding):
+    assert sliding.contact_radius == coated.contact_radius
+    x = np.linspace(-1, 1, 11) * A_H
+    np.testing.assert_array_equal(sliding.pressure(x), coated.pressure(x))
+
+
+def test_sliding_stress_is_odd_about_the_frictionless(coated, sliding):
+    x, z = np.linspace(0.1, 3, 7) * A_H, 0.4 * A_H
+    ahead, behind, still = sliding.stress(x, 0.0, z), sliding.stress(-x, 0.0, z), coated.stress(x, 0.0, z)
+    # the part due to q is odd in x for the normal stresses
+    np.testing.assert_allclose((ahead + behind)[0, 0] / 2, still[0, 0], atol=1e-7 * P_H)
+    assert np.all(behind[0, 0] > ahead[0, 0])  # tension trails
+
+
+def test_surface_displacement_closes_the_gap(coated):
+    x = np.linspace(-0.9, 0.9, 13) * coated.contact_radius
+    u = coated.displacement(x, 0.0, 0.0)
+    # evaluation of the displacement, 1e-6 of the approach
+    np.testing.assert_allclose(u[2] + x**2 / (2 * R), coated.approach, rtol=1e-5)
+
+
+def test_reciprocity_of_two_loads():
+    coatings = ((4 * E, 0.25, 0.5 * A_H), (0.5 * E, 0.4, 0.2 * A_H))
+
+    def prescribed(radius):
+        return semianalytic.solve_prescribed(
+            pressure=1e9,
+            load_radius=radius,
+            coatings=coatings,
+            substrate=STEEL,
+            patches=129,
+            estimate_uncertainty=False,
+        )
+
+    small, large = prescribed(0.5 * A_H), prescribed(A_H)
+    s, w = np.polynomial.legendre.leggauss(60)
+
+    def work(of, on, radius):
+        r = radius * (1 + s) / 2
+        u = on.displacement(r, 0.0, 0.0)[2]
+        return np.pi * radius * np.sum(w * r * u)
+
+    # Betti; spline tables of u, with the kink of the rim: 1e-5
+    assert work(small, large, 0.5 * A_H) == pytest.approx(work(large, small, A_H), rel=2e-5)
+
+
+def test_uniform_disc_meets_boussinesq():
+    a, p = 1e-4, 1e9
+    s = semianalytic.solve_prescribed(pressure=p, load_radius=a, coatings=(), substrate=STEEL)
+    z = np.array([0.0, 0.2, 0.7, 1.5, 4.0]) * a
+    sigma = s.stress(0.0, 0.0, z)
+    root = np.hypot(a, z)
+    # Johnson (1985) eq. 3.33; published tables are to be met within 1e-3, the evaluation holds 1e-6
+    np.testing.assert_allclose(sigma[2, 2], -p * (1 - z**3 / root**3), atol=2e-6 * p)
+    lateral = -p * ((1 + 2 * NU) / 2 - (1 + NU) * z / root + z**3 / (2 * root**3))
+    np.testing.assert_allclose(sigma[0, 0], lateral, atol=2e-6 * p)
+    assert s.approach == pytest.approx(2 * p * a / E_STAR, rel=1e-6)
+    assert s.contact_radius == a
+
+
+def test_prescribed_pressure_of_a_contact_gives_its_fields(coated):
+    again = semianalytic.solve_prescribed(
+        pressure=coated.pressure,
+        load_radius=coated.contact_radius,
+        coatings=STIFF,
+        substrate=STEEL,
+        patches=129,
+    )
+    assert again.approach == pytest.approx(coated.approach, rel=1e-5)
+    x = np.linspace(-2, 2, 9) * A_H
+    np.testing.assert_allclose(
+        again.stress(x, 0.0, 0.3 * A_H), coated.stress(x, 0.0, 0.3 * A_H), atol=3e-5 * P_H
+    )
+
+
+def test_approach_control_inverts_load_control(coated):
+    s = solve(STIFF, load=None, approach=coated.approach)
+    assert s.diagnostics.load == pytest.approx(W, rel=1e-7)
+    assert s.contact_radius == pytest.approx(coated.contact_radius, rel=1e-6)
+
+
+def test_uncertainty_brackets_the_error_and_not_by_orders():
+    s = solve(edge_rounds=0)
+    u = s.uncertainty
+    assert u is not None
+    for name, exact in (("approach", A_H**2 / R), ("peak_pressure", P_H)):
+        error = abs(getattr(s, name) - exact)
+        assert error <= getattr(u, name) <= 100 * error
+        assert getattr(u, name) == pytest.approx(sum(v for quantity, _, v in u.budget if quantity == name))
+    assert {knob for _, knob, _ in u.budget} == {"patch size", "conversion", "domain", "iteration"}
+    x = s.surface_nodes
+    error = np.abs(s.pressure(x) - P_H * np.sqrt(np.maximum(1 - (x / A_H) ** 2, 0)))
+    assert np.all(error <= s.pressure_uncertainty(x))
+
+
+def test_uncertainty_of_the_default_brackets_hertz():
+    s = solve()
+    u = s.uncertainty
+    assert u is not None
+    assert abs(s.contact_radius - A_H) <= u.contact_radius < 1e-3 * A_H
+    assert abs(s.peak_pressure - P_H) <= u.peak_pressure < 1e-4 * P_H
+    z = np.linspace(0, 3, 13) * A_H
+    zz = s.stress(0.0, 0.0, z)[2, 2] + P_H / (1 + (z / A_H) ** 2)
+    assert np.all(np.abs(zz) <= s.stress_uncertainty(0.0, 0.0, z)[2, 2])
+
+
+def test_uncertainty_not_asked_for_is_refused():
+    s = solve(patches=65, estimate_uncertainty=False)
+    assert s.uncertainty is None
+    with pytest.raises(ValueError, match="estimate_uncertainty=True"):
+        s.pressure_uncertainty(0.0)
+    with pytest.raises(ValueError, match="estimate_uncertainty=True"):
+        s.stress_uncertainty(0.0, 0.0, 0.0)
+
+
+@pytest.mark.parametrize(("conversion", "worse_than"), [("split-fft", 1e-6), ("plain", 1e-4)])
+def test_other_conversions_are_worse_and_say_so(conversion, worse_than):
+    best, other = solve(STIFF, edge_rounds=0), solve(STIFF, edge_rounds=0, conversion=conversion)
+    assert best.uncertainty is not None
+    assert other.uncertainty is not None
+    error = abs(other.approach - best.approach)
+    assert error > worse_than * best.approach
+    rows = {knob: value for quantity, knob, value in other.uncertainty.budget if quantity == "approach"}
+    # read on half the patches, from the better conversion
+    assert rows["conversion"] == pytest.approx(error, rel=0.5)
+
+
+def test_the_edge_correction_takes_the_error_of_the_conversion_away():
+    best, plain = solve(STIFF), solve(STIFF, conversion="plain")
+    # the deflection of the fitted profile is exact, whatever the coefficients
+    assert plain.approach == pytest.approx(best.approach, rel=1e-6)
+
+
+def test_surface_nodes_cover_twice_the_contact(coated):
+    x = coated.surface_nodes
+    assert np.all(np.diff(x) > 0)
+    assert x[0] <= -2 * coated.contact_radius
+    assert x[-1] >= 2 * coated.contact_radius
+    c = len(x) // 2
+    assert x[c] == 0
+    inside = np.abs(x) <= coated.nodes[-1]
+    middle = len(coated.nodes) // 2
+    np.testing.assert_allclose(coated.pressure(x[inside]), coated.patch_pressure[:, middle], atol=1e-12 * P_H)
+
+
+# Indenters other than the sphere
+
+
+def indent(profile, half_width, load: float | None = W, **options):
+    return semianalytic.indent(
+        profile=profile,
+        half_width=half_width,
+        load=load,
+        coatings=(),
+        substrate=STEEL,
+        patches=129,
+        **options,
+    )
+
+
+def test_a_sphere_given_as_a_profile_is_the_sphere():
+    s = indent(lambda x, y: (x**2 + y**2) / (2 * R), 1.2 * A_H)
+    assert s.approach == pytest.approx(A_H**2 / R, rel=2e-5)
+    assert s.peak_pressure == pytest.approx(P_H, rel=5e-5)
+    x = (np.arange(129) - 64) * (2.4 * A_H / 129)
+    heights = (x[:, None] ** 2 + x[None, :] ** 2) / (2 * R)
+    array = indent(heights, 1.2 * A_H)
+    # the same gap on the finest grid; the coarser ones only start it
+    assert array.approach == pytest.approx(s.approach, rel=1e-7)
+
+
+def test_cone_gives_sneddon():
+    slope, delta = 0.01, 1e-7
+    a = 2 * delta / (np.pi * slope)
+    s = indent(lambda x, y: slope * np.hypot(x, y), 1.3 * a, load=2 * E_STAR * delta**2 / (np.pi * slope))
+    # Sneddon (1965); first order at the edge, and a logarithm at the tip
+    assert s.approach == pytest.approx(delta, rel=2e-4)
+    assert s.contact_radius == pytest.approx(a, rel=5e-3)
+
+
+def test_ellipsoid_turned_by_a_right_angle_is_the_same_contact():
+    s = indent(lambda x, y: x**2 / (2 * R) + y**2 / (6 * R), 2 * A_H)
+    turned = indent(lambda x, y: y**2 / (2 * R) + x**2 / (6 * R), 2 * A_H)
+    assert turned.approach == pytest.approx(s.approach, rel=1e-8)
+    r = np.linspace(0, A_H, 5)
+    np.testing.assert_allclose(turned.pressure(r, 0.0), s.pressure(0.0 * r, r), atol=1e-5 * P_H)
+    assert s.pressure(0.0, 1.2 * A_H) > 0 == s.pressure(1.2 * A_H, 0.0)
+
+
+def test_flat_punch_has_the_stiffness_of_its_radius():
+    a = 1e-4
+    edge = 1e-2 * a
+    s = indent(lambda x, y: np.maximum(np.hypot(x, y) - a, 0) ** 2 / (2 * edge), 1.2 * a)
+    # F = 2 E* a delta for a sharp punch; the round edge and half a patch of 54 widen it
+    assert W / s.approach == pytest.approx(2 * E_STAR * a, rel=1.5e-2)
+
+
+def test_contact_at_the_rim_of_the_square_is_refused():
+    with pytest.raises(semianalytic.NotConverged, match="widen it"):
+        indent(lambda x, y: (x**2 + y**2) / (2 * R), 0.8 * A_H)
+
+
+# Refusals
+
+
+def test_stopping_short_raises():
+    with pytest.raises(semianalytic.NotConverged, match="raise max_iterations"):
+        solve(max_iterations=1)
+
+
+@pytest.mark.parametrize(
+    ("changes", "sentence"),
+    [
+        ({"radius": -1.0}, "radius = -1"),
+        ({"load": 0.0}, "load = 0"),
+        ({"load": float("nan")}, "load = nan"),
+        ({"load": None}, "give either load or approach"),
+        ({"approach": 1e-6}, "give either load or approach"),
+        ({"coatings": ((E, NU, -1e-6),)}, "thickness of coating 1 = -1e-06"),
+        ({"coatings": ((E, NU, 1e-6), (E, 0.6, 1e-6))}, "nu = 0.6 of coating 2"),
+        ({"coatings": ((E, NU),)}, "give .E, nu, thickness."),
+        ({"substrate": (0.0, NU)}, "E = 0 Pa of the substrate"),
+        ({"friction": float("inf")}, "friction = inf"),
+        ({"patches": 128}, "patches = 128"),
+        ({"tolerance": 0.0}, "tolerance = 0"),
+        ({"conversion": "magic"}, "conversion = 'magic'"),
+        ({"fill": 1.0}, "fill = 1"),
+    ],
+)
+def test_meaningless_input_is_refused_in_a_sentence(changes, sentence):
+    with pytest.raises(ValueError, match=sentence):
+        solve(**changes)
+
+
+def test_wrong_layers_and_points_above_the_surface_are_refused(coated):
+    h = STIFF[0][2]
+    with pytest.raises(ValueError, match="layer = 1 does not hold"):
+        coated.stress(0.0, 0.0, 0.5 * h, layer=1)
+    with pytest.raises(ValueError, match="layer = 2; layers count from 0 to 1"):
+        coated.stress(0.0, 0.0, 0.5 * h, layer=2)
+    with pytest.raises(ValueError, match="above the surface"):
+        coated.stress(0.0, 0.0, -1e-9)
+    # within rounding of the interface is on it
+    on = coated.stress(0.0, 0.0, h * (1 + 1e-12), layer=0)
+    np.testing.assert_allclose(on, coated.stress(0.0, 0.0, h, layer=0), rtol=1e-6, atol=1e-9 * P_H)
+
+
+@pytest.mark.parametrize("pressure", [float("nan"), lambda r: r * np.nan])
+def test_meaningless_prescribed_pressure_is_refused(pressure):
+    with pytest.raises(ValueError, match="finite"):
+        semianalytic.solve_prescribed(
+            pressure=pressure, load_radius=1e-4, coatings=(), substrate=STEEL, patches=65
+        )
