@@ -60,14 +60,15 @@ def carry_load(
         history.append((a, contact.load))
         positive = contact.load > 0 and math.isfinite(contact.load)
         miss = math.log(load / contact.load) if positive else math.inf
+        if positive:
+            here = (math.log(a), math.log(contact.load))
+            if last is not None:
+                step = here[0] - last[1]
+                # between two meshes the discretisation error moves the load too: trust only long steps there
+                if abs(step) > (1e-5 if last[0] is mesh else 0.02):
+                    slope = min(max((here[1] - last[2]) / step, 0.5), 12.0)
         if abs(miss) <= tolerance or not positive or len(history) >= max_iterations:
             return Carried(contact, a, slope, tuple(history), abs(miss) <= tolerance)
-        here = (math.log(a), math.log(contact.load))
-        if last is not None:
-            step = here[0] - last[1]
-            # between two meshes the discretisation error moves the load too: trust only long steps there
-            if abs(step) > (1e-5 if last[0] is mesh else 0.02):
-                slope = min(max((here[1] - last[2]) / step, 0.5), 12.0)
         last = (mesh, *here)
         a *= math.exp(min(max(miss / slope, -0.7), 0.7))
         if not 1 / _STRETCH < a / mesh.contact_radius < _STRETCH:

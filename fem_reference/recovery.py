@@ -105,13 +105,13 @@ class HarmonicField:
         if np.any(surface):
             stress[:, surface] = self._on_plane(0, strain[:, surface], self._applied(r[surface]))
         for upper, depth in enumerate(mesh.depths):
-            soft, stiff = sorted((upper, upper + 1), key=self._rise)
-            here = (z == depth) & (layer == stiff)
+            here = z == depth
             if np.any(here):
-                side = np.full(int(here.sum()), soft)
-                _, other = self._fields_and_strains(r[here], z[here], side)
-                tractions = self._hooke(other, side)[[2, 3, 5]]
-                stress[:, here] = self._on_plane(stiff, strain[:, here], tractions)
+                tractions = self._bonded(r[here], z[here], upper)
+                for side in (upper, upper + 1):
+                    mine = layer[here] == side
+                    numbers = np.flatnonzero(here)[mine]
+                    stress[:, numbers] = self._on_plane(side, strain[:, numbers], tractions[:, mine])
         displacement = np.zeros((3, r.size))
         if self.harmonic == 0:
             displacement[0], displacement[2] = values
@@ -126,10 +126,22 @@ class HarmonicField:
             z[np.abs(z - depth) <= 1e-12 * depth] = depth
         return z
 
-    def _rise(self, layer: int) -> float:
-        """sigma_zz per eps_zz at fixed width: what an error of eps_zz costs."""
-        E, nu = self.materials[layer]
-        return E * (1 - nu) / ((1 + nu) * (1 - 2 * nu))
+    def _bonded(self, r: np.ndarray, z: np.ndarray, upper: int) -> np.ndarray:
+        """(sigma_zz, sigma_rz, sigma_tz) on the interface below layer ``upper``, shape (3, n).
+
+        Each side weighs in by the inverse of its error: strain goes wrong in proportion to stress / E, and
+        the modulus at fixed width turns that into stress.
+        """
+        mean, total = np.zeros((3, r.size)), 0.0
+        for side in (upper, upper + 1):
+            E, nu = self.materials[side]
+            modulus = E * (1 - nu) / ((1 + nu) * (1 - 2 * nu))
+            weight = E / modulus**2
+            layer = np.full(r.size, side)
+            _, strain = self._fields_and_strains(r, z, layer)
+            mean += weight * self._hooke(strain, layer)[[2, 3, 5]]
+            total += weight
+        return mean / total
 
     def _hooke(self, strain: np.ndarray, layer: np.ndarray) -> np.ndarray:
         """Stress (6, n) of the strains of ``_fields_and_strains``."""

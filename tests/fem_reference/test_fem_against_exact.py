@@ -92,6 +92,14 @@ def test_fast_level_is_good_to_a_thousandth(ratio, thickness, nu):
         assert error.max() < 1e-3 * p_h, name
 
 
+def test_nearly_incompressible_layers_do_not_lock():
+    s, exact, _ = both(0.25, 0.3, (0.49, 0.49), quality="fast", estimate_uncertainty=False)
+    # as good as at nu = 0.3 on the same mesh
+    assert s.contact_radius == pytest.approx(exact.contact_radius, rel=1e-5)
+    assert s.approach == pytest.approx(exact.approach, rel=1e-4)
+    assert s.peak_pressure == pytest.approx(exact.peak_pressure, rel=1e-4)
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("ratio", [0.01, 100.0])
 @pytest.mark.parametrize("thickness", [0.01, 20.0])
