@@ -22,6 +22,7 @@ from verification.surroundings import commit, versions
 __all__ = [
     "CORRECTED",
     "PLAIN",
+    "PROBLEM",
     "SCHEMA",
     "STAIRCASE",
     "AccuracyStudy",
@@ -35,20 +36,20 @@ __all__ = [
 ]
 
 SCHEMA = "coatcheck-accuracy/1"
-CORRECTED = "as it comes: split conversion, corrected edge"
+CORRECTED = "split conversion, corrected edge"
 STAIRCASE = "split conversion, staircase edge"
-PLAIN = "the paper's: plain conversion, staircase edge"
+PLAIN = "plain conversion, staircase edge"
 STEEL = (210e9, 0.3)
 BARE = CoatedContact(10e-3, 20.0, (), STEEL)
 COATED = CoatedContact(10e-3, 20.0, ((4 * STEEL[0], 0.3, BARE.a_h),), STEEL)
-SOLIDS = {"coated, E1/E2 = 4, h = a_h": COATED, "uncoated": BARE}
+PROBLEM = "a sphere of 10 mm under 20 N on steel, bare or with a coating of E1/E2 = 4, h = a_h"
 
 
 @dataclass(frozen=True)
 class AccuracyStudy:
     """What was measured, in what was stood on; ``failures`` are the sentences of what could not be had.
 
-    conversions : of the first solid.   commit : None outside a checkout.
+    conversions : of the coated solid.   commit : None outside a checkout.
     """
 
     ladders: tuple[Ladder, ...]
@@ -62,15 +63,14 @@ class AccuracyStudy:
 def measure() -> AccuracyStudy:
     """Every ladder, then the conversions; what fails is a sentence, and the rest goes on."""
     begin = time.perf_counter()
-    coated, uncoated = SOLIDS
     ladders = [
-        ladder(COATED, solid=coated, setting=CORRECTED),
-        ladder(COATED, solid=coated, setting=STAIRCASE, edge_rounds=0),
+        ladder(COATED, solid="coated", setting=CORRECTED),
+        ladder(COATED, solid="coated", setting=STAIRCASE, edge_rounds=0),
         # Its convolution kernel alone costs more than the rest, so it ends one level earlier.
-        ladder(COATED, (33, 65, 129), solid=coated, setting=PLAIN, edge_rounds=0, conversion="plain"),
-        ladder(BARE, solid=uncoated, setting=CORRECTED),
-        ladder(BARE, solid=uncoated, setting=STAIRCASE, edge_rounds=0),
-        *(elements(COATED, order, solid=coated) for order in (2, 3, 4)),
+        ladder(COATED, (33, 65, 129), solid="coated", setting=PLAIN, edge_rounds=0, conversion="plain"),
+        ladder(BARE, solid="uncoated", setting=CORRECTED),
+        ladder(BARE, solid="uncoated", setting=STAIRCASE, edge_rounds=0),
+        *(elements(COATED, order, solid="coated") for order in (2, 3, 4)),
     ]
     failures = [f"{one.method}, {one.solid}, {one.setting}, {one.failure}" for one in ladders if one.failure]
     conversions: tuple[ConversionError, ...] = ()

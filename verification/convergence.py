@@ -28,6 +28,7 @@ __all__ = [
     "elements",
     "ladder",
     "order_of",
+    "settled",
 ]
 
 Array = NDArray[np.floating]
@@ -88,22 +89,36 @@ class ConversionError:
     aliases: int = 0
 
 
-def order_of(resolution: Sequence[float], error: Sequence[float]) -> float | None:
-    """Slope s of error ~ resolution^-s by least squares, over the levels down to where the fall ends.
+def settled(error: Sequence[float]) -> int | None:
+    """The first level whose error is within a factor ``SETTLED`` of where the fall ends; None without one.
 
     Each error counts as no smaller than that of any finer level, so that one which crosses zero by luck
-    promises nothing. Levels after the first within a factor ``SETTLED`` of the last are left out, for there
-    another knob has taken over. None where the fall is less than that factor.
+    promises nothing.
     """
-    found = np.asarray(error, dtype=float)
-    if found.size < 2 or not np.isfinite(found).all() or found.min() < 0 or found.max() == 0:
+    envelope = _envelope(error)
+    if envelope is None or envelope[0] == 0:
         return None
-    envelope = np.maximum.accumulate(found[::-1])[::-1]
-    last = int(np.argmax(envelope <= SETTLED * envelope[-1]))
-    if last == 0 or envelope[last] == 0:
+    return int(np.argmax(envelope <= SETTLED * envelope[-1]))
+
+
+def order_of(resolution: Sequence[float], error: Sequence[float]) -> float | None:
+    """Slope s of error ~ resolution^-s by least squares, down to the level where the error is ``settled``.
+
+    Finer levels are left out, for there another knob has taken over. None where the error falls less than
+    by the factor ``SETTLED``.
+    """
+    last, envelope = settled(error), _envelope(error)
+    if last is None or last == 0 or envelope is None or envelope[last] == 0:
         return None
     N = np.log(np.asarray(resolution, dtype=float)[: last + 1])
     return float(-np.polyfit(N, np.log(envelope[: last + 1]), 1)[0])
+
+
+def _envelope(error: Sequence[float]) -> Array | None:
+    found = np.asarray(error, dtype=float)
+    if found.size < 2 or not np.isfinite(found).all() or found.min() < 0:
+        return None
+    return np.maximum.accumulate(found[::-1])[::-1]
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,9 +1,11 @@
-"""The few shapes a report page is made of: cells, rows, tables, sections."""
+"""The few shapes a report page is made of: cells, rows, tables, figures, sections."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-__all__ = ["Cell", "Row", "Section", "Table"]
+from markupsafe import Markup
+
+__all__ = ["Cell", "Gallery", "Panel", "Part", "Row", "Section", "Table"]
 
 
 @dataclass(frozen=True)
@@ -44,9 +46,38 @@ class Table:
 
 
 @dataclass(frozen=True)
+class Panel:
+    """One drawn quantity: ``title`` with its scale, the figure, what a reader should look at."""
+
+    title: str
+    figure: Markup
+    note: str
+    css: str
+
+
+@dataclass(frozen=True)
+class Gallery:
+    """Figures side by side under one ``legend`` of (swatch, words), over one ``caption``."""
+
+    legend: Sequence[tuple[Markup, str]]
+    panels: Sequence[Panel]
+    caption: str
+
+
+@dataclass(frozen=True)
+class Part:
+    """A paragraph of a section with the figures and the tables it introduces."""
+
+    text: str
+    tables: Sequence[Table] = ()
+    gallery: Gallery | None = None
+
+
+@dataclass(frozen=True)
 class Section:
-    """A part of the page about the run as a whole: paragraphs, each with the tables it introduces."""
+    """A part of the page about the run as a whole; ``failures`` are sentences said before all else."""
 
     anchor: str
     title: str
-    parts: Sequence[tuple[str, Sequence[Table]]]
+    parts: Sequence[Part]
+    failures: Sequence[str] = ()

@@ -1,22 +1,17 @@
 """Figures of one quantity on one line: every source overlaid, the differences below."""
 
-import warnings
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from io import StringIO
 from math import ceil, floor, log10
 from typing import Any
 
-import matplotlib as mpl
 import numpy as np
 from markupsafe import Markup
 from matplotlib.axes import Axes
-from matplotlib.backends.backend_svg import FigureCanvasSVG
-from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
+from verification.report.drawing import HEX, canvas, inline, look
 from verification.report.names import Style
-from verification.report.svg import compact
 
 __all__ = ["FLOOR", "Curve", "Difference", "draw"]
 
@@ -24,20 +19,6 @@ FLOOR = 1e-9
 TOP = 1e-1
 WIDTH, HEIGHT = 320, 300
 
-# matplotlib draws with these stand-ins; the style sheet gives each role its colour, light and dark.
-_ROLES = ("ink", "grid", "semi", "fem", "exact", "hertz", "pair", "other", "cap", "zone")
-_HEX = {role: f"#0102{number:02x}" for number, role in enumerate(_ROLES, start=16)}
-_SETTINGS: Any = {
-    "svg.fonttype": "none",
-    "svg.hashsalt": "coatcheck",
-    "path.simplify": True,
-    "path.simplify_threshold": 0.25,
-    "axes.linewidth": 0.7,
-    "xtick.major.size": 0,
-    "ytick.major.size": 0,
-    "font.size": 11,
-    "axes.unicode_minus": True,
-}
 # Fewer points than this were printed or measured, not computed along the line.
 FEW = 25
 # Beyond this a number is a failure, and a picture of it would only break.
@@ -83,11 +64,7 @@ def draw(
     coordinate : what runs along the axis, e.g. "x / a_h".   unjudged : spans of it no verdict speaks of.
     cap : the largest admissible uncertainty, drawn as a line.   key : makes identifiers unique on a page.
     """
-    with mpl.rc_context(_SETTINGS), warnings.catch_warnings():
-        # A figure of nothing but NaN has no limits; it stays empty and the verdict says why.
-        warnings.simplefilter("ignore")
-        figure = Figure(figsize=(WIDTH / 72, HEIGHT / 72), dpi=72)
-        FigureCanvasSVG(figure)
+    with canvas(WIDTH, HEIGHT) as figure:
         upper = figure.add_axes((0.15, 0.485, 0.835, 0.495))
         lower = figure.add_axes((0.15, 0.135, 0.835, 0.31))
         span = _span(curves, differences)
@@ -95,12 +72,9 @@ def draw(
         _draw_differences(lower, differences, span, cap)
         for axes in (upper, lower):
             for left, right in unjudged:
-                axes.axvspan(left, right, color=_HEX["zone"], alpha=0.13, linewidth=0)
-        lower.set_xlabel(coordinate, labelpad=1, color=_HEX["ink"])
-        written = StringIO()
-        figure.savefig(written, format="svg", metadata={"Date": None}, transparent=True)
-    colours = {value: role for role, value in _HEX.items()}
-    return compact(written.getvalue(), key=key, colours=colours, label=label)
+                axes.axvspan(left, right, color=HEX["zone"], alpha=0.13, linewidth=0)
+        lower.set_xlabel(coordinate, labelpad=1, color=HEX["ink"])
+        return inline(figure, key=key, label=label)
 
 
 def _span(curves: Sequence[Curve], differences: Sequence[Difference]) -> tuple[float, float]:
@@ -138,7 +112,7 @@ def _draw_differences(
     for difference in differences:
         if difference.uncertainty is not None:
             height = _logarithm(difference.uncertainty)
-            colour = _HEX[difference.style.colour]
+            colour = HEX[difference.style.colour]
             band = axes.fill_between(difference.position, bottom, height, linewidth=0.8)
             # Between the methods the band is next to the wider of the others; a third tint would only mix.
             band.set_facecolor((colour, 0.0 if difference.style.colour == "pair" else 0.1))
@@ -157,29 +131,25 @@ def _draw_differences(
                     marker="o",
                     markersize=8,
                     fillstyle="none",
-                    color=_HEX["cap"],
+                    color=HEX["cap"],
                     markeredgewidth=1.6,
                     clip_on=False,
                 )
     if cap is not None and cap > 0:
-        axes.axhline(log10(cap), color=_HEX["cap"], linewidth=1.0, dashes=(6, 3))
+        axes.axhline(log10(cap), color=HEX["cap"], linewidth=1.0, dashes=(6, 3))
 
 
 def _frame(axes: Axes, span: tuple[float, float], height: tuple[float, float]) -> None:
     axes.set_xlim(*span)
     axes.set_ylim(*height)
-    axes.set_facecolor("none")
-    axes.grid(True, color=_HEX["grid"], linewidth=0.6)
-    axes.tick_params(colors=_HEX["ink"], labelsize=10.5, pad=3)
-    for spine in axes.spines.values():
-        spine.set_color(_HEX["grid"])
+    look(axes)
     axes.set_xticks(ticks := _round_ticks(*span, 6), [_short(tick) for tick in ticks])
 
 
 def _line(
     axes: Axes, position: NDArray[np.float64], value: NDArray[np.float64], style: Style, opacity: float
 ) -> None:
-    look: dict[str, Any] = {"color": _HEX[style.colour], "alpha": opacity}
+    look: dict[str, Any] = {"color": HEX[style.colour], "alpha": opacity}
     if position.size < FEW:
         look |= {"marker": "o", "markersize": 3.5, "markeredgewidth": 0}
     if style.dash:

@@ -3,7 +3,7 @@
 from math import floor, isfinite, log10
 from typing import Any
 
-__all__ = ["engineering", "plain", "scientific", "seconds", "with_uncertainty"]
+__all__ = ["engineering", "factor", "plain", "scientific", "seconds", "with_uncertainty"]
 
 _PREFIXES = {-15: "f", -12: "p", -9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G", 12: "T"}
 MOST_DIGITS = 9
@@ -73,6 +73,17 @@ def seconds(value: Any) -> str:
         minutes, rest = divmod(round(number), 60)
         return f"{minutes} min {rest:02d} s"
     return f"{number:.2f} s" if number < 10 else f"{number:.1f} s"
+
+
+def factor(worse: Any, better: Any) -> str:
+    """How many times ``better`` goes into ``worse``, two digits: "3.2", "4600", "1.4e9"."""
+    large, small = _number(worse), _number(better)
+    if large is None or small is None or small <= 0:
+        return "untold"
+    ratio = large / small
+    if not 0.01 <= ratio < 1e5:
+        return scientific(ratio)
+    return plain(float(f"{ratio:.1e}"), 9)
 
 
 def _number(value: Any) -> float | None:

@@ -14,7 +14,8 @@ from markupsafe import Markup
 
 from verification.accuracy_study import AccuracyStudy
 from verification.report.accuracy import accuracy_overview, accuracy_sentence, accuracy_table
-from verification.report.cells import Section, Table
+from verification.report.cells import Part, Section, Table
+from verification.report.convergence import convergence_sections
 from verification.report.csvdata import embedded, line_csv
 from verification.report.matrix import verdict_matrix
 from verification.report.names import METHODS, OUTCOMES, OutcomeStyle, source_label
@@ -103,7 +104,7 @@ def _render(results: Sequence[CaseResult], info: RunInfo, study: AccuracyStudy |
         counts=_counts(results),
         matrix=verdict_matrix(results, anchors) if results else None,
         outcomes=OUTCOMES.values(),
-        sections=_sections(results, anchors),
+        sections=_sections(results, anchors, study),
         cases=[_case(result, anchors[number]) for number, result in enumerate(results)],
         seconds=seconds,
     )
@@ -120,16 +121,24 @@ def _anchors(results: Sequence[CaseResult]) -> Mapping[int, str]:
     return anchors
 
 
-def _sections(results: Sequence[CaseResult], anchors: Mapping[int, str]) -> list[Section]:
+def _sections(
+    results: Sequence[CaseResult], anchors: Mapping[int, str], study: AccuracyStudy | None
+) -> list[Section]:
     """What is said of the run as a whole, between the verdicts and the cases."""
+    sections = []
     accuracy = [
-        (accuracy_sentence(results, source), [table])
+        Part(accuracy_sentence(results, source), [table])
         for source in METHODS
         if (table := accuracy_overview(results, anchors, source)) is not None
     ]
-    times = time_table(results, [f"#{anchors[number]}" for number in range(len(results))])
-    sections = [Section("accuracy", "Accuracy against the exact reference", accuracy)] if accuracy else []
-    return [*sections, Section("times", "Run times", [("", [times])])] if results else []
+    if accuracy:
+        sections.append(Section("accuracy", "Accuracy against the exact reference", accuracy))
+    if study is not None:
+        sections += convergence_sections(study)
+    if results:
+        times = time_table(results, [f"#{anchors[number]}" for number in range(len(results))])
+        sections.append(Section("times", "Run times", [Part("", [times])]))
+    return sections
 
 
 def _counts(results: Sequence[CaseResult]) -> list[tuple[OutcomeStyle, int]]:

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from markupsafe import Markup
 
+from verification.report.cells import Panel
 from verification.report.figures import FLOOR, Curve, Difference, draw
 from verification.report.names import (
     METHODS,
@@ -27,17 +28,7 @@ from verification.report.reading import (
 from verification.result import CaseResult
 from verification.verdict import Claim, Outcome
 
-__all__ = ["LineFigures", "Panel", "line_figures"]
-
-
-@dataclass(frozen=True)
-class Panel:
-    """One drawn quantity: ``title`` with its scale, the figure, what a reader should look at."""
-
-    title: str
-    figure: Markup
-    note: str
-    css: str
+__all__ = ["LineFigures", "line_figures", "swatch"]
 
 
 @dataclass(frozen=True)
