@@ -13,7 +13,7 @@ test on complementarity itself in place of the change of p.
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -59,6 +59,12 @@ class Contact:
     def of_load(cls, pressure: Array) -> "Contact":
         """A pressure that was prescribed: no condition to fulfil, nothing iterated."""
         return cls(pressure, np.zeros_like(pressure), 0.0, 0.0, 0.0, 0.0, 0, 1, ())
+
+    def embedded(self, where: tuple[slice, slice], n: int, open_gap: float) -> "Contact":
+        """The same contact on an n x n grid of which it was a window; the gap beyond is said to be open."""
+        pressure, gap = np.zeros((n, n)), np.full((n, n), open_gap)
+        pressure[where], gap[where] = self.pressure, self.gap
+        return replace(self, pressure=pressure, gap=gap)
 
 
 def press(

@@ -1,7 +1,8 @@
 """Square surface patches that hold the contact.
 
-Patch centres x_i = (i - (n-1)/2) d with n odd, so that the origin is a patch centre. Outside the box no
-pressure acts; the convolution is linear, so the box needs a margin for the contact to settle in and no more.
+Patch centres x_i = (i - (n-1)/2) d; with n odd the origin is a patch centre. Outside the grid no pressure
+acts; the convolution is linear, so the grid, or the window of it that is worked on, needs a margin for the
+contact to settle in and no more.
 """
 
 from dataclasses import dataclass
@@ -10,14 +11,14 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import RectBivariateSpline
 
-__all__ = ["Grid", "carry_over", "odd"]
+__all__ = ["Grid", "Window", "carry_over", "odd", "window_around"]
 
 Array = NDArray[np.floating]
 
 
 @dataclass(frozen=True)
 class Grid:
-    """n x n square patches of side d [m], centred at the origin; n odd."""
+    """n x n square patches of side d [m], centred at the origin."""
 
     n: int
     d: float
@@ -56,26 +57,66 @@ def odd(n: float) -> int:
     return max(3, 2 * int(n // 2) + 1)
 
 
-def carry_over(pressure: Array, gap: Array, source: Grid, target: Grid, E_star: float) -> Array:
+@dataclass(frozen=True)
+class Window:
+    """Patches i0 <= i < i1, j0 <= j < j1 of a grid."""
+
+    i0: int
+    i1: int
+    j0: int
+    j1: int
+
+    @property
+    def slices(self) -> tuple[slice, slice]:
+        return slice(self.i0, self.i1), slice(self.j0, self.j1)
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        return self.i1 - self.i0, self.j1 - self.j0
+
+
+def window_around(pressure: Array, source: Grid, target: Grid) -> Window:
+    """Patches of the target that the contact on the source may come to need: 4 % and 3 patches beyond it."""
+    edges = []
+    for axis in (1, 0):
+        loaded = source.x[np.any(pressure > 0, axis=axis)]
+        low, high = loaded[0], loaded[-1]
+        margin = 0.04 * (high - low) / 2 + 3 * source.d
+        first = int(np.floor((low - margin - target.x[0]) / target.d))
+        last = int(np.ceil((high + margin - target.x[0]) / target.d))
+        edges += [max(first, 0), min(last, target.n - 1) + 1]
+    return Window(*edges)
+
+
+def carry_over(
+    pressure: Array, gap: Array, source: Grid, target: Grid, window: Window, E_star: float
+) -> Array:
     """Pressure of one grid as a first guess on another, its contact edge between the patches.
 
     At the edge of a contact p = K sqrt(s) inside, and outside the gap opens as g = 4 K s^(3/2) / (3 E*),
     s the distance. p^2 inside and minus K^2 s outside is therefore smooth across the edge and is what is
     interpolated; K is taken as one for the whole edge.
 
-    pressure [Pa], gap [m] : on the source.  E_star [Pa].  Returns p [Pa] on the target, (n, n); 0 beyond.
+    pressure [Pa], gap [m] : on the source.  window : of the target.  E_star [Pa].
+    Returns p [Pa] on the window; 0 beyond the source.
     """
     loaded = np.pad(pressure > 0, 1)
     inner = loaded[2:, 1:-1] & loaded[:-2, 1:-1] & loaded[1:-1, 2:] & loaded[1:-1, :-2]
-    rim = loaded[1:-1, 1:-1] & ~inner
+    loaded = loaded[1:-1, 1:-1]
     # a rim patch lies 0.6 d from the edge on average
-    K2 = float(np.mean(pressure[rim] ** 2)) / (0.6 * source.d)
+    K2 = float(np.mean(pressure[loaded & ~inner] ** 2)) / (0.6 * source.d)
     opening = (np.maximum(gap, 0) * (0.75 * E_star) / np.sqrt(K2)) ** (2 / 3)
-    level = np.where(loaded[1:-1, 1:-1], pressure**2, -K2 * opening)
-    spline = RectBivariateSpline(source.x, source.x, level, kx=1, ky=1)
-    x = np.clip(target.x, source.x[0], source.x[-1])
-    guess = np.sqrt(np.maximum(spline(x, x), 0))
-    beyond = np.abs(target.x) > source.half_width
-    guess[beyond] = 0
-    guess[:, beyond] = 0
-    return guess
+    level = np.where(loaded, pressure**2, -K2 * opening)
+    rows, columns = window.slices
+    level = _linear(_linear(level, source, target.x[rows]).T, source, target.x[columns]).T
+    return np.sqrt(np.maximum(level, 0))
+
+
+def _linear(values: Array, source: Grid, x: Array) -> Array:
+    """Linear interpolation along the first index, from the patch centres of the source to x; 0 beyond it."""
+    at = np.clip((x - source.x[0]) / source.d, 0, source.n - 1)
+    i = np.minimum(at.astype(int), source.n - 2)
+    t = (at - i)[:, None]
+    result = values[i] * (1 - t) + values[i + 1] * t
+    result[np.abs(x) > source.half_width] = 0
+    return result

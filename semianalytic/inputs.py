@@ -30,7 +30,7 @@ class Numerics:
     threads: int = 1
 
     def __post_init__(self) -> None:
-        if self.patches < COARSEST or self.patches % 2 == 0:
+        if self.patches < COARSEST or (self.patches % 2 == 0 and self.edge_rounds > 0):
             raise ValueError(f"patches = {self.patches}; it must be odd and at least {COARSEST}")
         if not 1e-13 <= self.tolerance < 1:
             raise ValueError(f"tolerance = {self.tolerance:g}; give 1e-13 or more, 1e-8 is the default")

@@ -19,7 +19,7 @@ from numpy.typing import ArrayLike, NDArray
 from semianalytic import contact, convolution, disc, frf, halfspace, influence, subsurface
 from semianalytic import profile as edge_profile
 from semianalytic.contact import NotConverged
-from semianalytic.grid import Grid, carry_over, odd
+from semianalytic.grid import Grid, Window, carry_over, odd, window_around
 from semianalytic.inputs import COARSEST, Body, Numerics, check_positive
 from semianalytic.solution import Diagnostics, Solution, Uncertainty
 
@@ -28,6 +28,9 @@ __all__ = ["Diagnostics", "NotConverged", "Solution", "Uncertainty", "indent", "
 Array = NDArray[np.floating]
 Coatings = tuple[tuple[float, float, float], ...]
 Substrate = tuple[float, float]
+Press = Callable[
+    [Array | float, float, "Level | None", float], "Level"
+]  # (defect, missing, start, tolerance)
 
 USUAL, MOST = 257, 385  # patches a side
 PER_COATING = 8  # patches that the pressure needs to follow a coating at the contact edge
@@ -158,7 +161,7 @@ def indent(
     """Press a rigid indenter of any shape into a coated half-space, over a fixed square.
 
     profile : height of the indenter's surface above its lowest point [m], as z(x, y) of arrays x, y [m], or
-    as an (n, n) array at the centres of n x n patches that fill the square, n odd, in place of ``patches``.
+    as an (n, n) array at the centres of n x n patches that fill the square, in place of ``patches``.
     half_width : half the side of the square [m]; no contact beyond it.  load [N] or approach [m], the
     other None; the approach counts from the first touch.  The others as in ``solve``.
 
@@ -176,7 +179,7 @@ def indent(
     if heights is not None:
         patches = heights.shape[0]
         if heights.shape != (patches, patches) or not np.all(np.isfinite(heights)):
-            raise ValueError(f"profile of shape {heights.shape}; give finite heights on n x n patches, n odd")
+            raise ValueError(f"profile of shape {heights.shape}; give finite heights on n x n patches")
     numerics = Numerics(
         patches=patches,
         tolerance=tolerance,
@@ -269,11 +272,12 @@ def _uniform(value: float, r: Array) -> Array:
 
 def _loaded(grid: Grid, shape: edge_profile.Prescribed, body: Body, numerics: Numerics) -> Level:
     """Deflection under a prescribed pressure, as a contact that took no iteration."""
-    level = Level(grid, contact.Contact.of_load(shape.pressure(grid.radius)), shape, shape.load, 1)
     deflection = convolution.even_convolution(_coefficients(grid, body, numerics), threads=numerics.threads)
+    found = contact.Contact.of_load(shape.pressure(grid.radius))
+    level = Level(grid, found, shape, shape.load, 1)
     u = deflection(_sharpened(level.mean))
     centre = float(u[grid.n // 2, grid.n // 2])
-    return replace(level, found=replace(level.found, gap=u - centre, approach=centre))
+    return replace(level, found=replace(found, gap=u - centre, approach=centre))
 
 
 def _sharpened(mean: Array) -> Array:
@@ -336,56 +340,115 @@ def _touches_rim(pressure: Array) -> bool:
 
 
 def _press(grid: Grid, before: Level | None, indenter: Indenter, body: Body, numerics: Numerics) -> Level:
-    """Contact on a grid, its edge corrected where the indenter is round.
+    """Contact on a grid: of a sphere its edge corrected, of another indenter on the window it needs."""
+    whole = Window(0, grid.n, 0, grid.n)
+    if indenter.round:
+        return _press_round(grid, whole, before, indenter, body, numerics)
+    if before is not None:
+        window = window_around(before.found.pressure, before.grid, grid)
+        if window.shape != whole.shape:
+            level = _press_in(grid, window, before, indenter, body, numerics)(
+                0.0, 0.0, None, numerics.tolerance
+            )
+            if _is_alone(level, window, indenter, body, numerics):
+                return level
+    press, _ = _press_in(grid, whole, before, indenter, body, numerics)
+    return press(0.0, 0.0, None, numerics.tolerance)
+
+
+def _press_round(
+    grid: Grid, whole: Window, before: Level | None, indenter: Indenter, body: Body, numerics: Numerics
+) -> Level:
+    """Contact with its edge corrected.
 
     What constant patches make of the square root at the edge is measured on the fitted profile, whose exact
     deflection is known, and added to the gap; the profile is fitted anew to the pressure that results.
     """
-    kernel = _coefficients(grid, body, numerics)
-    deflection = convolution.even_convolution(kernel, threads=numerics.threads)
-    precondition = convolution.circulant_inverse(kernel, threads=numerics.threads)
-    gap = indenter.gap(grid)
-
-    def press(defect: Array | float, missing: float, start: Array, tolerance: float) -> contact.Contact:
-        return contact.press(
-            deflection,
-            gap + defect,
-            total=None if indenter.load is None else (indenter.load - missing) / grid.d**2,
-            approach=indenter.approach,
-            start=start,
-            precondition=precondition,
-            scale=indenter.approach or float(np.ptp(gap)),
-            tolerance=tolerance,
-            max_iterations=numerics.max_iterations,
-        )
-
-    if before is not None:
-        start = carry_over(before.found.pressure, before.found.gap, before.grid, grid, body.moduli[0])
-    else:
-        depth = indenter.approach or 0.25 * float(np.ptp(gap))
-        start = np.maximum(precondition(np.maximum(gap.min() + depth - gap, 0)), 0)
-    rounds = numerics.edge_rounds if indenter.round else 0
-    found = press(0.0, 0.0, start, max(numerics.tolerance, 1e-5) if rounds else numerics.tolerance)
-    convolutions, missing, shape, table = found.convolutions, 0.0, None, None
+    press, deflection = _press_in(grid, whole, before, indenter, body, numerics)
+    rounds = numerics.edge_rounds
+    level = press(0.0, 0.0, None, max(numerics.tolerance, 1e-5) if rounds else numerics.tolerance)
+    shape, table = None, None
     for k in range(rounds):
-        shape = _fit(grid, found.pressure, body, SKIPS[min(k, len(SKIPS) - 1)])
+        shape = _fit(grid, level.found.pressure, body, SKIPS[min(k, len(SKIPS) - 1)])
         if shape is None:
-            break
+            return press(0.0, 0.0, level, numerics.tolerance)
         if table is None and body.coatings:
             table = _layer_table(shape.radius, grid, body)
         on_patches = shape.pressure(grid.radius)
         missing = shape.load - float(on_patches.sum() * grid.d**2)
         exact = disc.deflection(shape.radius, shape.coefficients, body.moduli[0], table, grid.radius)
         tolerance = numerics.tolerance if k == rounds - 1 else max(numerics.tolerance, 1e-6)
-        found = press(exact - deflection(on_patches), missing, found.pressure, tolerance)
-        convolutions += found.convolutions + 1
+        level = press(exact - deflection(on_patches), missing, level, tolerance)
     if shape is not None:
-        shape = _fit(grid, found.pressure, body, SKIPS[-1])
-    elif rounds:
-        missing = 0.0
-        found = press(0.0, 0.0, found.pressure, numerics.tolerance)
-        convolutions += found.convolutions
-    return Level(grid, found, shape, float(found.pressure.sum() * grid.d**2) + missing, convolutions)
+        shape = _fit(grid, level.found.pressure, body, SKIPS[-1])
+    return replace(level, shape=shape)
+
+
+def _press_in(
+    grid: Grid, window: Window, before: Level | None, indenter: Indenter, body: Body, numerics: Numerics
+) -> tuple[Press, Callable[[Array], Array]]:
+    """Function that presses the indenter on a window of the grid, and the deflection u = A p there.
+
+    defect [m] : added to the gap.  missing [N] : load that the patches do not carry.  start : level on the
+    same grid, None to start from ``before``.
+    """
+    n = max(window.shape)
+    kernel = _coefficients(Grid(n, grid.d), body, numerics)[: window.shape[0], : window.shape[1]]
+    deflection = convolution.even_convolution(kernel, threads=numerics.threads)
+    precondition = convolution.circulant_inverse(kernel, threads=numerics.threads)
+    del kernel
+    gap = indenter.gap(grid)
+    depth = float(np.ptp(gap))
+    gap = gap[window.slices].copy()
+
+    def press(defect: Array | float, missing: float, level: Level | None, tolerance: float) -> Level:
+        spent = 0
+        if level is not None:
+            start, spent = level.found.pressure[window.slices], level.convolutions + 1
+        elif before is not None:
+            start = carry_over(
+                before.found.pressure, before.found.gap, before.grid, grid, window, body.moduli[0]
+            )
+        else:
+            start = precondition(np.maximum(gap.min() + (indenter.approach or 0.25 * depth) - gap, 0))
+        found = contact.press(
+            deflection,
+            gap + defect,
+            total=None if indenter.load is None else (indenter.load - missing) / grid.d**2,
+            approach=indenter.approach,
+            start=start,
+            precondition=precondition,
+            scale=indenter.approach or (before.found.approach if before else depth),
+            tolerance=tolerance,
+            max_iterations=numerics.max_iterations,
+        )
+        load = float(found.pressure.sum() * grid.d**2) + missing
+        if window.shape != (grid.n, grid.n):
+            found = found.embedded(window.slices, grid.n, depth)
+        return Level(grid, found, None, load, spent + found.convolutions)
+
+    return press, deflection
+
+
+def _is_alone(level: Level, window: Window, indenter: Indenter, body: Body, numerics: Numerics) -> bool:
+    """Whether nothing but the window is in contact: its rim is free, and the gap beyond it open.
+
+    The deflection beyond is found from patches of twice the side, which at the distance of the window's
+    margin is good to 1e-3 of what they add; the smallest gap of the four stands for them.
+    """
+    p = level.found.pressure
+    inner = p[window.slices]
+    if _touches_rim(inner):
+        return False
+    m = (level.grid.n + 1) // 2
+    gap = np.pad(indenter.gap(level.grid), (0, 2 * m - level.grid.n), mode="edge")
+    lowest = gap.reshape(m, 2, m, 2).min(axis=(1, 3))
+    del gap
+    merged = np.pad(p, (0, 2 * m - level.grid.n)).reshape(m, 2, m, 2).mean(axis=(1, 3))
+    kernel = _coefficients(Grid(m, 2 * level.grid.d), body, numerics)
+    g = lowest + convolution.even_convolution(kernel, threads=numerics.threads)(merged) - level.found.approach
+    g[window.i0 // 2 : -(-window.i1 // 2), window.j0 // 2 : -(-window.j1 // 2)] = np.inf
+    return bool(g.min() > 0)
 
 
 def _fit(grid: Grid, pressure: Array, body: Body, skip: float) -> edge_profile.Profile | None:
@@ -434,7 +497,7 @@ def _coefficients(grid: Grid, body: Body, numerics: Numerics) -> Array:
 
 def _as_solution(level: Level, coarser: Solution | None, body: Body) -> Solution:
     grid, found = level.grid, level.found
-    reach = int(np.ceil(2.05 * level.radius / grid.d))
+    beyond = max(int(np.ceil((2.05 * level.radius - grid.x[-1]) / grid.d)), 0)
     loaded: dict[str, Any] = {
         "grid_x": grid.x,
         "grid_y": grid.x,
@@ -458,7 +521,7 @@ def _as_solution(level: Level, coarser: Solution | None, body: Body) -> Solution
 
     return Solution(
         **level.scalars,
-        surface_nodes=np.arange(-reach, reach + 1) * grid.d,
+        surface_nodes=grid.x[0] + grid.d * np.arange(-beyond, grid.n + beyond),
         diagnostics=Diagnostics(
             iterations=found.iterations,
             convolutions=level.convolutions,
