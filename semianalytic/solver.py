@@ -347,9 +347,8 @@ def _press(grid: Grid, before: Level | None, indenter: Indenter, body: Body, num
     if before is not None:
         window = window_around(before.found.pressure, before.grid, grid)
         if window.shape != whole.shape:
-            level = _press_in(grid, window, before, indenter, body, numerics)(
-                0.0, 0.0, None, numerics.tolerance
-            )
+            press, _ = _press_in(grid, window, before, indenter, body, numerics)
+            level = press(0.0, 0.0, None, numerics.tolerance)
             if _is_alone(level, window, indenter, body, numerics):
                 return level
     press, _ = _press_in(grid, whole, before, indenter, body, numerics)
