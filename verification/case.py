@@ -15,6 +15,9 @@ __all__ = [
     "METHODS",
     "Case",
     "CaseError",
+    "Strict",
+    "Text",
+    "first_complaint",
     "parse_case",
     "read_case",
     "shipped_cases",
@@ -94,7 +97,9 @@ def _quantities(line: Line, problem: CoatedContact) -> tuple[str, ...]:
     return ("sigma_xx", "sigma_yy", "sigma_zz", "sigma_xz")
 
 
-class _Strict(BaseModel):
+class Strict(BaseModel):
+    """A part of a case file: no unknown keys, no text where a number belongs."""
+
     model_config = ConfigDict(extra="forbid", strict=True, frozen=True, allow_inf_nan=False)
 
 
@@ -104,7 +109,7 @@ Length = Annotated[float, Field(gt=0)]
 Text = Annotated[str, Field(min_length=1, max_length=500)]
 
 
-class _Substrate(_Strict):
+class _Substrate(Strict):
     E: Modulus
     nu: Poisson
 
@@ -123,7 +128,7 @@ class _Coating(_Substrate):
         return self.thickness if self.thickness is not None else a_h * (self.thickness_over_a_h or 0.0)
 
 
-class _Problem(_Strict):
+class _Problem(Strict):
     radius: Length
     load: Annotated[float, Field(gt=0)]
     friction: Annotated[float, Field(ge=0, le=2)] = 0.0
@@ -131,7 +136,7 @@ class _Problem(_Strict):
     coatings: Annotated[list[_Coating], Field(max_length=50)] = []
 
 
-class _Claim(_Strict):
+class _Claim(Strict):
     quantity: Text
     line: Text
     between: Annotated[list[Text], Field(min_length=2, max_length=2)]
@@ -140,18 +145,18 @@ class _Claim(_Strict):
     edge: Annotated[float, Field(ge=0, lt=1)] | None = None
 
 
-class _SemianalyticNumerics(_Strict):
+class _SemianalyticNumerics(Strict):
     patches: Annotated[int, Field(ge=16, le=4096)] | None = None
     conversion: Text | None = None
     max_iterations: Annotated[int, Field(ge=1, le=100_000)] | None = None
 
 
-class _FemNumerics(_Strict):
+class _FemNumerics(Strict):
     order: Annotated[int, Field(ge=2, le=4)] | None = None
     quality: Text | None = None
 
 
-class _CaseFile(_Strict):
+class _CaseFile(Strict):
     title: Text
     source: Text = "no source stated"
     problem: _Problem
@@ -190,7 +195,7 @@ def parse_case(raw: bytes, path: Path) -> Case:
     except (tomllib.TOMLDecodeError, RecursionError) as error:
         raise CaseError(f"{path}: not TOML: {str(error) or 'nested too deeply'}") from None
     except ValidationError as error:
-        raise CaseError(f"{path}: {_first_complaint(error)}") from None
+        raise CaseError(f"{path}: {first_complaint(error)}") from None
     except ValueError as error:
         raise CaseError(f"{path}: problem: {error}") from None
     _refuse_unfit_scales(path, problem)
@@ -257,9 +262,11 @@ def _claims(path: Path, checked: _CaseFile, problem: CoatedContact) -> tuple[Cla
     return tuple(claims)
 
 
-def _first_complaint(error: ValidationError) -> str:
+def first_complaint(error: ValidationError) -> str:
+    """The first thing wrong with a case file, with its key and what stands there, in one sentence."""
     first = error.errors(include_url=False)[0]
     key = ".".join(str(part) for part in first["loc"]) or "top level"
+    message = first["msg"].removeprefix("Value error, ")
     said = {
         "missing": "is missing",
         "extra_forbidden": "is an unknown key",
@@ -267,7 +274,7 @@ def _first_complaint(error: ValidationError) -> str:
         "float_type": "must be a number",
         "int_type": "must be a whole number",
         "string_type": "must be text",
-    }.get(first["type"], first["msg"][0].lower() + first["msg"][1:])
+    }.get(first["type"], message[0].lower() + message[1:])
     shown = repr(first["input"])
     if first["type"] not in ("missing", "extra_forbidden") and not isinstance(first["input"], dict | list):
         said += f", not {shown if len(shown) <= 60 else shown[:57] + '...'}"

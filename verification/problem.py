@@ -11,7 +11,7 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-__all__ = ["CoatedContact", "Solution"]
+__all__ = ["CoatedContact", "PrescribedLoad", "Solution"]
 
 
 @dataclass(frozen=True)
@@ -72,6 +72,33 @@ class CoatedContact:
     def homogeneous(self) -> bool:
         """True where every layer has the substrate's moduli, so that Hertz holds."""
         return all((E, nu) == self.substrate for E, nu, _ in self.coatings)
+
+
+@dataclass(frozen=True)
+class PrescribedLoad:
+    """Uniform ``pressure`` [Pa] on a disc of ``load_radius`` [m], on ``coatings`` bonded to ``substrate``.
+
+    The others as in CoatedContact; nu = 1/2 is allowed, as the sources of such tables like it.
+    Raises ValueError with one sentence naming the quantity and its value.
+    """
+
+    pressure: float
+    load_radius: float
+    coatings: tuple[tuple[float, float, float], ...]
+    substrate: tuple[float, float]
+    friction: float = 0.0
+
+    def __post_init__(self) -> None:
+        _require_positive("pressure", self.pressure)
+        _require_positive("load_radius", self.load_radius)
+        for i, (E, nu, thickness) in enumerate(self.coatings):
+            _require_positive(f"coatings[{i}].E", E)
+            _require_positive(f"coatings[{i}].thickness", thickness)
+            if nu != 0.5:
+                _require_poisson(f"coatings[{i}].nu", nu)
+        _require_positive("substrate.E", self.substrate[0])
+        if self.substrate[1] != 0.5:
+            _require_poisson("substrate.nu", self.substrate[1])
 
 
 class Solution(Protocol):

@@ -33,6 +33,7 @@ class CaseResult:
 
     problem : the fields of CoatedContact, with the scales a_h, p_h, delta_h and the interfaces.
     verdicts : one (Claim, Verdict) per claim of the case, in its order.
+    published : of a published case its citation and the tables as printed; empty for any other.
     """
 
     name: str
@@ -44,6 +45,7 @@ class CaseResult:
     verdicts: tuple[tuple[Claim, Verdict], ...]
     seconds: float
     text: str = ""
+    published: dict[str, Any] = field(default_factory=dict)
 
     @property
     def outcome(self) -> Outcome:
@@ -92,6 +94,7 @@ def to_json(result: CaseResult) -> dict[str, Any]:
         ],
         "profiles": [_plain(vars(profile)) for profile in result.profiles],
         "case_file": result.text,
+        "published": _plain(result.published),
     }
 
 
@@ -136,6 +139,7 @@ def from_json(data: dict[str, Any]) -> CaseResult:
         ),
         seconds=data["seconds"],
         text=data["case_file"],
+        published=data.get("published", {}),
     )
 
 

@@ -9,12 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from verification.case import Case
-from verification.problem import CoatedContact, Solution
+from verification.problem import CoatedContact, PrescribedLoad, Solution
 from verification.profile import Line, Profile, sample, sample_contact
 from verification.result import CaseResult, SourceResult
 from verification.verdict import Claim, Outcome, Verdict, compare, judge
 
-__all__ = ["Solver", "failed", "run", "solvers"]
+__all__ = ["Solver", "describe", "diagnostics_of", "failed", "run", "sentence", "solvers"]
 
 Array = NDArray[np.float64]
 Solver = Callable[[CoatedContact, Mapping[str, Any]], Solution]
@@ -68,13 +68,13 @@ def run(case: Case, available: Mapping[str, Solver] | None = None) -> CaseResult
                 if not np.isfinite(getattr(solution, name)):
                     raise ValueError(f"{name} = {getattr(solution, name)}; the solution is not finite")
         except Exception as error:  # a failed solve is a row of the report, whatever went wrong
-            outcomes[source] = SourceResult(source, time.perf_counter() - begin, _sentence(error))
+            outcomes[source] = SourceResult(source, time.perf_counter() - begin, sentence(error))
             continue
         solutions[source] = solution
         outcomes[source] = SourceResult(
             source,
             time.perf_counter() - begin,
-            diagnostics=_record(solution.diagnostics),
+            diagnostics=diagnostics_of(solution.diagnostics),
             budget=getattr(solution.uncertainty, "budget", ()),
         )
 
@@ -87,7 +87,7 @@ def run(case: Case, available: Mapping[str, Solver] | None = None) -> CaseResult
             for line in case.lines:
                 found += sample(solution, source, line, places[line])
         except Exception as error:  # as above: stresses that cannot be had are a sentence, not a traceback
-            outcomes[source] = SourceResult(source, outcomes[source].seconds, _sentence(error))
+            outcomes[source] = SourceResult(source, outcomes[source].seconds, sentence(error))
             continue
         old = outcomes[source]
         seconds = old.seconds + time.perf_counter() - begin
@@ -102,7 +102,7 @@ def run(case: Case, available: Mapping[str, Solver] | None = None) -> CaseResult
         name=case.name,
         title=case.title,
         source=case.source,
-        problem=_describe(case.problem),
+        problem=describe(case.problem),
         sources=tuple(outcomes.values()),
         profiles=tuple(profiles.values()),
         verdicts=verdicts,
@@ -117,7 +117,7 @@ def failed(case: Case, reason: str, seconds: float) -> CaseResult:
         name=case.name,
         title=case.title,
         source=case.source,
-        problem=_describe(case.problem),
+        problem=describe(case.problem),
         sources=(SourceResult("case", seconds, reason),),
         profiles=(),
         verdicts=tuple((claim, Verdict(Outcome.NO_RESULT, reason)) for claim in case.claims),
@@ -164,7 +164,10 @@ def _positions(case: Case, solutions: Mapping[str, Solution]) -> dict[Line, Arra
     return {line: z if line.depth is None else x for line in case.lines}
 
 
-def _describe(problem: CoatedContact) -> dict[str, Any]:
+def describe(problem: CoatedContact | PrescribedLoad) -> dict[str, Any]:
+    """The fields of a problem; of a contact its Hertz scales and interfaces besides."""
+    if isinstance(problem, PrescribedLoad):
+        return asdict(problem)
     return asdict(problem) | {
         "a_h": problem.a_h,
         "p_h": problem.p_h,
@@ -173,11 +176,13 @@ def _describe(problem: CoatedContact) -> dict[str, Any]:
     }
 
 
-def _record(diagnostics: Any) -> dict[str, Any]:
+def diagnostics_of(diagnostics: Any) -> dict[str, Any]:
+    """A method's own record as a dictionary."""
     return asdict(diagnostics) if is_dataclass(diagnostics) and not isinstance(diagnostics, type) else {}
 
 
-def _sentence(error: Exception) -> str:
+def sentence(error: Exception) -> str:
+    """What went wrong, in one line."""
     text = " ".join(str(error).split())[:500]
     # Both methods raise ValueError or their own NotConverged with a sentence; anything else is named.
     if isinstance(error, ValueError) or type(error).__name__ == "NotConverged":

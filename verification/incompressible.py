@@ -1,0 +1,99 @@
+"""A solution for nu = 1/2 by extrapolation, of a method that refuses an incompressible solid."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import cached_property
+from operator import attrgetter
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from verification.problem import CoatedContact, PrescribedLoad, Solution
+
+__all__ = ["towards_incompressible"]
+
+Array = NDArray[np.float64]
+Solver = Callable[[CoatedContact | PrescribedLoad], Solution]
+STEP = 1e-3  # of Poisson's ratio
+
+
+def towards_incompressible(problem: CoatedContact | PrescribedLoad, solve: Solver) -> Solution:
+    """The solution as nu -> 1/2 where a layer has it; the problem itself where none has.
+
+    Carried on from nu = 1/2 - e and 1/2 - 2e, e = 1e-3, along a straight line. What that leaves out is
+    f'' e^2, which is the second difference of three values; it is part of the uncertainty.
+    """
+    if all(nu != 0.5 for _, nu, *_ in (*problem.coatings, problem.substrate)):
+        return solve(problem)
+    near, further, third = (solve(_compressible(problem, n * STEP)) for n in (1, 2, 3))
+    return _Extrapolated(near, further, third)
+
+
+def _compressible(problem: CoatedContact | PrescribedLoad, below: float) -> CoatedContact | PrescribedLoad:
+    def eased(nu: float) -> float:
+        return nu - below if nu == 0.5 else nu
+
+    E, nu = problem.substrate
+    coatings = tuple((E1, eased(nu1), h) for E1, nu1, h in problem.coatings)
+    return replace(problem, coatings=coatings, substrate=(E, eased(nu)))
+
+
+@dataclass(frozen=True)
+class _Scalars:
+    contact_radius: float
+    approach: float
+    peak_pressure: float
+    budget: tuple[tuple[str, str, float], ...]
+
+
+@dataclass(frozen=True, eq=False)
+class _Extrapolated:
+    """2 f(1/2 - e) - f(1/2 - 2e), with 2 U + U and the second difference for its uncertainty."""
+
+    near: Solution
+    further: Solution
+    third: Solution
+
+    def __getattr__(self, name: str) -> Any:
+        if name in ("contact_radius", "approach", "peak_pressure"):
+            return 2 * getattr(self.near, name) - getattr(self.further, name)
+        if name in ("diagnostics", "surface_nodes"):
+            return getattr(self.near, name)
+        raise AttributeError(name)
+
+    @cached_property
+    def uncertainty(self) -> _Scalars | None:
+        """Of the three scalars; None where the solutions state none."""
+        if self.near.uncertainty is None or self.further.uncertainty is None:
+            return None
+        names = ("contact_radius", "approach", "peak_pressure")
+        rows, total = [], {}
+        for name in names:
+            own = 2 * getattr(self.near.uncertainty, name) + getattr(self.further.uncertainty, name)
+            bend = abs(self._bend(attrgetter(name)))
+            rows += [(name, "both solutions", own), (name, "nu -> 1/2", bend)]
+            total[name] = own + bend
+        return _Scalars(**total, budget=tuple(rows))
+
+    def pressure(self, x: Any, y: Any = 0.0) -> Array:
+        return 2 * self.near.pressure(x, y) - self.further.pressure(x, y)
+
+    def stress(self, x: Any, y: Any, z: Any, layer: int | None = None) -> Array:
+        return 2 * self.near.stress(x, y, z, layer) - self.further.stress(x, y, z, layer)
+
+    def displacement(self, x: Any, y: Any, z: Any) -> Array:
+        return 2 * self.near.displacement(x, y, z) - self.further.displacement(x, y, z)
+
+    def pressure_uncertainty(self, x: Any, y: Any = 0.0) -> Array:
+        own = 2 * self.near.pressure_uncertainty(x, y) + self.further.pressure_uncertainty(x, y)
+        return own + np.abs(self._bend(lambda s: s.pressure(x, y)))
+
+    def stress_uncertainty(self, x: Any, y: Any, z: Any, layer: int | None = None) -> Array:
+        own = 2 * self.near.stress_uncertainty(x, y, z, layer) + self.further.stress_uncertainty(
+            x, y, z, layer
+        )
+        return own + np.abs(self._bend(lambda s: s.stress(x, y, z, layer)))
+
+    def _bend(self, of: Callable[[Solution], Any]) -> Any:
+        return of(self.near) - 2 * of(self.further) + of(self.third)

@@ -1,0 +1,296 @@
+"""A published case: a problem with the tables printed about it, read from one TOML file and its CSV files.
+
+The problem stands in the units of the source and is converted here, at the border; so are the tables, which
+become Profiles with the reading uncertainty of the source, so that no comparison asks where they came from.
+"""
+
+import tomllib
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import ValidationError
+
+from verification.case import METHODS, CaseError, first_complaint
+from verification.printed_file import (
+    PrintedAt,
+    PrintedColumn,
+    PrintedFile,
+    PrintedLayer,
+    PrintedProblem,
+    PrintedTable,
+)
+from verification.problem import CoatedContact, PrescribedLoad
+from verification.profile import Profile
+from verification.quantity import QUANTITIES, SCALAR, Points
+from verification.references.published import FOLDER, UNITS, PublishedError, PublishedTable, read_table
+from verification.verdict import Claim
+
+__all__ = ["PRINTED", "Printed", "PublishedCase", "parse_published", "published_cases", "read_published"]
+
+Array = NDArray[np.float64]
+
+PRINTED = "published"  # the source of the profiles made from a table
+# Largest admissible uncertainty of a method, as on the lines of every other case; what the source itself
+# leaves unknown comes on top.
+CAP = 5e-3
+
+
+@dataclass(frozen=True, eq=False)
+class Printed:
+    """One column of a table on one line: where, what, and which rows count.
+
+    profile : in SI, tension positive, with the reading uncertainty.   at : the points of its values.
+    rows : their lines in ``file``.   text : the cells as printed.   unit : what they are printed in.
+    to_si : SI value of a printed 1, its sign included.   counted : False for a row marked as a misprint.
+    scale : what differences are divided by [SI].
+    """
+
+    profile: Profile
+    at: Points
+    file: str
+    column: str
+    rows: tuple[int, ...]
+    text: tuple[str, ...]
+    unit: str
+    to_si: float
+    counted: NDArray[np.bool_]
+    scale: float
+
+
+@dataclass(frozen=True)
+class PublishedCase:
+    """``problem`` with what was ``printed`` about it; the face of a ``Case`` besides.
+
+    citation : year, how it was read, whether the primary source was seen, and remarks.
+    """
+
+    name: str
+    title: str
+    problem: CoatedContact | PrescribedLoad
+    claims: tuple[Claim, ...]
+    printed: tuple[Printed, ...]
+    citation: dict[str, Any]
+    source: str
+    numerics: dict[str, dict[str, Any]] = field(default_factory=dict)
+    text: str = ""
+
+
+def published_cases() -> dict[str, Path]:
+    """The published cases that are shipped, by name, in the order of their file names."""
+    return {path.stem: path for path in sorted(FOLDER.glob("*.toml"))}
+
+
+def read_published(path: Path) -> PublishedCase:
+    """Read one published case. Raises CaseError: one sentence with file and key, or file, row and column."""
+    try:
+        return parse_published(path.read_bytes(), path)
+    except OSError as error:
+        raise CaseError(f"{path}: cannot be read ({error.strerror})") from None
+
+
+def parse_published(raw: bytes, path: Path) -> PublishedCase:
+    """Check the text of a published case; its tables lie beside ``path``. Raises CaseError."""
+    try:
+        text = raw.decode("utf-8")
+        checked = PrintedFile.model_validate(tomllib.loads(text))
+    except UnicodeDecodeError:
+        raise CaseError(f"{path}: not UTF-8 text; a case file is TOML") from None
+    except (tomllib.TOMLDecodeError, RecursionError) as error:
+        raise CaseError(f"{path}: not TOML: {str(error) or 'nested too deeply'}") from None
+    except ValidationError as error:
+        raise CaseError(f"{path}: {first_complaint(error)}") from None
+    try:
+        problem = _problem(checked.problem)
+        units = _units(problem)
+        notes, printed, texts = [], [], [text]
+        for i, table in enumerate(checked.table):
+            content = read_table(path.parent / table.file)
+            notes.append(content.notes)
+            texts.append(f"# {table.file}\n{content.raw}")
+            printed += _printed(table, content, units, problem, f"table.{i}")
+    except PublishedError as error:
+        raise CaseError(str(error)) from None
+    except ValueError as error:
+        raise CaseError(f"{path}: {error}") from None
+    return PublishedCase(
+        name=path.stem,
+        title=checked.title,
+        problem=problem,
+        claims=tuple(_claim(item, method) for item in printed if item.counted.any() for method in METHODS),
+        printed=tuple(printed),
+        citation={
+            "year": checked.year,
+            "primary_read": checked.primary_read,
+            "read": checked.read,
+            "remark": checked.remark,
+            "notes": "\n".join(dict.fromkeys(notes)),
+        },
+        source=checked.source,
+        # The tables belong to the input as much as the file that names them.
+        text="\n".join(dict.fromkeys(texts)),
+    )
+
+
+def _problem(p: PrintedProblem) -> CoatedContact | PrescribedLoad:
+    length, stress, force = (
+        _unit(value, UNITS, f"problem.{key}")
+        for key, value in (
+            ("length_unit", p.length_unit),
+            ("stress_unit", p.stress_unit),
+            ("load_unit", p.load_unit),
+        )
+    )
+    substrate = (p.substrate.E * stress, p.substrate.nu)
+    if p.radius is not None and p.load is not None:
+        bare = CoatedContact(p.radius * length, p.load * force, (), substrate, p.friction)
+        coatings = tuple((c.E * stress, c.nu, _thickness(c, length, bare.a_h)) for c in p.coatings)
+        return CoatedContact(bare.radius, bare.load, coatings, substrate, p.friction)
+    assert p.pressure is not None
+    assert p.load_radius is not None
+    coatings = tuple((c.E * stress, c.nu, _thickness(c, length, None)) for c in p.coatings)
+    return PrescribedLoad(p.pressure * stress, p.load_radius * length, coatings, substrate, p.friction)
+
+
+def _thickness(c: PrintedLayer, length: float, a_h: float | None) -> float:
+    if c.thickness is not None:
+        return c.thickness * length
+    if c.thickness_over_a_h is None or a_h is None:
+        raise ValueError("problem.coatings: every coating needs its thickness")
+    return c.thickness_over_a_h * a_h
+
+
+def _units(problem: CoatedContact | PrescribedLoad) -> dict[str, float]:
+    """The units a table of this problem may be printed in: those of UNITS and its own scales."""
+    if isinstance(problem, PrescribedLoad):
+        return UNITS | {"q": problem.pressure, "a": problem.load_radius}
+    return UNITS | {"a_h": problem.a_h, "p_h": problem.p_h, "delta_h": problem.delta_h}
+
+
+def _unit(name: str, units: dict[str, float], where: str) -> float:
+    if name not in units:
+        raise ValueError(f"{where}: unit {name!r} is unknown; known are {', '.join(units)}")
+    return units[name]
+
+
+def _printed(
+    table: PrintedTable,
+    content: PublishedTable,
+    units: dict[str, float],
+    problem: CoatedContact | PrescribedLoad,
+    key: str,
+) -> list[Printed]:
+    content = content.where(table.rows) if table.rows else content
+    found = []
+    for i, column in enumerate(table.column):
+        here = f"{table.file}, column {column.name}"
+        if column.quantity not in QUANTITIES:
+            raise PublishedError(
+                f"{here}: quantity {column.quantity!r} is unknown; known are {', '.join(QUANTITIES)}"
+            )
+        at = column.at or table.at
+        if at is None and column.quantity not in SCALAR:
+            raise ValueError(f"{key}.column.{i}: says nowhere where its values are; give at")
+        try:
+            to_si = column.factor * _unit(column.unit, units, here)
+            points = _points(at, content, units, problem, here)
+        except ValueError as error:
+            raise PublishedError(str(error)) from None
+        value = np.array(content.numbers(column.name)) * to_si
+        counted = _counted(table, content, column.name)
+        spread = _uncertainty(column, content, counted) * abs(to_si)
+        scale = _scale(column, table, content, units, problem)
+        for name, rows in points.lines():
+            line = f"{name}, {content.path.stem}, column {column.name}"
+            part = points.part(rows)
+            profile = Profile(column.quantity, line, part.along, value[rows], PRINTED, spread[rows])
+            found.append(
+                Printed(
+                    profile,
+                    part,
+                    table.file,
+                    column.name,
+                    tuple(content.lines[n] for n in rows),
+                    tuple(content.text(column.name)[n] for n in rows),
+                    column.unit,
+                    to_si,
+                    counted[rows],
+                    scale,
+                )
+            )
+    return found
+
+
+def _points(
+    at: PrintedAt | None,
+    content: PublishedTable,
+    units: dict[str, float],
+    problem: CoatedContact | PrescribedLoad,
+    where: str,
+) -> Points:
+    n = len(content.rows)
+    if at is None:
+        return Points.origin(n)
+    unit = _unit(at.unit, units, f"{where}: at")
+    x, y, z = (
+        np.array(content.numbers(v)) if isinstance(v, str) else np.full(n, v) for v in (at.x, at.y, at.z)
+    )
+    return Points.of(x * unit, y * unit, z * unit, problem.coatings, at.layer, at.unit, unit)
+
+
+def _counted(table: PrintedTable, content: PublishedTable, column: str) -> NDArray[np.bool_]:
+    """False where the row is flagged, or the cell named, as a misprint."""
+    counted = np.ones(len(content.rows), dtype=bool)
+    if table.flag is not None:
+        counted &= np.array([not cell for cell in content.text(table.flag)])
+    for misprint in table.misprint:
+        content.text(misprint.column)
+        named = content.where(misprint.row).lines
+        if misprint.column == column:
+            counted &= np.array([line not in named for line in content.lines])
+    return counted
+
+
+def _uncertainty(column: PrintedColumn, content: PublishedTable, counted: NDArray[np.bool_]) -> Array:
+    """Reading uncertainty of every row, in the unit of the column.
+
+    Stated by the file; or half the last digit with the error of the program that printed it; or, where
+    several programs speak row by row, with all that they differ by.
+    """
+    if isinstance(column.uncertainty, float):
+        return np.full(len(content.rows), column.uncertainty)
+    rounding = np.array(content.half_digits(column.name, column.significant))
+    if column.uncertainty == "spread":
+        return rounding + (np.ptp(np.array(content.numbers(column.name))[counted]) if counted.any() else 0.0)
+    return rounding + column.program_error
+
+
+def _scale(
+    column: PrintedColumn,
+    table: PrintedTable,
+    content: PublishedTable,
+    units: dict[str, float],
+    problem: CoatedContact | PrescribedLoad,
+) -> float:
+    """Stresses over the pressure; displacements and strains over the largest of their kind in the table."""
+    kind = QUANTITIES[column.quantity]
+    if kind == "stress":
+        return problem.pressure if isinstance(problem, PrescribedLoad) else problem.p_h
+    alike = [c for c in table.column if QUANTITIES.get(c.quantity) == kind and c.unit in units]
+    if kind == "scalar":
+        alike = [column]
+    largest = 0.0
+    for c in alike:
+        printed = np.abs(content.numbers(c.name))[_counted(table, content, c.name)]
+        largest = max(largest, float(printed.max(initial=0.0) * abs(c.factor) * units[c.unit]))
+    return largest
+
+
+def _claim(item: Printed, method: str) -> Claim:
+    spread = item.profile.uncertainty
+    assert spread is not None
+    cap = CAP + float(spread[item.counted].max()) / item.scale if item.scale else CAP
+    why = f"printed in column {item.column} of {item.file}"
+    return Claim(item.profile.quantity, item.profile.line, (method, PRINTED), cap, why)
