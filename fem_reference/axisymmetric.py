@@ -85,6 +85,10 @@ class Discretisation:
     mesh: MeridianMesh
     order: int
 
+    def __getstate__(self) -> dict[str, object]:
+        # pickled without what can be computed again, which is a hundred times larger
+        return {"mesh": self.mesh, "order": self.order}
+
     @cached_property
     def triangulation(self) -> MeshTri:
         # sort_t: scikit-fem needs ascending vertex numbers to match edge unknowns of order 3 and above
@@ -117,6 +121,12 @@ class Discretisation:
         """Increasing radii of the surface vertices from the axis to the contact edge."""
         r, z = self.mesh.points
         return np.sort(r[(z == 0) & (r <= self.mesh.contact_radius)])
+
+    @cached_property
+    def surface(self) -> np.ndarray:
+        """Unknowns of one field on z = 0, by increasing radius."""
+        numbers = self.on(self.facets(lambda x: x[1] == 0))
+        return numbers[np.argsort(self.locations[0, numbers])]
 
     @cached_property
     def axis(self) -> np.ndarray:

@@ -26,7 +26,7 @@ import scipy.sparse.linalg as sla
 
 from .axisymmetric import Discretisation, constrained_solve
 
-__all__ = ["Multiplier", "Touch", "touch"]
+__all__ = ["Multiplier", "Touch", "complementarity", "touch"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -132,6 +132,16 @@ def touch(
         stiffness=float(loads[0] / (1 - loads[2])),
         residual=float(2 * np.pi * np.abs(force).max() / abs(W)),
     )
+
+
+def complementarity(contact: Touch, discretisation: Discretisation) -> tuple[float, float]:
+    """(deepest penetration outside over the approach, largest tension inside over the peak), both >= 0."""
+    d = discretisation
+    r = d.locations[0, d.surface]
+    gap = r**2 / 2 + contact.fields[d.N + d.surface] - contact.approach
+    penetration = max(0.0, -float(gap[r > contact.contact_radius].min()))
+    p = contact.pressure.values
+    return penetration / contact.approach, max(0.0, -float(p.min())) / float(p.max())
 
 
 def _even_at_the_axis(nodes: np.ndarray, order: int) -> sp.csr_matrix:

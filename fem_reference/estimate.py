@@ -49,12 +49,14 @@ class PressureBound:
     radius_error : uncertainty of the contact radius; a shift of the whole edge by it is added, which covers
     the
         ring between the two contact edges and the infinite slope of p beside it
+    everywhere : added inside the contact, for errors that are no matter of element size
     """
 
     pressure: Callable[[np.ndarray], np.ndarray]
     companion: Callable[[np.ndarray], np.ndarray]
     vertices: np.ndarray
     radius_error: float
+    everywhere: float = 0.0
 
     @cached_property
     def _around(self) -> tuple[np.ndarray, np.ndarray]:
@@ -64,15 +66,20 @@ class PressureBound:
         vertices, bound = self._around
         p = self.pressure(r)
         shifted = [self.pressure(np.abs(r + shift)) - p for shift in (-self.radius_error, self.radius_error)]
-        return np.interp(r, vertices, bound, right=0.0) + np.max(np.abs(shifted), axis=0)
+        inside = np.where(r <= vertices[-1], self.everywhere, 0.0)
+        return np.interp(r, vertices, bound, right=0.0) + np.max(np.abs(shifted), axis=0) + inside
 
 
 @dataclass(frozen=True, eq=False)
 class StressBound:
-    """Bound of |stress - companion's stress| as a function of position, for one harmonic."""
+    """Bound of |stress - companion's stress| as a function of position, for one harmonic.
+
+    everywhere : added at every point, for errors that are no matter of element size
+    """
 
     field: HarmonicField
     companion: HarmonicField
+    everywhere: float = 0.0
 
     def _difference(self, r: np.ndarray, z: np.ndarray, layer: np.ndarray) -> np.ndarray:
         return np.abs(self.field(r, z, layer)[1] - self.companion(r, z, layer)[1])
@@ -126,4 +133,4 @@ class StressBound:
         for (depth, side), (vertices, values) in self._planes.items():
             here = (z == depth) & (layer == side)
             bound[:, here] = [np.interp(r[here], vertices, row) for row in values]
-        return bound
+        return bound + self.everywhere

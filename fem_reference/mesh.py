@@ -37,6 +37,17 @@ class Grading:
     axis_size: float = 0.2
     far_size: float = 0.8
 
+    @classmethod
+    def of(cls, size: float, edge_size: float = 1e-6) -> "Grading":
+        """All sizes from one: the fan at the edge and the far field forgive coarser triangles."""
+        return cls(
+            size=size,
+            edge_rate=min(1.4 * size, 0.6),
+            edge_size=edge_size,
+            axis_size=0.65 * size,
+            far_size=2 * size,
+        )
+
 
 @dataclass(frozen=True, eq=False)
 class MeridianMesh:
@@ -67,17 +78,6 @@ class MeridianMesh:
             points=points,
             contact_radius=self.contact_radius * factor,
             stretch=self.stretch * factor,
-        )
-
-    def scaled(self, unit: float) -> "MeridianMesh":
-        """The mesh in another unit of length."""
-        return replace(
-            self,
-            points=self.points * unit,
-            depths=self.depths * unit,
-            contact_radius=self.contact_radius * unit,
-            far=self.far * unit,
-            length=self.length * unit,
         )
 
     def drawn_in(self, factor: float) -> "MeridianMesh":

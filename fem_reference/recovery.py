@@ -30,14 +30,15 @@ class HarmonicField:
 
     fields    : stacked field vector, see ``axisymmetric``
     materials : (E, nu) per layer
-    traction  : r -> sigma_zz on the surface for harmonic 0, sigma_rz for harmonic 1
+    pressure, factor : factor * pressure(r) is sigma_zz on the surface for harmonic 0, sigma_rz for harmonic 1
     """
 
     discretisation: Discretisation
     fields: np.ndarray
     materials: tuple[tuple[float, float], ...]
     harmonic: int
-    traction: Callable[[np.ndarray], np.ndarray]
+    pressure: Callable[[np.ndarray], np.ndarray]
+    factor: float
 
     @cached_property
     def _trees(self) -> list[tuple[np.ndarray, cKDTree]]:
@@ -152,7 +153,7 @@ class HarmonicField:
 
     def _applied(self, r: np.ndarray) -> np.ndarray:
         """(sigma_zz, sigma_rz, sigma_tz) on the surface, shape (3, n)."""
-        traction, zero = self.traction(r), np.zeros(r.size)
+        traction, zero = self.factor * self.pressure(r), np.zeros(r.size)
         if self.harmonic == 0:
             return np.stack([traction, zero, zero])
         # q in +x: q_r = q cos, q_theta = -q sin on the solid, whose outward normal is -z

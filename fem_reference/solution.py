@@ -6,6 +6,8 @@ from typing import Any
 
 import numpy as np
 
+from .mesh import MeridianMesh
+
 __all__ = ["Diagnostics", "Meridian", "NotConverged", "Solution", "Uncertainty"]
 
 # (r, z, layer) of shape (n,) -> displacement (3, n), stress (6, n) amplitudes, see recovery.py
@@ -58,14 +60,13 @@ class Diagnostics:
 
 @dataclass(frozen=True, eq=False)
 class Meridian:
-    """The fields behind a solution, SI units in and out.
+    """The fields behind a solution as functions of position, both in units of their own.
 
     normal, tangential : amplitudes of harmonic 0 and 1 (None without friction)
     pressure : r -> p
     normal_bound, tangential_bound, pressure_bound : their uncertainties, None when not estimated
-    depths : interfaces
-    far : extent of the solid that was meshed
-    mesh : what the .vtu writer needs
+    mesh : the meridian mesh, for the .vtu writer
+    length, displacement, stress : SI values of the units
     """
 
     normal: AmplitudeFunction
@@ -74,9 +75,24 @@ class Meridian:
     normal_bound: BoundFunction | None
     tangential_bound: BoundFunction | None
     pressure_bound: Callable[[np.ndarray], np.ndarray] | None
-    depths: np.ndarray
-    far: float
-    mesh: Any
+    mesh: MeridianMesh
+    length: float
+    displacement: float
+    stress: float
+
+    @property
+    def depths(self) -> np.ndarray:
+        """Depths of the interfaces [m]."""
+        return self.mesh.depths * self.length
+
+    @property
+    def far(self) -> float:
+        """Extent of the meshed solid [m]."""
+        return float(self.mesh.points.max()) * self.length
+
+    def radius(self, x: Any, y: Any) -> np.ndarray:
+        """r over the unit of length, broadcast from x and y [m]."""
+        return np.hypot(np.asarray(x, dtype=float), np.asarray(y, dtype=float)) / self.length
 
     def points(self, x: Any, y: Any, z: Any, layer: int | None) -> "_Points":
         """Broadcast and check the points, snap them to interfaces within rounding, find their layers."""
@@ -114,12 +130,12 @@ class Meridian:
             found = np.full(z.shape, layer)
         unit = np.where(r > 0, r, 1.0)
         cos = np.where(r > 0, x / unit, 1.0)
-        return _Points(r, z, cos, y / unit, found, shape)
+        return _Points(r / self.length, z / self.length, cos, y / unit, found, shape)
 
 
 @dataclass(frozen=True, eq=False)
 class _Points:
-    """Cylindrical coordinates and layers of points; arrays of shape (n,), ``shape`` is what was asked."""
+    """Cylindrical coordinates, r and z over the unit of length, and layers; ``shape`` is what was asked."""
 
     r: np.ndarray
     z: np.ndarray
@@ -148,16 +164,18 @@ class Solution:
 
     def pressure(self, x: Any, y: Any = 0.0) -> np.ndarray:
         """Contact pressure [Pa] at the surface points (x, y), broadcast; zero outside the contact."""
-        return self.meridian.pressure(_radius(x, y))
+        m = self.meridian
+        return m.pressure(m.radius(x, y)) * m.stress
 
     def pressure_uncertainty(self, x: Any, y: Any = 0.0) -> np.ndarray:
         """Absolute numerical uncertainty of ``pressure`` [Pa], same shape.
 
         Raises ValueError when the solution was solved without an estimate.
         """
-        if self.meridian.pressure_bound is None:
+        m = self.meridian
+        if m.pressure_bound is None:
             raise ValueError(_NOT_ESTIMATED)
-        return self.meridian.pressure_bound(_radius(x, y))
+        return m.pressure_bound(m.radius(x, y)) * m.stress
 
     def stress(self, x: Any, y: Any, z: Any, layer: int | None = None) -> np.ndarray:
         """Stress tensor sigma[i, j, ...] [Pa] in x, y, z; shape (3, 3) + broadcast shape of the points.
@@ -171,7 +189,7 @@ class Solution:
         if self.meridian.tangential is not None:
             _, sliding = self.meridian.tangential(at.r, at.z, at.layer)
             sigma = sigma + sliding * np.stack([at.cos] * 4 + [at.sin] * 2)
-        return _tensor(sigma, at.cos, at.sin).reshape(3, 3, *at.shape)
+        return _tensor(sigma * self.meridian.stress, at.cos, at.sin).reshape(3, 3, *at.shape)
 
     def stress_uncertainty(self, x: Any, y: Any, z: Any, layer: int | None = None) -> np.ndarray:
         """Absolute numerical uncertainty of every component of ``stress`` [Pa], same shape.
@@ -188,7 +206,7 @@ class Solution:
                 [cos] * 4 + [sin] * 2
             )
         # every product in the rotation counts with its modulus
-        return _tensor(bound, cos, sin, sign=1.0).reshape(3, 3, *at.shape)
+        return _tensor(bound * self.meridian.stress, cos, sin, sign=1.0).reshape(3, 3, *at.shape)
 
     def displacement(self, x: Any, y: Any, z: Any) -> np.ndarray:
         """Displacement (u_x, u_y, u_z) [m], u_z into the solid; shape (3,) + that of the points."""
@@ -198,11 +216,7 @@ class Solution:
             sliding, _ = self.meridian.tangential(at.r, at.z, at.layer)
             u = u + sliding * np.stack([at.cos, at.sin, at.cos])
         xyz = np.stack([u[0] * at.cos - u[1] * at.sin, u[0] * at.sin + u[1] * at.cos, u[2]])
-        return xyz.reshape(3, *at.shape)
-
-
-def _radius(x: Any, y: Any) -> np.ndarray:
-    return np.hypot(np.asarray(x, dtype=float), np.asarray(y, dtype=float))
+        return xyz.reshape(3, *at.shape) * self.meridian.displacement
 
 
 def _tensor(s: np.ndarray, cos: np.ndarray, sin: np.ndarray, sign: float = -1.0) -> np.ndarray:

@@ -2,10 +2,18 @@
 
 import math
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
-__all__ = ["check_choice", "check_materials", "check_positive", "check_proportions", "prescribed_pressure"]
+__all__ = [
+    "GivenPressure",
+    "check_choice",
+    "check_materials",
+    "check_positive",
+    "check_proportions",
+    "prescribed_pressure",
+]
 
 MAX_COATINGS = 50
 MAX_CONTRAST = 1e4
@@ -76,30 +84,38 @@ def check_proportions(thicknesses: Sequence[float], unit: str) -> None:
             )
 
 
+@dataclass(frozen=True)
+class GivenPressure:
+    """A prescribed pressure over ``scale`` as a function of r over ``radius``; zero beyond the load."""
+
+    given: float | Callable[[np.ndarray], np.ndarray]
+    radius: float
+    scale: float
+
+    def __call__(self, r: np.ndarray) -> np.ndarray:
+        r = np.asarray(r, dtype=float)
+        inside = r <= 1 + 1e-12
+        values = np.zeros(r.shape)
+        # a callable need not be defined beyond the load
+        si = self.radius * np.minimum(r[inside], 1.0)
+        values[inside] = self.given(si) if callable(self.given) else self.given
+        return values / self.scale
+
+
 def prescribed_pressure(
     pressure: float | Callable[[np.ndarray], np.ndarray], load_radius: float
-) -> tuple[Callable[[np.ndarray], np.ndarray], float]:
-    """The pressure as a function of r that vanishes beyond ``load_radius``, and its mean modulus as a scale.
+) -> GivenPressure:
+    """The pressure scaled by its mean modulus.
 
     Raises ValueError when a callable does not return finite numbers in the shape of its argument, or is zero.
     """
     if not callable(pressure):
         check_positive(pressure=pressure)
-    given = pressure
-
-    def p(r: np.ndarray) -> np.ndarray:
-        r = np.asarray(r, dtype=float)
-        inside = r <= load_radius * (1 + 1e-12)
-        values = np.zeros(r.shape)
-        # a callable need not be defined beyond the load
-        values[inside] = given(np.minimum(r[inside], load_radius)) if callable(given) else given
-        return values
-
     # Gauss points avoid r = 0 and r = load_radius, where a callable may be singular
     s, weight = np.polynomial.legendre.leggauss(40)
     r = load_radius * (s + 1) / 2
     try:
-        values = np.asarray(given(r) if callable(given) else np.full(r.shape, given), dtype=float)
+        values = np.asarray(pressure(r) if callable(pressure) else np.full(r.shape, pressure), dtype=float)
     except (TypeError, ValueError) as error:
         raise ValueError(f"pressure(r) fails on an array of radii ({error}); write it with numpy") from error
     if values.shape != r.shape or not np.all(np.isfinite(values)):
@@ -107,7 +123,7 @@ def prescribed_pressure(
     scale = float(np.sum(weight * np.abs(values) * r) / np.sum(weight * r))
     if not scale > 0:
         raise ValueError("pressure(r) is zero everywhere; there is nothing to solve")
-    return p, scale
+    return GivenPressure(pressure, load_radius, scale)
 
 
 def _check_material(where: str, E: float, nu: float) -> None:

@@ -27,8 +27,8 @@ def write_vtu(solution: "Solution", path: str | PathLike[str]) -> Path:
     path = Path(path)
     if path.suffix != ".vtu":
         raise ValueError(f"path = {path}; the file name has to end in .vtu")
-    mesh = solution.meridian.mesh
-    points, cells, layer = _quadratic(mesh.points, mesh.triangles, mesh.layer)
+    mesh, length = solution.meridian.mesh, solution.meridian.length
+    points, cells, layer = _quadratic(mesh.points * length, mesh.triangles, mesh.layer)
     owner = np.zeros(points.shape[1], dtype=int)
     owner[cells.ravel()] = np.repeat(layer, 6)
     halves = (1.0, -1.0) if solution.meridian.tangential is not None else (1.0,)

@@ -1,0 +1,76 @@
+"""The problem in units of its own: one length, one pressure, the modulus of the substrate."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from .far_field import boussinesq, cerruti
+
+__all__ = ["LayeredSolid", "Units", "first_radius"]
+
+Coatings = tuple[tuple[float, float, float], ...]
+
+
+@dataclass(frozen=True)
+class Units:
+    """SI values of the units a problem is solved in."""
+
+    length: float
+    pressure: float
+    modulus: float
+
+    @property
+    def displacement(self) -> float:
+        """u/L ~ p/E."""
+        return self.length * self.pressure / self.modulus
+
+    @property
+    def load(self) -> float:
+        return self.pressure * self.length**2
+
+
+@dataclass(frozen=True)
+class LayeredSolid:
+    """(E, nu) per layer with E of the substrate 1, thickness per coating, extent of the mesh in r and z."""
+
+    materials: tuple[tuple[float, float], ...]
+    thicknesses: tuple[float, ...]
+    far: float
+
+    @classmethod
+    def scaled(
+        cls, coatings: Coatings, substrate: tuple[float, float], length: float, far: float
+    ) -> "LayeredSolid":
+        """The solid in units of ``length`` and E of the substrate, meshed to ``far`` times its own size.
+
+        A stiff coating spreads the load over a length that grows with its modulus, so it counts as
+        h sqrt(E_k/E) in that size.
+        """
+        E, nu = substrate
+        thicknesses = tuple(h / length for _, _, h in coatings)
+        moduli = [E_k / E for E_k, _, _ in coatings]
+        spread = sum(h * max(1.0, m) ** 0.5 for h, m in zip(thicknesses, moduli, strict=True))
+        poisson = [nu_k for _, nu_k, _ in coatings]
+        return cls((*zip(moduli, poisson, strict=True), (1.0, nu)), thicknesses, far * (1 + spread))
+
+    def far_displacement(self, r: np.ndarray, z: np.ndarray) -> np.ndarray:
+        """(u_r, u_z) far from a unit normal force: that of the substrate alone."""
+        return boussinesq(r, z, *self.materials[-1])
+
+    def far_sliding(self, r: np.ndarray, z: np.ndarray) -> np.ndarray:
+        """Amplitudes (u_r, u_theta, u_z) far from a unit tangential force."""
+        return cerruti(r, z, *self.materials[-1])
+
+
+def first_radius(solid: LayeredSolid, load: float) -> float:
+    """Contact radius if the layers above z gave the share (2/pi) atan(z/a) of the compliance.
+
+    A guess to start from; ``load`` in units with sphere radius 1.
+    """
+    depths = np.cumsum([0.0, *solid.thicknesses])
+    a = 1.0
+    for _ in range(30):
+        share = np.diff(2 / np.pi * np.arctan(depths / a), append=1.0)
+        compliance = sum(s * (1 - nu**2) / E for s, (E, nu) in zip(share, solid.materials, strict=True))
+        a = (0.75 * load * compliance) ** (1 / 3)
+    return float(a)
