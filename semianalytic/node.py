@@ -111,9 +111,9 @@ def _block_of_table(table: PointLoad, dx: float, dy: float) -> Array:
     if ratio * POINTLIKE < 1:
         return table(m * dx, n * dy)
     # the table is singular at the distance L from panels of half-width d/2: the rule gains L/d digits a point
-    inner = (np.abs(m) <= 3) & (n <= 3)
+    inner = (np.abs(m) <= 2) & (n <= 2)  # whose panels touch the axis
     block: Array | None = None
-    for where, points in ((inner, int(np.clip(np.ceil(3 + 4 * ratio), 4, 12))), (~inner, 4)):
+    for where, points in ((inner, int(np.clip(np.ceil(3 + 4 * ratio), 4, 32))), (~inner, 4)):
         s, weight = _gauss(points)
         t = (np.arange(-1.5, 2)[:, None] + s).ravel()
         B = _keys(t) * np.tile(weight, 4)
