@@ -302,8 +302,11 @@ def _refine(
         sizes.insert(0, odd(sizes[0] / 2))
     ladder = []
     level = first
-    for n in sizes:
-        level = _press(Grid(n, 2 * half_width / n), level, indenter, body, numerics)
+    kept = 3 if estimate_uncertainty else 1
+    starter = replace(numerics, tolerance=max(1e-4, numerics.tolerance), edge_rounds=0)
+    for k, n in enumerate(sizes):
+        used = numerics if k >= len(sizes) - kept else starter
+        level = _press(Grid(n, 2 * half_width / n), level, indenter, body, used)
         ladder.append(level)
     solution = None
     for level in ladder[-3:] if estimate_uncertainty else ladder[-1:]:

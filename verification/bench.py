@@ -1,8 +1,8 @@
 """Speed and memory of the semi-analytical contact, side by side with its peer.
 
 A rigid sphere on a homogeneous half-space, not periodic, on the square [-2a, 2a]^2 of N x N patches, solved
-by ``semianalytic.indent`` and by the Polonsky-Keer solver of tamaas with its DC-FFT operator. Both are held to
-one judge that is neither's: the patch pressures are put through Love's coefficients coded here, and gap in
+by ``semianalytic.indent`` and by the Polonsky-Keer solver of tamaas with its DC-FFT operator. Both are held
+to one judge that is neither's: the patch pressures are put through Love's coefficients coded here, and gap in
 contact, penetration (over the approach) and load have to be met within ``JUDGE``. Every measurement is a
 process of its own with the threads set from outside, so that peak memory and threads mean what they say.
 
