@@ -92,33 +92,38 @@ class ConversionError:
 def settled(error: Sequence[float]) -> int | None:
     """The first level whose error is within a factor ``SETTLED`` of where the fall ends; None without one.
 
-    Each error counts as no smaller than that of any finer level, so that one which crosses zero by luck
-    promises nothing.
+    An error that a finer level exceeds by more than that factor crosses zero by luck and is passed over.
     """
-    envelope = _envelope(error)
-    if envelope is None or envelope[0] == 0:
+    found = np.asarray(error, dtype=float)
+    honest = _honest(found)
+    if not honest.any():
         return None
-    return int(np.argmax(envelope <= SETTLED * envelope[-1]))
+    return int(np.argmax(honest & (found <= SETTLED * found[-1])))
 
 
 def order_of(resolution: Sequence[float], error: Sequence[float]) -> float | None:
     """Slope s of error ~ resolution^-s by least squares, down to the level where the error is ``settled``.
 
-    Finer levels are left out, for there another knob has taken over. None where the error falls less than
-    by the factor ``SETTLED``.
+    Finer levels are left out, for there another knob has taken over, and so is luck. None where the error
+    falls less than by the factor ``SETTLED``.
     """
-    last, envelope = settled(error), _envelope(error)
-    if last is None or last == 0 or envelope is None or envelope[last] == 0:
+    last = settled(error)
+    if not last:
         return None
-    N = np.log(np.asarray(resolution, dtype=float)[: last + 1])
-    return float(-np.polyfit(N, np.log(envelope[: last + 1]), 1)[0])
+    found = np.asarray(error, dtype=float)[: last + 1]
+    used = _honest(np.asarray(error, dtype=float))[: last + 1]
+    N = np.asarray(resolution, dtype=float)[: last + 1][used]
+    if N.size < 2 or np.unique(N).size < N.size or not (np.isfinite(N) & (N > 0)).all():
+        return None
+    return float(-np.polyfit(np.log(N), np.log(found[used]), 1)[0])
 
 
-def _envelope(error: Sequence[float]) -> Array | None:
-    found = np.asarray(error, dtype=float)
-    if found.size < 2 or not np.isfinite(found).all() or found.min() < 0:
-        return None
-    return np.maximum.accumulate(found[::-1])[::-1]
+def _honest(found: Array) -> NDArray[np.bool_]:
+    """Marks the errors that no finer level exceeds by more than ``SETTLED``; none where one is no number."""
+    if found.size < 2 or not np.isfinite(found).all() or found.min() < 0 or found.max() == 0:
+        return np.zeros(found.shape, dtype=bool)
+    largest_after = np.maximum.accumulate(found[::-1])[::-1]
+    return (found > 0) & (SETTLED * found >= largest_after)
 
 
 @dataclass(frozen=True, eq=False)

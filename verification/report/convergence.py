@@ -8,7 +8,7 @@ from verification.report.cells import Cell, Gallery, Panel, Part, Row, Section, 
 from verification.report.conversion import conversion_part
 from verification.report.loglog import Trail, decades, draw_loglog
 from verification.report.names import Style
-from verification.report.numbers import factor, scientific, seconds
+from verification.report.numbers import factor, plain, scientific, seconds
 from verification.report.panels import swatch
 
 __all__ = ["convergence_sections"]
@@ -72,7 +72,7 @@ def _grid_parts(ladders: Sequence[Ladder]) -> list[Part]:
         Part(
             "",
             [_ladder_table(ladders, "patches a side")],
-            _ladder_gallery(ladders, "semi", "N", (33, 65, 129, 257, 513), caption),
+            _ladder_gallery(ladders, "semi", "N", (33, 49, 65, 97, 129, 257), caption),
         ),
     ]
 
@@ -102,15 +102,17 @@ def _grid_sentences(ladders: Sequence[Ladder]) -> list[str]:
         found.append(
             "With the edge of the contact left the staircase that patches make of it, the pressure on the "
             f"{stairs.solid} solid {speed}, to {scientific(there)} at {stairs.levels[-1].name}; the "
-            f"corrected edge comes to {scientific(here)} at {best.levels[-1].name}, a factor of {factor(there, here)}."
+            f"corrected edge comes to {scientific(here)} at {best.levels[-1].name}, a factor of "
+            f"{factor(there, here)}."
         )
     if paper and stairs:
         first, last = paper.levels[0], paper.levels[-1]
         stuck = [q for q in QUANTITIES if paper.order(q) is None and stairs.order(q) is not None]
         text = (
             f"With the plain conversion of the source paper, from {first.name} to {last.name}, the "
-            f"approach is off by {scientific(first.errors['approach'])} → {scientific(last.errors['approach'])} "
-            f"and p0 by {scientific(first.errors['p0'])} → {scientific(last.errors['p0'])}"
+            f"approach is off by {scientific(first.errors['approach'])} → "
+            f"{scientific(last.errors['approach'])} and p0 by "
+            f"{scientific(first.errors['p0'])} → {scientific(last.errors['p0'])}"
         )
         if stuck:
             text += f"; a finer grid does not bring down {_listed(stuck)}, for there the conversion rules"
@@ -143,7 +145,7 @@ def _element_sentence(ladders: Sequence[Ladder]) -> str:
         found.append(
             f"{one.setting} comes to p0 {scientific(last.errors['p0'])}, pressure "
             f"{scientific(last.errors['pressure'])}, stress {scientific(last.errors['stress'])} with "
-            f"{last.resolution**2:.0f} degrees of freedom in {seconds(last.seconds)}"
+            f"{plain(last.resolution * last.resolution, 6)} degrees of freedom in {seconds(last.seconds)}"
         )
     text = f"On the {ladders[0].solid} solid and the {ladders[0].levels[-1].name} mesh {'; '.join(found)}."
     if len(ladders) > 1:

@@ -21,6 +21,7 @@ _CONVERSIONS = {
     ("plain", 0): ("plain, no aliases", Style("other", _DOTS)),
     ("plain", 2): ("plain, 2 aliases a side", Style("pair", _MIXED)),
 }
+_UNKNOWN = Style("ink", (5.0, 1.5, 1.0, 1.5))
 _DOMAIN_SHOWN = 4  # of the curves over distance; the default of the solver
 
 
@@ -34,7 +35,7 @@ def conversion_part(found: Sequence[ConversionError]) -> Part:
         _conversion_sentence(found),
         [_conversion_table(found)],
         Gallery(
-            [(swatch(style), label) for name, (label, style) in _CONVERSIONS.items() if name in groups],
+            [(swatch(_look(kind)[1]), _look(kind)[0]) for kind in sorted(groups, key=_rank)],
             _conversion_panels(groups),
             "First the error of the influence coefficients of the displacement by the distance of the "
             f"patch; conversions that need a domain have one {_DOMAIN_SHOWN} times the grid. Then the error "
@@ -48,6 +49,14 @@ def _kind(one: ConversionError) -> tuple[str, int]:
     return one.conversion, one.aliases
 
 
+def _look(kind: tuple[str, int]) -> tuple[str, Style]:
+    return _CONVERSIONS.get(kind, (f"{kind[0]}, {kind[1]} aliases", _UNKNOWN))
+
+
+def _rank(kind: tuple[str, int]) -> int:
+    return list(_CONVERSIONS).index(kind) if kind in _CONVERSIONS else len(_CONVERSIONS)
+
+
 def _conversion_panels(groups: dict[tuple[str, int], list[ConversionError]]) -> list[Panel]:
     widths = sorted({one.enlarge for some in groups.values() for one in some} - {0})
     any_one = next(iter(groups.values()))[0]
@@ -58,12 +67,12 @@ def _conversion_panels(groups: dict[tuple[str, int], list[ConversionError]]) -> 
         some = groups[name]
         one = next((o for o in some if o.enlarge == _DOMAIN_SHOWN), some[0])
         pairs = [(d, e) for d, e in zip(one.distance, one.error, strict=True) if d > 0]
-        return Trail(tuple(d for d, _ in pairs), tuple(e for _, e in pairs), _CONVERSIONS[name][1])
+        return Trail(tuple(d for d, _ in pairs), tuple(e for _, e in pairs), _look(name)[1])
 
     def over_domain(name: tuple[str, int], place: int) -> Trail:
         errors = {one.enlarge: one.error[place] for one in groups[name]}
         level = {float(w): errors[0] for w in widths} if 0 in errors else errors
-        return Trail(tuple(float(w) for w in level), tuple(level.values()), _CONVERSIONS[name][1])
+        return Trail(tuple(float(w) for w in level), tuple(level.values()), _look(name)[1])
 
     drawn: list[tuple[str, str, str, Sequence[float], Callable[[tuple[str, int]], Trail]]] = [
         ("over distance", "distance / a", "distance", (0.1, 0.2, 0.5, 1, 2), over_distance)
@@ -71,7 +80,7 @@ def _conversion_panels(groups: dict[tuple[str, int], list[ConversionError]]) -> 
     for title, place in places.items():
         wide = (1, 2, 4, 8, 16, 32)
         drawn.append((title, "domain / grid", f"{place}", wide, lambda n, place=place: over_domain(n, place)))  # type: ignore[misc]
-    known = [name for name in _CONVERSIONS if name in groups]
+    known = sorted(groups, key=_rank)
     sets = [[trail(name) for name in known] for *_, trail in drawn]
     height = decades([one for some in sets for one in some])
     return [
@@ -123,11 +132,11 @@ def _conversion_sentence(found: Sequence[ConversionError]) -> str:
 
 def _conversion_table(found: Sequence[ConversionError]) -> Table:
     rows = []
-    for one in sorted(found, key=lambda one: (list(_CONVERSIONS).index(_kind(one)), one.enlarge)):
+    for one in sorted(found, key=lambda one: (_rank(_kind(one)), one.enlarge)):
         numbers = (one.error[0], one.error[1], max(one.error), one.largest)
         rows.append(
             Row(
-                Cell(_CONVERSIONS[_kind(one)][0]),
+                Cell(_look(_kind(one))[0]),
                 [
                     Cell("–" if not one.enlarge else f"{one.enlarge}", float(one.enlarge)),
                     *(Cell(scientific(e), e) for e in numbers),

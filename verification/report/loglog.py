@@ -33,7 +33,7 @@ class Trail:
     def drawn(self) -> list[tuple[float, float]]:
         """The points that have a place on logarithmic axes."""
         pairs = zip(self.resolution, self.error, strict=True)
-        return [(x, min(max(e, SMALLEST), LARGEST)) for x, e in pairs if 0 < x < 1e9 and np.isfinite(e)]
+        return [(x, min(max(e, SMALLEST), LARGEST)) for x, e in pairs if 1e-9 < x < 1e9 and np.isfinite(e)]
 
 
 def decades(trails: Sequence[Trail]) -> tuple[float, float]:

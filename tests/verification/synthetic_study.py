@@ -1,0 +1,54 @@
+"""A study of accuracy made up from power laws, for tests of the report."""
+
+from verification.accuracy_study import CORRECTED, PLAIN, STAIRCASE, AccuracyStudy
+from verification.convergence import QUANTITIES, ConversionError, Ladder, Level
+
+PATCHES = (33, 65, 129, 257)
+
+
+def falling(setting: str, order: float, floor: float = 0.0, solid: str = "coated") -> Ladder:
+    """Errors of N^-order, no smaller than ``floor``, in every quantity."""
+    levels = tuple(
+        Level(f"N = {n}", float(n), 0.01 * n, dict.fromkeys(QUANTITIES, max(float(n) ** -order, floor)))
+        for n in PATCHES
+    )
+    return Ladder("semianalytic", solid, setting, levels)
+
+
+def elements(order: int) -> Ladder:
+    """Finite elements that converge as their order says."""
+    levels = tuple(
+        Level(name, size, 1.0, dict.fromkeys(QUANTITIES, size**-order))
+        for name, size in (("fast", 100.0), ("default", 200.0))
+    )
+    return Ladder("fem_reference", "coated", f"order {order}", levels)
+
+
+def conversion(name: str, enlarge: int, aliases: int, error: float) -> ConversionError:
+    """The same relative error at every patch."""
+    distance = (0.0, 0.1, 0.4, 1.2, 3.1)
+    return ConversionError(name, enlarge, 0.01, distance, (error,) * len(distance), error, aliases)
+
+
+def study(*failures: str) -> AccuracyStudy:
+    """One of everything that a study holds."""
+    return AccuracyStudy(
+        (
+            falling(CORRECTED, 4.0, 1e-7),
+            falling(STAIRCASE, 1.0),
+            falling(PLAIN, 0.05),
+            falling(CORRECTED, 5.0, solid="uncoated"),
+            falling(STAIRCASE, 1.0, solid="uncoated"),
+            *(elements(order) for order in (2, 3, 4)),
+        ),
+        (
+            conversion("split", 0, 0, 2e-12),
+            *(conversion("plain", wide, 0, 0.16) for wide in (2, 4, 8, 16)),
+            *(conversion("plain", wide, 2, 0.004) for wide in (2, 4, 8, 16)),
+            *(conversion("split-fft", wide, 2, 0.02 / wide**2) for wide in (2, 4, 8, 16)),
+        ),
+        failures,
+        9.5,
+        "a28aa40c1d2e",
+        {"numpy": "2.4.0"},
+    )
