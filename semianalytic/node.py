@@ -45,11 +45,15 @@ def near_influence(
     outside : the same for a point force, used beyond NEAR.  table : what has to be added, smooth, or None.
     z : depth [m].
     """
-    blocks, far = [], []
+    blocks: list[Array] = []
+    far: list[PointLoad] = []  # point forces beyond NEAR
+    smooth: list[PointLoad] = []  # point forces at any offset
     if rectangle is not None and outside is not None:
         blocks.append(_block_of_rectangle(rectangle, dx, dy, z))
         far.append(outside)
-    if table is not None:
+    if table is not None and table.scale > POINTLIKE * max(dx, dy):
+        smooth.append(table)
+    elif table is not None:
         blocks.append(_block_of_table(table, dx, dy))
         far.append(table)
     half = np.sum(blocks, axis=0)
@@ -62,7 +66,7 @@ def near_influence(
         X, Y = m * dx, n * dy
         total = np.sum([kernel(X, Y) for kernel in far], axis=0)
         total[:, close] = near[:, m[close] + NEAR, n[close] + NEAR]
-        return total
+        return total + sum(kernel(X, Y) for kernel in smooth)
 
     return influence
 
@@ -108,8 +112,6 @@ def _block_of_table(table: PointLoad, dx: float, dy: float) -> Array:
     """A smooth point-load table integrated with B B at the same offsets."""
     m, n = np.meshgrid(np.arange(-BLOCK, BLOCK + 1), np.arange(BLOCK + 1), indexing="ij")
     ratio = max(dx, dy) / table.scale
-    if ratio * POINTLIKE < 1:
-        return table(m * dx, n * dy)
     # the table is singular at the distance L from panels of half-width d/2: the rule gains L/d digits a point
     inner = (np.abs(m) <= 2) & (n <= 2)  # whose panels touch the axis
     block: Array | None = None
