@@ -51,6 +51,7 @@ def solve(
     friction: float = 0.0,
     order: int = 4,
     quality: str = "default",
+    size: float | None = None,
     far: float = 1000.0,
     max_iterations: int = 30,
     estimate_uncertainty: bool = True,
@@ -62,8 +63,11 @@ def solve(
     (Goodman).
     order   : polynomial order of the displacement, 2 to 4
     quality : "fast" (about 1e-3), "default" (about 1e-5) or "fine"
+    size    : triangle size over its distance from the contact edge, 0.08 to 0.5; None takes that of
+    ``quality``
     far     : distance of the outer boundary over (a_h + thickness of all coatings)
     max_iterations : contact solves allowed on each mesh level
+    The approach is that of the sphere towards points at infinity.
     Poisson ratios up to 0.49 do not lock at order 4; above, digits are lost as 1/(1 - 2 nu), and 0.5 is
     refused. Raises ValueError for bad input, NotConverged when no contact radius carries the load.
     """
@@ -71,7 +75,7 @@ def solve(
     check_positive(radius=radius, load=load, far=far, max_iterations=max_iterations)
     check_materials(coatings, substrate, friction)
     check_choice("order", order, (2, 3, 4))
-    check_choice("quality", quality, tuple(QUALITY))
+    size = _size(quality, size)
     E, nu = substrate
     a_h = (3 * load * radius * (1 - nu**2) / (4 * E)) ** (1 / 3)
     unit = Units(length=a_h, pressure=E * a_h / radius, modulus=E)
@@ -111,7 +115,6 @@ def solve(
         a = carried.contact_radius * (target / carried.contact.load) ** (1 / slope)
         return carried.contact
 
-    size = QUALITY[quality]
     level("rough", Grading.of(0.6), 2, 0.02)
     level("coarse", Grading.of(_COARSE), order, 1e-3)
     companion = level("companion", _companion(size), order, _LOAD_TOLERANCE) if estimate_uncertainty else None
@@ -179,6 +182,7 @@ def solve_prescribed(
     friction: float = 0.0,
     order: int = 4,
     quality: str = "default",
+    size: float | None = None,
     far: float = 1000.0,
     estimate_uncertainty: bool = True,
 ) -> Solution:
@@ -192,7 +196,7 @@ def solve_prescribed(
     check_positive(load_radius=load_radius, far=far)
     check_materials(coatings, substrate, friction)
     check_choice("order", order, (2, 3, 4))
-    check_choice("quality", quality, tuple(QUALITY))
+    size = _size(quality, size)
     p = prescribed_pressure(pressure, load_radius)
     unit = Units(length=load_radius, pressure=p.scale, modulus=substrate[0])
     solid = LayeredSolid.scaled(coatings, substrate, load_radius, far)
@@ -209,7 +213,6 @@ def solve_prescribed(
         )
         return _state(solid, d, fields, p, friction)
 
-    size = QUALITY[quality]
     result = state(_mesh(solid, Grading.of(size, _EDGE_SIZE), 1.0))
     d = result.discretisation
     bounds = _NO_BOUNDS
@@ -282,6 +285,16 @@ class _Bounds:
 
 
 _NO_BOUNDS = _Bounds(None, None, None, None)
+
+
+def _size(quality: str, size: float | None) -> float:
+    check_choice("quality", quality, tuple(QUALITY))
+    if size is None:
+        return QUALITY[quality]
+    check_positive(size=size)
+    if not 0.08 <= size <= 0.5:
+        raise ValueError(f"size = {size:g}; choose it between 0.08 (a minute, gigabytes) and 0.5 (coarse)")
+    return size
 
 
 def _companion(size: float) -> Grading:

@@ -29,6 +29,7 @@ BAD = [
     ({"coatings": ((E, 0.3, 10.0),)}, "for the substrate instead"),
     ({"order": 5}, "order = 5"),
     ({"quality": "superb"}, "quality = 'superb'"),
+    ({"size": 2.0}, "size = 2"),
     ({"far": 5.0}, "larger far boundary"),
     ({"load": 1e9}, "radius of the sphere"),
 ]
