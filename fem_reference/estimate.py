@@ -46,9 +46,9 @@ def line_bound(
 class PressureBound:
     """Bound of |p - companion's p| as a function of the radius.
 
-    radius_error : uncertainty of the contact radius; a shift of the whole edge by it is added, which covers
-    the
-        ring between the two contact edges and the infinite slope of p beside it
+    radius_error : uncertainty of the contact radius; a shift of the edge by it is added, which covers the
+    ring
+        between the two contact edges and the infinite slope of p beside it
     everywhere : added inside the contact, for errors that are no matter of element size
     """
 

@@ -27,8 +27,8 @@ class Grading:
     size      : size of a triangle over its distance from the edge, in the contact and the coatings
     edge_rate : the same ratio in the fan of triangles around the contact edge
     edge_size : smallest triangle, at the edge, over the contact radius
-    axis_size : the same at the point of first touch
-    far_size  : growth per triangle towards the outer boundary
+    axis_size : size at the point of first touch, in units of the stretched plane
+    far_size  : size at the outer boundary, where one unit is a factor e of distance
     """
 
     size: float = 0.4

@@ -104,7 +104,7 @@ class Meridian:
         levels = np.concatenate([[0.0], self.depths])
         thickness = np.diff(levels, append=np.inf)
         for k, level in enumerate(levels):
-            h = min(thickness[max(k - 1, 0)], thickness[k], self.far)
+            h = min(thickness[max(k - 1, 0)], thickness[k], self.mesh.contact_radius * self.length)
             z[np.abs(z - level) <= 1e-9 * h] = level
         if z.size and not (np.all(z >= 0) and np.all(np.isfinite(r)) and np.all(np.isfinite(z))):
             worst = z[~(z >= 0)][0] if np.any(~(z >= 0)) else np.nan
