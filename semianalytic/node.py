@@ -27,7 +27,7 @@ Field = Callable[[Array, Array], Array]
 
 NEAR = 8  # patches; beyond, the sixth moment of B is worth 2e-6 of the pressure
 BLOCK = NEAR + 2  # offsets computed, two more for the fourth difference
-POINTLIKE = 3.0  # patches; nodes of a field of this scale act as points, aliases exp(-6 pi)
+POINTLIKE = 16.0  # patches; on a field of this scale the sixth moment of B is worth 1e-6 of it
 
 
 def near_influence(
