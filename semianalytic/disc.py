@@ -55,7 +55,7 @@ def layer_table(
     s, w = legendre.leggauss(10)
     half = np.diff(edges)[:, None] / 2
     k = (edges[:-1, None] + half * (1 + s)).ravel()
-    spacing = min(thickness, 0.1 * radius) / 8
+    spacing = min(thickness, 0.1 * radius) / 20
     r = np.linspace(0, reach, int(np.clip(reach / spacing, 120, 1000)))
     return LayerTable(k, r, j0(np.outer(r, k)) * ((half * w).ravel() * excess(k)))
 

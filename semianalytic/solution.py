@@ -134,8 +134,9 @@ class Solution:
     def pressure_uncertainty(self, x: ArrayLike, y: ArrayLike = 0.0) -> Array:
         """Uncertainty of the pressure [Pa] from the coarser companion.
 
-        The largest difference of the two within two coarse patches, half of it where the edge was corrected
-        and twice where it is a staircase, plus what the other knobs do to the peak.
+        The largest difference of the two within two coarse patches, twice that where the edge is a staircase,
+        plus what the other knobs do to the peak: twice, since they were turned on half the patches and a
+        pressure answers a gap in proportion to the patches.
         Raises ValueError where no uncertainty was estimated.
         """
         coarser, floor = self._companion()

@@ -41,12 +41,16 @@ MISFIT = 0.02  # of the peak: a contact whose pressure is that far from a profil
 
 @dataclass(frozen=True)
 class Indenter:
-    """Undeformed gap on a grid, and either the load [N] or the approach [m]; ``round`` : axisymmetric."""
+    """Undeformed gap on a grid, and either the load [N] or the approach [m].
+
+    round : axisymmetric with a smooth edge, which can be corrected; table : what that takes under a coating.
+    """
 
     gap: Callable[[Grid], Array]
     load: float | None
     approach: float | None
     round: bool
+    table: disc.LayerTable | None = None
 
 
 @dataclass(frozen=True)
@@ -134,6 +138,10 @@ def solve(
         largest = (2 * radius * approach) ** 0.5  # the sphere's section at the surface
     first = _find_contact(fill * largest, sphere, body, numerics)
     half_width = fill * first.radius
+    if coatings and edge_rounds:
+        reach = 1.01 * 2**0.5 * WIDER * half_width
+        table = disc.layer_table(_excess(body), body.thickness[0], first.radius, reach)
+        sphere = replace(sphere, table=table)
     if patches is None and coatings:
         resolved = odd(PER_COATING * 2 * half_width / body.thickness[0])
         numerics = replace(numerics, patches=min(max(USUAL, resolved), MOST))
@@ -369,16 +377,14 @@ def _press_round(
     press, deflection = _press_in(grid, whole, before, indenter, body, numerics)
     rounds = numerics.edge_rounds
     level = press(0.0, 0.0, None, max(numerics.tolerance, 1e-5) if rounds else numerics.tolerance)
-    shape, table = None, None
+    shape = None
     for k in range(rounds):
         shape = _fit(grid, level.found.pressure, body, SKIPS[min(k, len(SKIPS) - 1)])
         if shape is None:
             return press(0.0, 0.0, level, numerics.tolerance)
-        if table is None and body.coatings:
-            table = _layer_table(shape.radius, grid, body)
         on_patches = shape.pressure(grid.radius)
         missing = shape.load - float(on_patches.sum() * grid.d**2)
-        exact = disc.deflection(shape.radius, shape.coefficients, body.moduli[0], table, grid.radius)
+        exact = disc.deflection(shape.radius, shape.coefficients, body.moduli[0], indenter.table, grid.radius)
         tolerance = numerics.tolerance if k == rounds - 1 else max(numerics.tolerance, 1e-6)
         level = press(exact - deflection(on_patches), missing, level, tolerance)
     if shape is not None:
@@ -467,11 +473,6 @@ def _fit(grid: Grid, pressure: Array, body: Body, skip: float) -> edge_profile.P
     used = r < shape.radius - skip * grid.d
     misfit = float(np.max(np.abs(p - shape.pressure(r)), where=used, initial=0))
     return shape if misfit < MISFIT * float(p.max()) else None
-
-
-def _layer_table(radius: float, grid: Grid, body: Body) -> disc.LayerTable:
-    reach = float(grid.radius[0, 0]) * (1 + 1e-9)
-    return disc.layer_table(_excess(body), body.thickness[0], radius, reach)
 
 
 def _excess(body: Body) -> Callable[[Array], Array]:
