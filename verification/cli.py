@@ -25,8 +25,9 @@ from rich.progress import (
 from rich.table import Table
 
 from verification.case import Case, CaseError, read_case, shipped_cases
+from verification.printed import PublishedCase, is_published, published_cases, read_published
 from verification.result import CaseResult, RunInfo, from_json
-from verification.schedule import Task, case_task, cores, result_path, run_tasks
+from verification.schedule import Task, case_task, cores, published_task, result_path, run_tasks
 from verification.store import StoreError, locked, read_checked
 from verification.surroundings import commit, machine, missing_libraries, versions
 from verification.verdict import Outcome
@@ -77,11 +78,13 @@ def run(
 
         coatcheck run
         coatcheck run 05_ratio_4 my_coating.toml --output reports/mine
+        coatcheck run published
 
     Parameters
     ----------
     cases
-        Names of shipped cases (see coatcheck list) or paths of .toml case files.
+        Names of shipped cases (see coatcheck list) or paths of .toml case files; "published" stands for all
+        results that others printed.
     output
         Directory of the report: report.html, report.json, junit.xml and one file per case.
     jobs
@@ -119,7 +122,7 @@ def run(
             tasks: list[Task[CaseResult | AccuracyStudy]] = []
             if not cases and study is None:
                 tasks.append(accuracy_study.task(output))
-            tasks += [case_task(c, output) for c in chosen if c.name not in kept]
+            tasks += [_task(c, output) for c in chosen if c.name not in kept]
             solved = _solve(tasks, jobs, time_limit, quiet or as_json)
             results = {r.name: r for r in solved if isinstance(r, CaseResult)}
             study = next((r for r in solved if isinstance(r, AccuracyStudy)), study)
@@ -145,25 +148,38 @@ def run(
 
 @app.command(name="list")
 def list_cases(*, as_json: Annotated[bool, Parameter(name="--json", negative="")] = False) -> int:
-    """List the shipped cases with title and source.
+    """List the shipped cases with title and source, then the published results with their year.
 
     Parameters
     ----------
     as_json
-        Print a JSON array instead of a table.
+        Print a JSON array instead of tables.
     """
     cases = [read_case(path) for path in shipped_cases().values()]
+    published = [read_published(path) for path in published_cases().values()]
     if as_json:
-        rows = [
-            {"name": c.name, "title": c.title, "source": c.source, "claims": len(c.claims)} for c in cases
+        rows = [_listed(case) for case in cases]
+        rows += [
+            _listed(p) | {"year": p.citation["year"], "primary_read": p.citation["primary_read"]}
+            for p in published
         ]
         sys.stdout.write(json.dumps(rows, indent=2) + "\n")
         return 0
     table = Table("case", "title", "claims", "source", box=None, header_style="bold")
     for case in cases:
         table.add_row(case.name, case.title, str(len(case.claims)), case.source)
+    printed = Table("published", "title", "values", "year", "source", box=None, header_style="bold")
+    for result in published:
+        values = sum(int(item.counted.sum()) for item in result.printed)
+        printed.add_row(result.name, result.title, str(values), str(result.citation["year"]), result.source)
     Console().print(table)
+    Console().print()
+    Console().print(printed)
     return 0
+
+
+def _listed(case: Case | PublishedCase) -> dict[str, object]:
+    return {"name": case.name, "title": case.title, "source": case.source, "claims": len(case.claims)}
 
 
 def main() -> None:
@@ -178,14 +194,19 @@ def main() -> None:
     sys.exit(code)
 
 
-def _choose(names: Sequence[str]) -> list[Case]:
-    shipped = shipped_cases()
-    cases = []
+def _choose(names: Sequence[str]) -> list[Case | PublishedCase]:
+    shipped, published = shipped_cases(), published_cases()
+    cases: list[Case | PublishedCase] = []
     for name in names or shipped:
         if name in shipped:
             cases.append(read_case(shipped[name]))
+        elif name in published:
+            cases.append(read_published(published[name]))
+        elif name == "published":
+            cases += [read_published(path) for path in published.values()]
         elif name.endswith(".toml") or "/" in name or Path(name).exists():
-            cases.append(read_case(Path(name)))
+            path = Path(name)
+            cases.append(read_published(path) if is_published(path) else read_case(path))
         else:
             raise CaseError(f"{name}: neither a shipped case (see coatcheck list) nor a .toml file")
     twice = {case.name for case in cases if sum(other.name == case.name for other in cases) > 1}
@@ -194,7 +215,11 @@ def _choose(names: Sequence[str]) -> list[Case]:
     return cases
 
 
-def _stored(output: Path, case: Case) -> CaseResult | None:
+def _task(case: Case | PublishedCase, output: Path) -> Task[CaseResult]:
+    return case_task(case, output) if isinstance(case, Case) else published_task(case, output)
+
+
+def _stored(output: Path, case: Case | PublishedCase) -> CaseResult | None:
     """A whole earlier result of the very same case file, or None."""
     try:
         result = from_json(read_checked(result_path(output, case)))

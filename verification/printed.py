@@ -5,7 +5,7 @@ become Profiles with the reading uncertainty of the source, so that no compariso
 """
 
 import tomllib
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -28,7 +28,15 @@ from verification.quantity import QUANTITIES, SCALAR, Points
 from verification.references.published import FOLDER, UNITS, PublishedError, PublishedTable, read_table
 from verification.verdict import Claim
 
-__all__ = ["PRINTED", "Printed", "PublishedCase", "parse_published", "published_cases", "read_published"]
+__all__ = [
+    "PRINTED",
+    "Printed",
+    "PublishedCase",
+    "is_published",
+    "parse_published",
+    "published_cases",
+    "read_published",
+]
 
 Array = NDArray[np.float64]
 
@@ -43,7 +51,7 @@ class Printed:
     """One column of a table on one line: where, what, and which rows count.
 
     profile : in SI, tension positive, with the reading uncertainty.   at : the points of its values.
-    rows : their lines in ``file``.   text : the cells as printed.   unit : what they are printed in.
+    rows : their lines in ``file``, with their ``labels``.   text : the cells as printed, in ``unit``.
     to_si : SI value of a printed 1, its sign included.   counted : False for a row marked as a misprint.
     scale : what differences are divided by [SI].
     """
@@ -54,6 +62,7 @@ class Printed:
     column: str
     rows: tuple[int, ...]
     text: tuple[str, ...]
+    labels: tuple[str, ...]
     unit: str
     to_si: float
     counted: NDArray[np.bool_]
@@ -62,8 +71,9 @@ class Printed:
 
 @dataclass(frozen=True)
 class PublishedCase:
-    """``problem`` with what was ``printed`` about it; the face of a ``Case`` besides.
+    """``problem`` with what was ``printed`` about it.
 
+    path : of its file.   text : all it was read from, tables included.
     citation : year, how it was read, whether the primary source was seen, and remarks.
     """
 
@@ -74,13 +84,21 @@ class PublishedCase:
     printed: tuple[Printed, ...]
     citation: dict[str, Any]
     source: str
-    numerics: dict[str, dict[str, Any]] = field(default_factory=dict)
-    text: str = ""
+    path: Path
+    text: str
 
 
 def published_cases() -> dict[str, Path]:
     """The published cases that are shipped, by name, in the order of their file names."""
     return {path.stem: path for path in sorted(FOLDER.glob("*.toml"))}
+
+
+def is_published(path: Path) -> bool:
+    """True where a case file has tables, which only a published case has."""
+    try:
+        return "table" in tomllib.loads(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError, RecursionError):
+        return False
 
 
 def read_published(path: Path) -> PublishedCase:
@@ -129,6 +147,7 @@ def parse_published(raw: bytes, path: Path) -> PublishedCase:
             "notes": "\n".join(dict.fromkeys(notes)),
         },
         source=checked.source,
+        path=path,
         # The tables belong to the input as much as the file that names them.
         text="\n".join(dict.fromkeys(texts)),
     )
@@ -183,6 +202,7 @@ def _printed(
     key: str,
 ) -> list[Printed]:
     content = content.where(table.rows) if table.rows else content
+    labels = content.text(table.label) if table.label else ("",) * len(content.rows)
     found = []
     for i, column in enumerate(table.column):
         here = f"{table.file}, column {column.name}"
@@ -214,6 +234,7 @@ def _printed(
                     column.name,
                     tuple(content.lines[n] for n in rows),
                     tuple(content.text(column.name)[n] for n in rows),
+                    tuple(labels[n] for n in rows),
                     column.unit,
                     to_si,
                     counted[rows],

@@ -82,12 +82,16 @@ class PrintedMisprint(Strict):
 
 
 class PrintedTable(Strict):
-    """One CSV file, the rows of it that are meant, its flag column, and its columns."""
+    """One CSV file, the rows of it that are meant, its columns.
+
+    flag : a column that is empty but for misprints.   label : a column that names rows.
+    """
 
     file: Annotated[str, Field(pattern=r"^[A-Za-z0-9_.-]+\.csv$")]
     at: PrintedAt | None = None
     rows: Cells = Field(default_factory=dict)
     flag: Text | None = None
+    label: Text | None = None
     column: Annotated[list[PrintedColumn], Field(min_length=1, max_length=100)]
     misprint: list[PrintedMisprint] = Field(default_factory=list)
 

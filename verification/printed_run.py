@@ -115,6 +115,7 @@ def _record(item: Printed) -> dict[str, Any]:
         "position_unit": item.at.unit,
         "text": item.text,
         "rows": item.rows,
+        "labels": item.labels,
         "unit": item.unit,
         "to_si": item.to_si,
         "counted": item.counted.tolist(),

@@ -12,12 +12,14 @@ from functools import partial
 from pathlib import Path
 from typing import IO, Any, Generic, TypeVar
 
+from verification import printed_run
 from verification.case import Case
+from verification.printed import PublishedCase
 from verification.result import CaseResult, from_json
 from verification.run import failed
 from verification.store import StoreError, read_checked
 
-__all__ = ["Task", "case_task", "cores", "result_path", "run_cases", "run_tasks"]
+__all__ = ["Task", "case_task", "cores", "published_task", "result_path", "run_cases", "run_tasks"]
 
 T = TypeVar("T")
 T_co = TypeVar("T_co", covariant=True)
@@ -31,7 +33,7 @@ def cores() -> int:
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
-def result_path(folder: Path, case: Case) -> Path:
+def result_path(folder: Path, case: Case | PublishedCase) -> Path:
     """Where the checked result of ``case`` lies in a run directory."""
     return folder / "cases" / f"{case.name}.json"
 
@@ -57,6 +59,13 @@ def case_task(case: Case, folder: Path) -> Task[CaseResult]:
     path = result_path(folder, case)
     words = ("verification.worker", case.name, str(path))
     return Task(case.name, words, path, from_json, partial(failed, case), case.text.encode())
+
+
+def published_task(case: PublishedCase, folder: Path) -> Task[CaseResult]:
+    """Holding both methods against what ``case`` printed, its result stored under ``folder``."""
+    path = result_path(folder, case)
+    words = ("verification.printed_worker", str(case.path), str(path))
+    return Task(case.name, words, path, from_json, partial(printed_run.failed, case))
 
 
 def run_cases(cases: Sequence[Case], folder: Path, *, jobs: int, time_limit: float) -> list[CaseResult]:

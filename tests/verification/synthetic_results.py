@@ -22,7 +22,13 @@ INFO = RunInfo(
     versions={"coatcheck": "0.1.0", "python": "3.11.9", "numpy": "2.4.0", "scipy": "1.17.0"},
 )
 # Relative errors that the made-up methods have, and the uncertainty they state, as multiples of it.
-ERRORS = {"semianalytic": 1.5e-4, "fem_reference": 1.2e-5, "integral_equation": 1e-10, "hertz": 0.0}
+ERRORS = {
+    "semianalytic": 1.5e-4,
+    "fem_reference": 1.2e-5,
+    "integral_equation": 1e-10,
+    "hertz": 0.0,
+    "hamilton": 0.0,
+}
 STATED = 2.5
 
 

@@ -9,6 +9,7 @@ import pytest
 
 from verification.case import Case, read_case, shipped_cases
 from verification.cli import exit_code
+from verification.printed import published_cases
 from verification.result import CaseResult
 from verification.schedule import run_cases
 from verification.verdict import Claim, Outcome, Verdict
@@ -131,7 +132,7 @@ def test_help_and_list_answer_quickly_and_well(tmp_path):
         assert done.returncode == 0
         assert done.stdout.strip()
     names = [row["name"] for row in json.loads(coatcheck("list", "--json", cwd=tmp_path).stdout)]
-    assert names == list(shipped_cases())
+    assert names == [*shipped_cases(), *published_cases()]
 
 
 def test_missing_system_library_names_the_packages_and_writes_nothing(tmp_path):

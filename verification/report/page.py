@@ -21,6 +21,7 @@ from verification.report.matrix import verdict_matrix
 from verification.report.names import METHODS, OUTCOMES, OutcomeStyle, source_label
 from verification.report.numbers import engineering, plain, scientific, seconds
 from verification.report.panels import LineFigures, line_figures
+from verification.report.published import published_overview, published_view
 from verification.report.reading import lines, scale, slug
 from verification.report.sketch import sketch
 from verification.report.tables import (
@@ -86,6 +87,8 @@ def render(results: Sequence[CaseResult], info: RunInfo, study: AccuracyStudy | 
 
 def _render(results: Sequence[CaseResult], info: RunInfo, study: AccuracyStudy | None) -> str:
     anchors = _anchors(results)
+    contacts = [result for result in results if not result.published]
+    contact_anchors = dict(enumerate(anchors[n] for n, result in enumerate(results) if not result.published))
     script = (HERE / "script.js").read_text(encoding="utf-8")
     digest = base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()
     environment = Environment(
@@ -102,10 +105,13 @@ def _render(results: Sequence[CaseResult], info: RunInfo, study: AccuracyStudy |
         script_hash=digest,
         summary=_summary(results),
         counts=_counts(results),
-        matrix=verdict_matrix(results, anchors) if results else None,
+        matrix=verdict_matrix(contacts, contact_anchors) if contacts else None,
+        printed=[published_view(result, anchors[n]) for n, result in enumerate(results) if result.published],
         outcomes=OUTCOMES.values(),
         sections=_sections(results, anchors, study),
-        cases=[_case(result, anchors[number]) for number, result in enumerate(results)],
+        cases=[
+            _case(result, anchor) for result, anchor in zip(contacts, contact_anchors.values(), strict=True)
+        ],
         seconds=seconds,
     )
 
@@ -126,10 +132,16 @@ def _sections(
 ) -> list[Section]:
     """What is said of the run as a whole, between the verdicts and the cases."""
     sections = []
+    if any(result.published for result in results):
+        table = published_overview(results, anchors)
+        sections.append(Section("published", "Published results", [Part("", [table])]))
+    contacts = [(n, result) for n, result in enumerate(results) if not result.published]
+    found = [result for _, result in contacts]
+    places = dict(enumerate(anchors[n] for n, _ in contacts))
     accuracy = [
-        Part(accuracy_sentence(results, source), [table])
+        Part(accuracy_sentence(found, source), [overview])
         for source in METHODS
-        if (table := accuracy_overview(results, anchors, source)) is not None
+        if (overview := accuracy_overview(found, places, source)) is not None
     ]
     if accuracy:
         sections.append(Section("accuracy", "Accuracy against the exact reference", accuracy))

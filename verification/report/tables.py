@@ -28,8 +28,12 @@ _SCALES = {"peak_pressure": "p_h", "contact_radius": "a_h", "approach": "delta_h
 
 
 def layer_table(result: CaseResult) -> Table:
-    """The layers from the surface down, in real units and against the bare substrate."""
-    a_h = scale(result, "a_h")
+    """The layers from the surface down, in real units and against the bare substrate.
+
+    Thicknesses are over a_h, or over the radius of a prescribed load.
+    """
+    length = "a" if "load_radius" in result.problem else "a_h"
+    a_h = scale(result, "load_radius" if length == "a" else "a_h")
     found = layers(result)
     rows = []
     for number, (E, nu, thickness) in enumerate(found, start=1):
@@ -42,7 +46,7 @@ def layer_table(result: CaseResult) -> Table:
             Cell("∞" if below else plain(thickness / a_h, 3), thickness),
         ]
         rows.append(Row(Cell("substrate" if below else f"coating {number}"), cells))
-    return Table("Layers from the surface down.", ["layer", "E", "E / E_s", "nu", "h", "h / a_h"], rows)
+    return Table("Layers from the surface down.", ["layer", "E", "E / E_s", "nu", "h", f"h / {length}"], rows)
 
 
 def contact_table(result: CaseResult) -> Table:
