@@ -27,9 +27,9 @@ _INWARDS = 1e-7
 
 
 def line_bound(
-    difference: Callable[[np.ndarray], np.ndarray], vertices: np.ndarray, samples: int = 7
+    difference: Callable[[np.ndarray], np.ndarray], vertices: np.ndarray, samples: int = 7, reach: int = 1
 ) -> tuple[np.ndarray, np.ndarray]:
-    """SAFETY times the largest |difference| around each of the increasing ``vertices`` of a line.
+    """SAFETY times the largest |difference| within ``reach`` cells of each of the increasing ``vertices``.
 
     difference : (n,) positions -> (..., n).  Returns (vertices, bound of shape (..., vertices)).
     """
@@ -37,9 +37,9 @@ def line_bound(
     points = vertices[:-1, None] + np.diff(vertices)[:, None] * t
     values = np.abs(difference(points.ravel()))
     worst = SAFETY * values.reshape(*values.shape[:-1], *points.shape).max(axis=-1)
-    left = np.concatenate([worst[..., :1], worst], axis=-1)
-    right = np.concatenate([worst, worst[..., -1:]], axis=-1)
-    return vertices, np.maximum(left, right)
+    padded = np.concatenate([worst[..., :1]] * reach + [worst] + [worst[..., -1:]] * reach, axis=-1)
+    bound = np.max([padded[..., k : k + vertices.size] for k in range(2 * reach)], axis=0)
+    return vertices, bound
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,7 +60,8 @@ class PressureBound:
 
     @cached_property
     def _around(self) -> tuple[np.ndarray, np.ndarray]:
-        return line_bound(lambda r: self.pressure(r) - self.companion(r), self.vertices)
+        # the first cells are few and smooth: two solutions may agree by chance in one of them
+        return line_bound(lambda r: self.pressure(r) - self.companion(r), self.vertices, reach=2)
 
     def __call__(self, r: np.ndarray) -> np.ndarray:
         vertices, bound = self._around
