@@ -35,6 +35,8 @@ Array = NDArray[np.floating]
 QUANTITIES = ("p0", "a", "approach", "pressure", "stress")
 # An error within this factor of the smallest of its ladder has stopped falling.
 SETTLED = 3.0
+# Between two levels much closer than a doubling, noise looks like an order.
+SPAN = 1.9
 
 
 @dataclass(frozen=True)
@@ -63,6 +65,10 @@ class Ladder:
     setting: str
     levels: tuple[Level, ...]
     failure: str | None = None
+
+    def falls(self, quantity: str) -> bool:
+        """True where the finest level has less than a third, ``SETTLED``, of the error of the coarsest."""
+        return bool(self.levels[-1].errors[quantity] * SETTLED < self.levels[0].errors[quantity])
 
     def order(self, quantity: str) -> float | None:
         """Observed order of ``quantity``, see ``order_of``."""
@@ -105,7 +111,7 @@ def order_of(resolution: Sequence[float], error: Sequence[float]) -> float | Non
     """Slope s of error ~ resolution^-s by least squares, down to the level where the error is ``settled``.
 
     Finer levels are left out, for there another knob has taken over, and so is luck. None where the error
-    falls less than by the factor ``SETTLED``.
+    falls less than by the factor ``SETTLED``, or within a ``SPAN`` of resolution too short to tell.
     """
     last = settled(error)
     if not last:
@@ -113,7 +119,7 @@ def order_of(resolution: Sequence[float], error: Sequence[float]) -> float | Non
     found = np.asarray(error, dtype=float)[: last + 1]
     used = _honest(np.asarray(error, dtype=float))[: last + 1]
     N = np.asarray(resolution, dtype=float)[: last + 1][used]
-    if N.size < 2 or np.unique(N).size < N.size or not (np.isfinite(N) & (N > 0)).all():
+    if N.size < 2 or not (np.isfinite(N) & (N > 0)).all() or N.max() < SPAN * N.min():
         return None
     return float(-np.polyfit(np.log(N), np.log(found[used]), 1)[0])
 

@@ -178,6 +178,10 @@ def test_luck_promises_no_order():
     assert lucky == pytest.approx(2.0, abs=0.3)
 
 
+def test_a_fall_within_less_than_a_doubling_is_no_order():
+    assert order_of([41.0, 49.0, 65.0, 129.0], [2e-7, 1e-8, 1e-8, 1e-8]) is None
+
+
 @pytest.mark.parametrize("errors", [[1e-3], [1e-3, 0.9e-3], [1e-3, np.nan], [0.0, 0.0], [1e-5, 1e-3]])
 def test_where_nothing_falls_there_is_no_order(errors):
     assert order_of([10.0, 20.0][: len(errors)], errors) is None

@@ -3,6 +3,7 @@
 import pytest
 from headless import Page, browser, page
 from synthetic_results import INFO, showcase
+from synthetic_study import study
 
 from verification.report import write_report
 
@@ -15,7 +16,7 @@ STICKING_OUT = "document.documentElement.scrollWidth - document.documentElement.
 @pytest.fixture(scope="module")
 def report(tmp_path_factory):
     folder = tmp_path_factory.mktemp("report")
-    return write_report(showcase(points=65)[4:], folder, INFO)
+    return write_report(showcase(points=65)[4:], folder, INFO, study("order 3: the mesh has no triangles"))
 
 
 @pytest.fixture(scope="module")

@@ -63,7 +63,7 @@ def _grid_parts(ladders: Sequence[Ladder]) -> list[Part]:
     caption = (
         "Error against the integral equation over N, the patches along a side of the grid, which is 1.12 "
         "times as wide as the contact. Beside each curve its observed slope, down to where the fall ends; a "
-        "dash where the error falls less than threefold."
+        "dash where it falls less than threefold, or within less than a doubling of N."
     )
     first, *others = _grid_sentences([one for one in ladders if one.levels])
     return [
@@ -98,7 +98,8 @@ def _grid_sentences(ladders: Sequence[Ladder]) -> list[str]:
     if best and stairs:
         here, there = best.levels[-1].errors["pressure"], stairs.levels[-1].errors["pressure"]
         order = stairs.order("pressure")
-        speed = "does not converge" if order is None else f"converges at order {order:.1f}"
+        speed = "converges" if stairs.falls("pressure") else "does not converge"
+        speed += "" if order is None else f" at order {order:.1f}"
         found.append(
             "With the edge of the contact left the staircase that patches make of it, the pressure on the "
             f"{stairs.solid} solid {speed}, to {scientific(there)} at {stairs.levels[-1].name}; the "
@@ -107,7 +108,7 @@ def _grid_sentences(ladders: Sequence[Ladder]) -> list[str]:
         )
     if paper and stairs:
         first, last = paper.levels[0], paper.levels[-1]
-        stuck = [q for q in QUANTITIES if paper.order(q) is None and stairs.order(q) is not None]
+        stuck = [q for q in QUANTITIES if stairs.falls(q) and not paper.falls(q)]
         text = (
             f"With the plain conversion of the source paper, from {first.name} to {last.name}, the "
             f"approach is off by {scientific(first.errors['approach'])} → "

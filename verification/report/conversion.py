@@ -122,10 +122,8 @@ def _conversion_sentence(found: Sequence[ConversionError]) -> str:
         )
         if paper:
             best = min(paper, key=lambda one: max(one.error))
-            sentence += (
-                f"; the plain one on its best domain is {factor(max(best.error), max(split.error))} times as "
-                f"far off and takes {_milli(best.seconds)} against {_milli(split.seconds)}"
-            )
+            times = factor(max(best.error), max(split.error))
+            sentence += f"; the plain one on its best domain is {times} times as far off"
         text.append(sentence + ".")
     return " ".join(text)
 
