@@ -134,18 +134,21 @@ class Solution:
     def pressure_uncertainty(self, x: ArrayLike, y: ArrayLike = 0.0) -> Array:
         """Uncertainty of the pressure [Pa] from the coarser companion.
 
-        The largest difference of the two within two coarse patches, twice that where the edge is a staircase,
-        plus what the other knobs do to the peak: twice, since they were turned on half the patches and a
-        pressure answers a gap in proportion to the patches.
+        The largest difference of the two within two coarse patches, and what the other knobs do to the peak:
+        twice, since they were turned on half the patches and a pressure answers a gap in proportion to the
+        patches. Plus what the uncertain radius does to the pressure or, where the edge is a staircase, all
+        that twice.
         Raises ValueError where no uncertainty was estimated.
         """
         coarser, floor = self._companion()
         difference = np.abs(self.patch_pressure - coarser.pressure(self.nodes[:, None], self.nodes[None, :]))
         widened = maximum_filter(difference, size=9, mode="nearest")
-        return (
-            _at(self.nodes, widened, x, y, order=1) * (0.5 if self._profile else 2.0)
-            + floor * self.peak_pressure
-        )
+        spread = _at(self.nodes, widened, x, y, order=1) + 2 * floor * self.peak_pressure
+        if self._profile is None or self.uncertainty is None:
+            return 2 * spread
+        r, shift = np.hypot(x, y), self.uncertainty.contact_radius
+        moved = np.abs([self._profile(r + s) - self._profile(r) for s in (-shift, shift)]).max(axis=0)
+        return spread + moved
 
     def stress_uncertainty(self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None) -> Array:
         """Uncertainty of the stress [Pa], shape (3, 3) + points, from the coarser companions.
