@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import RectBivariateSpline
 
-__all__ = ["Grid", "Window", "carry_over", "odd", "window_around"]
+__all__ = ["Grid", "Window", "carry_over", "odd", "refine", "sharpen", "touches_rim", "window_around"]
 
 Array = NDArray[np.floating]
 
@@ -110,6 +110,27 @@ def carry_over(
     rows, columns = window.slices
     level = _linear(_linear(level, source, target.x[rows]).T, source, target.x[columns]).T
     return np.sqrt(np.maximum(level, 0))
+
+
+def touches_rim(pressure: Array) -> bool:
+    """Whether a patch of the outermost ring is loaded."""
+    rim = (pressure[0], pressure[-1], pressure[:, 0], pressure[:, -1])
+    return any(bool(np.any(side > 0)) for side in rim)
+
+
+def refine(values: Array, source: Grid, target: Grid) -> Array:
+    """Bilinear interpolation from the patch centres of the source to those of the target; 0 beyond."""
+    return _linear(_linear(values, source, target.x).T, source, target.x).T
+
+
+def sharpen(mean: Array) -> Array:
+    """Constant patches that act as a pressure of these patch means does: p - (d^2/12) laplacian(p).
+
+    The means of a pressure have lost its second moment in the patch, d^2/24, and constant patches once more.
+    """
+    q = np.pad(mean, 1)
+    around = q[2:, 1:-1] + q[:-2, 1:-1] + q[1:-1, 2:] + q[1:-1, :-2]
+    return mean - (around - 4 * mean) / 12
 
 
 def _linear(values: Array, source: Grid, x: Array) -> Array:

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-__all__ = ["Body", "Numerics", "check_positive"]
+__all__ = ["COARSEST", "Body", "Numerics", "check_control", "check_positive"]
 
 COARSEST = 33  # patches a side below which a contact is not worth solving
 
@@ -118,3 +118,13 @@ def check_positive(**values: float) -> None:
     for name, value in values.items():
         if not (np.isfinite(value) and value > 0):
             raise ValueError(f"{name} = {value:g}; it must be positive and finite")
+
+
+def check_control(load: float | None, approach: float | None) -> None:
+    """Raise ValueError unless exactly one of load [N] and approach [m] is given, and positive."""
+    if (load is None) == (approach is None):
+        raise ValueError("give either load or approach; the other one is a result")
+    if load is not None:
+        check_positive(load=load)
+    if approach is not None:
+        check_positive(approach=approach)

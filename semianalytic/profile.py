@@ -14,9 +14,11 @@ import numpy as np
 from numpy.polynomial import legendre
 from numpy.typing import ArrayLike, NDArray
 
-__all__ = ["Prescribed", "Profile", "fit", "patch_mean"]
+__all__ = ["Prescribed", "Profile", "fit", "of_contact", "patch_mean"]
 
 Array = NDArray[np.floating]
+
+MISFIT = 0.02  # of the peak: a contact whose pressure is that far from a profile has no such edge
 
 
 @dataclass(frozen=True, eq=False)
@@ -95,6 +97,30 @@ def fit(pressure: Array, r: Array, d: float, *, radius: float, terms: int, skip:
         if abs(step) < 1e-10 * a:
             break
     return Profile(a, b[:terms])
+
+
+def of_contact(
+    pressure: Array, r: Array, d: float, *, thickness: float | None, skip: float
+) -> Profile | None:
+    """Profile of a contact's patch pressures, None where they have none to within ``MISFIT`` of their peak.
+
+    A coating much thinner than the contact bends the pressure within its thickness of the edge, so the number
+    of terms grows as the square root of the radius over it, as far as the patches can tell them.
+
+    pressure [Pa], r [m] : (n, n), n odd, symmetric; one quadrant is used.  thickness : of the first coating
+    [m], None when uncoated.  skip : patches inside the edge that are left out.
+    """
+    c = len(pressure) // 2
+    p, r = pressure[c:, c:], r[c:, c:]
+    a = float(np.sqrt(np.count_nonzero(pressure) / np.pi) * d)
+    wanted = 6 + 2.3 * np.sqrt(a / thickness) if thickness else 6
+    terms = int(min(wanted, 16, a / d / 5))
+    if terms < 3:
+        return None
+    shape = fit(p, r, d, radius=a, terms=terms, skip=skip)
+    used = r < shape.radius - skip * d
+    misfit = float(np.max(np.abs(p - shape.pressure(r)), where=used, initial=0))
+    return shape if misfit < MISFIT * float(p.max()) else None
 
 
 def patch_mean(shape: Profile | Prescribed, x: Array, d: float) -> Array:

@@ -10,7 +10,7 @@ Assumed: small strains, perfect bond, the sphere's parabola, Coulomb friction q 
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import partial
+from functools import cached_property, partial
 from typing import Any
 
 import numpy as np
@@ -19,8 +19,8 @@ from numpy.typing import ArrayLike, NDArray
 from semianalytic import contact, convolution, disc, frf, halfspace, influence, subsurface
 from semianalytic import profile as edge_profile
 from semianalytic.contact import NotConverged
-from semianalytic.grid import Grid, Window, carry_over, odd, window_around
-from semianalytic.inputs import COARSEST, Body, Numerics, check_positive
+from semianalytic.grid import Grid, Window, carry_over, odd, refine, sharpen, touches_rim, window_around
+from semianalytic.inputs import COARSEST, Body, Numerics, check_control, check_positive
 from semianalytic.solution import Diagnostics, Solution, Uncertainty
 
 __all__ = ["Diagnostics", "NotConverged", "Solution", "Uncertainty", "indent", "solve", "solve_prescribed"]
@@ -36,7 +36,7 @@ USUAL, MOST = 257, 385  # patches a side
 PER_COATING = 8  # patches that the pressure needs to follow a coating at the contact edge
 WIDER = 1.25  # the box of the domain ladder over the box in use
 SKIPS = (2.5, 1.5, 1.0)  # patches inside the edge that the profile is not fitted to, round by round
-MISFIT = 0.02  # of the peak: a contact whose pressure is that far from a profile has no such edge
+FINE = 8  # patches; stresses nearer to the surface are found from patches of half the side
 
 
 @dataclass(frozen=True)
@@ -77,13 +77,25 @@ class Level:
             "peak_pressure": float(self.found.pressure.max()),
         }
 
-    @property
+    @cached_property
     def mean(self) -> Array:
         """Pressure averaged over the patches [Pa], those the edge cuts included: the whole load."""
+        return self._mean_on(self.grid)
+
+    @cached_property
+    def finer(self) -> tuple[Grid, Array]:
+        """A grid of half the patch size, and the pressure averaged over its patches."""
+        grid = Grid(2 * self.grid.n - 1, self.grid.d / 2)
+        return grid, self._mean_on(grid)
+
+    def _mean_on(self, grid: Grid) -> Array:
         p, f = self.found.pressure, self.shape
         if f is None:
             return p
-        return p - f.pressure(self.grid.radius) + edge_profile.patch_mean(f, self.grid.x, self.grid.d)
+        rest = p - f.pressure(self.grid.radius)
+        if grid.n != self.grid.n:
+            rest = np.where(grid.radius < f.radius, refine(rest, self.grid, grid), 0.0)
+        return rest + edge_profile.patch_mean(f, grid.x, grid.d)
 
 
 def solve(
@@ -116,7 +128,7 @@ def solve(
     Raises ValueError for input without meaning, NotConverged when the iteration stops short.
     """
     began = time.perf_counter()
-    _check_control(load, approach)
+    check_control(load, approach)
     check_positive(radius=radius)
     body = _body(coatings, substrate, friction)
     numerics = Numerics(
@@ -180,7 +192,7 @@ def indent(
     Raises ValueError for input without meaning, NotConverged when the iteration stops short.
     """
     began = time.perf_counter()
-    _check_control(load, approach)
+    check_control(load, approach)
     check_positive(half_width=half_width)
     body = _body(coatings, substrate, friction)
     heights = None if callable(profile) else np.asarray(profile, dtype=float)
@@ -212,7 +224,7 @@ def indent(
 
     indenter = Indenter(gap, load, approach, round=False)
     solution = _refine(half_width, None, indenter, body, numerics, estimate_uncertainty, began)
-    if heights is None and _touches_rim(solution.patch_pressure):
+    if heights is None and touches_rim(solution.patch_pressure):
         raise NotConverged(
             f"the contact reaches the rim of the square, half_width = {half_width:g} m; widen it, or give "
             "the profile as an array if it has no surface beyond"
@@ -283,16 +295,9 @@ def _loaded(grid: Grid, shape: edge_profile.Prescribed, body: Body, numerics: Nu
     deflection = convolution.even_convolution(_coefficients(grid, body, numerics), threads=numerics.threads)
     found = contact.Contact.of_load(shape.pressure(grid.radius))
     level = Level(grid, found, shape, shape.load, 1)
-    u = deflection(_sharpened(level.mean))
+    u = deflection(sharpen(level.mean))
     centre = float(u[grid.n // 2, grid.n // 2])
     return replace(level, found=replace(found, gap=u - centre, approach=centre))
-
-
-def _sharpened(mean: Array) -> Array:
-    """Constant patches blur what their means say by the second moment d^2/12: p - (d^2/12) laplacian(p)."""
-    q = np.pad(mean, 1)
-    around = q[2:, 1:-1] + q[:-2, 1:-1] + q[1:-1, 2:] + q[1:-1, :-2]
-    return mean - (around - 4 * mean) / 12
 
 
 def _refine(
@@ -333,7 +338,7 @@ def _find_contact(half_width: float, indenter: Indenter, body: Body, numerics: N
         grid = Grid(COARSEST, 2 * half_width / COARSEST)
         level = _press(grid, None, indenter, body, rough)
         a = level.radius
-        if _touches_rim(level.found.pressure):
+        if touches_rim(level.found.pressure):
             half_width *= 1.5  # a contact that runs into the rim hides its size
         elif numerics.fill * a > 0.75 * half_width:
             return level
@@ -343,11 +348,6 @@ def _find_contact(half_width: float, indenter: Indenter, body: Body, numerics: N
         f"no grid was found that fits the contact, last half-width {half_width:.3g} m; "
         "the moduli of the layers may lie too far apart"
     )
-
-
-def _touches_rim(pressure: Array) -> bool:
-    rim = (pressure[0], pressure[-1], pressure[:, 0], pressure[:, -1])
-    return any(bool(np.any(side > 0)) for side in rim)
 
 
 def _press(grid: Grid, before: Level | None, indenter: Indenter, body: Body, numerics: Numerics) -> Level:
@@ -377,9 +377,11 @@ def _press_round(
     press, deflection = _press_in(grid, whole, before, indenter, body, numerics)
     rounds = numerics.edge_rounds
     level = press(0.0, 0.0, None, max(numerics.tolerance, 1e-5) if rounds else numerics.tolerance)
+    thickness = body.thickness[0] if body.coatings else None
+    fit = partial(edge_profile.of_contact, r=grid.radius, d=grid.d, thickness=thickness)
     shape = None
     for k in range(rounds):
-        shape = _fit(grid, level.found.pressure, body, SKIPS[min(k, len(SKIPS) - 1)])
+        shape = fit(level.found.pressure, skip=SKIPS[min(k, len(SKIPS) - 1)])
         if shape is None:
             return press(0.0, 0.0, level, numerics.tolerance)
         on_patches = shape.pressure(grid.radius)
@@ -388,7 +390,7 @@ def _press_round(
         tolerance = numerics.tolerance if k == rounds - 1 else max(numerics.tolerance, 1e-6)
         level = press(exact - deflection(on_patches), missing, level, tolerance)
     if shape is not None:
-        shape = _fit(grid, level.found.pressure, body, SKIPS[-1])
+        shape = fit(level.found.pressure, skip=SKIPS[-1])
     return replace(level, shape=shape)
 
 
@@ -446,7 +448,7 @@ def _is_alone(level: Level, window: Window, indenter: Indenter, body: Body, nume
     """
     p = level.found.pressure
     inner = p[window.slices]
-    if _touches_rim(inner):
+    if touches_rim(inner):
         return False
     m = (level.grid.n + 1) // 2
     gap = np.pad(indenter.gap(level.grid), (0, 2 * m - level.grid.n), mode="edge")
@@ -457,22 +459,6 @@ def _is_alone(level: Level, window: Window, indenter: Indenter, body: Body, nume
     g = lowest + convolution.even_convolution(kernel, threads=numerics.threads)(merged) - level.found.approach
     g[window.i0 // 2 : -(-window.i1 // 2), window.j0 // 2 : -(-window.j1 // 2)] = np.inf
     return bool(g.min() > 0)
-
-
-def _fit(grid: Grid, pressure: Array, body: Body, skip: float) -> edge_profile.Profile | None:
-    """Profile of the pressure, None where it has none to within ``MISFIT`` of its peak."""
-    c = grid.n // 2
-    p, r = pressure[c:, c:], grid.radius[c:, c:]
-    a = float(np.sqrt(np.count_nonzero(pressure) / np.pi) * grid.d)
-    # a coating much thinner than the contact bends the pressure within its thickness of the edge
-    terms = 6 + 2.3 * np.sqrt(a / body.thickness[0]) if body.coatings else 6
-    terms = int(min(terms, 16, a / grid.d / 5))
-    if terms < 3:
-        return None
-    shape = edge_profile.fit(p, r, grid.d, radius=a, terms=terms, skip=skip)
-    used = r < shape.radius - skip * grid.d
-    misfit = float(np.max(np.abs(p - shape.pressure(r)), where=used, initial=0))
-    return shape if misfit < MISFIT * float(p.max()) else None
 
 
 def _excess(body: Body) -> Callable[[Array], Array]:
@@ -501,25 +487,42 @@ def _coefficients(grid: Grid, body: Body, numerics: Numerics) -> Array:
 def _as_solution(level: Level, coarser: Solution | None, body: Body) -> Solution:
     grid, found = level.grid, level.found
     beyond = max(int(np.ceil((2.05 * level.radius - grid.x[-1]) / grid.d)), 0)
-    loaded: dict[str, Any] = {
-        "grid_x": grid.x,
-        "grid_y": grid.x,
-        "pressure": level.mean,
+    common: dict[str, Any] = {
         "friction": body.friction,
         "coatings": body.coatings,
         "substrate": body.substrate,
     }
 
     def stress(x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None) -> Array:
-        rectangle = (halfspace.normal_stress, halfspace.tangential_stress)
-        where = body.layer_of(z, layer)
-        return subsurface.stress(x, y, z, where, rectangle=rectangle, stress_frf=frf.stress_frf, **loaded)
+        evaluate: Callable[..., Array] = partial(
+            subsurface.stress,
+            rectangle=(halfspace.normal_stress, halfspace.tangential_stress),
+            stress_frf=frf.stress_frf,
+            **common,
+        )
+        x, y, z, where = np.broadcast_arrays(x, y, z, body.layer_of(z, layer))
+        result = np.empty((3, 3, *z.shape))
+        near = (z < FINE * grid.d) & (level.shape is not None)
+        for part, fine in ((near, True), (~near, False)):
+            if part.any():
+                patches, p = level.finer if fine else (grid, level.mean)
+                result[..., part] = evaluate(
+                    x[part], y[part], z[part], where[part], grid_x=patches.x, grid_y=patches.x, pressure=p
+                )
+        return result
 
     def displacement(x: ArrayLike, y: ArrayLike, z: ArrayLike) -> Array:
-        rectangle = (halfspace.normal_displacement, halfspace.tangential_displacement)
-        where = body.layer_of(z, None)
         return subsurface.displacement(
-            x, y, z, where, rectangle=rectangle, displacement_frf=frf.displacement_frf, **loaded
+            x,
+            y,
+            z,
+            body.layer_of(z, None),
+            grid_x=grid.x,
+            grid_y=grid.x,
+            pressure=level.mean,
+            rectangle=(halfspace.normal_displacement, halfspace.tangential_displacement),
+            displacement_frf=frf.displacement_frf,
+            **common,
         )
 
     return Solution(
@@ -573,12 +576,3 @@ def _other_conversion(numerics: Numerics) -> Numerics:
 def _body(coatings: Coatings, substrate: Substrate, friction: float) -> Body:
     layers = tuple(tuple(float(v) for v in coating) for coating in coatings)
     return Body(layers, tuple(float(v) for v in substrate), float(friction))  # type: ignore[arg-type]
-
-
-def _check_control(load: float | None, approach: float | None) -> None:
-    if (load is None) == (approach is None):
-        raise ValueError("give either load or approach; the other one is a result")
-    if load is not None:
-        check_positive(load=load)
-    if approach is not None:
-        check_positive(approach=approach)
