@@ -6,7 +6,7 @@ ways (d the patch, L the scale on which the response of the solid dies, exp(-k L
 
 - z >= 3 d. A node is a point force, tabulated for the layered solid: the lattice sum of a function of scale z
   differs from an integral by its aliases, exp(-2 pi z/d). Deeper down the forces are first gathered on
-  lattices of spacing up to z/8.
+  lattices of spacing up to z/12.
 - z < 3 d. In the first coating (or the uncoated solid) the closed forms of the homogeneous half-space of
   that material, and the rest of the response, which is smooth on the scale 2h - z >= h, from tables. In a
   deeper layer the whole response from tables of scale z >= h.
@@ -44,7 +44,7 @@ Field = Callable[..., Array]
 Coatings = Sequence[tuple[float, float, float]]
 
 SHALLOW = 3.0  # patches; above this depth a node is not yet a point force: aliases exp(-6 pi) = 7e-9
-COARSE = 8.0  # depth over lattice spacing; the sixth-order interpolation then errs by 1e-5
+COARSE = 12.0  # depth over lattice spacing; the sixth-order interpolation then errs by 3e-7 of p_h
 CHEBYSHEV = 10  # shallow depths; more than these are interpolated, to 1e-6 three patches from the edge
 SIX = ((0, 1, 2, 0, 0, 1), (0, 1, 2, 1, 2, 2))  # xx, yy, zz, xy, xz, yz
 
@@ -250,7 +250,7 @@ def _fields(
             yield partial(between_sites, lattice=fine, influence=influence, odd_in_y=body.odd_in_y, order=4)
         else:
             level = int(np.clip(np.log2(max(z / (COARSE * d), 1)), 0, len(lattices) - 1))
-            # z/8 > spacing for sextic interpolation, z/3 for one of tenth order
+            # z/12 > spacing for sextic interpolation, z/3 for one of tenth order
             order = 6 if z > COARSE * d else 10
             assert table is not None
             yield partial(
