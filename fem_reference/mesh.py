@@ -172,15 +172,17 @@ def _triangulate(
         field = gmsh.model.mesh.field
         rho = "Sqrt(x*x+y*y)"
         field.add("MathEval", 1)
-        field.setString(1, "F", f"{grading.edge_rate!r}*{rho}+{grading.edge_size * scale!r}")
+        field.setString(1, "F", f"{_literal(grading.edge_rate)}*{rho}+{_literal(grading.edge_size * scale)}")
         field.add("MathEval", 2)
         # uniform over the near field, growing with the logarithm of the distance beyond
-        growth = f"{grading.size!r}+{grading.far_size - grading.size!r}*{rho}/{float(xi[2])!r}"
+        growth = (
+            f"{_literal(grading.size)}+{_literal(grading.far_size - grading.size)}*{rho}/{_literal(xi[2])}"
+        )
         field.setString(2, "F", growth)
         # p(0) has no neighbours on its other side: finer triangles at the first touch
         field.add("MathEval", 3)
-        origin = f"Sqrt((x-({float(xi[0])!r}))^2+y*y)"
-        field.setString(3, "F", f"{grading.axis_size!r}+0.3*{origin}")
+        origin = f"Sqrt((x-({_literal(xi[0])}))^2+y*y)"
+        field.setString(3, "F", f"{_literal(grading.axis_size)}+0.3*{origin}")
         field.add("Min", 4)
         field.setNumbers(4, "FieldsList", [1, 2, 3])
         field.setAsBackgroundMesh(4)

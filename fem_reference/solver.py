@@ -14,6 +14,7 @@ from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
+from scipy.optimize import minimize_scalar
 
 from .axisymmetric import Discretisation
 from .contact import Touch, complementarity, touch
@@ -154,7 +155,7 @@ def solve(
     return Solution(
         contact_radius=found.contact_radius * unit.length,
         approach=found.approach * unit.displacement,
-        peak_pressure=float(found.pressure.values.max()) * unit.pressure,
+        peak_pressure=_peak(found.pressure, found.pressure.vertices)[1] * unit.pressure,
         surface_nodes=_surface_nodes(final.discretisation) * unit.length,
         uncertainty=bounds.scalars,
         diagnostics=Diagnostics(
@@ -335,6 +336,21 @@ def _surface_nodes(d: Discretisation) -> np.ndarray:
     return np.concatenate([-r[:0:-1], r])
 
 
+def _peak(pressure: Callable[[np.ndarray], np.ndarray], vertices: np.ndarray) -> tuple[float, float]:
+    """Radius and value of the largest pressure: the axis, or a ring where a stiff film bends like a plate."""
+    r = np.unique(np.linspace(vertices[:-1], vertices[1:], 9))
+    best = int(np.argmax(pressure(r)))
+    if best == 0:
+        return 0.0, float(pressure(r[:1])[0])
+    found = minimize_scalar(
+        lambda radius: -float(pressure(np.array([radius]))[0]),
+        bounds=(r[best - 1], r[min(best + 1, r.size - 1)]),
+        method="bounded",
+        options={"xatol": 1e-6 * r[-1]},
+    )
+    return float(found.x), -float(found.fun)
+
+
 def _bounds(
     result: _State,
     companion: _State,
@@ -345,14 +361,14 @@ def _bounds(
 ) -> _Bounds:
     """Uncertainties from the companion (element size), a nearer boundary and the load left over."""
     d = result.discretisation
-    peak = float(np.max(result.pressure(d.contact_vertices)))
+    at, peak = _peak(result.pressure, d.contact_vertices)
     a = d.mesh.contact_radius
     everywhere = far_share[2] + load_miss / 3 * peak
     pressure = PressureBound(
         result.pressure, companion.pressure, d.contact_vertices, size_share[0], everywhere
     )
-    size_peak = float(pressure(np.zeros(1))[0]) - everywhere
-    budget = (
+    size_peak = float(pressure(np.array([at]))[0]) - everywhere
+    budget: tuple[tuple[str, str, float], ...] = (
         ("contact_radius", "element size", SAFETY * size_share[0] * unit.length),
         ("contact_radius", "edge size", _EDGE_SHARE * _EDGE_SIZE * a * (size_share[0] > 0) * unit.length),
         ("contact_radius", "outer boundary", far_share[0] * unit.length),
@@ -364,6 +380,7 @@ def _bounds(
         ("peak_pressure", "outer boundary", far_share[2] * unit.pressure),
         ("peak_pressure", "load balance", load_miss / 3 * peak * unit.pressure),
     )
+    budget = tuple((quantity, knob, float(value)) for quantity, knob, value in budget)
     total = {name: sum(value for quantity, _, value in budget if quantity == name) for name, _, _ in budget}
     sliding = None
     if result.tangential is not None and companion.tangential is not None:

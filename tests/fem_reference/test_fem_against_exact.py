@@ -19,7 +19,7 @@ THICKNESSES = (0.25, 0.5, 1.0, 2.0)
 QUICK = ((4.0, 0.25, (0.3, 0.3)), (0.25, 1.0, (0.2, 0.4)), (2.0, 2.0, (0.45, 0.25)))
 
 
-def both(ratio, thickness, nu, **numerics):
+def both(ratio, thickness, nu, reference_estimate=False, **numerics):
     nu_1, nu_2 = nu
     a_h = (3 * W * R * (1 - nu_2**2) / (4 * E)) ** (1 / 3)
     problem = {
@@ -28,7 +28,7 @@ def both(ratio, thickness, nu, **numerics):
         "coatings": ((ratio * E, nu_1, thickness * a_h),),
         "substrate": (E, nu_2),
     }
-    exact = integral_equation.solve(**problem, estimate_uncertainty=False)
+    exact = integral_equation.solve(**problem, estimate_uncertainty=reference_estimate)
     return solve(**problem, **numerics), exact, a_h
 
 
@@ -103,11 +103,12 @@ def test_nearly_incompressible_layers_do_not_lock():
 @pytest.mark.slow
 @pytest.mark.parametrize("ratio", [0.01, 100.0])
 @pytest.mark.parametrize("thickness", [0.01, 20.0])
-def test_extreme_coatings_stay_within_their_own_estimate(ratio, thickness):
-    s, exact, _ = both(ratio, thickness, (0.3, 0.3))
+def test_extreme_coatings_stay_within_their_own_estimate(thickness, ratio):
+    s, exact, _ = both(ratio, thickness, (0.3, 0.3), reference_estimate=True)
     for name in ("contact_radius", "approach", "peak_pressure"):
         error = abs(getattr(s, name) - getattr(exact, name))
-        assert error < 2 * getattr(s.uncertainty, name), name
+        # the exact equation is hard to integrate for thin compliant coatings and says so
+        assert error < 2 * getattr(s.uncertainty, name) + getattr(exact.uncertainty, name), name
     assert s.contact_radius == pytest.approx(exact.contact_radius, rel=1e-5)
     assert s.peak_pressure == pytest.approx(exact.peak_pressure, rel=1e-4)
 
