@@ -5,7 +5,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import fields, replace
 from typing import Any
 
-from verification.incompressible import towards_incompressible
+from verification.limits import towards_limits
 from verification.printed import PRINTED, Printed, PublishedCase
 from verification.problem import CoatedContact, PrescribedLoad, Solution
 from verification.profile import Profile
@@ -34,7 +34,7 @@ def solvers() -> dict[str, Solver]:
 
     return {
         "semianalytic": solver(semianalytic),
-        "fem_reference": lambda problem: towards_incompressible(problem, solver(fem_reference)),
+        "fem_reference": lambda problem: towards_limits(problem, solver(fem_reference)),
     }
 
 

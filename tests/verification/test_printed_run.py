@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from verification.incompressible import towards_incompressible
+from verification.limits import towards_limits
 from verification.printed import PRINTED, published_cases, read_published
 from verification.printed_run import failed, run, solvers
 from verification.problem import PrescribedLoad
@@ -123,7 +123,7 @@ def test_result_survives_json(disc):
 def test_incompressible_solid_is_reached_by_extrapolation():
     soft = replace(DISC, substrate=(1e9, 0.5))
     quick = solvers()["semianalytic"]
-    carried, direct = towards_incompressible(soft, quick), quick(soft)
+    carried, direct = towards_limits(soft, quick), quick(soft)
     z = np.array([0.03, 0.1, 0.3])
     gap = np.abs(carried.stress(0.0, 0.0, z) - direct.stress(0.0, 0.0, z))
     assert (gap <= carried.stress_uncertainty(0.0, 0.0, z)).all()
@@ -131,4 +131,15 @@ def test_incompressible_solid_is_reached_by_extrapolation():
     assert gap.max() <= 1e-6 * DISC.pressure
     assert carried.approach == pytest.approx(direct.approach, rel=1e-5)
     assert carried.uncertainty.approach >= abs(carried.approach - direct.approach)
-    assert towards_incompressible(DISC, lambda problem: problem) is DISC
+    assert towards_limits(DISC, lambda problem: problem) is DISC
+
+
+def test_rigid_base_is_reached_by_extrapolation():
+    quick = solvers()["semianalytic"]
+    rigid = PrescribedLoad(1e6, 0.1, ((1e9, 0.3, 0.1),), (1e15, 0.3))
+    carried, direct = towards_limits(rigid, quick), quick(rigid)
+    spread = carried.uncertainty.approach
+    assert abs(carried.approach - direct.approach) <= spread <= 1e-3 * direct.approach
+    # One base of 1e4 alone is a thousand times further off than the line through two of them.
+    alone = quick(replace(rigid, substrate=(1e13, 0.3)))
+    assert abs(alone.approach - direct.approach) > 100 * abs(carried.approach - direct.approach)

@@ -1,4 +1,4 @@
-"""A solution for nu = 1/2 by extrapolation, of a method that refuses an incompressible solid."""
+"""A solution in a limit that a method refuses, by extrapolation: nu = 1/2, or a base as good as rigid."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -11,32 +11,37 @@ from numpy.typing import NDArray
 
 from verification.problem import CoatedContact, PrescribedLoad, Solution
 
-__all__ = ["towards_incompressible"]
+__all__ = ["towards_limits"]
 
 Array = NDArray[np.float64]
 Solver = Callable[[CoatedContact | PrescribedLoad], Solution]
 STEP = 1e-3  # of Poisson's ratio
+STIFFEST = 1e4  # base over softest coating
 
 
-def towards_incompressible(problem: CoatedContact | PrescribedLoad, solve: Solver) -> Solution:
-    """The solution as nu -> 1/2 where a layer has it; the problem itself where none has.
+def towards_limits(problem: CoatedContact | PrescribedLoad, solve: Solver) -> Solution:
+    """The solution as nu -> 1/2 and E of the base -> infinity; the problem itself where it asks for neither.
 
-    Carried on from nu = 1/2 - e and 1/2 - 2e, e = 1e-3, along a straight line. What that leaves out is
-    f'' e^2, which is the second difference of three values; it is part of the uncertainty.
+    Carried on along a straight line from t = 1 and 2 to t = 0, with nu = 1/2 - 1e-3 t in the incompressible
+    layers and a base 1e4 / t times as stiff as the softest coating. What that leaves out is the second
+    difference over t = 1, 2, 3; it is part of the uncertainty.
     """
-    if all(nu != 0.5 for _, nu, *_ in (*problem.coatings, problem.substrate)):
+    if _eased(problem, 1) == problem:
         return solve(problem)
-    near, further, third = (solve(_compressible(problem, n * STEP)) for n in (1, 2, 3))
+    near, further, third = (solve(_eased(problem, t)) for t in (1, 2, 3))
     return _Extrapolated(near, further, third)
 
 
-def _compressible(problem: CoatedContact | PrescribedLoad, below: float) -> CoatedContact | PrescribedLoad:
-    def eased(nu: float) -> float:
-        return nu - below if nu == 0.5 else nu
+def _eased(problem: CoatedContact | PrescribedLoad, t: int) -> CoatedContact | PrescribedLoad:
+    def compressible(nu: float) -> float:
+        return nu - STEP * t if nu == 0.5 else nu
 
     E, nu = problem.substrate
-    coatings = tuple((E1, eased(nu1), h) for E1, nu1, h in problem.coatings)
-    return replace(problem, coatings=coatings, substrate=(E, eased(nu)))
+    softest = min((E1 for E1, _, _ in problem.coatings), default=E)
+    if STIFFEST * softest < E:
+        E = STIFFEST * softest / t
+    coatings = tuple((E1, compressible(nu1), h) for E1, nu1, h in problem.coatings)
+    return replace(problem, coatings=coatings, substrate=(E, compressible(nu)))
 
 
 @dataclass(frozen=True)
@@ -49,7 +54,7 @@ class _Scalars:
 
 @dataclass(frozen=True, eq=False)
 class _Extrapolated:
-    """2 f(1/2 - e) - f(1/2 - 2e), with 2 U + U and the second difference for its uncertainty."""
+    """2 f(1) - f(2), with 2 U + U and the second difference for its uncertainty."""
 
     near: Solution
     further: Solution
@@ -72,7 +77,7 @@ class _Extrapolated:
         for name in names:
             own = 2 * getattr(self.near.uncertainty, name) + getattr(self.further.uncertainty, name)
             bend = abs(self._bend(attrgetter(name)))
-            rows += [(name, "both solutions", own), (name, "nu -> 1/2", bend)]
+            rows += [(name, "both solutions", own), (name, "limit", bend)]
             total[name] = own + bend
         return _Scalars(**total, budget=tuple(rows))
 
