@@ -20,11 +20,11 @@ STIFFEST = 1e4  # base over softest coating
 
 
 def towards_limits(problem: CoatedContact | PrescribedLoad, solve: Solver) -> Solution:
-    """The solution as nu -> 1/2 and E of the base -> infinity; the problem itself where it asks for neither.
+    """The solution as nu -> 1/2 and E of a stiff base is reached; that of ``solve`` where neither is asked.
 
     Carried on along a straight line from t = 1 and 2 to t = 0, with nu = 1/2 - 1e-3 t in the incompressible
-    layers and a base 1e4 / t times as stiff as the softest coating. What that leaves out is the second
-    difference over t = 1, 2, 3; it is part of the uncertainty.
+    layers and, under a coating 1e4 times softer, a compliance of the base of 1/E + 1e-4 t / E1. What that
+    leaves out is the second difference over t = 1, 2, 3; it is part of the uncertainty.
     """
     if _eased(problem, 1) == problem:
         return solve(problem)
@@ -39,7 +39,7 @@ def _eased(problem: CoatedContact | PrescribedLoad, t: int) -> CoatedContact | P
     E, nu = problem.substrate
     softest = min((E1 for E1, _, _ in problem.coatings), default=E)
     if STIFFEST * softest < E:
-        E = STIFFEST * softest / t
+        E = 1 / (1 / E + t / (STIFFEST * softest))
     coatings = tuple((E1, compressible(nu1), h) for E1, nu1, h in problem.coatings)
     return replace(problem, coatings=coatings, substrate=(E, compressible(nu)))
 
