@@ -20,7 +20,7 @@ Field = Callable[[ArrayLike, ArrayLike, ArrayLike, int | None], Array]
 Motion = Callable[[ArrayLike, ArrayLike, ArrayLike], Array]
 
 # error of the stress of a given pressure, over its peak, against Hankel quadrature: above 4 patches, below
-EVALUATION = (2e-5, 3e-6)
+EVALUATION = (5e-6, 5e-7)
 
 
 @dataclass(frozen=True)
