@@ -316,7 +316,7 @@ def _refine(
     ladder = []
     level = first
     kept = 3 if estimate_uncertainty else 1
-    starter = replace(numerics, tolerance=max(1e-4, numerics.tolerance), edge_rounds=0)
+    starter = replace(numerics, tolerance=max(1e-5, numerics.tolerance), edge_rounds=0)
     for k, n in enumerate(sizes):
         used = numerics if k >= len(sizes) - kept else starter
         level = _press(Grid(n, 2 * half_width / n), level, indenter, body, used)
