@@ -17,6 +17,7 @@ from verification.report.accuracy import accuracy_overview, accuracy_sentence, a
 from verification.report.cells import Part, Section, Table
 from verification.report.convergence import convergence_sections
 from verification.report.csvdata import embedded, line_csv
+from verification.report.family import family_section
 from verification.report.matrix import verdict_matrix
 from verification.report.names import METHODS, OUTCOMES, OutcomeStyle, source_label
 from verification.report.numbers import engineering, plain, scientific, seconds
@@ -138,6 +139,8 @@ def _sections(
     contacts = [(n, result) for n, result in enumerate(results) if not result.published]
     found = [result for _, result in contacts]
     places = dict(enumerate(anchors[n] for n, _ in contacts))
+    if (family := family_section(found)) is not None:
+        sections.append(family)
     accuracy = [
         Part(accuracy_sentence(found, source), [overview])
         for source in METHODS
