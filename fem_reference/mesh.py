@@ -204,3 +204,13 @@ def _triangulate(
     flip = _twice_area(nodes, corners) < 0
     corners[1:, flip] = corners[:0:-1, flip]
     return nodes, np.ascontiguousarray(corners), np.concatenate(layer)
+
+
+def _literal(value: float) -> str:
+    """A number as gmsh's expressions take it; on others, such as "np.float64(1.0)", they abort the process.
+
+    Raises ValueError where it is not finite.
+    """
+    if not np.isfinite(value):
+        raise ValueError(f"a size of the mesh is {value}; check the thicknesses against the contact radius")
+    return repr(float(value))
