@@ -25,7 +25,14 @@ from verification.printed_file import (
 from verification.problem import CoatedContact, PrescribedLoad
 from verification.profile import Profile
 from verification.quantity import QUANTITIES, SCALAR, Points
-from verification.references.published import FOLDER, UNITS, PublishedError, PublishedTable, read_table
+from verification.references.published import (
+    FOLDER,
+    MAX_BYTES,
+    UNITS,
+    PublishedError,
+    PublishedTable,
+    read_table,
+)
 from verification.verdict import Claim
 
 __all__ = [
@@ -96,6 +103,8 @@ def published_cases() -> dict[str, Path]:
 def is_published(path: Path) -> bool:
     """True where a case file has tables, which only a published case has."""
     try:
+        if not path.is_file() or path.stat().st_size > MAX_BYTES:
+            return False
         return "table" in tomllib.loads(path.read_text(encoding="utf-8"))
     except (OSError, ValueError, RecursionError):
         return False

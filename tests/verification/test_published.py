@@ -5,8 +5,8 @@ import shutil
 import numpy as np
 import pytest
 
-from verification.case import CaseError
-from verification.printed import published_cases, read_published
+from verification.case import CaseError, shipped_cases
+from verification.printed import is_published, published_cases, read_published
 from verification.problem import CoatedContact, PrescribedLoad
 from verification.references.published import FOLDER, PublishedError, read_table
 
@@ -137,6 +137,25 @@ def test_malformed_case_is_refused_with_file_and_key(files, old, new, said):
     assert old in TOML
     with pytest.raises(CaseError, match=said):
         files(toml=TOML.replace(old, new))
+
+
+def test_whole_numbers_are_numbers(files):
+    toml = TOML.replace("uncertainty = 0.003", "uncertainty = 1").replace(
+        "load_radius = 6.0", "load_radius = 6"
+    )
+    toml = toml.replace('file = "t.csv"', 'file = "t.csv"\nrows = { depth = 0 }')
+    stress, sink = files(toml).printed
+    assert sink.profile.uncertainty == pytest.approx([0.0254])
+    assert stress.text == ("100",)
+
+
+def test_only_a_file_with_tables_is_taken_for_a_published_case(tmp_path):
+    assert all(is_published(path) for path in SHIPPED.values())
+    assert not any(is_published(path) for path in shipped_cases().values())
+    (tmp_path / "binary.toml").write_bytes(b"\xff\xfe[[table]]")
+    (tmp_path / "huge.toml").write_text("[[table]]\n" + "#" * 2_000_000)
+    for path in (tmp_path, tmp_path / "absent.toml", tmp_path / "binary.toml", tmp_path / "huge.toml"):
+        assert not is_published(path)
 
 
 def test_row_that_is_not_there_is_named(files):

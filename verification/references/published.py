@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from math import floor, isfinite, log10
 from pathlib import Path
 
-__all__ = ["FOLDER", "UNITS", "PublishedError", "PublishedTable", "read_table"]
+__all__ = ["FOLDER", "MAX_BYTES", "UNITS", "PublishedError", "PublishedTable", "read_table"]
 
 FOLDER = Path(__file__).parent / "published"
 MAX_BYTES = 1_000_000
