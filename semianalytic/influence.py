@@ -81,7 +81,7 @@ def remainder_coefficients(
 
         return _by_fft(n, d, shaped, enlarge, 2, 0.0, threads)
 
-    g = _radial(excess, thickness, image, points)
+    g, on_disc = _radial(excess, thickness, image, points)
     near = 2 * thickness[0] / d  # g is singular no nearer than the image of the surface, at depth 2 h
     table = _octant(g, n + 3, d)
     mean = d * d * _average(_average(table, n).T, n).T
@@ -89,9 +89,13 @@ def remainder_coefficients(
     inner = 0
     for edge in edges:
         outer = min(int(np.ceil(edge)), n)
-        reach = np.hypot(near, max(inner - 1, 0))
+        reach = np.hypot(near, max(inner - 1, 0.5))
         _gauss_block(mean, g, d, inner, outer, reach)
         inner = outer
+    if edges:
+        # the loaded patch, which may be far wider than the coating is thick, in polar coordinates
+        s, w = np.polynomial.legendre.leggauss(16)
+        mean[0, 0] = np.pi * np.sum(w * on_disc(d / 2 / np.cos(np.pi / 8 * (1 + s))))
     return mean
 
 
@@ -134,8 +138,8 @@ def _by_fft(
 
 def _radial(
     excess: Response, thickness: Sequence[float], image: tuple[float, float], points: int
-) -> Callable[[Array], Array]:
-    """g(r) = int R(k) J0(kr) dk for r >= 0: moments below a tenth of a coating, Hankel grid beyond."""
+) -> tuple[Response, Response]:
+    """g(r) = int R(k) J0(kr) dk and int_0^r g r dr: moments to a tenth of a coating, Hankel grid beyond."""
     c, b = image
     h = thickness[0]  # M - 1 falls as exp(-2 k h): what lies deeper is smoother still
     low, high = 1e-7 / max(b, sum(thickness)), 1e5 / h
@@ -146,16 +150,24 @@ def _radial(
     A = fht(R, step, mu=0, offset=offset)
     r = np.exp(offset) / k[::-1]
     near = 0.1 * h
-    keep = (r > 0.5 * near) & (r < 1e4 * max(b, sum(thickness)))
-    spline = CubicSpline(np.log(r[keep]), A[keep] / r[keep])
-    moments = [float(np.sum(R * k ** (2 * j + 1)) * step) for j in range(4)]
+    far = 1e6 * max(b, sum(thickness))
+    keep = (r > 0.5 * near) & (r < far)
+    x = np.log(r[keep])
+    spline = CubicSpline(x, A[keep] / r[keep])
+    inner = CubicSpline(x, A[keep] * r[keep]).antiderivative()
+    m0, m1, m2, m3 = (float(np.sum(R * k ** (2 * j + 1)) * step) for j in range(4))
 
     def g(r: Array) -> Array:
         s = (r / 2) ** 2
-        small = moments[0] - s * (moments[1] - s * (moments[2] / 4 - s * moments[3] / 36))
-        return np.where(r < near, small, spline(np.log(np.maximum(r, near))))
+        small = m0 - s * (m1 - s * (m2 / 4 - s * m3 / 36))
+        return np.where(r < near, small, spline(np.log(np.clip(r, near, far))) * (r < far))
 
-    return g
+    def on_disc(r: Array) -> Array:
+        s = (np.minimum(r, near) / 2) ** 2
+        small = 2 * s * (m0 - s * (m1 / 2 - s * (m2 / 12 - s * m3 / 144)))
+        return small + inner(np.log(np.clip(r, near, far))) - inner(np.log(near))
+
+    return g, on_disc
 
 
 def _octant(g: Callable[[Array], Array], n: int, d: float) -> Array:
