@@ -123,3 +123,22 @@ def test_stiffer_coating_deflects_less_under_the_load():
         C += influence.remainder_coefficients(32, d, excess, [h], image)
         totals.append(C[0, 0] / ratio)
     assert totals[0] > totals[1] > totals[2]
+
+
+@pytest.mark.parametrize("ratio", [0.1, 10.0])
+def test_vanishing_coating_leaves_the_substrate(ratio):
+    love = halfspace.surface_deflection(8, 8, 1.0, 1.0)
+    errors = []
+    for h in (1e-3, 1e-4):
+        coatings = ((ratio * SUBSTRATE[0], SUBSTRATE[1], h),)
+
+        def excess(k, coatings=coatings):
+            return frf.compliance_excess(k, coatings, SUBSTRATE)
+
+        image = influence.split_image(excess, [h])
+        C = love + image[0] * halfspace.surface_deflection(8, 8, 1.0, 1.0, image[1])
+        C += influence.remainder_coefficients(8, 1.0, excess, [h], image)
+        errors.append(np.abs(C / ratio - love).max())
+    # the compression of a coating is in proportion to its thickness, felt under the loaded patch
+    assert errors[1] == pytest.approx(errors[0] / 10, rel=0.05)
+    assert errors[1] < 1e-2 * love[0, 0]
