@@ -18,6 +18,8 @@ __all__ = ["circulant_inverse", "even_convolution", "good_size"]
 
 Array = NDArray[np.floating]
 
+SHARED = 2**21  # points of a transform below which a second thread was measured to cost more than it brings
+
 
 def good_size(n: int) -> int:
     """Smallest even length >= n that the FFT handles fast."""
@@ -62,6 +64,8 @@ def _apply_even(spectrum: Array, nx: int, ny: int, threads: int) -> Callable[[Ar
     half = spectrum.shape[0] - 1
     mx, my = 2 * half, 2 * (spectrum.shape[1] - 1)
     spectrum = spectrum / (mx * my)
+    if mx * my < SHARED:
+        threads = 1
 
     def apply(p: Array) -> Array:
         """Transform rows, then columns: rows of zeros are never transformed, nor rows nobody reads."""
