@@ -213,7 +213,7 @@ def _radius_guess(
 def _contact_nodes(nodes: int, a: float, coatings: Coatings) -> int:
     """The kernel varies over the first coating's thickness, so thin ones need nodes in proportion to a/h."""
     thinnest = min((h for _, _, h in coatings), default=a)
-    return int(nodes + 2 * a / thinnest * nodes / 80)
+    return int(nodes + 3 * a / thinnest * nodes / 80)
 
 
 def _kernel_wavenumbers(
