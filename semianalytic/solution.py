@@ -99,6 +99,7 @@ class Solution:
     coarser: "Solution | None" = field(repr=False)
     _profile: Callable[[Array], Array] | None = field(repr=False)
     _stress: Field = field(repr=False)
+    _plane: Callable[[float, int | None], Array] = field(repr=False)
     _displacement: Motion = field(repr=False)
 
     def pressure(self, x: ArrayLike, y: ArrayLike = 0.0) -> Array:
@@ -123,6 +124,13 @@ class Solution:
         Raises ValueError for z < 0, and for a layer that z does not lie in.
         """
         return self._stress(x, y, z, layer)
+
+    def stress_plane(self, z: float, layer: int | None = None) -> Array:
+        """Stress tensor [Pa] below every patch centre at one depth, shape (3, 3, n, n), by seven FFTs.
+
+        z : [m].  layer : as in ``stress``.  Points are (nodes[i], nodes[j]), z.
+        """
+        return self._plane(z, layer)
 
     def displacement(self, x: ArrayLike, y: ArrayLike, z: ArrayLike) -> Array:
         """Displacement [m], shape (3,) + points, u_z into the solid.
@@ -154,8 +162,8 @@ class Solution:
         """Uncertainty of the stress [Pa], shape (3, 3) + points, from the coarser companions.
 
         The largest difference over the six components, of this grid and half of it or, an eighth of it, of
-        half and a quarter, for every component alike, half of it where the edge was corrected; plus what the
-        other knobs do to the peak pressure, and the error of the evaluation, ``EVALUATION`` of the peak.
+        half and a quarter, for every component alike; plus what the other knobs do to the peak pressure, and
+        the error of the evaluation, ``EVALUATION`` of the peak.
         Raises ValueError where no uncertainty was estimated.
         """
         coarser, floor = self._companion()
@@ -165,10 +173,7 @@ class Solution:
             quartered = coarser.coarser.stress(x, y, z, layer)
             spread = np.maximum(spread, np.abs(halved - quartered).max(axis=(0, 1)) / 8)
         shallow = np.asarray(z) < 4 * self.diagnostics.patch_size
-        total = (
-            spread * (0.5 if self._profile else 1.0)
-            + (floor + np.where(shallow, *EVALUATION)) * self.peak_pressure
-        )
+        total = spread + (floor + np.where(shallow, *EVALUATION)) * self.peak_pressure
         return np.broadcast_to(total, (3, 3, *spread.shape)).copy()
 
     def _companion(self) -> tuple["Solution", float]:

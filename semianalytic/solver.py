@@ -493,13 +493,13 @@ def _as_solution(level: Level, coarser: Solution | None, body: Body) -> Solution
         "substrate": body.substrate,
     }
 
+    elastic: dict[str, Any] = {
+        "rectangle": (halfspace.normal_stress, halfspace.tangential_stress),
+        "stress_frf": frf.stress_frf,
+    }
+
     def stress(x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None) -> Array:
-        evaluate: Callable[..., Array] = partial(
-            subsurface.stress,
-            rectangle=(halfspace.normal_stress, halfspace.tangential_stress),
-            stress_frf=frf.stress_frf,
-            **common,
-        )
+        evaluate: Callable[..., Array] = partial(subsurface.stress, **elastic, **common)
         x, y, z, where = np.broadcast_arrays(x, y, z, body.layer_of(z, layer))
         result = np.empty((3, 3, *z.shape))
         near = (z < FINE * grid.d) & (level.shape is not None)
@@ -510,6 +510,13 @@ def _as_solution(level: Level, coarser: Solution | None, body: Body) -> Solution
                     x[part], y[part], z[part], where[part], grid_x=patches.x, grid_y=patches.x, pressure=p
                 )
         return result
+
+    def plane(z: float, layer: int | None) -> Array:
+        at_depth = subsurface.stress_plane(
+            z, int(body.layer_of(z, layer)), grid_x=grid.x, grid_y=grid.x, **elastic, **common
+        )
+        xx, yy, zz, xy, xz, yz = at_depth(level.mean)
+        return np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
 
     def displacement(x: ArrayLike, y: ArrayLike, z: ArrayLike) -> Array:
         return subsurface.displacement(
@@ -547,6 +554,7 @@ def _as_solution(level: Level, coarser: Solution | None, body: Body) -> Solution
         coarser=coarser,
         _profile=None if level.shape is None else level.shape.pressure,
         _stress=stress,
+        _plane=plane,
         _displacement=displacement,
     )
 

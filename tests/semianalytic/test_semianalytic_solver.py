@@ -125,6 +125,17 @@ def test_tractions_are_continuous_across_the_interface(sliding):
     np.testing.assert_array_equal(sliding.stress(x, 0.3 * A_H, h), upper)
 
 
+def test_stress_of_a_plane_is_the_stress_at_its_points(sliding):
+    h = STIFF[0][2]
+    some = slice(None, None, 16)
+    x = sliding.nodes[some]
+    for z, layer in ((0.4 * h, None), (h, 1), (3 * h, None)):
+        plane = sliding.stress_plane(z, layer)
+        at_points = sliding.stress(x[:, None], x[None, :], z, layer)
+        # whole patches against halved ones above 8 patches, interpolation between lattice sites below
+        np.testing.assert_allclose(plane[..., some, some], at_points, atol=2e-4 * P_H)
+
+
 def test_vertical_force_is_carried_at_every_depth(coated):
     r = np.linspace(0, 40, 400) ** 2 / 1600 * 60 * A_H
     for z in (0.3 * A_H, 2 * A_H):
