@@ -33,7 +33,7 @@ def compliance(k: ArrayLike, coatings: Coatings, substrate: tuple[float, float])
 
         u_z = (1 - nu1) / (G1 k) M(k) p,      M(inf) = 1,      M(0) = E1* / E2*   (E2* of the substrate)
 
-    One coating: closed form, theory sheet 2.1. More: reflection matrices (module docstring).
+    One coating: closed form of the Papkovich potentials. More: reflection matrices (module docstring).
     k : wavenumber >= 0 [rad/m], any shape.  Returns M [-], shape of ``k``.
     """
     return 1 + compliance_excess(k, coatings, substrate)
@@ -57,7 +57,7 @@ def compliance_excess(k: ArrayLike, coatings: Coatings, substrate: tuple[float, 
 def _one_coating_excess(
     k: Array, coating: tuple[float, float, float], substrate: tuple[float, float]
 ) -> Array:
-    """M - 1 of a single coating, theory sheet 2.1: lam and kap are the two reflection coefficients."""
+    """M - 1 of a single coating in closed form: lam and kap are its two reflection coefficients."""
     E1, nu1, h = coating
     E2, nu2 = substrate
     m = E1 * (1 + nu2) / (E2 * (1 + nu1))
@@ -91,7 +91,7 @@ def stress_frf(
         in-plane, T0 = 1  :  s_zz, s_Lz / i, s_LL, s_TT
         anti-plane, t = 1 :  s_Tz, s_LT / i
 
-    Theory sheet 2.1; any number of coatings by reflection matrices. A traction q on the solid in +x is
+    Any number of coatings, by reflection matrices (module docstring). A traction q on the solid in +x is
     T0 = i q cos(a), t = q sin(a), with a the direction of the wave vector. ``excess`` leaves out the
     homogeneous half-space made of the first coating (in layer 0 only), computed without cancellation.
 
@@ -114,7 +114,7 @@ def displacement_frf(
 ) -> Array:
     """Displacement amplitudes times k: (k u_z, k u_L / i) in plane, (k u_T,) anti-plane.
 
-    Theory sheet 2.1, arguments as in `stress_frf`. The factor k keeps the amplitude finite at k = 0.
+    Arguments as in `stress_frf`. The factor k keeps the amplitude finite at k = 0.
     Returns [1/Pa], (2 or 1, nz, nk).
     """
     material = (*coatings, substrate)[layer]

@@ -12,8 +12,7 @@ anti-plane part), S = (LL + TT)/2, D = (LL - TT)/2 and H_m the Hankel transform 
     s_xy            = -sin 2t H2[D] - f (sin t H1[D - B] - sin 3t H3[D + B]) / 2
 
 (x, y) = r (cos t, sin t); the terms without f take the response to p = 1, those with f the response to
-T0 = 1, t = 1. Displacements follow the same pattern, with U = u_L and V = u_T (theory sheet, end of
-section 2.1 and section 5):
+T0 = 1, t = 1. Displacements follow the same pattern, with U = u_L and V = u_T:
 
     u_z = H0[u_z] - f cos t H1[u_z]     u_x = -cos t H1[U] - f (H0[U + V] - cos 2t H2[U - V]) / 2
                                         u_y = -sin t H1[U] + f sin 2t H2[U - V] / 2

@@ -15,7 +15,7 @@ Patches of constant pressure would do below, but not near the surface: the steps
 sliding load off by p' d even at the patch centres. With p continuous the field is smooth enough to be found
 below patch centres only, and interpolated between them by cubics.
 
-Sources: source paper, eqs. 1-4; theory sheet, section 3.2. Axes: z down; tension positive; SI units.
+"Stress analysis of elastic coated solids in point contact", eqs. 1-4. Axes: z down; tension positive; SI.
 """
 
 from collections.abc import Callable, Iterator, Sequence

@@ -9,12 +9,12 @@ import sys
 import time
 from collections.abc import Callable
 from dataclasses import asdict, dataclass
-from math import isfinite
 from pathlib import Path
 from typing import Any
 
 from verification.convergence import ConversionError, Ladder, Level, conversion_errors, elements, ladder
 from verification.problem import CoatedContact
+from verification.result import plain
 from verification.schedule import Task
 from verification.store import StoreError, read_checked, write_checked
 from verification.surroundings import commit, versions
@@ -119,7 +119,7 @@ def task(folder: Path) -> Task[AccuracyStudy]:
 
 def to_json(study: AccuracyStudy) -> dict[str, Any]:
     """Plain dictionaries, lists, numbers and text; NaN and infinity become text, so the JSON is strict."""
-    return {"schema": SCHEMA, **_plain(asdict(study))}
+    return {"schema": SCHEMA, **plain(asdict(study))}
 
 
 def from_json(data: dict[str, Any]) -> AccuracyStudy:
@@ -162,16 +162,6 @@ def from_json(data: dict[str, Any]) -> AccuracyStudy:
         commit=data["commit"],
         versions={str(name): str(version) for name, version in data["versions"].items()},
     )
-
-
-def _plain(value: Any) -> Any:
-    if isinstance(value, dict):
-        return {str(key): _plain(item) for key, item in value.items()}
-    if isinstance(value, list | tuple):
-        return [_plain(item) for item in value]
-    if isinstance(value, float) and not isfinite(value):
-        return repr(value)
-    return value
 
 
 def main(path: str) -> None:

@@ -3,7 +3,7 @@
 import tomllib
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, TypeVar
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
@@ -20,12 +20,15 @@ __all__ = [
     "first_complaint",
     "parse_case",
     "read_case",
+    "read_toml",
     "shipped_cases",
     "sources_of",
     "standard_claims",
 ]
 
 METHODS = ("semianalytic", "fem_reference")
+Checked = TypeVar("Checked", bound=BaseModel)
+
 CASES = Path(__file__).parent / "cases"
 MAX_BYTES = 1_000_000
 
@@ -182,20 +185,26 @@ def read_case(path: Path) -> Case:
     return parse_case(raw, path)
 
 
-def parse_case(raw: bytes, path: Path) -> Case:
-    """Check the content of a case file; ``path`` names it in complaints. Raises CaseError."""
+def read_toml(raw: bytes, path: Path, model: type[Checked]) -> tuple[str, Checked]:
+    """The text of a TOML file with its content checked against ``model``. Raises CaseError."""
     try:
         text = raw.decode("utf-8")
-        checked = _CaseFile.model_validate(tomllib.loads(text))
-        p = checked.problem
-        bare = CoatedContact(p.radius, p.load, (), (p.substrate.E, p.substrate.nu), p.friction)
-        problem = replace(bare, coatings=tuple((c.E, c.nu, c.in_metres(bare.a_h)) for c in p.coatings))
+        return text, model.model_validate(tomllib.loads(text))
     except UnicodeDecodeError:
         raise CaseError(f"{path}: not UTF-8 text; a case file is TOML") from None
     except (tomllib.TOMLDecodeError, RecursionError) as error:
         raise CaseError(f"{path}: not TOML: {str(error) or 'nested too deeply'}") from None
     except ValidationError as error:
         raise CaseError(f"{path}: {first_complaint(error)}") from None
+
+
+def parse_case(raw: bytes, path: Path) -> Case:
+    """Check the content of a case file; ``path`` names it in complaints. Raises CaseError."""
+    text, checked = read_toml(raw, path, _CaseFile)
+    try:
+        p = checked.problem
+        bare = CoatedContact(p.radius, p.load, (), (p.substrate.E, p.substrate.nu), p.friction)
+        problem = replace(bare, coatings=tuple((c.E, c.nu, c.in_metres(bare.a_h)) for c in p.coatings))
     except ValueError as error:
         raise CaseError(f"{path}: problem: {error}") from None
     _refuse_unfit_scales(path, problem)

@@ -11,9 +11,8 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import ValidationError
 
-from verification.case import METHODS, CaseError, first_complaint
+from verification.case import METHODS, CaseError, read_toml
 from verification.printed_file import (
     PrintedAt,
     PrintedColumn,
@@ -120,15 +119,7 @@ def read_published(path: Path) -> PublishedCase:
 
 def parse_published(raw: bytes, path: Path) -> PublishedCase:
     """Check the text of a published case; its tables lie beside ``path``. Raises CaseError."""
-    try:
-        text = raw.decode("utf-8")
-        checked = PrintedFile.model_validate(tomllib.loads(text))
-    except UnicodeDecodeError:
-        raise CaseError(f"{path}: not UTF-8 text; a case file is TOML") from None
-    except (tomllib.TOMLDecodeError, RecursionError) as error:
-        raise CaseError(f"{path}: not TOML: {str(error) or 'nested too deeply'}") from None
-    except ValidationError as error:
-        raise CaseError(f"{path}: {first_complaint(error)}") from None
+    text, checked = read_toml(raw, path, PrintedFile)
     try:
         problem = _problem(checked.problem)
         units = _units(problem)

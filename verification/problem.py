@@ -33,14 +33,7 @@ class CoatedContact:
     def __post_init__(self) -> None:
         _require_positive("radius", self.radius)
         _require_positive("load", self.load)
-        for i, (E, nu, thickness) in enumerate(self.coatings):
-            _require_positive(f"coatings[{i}].E", E)
-            _require_poisson(f"coatings[{i}].nu", nu)
-            _require_positive(f"coatings[{i}].thickness", thickness)
-        _require_positive("substrate.E", self.substrate[0])
-        _require_poisson("substrate.nu", self.substrate[1])
-        if not (isfinite(self.friction) and self.friction >= 0):
-            raise ValueError(f"friction = {self.friction:g}; Coulomb's coefficient is zero or positive")
+        _require_solid(self.coatings, self.substrate, self.friction)
 
     @property
     def E_star(self) -> float:
@@ -91,12 +84,7 @@ class PrescribedLoad:
     def __post_init__(self) -> None:
         _require_positive("pressure", self.pressure)
         _require_positive("load_radius", self.load_radius)
-        for i, (E, nu, thickness) in enumerate(self.coatings):
-            _require_positive(f"coatings[{i}].E", E)
-            _require_positive(f"coatings[{i}].thickness", thickness)
-            _require_poisson(f"coatings[{i}].nu", nu)
-        _require_positive("substrate.E", self.substrate[0])
-        _require_poisson("substrate.nu", self.substrate[1])
+        _require_solid(self.coatings, self.substrate, self.friction)
 
 
 class Solution(Protocol):
@@ -123,6 +111,19 @@ class Solution(Protocol):
     def stress_uncertainty(
         self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None
     ) -> NDArray[np.float64]: ...
+
+
+def _require_solid(
+    coatings: tuple[tuple[float, float, float], ...], substrate: tuple[float, float], friction: float
+) -> None:
+    for i, (E, nu, thickness) in enumerate(coatings):
+        _require_positive(f"coatings[{i}].E", E)
+        _require_poisson(f"coatings[{i}].nu", nu)
+        _require_positive(f"coatings[{i}].thickness", thickness)
+    _require_positive("substrate.E", substrate[0])
+    _require_poisson("substrate.nu", substrate[1])
+    if not (isfinite(friction) and friction >= 0):
+        raise ValueError(f"friction = {friction:g}; Coulomb's coefficient is zero or positive")
 
 
 def _require_positive(name: str, value: float) -> None:

@@ -8,7 +8,7 @@ import numpy as np
 from verification.profile import Profile
 from verification.verdict import Claim, Outcome, Verdict
 
-__all__ = ["SCHEMA", "CaseResult", "RunInfo", "SourceResult", "from_json", "to_json"]
+__all__ = ["SCHEMA", "CaseResult", "RunInfo", "SourceResult", "from_json", "plain", "to_json"]
 
 SCHEMA = "coatcheck-report/1"
 
@@ -86,15 +86,15 @@ def to_json(result: CaseResult) -> dict[str, Any]:
         "source": result.source,
         "outcome": result.outcome,
         "seconds": result.seconds,
-        "problem": _plain(result.problem),
-        "sources": [_plain(vars(source)) for source in result.sources],
+        "problem": plain(result.problem),
+        "sources": [plain(vars(source)) for source in result.sources],
         "verdicts": [
-            {"claim": _plain(vars(claim)), "verdict": _plain(vars(verdict))}
+            {"claim": plain(vars(claim)), "verdict": plain(vars(verdict))}
             for claim, verdict in result.verdicts
         ],
-        "profiles": [_plain(vars(profile)) for profile in result.profiles],
+        "profiles": [plain(vars(profile)) for profile in result.profiles],
         "case_file": result.text,
-        "published": _plain(result.published),
+        "published": plain(result.published),
     }
 
 
@@ -143,15 +143,16 @@ def from_json(data: dict[str, Any]) -> CaseResult:
     )
 
 
-def _plain(value: Any) -> Any:
+def plain(value: Any) -> Any:
+    """``value`` as strict JSON takes it: containers and numbers of Python, NaN and infinity as text."""
     if isinstance(value, dict):
-        return {str(key): _plain(item) for key, item in value.items()}
+        return {str(key): plain(item) for key, item in value.items()}
     if isinstance(value, np.ndarray):
-        return _plain(value.tolist())
+        return plain(value.tolist())
     if isinstance(value, list | tuple):
-        return [_plain(item) for item in value]
+        return [plain(item) for item in value]
     if isinstance(value, np.generic):
-        return _plain(value.item())
+        return plain(value.item())
     if isinstance(value, float) and not np.isfinite(value):
         return repr(value)
     if value is None or isinstance(value, bool | int | float | str):

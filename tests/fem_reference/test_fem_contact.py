@@ -202,7 +202,7 @@ def test_outer_boundary_is_far_enough():
         solve(radius=R, load=W, coatings=CASES["stiff"], substrate=(E, NU), far=far, quality="fast")
         for far in (1000.0, 4000.0)
     )
-    # 3e-7 of the approach at 1000 a_h (theory sheet); the far mesh itself differs by its own estimate
+    # 3e-7 of the approach at 1000 a_h; the far mesh itself differs by its own estimate
     allowed = near.uncertainty.approach + far.uncertainty.approach
     assert abs(near.approach - far.approach) < allowed
     assert near.contact_radius == pytest.approx(far.contact_radius, rel=1e-5)

@@ -21,7 +21,7 @@ solids = pytest.mark.parametrize(("coatings", "substrate"), SOLIDS.values(), ids
 
 
 def direct_solve(k, coatings, substrate, load):
-    """All Airy amplitudes of theory sheet 2.2 from one dense system in 60-digit arithmetic.
+    """All Airy amplitudes of every layer from one dense system in 60-digit arithmetic.
 
     f = (A + B k s) e^-ks + (C + D k t) e^-kt in each layer, first two terms in the substrate. Shares with
     the library neither potentials nor unknowns nor arithmetic. Returns a function of (z, layer) ->

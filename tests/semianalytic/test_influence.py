@@ -101,7 +101,7 @@ def test_plain_conversion_has_the_error_it_is_known_for():
     love = halfspace.surface_deflection(64, 64, 1.0, 1.0)
     plain = influence.plain_coefficients(64, 1.0, np.zeros_like, enlarge=4)
     error = np.abs(plain - love)
-    # theory sheet 3.1: 0.4 % at the centre with AL = 2, and a few per cent and more at the far patches
+    # 0.4 % at the centre with AL = 2 on the homogeneous half-space, several per cent at far patches
     assert 1e-3 < error[0, 0] / love[0, 0] < 1e-2
     assert (error / love).max() > 0.02
     without = influence.plain_coefficients(64, 1.0, np.zeros_like, enlarge=4, aliases=0)

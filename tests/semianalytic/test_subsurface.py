@@ -103,7 +103,7 @@ def test_stress_on_the_axis_is_johnsons():
 def test_sliding_shear_on_the_axis_is_the_closed_form():
     z = np.concatenate([[0.0], np.geomspace(1e-3, 10, 40)])
     f = 0.3
-    exact = -1 + 1.5 * z * np.arctan2(1, z) - z**2 / (2 * (1 + z**2))  # theory sheet, section 5
+    exact = -1 + 1.5 * z * np.arctan2(1, z) - z**2 / (2 * (1 + z**2))  # Hamilton (1983) on the axis
     np.testing.assert_allclose(sigma(0, 0, z, 0, f=f)[0, 2] / f, exact, atol=2e-5)
 
 
@@ -115,7 +115,7 @@ def test_sliding_surface_stress_is_linear_and_tensile_at_the_trailing_edge():
     # 2e-4 p_h at f = 1 more than three patches from the edge, on half the default grid
     np.testing.assert_allclose((sliding - bare)[0, 0], -np.pi * (4 + NU) / 8 * x, atol=2e-4)
     np.testing.assert_allclose((sliding - bare)[1, 1], -3 * np.pi * NU / 8 * x, atol=2e-4)
-    # with Hertz's part, Johnson (3.42): at x = -a together (1 - 2 nu)/3 + f pi (4 + nu)/8 (theory sheet, 5)
+    # with Hertz's part, Johnson (3.42): at x = -a together (1 - 2 nu)/3 + f pi (4 + nu)/8 (Hamilton 1983)
     on_line = (y == 0) & (x != 0)
     x, t = x[on_line], 1 - x[on_line] ** 2
     hertz = (1 - 2 * NU) / (3 * x**2) * (1 - t**1.5) - np.sqrt(t)

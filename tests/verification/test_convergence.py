@@ -92,7 +92,7 @@ def test_plain_conversion_errs_as_theory_says(conversions):
     by_aliases = {
         a: [o.error for o in conversions if (o.conversion, o.aliases) == ("plain", a)] for a in (0, 2)
     }
-    # Theory sheet 3.1: some 16 % at the loaded patch without aliases, 0.4 % with two on either side.
+    # On the homogeneous half-space some 16 % at the loaded patch without aliases, 0.4 % with two a side.
     assert all(0.10 < error[0] < 0.20 for error in by_aliases[0])
     assert all(0.002 < error[0] < 0.008 for error in by_aliases[2])
     assert all(max(error) > 0.01 for error in by_aliases[2])

@@ -78,15 +78,6 @@ class AbelPressure:
         slope = self._slope_over_t(r[..., None] * np.sin(psi)) * r[..., None] * np.sin(psi)
         return -0.5 * psi_max * (slope * np.sin(order * psi) @ weight)
 
-    def inverse_distance(self, r: Array) -> Array:
-        """int_0^inf phat(k) J0(kr) dk = int_0^min(r,a) phi(t)/sqrt(r^2 - t^2) dt [N/m]."""
-        psi_max = np.arcsin(np.minimum(self.a / np.maximum(r, 1e-300), 1.0))
-        x, weight = legendre.leggauss(max(64, 2 * self.c.size))
-        psi = 0.5 * psi_max[..., None] * (1 + x)
-        coefficients = np.zeros(2 * self.c.size - 1)
-        coefficients[::2] = self.c
-        return 0.5 * psi_max * (legendre.legval(r[..., None] * np.sin(psi) / self.a, coefficients) @ weight)
-
     def _over_ring(self, r: Array, power: int) -> Array:
         """-int_r^a phi'(t) (t^2 - r^2)^((power-1)/2) dt, with s^2 = t^2 - r^2."""
         reach = np.sqrt(np.maximum(self.a**2 - r**2, 0.0))

@@ -13,12 +13,12 @@ Sneddon, Fourier Transforms (1951); sliding worked out from the rotation of the 
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.polynomial import legendre
 from numpy.typing import ArrayLike, NDArray
 from scipy.special import j0, j1, jv
 
 from verification.references.axisymmetric_pressure import AbelPressure
 from verification.references.layered import Amplitudes, LayeredHalfSpace, bending_length
+from verification.references.quadrature import wavenumber_panels
 
 __all__ = ["HankelField", "layer_at"]
 
@@ -105,17 +105,9 @@ class HankelField:
     def _wavenumbers(self, reach: float, r: float) -> tuple[Array, Array]:
         """Gauss panels up to tail/reach, no wider than the oscillation of J(kr) cos(ka), finer near 0."""
         end = (self.tail + 2 * np.log(self.tail)) / reach
-        widest = 8 / (self.pressure.a + r)
         bent = bending_length(self.coatings, self.substrate) if self.coatings else 0.0
         deepest = max(bent, reach, self.pressure.a)
-        width, edges = min(widest, 1 / deepest), [0.0]
-        while edges[-1] < end:
-            edges.append(min(edges[-1] + width, end))
-            width = min(1.5 * width, widest)
-        left = np.array(edges)
-        s, w = legendre.leggauss(self.nodes)
-        half = 0.5 * np.diff(left)
-        return ((left[:-1] + half)[:, None] + half[:, None] * s).ravel(), (half[:, None] * w).ravel()
+        return wavenumber_panels(end, 1 / deepest, 8 / (self.pressure.a + r), self.nodes)
 
     def _homogeneous_surface(self, r: Array, theta: Array) -> Array:
         """Surface stress of the homogeneous solid of the top layer's material. Johnson (3.21), (3.75)."""

@@ -19,6 +19,7 @@ from scipy.optimize import brentq
 from verification.references.axisymmetric_pressure import AbelPressure
 from verification.references.hankel import HankelField
 from verification.references.layered import LayeredHalfSpace, bending_length
+from verification.references.quadrature import wavenumber_panels
 
 __all__ = ["ExactSolution", "ExactUncertainty", "solve"]
 
@@ -223,14 +224,7 @@ def _kernel_wavenumbers(
     if not coatings:
         return np.ones(1), np.zeros(1)
     end = (tail + 2 * np.log(tail)) / (2 * coatings[0][2])
-    widest, width = 3.0 / a, min(3.0 / a, 0.5 / bending_length(coatings, substrate))
-    edges = [0.0]
-    while edges[-1] < end:
-        edges.append(min(edges[-1] + width, end))
-        width = min(1.5 * width, widest)
-    left, (s, w) = np.array(edges), legendre.leggauss(panel)
-    half = 0.5 * np.diff(left)
-    return ((left[:-1] + half)[:, None] + half[:, None] * s).ravel(), (half[:, None] * w).ravel()
+    return wavenumber_panels(end, 0.5 / bending_length(coatings, substrate), 3.0 / a, panel)
 
 
 def _gauss(n: int) -> tuple[Array, Array]:

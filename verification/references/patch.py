@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 from scipy.special import j1
 
 from verification.references.layered import LayeredHalfSpace, bending_length
+from verification.references.quadrature import wavenumber_panels
 
 __all__ = ["over_square", "surface_coefficient"]
 
@@ -77,11 +78,4 @@ def over_square(x: float, y: float, side: float, F: Callable[[Array], Array], pa
 def _wavenumbers(reach: float, coatings: Coatings, substrate: tuple[float, float]) -> tuple[Array, Array]:
     """Gauss panels up to where M - 1 has died, no wider than the oscillation at ``reach``; finer near 0."""
     end = (36 + 2 * np.log(36)) / (2 * coatings[0][2])
-    widest = 8 / reach
-    width, edges = min(widest, 0.5 / bending_length(coatings, substrate)), [0.0]
-    while edges[-1] < end:
-        edges.append(min(edges[-1] + width, end))
-        width = min(1.5 * width, widest)
-    left, (s, w) = np.array(edges), legendre.leggauss(NODES)
-    half = 0.5 * np.diff(left)
-    return ((left[:-1] + half)[:, None] + half[:, None] * s).ravel(), (half[:, None] * w).ravel()
+    return wavenumber_panels(end, 0.5 / bending_length(coatings, substrate), 8 / reach, NODES)
