@@ -2,7 +2,7 @@
 
 import time
 from collections.abc import Callable, Mapping
-from dataclasses import asdict, is_dataclass
+from dataclasses import asdict, dataclass, is_dataclass
 from typing import Any
 
 import numpy as np
@@ -14,7 +14,18 @@ from verification.profile import Line, Profile, sample, sample_contact
 from verification.result import CaseResult, SourceResult
 from verification.verdict import Claim, Outcome, Verdict, compare, judge
 
-__all__ = ["Solver", "describe", "diagnostics_of", "failed", "run", "sentence", "solvers"]
+__all__ = [
+    "Solved",
+    "Solver",
+    "describe",
+    "diagnostics_of",
+    "failed",
+    "judge_case",
+    "run",
+    "sentence",
+    "solve_case",
+    "solvers",
+]
 
 Array = NDArray[np.float64]
 Solver = Callable[[CoatedContact, Mapping[str, Any]], Solution]
@@ -55,7 +66,19 @@ def run(case: Case, available: Mapping[str, Solver] | None = None) -> CaseResult
     A source that fails leaves its sentence and NO_RESULT on each of its claims; the others go on.
     ``available`` replaces the solvers, as tests and planted faults do.
     """
-    started = time.perf_counter()
+    return judge_case(case, solve_case(case, available))
+
+
+@dataclass(frozen=True, eq=False)
+class Solved:
+    """What each source of a case came to, by name: its Solution where it has one, its SourceResult always."""
+
+    solutions: Mapping[str, Solution]
+    outcomes: Mapping[str, SourceResult]
+
+
+def solve_case(case: Case, available: Mapping[str, Solver] | None = None) -> Solved:
+    """Solve a case by every source its claims name; ``available`` as in ``run``."""
     available = solvers() if available is None else available
     wanted = {source for claim in case.claims for source in claim.between}
     outcomes: dict[str, SourceResult] = {}
@@ -77,7 +100,13 @@ def run(case: Case, available: Mapping[str, Solver] | None = None) -> CaseResult
             diagnostics=diagnostics_of(solution.diagnostics),
             budget=getattr(solution.uncertainty, "budget", ()),
         )
+    return Solved(solutions, outcomes)
 
+
+def judge_case(case: Case, solved: Solved) -> CaseResult:
+    """Sample what was solved at the same points of every line, then decide each claim of ``case``."""
+    started = time.perf_counter()
+    solutions, outcomes = dict(solved.solutions), dict(solved.outcomes)
     profiles: dict[tuple[str, str, str], Profile] = {}
     places = _positions(case, solutions) if solutions else {}
     for source, solution in solutions.items():
@@ -106,7 +135,7 @@ def run(case: Case, available: Mapping[str, Solver] | None = None) -> CaseResult
         sources=tuple(outcomes.values()),
         profiles=tuple(profiles.values()),
         verdicts=verdicts,
-        seconds=time.perf_counter() - started,
+        seconds=sum(s.seconds for s in solved.outcomes.values()) + time.perf_counter() - started,
         text=case.text,
     )
 

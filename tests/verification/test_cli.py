@@ -8,7 +8,7 @@ import sys
 import pytest
 
 from verification.case import Case, read_case, shipped_cases
-from verification.cli import exit_code
+from verification.commands.common import exit_code
 from verification.printed import published_cases
 from verification.result import CaseResult
 from verification.schedule import run_cases

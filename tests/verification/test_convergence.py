@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 from synthetic_study import study
 
-from verification import accuracy_study, cli
+from verification import accuracy_study
 from verification.accuracy_study import BARE, COATED, STEEL, AccuracyStudy, from_json, to_json
+from verification.commands import run as command
 from verification.convergence import QUANTITIES, conversion_errors, elements, ladder, order_of, settled
 from verification.references.patch import over_square, surface_coefficient
 from verification.schedule import Task, run_tasks
@@ -239,7 +240,7 @@ def one_case(tmp_path, monkeypatch):
         "[[claim]]\nquantity = 'peak_pressure'\nline = 'contact'\n"
         "between = ['integral_equation', 'hertz']\ncap = 1e-6\nwhy = 'no method, so nothing else can fail'\n"
     )
-    monkeypatch.setattr(cli, "shipped_cases", lambda: {"quick": case})
+    monkeypatch.setattr(command, "shipped_cases", lambda: {"quick": case})
 
 
 @pytest.mark.usefixtures("one_case")
@@ -250,7 +251,7 @@ def test_study_that_fails_is_a_sentence_of_the_report_and_no_verdict(tmp_path, m
         return replace(whole(folder), command=("verification.no_such_module",))
 
     monkeypatch.setattr(accuracy_study, "task", broken)
-    assert cli.run(output=tmp_path / "all", quiet=True) == 0
+    assert command.run(output=tmp_path / "all", quiet=True) == 0
     page = (tmp_path / "all" / "report.html").read_text()
     assert "No module named verification.no_such_module" in page
     report = json.loads((tmp_path / "all" / "report.json").read_text())
@@ -258,7 +259,7 @@ def test_study_that_fails_is_a_sentence_of_the_report_and_no_verdict(tmp_path, m
     assert [c["outcome"] for c in report["cases"]] == ["AGREES"]
 
     # A run of chosen cases measures no convergence.
-    assert cli.run("quick", output=tmp_path / "one", quiet=True) == 0
+    assert command.run("quick", output=tmp_path / "one", quiet=True) == 0
     assert 'id="semi-analytical-accuracy"' not in (tmp_path / "one" / "report.html").read_text()
     assert json.loads((tmp_path / "one" / "report.json").read_text())["accuracy"] is None
 
@@ -267,5 +268,5 @@ def test_study_that_fails_is_a_sentence_of_the_report_and_no_verdict(tmp_path, m
 def test_resumed_run_keeps_the_study(tmp_path, monkeypatch):
     monkeypatch.setattr(accuracy_study, "stored", lambda folder: study())
     monkeypatch.setattr(accuracy_study, "task", lambda folder: pytest.fail("measured again"))
-    assert cli.run(output=tmp_path / "out", quiet=True, resume=True) == 0
+    assert command.run(output=tmp_path / "out", quiet=True, resume=True) == 0
     assert 'id="finite-element-accuracy"' in (tmp_path / "out" / "report.html").read_text()

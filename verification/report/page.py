@@ -79,14 +79,21 @@ class CaseView:
     diagnostics: Table | None
 
 
-def render(results: Sequence[CaseResult], info: RunInfo, study: AccuracyStudy | None = None) -> str:
+def render(
+    results: Sequence[CaseResult],
+    info: RunInfo,
+    study: AccuracyStudy | None = None,
+    extra: Sequence[Section] = (),
+) -> str:
     """The whole page as text. Every string of a result is escaped: a title "<script>" stays text."""
     # A report tells of numbers that overflow or are not finite; it must not stumble over them.
     with np.errstate(all="ignore"):
-        return _render(results, info, study)
+        return _render(results, info, study, extra)
 
 
-def _render(results: Sequence[CaseResult], info: RunInfo, study: AccuracyStudy | None) -> str:
+def _render(
+    results: Sequence[CaseResult], info: RunInfo, study: AccuracyStudy | None, extra: Sequence[Section]
+) -> str:
     anchors = _anchors(results)
     contacts = [result for result in results if not result.published]
     contact_anchors = dict(enumerate(anchors[n] for n, result in enumerate(results) if not result.published))
@@ -109,7 +116,7 @@ def _render(results: Sequence[CaseResult], info: RunInfo, study: AccuracyStudy |
         matrix=verdict_matrix(contacts, contact_anchors) if contacts else None,
         printed=[published_view(result, anchors[n]) for n, result in enumerate(results) if result.published],
         outcomes=OUTCOMES.values(),
-        sections=_sections(results, anchors, study),
+        sections=[*_sections(results, anchors, study), *extra],
         cases=[
             _case(result, anchor) for result, anchor in zip(contacts, contact_anchors.values(), strict=True)
         ],

@@ -8,6 +8,7 @@ from pathlib import Path
 
 from verification import accuracy_study
 from verification.accuracy_study import AccuracyStudy
+from verification.report.cells import Section
 from verification.report.junit import junit_xml
 from verification.report.page import render
 from verification.result import SCHEMA, CaseResult, RunInfo, to_json
@@ -16,11 +17,16 @@ __all__ = ["report_json", "write_report"]
 
 
 def write_report(
-    results: Sequence[CaseResult], folder: Path, info: RunInfo, study: AccuracyStudy | None = None
+    results: Sequence[CaseResult],
+    folder: Path,
+    info: RunInfo,
+    study: AccuracyStudy | None = None,
+    extra: Sequence[Section] = (),
 ) -> Path:
     """Write report.html, report.json and junit.xml into ``folder`` and return the path of the page.
 
     study : how the errors of the methods fall with resolution, where that was measured.
+    extra : sections of the page about more than these results: baseline, credibility.
 
     All three are made before the first is written, and each replaces its predecessor in one step, so
     that whatever goes wrong leaves the earlier report as it was. Raises OSError where the folder cannot
@@ -29,7 +35,7 @@ def write_report(
     texts = {
         "report.json": report_json(results, info, study),
         "junit.xml": junit_xml(results, info),
-        "report.html": render(results, info, study),
+        "report.html": render(results, info, study, extra),
     }
     folder.mkdir(parents=True, exist_ok=True)
     ready: dict[Path, Path] = {}

@@ -1,0 +1,1 @@
+"""The commands of coatcheck, one file each; verification.cli names them."""

@@ -1,0 +1,79 @@
+"""coatcheck bench: the semi-analytical contact timed beside its peers."""
+
+import json
+import sys
+from dataclasses import asdict
+from typing import Annotated
+
+from cyclopts import Parameter
+from rich.console import Console
+from rich.table import Table
+
+from verification.commands.common import EXIT, complain
+from verification.verdict import Outcome
+
+__all__ = ["bench"]
+
+
+def bench(
+    *,
+    sizes: Annotated[
+        tuple[int, ...], Parameter(name=["--sizes", "-N"], consume_multiple=True, negative="")
+    ] = (
+        128,
+        256,
+        512,
+    ),
+    threads: Annotated[tuple[int, ...], Parameter(consume_multiple=True, negative="")] = (1, 2),
+    repeats: int = 5,
+    coated: Annotated[bool, Parameter(negative="")] = False,
+    as_json: Annotated[bool, Parameter(name="--json", negative="")] = False,
+) -> int:
+    """Time the semi-analytical contact beside tamaas (extra "bench"), both held to one judge; ratios first.
+
+    The full set takes half an hour: coatcheck bench --sizes 128 256 512 1024 2048 --coated
+
+    Parameters
+    ----------
+    sizes
+        Patches along a side of the square [-2a, 2a]^2.
+    threads
+        Numbers of threads to measure with.
+    repeats
+        Measurements of each; the median counts.
+    coated
+        Also count the iterations of coated solids on 512 x 512 patches.
+    as_json
+        Print everything measured as JSON.
+    """
+    if min(sizes) < 16 or max(sizes) > 4096 or min(threads) < 1 or repeats < 1:
+        return complain("--sizes from 16 to 4096, --threads and --repeats from 1")
+    from verification.bench import ratios, run_bench, run_coated
+
+    console = Console(stderr=True)
+    rows = run_bench(sizes=sizes, threads=threads, repeats=repeats, progress=lambda line: console.print(line))
+    found = ratios(rows)
+    layered = run_coated() if coated else []
+    if as_json:
+        content = {
+            "rows": [asdict(r) for r in rows],
+            "ratios": dict(found),
+            "coated": [asdict(r) for r in layered],
+        }
+        sys.stdout.write(json.dumps(content, indent=2) + "\n")
+        return 0
+    figures = Table("figure", "value", box=None, header_style="bold")
+    for name, value in found:
+        figures.add_row(name, f"{value:.4g}")
+    measured = Table("solver", "N", "threads", "s, median", "gap", "penetration", "load", "judge", box=None)
+    for r in rows:
+        judge = (f"{r.gap:.1e}", f"{r.penetration:.1e}", f"{r.load:.1e}", "meets" if r.passes else "FAILS")
+        measured.add_row(r.solver, str(r.patches), str(r.threads), f"{r.seconds:.3f}", *judge)
+    Console().print(figures, "", measured)
+    if layered:
+        table = Table("E1/E2", "h/a", "iterations", "convolutions", "s", "of it coefficients", box=None)
+        for c in layered:
+            counts = (str(c.iterations), str(c.convolutions), f"{c.seconds:.3f}", f"{c.setup_seconds:.3f}")
+            table.add_row(f"{c.modulus_ratio:g}", f"{c.thickness:g}", *counts)
+        Console().print("", table)
+    return 0 if all(row.passes for row in rows) else EXIT[Outcome.DISAGREES]

@@ -1,0 +1,206 @@
+"""coatcheck run: solve cases, judge every claim, write the report."""
+
+import datetime
+import json
+import sys
+import time
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Annotated, TypeVar
+
+from cyclopts import Parameter
+from rich.console import Console
+from rich.table import Table
+
+from verification.case import Case, CaseError, read_case, shipped_cases
+from verification.commands.common import EXIT, STYLE, complain, exit_code, progress_bar
+from verification.printed import PublishedCase, is_published, published_cases, read_published
+from verification.result import CaseResult, RunInfo, from_json
+from verification.schedule import Task, case_task, cores, published_task, result_path, run_tasks
+from verification.store import StoreError, locked, read_checked
+from verification.surroundings import commit, machine, missing_libraries, versions
+from verification.verdict import Outcome
+
+__all__ = ["run"]
+
+T = TypeVar("T")
+
+
+def run(
+    *cases: str,
+    output: Annotated[Path, Parameter(name=["--output", "-o"])] = Path("reports"),
+    jobs: Annotated[int | None, Parameter(name=["--jobs", "-j"])] = None,
+    time_limit: float = 600.0,
+    resume: Annotated[bool, Parameter(negative="")] = False,
+    quiet: Annotated[bool, Parameter(name=["--quiet", "-q"], negative="")] = False,
+    as_json: Annotated[bool, Parameter(name="--json", negative="")] = False,
+) -> int:
+    """Solve cases by every method and reference, judge every claim, write the report.
+
+    Without arguments all shipped cases are run, and the convergence of both methods is measured. Examples:
+
+        coatcheck run
+        coatcheck run 05_ratio_4 my_coating.toml --output reports/mine
+        coatcheck run published
+
+    Parameters
+    ----------
+    cases
+        Names of shipped cases (see coatcheck list) or paths of .toml case files; "published" stands for all
+        results that others printed.
+    output
+        Directory of the report: report.html, report.json, junit.xml and one file per case.
+    jobs
+        Cases solved side by side; all cores unless given. Each gets its share of the threads.
+    time_limit
+        Seconds one case may take before it is stopped and reported as having no result.
+    resume
+        Keep the whole results already in the output directory that belong to the same case files.
+    quiet
+        Print nothing but complaints.
+    as_json
+        Print one JSON object with the outcome of each case instead of a table.
+    """
+    jobs = cores() if jobs is None else jobs
+    if jobs < 1 or not time_limit > 0:
+        return complain(f"--jobs = {jobs}, --time-limit = {time_limit:g}; both must be positive")
+    try:
+        chosen = _choose(cases)
+    except CaseError as error:
+        return complain(str(error))
+    lacking = missing_libraries()
+    if lacking:
+        complain(f"gmsh lacks system libraries here; install them with: apt-get install {' '.join(lacking)}")
+        return EXIT[Outcome.NO_RESULT]
+
+    from verification import accuracy_study  # SciPy and matplotlib take a second to load
+    from verification.accuracy_study import AccuracyStudy
+    from verification.report import write_report
+
+    begin, started = time.perf_counter(), datetime.datetime.now(datetime.UTC)
+    try:
+        with locked(output):
+            kept = {c.name: r for c in chosen if resume and (r := _stored(output, c)) is not None}
+            study = accuracy_study.stored(output) if resume and not cases else None
+            tasks: list[Task[CaseResult | AccuracyStudy]] = []
+            if not cases and study is None:
+                tasks.append(accuracy_study.task(output))
+            tasks += [_task(c, output) for c in chosen if c.name not in kept]
+            solved = _solve(tasks, jobs, time_limit, quiet or as_json)
+            results = {r.name: r for r in solved if isinstance(r, CaseResult)}
+            study = next((r for r in solved if isinstance(r, AccuracyStudy)), study)
+            ordered = [kept.get(case.name) or results[case.name] for case in chosen]
+            info = RunInfo(
+                command=" ".join(["coatcheck run", *cases]),
+                started=started.isoformat(timespec="seconds"),
+                seconds=time.perf_counter() - begin,
+                jobs=jobs,
+                commit=commit(),
+                machine=f"{machine()}, {cores()} cores",
+                versions=versions(),
+            )
+            page = write_report(ordered, output, info, study)
+    except StoreError as error:
+        return complain(str(error))
+    if as_json:
+        sys.stdout.write(json.dumps(_summary(ordered, page), indent=2) + "\n")
+    elif not quiet:
+        _print_table(ordered, page, time.perf_counter() - begin)
+    return exit_code(ordered)
+
+
+def _choose(names: Sequence[str]) -> list[Case | PublishedCase]:
+    shipped, published = shipped_cases(), published_cases()
+    cases: list[Case | PublishedCase] = []
+    for name in names or shipped:
+        if name in shipped:
+            cases.append(read_case(shipped[name]))
+        elif name in published:
+            cases.append(read_published(published[name]))
+        elif name == "published":
+            cases += [read_published(path) for path in published.values()]
+        elif name.endswith(".toml") or "/" in name or Path(name).exists():
+            path = Path(name)
+            cases.append(read_published(path) if is_published(path) else read_case(path))
+        else:
+            raise CaseError(f"{name}: neither a shipped case (see coatcheck list) nor a .toml file")
+    twice = {case.name for case in cases if sum(other.name == case.name for other in cases) > 1}
+    if twice:
+        raise CaseError(f"{sorted(twice)[0]}: named twice; give each case file a name of its own")
+    return cases
+
+
+def _task(case: Case | PublishedCase, output: Path) -> Task[CaseResult]:
+    return case_task(case, output) if isinstance(case, Case) else published_task(case, output)
+
+
+def _stored(output: Path, case: Case | PublishedCase) -> CaseResult | None:
+    """A whole earlier result of the very same case file, or None."""
+    try:
+        result = from_json(read_checked(result_path(output, case)))
+    except (StoreError, ValueError, KeyError, TypeError):
+        return None
+    return result if result.text == case.text else None
+
+
+def _solve(tasks: Sequence[Task[T]], jobs: int, time_limit: float, silent: bool) -> list[T]:
+    console = Console(stderr=True)
+    bar = progress_bar(console, silent=silent)
+    at_work: list[str] = []
+    with bar:
+        task = bar.add_task("solving", total=len(tasks))
+
+        def started(name: str) -> None:
+            at_work.append(name)
+            bar.update(task, description=", ".join(at_work))
+
+        def finished(name: str, result: T) -> None:
+            at_work.remove(name)
+            bar.update(task, advance=1, description=", ".join(at_work) or "report")
+            if not silent and isinstance(result, CaseResult):
+                colour = STYLE[result.outcome]
+                console.print(
+                    f"[{colour}]{result.outcome:<12}[/] {result.name}  {result.seconds:.1f} s",
+                    highlight=False,
+                )
+
+        return run_tasks(tasks, jobs=jobs, time_limit=time_limit, started=started, finished=finished)
+
+
+def _summary(results: Sequence[CaseResult], page: Path) -> dict[str, object]:
+    return {
+        "report": str(page),
+        "exit_code": exit_code(results),
+        "cases": {
+            result.name: {
+                "outcome": result.outcome,
+                "verdicts": {o: sum(v.outcome is o for _, v in result.verdicts) for o in Outcome},
+            }
+            for result in results
+        },
+    }
+
+
+def _print_table(results: Sequence[CaseResult], page: Path, seconds: float) -> None:
+    table = Table(
+        "case", *(outcome.lower() for outcome in Outcome), "largest difference", box=None, header_style="bold"
+    )
+    for result in results:
+        worst = max((v.difference for _, v in result.verdicts if v.difference is not None), default=None)
+        table.add_row(
+            result.name,
+            *(
+                f"[{STYLE[o]}]{n}[/]" if (n := sum(v.outcome is o for _, v in result.verdicts)) else "."
+                for o in Outcome
+            ),
+            "-" if worst is None else f"{worst:.1e}",
+        )
+    console = Console()
+    console.print(table)
+    for result in results:
+        for source in result.sources:
+            if source.failure:
+                console.print(
+                    f"[bold red]{result.name}, {source.source}:[/] {source.failure}", highlight=False
+                )
+    console.print(f"{len(results)} cases in {seconds:.0f} s; report: {page}", highlight=False)
