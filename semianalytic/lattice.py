@@ -4,7 +4,7 @@
 
 K has several components; some are odd in y, all others even, so that the table of K is computed for
 j >= l and mirrored. Far from the forces they may first be gathered on a coarser lattice, with the weights
-of the interpolation that K, smooth over it, would allow (its adjoint: moments up to five are kept).
+of the interpolation that K, smooth over it, would allow (its adjoint: moments up to nine are kept).
 """
 
 from collections.abc import Callable, Sequence
@@ -43,9 +43,9 @@ class Lattice:
     force: Array
 
     def coarser(self) -> "Lattice":
-        """The same forces on twice the spacing, by the adjoint of quintic interpolation."""
+        """The same forces on twice the spacing, by the adjoint of interpolation through ten sites."""
         force = _gather(_gather(self.force).T).T
-        return Lattice(self.x0 - 6 * self.dx, self.y0 - 6 * self.dy, 2 * self.dx, 2 * self.dy, force)
+        return Lattice(self.x0 - 10 * self.dx, self.y0 - 10 * self.dy, 2 * self.dx, 2 * self.dy, force)
 
 
 def nodal_forces(grid_x: Array, grid_y: Array, pressure: Array) -> Lattice:
@@ -72,15 +72,16 @@ def samples(mean: Array) -> Array:
 
 
 def _gather(force: Array) -> Array:
-    """Every second row takes over the forces of all, starting six rows before the first."""
+    """Every second row takes over the forces of all, starting ten rows before the first."""
     n = force.shape[0]
-    padded = np.zeros((n + 24, force.shape[1]))
-    padded[11 : 11 + n] = force
-    count = (n + 1) // 2 + 6
-    out = np.zeros((count, force.shape[1]))
-    for offset, weight in ((0, 256), (1, 150), (-1, 150), (3, -25), (-3, -25), (5, 3), (-5, 3)):
-        begin = 5 + offset
-        out += weight / 256 * padded[begin : begin + 2 * count : 2]
+    padded = np.zeros((n + 40, force.shape[1]))
+    padded[19 : 19 + n] = force
+    count = (n + 1) // 2 + 10
+    out = padded[9 : 9 + 2 * count : 2].copy()
+    # Lagrange's weights half-way between ten sites
+    for offset, weight in ((1, 39690), (3, -8820), (5, 2268), (7, -405), (9, 35)):
+        for begin in (9 - offset, 9 + offset):
+            out += weight / 65536 * padded[begin : begin + 2 * count : 2]
     return out
 
 

@@ -159,7 +159,16 @@ class Solution:
         return spread + moved
 
     def stress_uncertainty(self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None) -> Array:
-        """Uncertainty of the stress [Pa], shape (3, 3) + points, from the coarser companions.
+        """Uncertainty of the stress [Pa], shape (3, 3) + points; see ``stress_with_uncertainty``.
+
+        Raises ValueError where no uncertainty was estimated.
+        """
+        return self.stress_with_uncertainty(x, y, z, layer)[1]
+
+    def stress_with_uncertainty(
+        self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None
+    ) -> tuple[Array, Array]:
+        """Stress and its uncertainty [Pa], shape (3, 3) + points each, the latter from coarser companions.
 
         The largest difference over the six components, of this grid and half of it or, an eighth of it, of
         half and a quarter, for every component alike; plus what the other knobs do to the peak pressure, and
@@ -167,14 +176,15 @@ class Solution:
         Raises ValueError where no uncertainty was estimated.
         """
         coarser, floor = self._companion()
+        sigma = self.stress(x, y, z, layer)
         halved = coarser.stress(x, y, z, layer)
-        spread = np.abs(self.stress(x, y, z, layer) - halved).max(axis=(0, 1))
+        spread = np.abs(sigma - halved).max(axis=(0, 1))
         if coarser.coarser is not None:
             quartered = coarser.coarser.stress(x, y, z, layer)
             spread = np.maximum(spread, np.abs(halved - quartered).max(axis=(0, 1)) / 8)
         shallow = np.asarray(z) < 4 * self.diagnostics.patch_size
         total = spread + (floor + np.where(shallow, *EVALUATION)) * self.peak_pressure
-        return np.broadcast_to(total, (3, 3, *spread.shape)).copy()
+        return sigma, np.broadcast_to(total, (3, 3, *spread.shape)).copy()
 
     def _companion(self) -> tuple["Solution", float]:
         if self.uncertainty is None or self.coarser is None:

@@ -44,7 +44,7 @@ Field = Callable[..., Array]
 Coatings = Sequence[tuple[float, float, float]]
 
 SHALLOW = 3.0  # patches; above this depth a node is not yet a point force: aliases exp(-6 pi) = 7e-9
-COARSE = 12.0  # depth over lattice spacing; the sixth-order interpolation then errs by 3e-7 of p_h
+COARSE = 12.0  # depth over lattice spacing; interpolation through ten sites then errs by 1e-8 of p_h
 CHEBYSHEV = 10  # shallow depths; more than these are interpolated, to 1e-6 three patches from the edge
 SIX = ((0, 1, 2, 0, 0, 1), (0, 1, 2, 1, 2, 2))  # xx, yy, zz, xy, xz, yz
 
@@ -250,11 +250,9 @@ def _fields(
             yield partial(between_sites, lattice=fine, influence=influence, odd_in_y=body.odd_in_y, order=4)
         else:
             level = int(np.clip(np.log2(max(z / (COARSE * d), 1)), 0, len(lattices) - 1))
-            # z/12 > spacing for sextic interpolation, z/3 for one of tenth order
-            order = 6 if z > COARSE * d else 10
             assert table is not None
             yield partial(
-                at_points, lattice=lattices[level], kernel=table, odd_in_y=body.odd_in_y, order=order
+                at_points, lattice=lattices[level], kernel=table, odd_in_y=body.odd_in_y, order=10
             )
 
 

@@ -114,8 +114,13 @@ def sample(solution: Solution, source: str, line: Line, position: NDArray[np.flo
                 solution.pressure_uncertainty(x) if stated else None,
             )
         )
-    sigma = solution.stress(x, 0.0, z, layer=line.layer)
-    spread = solution.stress_uncertainty(x, 0.0, z, layer=line.layer) if stated else None
+    # asked of the type: a stand-in that answers for ``stress`` alone is asked for ``stress``
+    both = getattr(type(solution), "stress_with_uncertainty", None)
+    if stated and both is not None:
+        sigma, spread = both(solution, x, 0.0, z, layer=line.layer)
+    else:
+        sigma = solution.stress(x, 0.0, z, layer=line.layer)
+        spread = solution.stress_uncertainty(x, 0.0, z, layer=line.layer) if stated else None
     for name, component in STRESSES.items():
         profiles.append(
             Profile(
