@@ -17,6 +17,7 @@ from verification.verdict import Claim, Outcome, Verdict, compare, judge
 __all__ = [
     "Solved",
     "Solver",
+    "decide",
     "describe",
     "diagnostics_of",
     "failed",
@@ -126,7 +127,7 @@ def judge_case(case: Case, solved: Solved) -> CaseResult:
     edge = next(
         (solutions[s].contact_radius for s in reversed(list(solutions)) if not outcomes[s].failure), 0.0
     )
-    verdicts = tuple((claim, _decide(claim, profiles, outcomes, case.problem, edge)) for claim in case.claims)
+    verdicts = tuple((claim, decide(claim, profiles, outcomes, case.problem, edge)) for claim in case.claims)
     return CaseResult(
         name=case.name,
         title=case.title,
@@ -155,13 +156,14 @@ def failed(case: Case, reason: str, seconds: float) -> CaseResult:
     )
 
 
-def _decide(
+def decide(
     claim: Claim,
     profiles: Mapping[tuple[str, str, str], Profile],
     outcomes: Mapping[str, SourceResult],
     problem: CoatedContact,
     edge: float,
 ) -> Verdict:
+    """The verdict of ``claim``; ``profiles`` by (quantity, line, source), ``edge`` the contact radius [m]."""
     sides = []
     for source in claim.between:
         outcome = outcomes.get(source)
