@@ -19,8 +19,10 @@ __all__ = [
     "Text",
     "first_complaint",
     "parse_case",
+    "read_bounded",
     "read_case",
     "read_toml",
+    "refuse_unfit_scales",
     "shipped_cases",
     "sources_of",
     "standard_claims",
@@ -170,19 +172,24 @@ class _CaseFile(Strict):
 
 def read_case(path: Path) -> Case:
     """Read and check one case file. Raises CaseError: one sentence with file and key."""
+    return parse_case(read_bounded(path, "case", "one problem"), path)
+
+
+def read_bounded(path: Path, kind: str, holds: str) -> bytes:
+    """The content of a .toml file of a ``kind`` that ``holds`` little. Raises CaseError."""
     try:
         if not path.is_file():
             what = "is a directory" if path.is_dir() else "there is no such file"
-            raise CaseError(f"{path}: {what}; give the path of a .toml case file")
+            raise CaseError(f"{path}: {what}; give the path of a .toml {kind} file")
         with path.open("rb") as file:
             raw = file.read(MAX_BYTES + 1)
     except (OSError, ValueError) as error:
         if isinstance(error, CaseError):
             raise
-        raise CaseError(f"{path}: {error}; give the path of a .toml case file") from None
+        raise CaseError(f"{path}: {error}; give the path of a .toml {kind} file") from None
     if len(raw) > MAX_BYTES:
-        raise CaseError(f"{path}: larger than {MAX_BYTES} bytes; a case file holds one problem")
-    return parse_case(raw, path)
+        raise CaseError(f"{path}: larger than {MAX_BYTES} bytes; a {kind} file holds {holds}")
+    return raw
 
 
 def read_toml(raw: bytes, path: Path, model: type[Checked]) -> tuple[str, Checked]:
@@ -207,7 +214,7 @@ def parse_case(raw: bytes, path: Path) -> Case:
         problem = replace(bare, coatings=tuple((c.E, c.nu, c.in_metres(bare.a_h)) for c in p.coatings))
     except ValueError as error:
         raise CaseError(f"{path}: problem: {error}") from None
-    _refuse_unfit_scales(path, problem)
+    refuse_unfit_scales(path, problem)
     return Case(
         name=path.stem,
         title=checked.title,
@@ -222,8 +229,8 @@ def parse_case(raw: bytes, path: Path) -> Case:
     )
 
 
-def _refuse_unfit_scales(path: Path, problem: CoatedContact) -> None:
-    # Beyond these the parabolic sphere, or floating point itself, no longer describes a contact.
+def refuse_unfit_scales(path: Path, problem: CoatedContact) -> None:
+    """Raise CaseError where the parabolic sphere, a method or floating point no longer holds."""
     if problem.a_h > problem.radius:
         raise CaseError(
             f"{path}: problem.load: gives a contact radius of {problem.a_h:.3g} m on a sphere of "
