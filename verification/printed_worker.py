@@ -10,11 +10,12 @@ from verification.printed import read_published
 from verification.printed_run import run
 from verification.result import to_json
 from verification.store import write_checked
+from verification.surroundings import fingerprint
 
 
 def main(case: str, path: str) -> None:
     """Solve the published case of the file ``case`` and store its result at ``path``."""
-    write_checked(Path(path), to_json(run(read_published(Path(case)))))
+    write_checked(Path(path), to_json(run(read_published(Path(case)))) | {"made_by": fingerprint()})
 
 
 if __name__ == "__main__":

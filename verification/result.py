@@ -99,48 +99,58 @@ def to_json(result: CaseResult) -> dict[str, Any]:
 
 
 def from_json(data: dict[str, Any]) -> CaseResult:
-    """The inverse of ``to_json``. Raises ValueError where the schema is another one."""
+    """The inverse of ``to_json``. Raises ValueError for another schema or a part that is not what it states.
+
+    The data may be a stranger's: every part is brought to its type, nothing in it is looked up or called.
+    """
     if data.get("schema") != SCHEMA:
         raise ValueError(
             f"schema = {data.get('schema')!r}; this version reads {SCHEMA!r}, run the case again"
         )
-    return CaseResult(
-        name=data["name"],
-        title=data["title"],
-        source=data["source"],
-        problem=data["problem"],
-        sources=tuple(
-            SourceResult(
-                s["source"],
-                s["seconds"],
-                s["failure"],
-                s["diagnostics"],
-                tuple((str(q), str(k), float(v)) for q, k, v in s["budget"]),
-            )
-            for s in data["sources"]
-        ),
-        profiles=tuple(
-            Profile(
-                p["quantity"],
-                p["line"],
-                _array(p["position"]),
-                _array(p["value"]),
-                p["source"],
-                None if p["uncertainty"] is None else _array(p["uncertainty"]),
-            )
-            for p in data["profiles"]
-        ),
-        verdicts=tuple(
-            (
-                Claim(**{**v["claim"], "between": tuple(v["claim"]["between"])}),
-                Verdict(**{**v["verdict"], "outcome": Outcome(v["verdict"]["outcome"])}),
-            )
-            for v in data["verdicts"]
-        ),
-        seconds=data["seconds"],
-        text=data["case_file"],
-        published=data.get("published", {}),
-    )
+    try:
+        return CaseResult(
+            name=str(data["name"]),
+            title=str(data["title"]),
+            source=str(data["source"]),
+            problem=dict(data["problem"]),
+            sources=tuple(
+                SourceResult(
+                    str(s["source"]),
+                    float(s["seconds"]),
+                    None if s["failure"] is None else str(s["failure"]),
+                    dict(s["diagnostics"]),
+                    tuple((str(q), str(k), float(v)) for q, k, v in s["budget"]),
+                )
+                for s in data["sources"]
+            ),
+            profiles=tuple(_profile(p) for p in data["profiles"]),
+            verdicts=tuple((_claim(v["claim"]), _verdict(v["verdict"])) for v in data["verdicts"]),
+            seconds=float(data["seconds"]),
+            text=str(data["case_file"]),
+            published=dict(data.get("published", {})),
+        )
+    except (KeyError, TypeError, AttributeError, OverflowError) as error:
+        raise ValueError(f"not a result of this program ({error!r}); run the case again") from None
+
+
+def _profile(p: dict[str, Any]) -> Profile:
+    position, value = _array(p["position"]), _array(p["value"])
+    spread = None if p["uncertainty"] is None else _array(p["uncertainty"])
+    if position.shape != value.shape or (spread is not None and spread.shape != value.shape):
+        raise ValueError(f"profile of {p['quantity']} on {p['line']}: as many values as positions are needed")
+    return Profile(str(p["quantity"]), str(p["line"]), position, value, str(p["source"]), spread)
+
+
+def _claim(c: dict[str, Any]) -> Claim:
+    first, second = c["between"]
+    texts = {key: str(c[key]) for key in ("quantity", "line", "why")}
+    return Claim(**texts, between=(str(first), str(second)), cap=float(c["cap"]), edge=float(c["edge"]))
+
+
+def _verdict(v: dict[str, Any]) -> Verdict:
+    keys = ("difference", "uncertainty", "margin", "worst")
+    figures = {key: None if v[key] is None else float(v[key]) for key in keys}
+    return Verdict(Outcome(v["outcome"]), str(v["reason"]), **figures)
 
 
 def plain(value: Any) -> Any:

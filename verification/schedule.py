@@ -1,12 +1,16 @@
-"""Tasks side by side, each in a process of its own with a time limit."""
+"""Tasks side by side, each in a process of its own with a time limit.
+
+A process ends with this one however that ends, and may not take more memory than there is: see ``confined``.
+"""
 
 import os
+import signal
 import subprocess
 import sys
 import tempfile
 import time
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -14,12 +18,24 @@ from typing import IO, Any, Generic, TypeVar
 
 from verification import printed_run
 from verification.case import Case
+from verification.confined import UNWRITABLE
 from verification.printed import PublishedCase
-from verification.result import CaseResult, from_json
-from verification.run import failed
+from verification.result import CaseResult, from_json, plain
+from verification.run import describe, failed
 from verification.store import StoreError, read_checked
+from verification.surroundings import fingerprint
+from verification.verdict import Outcome
 
-__all__ = ["Task", "case_task", "cores", "published_task", "result_path", "run_cases", "run_tasks"]
+__all__ = [
+    "Task",
+    "case_task",
+    "cores",
+    "kept_result",
+    "published_task",
+    "result_path",
+    "run_cases",
+    "run_tasks",
+]
 
 T = TypeVar("T")
 T_co = TypeVar("T_co", covariant=True)
@@ -58,14 +74,41 @@ def case_task(case: Case, folder: Path) -> Task[CaseResult]:
     """Solving ``case`` with its result stored under ``folder``."""
     path = result_path(folder, case)
     words = ("verification.worker", case.name, str(path))
-    return Task(case.name, words, path, from_json, partial(failed, case), case.text.encode())
+    return Task(case.name, words, path, partial(_of, case), partial(failed, case), case.text.encode())
 
 
 def published_task(case: PublishedCase, folder: Path) -> Task[CaseResult]:
     """Holding both methods against what ``case`` printed, its result stored under ``folder``."""
     path = result_path(folder, case)
     words = ("verification.printed_worker", str(case.path), str(path))
-    return Task(case.name, words, path, from_json, partial(printed_run.failed, case))
+    return Task(case.name, words, path, partial(_of, case), partial(printed_run.failed, case))
+
+
+def _of(case: Case | PublishedCase, data: dict[str, Any]) -> CaseResult:
+    """The stored result of ``case``. Raises ValueError where it is that of another file or problem."""
+    result = from_json(data)
+    if (result.name, result.text, result.problem) != (case.name, case.text, plain(describe(case.problem))):
+        raise ValueError(f"holds the result of another case file than {case.name} is now")
+    return result
+
+
+def kept_result(folder: Path, case: Case | PublishedCase) -> CaseResult | None:
+    """The result of ``case`` in a run directory that need not be computed again; None where there is none.
+
+    It is whole, of the same case file, made by the same code, and a result.
+    Raises StoreError, naming the file, where there is one that cannot be used.
+    """
+    path = result_path(folder, case)
+    if not os.path.lexists(path):
+        return None
+    data = read_checked(path)
+    if data.get("made_by") != fingerprint():
+        raise StoreError(f"{path}: made by another version of this program")
+    try:
+        result = _of(case, data)
+    except ValueError as error:
+        raise StoreError(f"{path}: {error}") from None
+    return result if result.outcome is not Outcome.NO_RESULT else None
 
 
 def run_cases(cases: Sequence[Case], folder: Path, *, jobs: int, time_limit: float) -> list[CaseResult]:
@@ -83,48 +126,57 @@ def run_tasks(
 ) -> list[T]:
     """Run ``tasks`` on ``jobs`` processes, each of a name of its own; results in their order.
 
-    A process that fails, hangs beyond ``time_limit`` [s] or dies leaves what its task makes of the reason.
+    A process that fails, hangs beyond ``time_limit`` [s] or dies leaves what its task makes of the reason,
+    and the file of an earlier run as it was. Raises StoreError where results cannot be written.
     """
     threads = max(1, cores() // jobs)
-    waiting = list(tasks)
-    running: list[_Job] = []
-    results: dict[str, T] = {}
-    with _reaped(running):
+    waiting = list(enumerate(tasks))
+    running: dict[int, _Job[T]] = {}
+    results: dict[int, T] = {}
+    with _lifeline() as lifeline, _reaped(running):
         while waiting or running:
             while waiting and len(running) < jobs:
-                task = waiting.pop(0)
-                running.append(_Job(task, threads))
+                number, task = waiting.pop(0)
+                running[number] = _Job(task, threads, lifeline)
                 started(task.name)
             time.sleep(POLL)
-            for job in list(running):
+            for number, job in list(running.items()):
                 result = job.poll(time_limit)
                 if result is not None:
-                    running.remove(job)
-                    results[job.task.name] = result
+                    del running[number]
+                    results[number] = result
                     finished(job.task.name, result)
-    return [results[task.name] for task in tasks]
+    return [results[number] for number in range(len(tasks))]
 
 
 class _Job(Generic[T]):
-    def __init__(self, task: Task[T], threads: int) -> None:
+    def __init__(self, task: Task[T], threads: int, lifeline: int) -> None:
         self.task, self.begin = task, time.monotonic()
-        task.path.unlink(missing_ok=True)
-        self.said: IO[bytes] = tempfile.TemporaryFile()  # noqa: SIM115 - lives as long as the process
-        with tempfile.TemporaryFile() as question:
-            question.write(task.question)
-            question.seek(0)
-            self.process = subprocess.Popen(
-                [sys.executable, "-m", *task.command],
-                stdin=question,
-                stdout=subprocess.DEVNULL,
-                stderr=self.said,
-                # Tasks run side by side, so each may use its share of the cores, no more.
-                env=os.environ | dict.fromkeys(THREAD_VARIABLES, str(threads)),
-                start_new_session=True,
-            )
+        self.earlier = _identity(task.path)
+        self.process: subprocess.Popen[bytes] | None = None
+        self.refused = ""
+        try:
+            self.said: IO[bytes] = tempfile.TemporaryFile()  # noqa: SIM115 - lives as long as the process
+            with tempfile.TemporaryFile() as question:
+                question.write(task.question)
+                question.seek(0)
+                self.process = subprocess.Popen(
+                    [sys.executable, "-m", "verification.confined", str(lifeline), *task.command],
+                    stdin=question,
+                    stdout=subprocess.DEVNULL,
+                    stderr=self.said,
+                    # Tasks run side by side, so each may use its share of the cores, no more.
+                    env=os.environ | dict.fromkeys(THREAD_VARIABLES, str(threads)),
+                    start_new_session=True,
+                    pass_fds=(lifeline,),
+                )
+        except OSError as error:
+            self.refused = f"its process could not be started ({error.strerror}); free memory and space"
 
     def poll(self, time_limit: float) -> T | None:
         seconds = time.monotonic() - self.begin
+        if self.process is None:
+            return self.task.failed(self.refused, seconds)
         code = self.process.poll()
         if code is None:
             if seconds < time_limit:
@@ -133,18 +185,37 @@ class _Job(Generic[T]):
             return self.task.failed(
                 f"not finished after {seconds:.0f} s; raise --time-limit or coarsen the case", seconds
             )
+        self.stop(close=False)
         with self.said:
+            if code == UNWRITABLE:
+                raise StoreError(_last_words(self.said))
             if code != 0:
                 return self.task.failed(f"its process {_death(code, self.said)}", seconds)
-            try:
-                return self.task.read(read_checked(self.task.path))
-            except (StoreError, ValueError) as error:
-                return self.task.failed(str(error), seconds)
+        if _identity(self.task.path) == self.earlier:
+            return self.task.failed("its process left no result; run the case alone", seconds)
+        try:
+            return self.task.read(read_checked(self.task.path))
+        except (StoreError, ValueError, KeyError, TypeError, AttributeError) as error:
+            return self.task.failed(" ".join(str(error).split()), seconds)
 
-    def stop(self) -> None:
-        self.process.kill()
+    def stop(self, *, close: bool = True) -> None:
+        """End the process with all that it started."""
+        if self.process is None:
+            return
+        with suppress(OSError):
+            os.killpg(self.process.pid, signal.SIGKILL)
         self.process.wait()
-        self.said.close()
+        if close:
+            self.said.close()
+
+
+def _identity(path: Path) -> tuple[int, int] | None:
+    """What changes when ``path`` is written anew; None where there is nothing."""
+    try:
+        found = path.stat(follow_symlinks=False)
+    except OSError:
+        return None
+    return found.st_ino, found.st_mtime_ns
 
 
 def _death(code: int, said: IO[bytes]) -> str:
@@ -152,16 +223,31 @@ def _death(code: int, said: IO[bytes]) -> str:
         return "was killed (signal 9), most likely for want of memory; run fewer --jobs"
     if code < 0:
         return f"crashed with signal {-code}; run the case alone to see whether it repeats"
+    return f"ended with code {code}: {_last_words(said)}"
+
+
+def _last_words(said: IO[bytes]) -> str:
     said.seek(max(0, said.seek(0, os.SEEK_END) - 2000))
     last = said.read().decode(errors="replace").strip().splitlines()
-    return f"ended with code {code}: {last[-1] if last else 'no message'}"
+    return last[-1] if last else "no message"
 
 
 @contextmanager
-def _reaped(running: list[_Job]) -> Iterator[None]:
+def _lifeline() -> Iterator[int]:
+    """A pipe that processes listen to: closed when this process ends, even by kill -9."""
+    listen, held = os.pipe()
+    try:
+        yield listen
+    finally:
+        os.close(listen)
+        os.close(held)
+
+
+@contextmanager
+def _reaped(running: dict[int, _Job[T]]) -> Iterator[None]:
     """No process outlives the run, however it ends."""
     try:
         yield
     finally:
-        for job in running:
+        for job in running.values():
             job.stop()

@@ -1,17 +1,34 @@
 """Files of a run directory: written whole or not at all, read back only if their checksum holds."""
 
+import errno
 import hashlib
 import json
 import os
+import re
+import stat
 import tempfile
-from collections.abc import Iterator
-from contextlib import contextmanager
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
-__all__ = ["StoreError", "locked", "read_checked", "write_atomically", "write_checked"]
+__all__ = [
+    "PART",
+    "StoreError",
+    "locked",
+    "read_bounded",
+    "read_checked",
+    "read_sealed",
+    "seal",
+    "write_atomically",
+    "write_checked",
+]
 
-MAX_BYTES = 200_000_000
+# A result of this program takes up to 3 MB; what is larger was not written by it.
+MAX_BYTES = 50_000_000
+PART = ".coatcheck-part"  # how the name of a file ends that is still being written
+FOLDERS = ("cases", "fields", "pictures", "baseline")  # whatever a run writes below its directory
+_HEAD = re.compile(r'\{"sha256": "([0-9a-f]{64})", "payload": ')
 
 
 class StoreError(Exception):
@@ -19,12 +36,17 @@ class StoreError(Exception):
 
 
 def write_atomically(path: Path, content: str | bytes) -> None:
-    """Write to a temporary file beside ``path``, flush it to disk, rename. Raises StoreError."""
+    """Write to a temporary file beside ``path``, flush it to disk, rename. Raises StoreError.
+
+    A link at ``path`` is replaced, never followed.
+    """
     data = content.encode() if isinstance(content, str) else content
     temporary = None
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        with tempfile.NamedTemporaryFile(dir=path.parent, prefix=f".{path.name}.", delete=False) as file:
+        with tempfile.NamedTemporaryFile(
+            dir=path.parent, prefix=f".{path.name[:80]}.", suffix=PART, delete=False
+        ) as file:
             temporary = Path(file.name)
             file.write(data)
             file.flush()
@@ -33,7 +55,8 @@ def write_atomically(path: Path, content: str | bytes) -> None:
         temporary.replace(path)
     except OSError as error:
         if temporary is not None:
-            temporary.unlink(missing_ok=True)
+            with suppress(OSError):
+                temporary.unlink(missing_ok=True)
         raise StoreError(
             f"{path}: cannot be written ({error.strerror or error}); free space or choose --output"
         ) from None
@@ -48,32 +71,87 @@ def write_checked(path: Path, payload: dict[str, Any]) -> None:
 def read_checked(path: Path) -> dict[str, Any]:
     """The payload of ``path``. Raises StoreError where it is missing, damaged or cut short."""
     try:
-        with path.open("rb") as file:
-            raw = file.read(MAX_BYTES + 1)
-        if len(raw) > MAX_BYTES:
-            raise StoreError(f"{path}: larger than {MAX_BYTES} bytes; not a result of this program")
-        text = raw.decode("utf-8")
-        data = json.loads(text)
-        stated, payload = data["sha256"], data["payload"]
-        start = text.index('"payload": ') + len('"payload": ')
-        if not text.endswith("}\n") or _digest(text[start:-2]) != stated or not isinstance(payload, dict):
+        text = read_bounded(path, MAX_BYTES).decode("utf-8")
+        head = _HEAD.match(text)
+        # The checksum comes first: nothing is parsed that this program did not write.
+        if head is None or not text.endswith("}\n"):
+            raise ValueError
+        body = text[head.end() : -2]
+        if _digest(body) != head[1]:
             raise StoreError(f"{path}: its checksum does not hold; the file is damaged, run the case again")
-    except OSError as error:
-        raise StoreError(f"{path}: cannot be read ({error.strerror})") from None
-    except (ValueError, KeyError, TypeError, RecursionError):
+        payload = json.loads(body)
+        if not isinstance(payload, dict):
+            raise ValueError
+    except (ValueError, RecursionError):
         raise StoreError(f"{path}: not a whole result file; it is damaged, run the case again") from None
     return payload
 
 
+def read_bounded(path: Path, most: int) -> bytes:
+    """The content of a regular file of at most ``most`` bytes. Raises StoreError for any other.
+
+    Neither a pipe nor a device can hold the reader up.
+    """
+    try:
+        handle = os.open(path, os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC)
+        with open(handle, "rb") as file:
+            if not stat.S_ISREG(os.fstat(handle).st_mode):
+                raise StoreError(f"{path}: not a regular file; it cannot be read")
+            raw = file.read(most + 1)
+    except (OSError, ValueError) as error:
+        said = error.strerror if isinstance(error, OSError) else error
+        raise StoreError(f"{path}: cannot be read ({said})") from None
+    if len(raw) > most:
+        raise StoreError(f"{path}: larger than {most} bytes; not a file of this program")
+    return raw
+
+
+def seal(path: Path, files: Sequence[Path], text: str) -> None:
+    """Store at ``path`` the SHA-256 of ``files`` beside it, with the full input ``text`` they came from."""
+    sums = {file.name: hashlib.sha256(file.read_bytes()).hexdigest() for file in files}
+    write_checked(path, {"input": text, "sha256": sums})
+
+
+def read_sealed(path: Path) -> dict[str, Path]:
+    """The files sealed at ``path`` by name. Raises StoreError naming the one that is missing or damaged."""
+    payload = read_checked(path)
+    sums = payload.get("sha256")
+    if not isinstance(sums, dict) or not all(isinstance(stated, str) for stated in sums.values()):
+        raise StoreError(f"{path}: names no files; it is damaged, run the case again")
+    found = {}
+    for name, stated in sums.items():
+        if Path(name).name != name:
+            raise StoreError(f"{path}: names {name!r}, which does not lie beside it; it is damaged")
+        file = path.parent / name
+        try:
+            if not file.is_file():
+                raise FileNotFoundError(errno.ENOENT, "there is no such file")
+            with file.open("rb") as opened:
+                digest = hashlib.file_digest(opened, "sha256").hexdigest()
+        except OSError as error:
+            raise StoreError(f"{file}: cannot be read ({error.strerror})") from None
+        if digest != stated:
+            raise StoreError(f"{file}: its checksum does not hold; the file is damaged, run the case again")
+        found[name] = file
+    return found
+
+
 @contextmanager
 def locked(folder: Path) -> Iterator[None]:
-    """Hold ``folder`` against a second writer. Raises StoreError where another run holds it."""
+    """Hold ``folder`` against a second writer; what a killed one left half-written is cleared away.
+
+    Raises StoreError where another run holds it, where it cannot be written, and where a link in it leads
+    out of it.
+    """
     import fcntl
 
     path = folder / ".lock"
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        file = path.open("a+")
+        _refuse_links(folder)
+        # Neither a link nor a pipe in the place of the lock is followed or waited for.
+        flags = os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW | os.O_NONBLOCK | os.O_CLOEXEC
+        file = os.fdopen(os.open(path, flags, 0o644), "r+b", buffering=0)
     except OSError as error:
         raise StoreError(
             f"{folder}: cannot be written ({error.strerror}); choose another directory with --output"
@@ -81,11 +159,27 @@ def locked(folder: Path) -> Iterator[None]:
     with file:
         try:
             fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except OSError:
+        except BlockingIOError:
             raise StoreError(
                 f"{folder}: another coatcheck run is writing here; wait for it or choose --output"
             ) from None
+        except OSError as error:
+            raise StoreError(
+                f"{folder}: cannot be locked ({error.strerror}); choose a local directory with --output"
+            ) from None
+        for place in (folder, *(folder / name for name in FOLDERS)):
+            for left in place.glob(f".*{PART}"):
+                with suppress(OSError):
+                    left.unlink()
         yield
+
+
+def _refuse_links(folder: Path) -> None:
+    for name in FOLDERS:
+        if (folder / name).is_symlink():
+            raise StoreError(
+                f"{folder / name}: a link that may lead out of {folder}; remove it or choose another --output"
+            )
 
 
 def _digest(body: str) -> str:

@@ -16,7 +16,7 @@ from rich.progress import (
 from verification.result import CaseResult
 from verification.verdict import Outcome
 
-__all__ = ["BAD_INPUT", "EXIT", "STYLE", "complain", "exit_code", "progress_bar"]
+__all__ = ["BAD_INPUT", "EXIT", "STYLE", "complain", "exit_code", "one_line", "progress_bar"]
 
 BAD_INPUT = 2
 EXIT = {Outcome.DISAGREES: 1, Outcome.NO_RESULT: 3, Outcome.INCONCLUSIVE: 4, Outcome.AGREES: 0}
@@ -39,14 +39,20 @@ def exit_code(results: Sequence[CaseResult]) -> int:
 
 def complain(sentence: str) -> int:
     """Say on standard error, in one line, what is wrong; the exit code of bad input."""
-    sys.stderr.write(f"coatcheck: {sentence}\n")
+    sys.stderr.write(f"coatcheck: {one_line(sentence)}\n")
     return BAD_INPUT
+
+
+def one_line(sentence: str, most: int = 1000) -> str:
+    """``sentence`` as a terminal may show it: no control character of a stranger's file gets through."""
+    shown = "".join(c if c.isprintable() else repr(c)[1:-1] for c in sentence)
+    return shown if len(shown) <= most else f"{shown[: most - 3]}..."
 
 
 def progress_bar(console: Console, *, silent: bool = False) -> Progress:
     """A bar that counts, with time gone and left; nothing at all where ``console`` is not a terminal."""
     return Progress(
-        TextColumn("{task.description}"),
+        TextColumn("{task.description}", markup=False),
         BarColumn(),
         MofNCompleteColumn(),
         TimeElapsedColumn(),

@@ -2,22 +2,26 @@
 
 import datetime
 import json
+import os
 import sys
 import time
+import unicodedata
+from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated, TypeVar
 
 from cyclopts import Parameter
 from rich.console import Console
+from rich.markup import escape
 from rich.table import Table
 
 from verification.case import Case, CaseError, read_case, shipped_cases
-from verification.commands.common import EXIT, STYLE, complain, exit_code, progress_bar
+from verification.commands.common import EXIT, STYLE, complain, exit_code, one_line, progress_bar
 from verification.printed import PublishedCase, is_published, published_cases, read_published
-from verification.result import CaseResult, RunInfo, from_json
-from verification.schedule import Task, case_task, cores, published_task, result_path, run_tasks
-from verification.store import StoreError, locked, read_checked
+from verification.result import CaseResult, RunInfo
+from verification.schedule import Task, case_task, cores, kept_result, published_task, run_tasks
+from verification.store import StoreError, locked
 from verification.surroundings import commit, machine, missing_libraries, versions
 from verification.verdict import Outcome
 
@@ -80,7 +84,7 @@ def run(
     begin, started = time.perf_counter(), datetime.datetime.now(datetime.UTC)
     try:
         with locked(output):
-            kept = {c.name: r for c in chosen if resume and (r := _stored(output, c)) is not None}
+            kept = _kept(chosen, output) if resume else {}
             study = accuracy_study.stored(output) if resume and not cases else None
             tasks: list[Task[CaseResult | AccuracyStudy]] = []
             if not cases and study is None:
@@ -99,7 +103,13 @@ def run(
                 machine=f"{machine()}, {cores()} cores",
                 versions=versions(),
             )
-            page = write_report(ordered, output, info, study)
+            try:
+                page = write_report(ordered, output, info, study)
+            except OSError as error:
+                said = error.strerror or error
+                raise StoreError(
+                    f"{output}: the report cannot be written ({said}); free space, then go on with --resume"
+                ) from None
     except StoreError as error:
         return complain(str(error))
     if as_json:
@@ -119,12 +129,14 @@ def _choose(names: Sequence[str]) -> list[Case | PublishedCase]:
             cases.append(read_published(published[name]))
         elif name == "published":
             cases += [read_published(path) for path in published.values()]
-        elif name.endswith(".toml") or "/" in name or Path(name).exists():
+        elif name.endswith(".toml") or "/" in name or os.path.lexists(name):
             path = Path(name)
             cases.append(read_published(path) if is_published(path) else read_case(path))
         else:
             raise CaseError(f"{name}: neither a shipped case (see coatcheck list) nor a .toml file")
-    twice = {case.name for case in cases if sum(other.name == case.name for other in cases) > 1}
+    # Names that a file system may take for one and the same.
+    plain = Counter(unicodedata.normalize("NFC", case.name).casefold() for case in cases)
+    twice = {c.name for c in cases if plain[unicodedata.normalize("NFC", c.name).casefold()] > 1}
     if twice:
         raise CaseError(f"{sorted(twice)[0]}: named twice; give each case file a name of its own")
     return cases
@@ -134,13 +146,18 @@ def _task(case: Case | PublishedCase, output: Path) -> Task[CaseResult]:
     return case_task(case, output) if isinstance(case, Case) else published_task(case, output)
 
 
-def _stored(output: Path, case: Case | PublishedCase) -> CaseResult | None:
-    """A whole earlier result of the very same case file, or None."""
-    try:
-        result = from_json(read_checked(result_path(output, case)))
-    except (StoreError, ValueError, KeyError, TypeError):
-        return None
-    return result if result.text == case.text else None
+def _kept(chosen: Sequence[Case | PublishedCase], output: Path) -> dict[str, CaseResult]:
+    """The earlier results that stand, by name; why another one does not is said on standard error."""
+    kept = {}
+    for case in chosen:
+        try:
+            result = kept_result(output, case)
+        except StoreError as error:
+            complain(f"{error}; computed again")
+            continue
+        if result is not None:
+            kept[case.name] = result
+    return kept
 
 
 def _solve(tasks: Sequence[Task[T]], jobs: int, time_limit: float, silent: bool) -> list[T]:
@@ -160,7 +177,7 @@ def _solve(tasks: Sequence[Task[T]], jobs: int, time_limit: float, silent: bool)
             if not silent and isinstance(result, CaseResult):
                 colour = STYLE[result.outcome]
                 console.print(
-                    f"[{colour}]{result.outcome:<12}[/] {result.name}  {result.seconds:.1f} s",
+                    f"[{colour}]{result.outcome:<12}[/] {escape(result.name)}  {result.seconds:.1f} s",
                     highlight=False,
                 )
 
@@ -188,7 +205,7 @@ def _print_table(results: Sequence[CaseResult], page: Path, seconds: float) -> N
     for result in results:
         worst = max((v.difference for _, v in result.verdicts if v.difference is not None), default=None)
         table.add_row(
-            result.name,
+            escape(result.name),
             *(
                 f"[{STYLE[o]}]{n}[/]" if (n := sum(v.outcome is o for _, v in result.verdicts)) else "."
                 for o in Outcome
@@ -201,6 +218,8 @@ def _print_table(results: Sequence[CaseResult], page: Path, seconds: float) -> N
         for source in result.sources:
             if source.failure:
                 console.print(
-                    f"[bold red]{result.name}, {source.source}:[/] {source.failure}", highlight=False
+                    f"[bold red]{escape(result.name)}, {source.source}:[/] "
+                    f"{escape(one_line(source.failure))}",
+                    highlight=False,
                 )
-    console.print(f"{len(results)} cases in {seconds:.0f} s; report: {page}", highlight=False)
+    console.print(f"{len(results)} cases in {seconds:.0f} s; report: {escape(str(page))}", highlight=False)
