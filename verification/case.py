@@ -3,9 +3,9 @@
 import tomllib
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Annotated, Any, TypeVar
+from typing import Annotated, Any, Literal, TypeVar
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError, model_validator
 
 from verification.problem import CoatedContact
 from verification.profile import SCALARS, Line, line_of, lines_of
@@ -18,6 +18,7 @@ __all__ = [
     "Strict",
     "Text",
     "first_complaint",
+    "load_toml",
     "parse_case",
     "read_bounded",
     "read_case",
@@ -32,7 +33,11 @@ METHODS = ("semianalytic", "fem_reference")
 Checked = TypeVar("Checked", bound=BaseModel)
 
 CASES = Path(__file__).parent / "cases"
-MAX_BYTES = 1_000_000
+MAX_BYTES = 250_000
+# Python's TOML reader takes time and memory with the square of the parts of a dotted key: 100,000 of them, in
+# 200 kB, exhaust 20 GB. A line of a case file has a few dots.
+MAX_DOTS = 250
+MAX_NAME = 100
 
 # Caps as fractions of the scale of each comparison: the value itself for the scalars, p_h for the lines.
 CAPS = {"peak_pressure": 1e-3, "contact_radius": 5e-3, "approach": 1e-3}
@@ -150,15 +155,21 @@ class _Claim(Strict):
     edge: Annotated[float, Field(ge=0, lt=1)] | None = None
 
 
+def _odd(number: int) -> int:
+    if number % 2 == 0:
+        raise ValueError("must be odd, so that a patch lies in the middle")
+    return number
+
+
 class _SemianalyticNumerics(Strict):
-    patches: Annotated[int, Field(ge=16, le=4096)] | None = None
-    conversion: Text | None = None
+    patches: Annotated[int, Field(ge=33, le=4097), AfterValidator(_odd)] | None = None
+    conversion: Literal["split", "split-fft", "plain"] | None = None
     max_iterations: Annotated[int, Field(ge=1, le=100_000)] | None = None
 
 
 class _FemNumerics(Strict):
     order: Annotated[int, Field(ge=2, le=4)] | None = None
-    quality: Text | None = None
+    quality: Literal["fast", "default", "fine"] | None = None
 
 
 class _CaseFile(Strict):
@@ -177,32 +188,50 @@ def read_case(path: Path) -> Case:
 
 def read_bounded(path: Path, kind: str, holds: str) -> bytes:
     """The content of a .toml file of a ``kind`` that ``holds`` little. Raises CaseError."""
+    # The name goes into file names, terminals and tables.
+    if len(path.stem) > MAX_NAME or not path.stem.isprintable():
+        raise CaseError(
+            f"{path.name[:MAX_NAME]!r}: give the file a name of at most {MAX_NAME} printable characters"
+        )
     try:
         if not path.is_file():
             what = "is a directory" if path.is_dir() else "there is no such file"
             raise CaseError(f"{path}: {what}; give the path of a .toml {kind} file")
         with path.open("rb") as file:
             raw = file.read(MAX_BYTES + 1)
-    except (OSError, ValueError) as error:
-        if isinstance(error, CaseError):
-            raise
-        raise CaseError(f"{path}: {error}; give the path of a .toml {kind} file") from None
+    except OSError as error:
+        raise CaseError(f"{path}: {error.strerror or error}; give the path of a .toml {kind} file") from None
     if len(raw) > MAX_BYTES:
         raise CaseError(f"{path}: larger than {MAX_BYTES} bytes; a {kind} file holds {holds}")
     return raw
 
 
+def load_toml(raw: bytes) -> tuple[str, dict[str, Any]]:
+    """The text of a TOML file with its content. Raises ValueError, in one sentence, where it is none."""
+    try:
+        text = raw.decode("utf-8")
+    except UnicodeDecodeError:
+        raise ValueError("not UTF-8 text; a case file is TOML") from None
+    for number, line in enumerate(text.split("\n"), start=1):  # as TOML breaks lines
+        if line.count(".") > MAX_DOTS:
+            raise ValueError(f"line {number} has more than {MAX_DOTS} dots; break it into several")
+    try:
+        return text, tomllib.loads(text)
+    except RecursionError:
+        raise ValueError("not TOML: nested too deeply") from None
+    except ValueError as error:  # TOMLDecodeError, or a number of thousands of digits
+        raise ValueError(f"not TOML: {error}") from None
+
+
 def read_toml(raw: bytes, path: Path, model: type[Checked]) -> tuple[str, Checked]:
     """The text of a TOML file with its content checked against ``model``. Raises CaseError."""
     try:
-        text = raw.decode("utf-8")
-        return text, model.model_validate(tomllib.loads(text))
-    except UnicodeDecodeError:
-        raise CaseError(f"{path}: not UTF-8 text; a case file is TOML") from None
-    except (tomllib.TOMLDecodeError, RecursionError) as error:
-        raise CaseError(f"{path}: not TOML: {str(error) or 'nested too deeply'}") from None
+        text, content = load_toml(raw)
+        return text, model.model_validate(content)
     except ValidationError as error:
         raise CaseError(f"{path}: {first_complaint(error)}") from None
+    except ValueError as error:
+        raise CaseError(f"{path}: {error}") from None
 
 
 def parse_case(raw: bytes, path: Path) -> Case:
@@ -212,7 +241,7 @@ def parse_case(raw: bytes, path: Path) -> Case:
         p = checked.problem
         bare = CoatedContact(p.radius, p.load, (), (p.substrate.E, p.substrate.nu), p.friction)
         problem = replace(bare, coatings=tuple((c.E, c.nu, c.in_metres(bare.a_h)) for c in p.coatings))
-    except ValueError as error:
+    except (ValueError, OverflowError, ZeroDivisionError) as error:
         raise CaseError(f"{path}: problem: {error}") from None
     refuse_unfit_scales(path, problem)
     return Case(
@@ -281,7 +310,7 @@ def _claims(path: Path, checked: _CaseFile, problem: CoatedContact) -> tuple[Cla
 def first_complaint(error: ValidationError) -> str:
     """The first thing wrong with a case file, with its key and what stands there, in one sentence."""
     first = error.errors(include_url=False)[0]
-    key = ".".join(str(part) for part in first["loc"]) or "top level"
+    key = ".".join(_shortened(str(part)) for part in first["loc"]) or "top level"
     message = first["msg"].removeprefix("Value error, ")
     said = {
         "missing": "is missing",
@@ -291,11 +320,20 @@ def first_complaint(error: ValidationError) -> str:
         "int_type": "must be a whole number",
         "string_type": "must be text",
     }.get(first["type"], message[0].lower() + message[1:])
-    shown = repr(first["input"])
     if first["type"] not in ("missing", "extra_forbidden") and not isinstance(first["input"], dict | list):
-        said += f", not {shown if len(shown) <= 60 else shown[:57] + '...'}"
+        said += f", not {_shown(first['input'])}"
     more = error.error_count() - 1
     return f"{key} {said}" + (f" (and {more} more)" if more else "")
+
+
+def _shown(value: object) -> str:
+    # An integer of thousands of digits is one that Python refuses to print.
+    whole = isinstance(value, int) and abs(value) >= 10**60
+    return "a whole number of more than 60 digits" if whole else _shortened(repr(value))
+
+
+def _shortened(text: str) -> str:
+    return text if len(text) <= 60 else text[:57] + "..."
 
 
 def shipped_cases() -> dict[str, Path]:

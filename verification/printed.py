@@ -4,7 +4,6 @@ The problem stands in the units of the source and is converted here, at the bord
 become Profiles with the reading uncertainty of the source, so that no comparison asks where they came from.
 """
 
-import tomllib
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -12,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from verification.case import METHODS, CaseError, read_toml
+from verification.case import METHODS, CaseError, load_toml, read_bounded, read_toml
 from verification.printed_file import (
     PrintedAt,
     PrintedColumn,
@@ -26,7 +25,6 @@ from verification.profile import Profile
 from verification.quantity import QUANTITIES, SCALAR, Points
 from verification.references.published import (
     FOLDER,
-    MAX_BYTES,
     UNITS,
     PublishedError,
     PublishedTable,
@@ -102,19 +100,14 @@ def published_cases() -> dict[str, Path]:
 def is_published(path: Path) -> bool:
     """True where a case file has tables, which only a published case has."""
     try:
-        if not path.is_file() or path.stat().st_size > MAX_BYTES:
-            return False
-        return "table" in tomllib.loads(path.read_text(encoding="utf-8"))
-    except (OSError, ValueError, RecursionError):
+        return "table" in load_toml(read_bounded(path, "case", "one problem"))[1]
+    except ValueError:
         return False
 
 
 def read_published(path: Path) -> PublishedCase:
     """Read one published case. Raises CaseError: one sentence with file and key, or file, row and column."""
-    try:
-        return parse_published(path.read_bytes(), path)
-    except OSError as error:
-        raise CaseError(f"{path}: cannot be read ({error.strerror})") from None
+    return parse_published(read_bounded(path, "case", "one problem"), path)
 
 
 def parse_published(raw: bytes, path: Path) -> PublishedCase:

@@ -114,6 +114,8 @@ def read_table(path: Path) -> PublishedTable:
     Raises PublishedError naming file and line where that is not what it holds.
     """
     try:
+        if not path.is_file():
+            raise PublishedError(f"{path.name}: there is no such file; a table lies beside its case file")
         with path.open("rb") as file:
             raw = file.read(MAX_BYTES + 1)
         text = raw.decode("utf-8")
