@@ -11,7 +11,7 @@ from verification.profile import SCALARS, Profile
 from verification.report.reading import coordinate
 from verification.result import CaseResult
 
-__all__ = ["embedded", "line_csv"]
+__all__ = ["embedded", "line_csv", "written"]
 
 
 def line_csv(result: CaseResult, line: str) -> str:
@@ -38,7 +38,7 @@ def line_csv(result: CaseResult, line: str) -> str:
             if profile.uncertainty is not None:
                 spread = [f"{v:.3g}" for v in profile.uncertainty.tolist()]
                 columns.append([_safe(f"uncertainty of {head}"), *spread])
-    return _written(list(zip_longest(*columns, fillvalue="")))
+    return written(list(zip_longest(*columns, fillvalue="")))
 
 
 def embedded(text: str) -> str:
@@ -51,7 +51,8 @@ def _unit(profile: Profile) -> str:
     return "m" if profile.quantity in SCALARS[1:] else "Pa"
 
 
-def _written(rows: Sequence[Sequence[str]]) -> str:
+def written(rows: Sequence[Sequence[str]]) -> str:
+    """``rows`` as CSV."""
     out = StringIO()
     csv.writer(out, lineterminator="\n").writerows(rows)
     return out.getvalue()
