@@ -115,7 +115,7 @@ def read_table(path: Path) -> PublishedTable:
     """
     try:
         if not path.is_file():
-            raise PublishedError(f"{path.name}: there is no such file; a table lies beside its case file")
+            raise PublishedError(f"{path.name}: cannot be read; a table is a file beside its case file")
         with path.open("rb") as file:
             raw = file.read(MAX_BYTES + 1)
         text = raw.decode("utf-8")
