@@ -1,0 +1,1 @@
+"""Parameter studies: the same quantities of many coated contacts in one table."""

@@ -1,0 +1,241 @@
+"""The plan of a study: what its TOML file asks for, solve by solve.
+
+The thicknesses of a range {from, to, count} crowd around its geometric middle, where the stresses turn from
+those of the bare substrate to those of the bulk coating:
+
+    h = sqrt(from to) (to/from)^((3 t + 2 t^3)/10),   t = -1 .. 1 in equal steps
+
+so that neighbours differ by 0.6 of an equal ratio's step (in log h) in the middle, by 1.8 of it at the ends.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Annotated, Any
+
+import numpy as np
+from pydantic import Field, model_validator
+
+from verification.case import (
+    CaseError,
+    Length,
+    Modulus,
+    Poisson,
+    Strict,
+    Text,
+    read_bounded,
+    read_toml,
+    refuse_unfit_scales,
+)
+from verification.problem import CoatedContact
+from verification.study.table import SOURCES
+
+__all__ = ["Solve", "Study", "parse_study", "read_study_file", "shipped_studies", "thicknesses_between"]
+
+STUDIES = Path(__file__).parent.parent / "studies"
+MOST_POINTS = 1_000_000
+
+
+@dataclass(frozen=True)
+class Solve:
+    """One contact solved by one source; it speaks for every friction of the study.
+
+    first : number of the point of its first friction.  request : what ``point.answer`` takes.
+    """
+
+    first: int
+    request: dict[str, Any]
+
+    @property
+    def source(self) -> str:
+        return self.request["source"]
+
+
+@dataclass(frozen=True)
+class Study:
+    """A sphere on coatings of every modulus [Pa] and thickness [m], at every friction; SI.
+
+    cross_check : every such point is also solved by the other sources; 0 none.
+    numerics : each source's own keywords.  criteria : passed through.  text : the file.
+    """
+
+    name: str
+    title: str
+    radius: float
+    load: float
+    substrate: tuple[float, float]
+    coating_nu: float
+    moduli: tuple[float, ...]
+    thicknesses: tuple[float, ...]
+    frictions: tuple[float, ...]
+    cross_check: int = 10
+    numerics: dict[str, dict[str, Any]] = field(default_factory=dict)
+    criteria: dict[str, Any] = field(default_factory=dict)
+    text: str = ""
+
+    @property
+    def points(self) -> int:
+        """Number of points; they count through frictions, then thicknesses, then moduli."""
+        return len(self.moduli) * len(self.thicknesses) * len(self.frictions)
+
+    def solves(self) -> Iterator[Solve]:
+        """Every solve, in the order of its points; of each point first the semi-analytical one."""
+        step = len(self.frictions)
+        first = 0
+        for E in self.moduli:
+            for thickness in self.thicknesses:
+                yield Solve(first, self._request(SOURCES[0], E, thickness))
+                if self.cross_check and -(-first // self.cross_check) * self.cross_check < first + step:
+                    yield from (Solve(first, self._request(other, E, thickness)) for other in SOURCES[1:])
+                first += step
+
+    def _request(self, source: str, E: float, thickness: float) -> dict[str, Any]:
+        return {
+            "source": source,
+            "numerics": self.numerics.get(source, {}),
+            "radius": self.radius,
+            "load": self.load,
+            "coating": [E, self.coating_nu, thickness],
+            "substrate": list(self.substrate),
+            "frictions": list(self.frictions),
+        }
+
+
+def thicknesses_between(low: float, high: float, count: int) -> tuple[float, ...]:
+    """``count`` values from ``low`` to ``high`` by the formula of this file, the ends as they are given."""
+    if count == 1:
+        return (low,)
+    t = np.linspace(-1, 1, count)
+    values = np.sqrt(low * high) * (high / low) ** ((3 * t + 2 * t**3) / 10)
+    return (low, *(float(v) for v in values[1:-1]), high)
+
+
+class _Substrate(Strict):
+    E: Modulus
+    nu: Poisson
+
+
+class _Coating(Strict):
+    E: Modulus | None = None
+    nu: Poisson
+
+
+class _Problem(Strict):
+    radius: Length
+    load: Annotated[float, Field(gt=0)]
+    substrate: _Substrate
+    coating: _Coating
+
+
+class _Range(Strict):
+    start: Annotated[float, Field(alias="from", gt=0)]
+    to: Annotated[float, Field(gt=0)]
+    count: Annotated[int, Field(ge=1, le=100_000)]
+
+    @model_validator(mode="after")
+    def _upwards(self) -> "_Range":
+        if not self.start < self.to:
+            raise ValueError(f"runs from {self.start:g} to {self.to:g}; give from < to")
+        return self
+
+
+Positive = Annotated[float, Field(gt=0)]
+Values = Annotated[list[Positive], Field(min_length=1, max_length=100_000)]
+
+
+class _Sweep(Strict):
+    modulus_ratio: Values | None = None
+    thickness: Values | _Range | None = None
+    thickness_over_a_h: Values | _Range | None = None
+    friction: Annotated[list[Annotated[float, Field(ge=0, le=2)]], Field(min_length=1, max_length=1000)] = [
+        0.0
+    ]
+    cross_check: Annotated[int, Field(ge=0, le=MOST_POINTS)] = 10
+
+    @model_validator(mode="after")
+    def _one_thickness(self) -> "_Sweep":
+        if (self.thickness is None) == (self.thickness_over_a_h is None):
+            raise ValueError("needs exactly one of thickness [m] or thickness_over_a_h")
+        return self
+
+
+class _Semianalytic(Strict):
+    patches: Annotated[int, Field(ge=33, le=1025)] | None = None
+    estimate_uncertainty: bool | None = None
+
+
+class _Fem(Strict):
+    quality: Text | None = None
+    estimate_uncertainty: bool | None = None
+
+
+class _StudyFile(Strict):
+    title: Text
+    source: Text = "no source stated"
+    problem: _Problem
+    sweep: _Sweep
+    semianalytic: _Semianalytic = _Semianalytic()
+    fem_reference: _Fem = _Fem()
+    criteria: dict[str, Any] = {}
+
+
+def read_study_file(path: Path) -> Study:
+    """Read and check one study file. Raises CaseError: one sentence with file and key."""
+    return parse_study(read_bounded(path, "study", "one sweep"), path)
+
+
+def parse_study(raw: bytes, path: Path) -> Study:
+    """Check the content of a study file; ``path`` names it in complaints. Raises CaseError."""
+    text, checked = read_toml(raw, path, _StudyFile)
+    p, sweep = checked.problem, checked.sweep
+    try:
+        bare = CoatedContact(p.radius, p.load, (), (p.substrate.E, p.substrate.nu))
+    except ValueError as error:
+        raise CaseError(f"{path}: problem: {error}") from None
+    if (p.coating.E is None) == (sweep.modulus_ratio is None):
+        raise CaseError(f"{path}: needs exactly one of problem.coating.E or sweep.modulus_ratio, E1/E2")
+    moduli = (
+        [p.coating.E] if p.coating.E is not None else [r * p.substrate.E for r in sweep.modulus_ratio or ()]
+    )
+    refuse_unfit_scales(path, bare)
+    key, scale, asked = "thickness", 1.0, sweep.thickness
+    if asked is None:
+        key, scale, asked = "thickness_over_a_h", bare.a_h, sweep.thickness_over_a_h
+    assert asked is not None
+    values = thicknesses_between(asked.start, asked.to, asked.count) if isinstance(asked, _Range) else asked
+    thicknesses = tuple(value * scale for value in values)
+    for i, h in enumerate(thicknesses):
+        if not 1e-2 <= h / bare.a_h <= 1e2:
+            raise CaseError(
+                f"{path}: sweep.{key}: value {i + 1} is {h / bare.a_h:.3g} a_h, with a_h = {bare.a_h:.3g} m; "
+                "a study is made for 0.01 to 100"
+            )
+    for E in moduli:
+        if not 1e-3 <= E / p.substrate.E <= 1e3:
+            raise CaseError(f"{path}: E1/E2 = {E / p.substrate.E:.3g}; a study is made for 1e-3 to 1e3")
+    study = Study(
+        name=path.stem,
+        title=checked.title,
+        radius=p.radius,
+        load=p.load,
+        substrate=(p.substrate.E, p.substrate.nu),
+        coating_nu=p.coating.nu,
+        moduli=tuple(moduli),
+        thicknesses=thicknesses,
+        frictions=tuple(sweep.friction),
+        cross_check=sweep.cross_check,
+        numerics={
+            "semianalytic": checked.semianalytic.model_dump(exclude_none=True),
+            "fem_reference": checked.fem_reference.model_dump(exclude_none=True),
+        },
+        criteria=checked.criteria,
+        text=text,
+    )
+    if study.points > MOST_POINTS:
+        raise CaseError(f"{path}: sweep: {study.points} points; a study has at most {MOST_POINTS}")
+    return study
+
+
+def shipped_studies() -> dict[str, Path]:
+    """The studies that come with the package, by name."""
+    return {path.stem: path for path in sorted(STUDIES.glob("*.toml"))}

@@ -1,0 +1,99 @@
+"""One solve of a study: from its plain request to the rows of all its frictions.
+
+Requests and answers are plain dictionaries, lists, numbers and text, so that any process that has the package
+can answer: a worker on another machine, a test in its own.
+"""
+
+import json
+import time
+from collections.abc import Mapping
+from typing import Any
+
+from verification.problem import CoatedContact
+from verification.run import sentence, solvers
+from verification.study.quantities import quantities
+from verification.study.table import SCALARS
+from verification.surroundings import versions
+
+__all__ = ["answer", "problem_of", "table_rows"]
+
+
+def answer(request: Mapping[str, Any]) -> dict[str, Any]:
+    """Solve ``request`` and find every quantity at each of its frictions.
+
+    request : source, numerics (its own keywords), frictions, radius, load, coating (E, nu, thickness),
+    substrate (E, nu).  Returns {"rows": [one dictionary a friction], "seconds", "versions"}; a solve that
+    fails leaves its sentence in every row.
+    """
+    begin = time.perf_counter()
+    frictions = [float(f) for f in request["frictions"]]
+    # The pressure does not depend on friction, stresses are linear in it: friction 1 speaks for every other.
+    problem = problem_of(request, 1.0 if any(frictions) else 0.0)
+    try:
+        solution = solvers()[request["source"]](problem, request["numerics"])
+        rows = _rows(solution, problem, frictions)
+    except Exception as error:  # a point that fails is a row with its sentence, whatever went wrong
+        rows = [{"friction": f, "status": "failed", "failure": sentence(error)} for f in frictions]
+    return {"rows": rows, "seconds": time.perf_counter() - begin, "versions": versions()}
+
+
+def problem_of(request: Mapping[str, Any], friction: float) -> CoatedContact:
+    """The contact that ``request`` asks about, at ``friction``."""
+    E1, nu1, thickness = request["coating"]
+    E2, nu2 = request["substrate"]
+    return CoatedContact(request["radius"], request["load"], ((E1, nu1, thickness),), (E2, nu2), friction)
+
+
+def table_rows(
+    first: int, key: str, request: Mapping[str, Any], found: Mapping[str, Any]
+) -> list[dict[str, Any]]:
+    """The rows of the table that an answer ``found`` stands for; its first friction is point ``first``."""
+    E1, nu1, thickness = request["coating"]
+    E2, nu2 = request["substrate"]
+    bare = problem_of(request, 0.0)
+    shared = {
+        "source": request["source"],
+        "radius": request["radius"],
+        "load": request["load"],
+        "coating_E": E1,
+        "coating_nu": nu1,
+        "thickness": thickness,
+        "substrate_E": E2,
+        "substrate_nu": nu2,
+        "modulus_ratio": E1 / E2,
+        "thickness_over_a_h": thickness / bare.a_h,
+        "a_h": bare.a_h,
+        "p_h": bare.p_h,
+        "delta_h": bare.delta_h,
+        "numerics": json.dumps(request["numerics"], sort_keys=True),
+        "versions": json.dumps(found["versions"], sort_keys=True),
+        "key": key,
+        "seconds": found["seconds"],
+    }
+    return [{"point": first + i} | shared | row for i, row in enumerate(found["rows"])]
+
+
+def _rows(solution: Any, problem: CoatedContact, frictions: list[float]) -> list[dict[str, Any]]:
+    common: dict[str, Any] = {}
+    for name, scale in SCALARS.items():
+        value = float(getattr(solution, name))
+        if not 0 < value < float("inf"):
+            raise ValueError(f"{name} = {value:g}; the solution is no contact")
+        common |= {name: value, f"{name}_over_{scale}": value / getattr(problem, scale)}
+        if solution.uncertainty is not None:
+            common[f"{name}_uncertainty"] = float(getattr(solution.uncertainty, name))
+    rows = []
+    for f, located in quantities(solution, problem, frictions).items():
+        row: dict[str, Any] = {"friction": f, "status": "solved", "failure": None, **common}
+        for name, at in located.items():
+            row |= {
+                name: at.value,
+                f"{name}_over_p_h": at.value / problem.p_h,
+                f"{name}_uncertainty": at.uncertainty,
+                f"{name}_x": at.x,
+                f"{name}_x_over_a_h": at.x / problem.a_h,
+                f"{name}_z": at.z,
+                f"{name}_z_over_a_h": at.z / problem.a_h,
+            }
+        rows.append(row)
+    return rows

@@ -1,0 +1,112 @@
+"""The table of a study: one row for each point from each source, with its full input.
+
+Columns, in SI units unless they say "over":
+
+    point, source, status ("solved" or "failed"), failure (the sentence, null where there is none)
+    radius, load, coating_E, coating_nu, thickness, substrate_E, substrate_nu, friction       the input
+    modulus_ratio (E1/E2), thickness_over_a_h; a_h, p_h, delta_h of the bare substrate
+    peak_pressure, contact_radius, approach: X, X_over_p_h | a_h | delta_h, X_uncertainty
+    each stress of QUANTITIES: X, X_over_p_h, X_uncertainty, X_x, X_x_over_a_h, X_z, X_z_over_a_h
+    numerics, versions (JSON), key (of the stored solve), seconds (of that solve, which its frictions share)
+
+A number that is not known is null: all of a failed point, the place of a tension that does not exist.
+"""
+
+import io
+import json
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.parquet as pq
+from numpy.typing import NDArray
+
+from verification.store import StoreError, write_atomically
+from verification.study.quantities import QUANTITIES
+
+__all__ = ["COLUMNS", "SCALARS", "SOURCES", "read_columns", "read_study", "write_table"]
+
+# The first speaks for every point, the others for those that are cross-checked.
+SOURCES = ("semianalytic", "fem_reference", "integral_equation")
+# Each scalar of the contact with the scale of the bare substrate that it is given over.
+SCALARS = {"peak_pressure": "p_h", "contact_radius": "a_h", "approach": "delta_h"}
+
+_INPUT = (
+    *("radius", "load", "coating_E", "coating_nu", "thickness", "substrate_E", "substrate_nu", "friction"),
+    *("modulus_ratio", "thickness_over_a_h", "a_h", "p_h", "delta_h"),
+)
+_RESULT = (
+    *(f"{name}{end}" for name, scale in SCALARS.items() for end in ("", f"_over_{scale}", "_uncertainty")),
+    *(
+        f"{name}{end}"
+        for name in QUANTITIES
+        for end in ("", "_over_p_h", "_uncertainty", "_x", "_x_over_a_h", "_z", "_z_over_a_h")
+    ),
+)
+COLUMNS = pa.schema(
+    [
+        pa.field("point", pa.int64(), nullable=False),
+        *(
+            pa.field(name, pa.string(), nullable=name == "failure")
+            for name in ("source", "status", "failure")
+        ),
+        *(pa.field(name, pa.float64(), nullable=False) for name in _INPUT),
+        *(pa.field(name, pa.float64()) for name in _RESULT),
+        *(pa.field(name, pa.string(), nullable=False) for name in ("numerics", "versions", "key")),
+        pa.field("seconds", pa.float64(), nullable=False),
+    ]
+)
+GROUP = 1024  # rows held at once
+
+
+def write_table(path: Path, rows: Iterable[Mapping[str, Any]], study: Mapping[str, Any]) -> int:
+    """Write ``rows``, in their order, whole or not at all; their number. Raises StoreError.
+
+    study : what is kept beside the rows, plain JSON.  A column that a row lacks is null.
+    """
+    schema = COLUMNS.with_metadata({"coatcheck_study": json.dumps(study, sort_keys=True)})
+    content = io.BytesIO()
+    count = 0
+    with pq.ParquetWriter(content, schema, compression="zstd") as writer:
+        group: list[dict[str, Any]] = []
+
+        def flush() -> None:
+            writer.write_table(pa.Table.from_pylist(group, schema=schema))
+            group.clear()
+
+        for row in rows:
+            group.append({name: _null(row.get(name)) for name in COLUMNS.names})
+            count += 1
+            if len(group) == GROUP:
+                flush()
+        if group or count == 0:
+            flush()
+    write_atomically(path, content.getvalue())
+    return count
+
+
+def read_columns(path: Path) -> dict[str, NDArray[Any]]:
+    """Every column of a table by name; null numbers are NaN, null texts None. Raises StoreError."""
+    table = _read(path, pq.read_table)
+    return {name: table[name].to_numpy(zero_copy_only=False) for name in table.column_names}
+
+
+def read_study(path: Path) -> dict[str, Any]:
+    """What was kept beside the rows. Raises StoreError."""
+    metadata = _read(path, pq.read_schema).metadata or {}
+    if b"coatcheck_study" not in metadata:
+        raise StoreError(f"{path}: not the table of a study; give the .parquet that coatcheck study wrote")
+    return json.loads(metadata[b"coatcheck_study"])
+
+
+def _read(path: Path, reader: Any) -> Any:
+    try:
+        return reader(path)
+    except (OSError, pa.ArrowException) as error:
+        raise StoreError(f"{path}: cannot be read as a table ({str(error).splitlines()[0]})") from None
+
+
+def _null(value: Any) -> Any:
+    return None if isinstance(value, float) and np.isnan(value) else value
