@@ -13,6 +13,7 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 
 from verification.accuracy_study import AccuracyStudy
+from verification.plane import Plane
 from verification.report.accuracy import accuracy_overview, accuracy_sentence, accuracy_table
 from verification.report.cells import Part, Section, Table
 from verification.report.convergence import convergence_sections
@@ -22,6 +23,7 @@ from verification.report.matrix import verdict_matrix
 from verification.report.names import METHODS, OUTCOMES, OutcomeStyle, source_label
 from verification.report.numbers import engineering, plain, scientific, seconds
 from verification.report.panels import LineFigures, line_figures
+from verification.report.pictures import Pictures, pictures
 from verification.report.published import published_overview, published_view
 from verification.report.reading import lines, scale, slug
 from verification.report.sketch import sketch
@@ -70,6 +72,7 @@ class CaseView:
     contact: Table
     contact_csv: str
     contact_file: str
+    pictures: Pictures | None
     lines: tuple[LineView, ...]
     accuracy: Table | None
     failing: Table | None
@@ -84,15 +87,23 @@ def render(
     info: RunInfo,
     study: AccuracyStudy | None = None,
     extra: Sequence[Section] = (),
+    planes: Mapping[str, Plane] | None = None,
 ) -> str:
-    """The whole page as text. Every string of a result is escaped: a title "<script>" stays text."""
+    """The whole page as text. Every string of a result is escaped: a title "<script>" stays text.
+
+    planes : what to draw of the plane below the contact, by name of the case.
+    """
     # A report tells of numbers that overflow or are not finite; it must not stumble over them.
     with np.errstate(all="ignore"):
-        return _render(results, info, study, extra)
+        return _render(results, info, study, extra, planes or {})
 
 
 def _render(
-    results: Sequence[CaseResult], info: RunInfo, study: AccuracyStudy | None, extra: Sequence[Section]
+    results: Sequence[CaseResult],
+    info: RunInfo,
+    study: AccuracyStudy | None,
+    extra: Sequence[Section],
+    planes: Mapping[str, Plane],
 ) -> str:
     anchors = _anchors(results)
     contacts = [result for result in results if not result.published]
@@ -118,7 +129,8 @@ def _render(
         outcomes=OUTCOMES.values(),
         sections=[*_sections(results, anchors, study), *extra],
         cases=[
-            _case(result, anchor) for result, anchor in zip(contacts, contact_anchors.values(), strict=True)
+            _case(result, anchor, planes.get(result.name))
+            for result, anchor in zip(contacts, contact_anchors.values(), strict=True)
         ],
         seconds=seconds,
     )
@@ -192,7 +204,7 @@ def _summary(results: Sequence[CaseResult]) -> str:
     return text + "."
 
 
-def _case(result: CaseResult, anchor: str) -> CaseView:
+def _case(result: CaseResult, anchor: str, plane: Plane | None) -> CaseView:
     style = OUTCOMES[result.outcome]
     bad = [item for item in result.verdicts if item[1].outcome is not Outcome.AGREES]
     file = slug(result.name)
@@ -210,6 +222,7 @@ def _case(result: CaseResult, anchor: str) -> CaseView:
         contact=contact_table(result),
         contact_csv=embedded(line_csv(result, "contact")),
         contact_file=f"{file}-contact.csv",
+        pictures=pictures(result, plane),
         lines=tuple(_line(result, line, anchor, file) for line in lines(result)),
         accuracy=accuracy_table(result),
         failing=verdict_table(bad, a_h, MOST_FAILING) if bad else None,

@@ -151,8 +151,8 @@ def _caption(plane: Plane, sources: Sequence[str]) -> str:
     points = sum(z.size for z in plane.depths) * plane.x.size
     text = (
         "Plane y = 0, lengths over a_h, stresses over p_h, tension positive; the red bar is the contact, "
-        f"lines across are interfaces. {points} points on {sum(z.size for z in plane.depths)} depths, interfaces "
-        "from either side; between them the colours are interpolated. "
+        f"lines across are interfaces. {points} points on {sum(z.size for z in plane.depths)} depths, "
+        "interfaces from either side; between them the colours are interpolated. "
     )
     if len(sources) == 2:
         text += (

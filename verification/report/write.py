@@ -3,11 +3,12 @@
 import json
 import os
 import tempfile
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from verification import accuracy_study
 from verification.accuracy_study import AccuracyStudy
+from verification.plane import Plane
 from verification.report.cells import Section
 from verification.report.junit import junit_xml
 from verification.report.page import render
@@ -22,11 +23,13 @@ def write_report(
     info: RunInfo,
     study: AccuracyStudy | None = None,
     extra: Sequence[Section] = (),
+    planes: Mapping[str, Plane] | None = None,
 ) -> Path:
     """Write report.html, report.json and junit.xml into ``folder`` and return the path of the page.
 
     study : how the errors of the methods fall with resolution, where that was measured.
     extra : sections of the page about more than these results: baseline, credibility.
+    planes : stresses below the contact to be drawn, by name of the case.
 
     All three are made before the first is written, and each replaces its predecessor in one step, so
     that whatever goes wrong leaves the earlier report as it was. Raises OSError where the folder cannot
@@ -35,7 +38,7 @@ def write_report(
     texts = {
         "report.json": report_json(results, info, study),
         "junit.xml": junit_xml(results, info),
-        "report.html": render(results, info, study, extra),
+        "report.html": render(results, info, study, extra, planes),
     }
     folder.mkdir(parents=True, exist_ok=True)
     ready: dict[Path, Path] = {}
