@@ -11,7 +11,7 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-__all__ = ["CoatedContact", "PrescribedLoad", "Solution"]
+__all__ = ["CoatedContact", "NotClaimed", "PrescribedLoad", "Solution"]
 
 
 @dataclass(frozen=True)
@@ -87,8 +87,15 @@ class PrescribedLoad:
         _require_solid(self.coatings, self.substrate, self.friction)
 
 
+class NotClaimed(ValueError):
+    """A source was asked for a field it makes no claim about, which is not a failure of it."""
+
+
 class Solution(Protocol):
-    """What both methods and the exact reference return; see each method for its own record."""
+    """What both methods and the exact reference return; see each method for its own record.
+
+    A reference without displacements raises NotClaimed when asked for them.
+    """
 
     @property
     def contact_radius(self) -> float: ...

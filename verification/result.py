@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 
+from verification.invariants import Invariant
 from verification.profile import Profile
 from verification.verdict import Claim, Outcome, Verdict
 
@@ -34,6 +35,7 @@ class CaseResult:
     problem : the fields of CoatedContact, with the scales a_h, p_h, delta_h and the interfaces.
     verdicts : one (Claim, Verdict) per claim of the case, in its order.
     published : of a published case its citation and the tables as printed; empty for any other.
+    invariants : what each solution was held against by itself.
     """
 
     name: str
@@ -46,11 +48,13 @@ class CaseResult:
     seconds: float
     text: str = ""
     published: dict[str, Any] = field(default_factory=dict)
+    invariants: tuple[Invariant, ...] = ()
 
     @property
     def outcome(self) -> Outcome:
-        """The worst verdict: DISAGREES, then NO_RESULT, then INCONCLUSIVE, then AGREES."""
+        """The worst verdict or invariant: DISAGREES, then NO_RESULT, then INCONCLUSIVE, then AGREES."""
         found = {verdict.outcome for _, verdict in self.verdicts}
+        found |= {invariant.outcome for invariant in self.invariants}
         for outcome in (Outcome.DISAGREES, Outcome.NO_RESULT, Outcome.INCONCLUSIVE):
             if outcome in found:
                 return outcome
@@ -95,6 +99,7 @@ def to_json(result: CaseResult) -> dict[str, Any]:
         "profiles": [plain(vars(profile)) for profile in result.profiles],
         "case_file": result.text,
         "published": plain(result.published),
+        "invariants": [plain(vars(invariant)) for invariant in result.invariants],
     }
 
 

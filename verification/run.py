@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from verification.case import Case
+from verification.invariants import check
 from verification.problem import CoatedContact, PrescribedLoad, Solution
 from verification.profile import Line, Profile, sample, sample_contact
 from verification.result import CaseResult, SourceResult
@@ -105,7 +106,10 @@ def solve_case(case: Case, available: Mapping[str, Solver] | None = None) -> Sol
 
 
 def judge_case(case: Case, solved: Solved) -> CaseResult:
-    """Sample what was solved at the same points of every line, then decide each claim of ``case``."""
+    """Sample what was solved at the same points of every line, then decide each claim of ``case``.
+
+    Each solution is held against its own invariants besides.
+    """
     started = time.perf_counter()
     solutions, outcomes = dict(solved.solutions), dict(solved.outcomes)
     profiles: dict[tuple[str, str, str], Profile] = {}
@@ -127,6 +131,7 @@ def judge_case(case: Case, solved: Solved) -> CaseResult:
     edge = next(
         (solutions[s].contact_radius for s in reversed(list(solutions)) if not outcomes[s].failure), 0.0
     )
+    invariants = [row for s, solution in solutions.items() for row in check(solution, s, case.problem)]
     verdicts = tuple((claim, decide(claim, profiles, outcomes, case.problem, edge)) for claim in case.claims)
     return CaseResult(
         name=case.name,
@@ -138,6 +143,7 @@ def judge_case(case: Case, solved: Solved) -> CaseResult:
         verdicts=verdicts,
         seconds=sum(s.seconds for s in solved.outcomes.values()) + time.perf_counter() - started,
         text=case.text,
+        invariants=tuple(invariants),
     )
 
 

@@ -20,6 +20,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from verification.problem import NotClaimed
 from verification.references.hertz import Hertz, HertzUncertainty
 
 __all__ = ["Hamilton"]
@@ -119,8 +120,8 @@ class Hamilton:
         return self.peak_pressure * sigma
 
     def displacement(self, x: ArrayLike, y: ArrayLike, z: ArrayLike) -> Array:
-        """No claim is made on displacements; raises ValueError."""
-        raise ValueError("the closed form claims no displacement field; ask one of the methods")
+        """No claim is made on displacements; raises NotClaimed."""
+        raise NotClaimed("the closed form claims no displacement field; ask one of the methods")
 
     def pressure_uncertainty(self, x: ArrayLike, y: ArrayLike = 0.0) -> Array:
         """Zero [Pa]: exact."""

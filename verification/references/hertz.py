@@ -14,6 +14,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from verification.problem import NotClaimed
+
 __all__ = ["Hertz", "HertzUncertainty"]
 
 Array = NDArray[np.float64]
@@ -153,8 +155,8 @@ class Hertz:
         return sigma
 
     def displacement(self, x: ArrayLike, y: ArrayLike, z: ArrayLike) -> Array:
-        """No claim is made below the surface; raises ValueError."""
-        raise ValueError("the closed form claims no displacement field; see surface_displacement")
+        """No claim is made below the surface; raises NotClaimed."""
+        raise NotClaimed("the closed form claims no displacement field; see surface_displacement")
 
     def pressure_uncertainty(self, x: ArrayLike, y: ArrayLike = 0.0) -> Array:
         """Zero [Pa]: exact."""

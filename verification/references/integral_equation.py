@@ -16,6 +16,7 @@ from numpy.polynomial import legendre
 from numpy.typing import ArrayLike, NDArray
 from scipy.optimize import brentq
 
+from verification.problem import NotClaimed
 from verification.references.axisymmetric_pressure import AbelPressure
 from verification.references.hankel import HankelField
 from verification.references.layered import LayeredHalfSpace, bending_length
@@ -96,8 +97,8 @@ class ExactSolution:
         return self.field.stress(x, y, z, layer)
 
     def displacement(self, x: ArrayLike, y: ArrayLike, z: ArrayLike) -> Array:
-        """No claim is made on displacements; raises ValueError."""
-        raise ValueError("the integral equation claims no displacement field; ask one of the methods")
+        """No claim is made on displacements; raises NotClaimed."""
+        raise NotClaimed("the integral equation claims no displacement field; ask one of the methods")
 
     def pressure_uncertainty(self, x: ArrayLike, y: ArrayLike = 0.0) -> Array:
         """Absolute [Pa]; raises ValueError where no companion was solved."""

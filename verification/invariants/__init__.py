@@ -1,0 +1,6 @@
+"""What every solution must satisfy, whatever the other sources say: balance, equilibrium, bonds, symmetry."""
+
+from verification.invariants.check import check
+from verification.invariants.record import Invariant
+
+__all__ = ["Invariant", "check"]

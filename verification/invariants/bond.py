@@ -1,0 +1,99 @@
+"""Invariants of deformation: perfect bonds, Hooke's law, the sphere's shape under the contact."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from verification.invariants.record import Invariant, decide
+from verification.invariants.stencil import Stencil
+from verification.problem import CoatedContact, Solution
+
+__all__ = ["bonded_displacement", "bonded_traction", "hooke", "sphere"]
+
+Array = NDArray[np.float64]
+
+RADII = np.array([0.0, 0.3, 0.6, 0.9, 1.2, 1.8])
+ANGLE = 0.35
+# Of the thinner neighbour; a tenth of a per cent curves a displacement by 1e-6 of its change in the layer.
+STEP = 1e-3
+
+
+def bonded_traction(solution: Solution, source: str, problem: CoatedContact, k: int) -> Invariant:
+    """sigma_xz, sigma_yz and sigma_zz are the same on both sides of interface ``k``, from 1."""
+    x, y, z = _line(solution, problem, k)
+    sides = [solution.stress(x, y, z, layer=layer)[:, 2] for layer in (k - 1, k)]
+    bound = None
+    if solution.uncertainty is not None:
+        U = [solution.stress_uncertainty(x, y, z, layer=layer)[:, 2] for layer in (k - 1, k)]
+        bound = (U[0] + U[1]) / problem.p_h
+    law = f"sigma_xz, sigma_yz, sigma_zz pass interface {k} unchanged, over p_h"
+    return decide(f"bonded tractions, interface {k}", source, law, (sides[0] - sides[1]) / problem.p_h, bound)
+
+
+def bonded_displacement(solution: Solution, source: str, problem: CoatedContact, k: int) -> Invariant:
+    """u is the same on both sides of interface ``k``, each carried there from three depths of its own side.
+
+    Bounded by the uncertainty of the approach, as that of any displacement, and by what the third depth
+    changes.
+    """
+    x, y, z = _line(solution, problem, k)
+    thickness = [h for _, _, h in problem.coatings] + [solution.contact_radius]
+    step = STEP * min(thickness[k - 1], thickness[k])
+    at, error = [], np.zeros((3, x.size))
+    for sign in (-1.0, 1.0):
+        u = [solution.displacement(x, y, z + sign * n * step) for n in (1, 2, 3)]
+        line, parabola = 2 * u[0] - u[1], 3 * u[0] - 3 * u[1] + u[2]
+        at.append(parabola)
+        error = error + np.abs(parabola - line)
+    stated = solution.uncertainty
+    bound = None if stated is None else (error + 2 * stated.approach) / solution.approach
+    law = f"u passes interface {k} unchanged, over the approach"
+    return decide(
+        f"bonded displacements, interface {k}", source, law, (at[0] - at[1]) / solution.approach, bound
+    )
+
+
+def hooke(solution: Solution, source: str, problem: CoatedContact, layer: int, stencil: Stencil) -> Invariant:
+    """E eps_ij = (1 + nu) sigma_ij - nu sigma_kk delta_ij in ``layer``, strains by differences of u.
+
+    Bounded by the uncertainty of the stresses, by that of the approach over the steps, as of any
+    displacement, and by the differences' own error.
+    """
+    x, y, z = stencil.points
+    E, nu = ([c[:2] for c in problem.coatings] + [problem.substrate])[layer]
+    u = solution.displacement(x, y, z)
+    gradient, error = stencil.gradient(u)
+    strain = (gradient + gradient.swapaxes(0, 1)) / 2
+    x, y, z = stencil.place
+    sigma = solution.stress(x, y, z, layer=layer)
+    unit = np.eye(3)[:, :, None]
+    residual = E * strain - (1 + nu) * sigma + nu * unit * np.trace(sigma)
+    bound = None
+    if solution.uncertainty is not None:
+        U = solution.stress_uncertainty(x, y, z, layer=layer)
+        spread = error + stencil.spread(np.full(u.shape, float(solution.uncertainty.approach)))
+        spread = (spread + spread.swapaxes(0, 1)) / 2
+        bound = (E * spread + (1 + nu) * U + abs(nu) * unit * np.trace(U)) / problem.p_h
+    called = f"coating {layer + 1}" if layer < len(problem.coatings) else "substrate"
+    law = f"E eps = (1 + nu) sigma - nu tr sigma in {called}, over p_h"
+    return decide(f"Hooke's law, {called}", source, law, residual / problem.p_h, bound)
+
+
+def sphere(solution: Solution, source: str, problem: CoatedContact) -> Invariant:
+    """The surface follows the sphere: u_z + r^2/2R = delta in the contact, more outside.
+
+    At right angles to sliding, where friction lifts nothing.
+    """
+    inside, outside = np.array([0.0, 0.25, 0.5, 0.75, 0.95]), np.array([1.05, 1.2, 1.6])
+    y = solution.contact_radius * np.concatenate([inside, outside])
+    u = solution.displacement(np.zeros_like(y), y, np.zeros_like(y))[2]
+    gap = (u + y**2 / (2 * problem.radius) - solution.approach) / solution.approach
+    residual = np.where(y <= solution.contact_radius, gap, np.minimum(gap, 0.0))
+    stated = solution.uncertainty
+    bound = None if stated is None else 2 * stated.approach / solution.approach
+    law = "u_z + r^2/2R = approach in the contact, no less outside, over the approach"
+    return decide("sphere", source, law, residual, bound)
+
+
+def _line(solution: Solution, problem: CoatedContact, k: int) -> tuple[Array, Array, Array]:
+    r = solution.contact_radius * RADII
+    return r * np.cos(ANGLE), r * np.sin(ANGLE), np.full(r.shape, problem.interfaces[k - 1])
