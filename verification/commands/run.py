@@ -8,8 +8,9 @@ import time
 import unicodedata
 from collections import Counter
 from collections.abc import Sequence
+from contextlib import suppress
 from pathlib import Path
-from typing import Annotated, TypeVar
+from typing import Annotated
 
 from cyclopts import Parameter
 from rich.console import Console
@@ -17,17 +18,17 @@ from rich.markup import escape
 from rich.table import Table
 
 from verification.case import Case, CaseError, read_case, shipped_cases
-from verification.commands.common import EXIT, STYLE, complain, exit_code, one_line, progress_bar
+from verification.commands.common import EXIT, STYLE, complain, exit_code, one_line
+from verification.commands.solving import kept_results, solve
+from verification.plane import Plane, plane_path, read_plane
 from verification.printed import PublishedCase, is_published, published_cases, read_published
 from verification.result import CaseResult, RunInfo
-from verification.schedule import Task, case_task, cores, kept_result, published_task, run_tasks
+from verification.schedule import Task, case_task, cores, published_task
 from verification.store import StoreError, locked
 from verification.surroundings import commit, machine, missing_libraries, versions
 from verification.verdict import Outcome
 
 __all__ = ["run"]
-
-T = TypeVar("T")
 
 
 def run(
@@ -84,13 +85,13 @@ def run(
     begin, started = time.perf_counter(), datetime.datetime.now(datetime.UTC)
     try:
         with locked(output):
-            kept = _kept(chosen, output) if resume else {}
+            kept = kept_results(chosen, output) if resume else {}
             study = accuracy_study.stored(output) if resume and not cases else None
             tasks: list[Task[CaseResult | AccuracyStudy]] = []
             if not cases and study is None:
                 tasks.append(accuracy_study.task(output))
             tasks += [_task(c, output) for c in chosen if c.name not in kept]
-            solved = _solve(tasks, jobs, time_limit, quiet or as_json)
+            solved = solve(tasks, jobs, time_limit, quiet or as_json)
             results = {r.name: r for r in solved if isinstance(r, CaseResult)}
             study = next((r for r in solved if isinstance(r, AccuracyStudy)), study)
             ordered = [kept.get(case.name) or results[case.name] for case in chosen]
@@ -104,7 +105,7 @@ def run(
                 versions=versions(),
             )
             try:
-                page = write_report(ordered, output, info, study)
+                page = write_report(ordered, output, info, study, planes=_planes(chosen, output))
             except OSError as error:
                 said = error.strerror or error
                 raise StoreError(
@@ -144,44 +145,6 @@ def _choose(names: Sequence[str]) -> list[Case | PublishedCase]:
 
 def _task(case: Case | PublishedCase, output: Path) -> Task[CaseResult]:
     return case_task(case, output) if isinstance(case, Case) else published_task(case, output)
-
-
-def _kept(chosen: Sequence[Case | PublishedCase], output: Path) -> dict[str, CaseResult]:
-    """The earlier results that stand, by name; why another one does not is said on standard error."""
-    kept = {}
-    for case in chosen:
-        try:
-            result = kept_result(output, case)
-        except StoreError as error:
-            complain(f"{error}; computed again")
-            continue
-        if result is not None:
-            kept[case.name] = result
-    return kept
-
-
-def _solve(tasks: Sequence[Task[T]], jobs: int, time_limit: float, silent: bool) -> list[T]:
-    console = Console(stderr=True)
-    bar = progress_bar(console, silent=silent)
-    at_work: list[str] = []
-    with bar:
-        task = bar.add_task("solving", total=len(tasks))
-
-        def started(name: str) -> None:
-            at_work.append(name)
-            bar.update(task, description=", ".join(at_work))
-
-        def finished(name: str, result: T) -> None:
-            at_work.remove(name)
-            bar.update(task, advance=1, description=", ".join(at_work) or "report")
-            if not silent and isinstance(result, CaseResult):
-                colour = STYLE[result.outcome]
-                console.print(
-                    f"[{colour}]{result.outcome:<12}[/] {escape(result.name)}  {result.seconds:.1f} s",
-                    highlight=False,
-                )
-
-        return run_tasks(tasks, jobs=jobs, time_limit=time_limit, started=started, finished=finished)
 
 
 def _summary(results: Sequence[CaseResult], page: Path) -> dict[str, object]:

@@ -1,0 +1,58 @@
+"""Tasks solved before the eyes of whoever waits: what stands from earlier, a bar, a line for each result."""
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TypeVar
+
+from rich.console import Console
+from rich.markup import escape
+
+from verification.case import Case
+from verification.commands.common import STYLE, complain, progress_bar
+from verification.printed import PublishedCase
+from verification.result import CaseResult
+from verification.schedule import Task, kept_result, run_tasks
+from verification.store import StoreError
+
+__all__ = ["kept_results", "solve"]
+
+T = TypeVar("T")
+
+
+def kept_results(chosen: Sequence[Case | PublishedCase], output: Path) -> dict[str, CaseResult]:
+    """The earlier results that stand, by name; why another one does not is said on standard error."""
+    kept = {}
+    for case in chosen:
+        try:
+            result = kept_result(output, case)
+        except StoreError as error:
+            complain(f"{error}; computed again")
+            continue
+        if result is not None:
+            kept[case.name] = result
+    return kept
+
+
+def solve(tasks: Sequence[Task[T]], jobs: int, time_limit: float, silent: bool) -> list[T]:
+    """Run ``tasks`` side by side under a progress bar; each result is said as it comes, unless ``silent``."""
+    console = Console(stderr=True)
+    bar = progress_bar(console, silent=silent)
+    at_work: list[str] = []
+    with bar:
+        task = bar.add_task("solving", total=len(tasks))
+
+        def started(name: str) -> None:
+            at_work.append(name)
+            bar.update(task, description=", ".join(at_work))
+
+        def finished(name: str, result: T) -> None:
+            at_work.remove(name)
+            bar.update(task, advance=1, description=", ".join(at_work) or "report")
+            if not silent and isinstance(result, CaseResult):
+                colour = STYLE[result.outcome]
+                console.print(
+                    f"[{colour}]{result.outcome:<12}[/] {escape(result.name)}  {result.seconds:.1f} s",
+                    highlight=False,
+                )
+
+        return run_tasks(tasks, jobs=jobs, time_limit=time_limit, started=started, finished=finished)

@@ -1,0 +1,55 @@
+"""A run read back from the report.json that it left."""
+
+import json
+from dataclasses import dataclass
+from pathlib import Path
+
+from verification.result import CaseResult, RunInfo, from_json, to_json
+from verification.store import MAX_BYTES, StoreError, read_checked
+
+__all__ = ["StoredRun", "confirm", "read_run"]
+
+
+@dataclass(frozen=True, eq=False)
+class StoredRun:
+    """The ``results`` of a run with what it stood on; ``path`` is that of its report.json."""
+
+    path: Path
+    info: RunInfo
+    results: tuple[CaseResult, ...]
+
+    def result(self, name: str) -> CaseResult | None:
+        """The result of the case ``name``; None where the run has none."""
+        return next((result for result in self.results if result.name == name), None)
+
+
+def read_run(place: Path) -> StoredRun:
+    """The run in the directory ``place``, or in the report.json ``place`` itself.
+
+    Raises StoreError: one sentence that names the file.
+    """
+    path = place / "report.json" if place.is_dir() else place
+    try:
+        with path.open("rb") as file:
+            raw = file.read(MAX_BYTES + 1)
+    except OSError as error:
+        raise StoreError(
+            f"{path}: cannot be read ({error.strerror or error}); give the directory of a run, or report.json"
+        ) from None
+    if len(raw) > MAX_BYTES:
+        raise StoreError(f"{path}: larger than {MAX_BYTES} bytes; not a report of this program")
+    try:
+        data = json.loads(raw)
+        known = {name: data["run"][name] for name in RunInfo.__dataclass_fields__}
+        return StoredRun(path, RunInfo(**known), tuple(from_json(case) for case in data["cases"]))
+    except (ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
+        said = " ".join(str(error).split())[:120]
+        raise StoreError(f"{path}: not a report of this program ({said}); run the cases again") from None
+
+
+def confirm(run: StoredRun) -> None:
+    """See to it that each case of the report is the one whose checksum holds beside it. Raises StoreError."""
+    for result in run.results:
+        path = run.path.parent / "cases" / f"{result.name}.json"
+        if to_json(from_json(read_checked(path))) != to_json(result):
+            raise StoreError(f"{path}: of another run than {run.path}; run the cases again")
