@@ -1,0 +1,161 @@
+"""A planted fault: a few words of a function, or a constant, exchanged while a trial runs.
+
+The source on disk is never touched. The text of the function concerned is taken from the running code, the
+words are exchanged, the result is compiled in the module of the original and put in its place wherever that
+was imported by name; leaving the context puts the originals back.
+"""
+
+import inspect
+import linecache
+import sys
+import textwrap
+from collections.abc import Iterator
+from contextlib import ExitStack, contextmanager
+from dataclasses import dataclass
+from functools import cached_property
+from importlib import import_module
+from types import ModuleType
+from typing import Any
+
+__all__ = ["PACKAGES", "Constant", "Edit", "Fault", "PlantError", "planted"]
+
+PACKAGES = ("semianalytic", "fem_reference", "verification")
+
+
+class PlantError(Exception):
+    """A fault that no longer fits the source; the message names the function and the words."""
+
+
+@dataclass(frozen=True)
+class Edit:
+    """In the function ``target``, "module:function" or "module:Class.method", ``old`` becomes ``new``.
+
+    ``old`` must stand there exactly once, so that a source that moves on is noticed.
+    """
+
+    target: str
+    old: str
+    new: str
+
+
+@dataclass(frozen=True)
+class Constant:
+    """The constant ``target``, "module:NAME", becomes ``new``."""
+
+    target: str
+    new: Any
+
+
+@dataclass(frozen=True)
+class Fault:
+    """One mistake, named, with one ``sentence`` on what is wrong.
+
+    where : the source it sits in, "harness", or "published" for the reading of printed tables.
+    changes : what is exchanged.   expected : names of the quantities, invariants, tables or self-tests of
+    which one at least should catch it, said before it was tried.
+    cases : of the default run, tried with it.   solve : sources solved anew under the fault, all others
+    stand as the clean run left them.   published : printed cases tried with it.
+    """
+
+    name: str
+    group: str
+    sentence: str
+    where: str
+    changes: tuple[Edit | Constant, ...]
+    expected: tuple[str, ...]
+    cases: tuple[str, ...] = ()
+    solve: tuple[str, ...] = ()
+    published: tuple[str, ...] = ()
+
+
+@contextmanager
+def planted(changes: tuple[Edit | Constant, ...]) -> Iterator[None]:
+    """The running code with ``changes`` in it. Raises PlantError where one does not fit."""
+    with ExitStack() as stack:
+        for change in changes:
+            stack.enter_context(_edited(change) if isinstance(change, Edit) else _constant(change))
+        yield
+
+
+@contextmanager
+def _constant(change: Constant) -> Iterator[None]:
+    owner, name = _owner(change.target)
+    original = _held(owner, name, change.target)
+    if original == change.new:
+        raise PlantError(f"{change.target} is {original!r} already; nothing would be planted")
+    setattr(owner, name, change.new)
+    try:
+        yield
+    finally:
+        setattr(owner, name, original)
+
+
+@contextmanager
+def _edited(change: Edit) -> Iterator[None]:
+    owner, name = _owner(change.target)
+    original = _held(owner, name, change.target)
+    changed = _changed(original, name, change)
+    places: list[tuple[Any, str]] = [(owner, name)]
+    if isinstance(owner, ModuleType):
+        # Functions are imported by name, so every module that holds this one must hold the other.
+        places = [
+            (module, known)
+            for key, module in list(sys.modules.items())
+            if key.split(".")[0] in PACKAGES
+            for known, value in list(vars(module).items())
+            if value is original
+        ]
+    try:
+        for place, known in places:
+            setattr(place, known, changed)
+        yield
+    finally:
+        for place, known in places:
+            setattr(place, known, original)
+
+
+def _owner(target: str) -> tuple[Any, str]:
+    module, _, path = target.partition(":")
+    *parents, name = path.split(".")
+    owner: Any = import_module(module)
+    for parent in parents:
+        owner = getattr(owner, parent)
+    return owner, name
+
+
+def _held(owner: Any, name: str, target: str) -> Any:
+    if name not in vars(owner):
+        raise PlantError(f"{target}: there is no such function; the fault no longer fits the source")
+    return vars(owner)[name]
+
+
+def _changed(original: Any, name: str, change: Edit) -> Any:
+    """The function, method or property with the words exchanged, compiled in its own module."""
+    function = original
+    if isinstance(function, property):
+        function = function.fget
+    elif isinstance(function, cached_property):
+        function = function.func
+    elif isinstance(function, classmethod | staticmethod):
+        function = function.__func__
+    function = inspect.unwrap(getattr(function, "form", function))
+    text = textwrap.dedent(inspect.getsource(function))
+    count = text.count(change.old)
+    if count != 1:
+        raise PlantError(
+            f"{change.target}: {change.old!r} stands there {count} times, not once; "
+            "the fault no longer fits the source"
+        )
+    module = sys.modules[function.__module__]
+    # A property compiled again stays one, for its decorator is part of the text.
+    made: dict[str, Any] = {}
+    # Kept where inspect looks, so that a second edit finds the words of the first.
+    name_of_file = f"<{change.target}, {change.new!r} planted>"
+    lines = text.replace(change.old, change.new).splitlines(keepends=True)
+    linecache.cache[name_of_file] = (len(text), None, lines, name_of_file)
+    code = compile("".join(lines), name_of_file, "exec")
+    exec(code, vars(module), made)  # our own source, with words from our own catalogue
+    changed = made[name]
+    if isinstance(changed, cached_property):
+        changed.__set_name__(type(name, (), {}), name)
+    return changed
