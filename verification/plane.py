@@ -5,7 +5,8 @@ stresses need no interpolation and the finite element model has shape functions 
 result of the case in a file of its own that checks itself.
 """
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -14,9 +15,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from verification.problem import Solution
+from verification.result import CaseResult, plain
 from verification.store import StoreError, read_checked, write_checked
 
-__all__ = ["COMPONENTS", "Plane", "plane_path", "read_plane", "sample_plane", "von_mises", "write_plane"]
+__all__ = [
+    "COMPONENTS",
+    "Plane",
+    "plane_path",
+    "read_plane",
+    "read_planes",
+    "sample_plane",
+    "von_mises",
+    "write_plane",
+]
 
 Array = NDArray[np.float64]
 
@@ -67,9 +78,9 @@ def sample_plane(interfaces: tuple[float, ...], solutions: Mapping[str, Solution
     if not methods:
         return Plane(np.zeros(0), (), 0.0, {}, {})
     first = next(iter(methods.values()))
+    stress, failures = {}, {}
     x, every = _columns(first)
     depths = _depths(first.contact_radius, interfaces)
-    stress, failures = {}, {}
     for name, solution in methods.items():
         try:
             stress[name] = tuple(_layer(solution, x, every, z, k) for k, z in enumerate(depths))
@@ -130,8 +141,9 @@ def plane_path(folder: Path, name: str) -> Path:
 
 def write_plane(path: Path, plane: Plane, case_file: str) -> None:
     """Store ``plane`` with the case file it came from; nine digits, a billionth of the largest stress."""
-    largest = max((float(np.max(np.abs(s))) for some in plane.stress.values() for s in some), default=0.0)
-    digits = 0 if not 0 < largest < np.inf else 9 - int(np.ceil(np.log10(largest)))
+    peaks = [float(np.max(np.abs(s))) for some in plane.stress.values() for s in some]
+    largest = max((peak for peak in peaks if np.isfinite(peak)), default=0.0)
+    digits = 0 if not largest > 0 else 9 - int(np.ceil(np.log10(largest)))
     content = {
         "schema": SCHEMA,
         "case_file": case_file,
@@ -139,18 +151,22 @@ def write_plane(path: Path, plane: Plane, case_file: str) -> None:
         "depths": [z.tolist() for z in plane.depths],
         "radius": plane.radius,
         "components": list(COMPONENTS),
-        "stress": {name: [np.round(s, digits).tolist() for s in some] for name, some in plane.stress.items()},
+        # NaN and infinity become text: what a method gave is kept, and the JSON stays strict.
+        "stress": {name: [plain(np.round(s, digits)) for s in some] for name, some in plane.stress.items()},
         "failures": dict(plane.failures),
     }
     write_checked(path, content)
 
 
-def read_plane(path: Path, case_file: str) -> Plane | None:
-    """The whole plane stored at ``path`` for this very case file, or None."""
+def read_plane(path: Path, case_file: str) -> Plane:
+    """The plane stored at ``path``.
+
+    Raises StoreError where it is missing, damaged or of another case file.
+    """
+    data = read_checked(path)
+    if (data.get("schema"), data.get("case_file")) != (SCHEMA, case_file):
+        raise StoreError(f"{path}: of another case file or version of this program; run the case again")
     try:
-        data = read_checked(path)
-        if data["schema"] != SCHEMA or data["case_file"] != case_file:
-            return None
         return Plane(
             np.array(data["x"], dtype=float),
             tuple(np.array(z, dtype=float) for z in data["depths"]),
@@ -161,5 +177,14 @@ def read_plane(path: Path, case_file: str) -> Plane | None:
             },
             {str(name): str(sentence) for name, sentence in data["failures"].items()},
         )
-    except (StoreError, ValueError, KeyError, TypeError):
-        return None
+    except (ValueError, KeyError, TypeError, AttributeError):
+        raise StoreError(f"{path}: not a whole plane; it is damaged, run the case again") from None
+
+
+def read_planes(folder: Path, results: Iterable[CaseResult]) -> dict[str, Plane]:
+    """The planes that a run directory holds of ``results``, by name of the case."""
+    found = {}
+    for result in results:
+        with suppress(StoreError):  # a case without a result, or printed, has no plane
+            found[result.name] = read_plane(plane_path(folder, result.name), result.text)
+    return found

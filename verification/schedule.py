@@ -19,6 +19,7 @@ from typing import IO, Any, Generic, TypeVar
 from verification import printed_run
 from verification.case import Case
 from verification.confined import UNWRITABLE
+from verification.plane import plane_path, read_plane
 from verification.printed import PublishedCase
 from verification.result import CaseResult, from_json, plain
 from verification.run import describe, failed
@@ -73,7 +74,7 @@ class Task(Generic[T_co]):
 def case_task(case: Case, folder: Path) -> Task[CaseResult]:
     """Solving ``case`` with its result stored under ``folder``."""
     path = result_path(folder, case)
-    words = ("verification.worker", case.name, str(path))
+    words = ("verification.worker", case.name, str(path), str(plane_path(folder, case.name)))
     return Task(case.name, words, path, partial(_of, case), partial(failed, case), case.text.encode())
 
 
@@ -95,7 +96,7 @@ def _of(case: Case | PublishedCase, data: dict[str, Any]) -> CaseResult:
 def kept_result(folder: Path, case: Case | PublishedCase) -> CaseResult | None:
     """The result of ``case`` in a run directory that need not be computed again; None where there is none.
 
-    It is whole, of the same case file, made by the same code, and a result.
+    It is whole, of the same case file, made by the same code, and a result; so is what is drawn of it.
     Raises StoreError, naming the file, where there is one that cannot be used.
     """
     path = result_path(folder, case)
@@ -108,6 +109,8 @@ def kept_result(folder: Path, case: Case | PublishedCase) -> CaseResult | None:
         result = _of(case, data)
     except ValueError as error:
         raise StoreError(f"{path}: {error}") from None
+    if isinstance(case, Case):
+        read_plane(plane_path(folder, case.name), case.text)
     return result if result.outcome is not Outcome.NO_RESULT else None
 
 

@@ -1,22 +1,27 @@
-"""A process of its own for one case: the case file on standard input, its result into a checked file.
+"""A process of its own for one case: the case file on standard input, its results into checked files.
 
-python -m verification.worker NAME RESULT.json < case.toml
+python -m verification.worker NAME RESULT.json PLANE.json < case.toml
 """
 
 import sys
 from pathlib import Path
 
 from verification.case import parse_case
+from verification.plane import sample_plane, write_plane
 from verification.result import to_json
-from verification.run import run
+from verification.run import judge_case, solve_case
 from verification.store import write_checked
 from verification.surroundings import fingerprint
 
 
-def main(name: str, path: str) -> None:
-    """Solve the case named ``name`` and store its result at ``path``."""
+def main(name: str, path: str, plane: str) -> None:
+    """Solve the case named ``name``; store what is drawn of it at ``plane``, its result at ``path``."""
     case = parse_case(sys.stdin.buffer.read(), Path(f"{name}.toml"))
-    write_checked(Path(path), to_json(run(case)) | {"made_by": fingerprint()})
+    solved = solve_case(case)
+    result = judge_case(case, solved)
+    # The result comes last: where it lies, all that belongs to it does.
+    write_plane(Path(plane), sample_plane(case.problem.interfaces, solved.solutions), case.text)
+    write_checked(Path(path), to_json(result) | {"made_by": fingerprint()})
 
 
 if __name__ == "__main__":

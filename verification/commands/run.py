@@ -8,7 +8,6 @@ import time
 import unicodedata
 from collections import Counter
 from collections.abc import Sequence
-from contextlib import suppress
 from pathlib import Path
 from typing import Annotated
 
@@ -20,7 +19,7 @@ from rich.table import Table
 from verification.case import Case, CaseError, read_case, shipped_cases
 from verification.commands.common import EXIT, STYLE, complain, exit_code, one_line
 from verification.commands.solving import kept_results, solve
-from verification.plane import Plane, plane_path, read_plane
+from verification.plane import read_planes
 from verification.printed import PublishedCase, is_published, published_cases, read_published
 from verification.result import CaseResult, RunInfo
 from verification.schedule import Task, case_task, cores, published_task
@@ -105,7 +104,7 @@ def run(
                 versions=versions(),
             )
             try:
-                page = write_report(ordered, output, info, study, planes=_planes(chosen, output))
+                page = write_report(ordered, output, info, study, planes=read_planes(output, ordered))
             except OSError as error:
                 said = error.strerror or error
                 raise StoreError(
