@@ -124,7 +124,7 @@ def parse_published(raw: bytes, path: Path) -> PublishedCase:
             printed += _printed(table, content, units, problem, f"table.{i}")
     except PublishedError as error:
         raise CaseError(str(error)) from None
-    except ValueError as error:
+    except (ValueError, OverflowError, ZeroDivisionError) as error:
         raise CaseError(f"{path}: {error}") from None
     return PublishedCase(
         name=path.stem,
@@ -208,9 +208,9 @@ def _printed(
             raise ValueError(f"{key}.column.{i}: says nowhere where its values are; give at")
         try:
             to_si = column.factor * _unit(column.unit, units, here)
-            points = _points(at, content, units, problem, here)
         except ValueError as error:
             raise PublishedError(str(error)) from None
+        points = _points(at, content, units, problem, here)
         value = np.array(content.numbers(column.name)) * to_si
         counted = _counted(table, content, column.name)
         spread = _uncertainty(column, content, counted) * abs(to_si)
@@ -247,11 +247,14 @@ def _points(
     n = len(content.rows)
     if at is None:
         return Points.origin(n)
-    unit = _unit(at.unit, units, f"{where}: at")
     x, y, z = (
         np.array(content.numbers(v)) if isinstance(v, str) else np.full(n, v) for v in (at.x, at.y, at.z)
     )
-    return Points.of(x * unit, y * unit, z * unit, problem.coatings, at.layer, at.unit, unit)
+    try:
+        unit = _unit(at.unit, units, "at")
+        return Points.of(x * unit, y * unit, z * unit, problem.coatings, at.layer, at.unit, unit)
+    except ValueError as error:
+        raise PublishedError(f"{where}: {error}") from None
 
 
 def _counted(table: PrintedTable, content: PublishedTable, column: str) -> NDArray[np.bool_]:

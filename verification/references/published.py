@@ -152,4 +152,5 @@ def read_table(path: Path) -> PublishedTable:
 
 def _last_digit(cell: str) -> float:
     mantissa, _, exponent = cell.lower().partition("e")
-    return 10.0 ** (int(exponent or 0) - len(mantissa.partition(".")[2]))
+    # Of a zero the exponent may be anything.
+    return 10.0 ** min(int(exponent or 0) - len(mantissa.partition(".")[2]), 308)
