@@ -81,12 +81,12 @@ def surface(solution: Solution, source: str, problem: CoatedContact) -> tuple[In
 
 
 def places_in(layer: int, solution: Solution, problem: CoatedContact) -> Stencil:
-    """Under the contact and beside it at one depth of ``layer``, with steps that stay inside it."""
+    """Under the contact, in the substrate beside it too, with steps that stay inside ``layer``."""
     a = solution.contact_radius
     top = (0.0, *problem.interfaces)[layer]
     coated = layer < len(problem.coatings)
     thickness = problem.coatings[layer][2] if coated else 2 * a
-    r = a * np.array([0.5, 1.3])
+    r = a * (np.array([0.5]) if coated else np.array([0.5, 1.3]))
     z = np.full(r.shape, top + 0.4 * thickness)
     across = PART_OF_REACH * np.hypot(r - a, z)
     # the same for both: every depth has a price of its own
@@ -100,7 +100,7 @@ def equilibrium(
     """sigma_ij,j = 0 inside ``layer``, as the force on a slab of the vertical step's height.
 
     Bounded by the differences' own error and by what uncertain stresses make of them, each as uncertain as
-    the worst of the points at the depth of the places.
+    the worst of the places and of the farthest points at their depth.
     """
     x, y, z = stencil.points
     height = stencil.step[2] / problem.p_h
@@ -108,8 +108,7 @@ def equilibrium(
     force = np.einsum("jijn->in", gradient) * height
     bound = None
     if solution.uncertainty is not None:
-        level = z == stencil.place[2, 0]
-        U = solution.stress_uncertainty(x[level], y[level], z[level], layer=layer).max(axis=-1, keepdims=True)
+        U = solution.stress_uncertainty(*stencil.corners, layer).max(axis=-1, keepdims=True)
         spread = stencil.spread(np.broadcast_to(U, (3, 3, z.size)))
         bound = np.einsum("jijn->in", spread + error) * height
     law = f"div sigma = 0 in {_called(layer, problem)}, times the step over p_h"

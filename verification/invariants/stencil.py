@@ -41,9 +41,12 @@ class Stencil:
                 around[axis, axis, number] += sign * _STEPS[:, None] * self.step[axis]
         return np.concatenate([self.place, around.reshape(3, -1)], axis=1)
 
-    def centre(self, values: Array) -> Array:
-        """Values at the places, of values at all points."""
-        return values[..., : self.place.shape[1]]
+    @property
+    def corners(self) -> Array:
+        """The places and the farthest points at their depth, (3, 5 n)."""
+        n = self.place.shape[1]
+        around = self.points[:, n:].reshape(3, 3, 2, 3, n)
+        return np.concatenate([self.place, around[:, :2, :, -1].reshape(3, -1)], axis=1)
 
     def gradient(self, values: Array) -> tuple[Array, Array]:
         """d/dx, d/dy, d/dz at the places and the bound of their difference error, (3,) + (..., n)."""
