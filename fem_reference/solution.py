@@ -152,6 +152,9 @@ class Solution:
     Origin at first contact, x along sliding, z into the solid; tension positive; SI units.
     surface_nodes : increasing x on y = 0, z = 0 at which pressure is a nodal value
     uncertainty   : of the three scalars, None when not estimated
+    stiffness     : d load / d approach [N/m] of the sphere, as of a flat punch of its contact radius
+        (Pharr, Oliver and Brotzen, J. Mater. Res. 7 (1992) 613-617); None under a prescribed pressure
+    stiffness_uncertainty : absolute, None when not estimated
     """
 
     contact_radius: float
@@ -161,6 +164,8 @@ class Solution:
     uncertainty: Uncertainty | None
     diagnostics: Diagnostics
     meridian: Meridian = field(repr=False)
+    stiffness: float | None = None
+    stiffness_uncertainty: float | None = None
 
     def pressure(self, x: Any, y: Any = 0.0) -> np.ndarray:
         """Contact pressure [Pa] at the surface points (x, y), broadcast; zero outside the contact."""

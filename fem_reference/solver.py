@@ -135,7 +135,7 @@ def solve(
 
     load_miss = abs(found.load / target - 1)
     result = _state(solid, final.discretisation, found.fields, found.pressure, friction)
-    bounds = _NO_BOUNDS
+    bounds, stiffness_bound = _NO_BOUNDS, None
     if companion is not None:
         coarser = companion.touch
         other = _state(solid, companion.discretisation, coarser.fields, coarser.pressure, friction)
@@ -152,6 +152,11 @@ def solve(
             abs(found.approach - coarser.approach),
         )
         bounds = _bounds(result, other, unit, size_share, far_share, load_miss)
+        stiffness_bound = (
+            SAFETY * abs(found.stiffness - coarser.stiffness)
+            + abs(near.stiffness - coarser.stiffness)
+            + load_miss * found.stiffness
+        )
     return Solution(
         contact_radius=found.contact_radius * unit.length,
         approach=found.approach * unit.displacement,
@@ -171,6 +176,10 @@ def solve(
             history=tuple(history),
         ),
         meridian=_meridian(result, unit, bounds),
+        stiffness=found.stiffness * unit.load / unit.displacement,
+        stiffness_uncertainty=(
+            None if stiffness_bound is None else float(stiffness_bound * unit.load / unit.displacement)
+        ),
     )
 
 

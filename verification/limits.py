@@ -4,16 +4,17 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
 from operator import attrgetter
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from verification.problem import CoatedContact, PrescribedLoad, Solution
 
-__all__ = ["towards_limits"]
+__all__ = ["eased", "towards_limits"]
 
 Array = NDArray[np.float64]
+Problem = TypeVar("Problem", CoatedContact, PrescribedLoad)
 Solver = Callable[[CoatedContact | PrescribedLoad], Solution]
 STEP = 1e-3  # of Poisson's ratio
 STIFFEST = 1e4  # base over softest coating
@@ -26,13 +27,15 @@ def towards_limits(problem: CoatedContact | PrescribedLoad, solve: Solver) -> So
     layers and, under a coating 1e4 times softer, a compliance of the base of 1/E + 1e-4 t / E1. What that
     leaves out is the second difference over t = 1, 2, 3; it is part of the uncertainty.
     """
-    if _eased(problem, 1) == problem:
+    if eased(problem, 1) == problem:
         return solve(problem)
-    near, further, third = (solve(_eased(problem, t)) for t in (1, 2, 3))
+    near, further, third = (solve(eased(problem, t)) for t in (1, 2, 3))
     return _Extrapolated(near, further, third)
 
 
-def _eased(problem: CoatedContact | PrescribedLoad, t: int) -> CoatedContact | PrescribedLoad:
+def eased(problem: Problem, t: int) -> Problem:
+    """The problem at ``t`` steps from its limits; itself where it stands at none."""
+
     def compressible(nu: float) -> float:
         return nu - STEP * t if nu == 0.5 else nu
 
