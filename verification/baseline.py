@@ -12,15 +12,16 @@ leaves a factor of four.
 
 import hashlib
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from enum import StrEnum
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from verification.profile import Profile
 from verification.quantity import QUANTITIES
-from verification.result import CaseResult, RunInfo
+from verification.result import CaseResult, RunInfo, plain
 
 __all__ = [
     "FACTOR",
@@ -37,6 +38,7 @@ __all__ = [
     "digest",
     "measured",
     "regression",
+    "regression_json",
     "updated",
 ]
 
@@ -269,6 +271,32 @@ def regression(
     pairs += [(n, then.versions.get(n, "none"), info.versions.get(n, "none")) for n in names]
     other = tuple((name, old, new) for name, old, new in pairs if old != new)
     return Regression(folder, then, against(results, baseline, whole=whole), other)
+
+
+def regression_json(found: Regression) -> dict[str, Any]:
+    """A run beside its baseline as strict JSON: counts by case, then each profile that is not the same."""
+    cases = [
+        {
+            "name": case.name,
+            "state": case.state,
+            "said": case.said,
+            "change": case.change,
+            **{state: case.count(state) for state in State},
+            "profiles": [asdict(drift) for drift in case.drifts if drift.state is not State.SAME],
+        }
+        for case in found.cases
+    ]
+    update = found.update
+    recorded = None if update is None else {"why": update.why, "when": update.when, "commit": update.commit}
+    return plain(
+        {
+            "folder": found.folder,
+            "recorded": recorded,
+            "drifted": found.drifted,
+            "other_versions": found.other_versions,
+            "cases": cases,
+        }
+    )
 
 
 def updated(

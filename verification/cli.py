@@ -1,6 +1,7 @@
 """The command line of coatcheck.
 
-Exit codes: 0 all agree, 1 a disagreement, 2 bad input, 3 a missing result, 4 inconclusive.
+Exit codes: 0 all agree, 1 a disagreement, 2 bad input, 3 a missing result, 4 inconclusive, 5 all agree but
+a number is not that of the baseline.
 """
 
 import sys
@@ -15,7 +16,8 @@ __all__ = ["app", "main"]
 app = App(
     name="coatcheck",
     help="Verify coated point contact: two independent methods, Hertz and an exact reference in one report.",
-    help_epilogue="Exit codes: 0 all agree, 1 disagreement, 2 bad input, 3 no result, 4 inconclusive.",
+    help_epilogue="Exit codes: 0 all agree, 1 disagreement, 2 bad input, 3 no result, 4 inconclusive, 5 all "
+    "agree but a number is not that of the baseline.",
     version=lambda: version("coatcheck"),
     help_format="plaintext",
 )
@@ -24,8 +26,18 @@ for name, place, said in (
     ("run", "run:run", "Solve cases by every method and reference, judge every claim, write the report."),
     ("list", "list_cases:list_cases", "List the shipped cases and published results with their sources."),
     ("bench", "bench:bench", "Time the semi-analytical contact beside its peers; ratios first."),
+    ("compare", "compare:compare", "Show two runs side by side: verdicts, numbers, versions, times."),
+    ("alarms", "alarms:alarms", "Solve clean random problems; count the verdicts that are not AGREES."),
 ):
     app.command(f"verification.commands.{place}", name=name, help=said)
+
+baseline = App(name="baseline", help="The stored numbers that every run is held against.")
+for name, said in (
+    ("update", "Make a stored default run the baseline, with the reason why."),
+    ("show", "Show what the baseline holds and every update it has seen."),
+):
+    baseline.command(f"verification.commands.baseline:{name}", name=name, help=said)
+app.command(baseline)
 
 
 def main() -> None:

@@ -2,6 +2,7 @@
 
 import sys
 from collections.abc import Sequence
+from pathlib import Path
 
 from rich.console import Console
 from rich.progress import (
@@ -16,9 +17,21 @@ from rich.progress import (
 from verification.result import CaseResult
 from verification.verdict import Outcome
 
-__all__ = ["BAD_INPUT", "EXIT", "STYLE", "complain", "exit_code", "one_line", "progress_bar"]
+__all__ = [
+    "BAD_INPUT",
+    "BASELINE",
+    "DRIFTED",
+    "EXIT",
+    "STYLE",
+    "complain",
+    "exit_code",
+    "one_line",
+    "progress_bar",
+]
 
+BASELINE = Path("reports/baseline")
 BAD_INPUT = 2
+DRIFTED = 5  # all agree, but not with the digits of the baseline
 EXIT = {Outcome.DISAGREES: 1, Outcome.NO_RESULT: 3, Outcome.INCONCLUSIVE: 4, Outcome.AGREES: 0}
 STYLE = {
     Outcome.AGREES: "green",

@@ -16,8 +16,10 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
+from verification.baseline import Regression, State, regression, regression_json
+from verification.baseline_file import read_baseline
 from verification.case import Case, CaseError, read_case, shipped_cases
-from verification.commands.common import EXIT, STYLE, complain, exit_code, one_line
+from verification.commands.common import BASELINE, DRIFTED, EXIT, STYLE, complain, exit_code, one_line
 from verification.commands.solving import kept_results, solve
 from verification.plane import read_planes
 from verification.printed import PublishedCase, is_published, published_cases, read_published
@@ -35,6 +37,7 @@ def run(
     output: Annotated[Path, Parameter(name=["--output", "-o"])] = Path("reports"),
     jobs: Annotated[int | None, Parameter(name=["--jobs", "-j"])] = None,
     time_limit: float = 600.0,
+    baseline: Annotated[Path, Parameter(name=["--baseline", "-b"])] = BASELINE,
     resume: Annotated[bool, Parameter(negative="")] = False,
     quiet: Annotated[bool, Parameter(name=["--quiet", "-q"], negative="")] = False,
     as_json: Annotated[bool, Parameter(name="--json", negative="")] = False,
@@ -47,6 +50,9 @@ def run(
         coatcheck run 05_ratio_4 my_coating.toml --output reports/mine
         coatcheck run published
 
+    Exit codes: 0 all agree, 1 disagreement, 2 bad input, 3 no result, 4 inconclusive, 5 all agree but a
+    number is not that of the baseline.
+
     Parameters
     ----------
     cases
@@ -58,6 +64,8 @@ def run(
         Cases solved side by side; all cores unless given. Each gets its share of the threads.
     time_limit
         Seconds one case may take before it is stopped and reported as having no result.
+    baseline
+        Directory of the baseline; where it holds one, every number is held against it.
     resume
         Keep the whole results already in the output directory that belong to the same case files.
     quiet
@@ -83,6 +91,7 @@ def run(
 
     begin, started = time.perf_counter(), datetime.datetime.now(datetime.UTC)
     try:
+        known = read_baseline(baseline)
         with locked(output):
             kept = kept_results(chosen, output) if resume else {}
             study = accuracy_study.stored(output) if resume and not cases else None
@@ -103,8 +112,10 @@ def run(
                 machine=f"{machine()}, {cores()} cores",
                 versions=versions(),
             )
+            beside = regression(ordered, known, str(baseline), info, whole=not cases)
+            planes = read_planes(output, ordered)
             try:
-                page = write_report(ordered, output, info, study, planes=read_planes(output, ordered))
+                page = write_report(ordered, output, info, study, planes=planes, baseline=beside)
             except OSError as error:
                 said = error.strerror or error
                 raise StoreError(
@@ -113,10 +124,16 @@ def run(
     except StoreError as error:
         return complain(str(error))
     if as_json:
-        sys.stdout.write(json.dumps(_summary(ordered, page), indent=2) + "\n")
+        sys.stdout.write(json.dumps(_summary(ordered, page, beside), indent=2) + "\n")
     elif not quiet:
-        _print_table(ordered, page, time.perf_counter() - begin)
-    return exit_code(ordered)
+        _print_table(ordered, page, time.perf_counter() - begin, beside)
+    return _code(ordered, beside)
+
+
+def _code(results: Sequence[CaseResult], beside: Regression) -> int:
+    """The worst verdict decides; where all agree, the baseline."""
+    code = exit_code(results)
+    return DRIFTED if code == EXIT[Outcome.AGREES] and beside.drifted else code
 
 
 def _choose(names: Sequence[str]) -> list[Case | PublishedCase]:
@@ -146,13 +163,16 @@ def _task(case: Case | PublishedCase, output: Path) -> Task[CaseResult]:
     return case_task(case, output) if isinstance(case, Case) else published_task(case, output)
 
 
-def _summary(results: Sequence[CaseResult], page: Path) -> dict[str, object]:
+def _summary(results: Sequence[CaseResult], page: Path, beside: Regression) -> dict[str, object]:
+    states = {case.name: case.state for case in beside.cases}
     return {
         "report": str(page),
-        "exit_code": exit_code(results),
+        "exit_code": _code(results, beside),
+        "baseline": regression_json(beside),
         "cases": {
             result.name: {
                 "outcome": result.outcome,
+                "baseline": states.get(result.name),
                 "verdicts": {o: sum(v.outcome is o for _, v in result.verdicts) for o in Outcome},
             }
             for result in results
@@ -160,10 +180,10 @@ def _summary(results: Sequence[CaseResult], page: Path) -> dict[str, object]:
     }
 
 
-def _print_table(results: Sequence[CaseResult], page: Path, seconds: float) -> None:
-    table = Table(
-        "case", *(outcome.lower() for outcome in Outcome), "largest difference", box=None, header_style="bold"
-    )
+def _print_table(results: Sequence[CaseResult], page: Path, seconds: float, beside: Regression) -> None:
+    heads = ["case", *(outcome.lower() for outcome in Outcome), "largest difference"]
+    heads += ["baseline"] if beside.update is not None else []
+    table = Table(*heads, box=None, header_style="bold")
     for result in results:
         worst = max((v.difference for _, v in result.verdicts if v.difference is not None), default=None)
         table.add_row(
@@ -173,6 +193,7 @@ def _print_table(results: Sequence[CaseResult], page: Path, seconds: float) -> N
                 for o in Outcome
             ),
             "-" if worst is None else f"{worst:.1e}",
+            *([_state(beside, result.name)] if beside.update is not None else []),
         )
     console = Console()
     console.print(table)
@@ -184,4 +205,18 @@ def _print_table(results: Sequence[CaseResult], page: Path, seconds: float) -> N
                     f"{escape(one_line(source.failure))}",
                     highlight=False,
                 )
+    if beside.update is not None:
+        from verification.report.baseline import baseline_sentence
+
+        console.print(
+            escape(f"baseline of {beside.update.when[:10]}: {baseline_sentence(beside)}"), highlight=False
+        )
     console.print(f"{len(results)} cases in {seconds:.0f} s; report: {escape(str(page))}", highlight=False)
+
+
+def _state(beside: Regression, name: str) -> str:
+    found = beside.of(name)
+    if found is None:
+        return "-"
+    change = "" if not found.change else f" {found.change:.0e}"
+    return f"[{'green' if found.state is State.SAME else 'yellow'}]{found.state}[/]{change}"

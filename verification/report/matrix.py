@@ -15,10 +15,13 @@ __all__ = ["outcome_cell", "verdict_matrix"]
 _HEADS = {"interfaces": "inter\u00adfaces"}
 
 
-def verdict_matrix(results: Sequence[CaseResult], anchors: Mapping[int, str]) -> Table:
+def verdict_matrix(
+    results: Sequence[CaseResult], anchors: Mapping[int, str], states: Mapping[str, Cell] | None = None
+) -> Table:
     """Every case at a glance; each cell holds its worst verdict and its largest difference.
 
     anchors : the anchor of each case by its number.
+    states : what became of each case since the baseline, by its name; no such column without.
     """
     claims = [claim for result in results for claim, _ in result.verdicts]
     blocks = sorted({_block(claim) for claim in claims})
@@ -28,6 +31,8 @@ def verdict_matrix(results: Sequence[CaseResult], anchors: Mapping[int, str]) ->
     for number, result in enumerate(results):
         anchor = anchors[number]
         cells = [outcome_cell(result.outcome, href=f"#{anchor}")]
+        if states:
+            cells.append(states.get(result.name, Cell("", None, "nothing", "not in the baseline")))
         for place in columns:
             found = [(c, v) for c, v in result.verdicts if _place(c) == place]
             cells.append(_cell(found, f"#{anchor}-{_target(result, place[1])}"))
@@ -36,9 +41,14 @@ def verdict_matrix(results: Sequence[CaseResult], anchors: Mapping[int, str]) ->
     return Table(
         "Largest difference of each pair of sources, as a fraction of the value for p0, a and approach, "
         "of p_h for stresses. A cell leads to the figures behind it.",
-        ["case", "verdict", *(_HEADS.get(group, group) for _, group in columns)],
+        [
+            "case",
+            "verdict",
+            *(["baseline"] if states else []),
+            *(_HEADS.get(group, group) for _, group in columns),
+        ],
         rows,
-        [("", 2), *spans],
+        [("", 3 if states else 2), *spans],
         "matrix",
     )
 

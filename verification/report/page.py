@@ -13,8 +13,10 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 
 from verification.accuracy_study import AccuracyStudy
+from verification.baseline import Regression
 from verification.plane import Plane
 from verification.report.accuracy import accuracy_overview, accuracy_sentence, accuracy_table
+from verification.report.baseline import baseline_section, state_cell
 from verification.report.cells import Part, Section, Table
 from verification.report.convergence import convergence_sections
 from verification.report.csvdata import embedded, line_csv
@@ -88,14 +90,16 @@ def render(
     study: AccuracyStudy | None = None,
     extra: Sequence[Section] = (),
     planes: Mapping[str, Plane] | None = None,
+    baseline: Regression | None = None,
 ) -> str:
     """The whole page as text. Every string of a result is escaped: a title "<script>" stays text.
 
     planes : what to draw of the plane below the contact, by name of the case.
+    baseline : what became of each number since the baseline.
     """
     # A report tells of numbers that overflow or are not finite; it must not stumble over them.
     with np.errstate(all="ignore"):
-        return _render(results, info, study, extra, planes or {})
+        return _render(results, info, study, extra, planes or {}, baseline)
 
 
 def _render(
@@ -104,8 +108,14 @@ def _render(
     study: AccuracyStudy | None,
     extra: Sequence[Section],
     planes: Mapping[str, Plane],
+    baseline: Regression | None,
 ) -> str:
     anchors = _anchors(results)
+    sections = _sections(results, anchors, study)
+    if baseline is not None:
+        places = {result.name: anchors[number] for number, result in enumerate(results)}
+        sections.append(baseline_section(baseline, places))
+    drifts = baseline.cases if baseline is not None else ()
     contacts = [result for result in results if not result.published]
     contact_anchors = dict(enumerate(anchors[n] for n, result in enumerate(results) if not result.published))
     script = (HERE / "script.js").read_text(encoding="utf-8")
@@ -124,10 +134,12 @@ def _render(
         script_hash=digest,
         summary=_summary(results),
         counts=_counts(results),
-        matrix=verdict_matrix(contacts, contact_anchors) if contacts else None,
+        matrix=verdict_matrix(contacts, contact_anchors, {c.name: state_cell(c) for c in drifts})
+        if contacts
+        else None,
         printed=[published_view(result, anchors[n]) for n, result in enumerate(results) if result.published],
         outcomes=OUTCOMES.values(),
-        sections=[*_sections(results, anchors, study), *extra],
+        sections=[*sections, *extra],
         cases=[
             _case(result, anchor, planes.get(result.name))
             for result, anchor in zip(contacts, contact_anchors.values(), strict=True)

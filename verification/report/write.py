@@ -8,6 +8,7 @@ from pathlib import Path
 
 from verification import accuracy_study
 from verification.accuracy_study import AccuracyStudy
+from verification.baseline import Regression, regression_json
 from verification.plane import Plane
 from verification.report.cells import Section
 from verification.report.junit import junit_xml
@@ -24,21 +25,23 @@ def write_report(
     study: AccuracyStudy | None = None,
     extra: Sequence[Section] = (),
     planes: Mapping[str, Plane] | None = None,
+    baseline: Regression | None = None,
 ) -> Path:
     """Write report.html, report.json and junit.xml into ``folder`` and return the path of the page.
 
     study : how the errors of the methods fall with resolution, where that was measured.
-    extra : sections of the page about more than these results: baseline, credibility.
+    extra : sections of the page about more than these results.
     planes : stresses below the contact to be drawn, by name of the case.
+    baseline : what became of each number since the baseline.
 
     All three are made before the first is written, and each replaces its predecessor in one step, so
     that whatever goes wrong leaves the earlier report as it was. Raises OSError where the folder cannot
     be written.
     """
     texts = {
-        "report.json": report_json(results, info, study),
+        "report.json": report_json(results, info, study, baseline),
         "junit.xml": junit_xml(results, info),
-        "report.html": render(results, info, study, extra, planes),
+        "report.html": render(results, info, study, extra, planes, baseline),
     }
     folder.mkdir(parents=True, exist_ok=True)
     ready: dict[Path, Path] = {}
@@ -60,12 +63,18 @@ def write_report(
     return folder / "report.html"
 
 
-def report_json(results: Sequence[CaseResult], info: RunInfo, study: AccuracyStudy | None = None) -> str:
+def report_json(
+    results: Sequence[CaseResult],
+    info: RunInfo,
+    study: AccuracyStudy | None = None,
+    baseline: Regression | None = None,
+) -> str:
     """Everything the report is drawn from as strict JSON of schema ``coatcheck-report/1``."""
     data = {
         "schema": SCHEMA,
         "run": {**vars(info)},
         "cases": [to_json(result) for result in results],
         "accuracy": None if study is None else accuracy_study.to_json(study),
+        "baseline": None if baseline is None else regression_json(baseline),
     }
     return json.dumps(data, allow_nan=False, ensure_ascii=True, separators=(",", ":")) + "\n"

@@ -1,0 +1,147 @@
+"""coatcheck alarms: what the verdicts say of random problems in which nothing is wrong."""
+
+import datetime
+import json
+import sys
+import time
+from dataclasses import asdict
+from pathlib import Path
+from typing import Annotated
+
+from cyclopts import Parameter
+from rich.console import Console
+from rich.markup import escape
+from rich.table import Table
+
+from verification.alarms import AlarmRecord, counted, write_record
+from verification.case import Case, parse_case
+from verification.commands.common import EXIT, STYLE, complain, exit_code, one_line
+from verification.commands.solving import kept_results, solve
+from verification.draws import draw
+from verification.result import RunInfo, plain
+from verification.schedule import case_task, cores
+from verification.store import StoreError, locked, write_atomically
+from verification.surroundings import commit, machine, missing_libraries, versions
+from verification.verdict import Outcome
+
+__all__ = ["alarms"]
+
+RECORDS = Path("reports/credibility")
+MOST_SHOWN = 12
+
+
+def alarms(
+    *,
+    count: int = 24,
+    seed: int = 1,
+    output: Annotated[Path, Parameter(name=["--output", "-o"])] = Path("reports/alarms"),
+    record: Annotated[bool, Parameter(negative="")] = False,
+    records: Path = RECORDS,
+    jobs: Annotated[int | None, Parameter(name=["--jobs", "-j"])] = None,
+    time_limit: float = 600.0,
+    resume: Annotated[bool, Parameter(negative="")] = False,
+    quiet: Annotated[bool, Parameter(name=["--quiet", "-q"], negative="")] = False,
+    as_json: Annotated[bool, Parameter(name="--json", negative="")] = False,
+) -> int:
+    """Solve clean random problems; count the verdicts that are not AGREES, each a false alarm.
+
+    One to three coatings, E1/E2 from 0.1 to 10, h/a_h from 0.1 to 5, Poisson ratios to 0.49, friction to 0.5;
+    the same seed draws the same problems everywhere. Each is left as a case file under OUTPUT/problems, all
+    of them in a report. Examples:
+
+        coatcheck alarms --record
+        coatcheck alarms --count 48 --seed 2 --output reports/more_alarms
+
+    Exit codes are those of coatcheck run.
+
+    Parameters
+    ----------
+    count
+        Number of problems.
+    seed
+        Where the random numbers start.
+    output
+        Directory of the report, of the results, of the case files.
+    record
+        Store what was found as RECORDS/alarms.json, which the credibility page of every report reads.
+    records
+        Directory of the records.
+    jobs
+        Problems solved side by side; all cores unless given.
+    time_limit
+        Seconds one problem may take before it is stopped and counted as alarms.
+    resume
+        Keep the whole results already in the output directory.
+    quiet
+        Print nothing but complaints.
+    as_json
+        Print the record as JSON.
+    """
+    jobs = cores() if jobs is None else jobs
+    if jobs < 1 or not time_limit > 0 or count < 1 or seed < 0:
+        return complain(
+            f"--count = {count}, --seed = {seed}, --jobs = {jobs}, --time-limit = {time_limit:g}; only the "
+            "seed may be zero, none negative"
+        )
+    lacking = missing_libraries()
+    if lacking:
+        complain(f"gmsh lacks system libraries here; install them with: apt-get install {' '.join(lacking)}")
+        return EXIT[Outcome.NO_RESULT]
+
+    from verification.report import write_report  # matplotlib takes a second to load
+
+    begin, started = time.perf_counter(), datetime.datetime.now(datetime.UTC)
+    try:
+        with locked(output):
+            cases = [_case(seed, number, output) for number in range(count)]
+            kept = kept_results(cases, output) if resume else {}
+            tasks = [case_task(case, output) for case in cases if case.name not in kept]
+            solved = {r.name: r for r in solve(tasks, jobs, time_limit, quiet or as_json)}
+            results = [kept.get(case.name) or solved[case.name] for case in cases]
+            info = RunInfo(
+                command=f"coatcheck alarms --count {count} --seed {seed}",
+                started=started.isoformat(timespec="seconds"),
+                seconds=time.perf_counter() - begin,
+                jobs=jobs,
+                commit=commit(),
+                machine=f"{machine()}, {cores()} cores",
+                versions=versions(),
+            )
+            page = write_report(results, output, info)
+            found = counted(results, seed, info)
+            stored = write_record(records, found) if record else None
+    except (StoreError, OSError) as error:
+        return complain(str(error))
+    if as_json:
+        sys.stdout.write(json.dumps(plain(asdict(found)), indent=2) + "\n")
+    elif not quiet:
+        _print(found, page, stored)
+    return exit_code(results)
+
+
+def _case(seed: int, number: int, output: Path) -> Case:
+    drawn = draw(seed, number)
+    path = output / "problems" / f"{drawn.name}.toml"
+    write_atomically(path, drawn.text)
+    return parse_case(drawn.text.encode(), path)
+
+
+def _print(found: AlarmRecord, page: Path, stored: Path | None) -> None:
+    console = Console()
+    if found.alarms:
+        table = Table("problem", "quantity", "line", "between", "verdict", box=None, header_style="bold")
+        for alarm in found.alarms[:MOST_SHOWN]:
+            verdict = f"[{STYLE[alarm.outcome]}]{alarm.outcome}[/] {escape(one_line(alarm.reason))}"
+            table.add_row(alarm.case, alarm.quantity, alarm.line, ", ".join(alarm.between), verdict)
+        console.print(table)
+        more = len(found.alarms) - MOST_SHOWN
+        if more > 0:
+            console.print(f"... with {more} more in the report", highlight=False)
+    console.print(
+        f"{len(found.alarms)} false alarms in {found.comparisons} comparisons of {found.problems} clean "
+        f"problems, seed {found.seed}; {found.agreeing} problems agree throughout",
+        highlight=False,
+    )
+    console.print(escape(f"{found.seconds:.0f} s; report: {page}"), highlight=False)
+    if stored is not None:
+        console.print(escape(f"recorded: {stored}"), highlight=False)
