@@ -133,6 +133,7 @@ def from_json(data: dict[str, Any]) -> CaseResult:
             seconds=float(data["seconds"]),
             text=str(data["case_file"]),
             published=dict(data.get("published", {})),
+            invariants=tuple(_invariant(row) for row in data["invariants"]),
         )
     except (KeyError, TypeError, AttributeError, OverflowError) as error:
         raise ValueError(f"not a result of this program ({error!r}); run the case again") from None
@@ -156,6 +157,12 @@ def _verdict(v: dict[str, Any]) -> Verdict:
     keys = ("difference", "uncertainty", "margin", "worst")
     figures = {key: None if v[key] is None else float(v[key]) for key in keys}
     return Verdict(Outcome(v["outcome"]), str(v["reason"]), **figures)
+
+
+def _invariant(row: dict[str, Any]) -> Invariant:
+    texts = {key: str(row[key]) for key in ("name", "source", "sentence")}
+    figures = {key: None if row[key] is None else float(row[key]) for key in ("value", "bound")}
+    return Invariant(**texts, **figures, outcome=Outcome(row["outcome"]))
 
 
 def plain(value: Any) -> Any:

@@ -108,9 +108,10 @@ def equilibrium(
     force = np.einsum("jijn->in", gradient) * height
     bound = None
     if solution.uncertainty is not None:
-        U = solution.stress_uncertainty(*stencil.corners, layer).max(axis=-1, keepdims=True)
-        spread = stencil.spread(np.broadcast_to(U, (3, 3, z.size)))
-        bound = np.einsum("jijn->in", spread + error) * height
+        spread = np.empty((3, 3, x.size))
+        x, y, z = stencil.corners
+        spread[:] = solution.stress_uncertainty(x, y, z, layer).max(axis=-1, keepdims=True)
+        bound = np.einsum("jijn->in", stencil.spread(spread) + error) * height
     law = f"div sigma = 0 in {_called(layer, problem)}, times the step over p_h"
     return decide(f"equilibrium, {_called(layer, problem)}", source, law, force, bound)
 
