@@ -3,6 +3,7 @@
 A process ends with this one however that ends, and may not take more memory than there is: see ``confined``.
 """
 
+import io
 import os
 import signal
 import subprocess
@@ -158,8 +159,9 @@ class _Job(Generic[T]):
         self.earlier = _identity(task.path)
         self.process: subprocess.Popen[bytes] | None = None
         self.refused = ""
+        self.said: IO[bytes] = io.BytesIO()
         try:
-            self.said: IO[bytes] = tempfile.TemporaryFile()  # noqa: SIM115 - lives as long as the process
+            self.said = tempfile.TemporaryFile()  # noqa: SIM115 - lives as long as the process
             with tempfile.TemporaryFile() as question:
                 question.write(task.question)
                 question.seek(0)
@@ -174,6 +176,7 @@ class _Job(Generic[T]):
                     pass_fds=(lifeline,),
                 )
         except OSError as error:
+            self.said.close()
             self.refused = f"its process could not be started ({error.strerror}); free memory and space"
 
     def poll(self, time_limit: float) -> T | None:
