@@ -160,9 +160,9 @@ def _verdict(v: dict[str, Any]) -> Verdict:
 
 
 def _invariant(row: dict[str, Any]) -> Invariant:
-    texts = {key: str(row[key]) for key in ("name", "source", "sentence")}
-    figures = {key: None if row[key] is None else float(row[key]) for key in ("value", "bound")}
-    return Invariant(**texts, **figures, outcome=Outcome(row["outcome"]))
+    name, source, said = (str(row[key]) for key in ("name", "source", "sentence"))
+    value, bound = (None if row[key] is None else float(row[key]) for key in ("value", "bound"))
+    return Invariant(name, source, value, bound, Outcome(row["outcome"]), said)
 
 
 def plain(value: Any) -> Any:
