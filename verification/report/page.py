@@ -20,6 +20,7 @@ from verification.report.baseline import baseline_section, state_cell
 from verification.report.cells import Part, Section, Table
 from verification.report.convergence import convergence_sections
 from verification.report.csvdata import embedded, line_csv
+from verification.report.cutaway import Cutaway
 from verification.report.family import family_section
 from verification.report.matrix import verdict_matrix
 from verification.report.names import METHODS, OUTCOMES, OutcomeStyle, source_label
@@ -69,6 +70,7 @@ class CaseView:
     command: str
     facts: tuple[tuple[str, str], ...]
     sketch: Markup
+    cutaway: Cutaway | None
     failures: tuple[tuple[str, str], ...]
     layers: Table
     contact: Table
@@ -91,15 +93,17 @@ def render(
     extra: Sequence[Section] = (),
     planes: Mapping[str, Plane] | None = None,
     baseline: Regression | None = None,
+    cutaways: Mapping[str, Cutaway] | None = None,
 ) -> str:
     """The whole page as text. Every string of a result is escaped: a title "<script>" stays text.
 
-    planes : what to draw of the plane below the contact, by name of the case.
+    planes : what to draw of the plane below the contact.   cutaways : pictures of the problem. Both by
+    name of the case.
     baseline : what became of each number since the baseline.
     """
     # A report tells of numbers that overflow or are not finite; it must not stumble over them.
     with np.errstate(all="ignore"):
-        return _render(results, info, study, extra, planes or {}, baseline)
+        return _render(results, info, study, extra, planes or {}, baseline, cutaways or {})
 
 
 def _render(
@@ -109,6 +113,7 @@ def _render(
     extra: Sequence[Section],
     planes: Mapping[str, Plane],
     baseline: Regression | None,
+    cutaways: Mapping[str, Cutaway],
 ) -> str:
     anchors = _anchors(results)
     sections = _sections(results, anchors, study)
@@ -141,7 +146,7 @@ def _render(
         outcomes=OUTCOMES.values(),
         sections=[*sections, *extra],
         cases=[
-            _case(result, anchor, planes.get(result.name))
+            _case(result, anchor, planes.get(result.name), cutaways.get(result.name))
             for result, anchor in zip(contacts, contact_anchors.values(), strict=True)
         ],
         seconds=seconds,
@@ -216,7 +221,7 @@ def _summary(results: Sequence[CaseResult]) -> str:
     return text + "."
 
 
-def _case(result: CaseResult, anchor: str, plane: Plane | None) -> CaseView:
+def _case(result: CaseResult, anchor: str, plane: Plane | None, cutaway: Cutaway | None) -> CaseView:
     style = OUTCOMES[result.outcome]
     bad = [item for item in result.verdicts if item[1].outcome is not Outcome.AGREES]
     file = slug(result.name)
@@ -229,6 +234,7 @@ def _case(result: CaseResult, anchor: str, plane: Plane | None) -> CaseView:
         command=f"coatcheck run {shlex.quote(result.name)}",
         facts=_facts(result),
         sketch=sketch(result),
+        cutaway=cutaway,
         failures=tuple((source_label(s.source), s.failure) for s in result.sources if s.failure is not None),
         layers=layer_table(result),
         contact=contact_table(result),

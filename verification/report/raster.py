@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from PIL import Image
 from scipy.interpolate import PchipInterpolator
 
-__all__ = ["Frame", "Scale", "draw_field", "rasterised"]
+__all__ = ["Frame", "Scale", "coloured", "draw_field", "rasterised"]
 
 Array = NDArray[np.float64]
 
@@ -108,7 +108,7 @@ def draw_field(raster: Array, frame: Frame, scale: Scale, *, label: str, lines: 
     parts = [
         Markup(
             '<image x="{}" y="{}" width="{}" height="{:.1f}" preserveAspectRatio="none" href="{}"/>'
-        ).format(LEFT, TOP, WIDTH, frame.height, _picture(raster, scale))
+        ).format(LEFT, TOP, WIDTH, frame.height, _address(coloured(raster, scale)))
     ]
     if lines:
         parts.append(_level_lines(raster, frame, scale))
@@ -118,12 +118,13 @@ def draw_field(raster: Array, frame: Frame, scale: Scale, *, label: str, lines: 
     ).format(width, height, label, Markup("").join(parts))
 
 
-def _picture(raster: Array, scale: Scale) -> str:
+def coloured(raster: Array, scale: Scale) -> NDArray[np.uint8]:
+    """Colours of ``raster``, shape of it + (3,); NaN is grey."""
     span = scale.high - scale.low or 1.0
     known = np.isfinite(raster)
     share = np.where(known, (np.where(known, raster, 0.0) - scale.low) / span, 0.0)
     index = np.clip((share * COLOURS).astype(int), 0, COLOURS - 1)
-    return _address(np.where(known[..., None], _palette(scale)[index], np.array(NO_NUMBER, dtype=np.uint8)))
+    return np.where(known[..., None], _palette(scale)[index], np.array(NO_NUMBER, dtype=np.uint8))
 
 
 def _palette(scale: Scale) -> NDArray[np.uint8]:

@@ -11,6 +11,7 @@ from verification.accuracy_study import AccuracyStudy
 from verification.baseline import Regression, regression_json
 from verification.plane import Plane
 from verification.report.cells import Section
+from verification.report.cutaway import cutaways
 from verification.report.junit import junit_xml
 from verification.report.page import render
 from verification.result import SCHEMA, CaseResult, RunInfo, to_json
@@ -41,7 +42,7 @@ def write_report(
     texts = {
         "report.json": report_json(results, info, study, baseline),
         "junit.xml": junit_xml(results, info),
-        "report.html": render(results, info, study, extra, planes, baseline),
+        "report.html": render(results, info, study, extra, planes, baseline, cutaways(results, planes or {})),
     }
     folder.mkdir(parents=True, exist_ok=True)
     ready: dict[Path, Path] = {}
