@@ -27,6 +27,11 @@ for name, place, said in (
     ("list", "list_cases:list_cases", "List the shipped cases and published results with their sources."),
     ("bench", "bench:bench", "Time the semi-analytical contact beside its peers; ratios first."),
     ("compare", "compare:compare", "Show two runs side by side: verdicts, numbers, versions, times."),
+    (
+        "faults",
+        "faults:faults",
+        "Plant one mistake at a time; report which checks of the default run catch it.",
+    ),
     ("alarms", "alarms:alarms", "Solve clean random problems; count the verdicts that are not AGREES."),
 ):
     app.command(f"verification.commands.{place}", name=name, help=said)

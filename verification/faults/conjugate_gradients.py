@@ -45,12 +45,12 @@ FAULTS = (
     ),
     _fault(
         "stale_contact_set",
-        "the contact set stays that of the first guess: patches that the sphere enters are not added",
+        "the contact set stays that of the first guess: no patch enters it, none leaves",
         (*SCALARS, "sphere"),
         Edit(
             PRESS,
             "settled = not (tension.any() or enter.any())",
-            "enter &= False; settled = not tension.any()",
+            "tension, enter = tension & False, enter & False; settled = True",
         ),
     ),
     _fault(

@@ -206,8 +206,8 @@ FAULTS = (
         (
             Edit(
                 "verification.printed:_points",
-                'unit = _unit(at.unit, units, f"{where}: at")',
-                'unit = _unit(at.unit, units, f"{where}: at") * 0.01 / 0.0254',
+                'unit = _unit(at.unit, units, "at")',
+                'unit = _unit(at.unit, units, "at") * 0.01 / 0.0254',
             ),
         ),
         ("sigma_zz", "u_z", "printed table"),

@@ -17,13 +17,12 @@ from verification.invariants import check as invariants_of
 from verification.printed import PublishedCase, published_cases, read_published
 from verification.problem import Solution
 from verification.profile import Profile, sample, sample_contact
-from verification.result import CaseResult, SourceResult, plain
-from verification.result import from_json as result_from_json
+from verification.result import CaseResult, SourceResult, from_json, plain
 from verification.self_test import self_tests
 from verification.store import read_checked
 from verification.verdict import Outcome
 
-__all__ = ["Trial", "clean_path", "from_json", "to_json", "try_fault"]
+__all__ = ["Trial", "clean_path", "trial_from_json", "trial_to_json", "try_fault"]
 
 Profiles = dict[tuple[str, str, str], Profile]
 METHODS_FOR_PRINT = ("semianalytic",)  # reading print is tried with the faster of the two
@@ -59,7 +58,7 @@ def try_fault(fault: Fault, clean_folder: Path) -> Trial:
     run is missing, PlantError where the fault no longer fits the source.
     """
     began = time.process_time()
-    clean = {name: result_from_json(read_checked(clean_path(clean_folder, name))) for name in fault.cases}
+    clean = {name: from_json(read_checked(clean_path(clean_folder, name))) for name in fault.cases}
     printed = {name: read_published(published_cases()[name]) for name in fault.published}
     before = {test.name: test.passed for test in self_tests()}
     checks: list[Check] = []
@@ -137,22 +136,25 @@ def _drifts(clean: CaseResult, fresh: Profiles) -> list[Check]:
 
 
 def _changes(clean: CaseResult, fresh: Profiles) -> list[tuple[float, str]]:
-    """How far each profile was moved by the fault; its uncertainty counts where its value did not move."""
+    """How far each profile was moved by the fault; where none was, how far its uncertainty was."""
     p_h = float(clean.problem["p_h"])
-    found = []
+    values, spreads = [], []
     for (quantity, line, source), profile in fresh.items():
         old = clean.profile(quantity, line, source)
         if old is None:
             continue
         scale = p_h if line != "contact" else float(abs(old.value[0]))
         where = f"{quantity} on {line} in {clean.name}"
-        moved = float(np.max(np.abs(profile.value - old.value))) / scale
-        found.append((moved, where))
-        if moved == 0 and profile.uncertainty is not None and old.uncertainty is not None:
-            U = float(old.uncertainty.max())
-            spread = float(np.max(np.abs(profile.uncertainty - old.uncertainty)))
-            found.append((spread / U if U else spread, f"uncertainty of {where}"))
-    return [(value if np.isfinite(value) else np.inf, where) for value, where in found]
+        values.append((_largest(profile.value - old.value) / scale, where))
+        if profile.uncertainty is not None and old.uncertainty is not None:
+            change = _largest(profile.uncertainty - old.uncertainty) / (_largest(old.uncertainty) or 1.0)
+            spreads.append((change, f"uncertainty of {where}"))
+    return values if any(value > 0 for value, _ in values) else spreads
+
+
+def _largest(values: np.ndarray) -> float:
+    """Largest magnitude; infinite where one is no number."""
+    return float(np.max(np.abs(values))) if np.isfinite(values).all() else float("inf")
 
 
 def _printed(name: str, clean: PublishedCase) -> tuple[list[Check], tuple[float, str]]:
@@ -165,20 +167,21 @@ def _printed(name: str, clean: PublishedCase) -> tuple[list[Check], tuple[float,
     change = (0.0, "nothing")
     for old, new in zip(clean.printed, case.printed, strict=True):
         moved = max(
-            float(np.max(np.abs(new.profile.value - old.profile.value))) / old.scale,
-            float(np.max(np.abs(new.at.z - old.at.z))) / (float(np.max(np.abs(old.at.z))) or 1.0),
+            _largest(new.profile.value - old.profile.value) / old.scale,
+            _largest(new.at.z - old.at.z) / (_largest(old.at.z) or 1.0),
+            float(np.sum(new.counted != old.counted)) / old.counted.size,
         )
         change = max(change, (moved, f"{old.column} of {old.file} as read"))
     return checks, change
 
 
-def to_json(trial: Trial) -> dict[str, Any]:
+def trial_to_json(trial: Trial) -> dict[str, Any]:
     """A trial as strict JSON."""
     found: dict[str, Any] = plain(asdict(trial))
     return found
 
 
-def from_json(data: dict[str, Any]) -> Trial:
-    """The inverse of ``to_json``."""
+def trial_from_json(data: dict[str, Any]) -> Trial:
+    """The inverse of ``trial_to_json``."""
     checks = tuple(Check(**{**c, "outcome": Outcome(c["outcome"])}) for c in data["checks"])
     return Trial(**{**data, "checks": checks, "change": float(data["change"])})

@@ -4,17 +4,22 @@ python -m verification.faults.worker FAULT CLEAN_FOLDER TRIAL.json
 """
 
 import sys
+from dataclasses import asdict
 from pathlib import Path
 
 from verification.faults.catalogue import BLANKS, FAULTS
-from verification.faults.trial import to_json, try_fault
+from verification.faults.trial import trial_to_json, try_fault
+from verification.result import plain
 from verification.store import write_checked
+from verification.surroundings import fingerprint
 
 
 def main(name: str, clean: str, path: str) -> None:
     """Try the fault named ``name`` against the clean run in ``clean`` and store its trial at ``path``."""
-    trial = try_fault((FAULTS | BLANKS)[name], Path(clean))
-    write_checked(Path(path), to_json(trial))
+    made_by = fingerprint()  # before anything is planted
+    fault = (FAULTS | BLANKS)[name]
+    trial = trial_to_json(try_fault(fault, Path(clean)))
+    write_checked(Path(path), {"made_by": made_by, "fault": plain(asdict(fault)), "trial": trial})
 
 
 if __name__ == "__main__":
