@@ -100,6 +100,7 @@ class Solution:
     _profile: Callable[[Array], Array] | None = field(repr=False)
     _stress: Field = field(repr=False)
     _plane: Callable[[float, int | None], Array] = field(repr=False)
+    _displacement_plane: Callable[[float], Array] = field(repr=False)
     _displacement: Motion = field(repr=False)
 
     def pressure(self, x: ArrayLike, y: ArrayLike = 0.0) -> Array:
@@ -131,6 +132,13 @@ class Solution:
         z : [m].  layer : as in ``stress``.  Points are (nodes[i], nodes[j]), z.
         """
         return self._plane(z, layer)
+
+    def displacement_plane(self, z: float) -> Array:
+        """Displacement [m] below every patch centre at one depth, shape (3, n, n), by four FFTs.
+
+        z : [m].  Points are (nodes[i], nodes[j]), z.
+        """
+        return self._displacement_plane(z)
 
     def displacement(self, x: ArrayLike, y: ArrayLike, z: ArrayLike) -> Array:
         """Displacement [m], shape (3,) + points, u_z into the solid.

@@ -498,6 +498,11 @@ def _as_solution(level: Level, coarser: Solution | None, body: Body) -> Solution
         "stress_frf": frf.stress_frf,
     }
 
+    motion: dict[str, Any] = {
+        "rectangle": (halfspace.normal_displacement, halfspace.tangential_displacement),
+        "displacement_frf": frf.displacement_frf,
+    }
+
     def stress(x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None) -> Array:
         evaluate: Callable[..., Array] = partial(subsurface.stress, **elastic, **common)
         x, y, z, where = np.broadcast_arrays(x, y, z, body.layer_of(z, layer))
@@ -518,6 +523,11 @@ def _as_solution(level: Level, coarser: Solution | None, body: Body) -> Solution
         xx, yy, zz, xy, xz, yz = at_depth(level.mean)
         return np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
 
+    def displacement_plane(z: float) -> Array:
+        return subsurface.displacement_plane(
+            z, int(body.layer_of(z, None)), grid_x=grid.x, grid_y=grid.x, **motion, **common
+        )(level.mean)
+
     def displacement(x: ArrayLike, y: ArrayLike, z: ArrayLike) -> Array:
         return subsurface.displacement(
             x,
@@ -527,8 +537,7 @@ def _as_solution(level: Level, coarser: Solution | None, body: Body) -> Solution
             grid_x=grid.x,
             grid_y=grid.x,
             pressure=level.mean,
-            rectangle=(halfspace.normal_displacement, halfspace.tangential_displacement),
-            displacement_frf=frf.displacement_frf,
+            **motion,
             **common,
         )
 
@@ -555,6 +564,7 @@ def _as_solution(level: Level, coarser: Solution | None, body: Body) -> Solution
         _profile=None if level.shape is None else level.shape.pressure,
         _stress=stress,
         _plane=plane,
+        _displacement_plane=displacement_plane,
         _displacement=displacement,
     )
 

@@ -37,7 +37,7 @@ from .pointload import (
     stress_from_lines,
 )
 
-__all__ = ["StressPlane", "displacement", "stress", "stress_plane"]
+__all__ = ["FieldPlane", "displacement", "displacement_plane", "stress", "stress_plane"]
 
 Array = NDArray[Any]
 Field = Callable[..., Array]
@@ -96,25 +96,15 @@ def displacement(
 
     Returns u[i, ...] [m], shape (3,) + points; u_z into the solid.
     """
-    E, nu = (*coatings, substrate)[0][:2]
-    shared: dict[str, Any] = {"coatings": coatings, "substrate": substrate, "friction": friction}
-    body = _Body(
-        coatings,
-        partial(displacement_below, displacement_frf=displacement_frf, **shared),
-        partial(_closed, rectangle, friction, (E, nu), (...,)),
-        displacement_from_lines,
-        friction,
-        components=3,
-        odd_in_y=(1,),
-    )
+    body = _displacement_body(friction, coatings, substrate, rectangle, displacement_frf)
     return _evaluate(x, y, z, layer, nodal_forces(grid_x, grid_y, pressure), body)
 
 
 @dataclass(frozen=True, eq=False)
-class StressPlane:
-    """Six stresses at one depth below every patch centre, for any pressure on the grid.
+class FieldPlane:
+    """Six stresses or three displacements at one depth below every patch centre, for any pressure.
 
-    spectrum : transformed influence of a node, (6, mx, my/2 + 1).  size : (mx, my).  shape : (nx, ny).
+    spectrum : transformed influence of a node, (6 or 3, mx, my/2 + 1).  size : (mx, my).  shape : (nx, ny).
     """
 
     spectrum: Array
@@ -123,12 +113,15 @@ class StressPlane:
     area: float
 
     def __call__(self, pressure: Array, *, threads: int = 1) -> Array:
-        """Stresses xx, yy, zz, xy, xz, yz [Pa], (6, nx, ny), of pressures [Pa], (nx, ny): seven FFTs."""
+        """Stresses xx, yy, zz, xy, xz, yz [Pa] or u_x, u_y, u_z [m], (n, nx, ny), by n + 1 FFTs.
+
+        pressure : [Pa], (nx, ny).
+        """
         if pressure.shape != self.shape:
             raise ValueError(f"pressure has shape {pressure.shape}; this plane was set up for {self.shape}")
         nx, ny = self.shape
         force = rfft2(samples(pressure) * self.area, self.size, workers=threads)
-        out = np.empty((6, nx, ny))
+        out = np.empty((len(self.spectrum), nx, ny))
         for component, part in zip(out, self.spectrum, strict=True):
             component[:] = irfft2(part * force, self.size, workers=threads)[
                 nx + 1 : 2 * nx + 1, ny + 1 : 2 * ny + 1
@@ -147,9 +140,31 @@ def stress_plane(
     substrate: tuple[float, float],
     rectangle: tuple[Field, Field],
     stress_frf: Field,
-) -> StressPlane:
+) -> FieldPlane:
     """Set up the convolution for all patch centres at depth z [m]; arguments as in `stress`."""
-    body = _stress_body(friction, coatings, substrate, rectangle, stress_frf)
+    return _plane(
+        z, layer, grid_x, grid_y, _stress_body(friction, coatings, substrate, rectangle, stress_frf)
+    )
+
+
+def displacement_plane(
+    z: float,
+    layer: int,
+    *,
+    grid_x: Array,
+    grid_y: Array,
+    friction: float,
+    coatings: Coatings,
+    substrate: tuple[float, float],
+    rectangle: tuple[Field, Field],
+    displacement_frf: Field,
+) -> FieldPlane:
+    """Set up the convolution for all patch centres at depth z [m]; arguments as in `displacement`."""
+    body = _displacement_body(friction, coatings, substrate, rectangle, displacement_frf)
+    return _plane(z, layer, grid_x, grid_y, body)
+
+
+def _plane(z: float, layer: int, grid_x: Array, grid_y: Array, body: "_Body") -> FieldPlane:
     nx, ny = len(grid_x), len(grid_y)
     unit = nodal_forces(grid_x, grid_y, np.ones((nx, ny)))
     ((_, shallow, point),) = _tables(np.array([float(z)]), layer, max(unit.dx, unit.dy), body)
@@ -157,7 +172,7 @@ def stress_plane(
     # forces reach one patch beyond the grid, see `samples`
     table = influence_table(influence, np.arange(-nx, nx + 1), np.arange(-ny, ny + 1), body.odd_in_y)
     size = (next_fast_len(2 * nx + 1, real=True), next_fast_len(2 * ny + 1, real=True))
-    return StressPlane(rfft2(table, size), size, (nx, ny), unit.dx * unit.dy)
+    return FieldPlane(rfft2(table, size), size, (nx, ny), unit.dx * unit.dy)
 
 
 @dataclass(frozen=True, eq=False)
@@ -188,6 +203,19 @@ def _stress_body(friction, coatings, substrate, rectangle, stress_frf) -> _Body:
         friction,
         components=6,
         odd_in_y=(3, 5),
+    )
+
+
+def _displacement_body(friction, coatings, substrate, rectangle, displacement_frf) -> _Body:
+    shared: dict[str, Any] = {"coatings": coatings, "substrate": substrate, "friction": friction}
+    return _Body(
+        coatings,
+        partial(displacement_below, displacement_frf=displacement_frf, **shared),
+        partial(_closed, rectangle, friction, (*coatings, substrate)[0][:2], (...,)),
+        displacement_from_lines,
+        friction,
+        components=3,
+        odd_in_y=(1,),
     )
 
 
@@ -251,9 +279,7 @@ def _fields(
         else:
             level = int(np.clip(np.log2(max(z / (COARSE * d), 1)), 0, len(lattices) - 1))
             assert table is not None
-            yield partial(
-                at_points, lattice=lattices[level], kernel=table, odd_in_y=body.odd_in_y, order=10
-            )
+            yield partial(at_points, lattice=lattices[level], kernel=table, odd_in_y=body.odd_in_y, order=10)
 
 
 def _tables(

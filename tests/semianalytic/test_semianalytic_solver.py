@@ -136,6 +136,15 @@ def test_stress_of_a_plane_is_the_stress_at_its_points(sliding):
         np.testing.assert_allclose(plane[..., some, some], at_points, atol=2e-4 * P_H)
 
 
+def test_displacement_of_a_plane_is_the_displacement_at_its_points(sliding):
+    some = slice(None, None, 16)
+    x = sliding.nodes[some]
+    for z in (0.0, 0.4 * STIFF[0][2], 3 * STIFF[0][2]):
+        at_points = sliding.displacement(x[:, None], x[None, :], z)
+        plane = sliding.displacement_plane(z)
+        np.testing.assert_allclose(plane[:, some, some], at_points, atol=1e-9 * sliding.approach)
+
+
 def test_vertical_force_is_carried_at_every_depth(coated):
     r = np.linspace(0, 40, 400) ** 2 / 1600 * 60 * A_H
     for z in (0.3 * A_H, 2 * A_H):
