@@ -1,4 +1,4 @@
-"""A module run as a process that ends with its parent, inside the memory of the machine.
+"""A module run as a process that ends with its parent, the first to go where memory ends.
 
 python -m verification.confined LIFELINE MODULE WORDS... runs MODULE as ``python -m MODULE WORDS...`` does.
 LIFELINE is the number of an open pipe whose other end the parent holds for as long as it lives.
@@ -13,7 +13,6 @@ from contextlib import suppress
 from pathlib import Path
 
 from verification.store import StoreError
-from verification.surroundings import memory
 
 __all__ = ["UNWRITABLE", "main"]
 
@@ -23,7 +22,7 @@ UNWRITABLE = 74  # exit code of a process that could not write its result, EX_IO
 def main(lifeline: int, module: str, *words: str) -> None:
     """Run ``module``; what goes wrong is one line on standard error."""
     threading.Thread(target=_end_with_parent, args=(lifeline,), daemon=True).start()
-    _keep_within_memory()
+    _first_to_go()
     sys.argv = [module, *words]
     try:
         runpy.run_module(module, run_name="__main__", alter_sys=True)
@@ -42,16 +41,10 @@ def _end_with_parent(lifeline: int) -> None:
     os.killpg(0, signal.SIGKILL)
 
 
-def _keep_within_memory() -> None:
-    """No more writable memory than the machine has; of several processes the kernel stops this one first."""
-    limit = memory()
-    if limit is not None:
-        import resource
-
-        # Not RLIMIT_AS: threads and shared libraries reserve address space that they never fill.
-        hard = resource.getrlimit(resource.RLIMIT_DATA)[1]
-        if hard == resource.RLIM_INFINITY or limit < hard:
-            resource.setrlimit(resource.RLIMIT_DATA, (limit, hard))
+def _first_to_go() -> None:
+    # No limit of its own on memory: the sparse factorisation asks for four times what it then touches, so one
+    # that stopped a runaway would refuse good cases. Where memory ends the kernel takes this process before
+    # the one that writes the report.
     with suppress(OSError):
         Path("/proc/self/oom_score_adj").write_text("1000")
 

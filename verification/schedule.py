@@ -1,6 +1,6 @@
 """Tasks side by side, each in a process of its own with a time limit.
 
-A process ends with this one however that ends, and may not take more memory than there is: see ``confined``.
+A process ends with this one however that ends, and before it where memory ends: see ``confined``.
 """
 
 import io

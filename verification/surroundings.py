@@ -2,13 +2,12 @@
 
 import ctypes.util
 import hashlib
-import os
 import platform
 import subprocess
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
-__all__ = ["commit", "fingerprint", "machine", "memory", "missing_libraries", "versions"]
+__all__ = ["commit", "fingerprint", "machine", "missing_libraries", "versions"]
 
 PACKAGES = (
     "coatcheck",
@@ -73,20 +72,6 @@ def fingerprint() -> str:
         for path in sorted((house / package).rglob("*.py")):
             found.update(path.relative_to(house).as_posix().encode() + b"\0" + path.read_bytes())
     return found.hexdigest()
-
-
-def memory() -> int | None:
-    """Bytes of memory that this machine, or the container around this process, has; None where unknown."""
-    try:
-        found = [os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")]
-    except (AttributeError, OSError, ValueError):
-        return None
-    for limit in ("memory.max", "memory/memory.limit_in_bytes"):
-        try:
-            found.append(int(Path("/sys/fs/cgroup", limit).read_text()))
-        except (OSError, ValueError):  # no such group, or "max"
-            continue
-    return min(found)
 
 
 def machine() -> str:

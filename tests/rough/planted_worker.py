@@ -35,13 +35,15 @@ def main(how: str, path: str) -> None:
         Path(f"{path}.pids").write_text(f"{os.getpid()} {child.pid}\n")
         time.sleep(600)
     elif how == "memory":
-        # Never touched, so no memory is taken from the machine; it counts against the limit all the same.
-        blocks: list[np.ndarray] = []
-        while len(blocks) < 4096:
-            blocks.append(np.empty(1 << 30, dtype=np.uint8))
-        raise RuntimeError(f"no limit at {len(blocks)} GiB")
+        np.empty(1 << 46, dtype=np.uint8)
     elif how == "kernel":
         os.kill(os.getpid(), signal.SIGKILL)
+    elif how == "greed":
+        # A control group that the test has made, so that only this process runs out of memory.
+        Path(os.environ["PLANTED_GROUP"], "tasks").write_text(str(os.getpid()))
+        blocks = []
+        while True:
+            blocks.append(np.ones(1 << 22))
     elif how == "nothing":
         pass
     else:

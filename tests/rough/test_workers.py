@@ -15,7 +15,6 @@ from verification import schedule
 from verification.commands import run as command
 from verification.schedule import Task, run_tasks
 from verification.store import StoreError, read_checked, write_checked
-from verification.surroundings import memory
 
 HERE = Path(__file__).parent
 # What a process dies of, and how the reason must read.
@@ -95,9 +94,24 @@ def test_hanging_worker_is_stopped_with_what_it_started(tmp_path):
     gone(pids, within=10)
 
 
-def test_limit_of_memory_is_that_of_the_machine():
-    assert memory() is not None
-    assert 2**28 < memory() < 2**50
+@pytest.mark.slow
+def test_worker_that_the_kernel_stops_for_want_of_memory_is_one_sentence(tmp_path, monkeypatch):
+    group = Path("/sys/fs/cgroup/memory/coatcheck-greed")
+    try:
+        group.mkdir()
+        (group / "memory.limit_in_bytes").write_text("150000000")
+    except OSError as error:
+        pytest.skip(f"no memory control group can be made here ({error})")
+    monkeypatch.setenv("PLANTED_GROUP", str(group))
+    try:
+        tasks = [task("greed", tmp_path, n) for n in range(10)]
+        *reasons, good = run_tasks([*tasks, task("good", tmp_path)], jobs=2, time_limit=300)
+    finally:
+        time.sleep(0.5)
+        group.rmdir()
+    assert good == "good"
+    assert all(re.fullmatch(REASONS["kernel"], reason) for reason in reasons), reasons
+    sys.stdout.write(f"{len(reasons)} workers stopped by the kernel for want of memory\n")
 
 
 def test_worker_that_cannot_write_ends_the_run_with_one_sentence(tmp_path):
