@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from verification.case import Case, parse_case, standard_claims
 from verification.printed import PublishedCase, read_published
-from verification.problem import CoatedContact
+from verification.problem import CoatedContact, PrescribedLoad
 from verification.profile import Profile, lines_of, sample, sample_contact
 from verification.references.hertz import Hertz, HertzUncertainty
 from verification.references.published import FOLDER
@@ -217,6 +217,7 @@ def _of_runs() -> Answers:
 
 def _of_store() -> Answers:
     case = read_published(FOLDER / "kenpave_three_layer_axis.toml")
+    assert isinstance(case.problem, PrescribedLoad)
     profile = Profile("q", "l", np.array([0.1]), np.array([np.pi]), "s", np.array([np.nan]))
     verdicts = ((case.claims[0], Verdict(Outcome.AGREES, "known")),)
     said = plain(describe(case.problem))

@@ -25,6 +25,7 @@ from verification.plane import read_planes
 from verification.printed import PublishedCase, is_published, published_cases, read_published
 from verification.result import CaseResult, RunInfo
 from verification.schedule import Task, case_task, cores, published_task
+from verification.self_test import SelfTest, self_tests
 from verification.store import StoreError, locked
 from verification.surroundings import commit, machine, missing_libraries, versions
 from verification.verdict import Outcome
@@ -88,7 +89,12 @@ def run(
     from verification import accuracy_study  # SciPy and matplotlib take a second to load
     from verification.accuracy_study import AccuracyStudy
     from verification.report import write_report
+    from verification.report.self_tests import self_test_section
 
+    tests = self_tests()
+    for test in tests:
+        if not test.passed:
+            complain(f"self-test of the {test.name}: {test.found}; the verdicts of this run mean nothing")
     begin, started = time.perf_counter(), datetime.datetime.now(datetime.UTC)
     try:
         known = read_baseline(baseline)
@@ -115,7 +121,8 @@ def run(
             beside = regression(ordered, known, str(baseline), info, whole=not cases)
             planes = read_planes(output, ordered)
             try:
-                page = write_report(ordered, output, info, study, planes=planes, baseline=beside)
+                extra = [self_test_section(tests)]
+                page = write_report(ordered, output, info, study, extra, planes, beside)
             except OSError as error:
                 said = error.strerror or error
                 raise StoreError(
@@ -124,15 +131,17 @@ def run(
     except StoreError as error:
         return complain(str(error))
     if as_json:
-        sys.stdout.write(json.dumps(_summary(ordered, page, beside), indent=2) + "\n")
+        sys.stdout.write(json.dumps(_summary(ordered, page, beside, tests), indent=2) + "\n")
     elif not quiet:
         _print_table(ordered, page, time.perf_counter() - begin, beside)
-    return _code(ordered, beside)
+    return _code(ordered, beside, tests)
 
 
-def _code(results: Sequence[CaseResult], beside: Regression) -> int:
-    """The worst verdict decides; where all agree, the baseline."""
+def _code(results: Sequence[CaseResult], beside: Regression, tests: Sequence[SelfTest]) -> int:
+    """The worst verdict decides, no better than the harness it comes from; where all agree, the baseline."""
     code = exit_code(results)
+    if not all(test.passed for test in tests):
+        return code or EXIT[Outcome.DISAGREES]
     return DRIFTED if code == EXIT[Outcome.AGREES] and beside.drifted else code
 
 
@@ -163,11 +172,14 @@ def _task(case: Case | PublishedCase, output: Path) -> Task[CaseResult]:
     return case_task(case, output) if isinstance(case, Case) else published_task(case, output)
 
 
-def _summary(results: Sequence[CaseResult], page: Path, beside: Regression) -> dict[str, object]:
+def _summary(
+    results: Sequence[CaseResult], page: Path, beside: Regression, tests: Sequence[SelfTest]
+) -> dict[str, object]:
     states = {case.name: case.state for case in beside.cases}
     return {
         "report": str(page),
-        "exit_code": _code(results, beside),
+        "exit_code": _code(results, beside, tests),
+        "self_tests": {test.name: test.passed for test in tests},
         "baseline": regression_json(beside),
         "cases": {
             result.name: {
