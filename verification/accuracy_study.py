@@ -5,6 +5,7 @@ A process of its own measures it beside the cases and leaves a checked file:
 python -m verification.accuracy_study accuracy.json
 """
 
+import os
 import sys
 import time
 from collections.abc import Callable
@@ -101,11 +102,16 @@ def stored(
     """A whole earlier study without failures, of this very commit and these versions, or None.
 
     A tree that was changed since its commit (marked "+") may have changed again, so its study is not kept.
+    Raises StoreError, naming the file, where there is one that is damaged.
     """
-    try:
-        found = from_json(read_checked(path_in(folder)))
-    except (StoreError, ValueError, KeyError, TypeError):
+    path = path_in(folder)
+    if not os.path.lexists(path):
         return None
+    data = read_checked(path)
+    try:
+        found = from_json(data)
+    except (ValueError, KeyError, TypeError, AttributeError) as error:
+        raise StoreError(f"{path}: not a study of this program ({error})") from None
     now = source()
     same = (found.commit, found.versions) == (now, packages()) and not (now or "").endswith("+")
     return found if same and not found.failures else None

@@ -14,7 +14,7 @@ from verification.commands import run as command
 from verification.convergence import QUANTITIES, conversion_errors, elements, ladder, order_of, settled
 from verification.references.patch import over_square, surface_coefficient
 from verification.schedule import Task, run_tasks
-from verification.store import write_checked
+from verification.store import StoreError, write_checked
 
 PLACES = [(0, 0), (1, 0), (1, 1), (3, 2), (20, 0), (64, 64)]
 
@@ -218,7 +218,9 @@ def test_study_is_kept_for_the_very_same_code_only(tmp_path):
     assert not kept(tmp_path, study("order 3: no mesh"))
     path = accuracy_study.path_in(tmp_path)
     path.write_bytes(path.read_bytes()[:-100])
-    assert accuracy_study.stored(tmp_path) is None
+    with pytest.raises(StoreError, match=r"accuracy\.json: "):
+        accuracy_study.stored(tmp_path)
+    assert accuracy_study.stored(tmp_path / "elsewhere") is None
 
 
 def test_process_that_dies_leaves_its_reason(tmp_path):

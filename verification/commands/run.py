@@ -20,7 +20,7 @@ from verification.baseline import Regression, State, regression, regression_json
 from verification.baseline_file import read_baseline
 from verification.case import Case, CaseError, read_case, shipped_cases
 from verification.commands.common import BASELINE, DRIFTED, EXIT, STYLE, complain, exit_code, one_line
-from verification.commands.solving import kept_results, solve
+from verification.commands.solving import kept_results, kept_study, solve
 from verification.plane import read_planes
 from verification.printed import PublishedCase, is_published, published_cases, read_published
 from verification.result import CaseResult, RunInfo
@@ -100,7 +100,7 @@ def run(
         known = read_baseline(baseline)
         with locked(output):
             kept = kept_results(chosen, output) if resume else {}
-            study = accuracy_study.stored(output) if resume and not cases else None
+            study = kept_study(output) if resume and not cases else None
             tasks: list[Task[CaseResult | AccuracyStudy]] = []
             if not cases and study is None:
                 tasks.append(accuracy_study.task(output))

@@ -7,6 +7,8 @@ from typing import TypeVar
 from rich.console import Console
 from rich.markup import escape
 
+from verification import accuracy_study
+from verification.accuracy_study import AccuracyStudy
 from verification.case import Case
 from verification.commands.common import STYLE, complain, progress_bar
 from verification.printed import PublishedCase
@@ -14,7 +16,7 @@ from verification.result import CaseResult
 from verification.schedule import Task, kept_result, run_tasks
 from verification.store import StoreError
 
-__all__ = ["kept_results", "solve"]
+__all__ = ["kept_results", "kept_study", "solve"]
 
 T = TypeVar("T")
 
@@ -31,6 +33,15 @@ def kept_results(chosen: Sequence[Case | PublishedCase], output: Path) -> dict[s
         if result is not None:
             kept[case.name] = result
     return kept
+
+
+def kept_study(output: Path) -> AccuracyStudy | None:
+    """The earlier accuracy study where it stands, as ``kept_results``."""
+    try:
+        return accuracy_study.stored(output)
+    except StoreError as error:
+        complain(f"{error}; measured again")
+        return None
 
 
 def solve(tasks: Sequence[Task[T]], jobs: int, time_limit: float, silent: bool) -> list[T]:
