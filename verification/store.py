@@ -27,7 +27,8 @@ __all__ = [
 # A result of this program takes up to 3 MB; what is larger was not written by it.
 MAX_BYTES = 50_000_000
 PART = ".coatcheck-part"  # how the name of a file ends that is still being written
-FOLDERS = ("cases", "fields", "pictures", "baseline")  # whatever a run writes below its directory
+# Whatever the commands of this program make below a directory of theirs.
+FOLDERS = ("cases", "planes", "fields", "problems", "clean", "trials", "cache", "figures")
 _HEAD = re.compile(r'\{"sha256": "([0-9a-f]{64})", "payload": ')
 
 
