@@ -68,6 +68,12 @@ FAULTS = (
         ),
     ),
     _fault(
+        "wavenumbers_cut",
+        "the exact deflection under the layers leaves out wavelengths shorter than 4 coatings",
+        SCALARS,
+        Edit("semianalytic.disc:layer_table", "k_max = min(14 / thickness,", "k_max = min(1.5 / thickness,"),
+    ),
+    _fault(
         "no_patch_averaging",
         "the surface is deflected by point forces at the patch centres: no average over the patch",
         SCALARS,

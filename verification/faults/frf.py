@@ -42,18 +42,18 @@ FAULTS = (
     ),
     _fault(
         "kap_numerator",
-        "4 kap x (1 + x) in the numerator of the surface response reads 4 kap x",
+        "the term 4 kap x (1 + x) in the numerator of the surface response reads 4 kap x",
         ONE,
         "4 * kap * x * (1 + x)",
         "4 * kap * x",
         SCALARS,
     ),
     _fault(
-        "half_the_decay",
-        "the reflected wave decays with exp(-k h) where it has gone down and up again",
+        "thickness_off",
+        "the coating is 1 % thicker for the surface response than for the stresses",
         ONE,
-        "th = np.exp(-2 * x)",
-        "th = np.exp(-x)",
+        "x = np.minimum(k * h, 400.0)",
+        "x = np.minimum(1.01 * k * h, 400.0)",
         SCALARS,
     ),
     _fault(

@@ -157,9 +157,9 @@ FAULTS = (
         "published",
         (
             Edit(
-                "verification.printed:_counted",
-                "    return counted",
-                "    return np.ones(len(content.rows), dtype=bool)",
+                "verification.printed:Printed.counted",
+                "np.array([not why for why in self.why_not])",
+                "np.ones(len(self.why_not), dtype=bool)",
             ),
         ),
         ("sigma_kk",),

@@ -59,7 +59,7 @@ def try_fault(fault: Fault, clean_folder: Path) -> Trial:
     """
     began = time.process_time()
     clean = {name: from_json(read_checked(clean_path(clean_folder, name))) for name in fault.cases}
-    printed = {name: read_published(published_cases()[name]) for name in fault.published}
+    printed = {name: _as_read(read_published(published_cases()[name])) for name in fault.published}
     before = {test.name: test.passed for test in self_tests()}
     checks: list[Check] = []
     changes: list[tuple[float, str]] = []
@@ -157,7 +157,24 @@ def _largest(values: np.ndarray) -> float:
     return float(np.max(np.abs(values))) if np.isfinite(values).all() else float("inf")
 
 
-def _printed(name: str, clean: PublishedCase) -> tuple[list[Check], tuple[float, str]]:
+@dataclass(frozen=True, eq=False)
+class _AsRead:
+    """A column of a printed table as it was read: values [SI], depths [m], which of them count."""
+
+    name: str
+    value: np.ndarray
+    z: np.ndarray
+    counted: np.ndarray
+    scale: float
+
+
+def _as_read(case: PublishedCase) -> list[_AsRead]:
+    return [
+        _AsRead(f"{p.column} of {p.file}", p.profile.value, p.at.z, p.counted, p.scale) for p in case.printed
+    ]
+
+
+def _printed(name: str, before: list[_AsRead]) -> tuple[list[Check], tuple[float, str]]:
     """Verdicts of a printed table read under the fault, and how far the fault moved what was read."""
     case = read_published(published_cases()[name])
     available = {m: s for m, s in printed_run.solvers().items() if m in METHODS_FOR_PRINT}
@@ -165,13 +182,13 @@ def _printed(name: str, clean: PublishedCase) -> tuple[list[Check], tuple[float,
     asked = [(c, v) for c, v in result.verdicts if set(c.between) & set(available)]
     checks = [of_claim(c, v, name, False, kind="printed") for c, v in asked]
     change = (0.0, "nothing")
-    for old, new in zip(clean.printed, case.printed, strict=True):
+    for old, new in zip(before, _as_read(case), strict=True):
         moved = max(
-            _largest(new.profile.value - old.profile.value) / old.scale,
-            _largest(new.at.z - old.at.z) / (_largest(old.at.z) or 1.0),
-            float(np.sum(new.counted != old.counted)) / old.counted.size,
+            _largest(new.value - old.value) / old.scale,
+            _largest(new.z - old.z) / (_largest(old.z) or 1.0),
+            float(np.mean(new.counted != old.counted)),
         )
-        change = max(change, (moved, f"{old.column} of {old.file} as read"))
+        change = max(change, (moved, f"{old.name} as read"))
     return checks, change
 
 
