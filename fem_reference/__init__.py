@@ -9,6 +9,16 @@ True
 
 from .solution import Diagnostics, NotConverged, Solution, Uncertainty
 from .solver import solve, solve_prescribed
-from .vtu import write_vtu
+from .vtu import PlaneMesh, plane_mesh, write_vtu
 
-__all__ = ["Diagnostics", "NotConverged", "Solution", "Uncertainty", "solve", "solve_prescribed", "write_vtu"]
+__all__ = [
+    "Diagnostics",
+    "NotConverged",
+    "PlaneMesh",
+    "Solution",
+    "Uncertainty",
+    "plane_mesh",
+    "solve",
+    "solve_prescribed",
+    "write_vtu",
+]

@@ -3,6 +3,7 @@
 Vertices on an interface are written once per layer, so that the jump of sigma_xx stays a jump.
 """
 
+from dataclasses import dataclass
 from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -12,21 +13,43 @@ import numpy as np
 if TYPE_CHECKING:
     from .solution import Solution
 
-__all__ = ["write_vtu"]
+__all__ = ["PlaneMesh", "plane_mesh", "write_vtu"]
+
+STRESSES = {"xx": (0, 0), "yy": (1, 1), "zz": (2, 2), "xy": (0, 1), "yz": (1, 2), "xz": (0, 2)}
 
 
-def write_vtu(solution: "Solution", path: str | PathLike[str]) -> Path:
-    """Write the plane y = 0 as quadratic triangles to ``path`` (.vtu); returns the path.
+@dataclass(frozen=True, eq=False)
+class PlaneMesh:
+    """The plane y = 0 as quadratic triangles, no node shared between layers.
 
-    Cell data: ``layer``, 0 at the surface. Point data: ``displacement`` (3) [m] and the six stresses
-    ``sigma_xx`` ... ``sigma_xz`` [Pa]. With friction both halves x < 0 and x > 0 are written.
-    Raises ValueError when the name does not end in .vtu, OSError when the file cannot be written.
+    points : [m], (n, 3).   cells : (m, 6), corners, then the middles of the sides.   layer : of a cell, (m,).
+    displacement : [m], (n, 3).   stress : [Pa], (3, 3, n), on its own side of an interface.
     """
-    import meshio
 
-    path = Path(path)
-    if path.suffix != ".vtu":
-        raise ValueError(f"path = {path}; the file name has to end in .vtu")
+    points: np.ndarray
+    cells: np.ndarray
+    layer: np.ndarray
+    displacement: np.ndarray
+    stress: np.ndarray
+
+    @property
+    def von_mises(self) -> np.ndarray:
+        """Von Mises stress [Pa], (n,): sqrt(3/2 s:s) of the deviator s."""
+        deviator = self.stress - np.eye(3)[:, :, None] * np.einsum("iin->n", self.stress) / 3
+        return np.sqrt(1.5 * np.einsum("ijn,ijn->n", deviator, deviator))
+
+    @property
+    def point_data(self) -> dict[str, np.ndarray]:
+        """Every field at the points by its name with its unit."""
+        return {
+            "displacement [m]": self.displacement,
+            **{f"sigma_{name} [Pa]": self.stress[ij] for name, ij in STRESSES.items()},
+            "von_mises [Pa]": self.von_mises,
+        }
+
+
+def plane_mesh(solution: "Solution") -> PlaneMesh:
+    """The mesh of the plane y = 0 with its fields; with friction both halves x < 0 and x > 0."""
     mesh, length = solution.meridian.mesh, solution.meridian.length
     points, cells, layer = _quadratic(mesh.points * length, mesh.triangles, mesh.layer)
     owner = np.zeros(points.shape[1], dtype=int)
@@ -38,24 +61,39 @@ def write_vtu(solution: "Solution", path: str | PathLike[str]) -> Path:
     # a mirrored triangle runs clockwise: swap two corners and their middles
     mirrored = cells[:, [0, 2, 1, 5, 4, 3]]
     blocks = [cells] if len(halves) == 1 else [cells, mirrored + points.shape[1]]
-    cells = np.concatenate(blocks)
-    layer = np.tile(layer, len(halves))
-
     displacement = np.zeros((x.size, 3))
     sigma = np.zeros((3, 3, x.size))
     for k in range(mesh.depths.size + 1):
         mine = owner == k
         displacement[mine] = solution.displacement(x[mine], 0.0, z[mine]).T
         sigma[:, :, mine] = solution.stress(x[mine], 0.0, z[mine], layer=k)
-    names = {"xx": (0, 0), "yy": (1, 1), "zz": (2, 2), "xy": (0, 1), "yz": (1, 2), "xz": (0, 2)}
-    meshio.Mesh(
+    return PlaneMesh(
         np.stack([x, np.zeros(x.size), z], axis=1),
-        [("triangle6", cells)],
-        point_data={
-            "displacement": displacement,
-            **{f"sigma_{name}": sigma[ij] for name, ij in names.items()},
-        },
-        cell_data={"layer": [layer.astype(np.int32)]},
+        np.concatenate(blocks),
+        np.tile(layer, len(halves)),
+        displacement,
+        sigma,
+    )
+
+
+def write_vtu(solution: "Solution", path: str | PathLike[str]) -> Path:
+    """Write the plane y = 0 as quadratic triangles to ``path`` (.vtu); returns the path.
+
+    Cell data: ``layer``, 0 at the surface. Point data: ``displacement [m]`` (3), the six stresses
+    ``sigma_xx [Pa]`` ... ``sigma_xz [Pa]``, ``von_mises [Pa]``. With friction both halves are written.
+    Raises ValueError when the name does not end in .vtu, OSError when the file cannot be written.
+    """
+    import meshio
+
+    path = Path(path)
+    if path.suffix != ".vtu":
+        raise ValueError(f"path = {path}; the file name has to end in .vtu")
+    found = plane_mesh(solution)
+    meshio.Mesh(
+        found.points,
+        [("triangle6", found.cells)],
+        point_data=found.point_data,
+        cell_data={"layer": [found.layer.astype(np.int32)]},
     ).write(path)
     return path
 

@@ -21,6 +21,7 @@ from verification.store import StoreError, read_checked, write_checked
 __all__ = [
     "COMPONENTS",
     "Plane",
+    "depths_of",
     "plane_path",
     "read_plane",
     "read_planes",
@@ -80,7 +81,7 @@ def sample_plane(interfaces: tuple[float, ...], solutions: Mapping[str, Solution
     first = next(iter(methods.values()))
     stress, failures = {}, {}
     x, every = _columns(first)
-    depths = _depths(first.contact_radius, interfaces)
+    depths = depths_of(first.contact_radius, interfaces, LEVELS)
     for name, solution in methods.items():
         try:
             stress[name] = tuple(_layer(solution, x, every, z, k) for k, z in enumerate(depths))
@@ -120,10 +121,14 @@ def _columns(solution: Any) -> tuple[Array, NDArray[np.int_]]:
     return nodes[every], every
 
 
-def _depths(a: float, interfaces: tuple[float, ...]) -> tuple[Array, ...]:
+def depths_of(a: float, interfaces: tuple[float, ...], levels: int) -> tuple[Array, ...]:
+    """Depths [m] of each layer drawn under a contact of radius ``a`` [m], about ``levels`` in all.
+
+    The first and the last of a layer lie on its interfaces; layers that begin below the drawing are left out.
+    """
     bottom = max(DEPTH, min(1.3 * max(interfaces, default=0.0) / a, DEEPEST)) * a
     bounds = np.array([0.0, *(z for z in interfaces if z < bottom), bottom]) ** CROWDING
-    counts = [max(FEWEST, 1 + round((LEVELS - 1) * float(part) / bounds[-1])) for part in np.diff(bounds)]
+    counts = [max(FEWEST, 1 + round((levels - 1) * float(part) / bounds[-1])) for part in np.diff(bounds)]
     ladders = []
     for low, high, count in zip(bounds[:-1], bounds[1:], counts, strict=True):
         z = np.linspace(low, high, count) ** (1 / CROWDING)

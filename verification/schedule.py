@@ -20,6 +20,7 @@ from typing import IO, Any, Generic, TypeVar
 from verification import printed_run
 from verification.case import Case
 from verification.confined import UNWRITABLE
+from verification.fields import read_fields
 from verification.plane import plane_path, read_plane
 from verification.printed import PublishedCase
 from verification.result import CaseResult, from_json, plain
@@ -72,11 +73,13 @@ class Task(Generic[T_co]):
     question: bytes = b""
 
 
-def case_task(case: Case, folder: Path) -> Task[CaseResult]:
-    """Solving ``case`` with its result stored under ``folder``."""
+def case_task(case: Case, folder: Path, *, fields: bool = False) -> Task[CaseResult]:
+    """Solving ``case`` with its result stored under ``folder``, and its ``fields`` where they are wanted."""
     path = result_path(folder, case)
-    words = ("verification.worker", case.name, str(path), str(plane_path(folder, case.name)))
-    return Task(case.name, words, path, partial(_of, case), partial(failed, case), case.text.encode())
+    words = ["verification.worker", case.name, str(path), str(plane_path(folder, case.name))]
+    if fields:
+        words.append(str(folder))
+    return Task(case.name, tuple(words), path, partial(_of, case), partial(failed, case), case.text.encode())
 
 
 def published_task(case: PublishedCase, folder: Path) -> Task[CaseResult]:
@@ -94,10 +97,11 @@ def _of(case: Case | PublishedCase, data: dict[str, Any]) -> CaseResult:
     return result
 
 
-def kept_result(folder: Path, case: Case | PublishedCase) -> CaseResult | None:
+def kept_result(folder: Path, case: Case | PublishedCase, *, fields: bool = False) -> CaseResult | None:
     """The result of ``case`` in a run directory that need not be computed again; None where there is none.
 
-    It is whole, of the same case file, made by the same code, and a result; so is what is drawn of it.
+    It is whole, of the same case file, made by the same code, and a result; so is what is drawn of it, and
+    so are its ``fields`` where they are wanted.
     Raises StoreError, naming the file, where there is one that cannot be used.
     """
     path = result_path(folder, case)
@@ -112,6 +116,8 @@ def kept_result(folder: Path, case: Case | PublishedCase) -> CaseResult | None:
         raise StoreError(f"{path}: {error}") from None
     if isinstance(case, Case):
         read_plane(plane_path(folder, case.name), case.text)
+        if fields:
+            read_fields(folder, case.name, case.text)
     return result if result.outcome is not Outcome.NO_RESULT else None
 
 

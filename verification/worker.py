@@ -1,12 +1,13 @@
 """A process of its own for one case: the case file on standard input, its results into checked files.
 
-python -m verification.worker NAME RESULT.json PLANE.json < case.toml
+python -m verification.worker NAME RESULT.json PLANE.json [DIRECTORY] < case.toml
 """
 
 import sys
 from pathlib import Path
 
 from verification.case import parse_case
+from verification.fields import write_fields
 from verification.plane import sample_plane, write_plane
 from verification.result import to_json
 from verification.run import judge_case, solve_case
@@ -14,13 +15,18 @@ from verification.store import write_checked
 from verification.surroundings import fingerprint
 
 
-def main(name: str, path: str, plane: str) -> None:
-    """Solve the case named ``name``; store what is drawn of it at ``plane``, its result at ``path``."""
+def main(name: str, path: str, plane: str, directory: str | None = None) -> None:
+    """Solve the case named ``name``; store what is drawn of it at ``plane``, its result at ``path``.
+
+    directory : of the run, where the fields are written too.
+    """
     case = parse_case(sys.stdin.buffer.read(), Path(f"{name}.toml"))
     solved = solve_case(case)
     result = judge_case(case, solved)
     # The result comes last: where it lies, all that belongs to it does.
     write_plane(Path(plane), sample_plane(case.problem.interfaces, solved.solutions), case.text)
+    if directory is not None:
+        write_fields(case, solved.solutions, Path(directory))
     write_checked(Path(path), to_json(result) | {"made_by": fingerprint()})
 
 

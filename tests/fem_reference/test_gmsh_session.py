@@ -175,7 +175,7 @@ def test_vtu_holds_layers_and_both_sides_of_the_interface(tmp_path):
     assert np.intersect1d(upper, lower).size == 0
     near = upper[np.abs(x[upper]) < 1e-4]
     expected = s.stress(x[near], 0.0, z[near], layer=0)[0, 0]
-    np.testing.assert_allclose(read.point_data["sigma_xx"][near], expected, rtol=1e-12)
+    np.testing.assert_allclose(read.point_data["sigma_xx [Pa]"][near], expected, rtol=1e-12)
     assert x.min() < 0 < x.max()
     with pytest.raises(ValueError, match=r"\.vtu"):
         write_vtu(s, tmp_path / "contact.txt")

@@ -8,6 +8,7 @@ import time
 import unicodedata
 from collections import Counter
 from collections.abc import Sequence
+from contextlib import suppress
 from pathlib import Path
 from typing import Annotated
 
@@ -24,13 +25,15 @@ from verification.commands.solving import kept_results, kept_study, solve
 from verification.plane import read_planes
 from verification.printed import PublishedCase, is_published, published_cases, read_published
 from verification.result import CaseResult, RunInfo
-from verification.schedule import Task, case_task, cores, published_task
+from verification.schedule import Task, case_task, cores, kept_result, published_task
 from verification.self_test import SelfTest, self_tests
 from verification.store import StoreError, locked
 from verification.surroundings import commit, machine, missing_libraries, versions
 from verification.verdict import Outcome
 
 __all__ = ["run"]
+
+STOPPED = 130  # as a shell has it of SIGINT
 
 
 def run(
@@ -40,6 +43,8 @@ def run(
     time_limit: float = 600.0,
     baseline: Annotated[Path, Parameter(name=["--baseline", "-b"])] = BASELINE,
     resume: Annotated[bool, Parameter(negative="")] = False,
+    fields: Annotated[bool, Parameter(negative="")] = False,
+    verbose: Annotated[bool, Parameter(name=["--verbose", "-v"], negative="")] = False,
     quiet: Annotated[bool, Parameter(name=["--quiet", "-q"], negative="")] = False,
     as_json: Annotated[bool, Parameter(name="--json", negative="")] = False,
 ) -> int:
@@ -69,6 +74,10 @@ def run(
         Directory of the baseline; where it holds one, every number is held against it.
     resume
         Keep the whole results already in the output directory that belong to the same case files.
+    fields
+        Also write the fields of each case, for ParaView and coatcheck view, into the folder fields there.
+    verbose
+        Say the seconds and iterations of every source as the cases finish.
     quiet
         Print nothing but complaints.
     as_json
@@ -99,13 +108,13 @@ def run(
     try:
         known = read_baseline(baseline)
         with locked(output):
-            kept = kept_results(chosen, output) if resume else {}
+            kept = kept_results(chosen, output, fields=fields) if resume else {}
             study = kept_study(output) if resume and not cases else None
             tasks: list[Task[CaseResult | AccuracyStudy]] = []
             if not cases and study is None:
                 tasks.append(accuracy_study.task(output))
-            tasks += [_task(c, output) for c in chosen if c.name not in kept]
-            solved = solve(tasks, jobs, time_limit, quiet or as_json)
+            tasks += [_task(c, output, fields) for c in chosen if c.name not in kept]
+            solved = solve(tasks, jobs, time_limit, quiet or as_json, verbose=verbose)
             results = {r.name: r for r in solved if isinstance(r, CaseResult)}
             study = next((r for r in solved if isinstance(r, AccuracyStudy)), study)
             ordered = [kept.get(case.name) or results[case.name] for case in chosen]
@@ -130,6 +139,8 @@ def run(
                 ) from None
     except StoreError as error:
         return complain(str(error))
+    except KeyboardInterrupt:
+        return _stopped(chosen, output)
     if as_json:
         sys.stdout.write(json.dumps(_summary(ordered, page, beside, tests), indent=2) + "\n")
     elif not quiet:
@@ -168,8 +179,23 @@ def _choose(names: Sequence[str]) -> list[Case | PublishedCase]:
     return cases
 
 
-def _task(case: Case | PublishedCase, output: Path) -> Task[CaseResult]:
-    return case_task(case, output) if isinstance(case, Case) else published_task(case, output)
+def _task(case: Case | PublishedCase, output: Path, fields: bool) -> Task[CaseResult]:
+    if isinstance(case, Case):
+        return case_task(case, output, fields=fields)
+    return published_task(case, output)
+
+
+def _stopped(chosen: Sequence[Case | PublishedCase], output: Path) -> int:
+    """Say what a run that was interrupted leaves; 130, as shells have it."""
+    finished = 0
+    for case in chosen:
+        with suppress(StoreError):
+            finished += kept_result(output, case) is not None
+    complain(
+        f"stopped; {finished} of {len(chosen)} cases are finished and kept in {output}: go on with --resume, "
+        f"or see what is there with coatcheck report {output}"
+    )
+    return STOPPED
 
 
 def _summary(

@@ -10,7 +10,7 @@ from rich.markup import escape
 from verification import accuracy_study
 from verification.accuracy_study import AccuracyStudy
 from verification.case import Case
-from verification.commands.common import STYLE, complain, progress_bar
+from verification.commands.common import STYLE, complain, one_line, progress_bar
 from verification.printed import PublishedCase
 from verification.result import CaseResult
 from verification.schedule import Task, kept_result, run_tasks
@@ -21,12 +21,14 @@ __all__ = ["kept_results", "kept_study", "solve"]
 T = TypeVar("T")
 
 
-def kept_results(chosen: Sequence[Case | PublishedCase], output: Path) -> dict[str, CaseResult]:
+def kept_results(
+    chosen: Sequence[Case | PublishedCase], output: Path, *, fields: bool = False
+) -> dict[str, CaseResult]:
     """The earlier results that stand, by name; why another one does not is said on standard error."""
     kept = {}
     for case in chosen:
         try:
-            result = kept_result(output, case)
+            result = kept_result(output, case, fields=fields)
         except StoreError as error:
             complain(f"{error}; computed again")
             continue
@@ -44,8 +46,13 @@ def kept_study(output: Path) -> AccuracyStudy | None:
         return None
 
 
-def solve(tasks: Sequence[Task[T]], jobs: int, time_limit: float, silent: bool) -> list[T]:
-    """Run ``tasks`` side by side under a progress bar; each result is said as it comes, unless ``silent``."""
+def solve(
+    tasks: Sequence[Task[T]], jobs: int, time_limit: float, silent: bool, *, verbose: bool = False
+) -> list[T]:
+    """Run ``tasks`` side by side under a progress bar; each result is said as it comes, unless ``silent``.
+
+    verbose : say the seconds, and where it counts them the iterations, of every source.
+    """
     console = Console(stderr=True)
     bar = progress_bar(console, silent=silent)
     at_work: list[str] = []
@@ -65,5 +72,19 @@ def solve(tasks: Sequence[Task[T]], jobs: int, time_limit: float, silent: bool) 
                     f"[{colour}]{result.outcome:<12}[/] {escape(result.name)}  {result.seconds:.1f} s",
                     highlight=False,
                 )
+                if verbose:
+                    console.print(escape(_sources(result)), style="dim", highlight=False)
 
         return run_tasks(tasks, jobs=jobs, time_limit=time_limit, started=started, finished=finished)
+
+
+def _sources(result: CaseResult) -> str:
+    """A line for each source of a case: its seconds, iterations and unknowns, or why it failed."""
+    lines = []
+    for source in result.sources:
+        text = f"{'':13}{source.source:<18} {source.seconds:6.2f} s"
+        for name in ("iterations", "patches", "dofs"):
+            if name in source.diagnostics:
+                text += f"  {source.diagnostics[name]} {name}"
+        lines.append(text if source.failure is None else f"{text}  {one_line(source.failure)}")
+    return "\n".join(lines)
