@@ -56,7 +56,7 @@ FAULTS = (
     _fault(
         "tension_kept",
         "negative pressure is kept: no patch ever leaves the contact",
-        (*SCALARS, "free surface"),
+        (*SCALARS, "surface tractions"),
         Edit(
             PRESS,
             "settled = not (tension.any() or enter.any())",

@@ -6,7 +6,7 @@ __all__ = ["FAULTS"]
 
 GROUP = "conversion_fft"
 SOLID = ("01_uncoated_steel", "14_ratio_4_sliding")
-SCALARS = ("approach", "peak_pressure", "contact_radius", "pressure")
+SCALARS = ("approach", "peak_pressure", "contact_radius", "pressure", "influence coefficients")
 STRESS = ("sigma_xx", "sigma_yy", "sigma_zz", "sigma_xz")
 
 

@@ -96,7 +96,7 @@ FAULTS = (
         "semianalytic.frf:stress_frf",
         "return _fields(",
         "return 1.01 * _fields(",
-        ("sigma_xx", "sigma_zz", "surface pressure", "Hooke's law"),
+        ("sigma_xx", "sigma_zz", "surface tractions", "Hooke's law"),
     ),
     _fault(
         "anti_plane_dropped",

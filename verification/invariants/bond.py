@@ -7,9 +7,9 @@ from scipy.special import ellipk
 
 from verification.invariants.record import Invariant, decide
 from verification.invariants.stencil import Stencil
-from verification.problem import CoatedContact, Solution
+from verification.problem import CoatedContact, PrescribedLoad, Solution
 
-__all__ = ["bonded_displacement", "bonded_traction", "hooke", "sphere"]
+__all__ = ["bonded_displacement", "bonded_traction", "hooke", "sphere", "uncertain_displacement"]
 
 Array = NDArray[np.float64]
 
@@ -47,7 +47,7 @@ def bonded_displacement(solution: Solution, source: str, problem: CoatedContact,
         error = error + np.abs(parabola - line)
     bound = None
     if solution.uncertainty is not None:
-        bound = (error + 2 * _uncertain(solution, problem, np.hypot(x, y))) / solution.approach
+        bound = (error + 2 * uncertain_displacement(solution, problem, np.hypot(x, y))) / solution.approach
     law = f"u passes interface {k} unchanged, over the approach"
     return decide(
         f"bonded displacements, interface {k}", source, law, (at[0] - at[1]) / solution.approach, bound
@@ -92,12 +92,12 @@ def sphere(solution: Solution, source: str, problem: CoatedContact) -> Invariant
     residual = np.where(y <= solution.contact_radius, gap, np.minimum(gap, 0.0))
     stated, bound = solution.uncertainty, None
     if stated is not None:
-        bound = (stated.approach + _uncertain(solution, problem, y)) / solution.approach
+        bound = (stated.approach + uncertain_displacement(solution, problem, y)) / solution.approach
     law = "u_z + r^2/2R = approach in the contact, no less outside, over the approach"
     return decide("sphere", source, law, residual, bound)
 
 
-def _uncertain(solution: Solution, problem: CoatedContact, r: Array) -> Array:
+def uncertain_displacement(solution: Solution, problem: CoatedContact | PrescribedLoad, r: Array) -> Array:
     """Uncertainty of displacements at radii ``r`` [m]: that of the approach, plus what U_p would press in,
 
         u(r) = 4/(pi E*) int U_p(s) K(m) s/(r+s) ds,   m = 4 r s/(r+s)^2

@@ -3,7 +3,7 @@
 from collections.abc import Callable, Iterator
 from functools import partial
 
-from verification.invariants import bond, statics, symmetry
+from verification.invariants import bond, coefficients, statics, symmetry
 from verification.invariants.record import Invariant, absent
 from verification.problem import CoatedContact, NotClaimed, Solution
 
@@ -43,3 +43,5 @@ def _laws(solution: Solution, source: str, problem: CoatedContact) -> Iterator[t
         yield f"equilibrium, layer {layer}", partial(statics.equilibrium, *subject, layer, stencil)
         yield f"Hooke's law, layer {layer}", partial(bond.hooke, *subject, layer, stencil)
     yield "symmetry", partial(symmetry.symmetry, *subject)
+    if source == "semianalytic":
+        yield "influence coefficients", partial(coefficients.influence_coefficients, *subject)
