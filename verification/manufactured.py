@@ -27,6 +27,7 @@ __all__ = [
 
 Array = NDArray[np.float64]
 CELLS = (4, 8)  # a side
+COARSE = 0.25  # by which meshes this coarse may miss the order they tend to
 
 
 @dataclass(frozen=True)
@@ -41,6 +42,11 @@ class DesignOrder:
     displacement: float
     gradient: float
     errors: tuple[float, float]
+
+    @property
+    def as_designed(self) -> bool:
+        """True where both orders come within ``COARSE`` of their design."""
+        return self.displacement > self.order + 1 - COARSE and self.gradient > self.order - COARSE
 
 
 def design_orders(cells: tuple[int, int] = CELLS) -> tuple[DesignOrder, ...]:

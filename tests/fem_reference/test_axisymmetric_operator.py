@@ -1,5 +1,7 @@
 """The two-material axisymmetric operator against exact displacement fields, harmonics 0 and 1."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -37,3 +39,5 @@ def test_manufactured_solution_converges_at_the_design_order():
         # order + 1 for the displacement, order for its gradient; 0.25 for meshes this coarse
         assert one.displacement > one.order + 1 - 0.25
         assert one.gradient > one.order - 0.25
+        assert one.as_designed
+        assert not replace(one, gradient=one.order - 0.3).as_designed

@@ -15,7 +15,7 @@ from rich.table import Table
 
 from verification.alarms import AlarmRecord, counted, write_record
 from verification.case import Case, parse_case
-from verification.commands.common import EXIT, STYLE, complain, exit_code, one_line
+from verification.commands.common import EXIT, RECORDS, STYLE, complain, exit_code, one_line
 from verification.commands.solving import kept_results, solve
 from verification.draws import draw
 from verification.result import RunInfo, plain
@@ -26,7 +26,6 @@ from verification.verdict import Outcome
 
 __all__ = ["alarms"]
 
-RECORDS = Path("reports/credibility")
 MOST_SHOWN = 12
 
 

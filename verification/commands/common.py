@@ -22,6 +22,7 @@ __all__ = [
     "BASELINE",
     "DRIFTED",
     "EXIT",
+    "RECORDS",
     "STYLE",
     "complain",
     "exit_code",
@@ -30,6 +31,7 @@ __all__ = [
 ]
 
 BASELINE = Path("reports/baseline")
+RECORDS = Path("reports/credibility")
 BAD_INPUT = 2
 DRIFTED = 5  # all agree, but not with the digits of the baseline
 EXIT = {Outcome.DISAGREES: 1, Outcome.NO_RESULT: 3, Outcome.INCONCLUSIVE: 4, Outcome.AGREES: 0}

@@ -20,7 +20,16 @@ from rich.table import Table
 from verification.baseline import Regression, State, regression, regression_json
 from verification.baseline_file import read_baseline
 from verification.case import Case, CaseError, read_case, shipped_cases
-from verification.commands.common import BASELINE, DRIFTED, EXIT, STYLE, complain, exit_code, one_line
+from verification.commands.common import (
+    BASELINE,
+    DRIFTED,
+    EXIT,
+    RECORDS,
+    STYLE,
+    complain,
+    exit_code,
+    one_line,
+)
 from verification.commands.solving import kept_results, kept_study, solve
 from verification.plane import read_planes
 from verification.printed import PublishedCase, is_published, published_cases, read_published
@@ -42,6 +51,7 @@ def run(
     jobs: Annotated[int | None, Parameter(name=["--jobs", "-j"])] = None,
     time_limit: float = 600.0,
     baseline: Annotated[Path, Parameter(name=["--baseline", "-b"])] = BASELINE,
+    records: Path = RECORDS,
     resume: Annotated[bool, Parameter(negative="")] = False,
     fields: Annotated[bool, Parameter(negative="")] = False,
     verbose: Annotated[bool, Parameter(name=["--verbose", "-v"], negative="")] = False,
@@ -72,6 +82,8 @@ def run(
         Seconds one case may take before it is stopped and reported as having no result.
     baseline
         Directory of the baseline; where it holds one, every number is held against it.
+    records
+        Directory of what coatcheck faults and coatcheck alarms recorded, for the credibility page.
     resume
         Keep the whole results already in the output directory that belong to the same case files.
     fields
@@ -97,7 +109,9 @@ def run(
 
     from verification import accuracy_study  # SciPy and matplotlib take a second to load
     from verification.accuracy_study import AccuracyStudy
+    from verification.credibility import gather
     from verification.report import write_report
+    from verification.report.credibility import credibility_section
     from verification.report.self_tests import self_test_section
 
     tests = self_tests()
@@ -130,7 +144,10 @@ def run(
             beside = regression(ordered, known, str(baseline), info, whole=not cases)
             planes = read_planes(output, ordered)
             try:
-                extra = [self_test_section(tests)]
+                extra = [
+                    self_test_section(tests),
+                    credibility_section(ordered, info, study, gather(records), beside),
+                ]
                 page = write_report(ordered, output, info, study, extra, planes, beside)
             except OSError as error:
                 said = error.strerror or error

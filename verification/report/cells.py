@@ -66,11 +66,12 @@ class Gallery:
 
 @dataclass(frozen=True)
 class Part:
-    """A paragraph of a section with the figures and the tables it introduces."""
+    """A paragraph of a section with the figures and the tables it introduces, under a ``title`` or none."""
 
     text: str
     tables: Sequence[Table] = ()
     gallery: Gallery | None = None
+    title: str = ""
 
 
 @dataclass(frozen=True)
