@@ -1,8 +1,8 @@
 """A content-addressed store of solves that checks itself.
 
-The key of a solve is the SHA-256 of everything that its answer depends on: the request in canonical JSON, the
-source files of the packages that answer, the versions of those that put digits into it. An answer lies in a file
-of that name, written whole or not at all, with its own checksum and the request it belongs to.
+The key of a solve is the SHA-256 of everything that its answer depends on: the request in canonical JSON,
+the source files of the packages that answer, the versions of those that put digits into it. An answer lies in
+a file of that name, written whole or not at all, with its own checksum and the request it belongs to.
 """
 
 import hashlib

@@ -28,6 +28,7 @@ from verification.case import (
     refuse_unfit_scales,
 )
 from verification.problem import CoatedContact
+from verification.study.criteria import Criteria
 from verification.study.table import SOURCES
 
 __all__ = ["Solve", "Study", "parse_study", "read_study_file", "shipped_studies", "thicknesses_between"]
@@ -56,7 +57,7 @@ class Study:
     """A sphere on coatings of every modulus [Pa] and thickness [m], at every friction; SI.
 
     cross_check : every such point is also solved by the other sources; 0 none.
-    numerics : each source's own keywords.  criteria : passed through.  text : the file.
+    numerics : each source's own keywords.  criteria : what is held against the curves.  text : the file.
     """
 
     name: str
@@ -70,7 +71,7 @@ class Study:
     frictions: tuple[float, ...]
     cross_check: int = 10
     numerics: dict[str, dict[str, Any]] = field(default_factory=dict)
-    criteria: dict[str, Any] = field(default_factory=dict)
+    criteria: Criteria = field(default_factory=Criteria)
     text: str = ""
 
     @property
@@ -147,9 +148,9 @@ class _Sweep(Strict):
     modulus_ratio: Values | None = None
     thickness: Values | _Range | None = None
     thickness_over_a_h: Values | _Range | None = None
-    friction: Annotated[list[Annotated[float, Field(ge=0, le=2)]], Field(min_length=1, max_length=1000)] = [
-        0.0
-    ]
+    friction: Annotated[list[Annotated[float, Field(ge=0, le=2)]], Field(min_length=1, max_length=1000)] = (
+        Field(default_factory=lambda: [0.0])
+    )
     cross_check: Annotated[int, Field(ge=0, le=MOST_POINTS)] = 10
 
     @model_validator(mode="after")
@@ -176,7 +177,7 @@ class _StudyFile(Strict):
     sweep: _Sweep
     semianalytic: _Semianalytic = _Semianalytic()
     fem_reference: _Fem = _Fem()
-    criteria: dict[str, Any] = {}
+    criteria: Criteria = Criteria()
 
 
 def read_study_file(path: Path) -> Study:

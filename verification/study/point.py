@@ -9,8 +9,11 @@ import time
 from collections.abc import Mapping
 from typing import Any
 
+from threadpoolctl import threadpool_limits
+
 from verification.problem import CoatedContact
 from verification.run import sentence, solvers
+from verification.study.cache import code_version
 from verification.study.quantities import quantities
 from verification.study.table import SCALARS
 from verification.surroundings import versions
@@ -22,19 +25,25 @@ def answer(request: Mapping[str, Any]) -> dict[str, Any]:
     """Solve ``request`` and find every quantity at each of its frictions.
 
     request : source, numerics (its own keywords), frictions, radius, load, coating (E, nu, thickness),
-    substrate (E, nu).  Returns {"rows": [one dictionary a friction], "seconds", "versions"}; a solve that
-    fails leaves its sentence in every row.
+    substrate (E, nu).  Returns {"rows": [one dictionary a friction], "seconds", "versions",
+    "code"}; a solve that fails leaves its sentence in every row.
     """
     begin = time.perf_counter()
     frictions = [float(f) for f in request["frictions"]]
     # The pressure does not depend on friction, stresses are linear in it: friction 1 speaks for every other.
     problem = problem_of(request, 1.0 if any(frictions) else 0.0)
     try:
-        solution = solvers()[request["source"]](problem, request["numerics"])
-        rows = _rows(solution, problem, frictions)
+        with threadpool_limits(1):  # the order in which threads add would show in the last digit
+            solution = solvers()[request["source"]](problem, request["numerics"])
+            rows = _rows(solution, problem, frictions)
     except Exception as error:  # a point that fails is a row with its sentence, whatever went wrong
         rows = [{"friction": f, "status": "failed", "failure": sentence(error)} for f in frictions]
-    return {"rows": rows, "seconds": time.perf_counter() - begin, "versions": versions()}
+    return {
+        "rows": rows,
+        "seconds": time.perf_counter() - begin,
+        "versions": versions(),
+        "code": code_version(request["source"]),
+    }
 
 
 def problem_of(request: Mapping[str, Any], friction: float) -> CoatedContact:

@@ -1,0 +1,168 @@
+"""coatcheck study: parameter studies on Dask."""
+
+import json
+import sys
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import asdict, replace
+from functools import partial
+from pathlib import Path
+from typing import Annotated
+
+from cyclopts import App, Parameter
+from rich.console import Console
+from rich.progress import (
+    BarColumn,
+    MofNCompleteColumn,
+    Progress,
+    ProgressColumn,
+    Task,
+    TaskID,
+    TextColumn,
+    TimeElapsedColumn,
+    TimeRemainingColumn,
+)
+from rich.text import Text
+
+from verification.case import CaseError
+from verification.commands.common import EXIT, complain
+from verification.store import StoreError
+from verification.study.plan import Study, read_study_file, shipped_studies
+from verification.surroundings import missing_libraries
+from verification.verdict import Outcome
+
+__all__ = ["study", "thickness"]
+
+study = App(
+    name="study", help="Sweep a parameter with both methods behind every number.", help_format="plaintext"
+)
+
+INTERRUPTED = 130
+
+
+@study.command
+def thickness(
+    plan: str = "default",
+    *,
+    output: Annotated[Path, Parameter(name=["--output", "-o"])] = Path("reports/study"),
+    jobs: Annotated[int | None, Parameter(name=["--jobs", "-j"])] = None,
+    scheduler: str | None = None,
+    limit: int | None = None,
+    cross_check: bool = True,
+    quiet: Annotated[bool, Parameter(name=["--quiet", "-q"], negative="")] = False,
+    as_json: Annotated[bool, Parameter(name="--json", negative="")] = False,
+) -> int:
+    """Which thickness? Stresses of a coating against thickness, stiffness and friction, cross-checked.
+
+    A study goes on where it was stopped: whatever is solved is never solved again. Examples:
+
+        coatcheck study thickness
+        coatcheck study thickness my_study.toml --output reports/mine
+        coatcheck study thickness --scheduler tcp://host:8786
+        coatcheck study thickness --no-cross-check --limit 30
+
+    Parameters
+    ----------
+    plan
+        Name of a shipped study, or the path of a .toml study file.
+    output
+        Directory of the table, PLAN.parquet, and of the cache.
+    jobs
+        Processes of the local cluster; all cores unless given.
+    scheduler
+        Address of a running Dask scheduler, in place of a local cluster.
+    limit
+        Only the first so many points.
+    cross_check
+        Solve every k-th point by finite elements and by the exact reference too.
+    quiet
+        Print nothing but complaints.
+    as_json
+        Print one JSON object with what came of the study instead of a sentence.
+    """
+    if (jobs is not None and jobs < 1) or (limit is not None and limit < 1):
+        return complain(f"--jobs = {jobs}, --limit = {limit}; both must be positive")
+    try:
+        chosen = _choose(plan)
+    except CaseError as error:
+        return complain(str(error))
+    if not cross_check:
+        chosen = replace(chosen, cross_check=0)
+    if chosen.cross_check and (lacking := missing_libraries()):
+        complain(f"gmsh lacks system libraries here; install them with: apt-get install {' '.join(lacking)}")
+        return EXIT[Outcome.NO_RESULT]
+
+    from verification.study.engine import SchedulerError, connected, run_study, table_path
+
+    silent = quiet or as_json
+    begin = time.perf_counter()
+    try:
+        with _bars(silent) as report:
+            came = run_study(chosen, output, partial(connected, scheduler, jobs), limit=limit, report=report)
+    except (StoreError, SchedulerError) as error:
+        return complain(str(error))
+    except KeyboardInterrupt:
+        sys.stderr.write(
+            f"\ncoatcheck: stopped; what was solved is in {table_path(output, chosen)}, "
+            "the same command goes on from there\n"
+        )
+        return INTERRUPTED
+    for sentence in came.damaged:
+        complain(f"{sentence.split(';')[0]}; solved again")
+    if as_json:
+        content = asdict(came) | {"table": str(came.table), "lost": len(came.lost)}
+        sys.stdout.write(json.dumps(content, indent=2) + "\n")
+    elif not quiet:
+        seconds = time.perf_counter() - begin
+        Console().print(
+            f"{came.points} points in {seconds:.0f} s: {came.done} solves done, {came.kept} found in the "
+            f"cache, {came.failed} of {came.rows} rows failed; table: {came.table}",
+            highlight=False,
+            soft_wrap=True,
+        )
+    return EXIT[Outcome.NO_RESULT] if came.failed else EXIT[Outcome.AGREES]
+
+
+def _choose(plan: str) -> Study:
+    shipped = shipped_studies()
+    if plan in shipped:
+        return read_study_file(shipped[plan])
+    if plan.endswith(".toml") or "/" in plan or Path(plan).exists():
+        return read_study_file(Path(plan))
+    raise CaseError(f"{plan}: neither a shipped study ({', '.join(shipped)}) nor a .toml file")
+
+
+class _Rate(ProgressColumn):
+    """Points a second."""
+
+    def render(self, task: Task) -> Text:
+        return Text("" if task.speed is None else f"{task.speed:.2f}/s")
+
+
+@contextmanager
+def _bars(silent: bool) -> Iterator[Callable[[str, int, int], None]]:
+    """A bar for the points of each source, with rate and time left; nothing where nobody looks."""
+    console = Console(stderr=True)
+    bar = Progress(
+        TextColumn("{task.description}"),
+        BarColumn(),
+        MofNCompleteColumn(),
+        TextColumn("points"),
+        _Rate(),
+        TimeElapsedColumn(),
+        TextColumn("left"),
+        TimeRemainingColumn(),
+        console=console,
+        transient=True,
+        disable=silent or not console.is_terminal,
+    )
+    tasks: dict[str, TaskID] = {}
+
+    def report(source: str, done: int, total: int) -> None:
+        if source not in tasks:
+            tasks[source] = bar.add_task(source, total=total)
+        bar.update(tasks[source], completed=done, total=total)
+
+    with bar:
+        yield report

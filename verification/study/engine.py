@@ -1,0 +1,295 @@
+"""A study from its plan to its table, on Dask.
+
+One process, the client, holds the plan, the cache, the table; workers only answer requests, so they need the
+package and nothing else. Solves go out in a window that slides, so that memory does not grow with the study.
+An answer is stored before it counts; the table is written anew, whole, from what is stored, in the order of
+the points: it is the same whatever the order of the answers, however often the study was killed.
+"""
+
+import json
+import logging
+import os
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from itertools import chain, groupby, islice
+from pathlib import Path
+from typing import IO, Any
+
+from verification.run import sentence
+from verification.schedule import THREAD_VARIABLES, cores
+from verification.store import StoreError, locked
+from verification.study.cache import Cache, code_version, solve_key
+from verification.study.plan import Solve, Study
+from verification.study.point import answer, table_rows
+from verification.study.table import SOURCES, write_table
+
+__all__ = ["Outcome", "SchedulerError", "connected", "run_study", "table_path"]
+
+WINDOW = 3  # solves out at a time for each thread of the cluster
+DIED = "every worker it was sent to died, most likely for want of memory; run fewer --jobs"
+PAUSE = 5.0  # s between two writings of the table
+SHARE = 0.02  # of the time may go into writing the table while it grows
+
+Report = Callable[[str, int, int], None]  # source, points done, points in all
+
+
+class SchedulerError(Exception):
+    """A cluster that cannot be used; the message says why."""
+
+
+@dataclass
+class Outcome:
+    """What a run of a study came to.
+
+    done, kept : solves answered by this run, found in the cache.
+    damaged : sentences on stored answers that were not whole.   failed : rows with a failure.
+    lost : sentence, by key, on each solve that no worker could answer.
+    """
+
+    table: Path
+    points: int
+    rows: int = 0
+    failed: int = 0
+    done: int = 0
+    kept: int = 0
+    damaged: list[str] = field(default_factory=list)
+    lost: dict[str, str] = field(default_factory=dict)
+    complete: bool = False
+    seconds: float = 0.0
+
+
+def table_path(folder: Path, study: Study) -> Path:
+    """Where the table of ``study`` lies in a run directory."""
+    return folder / f"{study.name}.parquet"
+
+
+@contextmanager
+def connected(scheduler: str | None, jobs: int | None) -> Iterator[Any]:
+    """A client of the cluster at ``scheduler``, or of a local one of ``jobs`` processes.
+
+    jobs : all cores unless given.   Raises SchedulerError where there is no scheduler.
+    """
+    import dask
+    from distributed import Client, LocalCluster
+
+    quiet = {"logging": {"distributed": "critical", "tornado": "critical"}}
+    for name in ("distributed", "tornado"):
+        logging.getLogger(name).setLevel(logging.CRITICAL)
+    if scheduler is not None:
+        try:
+            client = Client(scheduler, timeout="10s", set_as_default=False)
+        except (OSError, ValueError, TimeoutError) as error:
+            said = " ".join(str(error).split())[:200]
+            raise SchedulerError(f"--scheduler {scheduler}: {said}; start one with: dask scheduler") from None
+        with client:
+            yield client
+        return
+    environment = {
+        "distributed.nanny.pre-spawn-environ": {"MALLOC_TRIM_THRESHOLD_": 65536}
+        | dict.fromkeys(THREAD_VARIABLES, 1),
+        "distributed.admin.log-length": 100,
+    }
+    with (
+        dask.config.set(environment | quiet),
+        LocalCluster(
+            n_workers=jobs or cores(),
+            threads_per_worker=1,
+            processes=True,
+            host="127.0.0.1",
+            dashboard_address=None,
+            memory_limit=0,
+            silence_logs=logging.CRITICAL,
+        ) as cluster,
+        Client(cluster, set_as_default=False) as client,
+    ):
+        yield client
+
+
+def run_study(
+    study: Study,
+    folder: Path,
+    client: Callable[[], Any],
+    *,
+    limit: int | None = None,
+    report: Report = lambda source, done, total: None,
+    solve: Callable[[dict[str, Any]], dict[str, Any]] = answer,
+) -> Outcome:
+    """Solve whatever of ``study`` is not in the cache under ``folder``, write its table.
+
+    client : opens a client of a Dask cluster, a context; asked only where there is something to solve.
+    limit : only the first so many points.   solve : answers a request in place of ``point.answer``.
+    Raises StoreError where ``folder`` cannot be written or another run holds it, SchedulerError where the
+    cluster fails, KeyboardInterrupt after writing the table of what is done.
+    """
+    begin = time.perf_counter()
+    with locked(folder):
+        run = _Run(study, folder, limit, report)
+        try:
+            waiting = run.missing()
+            first = next(waiting, None)
+            if first is not None:
+                with client() as open_client:
+                    run.solve(chain([first], waiting), open_client, solve)
+            run.outcome.complete = limit is None
+        finally:
+            run.write_table()
+            run.ledger.close()
+            run.outcome.seconds = time.perf_counter() - begin
+    return run.outcome
+
+
+class _Run:
+    """The state of one run: what was asked for, what came of it."""
+
+    def __init__(self, study: Study, folder: Path, limit: int | None, report: Report) -> None:
+        self.study, self.limit, self.report = study, limit, report
+        self.cache = Cache(folder / "cache")
+        points = study.points if limit is None else min(limit, study.points)
+        self.outcome = Outcome(table_path(folder, study), points)
+        self.ledger: IO[str] = (folder / "ledger.jsonl").open("a")
+        self.asked: set[bytes] = set()
+        self.total = dict.fromkeys(SOURCES, 0)
+        self.finished = dict.fromkeys(SOURCES, 0)
+        for one in self.solves():
+            self.total[one.source] += self.covered(one)
+        self.spent = 0.0  # s, in writing the table
+        self.begin = self.written = time.perf_counter()
+
+    def solves(self) -> Iterator[Solve]:
+        """The solves of the points asked for, in the order of the table."""
+        for one in self.study.solves():
+            if one.first >= self.outcome.points:
+                return
+            yield one
+
+    def covered(self, one: Solve) -> int:
+        """How many of the points asked for a solve speaks for."""
+        return min(len(self.study.frictions), self.outcome.points - one.first)
+
+    def missing(self) -> Iterator[Solve]:
+        """The distinct solves that the cache cannot answer: first the curves, then their checks."""
+        for source in SOURCES:
+            for one in self.solves():
+                if one.source != source:
+                    continue
+                key = solve_key(one.request)
+                digest = bytes.fromhex(key)
+                if digest in self.asked or self._stored(key, one):
+                    self.count(one)
+                    continue
+                self.asked.add(digest)
+                yield one
+
+    def solve(self, waiting: Iterator[Solve], client: Any, function: Callable[..., Any]) -> None:
+        """Keep a window of solves out until none is left; store each answer as it arrives."""
+        from distributed import as_completed
+
+        threads = sum(client.nthreads().values())
+        if not threads:
+            client.wait_for_workers(1, timeout=60)
+            threads = sum(client.nthreads().values())
+        out: dict[Any, tuple[Solve, str]] = {}
+
+        def send(one: Solve) -> Any:
+            key = solve_key(one.request)
+            self._note("sent", key, one.source)
+            future = client.submit(function, one.request, key=f"{one.source}-{key}", pure=False)
+            out[future] = (one, key)
+            return future
+
+        arriving = as_completed([send(one) for one in islice(waiting, WINDOW * threads)], loop=client.loop)
+        try:
+            for future in arriving:
+                one, key = out.pop(future)
+                self._take(one, key, future)
+                future.release()
+                following = next(waiting, None)
+                if following is not None:
+                    arriving.add(send(following))
+        finally:
+            client.cancel(list(out), force=True)
+
+    def _take(self, one: Solve, key: str, future: Any) -> None:
+        error = future.exception()
+        if error is not None:
+            # A solver's failure is an answer; this is a worker's: it is not stored, the next run tries again.
+            died = type(error).__name__ == "KilledWorker"
+            self.outcome.lost[key] = DIED if died else sentence(error)
+            self._note("lost", key, one.source)
+            self.count(one)
+            return
+        found = future.result()
+        if found.get("code", code_version(one.source)) != code_version(one.source):
+            raise SchedulerError(
+                "a worker runs other code than this process; install the same coatcheck and the same "
+                "versions of its dependencies on every worker"
+            )
+        self.cache.put(key, one.request, found)
+        self._note("stored", key, one.source, found["seconds"])
+        self.outcome.done += 1
+        self.count(one)
+        self._write_now_and_then()
+
+    def _stored(self, key: str, one: Solve) -> bool:
+        if not self.cache.has(key):
+            return False
+        try:
+            self.cache.get(key, one.request)
+        except StoreError as error:
+            self.outcome.damaged.append(str(error))
+            return False
+        self.outcome.kept += 1
+        return True
+
+    def count(self, one: Solve) -> None:
+        """Report the points that a finished solve speaks for."""
+        self.finished[one.source] += self.covered(one)
+        self.report(one.source, self.finished[one.source], self.total[one.source])
+
+    def _note(self, event: str, key: str, source: str, seconds: float | None = None) -> None:
+        line = {"event": event, "key": key, "source": source, "process": os.getpid(), "seconds": seconds}
+        self.ledger.write(json.dumps(line) + "\n")
+        self.ledger.flush()
+
+    def _write_now_and_then(self) -> None:
+        now = time.perf_counter()
+        if now - self.written > PAUSE and self.spent < SHARE * (now - self.begin):
+            self.write_table()
+
+    def write_table(self) -> None:
+        """Write the rows of everything stored, in the order of the points."""
+        begin = time.perf_counter()
+        self.outcome.failed = 0
+        about = {
+            "name": self.study.name,
+            "text": self.study.text,
+            "points": self.outcome.points,
+            "complete": self.outcome.complete,
+        }
+        self.outcome.rows = write_table(self.outcome.table, self._rows(), about)
+        self.written = time.perf_counter()
+        self.spent += self.written - begin
+
+    def _rows(self) -> Iterator[dict[str, Any]]:
+        for _, sources in groupby(self.solves(), key=lambda one: one.first):
+            rows = [row for one in sources for row in self._rows_of(one)]
+            for row in sorted(rows, key=lambda row: row["point"]):
+                self.outcome.failed += row["status"] == "failed"
+                yield row
+
+    def _rows_of(self, one: Solve) -> list[dict[str, Any]]:
+        key = solve_key(one.request)
+        if key in self.outcome.lost:
+            sentence = self.outcome.lost[key]
+            failed = [
+                {"friction": f, "status": "failed", "failure": sentence} for f in one.request["frictions"]
+            ]
+            found: dict[str, Any] = {"rows": failed, "seconds": 0.0, "versions": {}}
+        else:
+            try:
+                found = self.cache.get(key, one.request)
+            except StoreError:
+                return []  # not solved yet
+        return table_rows(one.first, key, one.request, found)[: self.covered(one)]

@@ -1,0 +1,214 @@
+"""The stress of a solution along x at one depth, as a function of friction.
+
+The pressure does not depend on f (Goodman) and stress is linear in it, so that one solution at friction g
+speaks for every f:
+
+    sigma = sigma_n + f sigma_t
+
+In the plane y = 0 the two parts have opposite parity in x, which tells them apart from the values at x, -x.
+Between the samples both are quintic splines. At the contact edge the surface stress has a cusp: sigma_n is
+smooth outside r = a and has the root of the pressure inside; sigma_t is smooth inside and has a root outside.
+Its value at r = a is therefore the limit of sigma_n from outside with that of sigma_t from inside, for every
+source alike.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.interpolate import make_interp_spline
+
+from verification.problem import Solution
+
+__all__ = ["XX", "XZ", "YY", "ZZ", "Parts", "Plane", "crowded", "plane", "surface"]
+
+Array = NDArray[np.float64]
+Curve = Callable[[Array], Array]
+
+XX, YY, ZZ, XZ = range(4)
+# what x -> -x does to the response to p; that to q has the opposite sign
+PARITY = np.array([1.0, 1.0, 1.0, -1.0])
+SKIP = 0.02  # of a; nearer to the contact edge no method is asked for a surface stress
+WINDOW, BESIDE = 0.05, 8  # of a, samples in it: the strip from which a limit at the edge is drawn
+MIRRORED = 5  # samples repeated beyond x = 0, so that the splines know the parity
+
+
+@dataclass(frozen=True)
+class Parts:
+    """What p and what q = p cause, from ``solution`` at ``friction`` g > 0, or 0 where nothing slides."""
+
+    solution: Solution
+    friction: float
+
+    def __call__(self, r: Array, z: float, layer: int) -> tuple[Array, Array, Array]:
+        """sigma_n, sigma_t at x = ``r`` >= 0, (4, n) each, with the uncertainty at r, -r, (2, 4, n).
+
+        The uncertainty is the solution's own, NaN where it has none.
+        """
+        x = np.stack([r, -r]) if self.friction else r[None, :]
+        sigma, spread = self._sampled(x, z, layer)
+        if not self.friction:
+            return sigma[:, 0], np.zeros_like(sigma[:, 0]), np.stack([spread[:, 0]] * 2)
+        right, left = sigma[:, 0], sigma[:, 1] * PARITY[:, None]
+        return (right + left) / 2, (right - left) / (2 * self.friction), np.moveaxis(spread, 1, 0)
+
+    def uncertainty(self, spread: Array, friction: Array | float) -> Array:
+        """That of sigma_n + f sigma_t at x, (4, n), from those at x and -x, (2, 4, n).
+
+        sigma(x) = (g + f)/2g S(x) +- (g - f)/2g S(-x), S the stress at friction g.
+        """
+        here = (1 + friction / self.friction) / 2 if self.friction else 1.0
+        return here * spread[0] + np.abs(1 - here) * spread[1]
+
+    def _sampled(self, x: Array, z: float, layer: int) -> tuple[Array, Array]:
+        stated = self.solution.uncertainty is not None
+        both = getattr(type(self.solution), "stress_with_uncertainty", None)
+        if stated and both is not None:
+            sigma, spread = both(self.solution, x, 0.0, z, layer=layer)
+        else:
+            sigma = self.solution.stress(x, 0.0, z, layer=layer)
+            spread = (
+                self.solution.stress_uncertainty(x, 0.0, z, layer=layer)
+                if stated
+                else np.full_like(sigma, np.nan)
+            )
+        return _components(sigma), _components(spread)
+
+
+def _components(sigma: Array) -> Array:
+    return np.stack([sigma[0, 0], sigma[1, 1], sigma[2, 2], sigma[0, 2]])
+
+
+@dataclass(frozen=True)
+class Plane:
+    """Stress at one depth in one layer as a function of x and f.
+
+    knots : radii [m] of the samples.   fine, coarse : sigma_n and sigma_t over r, (4,) + shape of r, from all
+    the samples and from every other one.   spread : uncertainty at knots and -knots, (2, 4, knots).
+    edge : what the limits at r = ``edge_radius`` may be wrong by, of sigma_n and sigma_t, (2, 4).
+    """
+
+    parts: Parts
+    z: float
+    layer: int
+    knots: Array
+    fine: tuple[Curve, Curve]
+    coarse: tuple[Curve, Curve]
+    spread: Array
+    edge: Array
+    edge_radius: float
+
+    def __call__(self, x: Array, friction: float) -> Array:
+        """xx, yy, zz, xz [Pa] at signed ``x`` [m], (4,) + shape of ``x``."""
+        return _signed(self.fine, x, friction)
+
+    def uncertainty(self, x: float, friction: float) -> Array:
+        """Of the stresses at ``x`` [Pa]: the solution's, with an eighth of what half the samples miss."""
+        i = int(np.clip(np.searchsorted(self.knots, abs(x)), 1, self.knots.size - 1))
+        beside = self.spread[:, :, i - 1 : i + 1].max(axis=2)
+        stated = self.parts.uncertainty(beside if x >= 0 else beside[::-1], friction)
+        at = np.array([x])
+        missed = np.abs(_signed(self.fine, at, friction) - _signed(self.coarse, at, friction))[:, 0] / 8
+        near = self.edge_radius * SKIP >= abs(abs(x) - self.edge_radius) * (1 - 1e-9)
+        return stated + missed + (self.edge[0] + friction * self.edge[1] if near else 0.0)
+
+
+def _signed(curves: tuple[Curve, Curve], x: Array, friction: float) -> Array:
+    normal, tangential = (curve(np.abs(x)) for curve in curves)
+    left = x < 0
+    sign = np.where(left, PARITY.reshape(4, *[1] * x.ndim), 1.0)
+    return sign * (normal + friction * np.where(left, -1.0, 1.0) * tangential)
+
+
+def crowded(a: float, width: float, reach: float) -> Array:
+    """Radii [m] from 0 to a + ``reach`` that crowd at r = a, ``width``/6 apart there, as a sinh does."""
+    low, high = np.arcsinh(-a / width), np.arcsinh(reach / width)
+    r = a + width * np.sinh(np.linspace(low, high, int(np.ceil((high - low) / 0.16)) + 1))
+    r[0] = 0.0
+    return r
+
+
+def plane(parts: Parts, knots: Array, z: float, layer: int) -> Plane:
+    """The plane at depth ``z`` > 0 of ``layer``, sampled at ``knots``."""
+    normal, tangential, spread = parts(knots, z, layer)
+
+    def curves(keep: NDArray[np.int_]) -> tuple[Curve, Curve]:
+        r = knots[keep]
+        return _spline(r, normal[:, keep], PARITY), _spline(r, tangential[:, keep], -PARITY)
+
+    fine, coarse = curves(np.arange(knots.size)), curves(_every_other(knots.size))
+    return Plane(parts, z, layer, knots, fine, coarse, spread, np.zeros((2, 4)), 0.0)
+
+
+def surface(parts: Parts, a: float, h: float, reach: float) -> Plane:
+    """The surface out to a + ``reach`` under a contact of radius ``a``, on a coating of thickness ``h``.
+
+    Splines in theta = arcsin(r/a) inside, eta = arcosh(r/a) outside: the roots of the edge are smooth there.
+    """
+    more = 0.5 * min(a / h, 20)
+    strip = SKIP + WINDOW * np.arange(BESIDE) / (BESIDE - 1)
+    theta = np.linspace(0, np.arcsin(1 - strip[-1]), int(16 + more))
+    theta = np.append(theta[:-1], np.arcsin(1 - strip[::-1]))
+    eta = np.linspace(np.arccosh(1 + strip[-1]), np.arccosh(1 + reach / a), int(10 + more + 2 * reach / a))
+    eta = np.append(np.arccosh(1 + strip[:-1]), eta)
+    inside, outside = theta.size, eta.size
+    r = np.concatenate([a * np.sin(theta), a * np.cosh(eta)])
+    normal, tangential, spread = parts(r, 0.0, 0)
+    # The thinner the coating, the faster the stress bends within the strip.
+    degree = 3 + int(h < 0.25 * a) + int(h < 0.08 * a)
+    edge_n, error_n = _limit(strip, normal[:, inside : inside + BESIDE], degree)
+    edge_t, error_t = _limit(strip, tangential[:, inside - 1 : inside - 1 - BESIDE : -1], degree)
+    for edge, error in ((edge_n, error_n), (edge_t, error_t)):
+        edge[[ZZ, XZ]] = error[[ZZ, XZ]] = 0.0  # p and q vanish at the edge
+
+    def joined(values: Array, edge: Array, parity: Array, keep: Callable[[int], NDArray[np.int_]]) -> _Joined:
+        i, o = keep(inside), keep(outside)
+        within = _spline(np.append(theta[i], np.pi / 2), np.column_stack([values[:, i], edge]), parity)
+        beyond = _spline(np.append(0.0, eta[o]), np.column_stack([edge, values[:, inside + o]]), None)
+        return _Joined(a, within, beyond)
+
+    def curves(keep: Callable[[int], NDArray[np.int_]]) -> tuple[Curve, Curve]:
+        return joined(normal, edge_n, PARITY, keep), joined(tangential, edge_t, -PARITY, keep)
+
+    knots = np.insert(r, inside, a)
+    # The edge has no uncertainty of its own: the larger one of its two sides.
+    beside = spread[:, :, inside - 1 : inside + 1].max(axis=2, keepdims=True)
+    spread = np.concatenate([spread[:, :, :inside], beside, spread[:, :, inside:]], axis=2)
+    return Plane(
+        parts, 0.0, 0, knots, curves(np.arange), curves(_every_other), spread, np.stack([error_n, error_t]), a
+    )
+
+
+@dataclass(frozen=True)
+class _Joined:
+    """Two splines that meet at r = a."""
+
+    a: float
+    within: Curve
+    beyond: Curve
+
+    def __call__(self, r: Array) -> Array:
+        s = r / self.a
+        within = self.within(np.arcsin(np.minimum(s, 1)))
+        return np.where(s <= 1, within, self.beyond(np.arccosh(np.maximum(s, 1))))
+
+
+def _limit(distance: Array, values: Array, degree: int) -> tuple[Array, Array]:
+    """Values at distance 0 of a smooth function known beyond, with what the last ``degree`` changes in it."""
+    fits = [np.polynomial.polynomial.polyfit(distance, values.T, n)[0] for n in (degree, degree - 1)]
+    return fits[0], np.abs(fits[0] - fits[1])
+
+
+def _spline(at: Array, values: Array, parity: Array | None) -> Curve:
+    """Quintic spline through ``values`` (4, n); across 0 of known parity where one is given."""
+    if parity is not None:
+        m = min(MIRRORED, at.size - 1)
+        at = np.concatenate([-at[m:0:-1], at])
+        values = np.concatenate([parity[:, None] * values[:, m:0:-1], values], axis=1)
+    return make_interp_spline(at, values, k=min(5, at.size - 1), axis=1)
+
+
+def _every_other(n: int) -> NDArray[np.int_]:
+    """Every other of n samples, both ends among them."""
+    return np.unique(np.append(np.arange(0, n, 2), n - 1))
