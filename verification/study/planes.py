@@ -31,6 +31,7 @@ XX, YY, ZZ, XZ = range(4)
 PARITY = np.array([1.0, 1.0, 1.0, -1.0])
 SKIP = 0.02  # of a; nearer to the contact edge no method is asked for a surface stress
 WINDOW, BESIDE = 0.05, 8  # of a, samples in it: the strip from which a limit at the edge is drawn
+LEAST = 33  # samples of a plane; below, the semi-analytical method sums point by point, which takes longer
 MIRRORED = 5  # samples repeated beyond x = 0, so that the splines know the parity
 
 
@@ -124,7 +125,8 @@ def _signed(curves: tuple[Curve, Curve], x: Array, friction: float) -> Array:
 def crowded(a: float, width: float, reach: float) -> Array:
     """Radii [m] from 0 to a + ``reach`` that crowd at r = a, ``width``/6 apart there, as a sinh does."""
     low, high = np.arcsinh(-a / width), np.arcsinh(reach / width)
-    r = a + width * np.sinh(np.linspace(low, high, int(np.ceil((high - low) / 0.16)) + 1))
+    count = max(LEAST, int(np.ceil((high - low) / 0.16)) + 1)
+    r = a + width * np.sinh(np.linspace(low, high, count))
     r[0] = 0.0
     return r
 
