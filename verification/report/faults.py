@@ -49,12 +49,11 @@ def faults_section(record: Record) -> Section:
     parts = [Part(_method(record)), Part(faults_sentence(record), [_score(record)])]
     if record.survivors:
         parts.append(Part("What was not caught, why, what would catch it.", [_survivors(record)]))
-    parts.append(
-        Part(_reading(), [_matrix(record.rows, "Fault by fault, what each kind of check made of it.")])
-    )
+    groups = [(title, [row for row in record.rows if row.group == key]) for key, title in GROUPS.items()]
+    parts.append(Part(_reading(), [_matrix(rows, title) for title, rows in groups if rows]))
     if record.blanks:
         said = "The same trials with nothing planted: whatever is caught here is a false alarm."
-        parts.append(Part("", [_matrix(record.blanks, said)]))
+        parts.append(Part(said, [_matrix(record.blanks, "Nothing planted")]))
     failures = [f"{row.name} changes no number; it is not a fault." for row in record.idle]
     failures += [f"{row.name}, in which nothing is planted, is caught: {row.by}" for row in record.alarms]
     failures += [f"{row.name}: {row.failure}" for row in record.rows if row.failure]
@@ -137,21 +136,20 @@ def _survivors(record: Record) -> Table:
 
 
 def _matrix(rows: Sequence[FaultRow], caption: str) -> Table:
-    used = [column for column in COLUMNS if any(column in row.columns for row in rows)]
     made = []
     for row in rows:
         cells = [
             Cell(row.sentence, css="words"),
             Cell(source_label(row.where)),
             _catch_cell(row),
-            Cell("✓", css="verdict agrees", note=row.by) if row.as_expected else Cell("–", note=row.by),
-            *(_seen_cell(row.columns.get(column)) for column in used),
+            Cell("✓" if row.as_expected else "–", note=row.by),
+            *(_seen_cell(row.columns.get(column)) for column in COLUMNS),
             Cell(scientific(row.change), row.change, note=row.changed),
             Cell(seconds(row.seconds), row.seconds),
         ]
         made.append(Row(Cell(row.name, note=row.by), cells))
-    columns = ["fault", "what is wrong", "where", "outcome", "as foretold", *used, "change", "time"]
-    spans = [("", 5), ("checks that do not pass", len(used)), ("", 2)]
+    columns = ["fault", "what is wrong", "in", "outcome", "as foretold", *COLUMNS, "change", "time"]
+    spans = [("", 5), ("checks that do not pass", len(COLUMNS)), ("", 2)]
     return Table(caption, columns, made, spans, "faults")
 
 
