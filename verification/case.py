@@ -56,6 +56,7 @@ class Case:
     """``problem`` with the ``claims`` about it; ``numerics`` holds each method's own keywords.
 
     text : the file it was read from, kept with the results so that they carry their full input.
+    laws : whether the problem is solved again scaled, with equal moduli, thick and thin, see ``invariants``.
     """
 
     name: str
@@ -65,6 +66,7 @@ class Case:
     source: str = ""
     numerics: dict[str, dict[str, Any]] = field(default_factory=dict)
     text: str = ""
+    laws: bool = False
 
     @property
     def lines(self) -> tuple[Line, ...]:
@@ -179,6 +181,7 @@ class _CaseFile(Strict):
     semianalytic: _SemianalyticNumerics = _SemianalyticNumerics()
     fem_reference: _FemNumerics = _FemNumerics()
     claim: Annotated[list[_Claim], Field(max_length=1000)] = []
+    laws: bool = False
 
 
 def read_case(path: Path) -> Case:
@@ -244,6 +247,8 @@ def parse_case(raw: bytes, path: Path) -> Case:
     except (ValueError, OverflowError, ZeroDivisionError) as error:
         raise CaseError(f"{path}: problem: {error}") from None
     refuse_unfit_scales(path, problem)
+    if checked.laws and not problem.coatings:
+        raise CaseError(f"{path}: laws: needs a coating to make thick and thin; add one, or leave laws out")
     return Case(
         name=path.stem,
         title=checked.title,
@@ -255,6 +260,7 @@ def parse_case(raw: bytes, path: Path) -> Case:
             "fem_reference": checked.fem_reference.model_dump(exclude_none=True),
         },
         text=text,
+        laws=checked.laws,
     )
 
 

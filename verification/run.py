@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from verification.case import Case
-from verification.invariants import check
+from verification.invariants import Invariant, check, laws
 from verification.problem import CoatedContact, PrescribedLoad, Solution
 from verification.profile import Line, Profile, sample, sample_contact
 from verification.result import CaseResult, SourceResult
@@ -73,10 +73,14 @@ def run(case: Case, available: Mapping[str, Solver] | None = None) -> CaseResult
 
 @dataclass(frozen=True, eq=False)
 class Solved:
-    """What each source of a case came to, by name: its Solution where it has one, its SourceResult always."""
+    """What each source of a case came to, by name: its Solution where it has one, its SourceResult always.
+
+    laws : what the methods were held against by solving the problem otherwise, where the case asks for it.
+    """
 
     solutions: Mapping[str, Solution]
     outcomes: Mapping[str, SourceResult]
+    laws: tuple[Invariant, ...] = ()
 
 
 def solve_case(case: Case, available: Mapping[str, Solver] | None = None) -> Solved:
@@ -102,7 +106,7 @@ def solve_case(case: Case, available: Mapping[str, Solver] | None = None) -> Sol
             diagnostics=diagnostics_of(solution.diagnostics),
             budget=getattr(solution.uncertainty, "budget", ()),
         )
-    return Solved(solutions, outcomes)
+    return Solved(solutions, outcomes, laws(case.problem, available) if case.laws else ())
 
 
 def judge_case(case: Case, solved: Solved) -> CaseResult:
@@ -132,6 +136,7 @@ def judge_case(case: Case, solved: Solved) -> CaseResult:
         (solutions[s].contact_radius for s in reversed(list(solutions)) if not outcomes[s].failure), 0.0
     )
     invariants = [row for s, solution in solutions.items() for row in check(solution, s, case.problem)]
+    invariants += solved.laws
     verdicts = tuple((claim, decide(claim, profiles, outcomes, case.problem, edge)) for claim in case.claims)
     return CaseResult(
         name=case.name,

@@ -9,7 +9,7 @@ from verification.invariants.record import Invariant, decide
 from verification.invariants.stencil import Stencil
 from verification.problem import CoatedContact, PrescribedLoad, Solution
 
-__all__ = ["bonded_displacement", "bonded_traction", "hooke", "sphere", "uncertain_displacement"]
+__all__ = ["bonded_displacement", "bonded_traction", "crossed", "hooke", "sphere", "uncertain_displacement"]
 
 Array = NDArray[np.float64]
 
@@ -95,6 +95,25 @@ def sphere(solution: Solution, source: str, problem: CoatedContact) -> Invariant
         bound = (stated.approach + uncertain_displacement(solution, problem, y)) / solution.approach
     law = "u_z + r^2/2R = approach in the contact, no less outside, over the approach"
     return decide("sphere", source, law, residual, bound)
+
+
+def crossed(solution: Solution, source: str, problem: CoatedContact) -> Invariant:
+    """Betti's reciprocity: what sliding lifts, the load draws in by as much.
+
+    On the surface u_z is odd in x by the tangential load alone, u_x by the normal load alone, and
+    odd part of u_z = -f times odd part of u_x, since q = f p.
+    """
+    x = solution.contact_radius * np.array([0.3, 0.6, 0.9, 1.3, 2.0])
+    y = 0.2 * x
+    ahead, behind = (solution.displacement(side * x, y, np.zeros_like(x)) for side in (1.0, -1.0))
+    odd = (ahead - behind) / 2
+    bound = None
+    if solution.uncertainty is not None:
+        bound = (1 + problem.friction) * uncertain_displacement(solution, problem, np.hypot(x, y))
+        bound = bound / solution.approach
+    law = "u_z odd in x, by sliding, is -f times u_x odd in x, by the load; over the approach"
+    residual = (odd[2] + problem.friction * odd[0]) / solution.approach
+    return decide("reciprocity of load and sliding", source, law, residual, bound)
 
 
 def uncertain_displacement(solution: Solution, problem: CoatedContact | PrescribedLoad, r: Array) -> Array:
