@@ -128,7 +128,7 @@ def _mesh_file(case: Case, solution: Any) -> dict[str, bytes]:
         grid.point_data[name] = values
     grid.cell_data["layer"] = found.layer.astype(np.int32)
     file = f"{case.name}-fem.vtu"
-    return {file: _saved(grid, file, case, "finite elements")}
+    return {file: _saved(grid, file, case, "finite elements", solution.contact_radius)}
 
 
 def _box_files(case: Case, solution: Any) -> dict[str, bytes]:
@@ -151,7 +151,7 @@ def _box_files(case: Case, solution: Any) -> dict[str, bytes]:
         grid.point_data["displacement [m]"] = np.stack([c.ravel(order="F") for c in u], axis=1)
         grid.cell_data["layer"] = np.full(grid.n_cells, layer, dtype=np.int32)
         file = f"{case.name}-semi-layer-{layer}.vtr"
-        files[file] = _saved(grid, file, case, "semi-analytical")
+        files[file] = _saved(grid, file, case, "semi-analytical", solution.contact_radius)
     blocks = "".join(
         f"    <DataSet index={quoteattr(str(k))} name={quoteattr(f'layer {k}')} file={quoteattr(file)}/>\n"
         for k, file in enumerate(files)
@@ -177,10 +177,11 @@ def _von_mises(sigma: Array) -> Array:
     return np.sqrt(1.5 * np.maximum(square, 0.0))
 
 
-def _saved(grid: Any, file: str, case: Case, method: str) -> bytes:
+def _saved(grid: Any, file: str, case: Case, method: str, radius: float) -> bytes:
     """The bytes of the file that VTK writes of ``grid``, with the case file inside."""
     grid.field_data["case file"] = [case.text]
     grid.field_data["method"] = [method]
+    grid.field_data["contact radius [m]"] = [radius]
     grid.field_data["axes"] = ["metres, origin at first contact, x along sliding, z into the solid"]
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / file

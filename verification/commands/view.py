@@ -1,0 +1,93 @@
+"""coatcheck view: the fields of a case in a window or as a picture."""
+
+import os
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+from typing import Annotated
+
+from cyclopts import Parameter
+
+from verification.commands.common import EXIT, complain
+from verification.fields import read_fields
+from verification.store import StoreError, write_atomically
+from verification.verdict import Outcome
+
+__all__ = ["view"]
+
+QUANTITIES = ("von_mises", "sigma_xx", "sigma_yy", "sigma_zz", "sigma_xy", "sigma_yz", "sigma_xz")
+
+
+def view(
+    case: str,
+    /,
+    *,
+    quantity: Annotated[str, Parameter(name=["--quantity", "-q"])] = "von_mises",
+    output: Annotated[Path, Parameter(name=["--output", "-o"])] = Path("reports"),
+    screenshot: Path | None = None,
+    time_limit: float = 60.0,
+) -> int:
+    """Look at the fields of a case that coatcheck run --fields wrote: finite elements beside semi-analytical.
+
+    Parameters
+    ----------
+    case
+        Name of the case; ParaView opens its fields too, CASE-fem.vtu and CASE-semi.vtm in OUTPUT/fields.
+    quantity
+        von_mises, or a stress: sigma_xx, sigma_yy, sigma_zz, sigma_xy, sigma_yz, sigma_xz.
+    output
+        Directory of the run.
+    screenshot
+        Write a PNG picture there without opening a window; no display is needed.
+    time_limit
+        Seconds that the picture may take.
+    """
+    if quantity not in QUANTITIES:
+        return complain(f"--quantity = {quantity}; there are {', '.join(QUANTITIES)}")
+    if Path(case).name != case:
+        return complain(f"{case}: not the name of a case; see coatcheck list")
+    if screenshot is not None and screenshot.suffix.lower() != ".png":
+        return complain(f"--screenshot = {screenshot}; the name has to end in .png")
+    try:
+        read_fields(output, case)
+    except StoreError as error:
+        return complain(f"{error}; fields are written by: coatcheck run {case} --fields")
+    words = [sys.executable, "-m", "verification.viewer", str(output), case, f"{quantity} [Pa]"]
+    if screenshot is not None:
+        return _picture(words, screenshot, time_limit)
+    if sys.platform == "linux" and not (os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")):
+        return _none("there is no display here; write a picture with --screenshot FILE.png")
+    code = subprocess.run(words, stderr=subprocess.DEVNULL, check=False).returncode
+    return (
+        0 if code == 0 else _none(f"VTK could not open a window ({_ended(code)}); try --screenshot FILE.png")
+    )
+
+
+def _picture(words: list[str], path: Path, time_limit: float) -> int:
+    """Render in a process of its own, which may crash or hang; the picture appears whole or not at all."""
+    with tempfile.TemporaryDirectory() as folder:
+        drawn = Path(folder) / "picture.png"
+        try:
+            done = subprocess.run([*words, str(drawn)], capture_output=True, timeout=time_limit, check=False)
+        except subprocess.TimeoutExpired:
+            return _none(f"no picture after {time_limit:g} s; raise --time-limit")
+        if done.returncode != 0 or not drawn.exists():
+            return _none(
+                f"VTK could not render off screen here ({_ended(done.returncode)}); ParaView opens the "
+                "fields, and the report has pictures of the plane y = 0"
+            )
+        try:
+            write_atomically(path, drawn.read_bytes())
+        except StoreError as error:
+            return complain(str(error))
+    return 0
+
+
+def _none(sentence: str) -> int:
+    complain(sentence)
+    return EXIT[Outcome.NO_RESULT]
+
+
+def _ended(code: int) -> str:
+    return f"signal {-code}" if code < 0 else f"code {code}"
