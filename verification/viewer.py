@@ -36,9 +36,7 @@ def plotter(fields: Fields, name: str, *, off_screen: bool) -> Any:
         shown.append(("semi-analytical", pv.MultiBlock(halves)))
     if not shown:
         raise ValueError("neither method left fields of this case")
-    blocks = [
-        block for _, found in shown for block in (found if isinstance(found, pv.MultiBlock) else [found])
-    ]
+    blocks = [block for _, found in shown for block in found]
     known = [n for n in blocks[0].point_data if not n.startswith("displacement")]
     if name not in known:
         raise ValueError(f"field = {name!r}; there are {', '.join(known)}")
@@ -52,7 +50,7 @@ def plotter(fields: Fields, name: str, *, off_screen: bool) -> Any:
     window: Any = pv.Plotter(off_screen=off_screen, shape=(1, len(shown)), window_size=SIZE)
     for number, (title, found) in enumerate(shown):
         window.subplot(0, number)
-        for block in found if isinstance(found, pv.MultiBlock) else [found]:
+        for block in found:
             micro = block.scale(MICRO)
             window.add_mesh(
                 micro,
@@ -74,16 +72,24 @@ def plotter(fields: Fields, name: str, *, off_screen: bool) -> Any:
 
 
 def _near(mesh: Any) -> Any:
-    """The part of the mesh below the contact; the whole of it reaches thousands of contact radii."""
+    """The mesh below the contact, layer by layer; all of it reaches thousands of contact radii."""
+    import pyvista as pv
+
     a = float(mesh.field_data["contact radius [m]"][0])
     depth = max(DEPTH * a, 1.3 * _deepest(mesh))
     half = DEPTH * a
     x, _, z = mesh.cell_centers().points.T
-    near = mesh.extract_cells(np.flatnonzero((np.abs(x) < 2 * half) & (z < 2 * depth)))
-    for normal, origin in (("x", half), ("-x", -half), ("z", depth)):
-        at = (origin, 0.0, 0.0) if normal != "z" else (0.0, 0.0, origin)
-        near = near.clip(normal=normal, origin=at)
-    return near
+    layers = pv.MultiBlock()
+    for layer in np.unique(mesh.cell_data["layer"]):
+        # One at a time: a filter makes one point of two at one place, and a jump a smear.
+        mine = (mesh.cell_data["layer"] == layer) & (np.abs(x) < 2 * half) & (z < 2 * depth)
+        part = mesh.extract_cells(np.flatnonzero(mine))
+        for normal, origin in (("x", half), ("-x", -half), ("z", depth)):
+            at = (origin, 0.0, 0.0) if normal != "z" else (0.0, 0.0, origin)
+            part = part.clip(normal=normal, origin=at) if part.n_cells else part
+        if part.n_cells:
+            layers.append(part)
+    return layers
 
 
 def _deepest(mesh: Any) -> float:
