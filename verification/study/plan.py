@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Annotated, Any
 
 import numpy as np
-from pydantic import Field, model_validator
+from pydantic import Discriminator, Field, Tag, model_validator
 
 from verification.case import (
     CaseError,
@@ -144,10 +144,17 @@ Positive = Annotated[float, Field(gt=0)]
 Values = Annotated[list[Positive], Field(min_length=1, max_length=100_000)]
 
 
+# Told apart by what stands there, so that a complaint speaks of one of them only.
+Sweep = Annotated[
+    Annotated[Values, Tag("list")] | Annotated[_Range, Tag("range")],
+    Discriminator(lambda given: "range" if isinstance(given, dict | _Range) else "list"),
+]
+
+
 class _Sweep(Strict):
     modulus_ratio: Values | None = None
-    thickness: Values | _Range | None = None
-    thickness_over_a_h: Values | _Range | None = None
+    thickness: Sweep | None = None
+    thickness_over_a_h: Sweep | None = None
     friction: Annotated[list[Annotated[float, Field(ge=0, le=2)]], Field(min_length=1, max_length=1000)] = (
         Field(default_factory=lambda: [0.0])
     )

@@ -1,0 +1,171 @@
+"""Which thickness is preferable: a stress of each failure mode held against a strength.
+
+    utilisation u_i(h) = safety * stress_i(h) / strength_i,   governing mode: the largest u_i
+
+A thickness is admissible where every u_i, its stress raised by its own numerical uncertainty, is at most 1;
+the preferable one has the smallest largest u_i. Without strengths the criterion is the smallest largest of a
+few stresses over p_h, as if their strengths were equal.
+"""
+
+from dataclasses import dataclass
+from typing import Annotated, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import Field, model_validator
+from scipy.interpolate import PchipInterpolator
+
+from verification.case import Strict
+from verification.study.curves import Curve
+
+__all__ = ["MODES", "Criteria", "Judged", "judged"]
+
+Array = NDArray[np.float64]
+
+# What each stress of a study breaks.
+MODES = {
+    "sigma_xx_surface": "the coating cracks at its surface",
+    "sigma_xx_base": "the coating cracks at its base",
+    "sigma_xx_substrate": "the substrate cracks under the coating",
+    "sigma_xz_interface": "the coating shears off",
+    "sigma_zz_interface": "the coating lifts off",
+    "von_mises_coating": "the coating yields",
+    "von_mises_substrate": "the substrate yields",
+}
+Mode = Literal[
+    "sigma_xx_surface",
+    "sigma_xx_base",
+    "sigma_xx_substrate",
+    "sigma_xz_interface",
+    "sigma_zz_interface",
+    "von_mises_coating",
+    "von_mises_substrate",
+]
+PLACES = 4001  # on which a curve is read between its points
+
+
+class Criteria(Strict):
+    """The table ``[criteria]`` of a study file.
+
+    strength : what each stress must stay below [Pa].   safety : factor on every stress.
+    minimise : without strengths, the stresses whose largest is to be smallest.
+    """
+
+    strength: Annotated[dict[Mode, Annotated[float, Field(gt=0)]], Field(min_length=1)] | None = None
+    safety: Annotated[float, Field(ge=1, le=100)] = 1.0
+    minimise: Annotated[list[Mode], Field(min_length=1)] | None = None
+
+    @model_validator(mode="after")
+    def _one(self) -> "Criteria":
+        if self.strength is not None and self.minimise is not None:
+            raise ValueError("takes strength or minimise, not both")
+        return self
+
+    def strengths(self, p_h: float) -> dict[str, float]:
+        """Strength [Pa] of every mode that is judged; ``p_h`` [Pa] for all where none is given."""
+        if self.strength is not None:
+            return {mode: self.strength[mode] for mode in MODES if mode in self.strength}
+        chosen = self.minimise or ["sigma_xx_surface", "sigma_xx_base", "sigma_xz_interface"]
+        return {mode: p_h for mode in MODES if mode in chosen}
+
+    def sentence(self) -> str:
+        """The criterion in words."""
+        if self.strength is None:
+            names = ", ".join(self.strengths(1.0))
+            return (
+                f"No strengths are given, so the preferable thickness is where the largest of {names} is "
+                "smallest; [criteria] minimise names other stresses, [criteria] strength gives strengths."
+            )
+        limits = ", ".join(f"{name} {value / 1e6:g} MPa" for name, value in self.strength.items())
+        factor = f", each stress times {self.safety:g}" if self.safety != 1 else ""
+        return f"Every stress must stay below its strength{factor}: {limits}."
+
+
+@dataclass(frozen=True, eq=False)
+class Judged:
+    """What a criterion says of one curve; thicknesses over a_h.
+
+    modes : of those judged.   utilisation : (modes, points of the curve).   limited : strengths were given.
+    h, largest, governing : dense places, the largest utilisation there, the number of its mode.
+    admissible : ranges of h.   preferable : (h, largest utilisation, mode).
+    reading : what reading between the points may be wrong by: largest change of a utilisation, at points
+    left out one by one, as a fraction of the largest utilisation.
+    """
+
+    curve: Curve
+    modes: tuple[str, ...]
+    utilisation: Array
+    limited: bool
+    h: Array
+    largest: Array
+    governing: NDArray[np.int_]
+    admissible: tuple[tuple[float, float], ...]
+    preferable: tuple[float, float, str]
+    reading: float
+
+
+def judged(curve: Curve, criteria: Criteria) -> Judged:
+    """Hold ``curve`` against ``criteria``. Between its points it is read by monotone cubics in log h.
+
+    Raises ValueError for a curve of fewer than two points.
+    """
+    if curve.h.size < 2:
+        raise ValueError(f"{curve.h.size} thickness solved; a criterion needs two, sweep more")
+    strengths = criteria.strengths(curve.p_h)
+    scale = {mode: criteria.safety * curve.p_h / value for mode, value in strengths.items()}
+    used = np.array([scale[mode] * curve.stress[mode] for mode in strengths])
+    sure = np.array(
+        [scale[mode] * (curve.stress[mode] + np.nan_to_num(curve.uncertainty[mode])) for mode in strengths]
+    )
+    s = np.log(curve.h)
+    h = np.geomspace(curve.h[0], curve.h[-1], PLACES)
+    h[0], h[-1] = curve.h[0], curve.h[-1]
+    read = PchipInterpolator(s, used, axis=1)(np.log(h))
+    largest = read.max(axis=0)
+    governing = read.argmax(axis=0)
+    best = int(largest.argmin())
+    modes = tuple(strengths)
+    return Judged(
+        curve,
+        modes,
+        used,
+        criteria.strength is not None,
+        h,
+        largest,
+        governing,
+        _ranges(h, PchipInterpolator(s, sure, axis=1)(np.log(h)).max(axis=0)),
+        (float(h[best]), float(largest[best]), modes[governing[best]]),
+        _reading(s, used),
+    )
+
+
+def _ranges(h: Array, largest: Array) -> tuple[tuple[float, float], ...]:
+    """Where ``largest`` is at most 1, the ends found by straight lines between dense places."""
+    inside = largest <= 1
+    ranges = []
+    starts = np.flatnonzero(inside & ~np.append(False, inside[:-1]))
+    ends = np.flatnonzero(inside & ~np.append(inside[1:], False))
+    for i, j in zip(starts, ends, strict=True):
+        low = h[i] if i == 0 else _crossing(h[i - 1], h[i], largest[i - 1], largest[i])
+        high = h[j] if j == h.size - 1 else _crossing(h[j], h[j + 1], largest[j], largest[j + 1])
+        ranges.append((float(low), float(high)))
+    return tuple(ranges)
+
+
+def _crossing(h0: float, h1: float, u0: float, u1: float) -> float:
+    return h0 + (h1 - h0) * (1 - u0) / (u1 - u0)
+
+
+def _reading(s: Array, used: Array) -> float:
+    """Largest error of reading the curve at an inner point from the others, over the largest utilisation.
+
+    With a point left out its gap is twice as wide, so this is more than the error of the whole curve.
+    """
+    if s.size < 4:
+        return float("nan")
+    worst = 0.0
+    for i in range(1, s.size - 1):
+        others = np.arange(s.size) != i
+        read = PchipInterpolator(s[others], used[:, others], axis=1)(s[i])
+        worst = max(worst, float(np.abs(read - used[:, i]).max()))
+    return worst / float(np.abs(used).max() or 1.0)

@@ -1,0 +1,159 @@
+"""The table of a study as curves over the thickness.
+
+A curve is one modulus with one friction; the other sources' rows are marks beside it.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from verification.study.quantities import QUANTITIES
+from verification.study.table import SCALARS, SOURCES
+
+__all__ = ["Curve", "Difference", "curves", "differences"]
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Curve:
+    """Everything over ``h``, the thickness over a_h, in increasing order; p_h [Pa], a_h and delta_h [m].
+
+    stress, uncertainty : each of QUANTITIES over p_h.   x, z : their places over a_h.
+    scalar : peak_pressure, contact_radius, approach over p_h, a_h, delta_h.
+    marks : by source, by quantity the (h, value) of cross-checked points.
+    failures : (h, sentence) of points that could not be solved.
+    """
+
+    ratio: float
+    friction: float
+    p_h: float
+    a_h: float
+    delta_h: float
+    h: Array
+    stress: Mapping[str, Array]
+    uncertainty: Mapping[str, Array]
+    x: Mapping[str, Array]
+    z: Mapping[str, Array]
+    scalar: Mapping[str, Array]
+    marks: Mapping[str, Mapping[str, tuple[Array, Array]]]
+    failures: tuple[tuple[float, str], ...]
+
+    @property
+    def label(self) -> str:
+        """The curve in a legend."""
+        return f"E1/E2 = {self.ratio:.4g}, f = {self.friction:g}"
+
+    def extremes(self, quantity: str) -> tuple[tuple[float, float], tuple[float, float]]:
+        """(h, value) of the smallest and of the largest value among the solved points."""
+        value = self.stress.get(quantity, self.scalar.get(quantity))
+        assert value is not None
+        low, high = int(value.argmin()), int(value.argmax())
+        return (float(self.h[low]), float(value[low])), (float(self.h[high]), float(value[high]))
+
+
+@dataclass(frozen=True)
+class Difference:
+    """How far ``source`` is from the semi-analytical method in ``quantity`` at its worst point.
+
+    largest : |difference| over p_h, a_h or delta_h.   stated : sum of the uncertainties there, over the same.
+    """
+
+    source: str
+    quantity: str
+    points: int
+    largest: float
+    stated: float
+    ratio: float
+    h: float
+    friction: float
+
+
+def curves(columns: Mapping[str, NDArray[Any]]) -> tuple[Curve, ...]:
+    """Every curve of a table, by modulus, then by friction."""
+    keys = sorted(set(zip(columns["modulus_ratio"].tolist(), columns["friction"].tolist(), strict=True)))
+    return tuple(_curve(columns, *key) for key in keys)
+
+
+def differences(columns: Mapping[str, NDArray[Any]]) -> tuple[Difference, ...]:
+    """The worst difference of each other source, by quantity; a source that solved nothing is absent."""
+    first = {
+        int(p): i
+        for i, (p, source, status) in enumerate(
+            zip(columns["point"], columns["source"], columns["status"], strict=True)
+        )
+        if source == SOURCES[0] and status == "solved"
+    }
+    found = []
+    for source in SOURCES[1:]:
+        here = np.flatnonzero((columns["source"] == source) & (columns["status"] == "solved"))
+        here = np.array([i for i in here if int(columns["point"][i]) in first], dtype=int)
+        if not here.size:
+            continue
+        beside = np.array([first[int(p)] for p in columns["point"][here]])
+        for quantity, scale in [*((q, "p_h") for q in QUANTITIES), *SCALARS.items()]:
+            over = columns[scale][here]
+            gap = np.abs(columns[quantity][here] - columns[quantity][beside]) / over
+            spread = columns[f"{quantity}_uncertainty"]
+            i = int(np.nanargmax(gap))
+            found.append(
+                Difference(
+                    source,
+                    quantity,
+                    here.size,
+                    float(gap[i]),
+                    float((spread[here[i]] + spread[beside[i]]) / over[i]),
+                    float(columns["modulus_ratio"][here[i]]),
+                    float(columns["thickness_over_a_h"][here[i]]),
+                    float(columns["friction"][here[i]]),
+                )
+            )
+    return tuple(found)
+
+
+def _curve(columns: Mapping[str, NDArray[Any]], ratio: float, friction: float) -> Curve:
+    mine = (columns["modulus_ratio"] == ratio) & (columns["friction"] == friction)
+    solved = mine & (columns["status"] == "solved")
+    lead = columns["source"] == SOURCES[0]
+    rows = _by_thickness(columns, solved & lead)
+    some = np.flatnonzero(mine)[0]
+
+    def take(name: str) -> Array:
+        return columns[name][rows].astype(float)
+
+    marks = {}
+    for source in SOURCES[1:]:
+        checked = _by_thickness(columns, solved & (columns["source"] == source))
+        if checked.size:
+            h = columns["thickness_over_a_h"][checked]
+            marks[source] = {
+                **{q: (h, columns[f"{q}_over_p_h"][checked]) for q in QUANTITIES},
+                **{q: (h, columns[f"{q}_over_{scale}"][checked]) for q, scale in SCALARS.items()},
+            }
+    p_h = float(columns["p_h"][some])
+    return Curve(
+        ratio,
+        friction,
+        p_h,
+        float(columns["a_h"][some]),
+        float(columns["delta_h"][some]),
+        take("thickness_over_a_h"),
+        {q: take(f"{q}_over_p_h") for q in QUANTITIES},
+        {q: take(f"{q}_uncertainty") / p_h for q in QUANTITIES},
+        {q: take(f"{q}_x_over_a_h") for q in QUANTITIES},
+        {q: take(f"{q}_z_over_a_h") for q in QUANTITIES},
+        {q: take(f"{q}_over_{scale}") for q, scale in SCALARS.items()},
+        marks,
+        tuple(
+            (float(columns["thickness_over_a_h"][i]), str(columns["failure"][i]))
+            for i in np.flatnonzero(mine & lead & (columns["status"] != "solved"))
+        ),
+    )
+
+
+def _by_thickness(columns: Mapping[str, NDArray[Any]], chosen: NDArray[np.bool_]) -> NDArray[np.int_]:
+    rows = np.flatnonzero(chosen)
+    return rows[np.argsort(columns["thickness_over_a_h"][rows], kind="stable")]

@@ -1,0 +1,136 @@
+"""What the curves of a study say, in sentences made from its numbers."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from verification.study.criteria import MODES, Judged
+from verification.study.curves import Curve, Difference
+from verification.study.table import SCALARS
+
+__all__ = ["agreement_sentences", "curve_sentences", "preference_sentences"]
+
+FLAT = 0.02  # of its own largest value; a curve that changes less does not depend on thickness
+NOWHERE = 1e-3  # of p_h
+QUANTITY = {
+    "sigma_xx_surface": "tensile sigma_xx on the surface",
+    "sigma_xx_base": "tensile sigma_xx at the base of the coating",
+    "sigma_xx_substrate": "tensile sigma_xx at the top of the substrate",
+    "sigma_xz_interface": "shear |sigma_xz| on the interface",
+    "sigma_zz_interface": "tensile sigma_zz on the interface",
+    "von_mises_coating": "von Mises stress of the coating",
+    "von_mises_substrate": "von Mises stress of the substrate",
+}
+
+
+def curve_sentences(curves: Sequence[Curve]) -> list[str]:
+    """A paragraph for each stress: how it runs over the thickness, what stiffness and friction do to it."""
+    return [_stress(quantity, curves) for quantity in MODES]
+
+
+def _stress(quantity: str, curves: Sequence[Curve]) -> str:
+    said = QUANTITY[quantity]
+    largest = max((c.extremes(quantity)[1][1] for c in curves), default=0.0)
+    if largest < NOWHERE:
+        return f"{said[0].upper()}{said[1:]} stays below {NOWHERE:g} p_h everywhere."
+    parts = [f"{said[0].upper()}{said[1:]}."]
+    for friction in sorted({c.friction for c in curves}):
+        group = [c for c in curves if c.friction == friction]
+        clauses = [_course(c, quantity, largest) for c in group]
+        parts.append(f"With f = {friction:g}, {'; '.join(clauses)}.")
+    ratio = _of_friction(quantity, curves)
+    if ratio:
+        parts.append(ratio)
+    return " ".join(parts)
+
+
+def _course(curve: Curve, quantity: str, largest: float) -> str:
+    (h_low, low), (h_high, high) = curve.extremes(quantity)
+    name = f"E1/E2 = {curve.ratio:.3g}"
+    if high < NOWHERE * max(1.0, largest):
+        return f"{name} none"
+    if high - low < FLAT * high:
+        return f"{name} {high:.3f} p_h at every thickness"
+    value = curve.stress[quantity]
+    steps = np.diff(value)
+    if (steps >= 0).all() or (steps <= 0).all():
+        way = "rises" if steps.sum() > 0 else "falls"
+        return f"{name} {way} from {value[0]:.3f} to {value[-1]:.3f} p_h"
+    inner = []
+    if 0 < int(value.argmax()) < value.size - 1:
+        inner.append(f"a maximum of {high:.3f} p_h at h = {h_high:.2g} a_h")
+    if 0 < int(value.argmin()) < value.size - 1:
+        inner.append(f"a minimum of {low:.3f} p_h at h = {h_low:.2g} a_h")
+    if not inner:
+        return f"{name} goes from {value[0]:.3f} to {value[-1]:.3f} p_h, not all one way"
+    return f"{name} has {' and '.join(inner)}"
+
+
+def _of_friction(quantity: str, curves: Sequence[Curve]) -> str:
+    """What the largest friction makes of the largest stress of the frictionless contact."""
+    frictions = sorted({c.friction for c in curves})
+    if len(frictions) < 2:
+        return ""
+    low, high = (
+        max(c.extremes(quantity)[1][1] for c in curves if c.friction == f)
+        for f in (frictions[0], frictions[-1])
+    )
+    if low < NOWHERE:
+        return f"It takes friction: {low:.1e} p_h at most with f = {frictions[0]:g}."
+    return (
+        f"From f = {frictions[0]:g} to {frictions[-1]:g} its largest value over all coatings changes by "
+        f"a factor of {high / low:.2f}."
+    )
+
+
+def preference_sentences(judgements: Sequence[Judged]) -> list[str]:
+    """For each curve the preferable thickness, what governs there, what range is admissible."""
+    found = []
+    for j in judgements:
+        h, use, mode = j.preferable
+        where = f"h = {h:.3g} a_h ({h * j.curve.a_h * 1e6:.3g} µm)"
+        end = _at_end(j, h)
+        said = f"{j.curve.label}: preferable {where}{end}, where {MODES[mode]} first"
+        if j.limited:
+            said += f", at {use:.2f} of the strength in {mode}. "
+            if j.admissible:
+                ranges = " and ".join(_range(j, low, high) for low, high in j.admissible)
+                said += f"Admissible: {ranges}."
+            else:
+                said += "No thickness of the sweep is admissible."
+        else:
+            said += f", with {mode} = {use:.3f} p_h."
+        found.append(said)
+    return found
+
+
+def _at_end(j: Judged, h: float) -> str:
+    if h in (j.h[0], j.h[-1]):
+        side = "thinnest" if h == j.h[0] else "thickest"
+        return f", the {side} of the sweep, so perhaps beyond"
+    return ""
+
+
+def _range(j: Judged, low: float, high: float) -> str:
+    unit = j.curve.a_h * 1e6
+    left = f"{low * unit:.3g}" if low > j.h[0] else f"{low * unit:.3g} (the thinnest of the sweep)"
+    right = f"{high * unit:.3g} µm" if high < j.h[-1] else f"{high * unit:.3g} µm (the thickest of the sweep)"
+    return f"h = {left} to {right}"
+
+
+def agreement_sentences(differences: Sequence[Difference]) -> list[str]:
+    """How far the other sources are from the semi-analytical method over all checked points."""
+    names = {"fem_reference": "finite element model", "integral_equation": "exact reference"}
+    found = []
+    for source in dict.fromkeys(d.source for d in differences):
+        mine = [d for d in differences if d.source == source]
+        stress = max((d for d in mine if d.quantity not in SCALARS), key=lambda d: d.largest)
+        scalar = max((d for d in mine if d.quantity in SCALARS), key=lambda d: d.largest)
+        where = f"E1/E2 = {stress.ratio:.3g}, h = {stress.h:.3g} a_h, f = {stress.friction:g}"
+        found.append(
+            f"{stress.points} points were also solved by the {names[source]}: no stress differs by more than "
+            f"{stress.largest:.1e} p_h ({stress.quantity} at {where}), "
+            f"no scalar of the contact by more than {scalar.largest:.1e} of its scale "
+            f"({scalar.quantity.replace('_', ' ')})."
+        )
+    return found
