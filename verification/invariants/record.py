@@ -33,6 +33,11 @@ class Invariant:
     sentence: str
 
     @property
+    def share(self) -> float | None:
+        """value / bound; beyond 1 the law is broken."""
+        return None if self.value is None or not self.bound else self.value / self.bound
+
+    @property
     def margin(self) -> float | None:
         """bound - value; negative where the law is broken."""
         return None if self.value is None or self.bound is None else self.bound - self.value

@@ -1,4 +1,4 @@
-"""JUnit XML: one test case for each comparison, so that any CI can read a run."""
+"""JUnit XML: one test case for each comparison or invariant, so that any CI can read a run."""
 
 import re
 from collections.abc import Sequence
@@ -49,6 +49,11 @@ def _suite(root: Element, result: CaseResult, info: RunInfo) -> None:
             f"margin {scientific(verdict.margin, sign=True)}"
         )
         _mark(item, verdict.outcome, verdict.reason, text)
+    for one in result.invariants:
+        name = f"{one.name} of {one.source}"
+        item = SubElement(suite, "testcase", classname=_text(result.name), name=_text(name), time="0")
+        text = f"{one.sentence}\nresidual {scientific(one.value)}, bound {scientific(one.bound)}"
+        _mark(item, one.outcome, one.sentence, text)
     if not result.verdicts:
         # A case that came to nothing must not vanish from the count.
         item = SubElement(suite, "testcase", classname=_text(result.name), name="case", time="0")

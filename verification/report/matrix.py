@@ -1,6 +1,6 @@
 """The verdict matrix: a row for each case, a column for each pair of sources on each group of lines."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 
 from verification.report.cells import Cell, Row, Table
 from verification.report.names import METHODS, OUTCOMES, source_label
@@ -16,12 +16,16 @@ _HEADS = {"interfaces": "inter\u00adfaces"}
 
 
 def verdict_matrix(
-    results: Sequence[CaseResult], anchors: Mapping[int, str], states: Mapping[str, Cell] | None = None
+    results: Sequence[CaseResult],
+    anchors: Mapping[int, str],
+    states: Mapping[str, Cell] | None = None,
+    laws: Callable[[CaseResult, str], Cell] | None = None,
 ) -> Table:
     """Every case at a glance; each cell holds its worst verdict and its largest difference.
 
     anchors : the anchor of each case by its number.
     states : what became of each case since the baseline, by its name; no such column without.
+    laws : the cell of a case's invariants, which leads to the address given; no such column without.
     """
     claims = [claim for result in results for claim, _ in result.verdicts]
     blocks = sorted({_block(claim) for claim in claims})
@@ -33,6 +37,8 @@ def verdict_matrix(
         cells = [outcome_cell(result.outcome, href=f"#{anchor}")]
         if states:
             cells.append(states.get(result.name, Cell("", None, "nothing", "not in the baseline")))
+        if laws:
+            cells.append(laws(result, f"#{anchor}-invariants"))
         for place in columns:
             found = [(c, v) for c, v in result.verdicts if _place(c) == place]
             cells.append(_cell(found, f"#{anchor}-{_target(result, place[1])}"))
@@ -40,15 +46,17 @@ def verdict_matrix(
     spans = [(title, sum(b == (rank, title) for b, _ in columns)) for rank, title in blocks]
     return Table(
         "Largest difference of each pair of sources, as a fraction of the value for p0, a and approach, "
-        "of p_h for stresses. A cell leads to the figures behind it.",
+        "of p_h for stresses. A cell leads to the figures behind it."
+        + (" Numbers since the baseline: = same, ≠ drifted, − gone, + new." if states else ""),
         [
             "case",
             "verdict",
-            *(["baseline"] if states else []),
+            *(["base\u00adline"] if states else []),
+            *(["invari\u00adants"] if laws else []),
             *(_HEADS.get(group, group) for _, group in columns),
         ],
         rows,
-        [("", 3 if states else 2), *spans],
+        [("", 2 + bool(states) + bool(laws)), *spans],
         "matrix",
     )
 

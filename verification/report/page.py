@@ -6,6 +6,7 @@ import shlex
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -22,6 +23,7 @@ from verification.report.convergence import convergence_sections
 from verification.report.csvdata import embedded, line_csv
 from verification.report.cutaway import Cutaway
 from verification.report.family import family_section
+from verification.report.invariants import invariant_cell, invariant_section, invariant_table
 from verification.report.matrix import verdict_matrix
 from verification.report.names import METHODS, OUTCOMES, OutcomeStyle, source_label
 from verification.report.numbers import engineering, plain, scientific, seconds
@@ -34,6 +36,7 @@ from verification.report.tables import (
     budget_table,
     contact_table,
     diagnostics_table,
+    dominating_knob,
     layer_table,
     time_table,
     verdict_table,
@@ -79,9 +82,11 @@ class CaseView:
     pictures: Pictures | None
     lines: tuple[LineView, ...]
     accuracy: Table | None
+    broken: Table | None
     failing: Table | None
     more: int
     verdicts: Table
+    invariants: Table | None
     budget: Table | None
     diagnostics: Table | None
 
@@ -139,7 +144,12 @@ def _render(
         script_hash=digest,
         summary=_summary(results),
         counts=_counts(results),
-        matrix=verdict_matrix(contacts, contact_anchors, {c.name: state_cell(c) for c in drifts})
+        matrix=verdict_matrix(
+            contacts,
+            contact_anchors,
+            {c.name: state_cell(c, short=True) for c in drifts},
+            invariant_cell if any(result.invariants for result in contacts) else None,
+        )
         if contacts
         else None,
         printed=[published_view(result, anchors[n]) for n, result in enumerate(results) if result.published],
@@ -184,6 +194,8 @@ def _sections(
     ]
     if accuracy:
         sections.append(Section("accuracy", "Accuracy against the exact reference", accuracy))
+    if (laws := invariant_section(found, places)) is not None:
+        sections.append(laws)
     if study is not None:
         sections += convergence_sections(study)
     if results:
@@ -212,6 +224,9 @@ def _summary(results: Sequence[CaseResult]) -> str:
             f"{len(passed)} of {number} agree throughout; of {len(verdicts)} comparisons {agreeing} agree "
             "within their numerical uncertainty"
         )
+    laws = [one for result in results for one in result.invariants]
+    if laws:
+        text += f"; {sum(one.outcome is Outcome.AGREES for one in laws)} of {len(laws)} invariants hold"
     stated = [(v.difference, c, r) for c, v, r in verdicts if v.difference is not None]
     if stated:
         largest, claim, result = max(stated, key=lambda item: item[0])
@@ -224,13 +239,14 @@ def _summary(results: Sequence[CaseResult]) -> str:
 def _case(result: CaseResult, anchor: str, plane: Plane | None, cutaway: Cutaway | None) -> CaseView:
     style = OUTCOMES[result.outcome]
     bad = [item for item in result.verdicts if item[1].outcome is not Outcome.AGREES]
+    broken = [one for one in result.invariants if one.outcome is not Outcome.AGREES]
     file = slug(result.name)
     a_h = scale(result, "a_h")
     return CaseView(
         anchor=anchor,
         result=result,
         outcome=style,
-        sentence=_case_sentence(result, len(bad)),
+        sentence=_case_sentence(result, len(bad), len(broken)),
         command=f"coatcheck run {shlex.quote(result.name)}",
         facts=_facts(result),
         sketch=sketch(result),
@@ -243,9 +259,11 @@ def _case(result: CaseResult, anchor: str, plane: Plane | None, cutaway: Cutaway
         pictures=pictures(result, plane),
         lines=tuple(_line(result, line, anchor, file) for line in lines(result)),
         accuracy=accuracy_table(result),
+        broken=invariant_table(broken),
         failing=verdict_table(bad, a_h, MOST_FAILING) if bad else None,
         more=max(len(bad) - MOST_FAILING, 0),
-        verdicts=verdict_table(result.verdicts, a_h),
+        verdicts=verdict_table(result.verdicts, a_h, knob=partial(dominating_knob, result)),
+        invariants=invariant_table(result.invariants),
         budget=budget_table(result),
         diagnostics=diagnostics_table(result),
     )
@@ -262,13 +280,14 @@ def _line(result: CaseResult, line: str, anchor: str, file: str) -> LineView:
     )
 
 
-def _case_sentence(result: CaseResult, bad: int) -> str:
-    total = len(result.verdicts)
+def _case_sentence(result: CaseResult, bad: int, broken: int) -> str:
+    total, laws = len(result.verdicts), len(result.invariants)
     if not total:
         return "Nothing could be compared."
-    if not bad:
-        return f"All {total} comparisons agree."
-    return f"{bad} of {total} comparisons do not agree."
+    text = f"{bad} of {total} comparisons do not agree" if bad else f"All {total} comparisons agree"
+    if laws:
+        text += f", {broken} of {laws} invariants do not hold" if broken else f", all {laws} invariants hold"
+    return text + "."
 
 
 def _facts(result: CaseResult) -> tuple[tuple[str, str], ...]:

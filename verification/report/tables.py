@@ -1,8 +1,10 @@
 """The tables of one case: contact, verdicts, uncertainty budget, run times."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from math import isfinite
 from typing import Any
+
+import numpy as np
 
 from verification.profile import SCALARS
 from verification.report.cells import Cell, Row, Table
@@ -17,6 +19,7 @@ __all__ = [
     "budget_table",
     "contact_table",
     "diagnostics_table",
+    "dominating_knob",
     "layer_table",
     "time_table",
     "verdict_table",
@@ -94,8 +97,16 @@ def _spread_note(spread: float | None) -> str:
     return "uncertainty not stated" if spread is None else "exact"
 
 
-def verdict_table(verdicts: Sequence[tuple[Claim, Verdict]], a_h: float, most: int | None = None) -> Table:
-    """The comparisons, the worst first; ``most`` keeps as many of them."""
+def verdict_table(
+    verdicts: Sequence[tuple[Claim, Verdict]],
+    a_h: float,
+    most: int | None = None,
+    knob: Callable[[Claim, Verdict], str] | None = None,
+) -> Table:
+    """The comparisons, the worst first; ``most`` keeps as many of them.
+
+    knob : what dominates the uncertainty of a comparison, in words; no such column without.
+    """
     rows = []
     for claim, verdict in sorted(verdicts, key=lambda item: _badness(item[1]))[:most]:
         where = ""
@@ -113,16 +124,20 @@ def verdict_table(verdicts: Sequence[tuple[Claim, Verdict]], a_h: float, most: i
                     Cell(scientific(verdict.uncertainty), verdict.uncertainty),
                     Cell(scientific(claim.cap), claim.cap),
                     Cell(scientific(verdict.margin, sign=True), verdict.margin),
+                    *([Cell(knob(claim, verdict))] if knob is not None else []),
                     Cell(where, verdict.worst),
                 ],
                 "" if verdict.outcome is Outcome.AGREES else OUTCOMES[verdict.outcome].css,
             )
         )
+    columns = ["verdict", "quantity", "line", "between", "reason", "max |A − B|", "max U", "cap", "margin"]
+    columns += ["U mostly from"] if knob is not None else []
+    said = "the side and the knob that give U its largest part there; " if knob is not None else ""
     return Table(
         "Largest difference and largest uncertainty U = U_A + U_B over the judged points, the cap on U, the "
-        "smallest margin U − |A − B|, all as fractions of the value (p0, a, approach) or of p_h; the point "
-        "that decides.",
-        ["verdict", "quantity", "line", "between", "reason", "max |A − B|", "max U", "cap", "margin", "at"],
+        "smallest margin U − |A − B|, all as fractions of the value (p0, a, approach) or of p_h; "
+        f"{said}the point that decides.",
+        [*columns, "at"],
         rows,
         css="verdicts",
     )
@@ -131,6 +146,33 @@ def verdict_table(verdicts: Sequence[tuple[Claim, Verdict]], a_h: float, most: i
 def _badness(verdict: Verdict) -> tuple[int, float]:
     margin = verdict.margin if verdict.margin is not None else 0.0
     return OUTCOMES[verdict.outcome].rank, margin if isfinite(margin) else 0.0
+
+
+def dominating_knob(result: CaseResult, claim: Claim, verdict: Verdict) -> str:
+    """The side of a comparison with the larger uncertainty where it is decided, with its largest knob.
+
+    Stresses and pressures take over what other knobs do to p0 and add their own share of the first, the size
+    of patches or elements: what of U exceeds the others' share of p0 is that knob's.
+    """
+    sides = []
+    for source in claim.between:
+        profile = result.profile(claim.quantity, claim.line, source)
+        if profile is not None and profile.uncertainty is not None and profile.position.size:
+            at = 0 if verdict.worst is None else int(np.argmin(np.abs(profile.position - verdict.worst)))
+            sides.append((float(profile.uncertainty[at]), source))
+    if not sides or not max(sides)[0] > 0:
+        return ""
+    U, source = max(sides)
+    budget = next((s.budget for s in result.sources if s.source == source), ())
+    scalar_claim = any(q == claim.quantity for q, _, _ in budget)
+    quantity = claim.quantity if scalar_claim else "peak_pressure"
+    knobs = [(knob, value) for q, knob, value in budget if q == quantity]
+    if not knobs:
+        return source_label(source)
+    if not scalar_claim:
+        others = sum(value for _, value in knobs[1:])
+        knobs[0] = (knobs[0][0], max(U - others, 0.0))
+    return f"{source_label(source)}: {max(knobs, key=lambda item: item[1])[0]}"
 
 
 def budget_table(result: CaseResult) -> Table | None:
