@@ -26,7 +26,7 @@ def folder(tmp_path_factory):
 
 def test_every_failure_mode_has_its_figure_for_print_with_its_numbers(folder):
     for quantity in QUANTITIES:
-        stem = folder / "figures" / f"stress_{quantity}"
+        stem = folder / "figures" / "study" / f"stress_{quantity}"
         assert stem.with_suffix(".pdf").read_bytes().startswith(b"%PDF")
         with Image.open(stem.with_suffix(".png")) as image:
             assert image.width > 1000
@@ -40,7 +40,7 @@ def test_every_failure_mode_has_its_figure_for_print_with_its_numbers(folder):
             )
             assert float(row[f"{quantity} over its scale"]) == pytest.approx(expected, rel=1e-7)
     for name in ("governing_mode", "use_0_5", "use_2", "contact_approach"):
-        assert (folder / "figures" / f"{name}.pdf").exists()
+        assert (folder / "figures" / "study" / f"{name}.pdf").exists()
 
 
 def test_page_needs_nothing_from_outside_and_names_the_failed_point(folder):
@@ -54,7 +54,7 @@ def test_page_needs_nothing_from_outside_and_names_the_failed_point(folder):
 def test_the_same_table_gives_the_same_figures(folder):
     drawings = [contact_figure(curves(read_columns(folder / "study.parquet"))) for _ in range(2)]
     assert drawings[0] == drawings[1]
-    assert (folder / "figures" / "contact_approach.pdf").read_bytes() == drawings[0][2].pdf
+    assert (folder / "figures" / "study" / "contact_approach.pdf").read_bytes() == drawings[0][2].pdf
 
 
 def test_titles_from_strangers_stay_text(folder):

@@ -8,7 +8,7 @@ from contextlib import contextmanager
 from dataclasses import asdict, replace
 from functools import partial
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import App, Parameter
 from rich.console import Console
@@ -27,10 +27,14 @@ from rich.text import Text
 
 from verification.case import CaseError
 from verification.commands.common import EXIT, complain
+from verification.schedule import cores
 from verification.store import StoreError
 from verification.study.plan import Study, read_study_file, shipped_studies
-from verification.surroundings import missing_libraries
+from verification.surroundings import commit, machine, missing_libraries
 from verification.verdict import Outcome
+
+if TYPE_CHECKING:
+    from verification.study.engine import Outcome as StudyOutcome
 
 __all__ = ["study", "thickness"]
 
@@ -50,6 +54,7 @@ def thickness(
     scheduler: str | None = None,
     limit: int | None = None,
     cross_check: bool = True,
+    figures: bool = True,
     quiet: Annotated[bool, Parameter(name=["--quiet", "-q"], negative="")] = False,
     as_json: Annotated[bool, Parameter(name="--json", negative="")] = False,
 ) -> int:
@@ -76,6 +81,8 @@ def thickness(
         Only the first so many points.
     cross_check
         Solve every k-th point by finite elements and by the exact reference too.
+    figures
+        Draw the table: PLAN.html, and figures/PLAN for print.
     quiet
         Print nothing but complaints.
     as_json
@@ -100,6 +107,7 @@ def thickness(
     try:
         with _bars(silent) as report:
             came = run_study(chosen, output, partial(connected, scheduler, jobs), limit=limit, report=report)
+        page = _page(chosen, came, time.perf_counter() - begin) if figures else None
     except (StoreError, SchedulerError) as error:
         return complain(str(error))
     except KeyboardInterrupt:
@@ -112,16 +120,30 @@ def thickness(
         complain(f"{sentence.split(';')[0]}; solved again")
     if as_json:
         content = asdict(came) | {"table": str(came.table), "lost": len(came.lost)}
+        content["page"] = None if page is None else str(page)
         sys.stdout.write(json.dumps(content, indent=2) + "\n")
     elif not quiet:
         seconds = time.perf_counter() - begin
         Console().print(
             f"{came.points} points in {seconds:.0f} s: {came.done} solves done, {came.kept} found in the "
-            f"cache, {came.failed} of {came.rows} rows failed; table: {came.table}",
+            f"cache, {came.failed} of {came.rows} rows failed; table: {came.table}"
+            + ("" if page is None else f"; page: {page}"),
             highlight=False,
             soft_wrap=True,
         )
     return EXIT[Outcome.NO_RESULT] if came.failed else EXIT[Outcome.AGREES]
+
+
+def _page(chosen: Study, came: "StudyOutcome", seconds: float) -> Path:
+    from verification.study.page import write_study_report
+
+    facts = [
+        ("solves", f"{came.done} done, {came.kept} from the cache"),
+        ("duration", f"{seconds:.0f} s"),
+        ("commit", commit() or "not in a repository"),
+        ("machine", f"{machine()}, {cores()} cores"),
+    ]
+    return write_study_report(came.table, chosen, came.table.parent, facts)
 
 
 def _choose(plan: str) -> Study:

@@ -36,7 +36,7 @@ CONTOURS = (0.1, 0.5, 2.0)  # h/a_h; the solved ones nearest to these
 def write_study_report(
     table: Path, study: Study, folder: Path, facts: Sequence[tuple[str, str]] = (), *, maps: bool = True
 ) -> Path:
-    """Draw the ``table`` of ``study``: study.html, figures/NAME.pdf, .png, .csv under ``folder``.
+    """Draw the ``table`` of ``study``: NAME.html, figures/NAME/*.pdf, .png, .csv under ``folder``.
 
     facts : more (name, value) pairs for the head of the page.   maps : solve for contour maps too.
     Returns the page. Raises StoreError where the table cannot be read or the folder not written.
@@ -60,7 +60,7 @@ def write_study_report(
             groups.insert(3, ("contours", "In the x-z plane", drawn))
     for _, _, drawings in groups:
         for drawing in drawings:
-            write_drawn(drawing, folder / "figures")
+            write_drawn(drawing, folder / "figures" / study.name)
     sections = [
         _summary(found, judgements, checks),
         _preference(study, judgements),
@@ -184,7 +184,7 @@ def _drawn_section(anchor: str, title: str, drawings: Sequence[Drawn]) -> Sectio
         )
         for d in drawings
     ]
-    text = "Also in figures/ as PDF for print: " + ", ".join(f"{d.name}.pdf" for d in drawings) + "."
+    text = "For print, in figures/: " + ", ".join(f"{d.name}.pdf" for d in drawings) + "."
     return Section(anchor, title, [Part("", gallery=Gallery([], panels, text))])
 
 
