@@ -31,7 +31,6 @@ from verification.commands.common import (
     one_line,
 )
 from verification.commands.solving import kept_results, kept_study, solve
-from verification.plane import read_planes
 from verification.printed import PublishedCase, is_published, published_cases, read_published
 from verification.result import CaseResult, RunInfo
 from verification.schedule import Task, case_task, cores, kept_result, published_task
@@ -109,10 +108,7 @@ def run(
 
     from verification import accuracy_study  # SciPy and matplotlib take a second to load
     from verification.accuracy_study import AccuracyStudy
-    from verification.credibility import gather
-    from verification.report import write_report
-    from verification.report.credibility import credibility_section
-    from verification.report.self_tests import self_test_section
+    from verification.commands.writing import write
 
     tests = self_tests()
     for test in tests:
@@ -142,18 +138,7 @@ def run(
                 versions=versions(),
             )
             beside = regression(ordered, known, str(baseline), info, whole=not cases)
-            planes = read_planes(output, ordered)
-            try:
-                extra = [
-                    self_test_section(tests),
-                    credibility_section(ordered, info, study, gather(records), beside),
-                ]
-                page = write_report(ordered, output, info, study, extra, planes, beside)
-            except OSError as error:
-                said = error.strerror or error
-                raise StoreError(
-                    f"{output}: the report cannot be written ({said}); free space, then go on with --resume"
-                ) from None
+            page = write(ordered, output, info, study, beside, records, tests)
     except StoreError as error:
         return complain(str(error))
     except KeyboardInterrupt:

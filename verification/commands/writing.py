@@ -1,0 +1,43 @@
+"""The report of results, however they came about, with all that stands beside them."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from verification.accuracy_study import AccuracyStudy
+from verification.baseline import Regression
+from verification.credibility import gather
+from verification.plane import read_planes
+from verification.report import write_report
+from verification.report.credibility import credibility_section
+from verification.report.self_tests import self_test_section
+from verification.result import CaseResult, RunInfo
+from verification.self_test import SelfTest
+from verification.store import StoreError
+
+__all__ = ["write"]
+
+
+def write(
+    results: Sequence[CaseResult],
+    folder: Path,
+    info: RunInfo,
+    study: AccuracyStudy | None,
+    beside: Regression,
+    records: Path,
+    tests: Sequence[SelfTest],
+) -> Path:
+    """Write the report of ``results`` into ``folder``, where their planes lie; returns the path of the page.
+
+    records : directory of what is known of the method's credibility.   Raises StoreError.
+    """
+    extra = [
+        self_test_section(tests),
+        credibility_section(results, info, study, gather(records), beside),
+    ]
+    try:
+        return write_report(results, folder, info, study, extra, read_planes(folder, results), beside)
+    except OSError as error:
+        said = error.strerror or error
+        raise StoreError(
+            f"{folder}: the report cannot be written ({said}); free space, then go on with --resume"
+        ) from None
