@@ -14,7 +14,7 @@ from verification.problem import CoatedContact, PrescribedLoad, Solution
 __all__ = ["eased", "towards_limits"]
 
 Array = NDArray[np.float64]
-Problem = TypeVar("Problem", CoatedContact, PrescribedLoad)
+Problem = TypeVar("Problem", bound=CoatedContact | PrescribedLoad)
 Solver = Callable[[CoatedContact | PrescribedLoad], Solution]
 STEP = 1e-3  # of Poisson's ratio
 STIFFEST = 1e4  # base over softest coating

@@ -17,7 +17,7 @@ from verification.limits import eased
 from verification.problem import CoatedContact, Solution
 from verification.references.flat_punch import Pressed, pressed
 
-__all__ = ["CONTROLS", "CURVES", "Loading", "LoadingCurve", "exact_loading", "loading"]
+__all__ = ["CONTROLS", "CURVES", "PUNCH", "Loading", "LoadingCurve", "exact_loading", "loading"]
 
 Array = NDArray[np.float64]
 Coatings = tuple[tuple[float, float, float], ...]
@@ -26,6 +26,7 @@ CONTROLS = ("contact_radius", "approach")
 # What may be printed over the control: W, delta, a, kappa = dW/d delta / 2 a E1*, and the ratio of a power
 # series to W or to kappa (see ``Loading.quantity``).
 CURVES = ("load", "approach", "contact_radius", "kappa", "series_over_load", "series_over_kappa")
+PUNCH = ("kappa", "series_over_kappa")  # of these, what needs S
 # Step in log W of a difference quotient: rounding and uncertainty of the approach ask for a longer one, the
 # bend of the curve for a shorter one. At 1 % both leave some 1e-5.
 STEP = 0.01
@@ -33,9 +34,10 @@ STEP = 0.01
 
 @dataclass(frozen=True)
 class LoadingCurve:
-    """Rigid sphere of ``radius`` [m], pressed until its ``control``, contact_radius or approach, is ``at`` [m].
+    """Rigid sphere of ``radius`` [m], pressed until ``control``, contact_radius or approach, is ``at`` [m].
 
-    coatings, substrate as in CoatedContact. Raises ValueError with one sentence.
+    coatings, substrate as in CoatedContact.   punch : its stiffness is asked for.
+    Raises ValueError with one sentence.
     """
 
     radius: float
@@ -43,6 +45,7 @@ class LoadingCurve:
     at: tuple[float, ...]
     coatings: Coatings
     substrate: tuple[float, float]
+    punch: bool = True
 
     def __post_init__(self) -> None:
         if self.control not in CONTROLS or not self.at or not min(self.at) > 0:
@@ -138,12 +141,12 @@ class Loading:
 
 
 def loading(
-    problem: LoadingCurve, solve: Callable[[CoatedContact], Solution], *, stiffness: bool, limits: bool
+    problem: LoadingCurve, solve: Callable[[CoatedContact], Solution], *, limits: bool = False
 ) -> Loading:
-    """The curve by a solver of one contact under a load.
+    """The curve by a solver of one contact under a load; S from three loads where its solution states none.
 
-    stiffness : S is wanted; from three loads where the solution does not state it.   limits : carry nu = 1/2
-    and a base as good as rigid on from what the solver can have, as ``limits.towards_limits`` does.
+    limits : carry nu = 1/2 and a base as good as rigid on from what the solver can have, as
+    ``limits.towards_limits`` does.
     """
     found, count = [], 0
 
@@ -151,7 +154,7 @@ def loading(
         nonlocal count
         count += 1
         one = solve(contact)
-        if stiffness and getattr(one, "stiffness", None) is None:
+        if problem.punch and getattr(one, "stiffness", None) is None:
             count += 2
             return _three(contact, one, solve)
         return _one(contact, one)

@@ -4,7 +4,7 @@ The problem stands in the units of the source and is converted here, at the bord
 become Profiles with the reading uncertainty of the source, so that no comparison asks where they came from.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from verification.case import METHODS, CaseError, load_toml, read_bounded, read_toml
+from verification.loading import CONTROLS, CURVES, PUNCH, LoadingCurve
 from verification.printed_file import (
     PrintedAt,
     PrintedColumn,
@@ -22,7 +23,7 @@ from verification.printed_file import (
 )
 from verification.problem import CoatedContact, PrescribedLoad
 from verification.profile import Profile
-from verification.quantity import QUANTITIES, SCALAR, Points
+from verification.quantity import EXTREMES, QUANTITIES, SCALAR, Points
 from verification.references.published import (
     FOLDER,
     UNITS,
@@ -34,7 +35,9 @@ from verification.verdict import Claim
 
 __all__ = [
     "PRINTED",
+    "REFERENCE",
     "Printed",
+    "Problem",
     "PublishedCase",
     "is_published",
     "parse_published",
@@ -45,6 +48,8 @@ __all__ = [
 Array = NDArray[np.float64]
 
 PRINTED = "published"  # the source of the profiles made from a table
+REFERENCE = "integral_equation"  # the exact answer to spheres and to discs
+Problem = CoatedContact | PrescribedLoad | LoadingCurve
 # Largest admissible uncertainty of a method, as on the lines of every other case; what the source itself
 # leaves unknown comes on top.
 CAP = 5e-3
@@ -56,8 +61,8 @@ class Printed:
 
     profile : in SI, tension positive, with the reading uncertainty.   at : the points of its values.
     rows : their lines in ``file``, with their ``labels``.   text : the cells as printed, in ``unit``.
-    to_si : SI value of a printed 1, its sign included.   counted : False for a row marked as a misprint.
-    scale : what differences are divided by [SI].
+    to_si : SI value of a printed 1, its sign included.   why_not : why a row does not count, or "".
+    scale : what differences are divided by [SI].   series : coefficients that the quantity speaks of.
     """
 
     profile: Profile
@@ -69,8 +74,14 @@ class Printed:
     labels: tuple[str, ...]
     unit: str
     to_si: float
-    counted: NDArray[np.bool_]
+    why_not: tuple[str, ...]
     scale: float
+    series: tuple[float, ...] = ()
+
+    @property
+    def counted(self) -> NDArray[np.bool_]:
+        """True for the rows that count."""
+        return np.array([not why for why in self.why_not])
 
 
 @dataclass(frozen=True)
@@ -83,7 +94,7 @@ class PublishedCase:
 
     name: str
     title: str
-    problem: CoatedContact | PrescribedLoad
+    problem: Problem
     claims: tuple[Claim, ...]
     printed: tuple[Printed, ...]
     citation: dict[str, Any]
@@ -122,6 +133,7 @@ def parse_published(raw: bytes, path: Path) -> PublishedCase:
             notes.append(content.notes)
             texts.append(f"# {table.file}\n{content.raw}")
             printed += _printed(table, content, units, problem, f"table.{i}")
+        problem = _with_points(problem, printed)
     except PublishedError as error:
         raise CaseError(str(error)) from None
     except (ValueError, OverflowError, ZeroDivisionError) as error:
@@ -130,7 +142,13 @@ def parse_published(raw: bytes, path: Path) -> PublishedCase:
         name=path.stem,
         title=checked.title,
         problem=problem,
-        claims=tuple(_claim(item, method) for item in printed if item.counted.any() for method in METHODS),
+        claims=tuple(
+            _claim(item, source)
+            for item in printed
+            if item.counted.any()
+            for source in (*METHODS, REFERENCE)
+            if source in METHODS or _speaks(problem, item.profile.quantity)
+        ),
         printed=tuple(printed),
         citation={
             "year": checked.year,
@@ -146,7 +164,28 @@ def parse_published(raw: bytes, path: Path) -> PublishedCase:
     )
 
 
-def _problem(p: PrintedProblem) -> CoatedContact | PrescribedLoad:
+def _speaks(problem: Problem, quantity: str) -> bool:
+    """True where the exact reference answers: no displacement under a contact, no sliding disc."""
+    if isinstance(problem, PrescribedLoad):
+        return not problem.friction
+    return QUANTITIES[quantity] != "displacement"
+
+
+def _with_points(problem: Problem, printed: list[Printed]) -> Problem:
+    """A loading curve with the points that its tables ask for."""
+    if not isinstance(problem, LoadingCurve):
+        return problem
+    controls = {item.at.control for item in printed}
+    if len(controls) > 1 or "" in controls:
+        raise ValueError(
+            f"at: one of {', '.join(CONTROLS)} has to say where every value of a loading curve is"
+        )
+    at = sorted({float(x) for item in printed for x in item.at.along})
+    punch = any(item.profile.quantity in PUNCH for item in printed)
+    return replace(problem, control=controls.pop(), at=tuple(at), punch=punch)
+
+
+def _problem(p: PrintedProblem) -> Problem:
     length, stress, force = (
         _unit(value, UNITS, f"problem.{key}")
         for key, value in (
@@ -160,6 +199,9 @@ def _problem(p: PrintedProblem) -> CoatedContact | PrescribedLoad:
         bare = CoatedContact(p.radius * length, p.load * force, (), substrate, p.friction)
         coatings = tuple((c.E * stress, c.nu, _thickness(c, length, bare.a_h)) for c in p.coatings)
         return CoatedContact(bare.radius, bare.load, coatings, substrate, p.friction)
+    if p.radius is not None:
+        coatings = tuple((c.E * stress, c.nu, _thickness(c, length, None)) for c in p.coatings)
+        return LoadingCurve(p.radius * length, CONTROLS[0], (1.0,), coatings, substrate)
     assert p.pressure is not None
     assert p.load_radius is not None
     coatings = tuple((c.E * stress, c.nu, _thickness(c, length, None)) for c in p.coatings)
@@ -174,8 +216,11 @@ def _thickness(c: PrintedLayer, length: float, a_h: float | None) -> float:
     return c.thickness_over_a_h * a_h
 
 
-def _units(problem: CoatedContact | PrescribedLoad) -> dict[str, float]:
+def _units(problem: Problem) -> dict[str, float]:
     """The units a table of this problem may be printed in: those of UNITS and its own scales."""
+    if isinstance(problem, LoadingCurve):
+        h, R = problem.coatings[0][2] if problem.coatings else float("inf"), problem.radius
+        return UNITS | {"R": R, "h": h, "h^2/R": h**2 / R, "E* h^3/R": problem.E_star * h**3 / R}
     if isinstance(problem, PrescribedLoad):
         return UNITS | {"q": problem.pressure, "a": problem.load_radius}
     return UNITS | {"a_h": problem.a_h, "p_h": problem.p_h, "delta_h": problem.delta_h}
@@ -191,7 +236,7 @@ def _printed(
     table: PrintedTable,
     content: PublishedTable,
     units: dict[str, float],
-    problem: CoatedContact | PrescribedLoad,
+    problem: Problem,
     key: str,
 ) -> list[Printed]:
     content = content.where(table.rows) if table.rows else content
@@ -203,8 +248,13 @@ def _printed(
             raise PublishedError(
                 f"{here}: quantity {column.quantity!r} is unknown; known are {', '.join(QUANTITIES)}"
             )
+        if (column.quantity in CURVES) != isinstance(problem, LoadingCurve) and column.quantity not in SCALAR:
+            raise PublishedError(
+                f"{here}: quantity {column.quantity!r} does not go with this problem; {', '.join(CURVES)} "
+                "belong to a sphere without a load, all others to a load"
+            )
         at = column.at or table.at
-        if at is None and column.quantity not in SCALAR:
+        if at is None and column.quantity not in SCALAR + EXTREMES:
             raise ValueError(f"{key}.column.{i}: says nowhere where its values are; give at")
         try:
             to_si = column.factor * _unit(column.unit, units, here)
@@ -212,7 +262,8 @@ def _printed(
             raise PublishedError(str(error)) from None
         points = _points(at, content, units, problem, here)
         value = np.array(content.numbers(column.name)) * to_si
-        counted = _counted(table, content, column.name)
+        why_not = _why_not(table, content, column.name)
+        counted = np.array([not why for why in why_not])
         spread = _uncertainty(column, content, counted) * abs(to_si)
         scale = _scale(column, table, content, units, problem)
         for name, rows in points.lines():
@@ -230,8 +281,9 @@ def _printed(
                     tuple(labels[n] for n in rows),
                     column.unit,
                     to_si,
-                    counted[rows],
+                    tuple(column.not_counted or why_not[n] for n in rows),
                     scale,
+                    tuple(column.series),
                 )
             )
     return found
@@ -241,33 +293,40 @@ def _points(
     at: PrintedAt | None,
     content: PublishedTable,
     units: dict[str, float],
-    problem: CoatedContact | PrescribedLoad,
+    problem: Problem,
     where: str,
 ) -> Points:
     n = len(content.rows)
     if at is None:
         return Points.origin(n)
-    x, y, z = (
-        np.array(content.numbers(v)) if isinstance(v, str) else np.full(n, v) for v in (at.x, at.y, at.z)
-    )
+
+    def numbers(given: str | float) -> Array:
+        return np.array(content.numbers(given)) if isinstance(given, str) else np.full(n, given)
+
+    x, y, z = (numbers(v) for v in (at.x, at.y, at.z))
     try:
         unit = _unit(at.unit, units, "at")
+        if isinstance(problem, LoadingCurve):
+            for control in CONTROLS:
+                if (given := getattr(at, control)) is not None:
+                    return Points.on_curve(control, numbers(given) * unit, at.unit, unit)
+            raise ValueError(f"at: give {' or '.join(CONTROLS)}, for the sphere has no load")
         return Points.of(x * unit, y * unit, z * unit, problem.coatings, at.layer, at.unit, unit)
     except ValueError as error:
         raise PublishedError(f"{where}: {error}") from None
 
 
-def _counted(table: PrintedTable, content: PublishedTable, column: str) -> NDArray[np.bool_]:
-    """False where the row is flagged, or the cell named, as a misprint."""
-    counted = np.ones(len(content.rows), dtype=bool)
+def _why_not(table: PrintedTable, content: PublishedTable, column: str) -> list[str]:
+    """Why a row does not count: it is flagged, or the cell named, as a misprint; "" for one that counts."""
+    why = [""] * len(content.rows)
     if table.flag is not None:
-        counted &= np.array([not cell for cell in content.text(table.flag)])
+        why = ["misprint" if cell else "" for cell in content.text(table.flag)]
     for misprint in table.misprint:
         content.text(misprint.column)
         named = content.where(misprint.row).lines
         if misprint.column == column:
-            counted &= np.array([line not in named for line in content.lines])
-    return counted
+            why = [misprint.why if line in named else w for line, w in zip(content.lines, why, strict=True)]
+    return why
 
 
 def _uncertainty(column: PrintedColumn, content: PublishedTable, counted: NDArray[np.bool_]) -> Array:
@@ -276,6 +335,8 @@ def _uncertainty(column: PrintedColumn, content: PublishedTable, counted: NDArra
     Stated by the file; or half the last digit with the error of the program that printed it; or, where
     several programs speak row by row, with all that they differ by.
     """
+    if column.relative is not None:
+        return column.relative * np.abs(content.numbers(column.name))
     if isinstance(column.uncertainty, float):
         return np.full(len(content.rows), column.uncertainty)
     rounding = np.array(content.half_digits(column.name, column.significant))
@@ -289,25 +350,26 @@ def _scale(
     table: PrintedTable,
     content: PublishedTable,
     units: dict[str, float],
-    problem: CoatedContact | PrescribedLoad,
+    problem: Problem,
 ) -> float:
     """Stresses over the pressure; displacements and strains over the largest of their kind in the table."""
     kind = QUANTITIES[column.quantity]
-    if kind == "stress":
+    if kind in ("stress", "pressure") and not isinstance(problem, LoadingCurve):
         return problem.pressure if isinstance(problem, PrescribedLoad) else problem.p_h
     alike = [c for c in table.column if QUANTITIES.get(c.quantity) == kind and c.unit in units]
-    if kind == "scalar":
+    if kind in ("scalar", "curve"):
         alike = [column]
     largest = 0.0
     for c in alike:
-        printed = np.abs(content.numbers(c.name))[_counted(table, content, c.name)]
+        counted = np.array([not why for why in _why_not(table, content, c.name)])
+        printed = np.abs(content.numbers(c.name))[counted]
         largest = max(largest, float(printed.max(initial=0.0) * abs(c.factor) * units[c.unit]))
     return largest
 
 
-def _claim(item: Printed, method: str) -> Claim:
+def _claim(item: Printed, source: str) -> Claim:
     spread = item.profile.uncertainty
     assert spread is not None
     cap = CAP + float(spread[item.counted].max()) / item.scale if item.scale else CAP
     why = f"printed in column {item.column} of {item.file}"
-    return Claim(item.profile.quantity, item.profile.line, (method, PRINTED), cap, why)
+    return Claim(item.profile.quantity, item.profile.line, (source, PRINTED), cap, why)

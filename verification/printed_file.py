@@ -24,7 +24,10 @@ class PrintedLayer(Strict):
 
 
 class PrintedProblem(Strict):
-    """A uniform disc or a sphere on a layered solid, in the units of the source."""
+    """A uniform disc or a sphere on a layered solid, in the units of the source.
+
+    A sphere without a load is pressed deeper and deeper, to where the tables say.
+    """
 
     length_unit: Text
     stress_unit: Text
@@ -41,17 +44,27 @@ class PrintedProblem(Strict):
     def _disc_or_sphere(self) -> "PrintedProblem":
         disc = (self.pressure is not None) + (self.load_radius is not None)
         sphere = (self.radius is not None) + (self.load is not None)
-        if (disc, sphere) not in ((2, 0), (0, 2)):
-            raise ValueError("needs pressure and load_radius (a uniform disc), or radius and load (a sphere)")
+        if (disc, sphere) not in ((2, 0), (0, 2)) and not (disc == 0 and self.load is None and self.radius):
+            raise ValueError(
+                "needs pressure and load_radius (a uniform disc), radius and load (a sphere), or radius "
+                "alone (a sphere pressed deeper and deeper)"
+            )
+        if self.load is None and self.friction and disc == 0:
+            raise ValueError("friction belongs to a disc, or to a sphere under a load")
         return self
 
 
 class PrintedAt(Strict):
-    """Where values are: numbers or names of columns, in ``unit``; ``layer`` picks a side of an interface."""
+    """Where values are: numbers or names of columns, in ``unit``; ``layer`` picks a side of an interface.
+
+    contact_radius, approach : of a sphere pressed deeper and deeper, one of them in place of x, y, z.
+    """
 
     x: str | float = 0.0
     y: str | float = 0.0
     z: str | float = 0.0
+    contact_radius: str | float | None = None
+    approach: str | float | None = None
     unit: Text
     layer: Annotated[int, Field(ge=0)] | None = None
 
@@ -61,6 +74,9 @@ class PrintedColumn(Strict):
 
     uncertainty : reading uncertainty in that unit, or "spread" of the rows; otherwise half of the last digit,
     of so many ``significant`` ones, with ``program_error`` on top.
+    relative : reading uncertainty as a fraction of each value, instead.
+    not_counted : why the column is shown but held against nobody.
+    series : coefficients c1, c2, .. of a power series whose ratio to the exact answer is printed.
     """
 
     name: Text
@@ -71,10 +87,13 @@ class PrintedColumn(Strict):
     uncertainty: Positive | Literal["spread"] | None = None
     significant: Annotated[int, Field(ge=1, le=16)] | None = None
     program_error: Annotated[float, Field(ge=0)] = 0.0
+    relative: Positive | None = None
+    not_counted: Text | None = None
+    series: Annotated[list[float], Field(default_factory=list, max_length=20)]
 
 
 class PrintedMisprint(Strict):
-    """Cells known to be wrong: shown, never counted."""
+    """Cells known to be wrong, ``why`` in a few words: shown, never counted."""
 
     row: Cells
     column: Text

@@ -1,47 +1,70 @@
-"""One published case from its problem to its verdicts, both methods held against what was printed."""
+"""One published case from its problem to its verdicts: methods, exact reference and what was printed."""
 
 import time
 from collections.abc import Callable, Mapping
-from dataclasses import fields, replace
+from dataclasses import asdict, fields, replace
+from functools import partial
 from typing import Any
 
+from verification.case import METHODS
 from verification.limits import towards_limits
-from verification.printed import PRINTED, Printed, PublishedCase
+from verification.loading import Loading, LoadingCurve, exact_loading, loading
+from verification.printed import PRINTED, REFERENCE, Printed, Problem, PublishedCase
 from verification.problem import CoatedContact, PrescribedLoad, Solution
 from verification.profile import Profile
-from verification.quantity import values
+from verification.quantity import POINTWISE, QUANTITIES, values
 from verification.result import CaseResult, SourceResult
 from verification.run import describe, diagnostics_of, sentence
+from verification.tabulated import tabulated
 from verification.verdict import Outcome, Verdict, compare, judge
 
 __all__ = ["Solver", "failed", "run", "solvers"]
 
-Solver = Callable[[CoatedContact | PrescribedLoad], Solution]
+Solver = Callable[[Any], Solution | Loading]
+# Of the elements on a loading curve, which is solved many times over: it leaves 1e-7 of the approach.
+CURVE_SIZE = 0.28
 
 
 def solvers() -> dict[str, Solver]:
-    """Both methods, by name; imported only when a case is run."""
+    """Both methods and the exact reference, by name; imported only when a case is run."""
     import fem_reference
     import semianalytic
+    from verification.references import integral_equation, uniform_disc
 
-    def solver(method: Any) -> Solver:
-        def solve(problem: CoatedContact | PrescribedLoad) -> Solution:
-            if isinstance(problem, PrescribedLoad):
-                return method.solve_prescribed(**_arguments(problem))
-            return method.solve(**_arguments(problem))
+    # What the methods return has the face of a Solution, with float arrays of any width.
+    def semi(problem: Problem) -> Any:
+        if isinstance(problem, LoadingCurve):
+            return loading(problem, semi)
+        if isinstance(problem, PrescribedLoad):
+            return semianalytic.solve_prescribed(**_arguments(problem))
+        return semianalytic.solve(**_arguments(problem))
 
-        return solve
+    def elements(problem: CoatedContact | PrescribedLoad) -> Solution:
+        if isinstance(problem, PrescribedLoad):
+            return fem_reference.solve_prescribed(**_arguments(problem))
+        return fem_reference.solve(**_arguments(problem))
 
-    return {
-        "semianalytic": solver(semianalytic),
-        "fem_reference": lambda problem: towards_limits(problem, solver(fem_reference)),
-    }
+    def finite(problem: Problem) -> Solution | Loading:
+        if isinstance(problem, LoadingCurve):
+            solve = partial(fem_reference.solve, size=CURVE_SIZE)
+            return loading(problem, lambda contact: solve(**_arguments(contact)), limits=True)
+        return towards_limits(problem, elements)
+
+    def exact(problem: Problem) -> Solution | Loading:
+        if isinstance(problem, LoadingCurve):
+            return exact_loading(problem)
+        if isinstance(problem, PrescribedLoad):
+            return uniform_disc.solve_prescribed(**_arguments(problem))
+        return integral_equation.solve(**_arguments(problem))
+
+    return {"semianalytic": semi, "fem_reference": finite, REFERENCE: exact}
 
 
 def run(case: PublishedCase, available: Mapping[str, Solver] | None = None) -> CaseResult:
-    """Solve by both methods, take what was printed at the very points, judge every column on every line.
+    """Solve by every source, take what was printed at the very points, judge every column on every line.
 
-    A method that fails leaves its sentence and NO_RESULT on each of its claims.
+    available : solvers by source; both methods are called to account, the exact reference where it is there.
+    A source that fails leaves its sentence and NO_RESULT on each of its claims.
     """
     started = time.perf_counter()
     available = solvers() if available is None else available
@@ -51,7 +74,15 @@ def run(case: PublishedCase, available: Mapping[str, Solver] | None = None) -> C
         begin = time.perf_counter()
         try:
             solution = solve(case.problem)
-            found = [_profile(solution, source, item, case) for item in case.printed]
+            if not isinstance(solution, Loading):
+                asked_of = [i.at for i in case.printed if QUANTITIES[i.profile.quantity] in POINTWISE]
+                solution = tabulated(solution, asked_of)
+            asked = {(c.quantity, c.line) for c in case.claims if source in c.between}
+            found = [
+                _profile(solution, source, item, case)
+                for item in case.printed
+                if source in METHODS or (item.profile.quantity, item.profile.line) in asked
+            ]
         except Exception as error:  # a failed solve is a row of the report, whatever went wrong
             outcomes[source] = SourceResult(source, time.perf_counter() - begin, sentence(error))
             continue
@@ -62,6 +93,8 @@ def run(case: PublishedCase, available: Mapping[str, Solver] | None = None) -> C
     verdicts = []
     for claim in case.claims:
         source, item = claim.between[0], printed[claim.quantity, claim.line]
+        if source not in available and source not in METHODS:
+            continue
         failure = outcomes[source].failure if source in outcomes else "was not asked"
         if failure is not None:
             verdicts.append((claim, Verdict(Outcome.NO_RESULT, f"{source}: {failure}")))
@@ -93,7 +126,7 @@ def _blank(case: PublishedCase) -> CaseResult:
         name=case.name,
         title=case.title,
         source=case.source,
-        problem=describe(case.problem),
+        problem=asdict(case.problem) if isinstance(case.problem, LoadingCurve) else describe(case.problem),
         sources=(),
         profiles=(),
         verdicts=(),
@@ -119,12 +152,13 @@ def _record(item: Printed) -> dict[str, Any]:
         "unit": item.unit,
         "to_si": item.to_si,
         "counted": item.counted.tolist(),
+        "why_not": item.why_not,
         "scale": item.scale,
     }
 
 
-def _profile(solution: Solution, source: str, item: Printed, case: PublishedCase) -> Profile:
-    value, spread = values(solution, item.profile.quantity, item.at, case.problem)
+def _profile(solution: Solution | Loading, source: str, item: Printed, case: PublishedCase) -> Profile:
+    value, spread = values(solution, item.profile.quantity, item.at, case.problem, item.series)
     return replace(item.profile, value=value, source=source, uncertainty=spread)
 
 

@@ -1,23 +1,29 @@
 """Quantities a source may print, taken from a solution at any points of the solid."""
 
 from dataclasses import dataclass
+from typing import cast
 
 import numpy as np
 from numpy.typing import NDArray
 
+from verification.loading import CURVES, Loading, LoadingCurve
 from verification.problem import CoatedContact, PrescribedLoad, Solution
 from verification.references.hankel import layer_at
 
-__all__ = ["QUANTITIES", "SCALAR", "Points", "values"]
+__all__ = ["EXTREMES", "POINTWISE", "QUANTITIES", "SCALAR", "Points", "values"]
 
 Array = NDArray[np.float64]
 
 SCALAR = ("peak_pressure", "contact_radius", "approach")
 _COMPONENT = {f"{'xyz'[i]}{'xyz'[j]}": (i, j) for i, j in ((0, 0), (1, 1), (2, 2), (1, 2), (0, 2), (0, 1))}
+# On the axis, where both principal shears are equal.
+EXTREMES = ("tau_max", "von_mises_max")
+POINTWISE = ("stress", "strain")  # kinds made of the stress at each point; the pressure aside
 # Every quantity by the kind of number it is.
 QUANTITIES = (
-    {name: "scalar" for name in SCALAR}
-    | {"pressure": "stress", "sigma_kk": "stress", "sigma_zz - sigma_xx": "stress"}
+    {name: "curve" for name in CURVES}
+    | {name: "scalar" for name in SCALAR + EXTREMES}
+    | {"pressure": "pressure", "sigma_kk": "stress", "sigma_zz - sigma_xx": "stress"}
     | {f"sigma_{c}": "stress" for c in _COMPONENT}
     | {f"eps_{c}": "strain" for c in ("xx", "yy", "zz")}
     | {f"u_{c}": "displacement" for c in "xyz"}
@@ -26,7 +32,10 @@ QUANTITIES = (
 
 @dataclass(frozen=True, eq=False)
 class Points:
-    """Points x, y, z [m] in ``layer`` each; ``unit`` and its SI value name lines as the source does."""
+    """Points x, y, z [m] in ``layer`` each; ``unit`` and its SI value name lines as the source does.
+
+    control : of a loading curve, whose values x are.
+    """
 
     x: Array
     y: Array
@@ -34,6 +43,7 @@ class Points:
     layer: NDArray[np.int_]
     unit: str
     in_si: float
+    control: str = ""
 
     @classmethod
     def of(
@@ -55,14 +65,22 @@ class Points:
         zero = np.zeros(count)
         return cls(zero, zero, zero, np.zeros(count, dtype=int), "m", 1.0)
 
+    @classmethod
+    def on_curve(cls, control: str, value: Array, unit: str, in_si: float) -> "Points":
+        """Points of a loading curve, by what controls it [m]."""
+        zero = np.zeros(value.shape)
+        return cls(value, zero, zero, np.zeros(value.shape, dtype=int), unit, in_si, control)
+
     @property
     def along(self) -> Array:
-        """The coordinate that runs: z, or x where all lie at one depth [m]."""
-        return self.x if self._at_one_depth else self.z
+        """The coordinate that runs: z, or x where all lie at one depth, or the control of a curve [m]."""
+        return self.x if self._at_one_depth or self.control else self.z
 
     @property
     def coordinate(self) -> str:
         """The name of ``along``."""
+        if self.control:
+            return {"contact_radius": "a", "approach": "delta"}[self.control]
         return "x" if self._at_one_depth else "z"
 
     @property
@@ -71,6 +89,8 @@ class Points:
 
     def lines(self) -> list[tuple[str, list[int]]]:
         """The points as straight lines, each with its name and the numbers of its points."""
+        if self.control:
+            return [("loading curve", list(range(self.x.size)))]
         if self._at_one_depth and np.ptp(self.y) == 0:
             return [(self._place(("y", self.y), ("z", self.z)), list(range(self.z.size)))]
         lines: dict[tuple[float, float], list[int]] = {}
@@ -83,7 +103,8 @@ class Points:
 
     def part(self, rows: list[int]) -> "Points":
         """Some of the points."""
-        return Points(self.x[rows], self.y[rows], self.z[rows], self.layer[rows], self.unit, self.in_si)
+        x, y, z, layer = self.x[rows], self.y[rows], self.z[rows], self.layer[rows]
+        return Points(x, y, z, layer, self.unit, self.in_si, self.control)
 
     def _place(self, *fixed: tuple[str, Array]) -> str:
         said = [f"{name} = {float(v[0]) / self.in_si:.6g} {self.unit}" for name, v in fixed if v[0] != 0]
@@ -92,15 +113,26 @@ class Points:
 
 
 def values(
-    solution: Solution, quantity: str, at: Points, problem: CoatedContact | PrescribedLoad
+    solution: Solution | Loading,
+    quantity: str,
+    at: Points,
+    problem: CoatedContact | PrescribedLoad | LoadingCurve,
+    series: tuple[float, ...] = (),
 ) -> tuple[Array, Array | None]:
     """``quantity`` [SI, tension positive] of a solution at points, with its uncertainty if one is stated.
 
         eps_ij = [(1 + nu) sigma_ij - nu sigma_kk delta_ij] / E
 
-    A displacement is as uncertain as the one at the origin, where the solution's approach is taken.
+    A displacement is as uncertain as the one at the origin, where the solution's approach is taken, unless
+    the solution says more. series : coefficients, where the quantity asks for some.
     """
+    if isinstance(problem, LoadingCurve):
+        return cast(Loading, solution).quantity(quantity, at.along, series)
+    assert not isinstance(solution, Loading)
     stated = solution.uncertainty
+    if quantity in EXTREMES:
+        top, wide = _extreme(solution, quantity)
+        return np.full(at.x.shape, top), None if wide is None else np.full(at.x.shape, wide)
     if QUANTITIES[quantity] == "scalar":
         value = np.full(at.x.shape, float(getattr(solution, quantity)))
         return value, None if stated is None else np.full(at.x.shape, float(getattr(stated, quantity)))
@@ -108,7 +140,10 @@ def values(
         p = solution.pressure(at.x, at.y)
         return p, None if stated is None else solution.pressure_uncertainty(at.x, at.y)
     if QUANTITIES[quantity] == "displacement":
-        u = solution.displacement(at.x, at.y, at.z)["xyz".index(quantity[-1])]
+        i = "xyz".index(quantity[-1])
+        u = solution.displacement(at.x, at.y, at.z)[i]
+        if hasattr(solution, "displacement_uncertainty"):
+            return u, solution.displacement_uncertainty(at.x, at.y, at.z)[i]
         return u, None if stated is None else np.full(u.shape, float(stated.approach))
     value, spread = np.empty(at.x.shape), np.empty(at.x.shape)
     moduli = [(E, nu) for E, nu, _ in problem.coatings] + [problem.substrate]
@@ -121,6 +156,21 @@ def values(
             U = solution.stress_uncertainty(*place, layer=layer)
             spread[here] = np.einsum("ij,ij...->...", np.abs(weight), U)
     return value, None if stated is None else spread
+
+
+def _extreme(solution: Solution, quantity: str) -> tuple[float, float | None]:
+    """The largest tau = |sigma_zz - sigma_xx|/2, where a parabola through three points has its top."""
+    z = solution.contact_radius * np.linspace(0.3, 0.7, 21)
+    sigma = solution.stress(0.0, 0.0, z)
+    tau = np.abs(sigma[2, 2] - sigma[0, 0]) / 2
+    top = int(np.clip(tau.argmax(), 1, z.size - 2))
+    low, here, high = tau[top - 1 : top + 2].tolist()
+    share = 2.0 if quantity == "von_mises_max" else 1.0
+    value = share * (here + (high - low) ** 2 / (8 * (2 * here - low - high)))
+    if solution.uncertainty is None:
+        return value, None
+    spread = solution.stress_uncertainty(0.0, 0.0, z[[top]])
+    return value, share * float(spread[2, 2, 0] + spread[0, 0, 0]) / 2
 
 
 def _weights(quantity: str, E: float, nu: float) -> Array:

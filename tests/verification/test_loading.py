@@ -37,7 +37,7 @@ def test_stiffness_of_the_sphere_is_that_of_the_punch(layer, base):
 
 @pytest.mark.parametrize("method", METHODS)
 def test_both_methods_give_the_exact_curve_within_their_uncertainty(method):
-    found = loading(CURVE, METHODS[method], stiffness=True, limits=method == "fem_reference")
+    found = loading(CURVE, METHODS[method], limits=method == "fem_reference")
     exact = exact_loading(CURVE)
     at = np.array(CURVE.at)
     for name in ("kappa", "load", "approach"):

@@ -1,15 +1,16 @@
 """Layers bonded to a rigid base: tables and approximations against the exact reference."""
 
+from dataclasses import dataclass
+
 import numpy as np
 import pytest
 
 import semianalytic
-from verification.references import integral_equation
+from verification.references import flat_punch, integral_equation
 from verification.references.flat_punch import kappa
 from verification.references.published import FOLDER, read_table
 
 HAYES = read_table(FOLDER / "hayes_1972_flat_punch_kappa.csv")
-CORRECTIONS = read_table(FOLDER / "thin_layer_corrections.csv")
 RIGID = (1e9, 0.3)  # under layers of 1 Pa
 
 
@@ -45,34 +46,55 @@ def test_flat_punch_converges_in_every_knob():
     assert kappa(2.0, layer, RIGID, tail=30.0) == pytest.approx(fine, rel=1e-10)
 
 
-def pressed(ratio):
-    """Exact load and approach of a sphere on an incompressible layer, at the a/h asked for."""
-    low, high = 1e-6, 1e2
-    for _ in range(60):
-        load = np.sqrt(low * high)
-        found = integral_equation.solve(
-            radius=100.0,
-            load=load,
-            coatings=((1.0, 0.5, 1.0),),
-            substrate=RIGID,
-            nodes=40,
-            estimate_uncertainty=False,
-        )
-        low, high = (load, high) if found.contact_radius < ratio else (low, load)
-    return load, found.approach
-
-
-@pytest.mark.parametrize("ratio", ["0.2", "0.4", "0.6", "1.0"])
-def test_corrections_for_thin_layers_err_as_their_notes_say(ratio):
-    load, approach = pressed(float(ratio))
+def by_formula(approach, coefficients):
+    """Load of the corrections at h = 1, E = 1, nu = 1/2, R = 100."""
     X = np.sqrt(100.0 * approach)
-    series = 1 + sum(column(CORRECTIONS, f"c{n}") * X**n for n in range(1, 5))
-    formula = 4 / 3 / (1 - 0.25) * 10.0 * approach**1.5 * series
-    stated = dict(zip(CORRECTIONS.text("model"), column(CORRECTIONS, f"r{ratio}"), strict=True))
-    found = dict(zip(CORRECTIONS.text("model"), formula / load, strict=True))
-    # The two that are made for a paraboloid on a bonded layer; half of their fourth decimal.
-    for model in ("Dimitriadis2002_bonded", "Garcia2018_paraboloid_bonded"):
-        assert found[model] == pytest.approx(stated[model], abs=5e-5), model
+    series = 1 + sum(c * X**n for n, c in enumerate(coefficients, start=1))
+    return 4 / 3 / (1 - 0.25) * 10.0 * approach**1.5 * series
+
+
+@dataclass(frozen=True)
+class SlidingLayer:
+    """Compliance of a layer free to slide on a rigid base: M = (cosh 2x - 1)/(sinh 2x + 2x), x = kh."""
+
+    coatings: tuple
+    substrate: tuple
+    k: np.ndarray
+
+    @property
+    def compliance(self):
+        x = np.minimum(self.k * self.coatings[0][2], 300.0)
+        return 2 * np.sinh(x) ** 2 / (np.sinh(2 * x) + 2 * x)
+
+
+@pytest.mark.parametrize(
+    ("table", "column", "coefficients", "solid"),
+    [
+        ("dimitriadis_2002_corrections", "bonded", (1.133, 1.283, 0.769, 0.0975), None),
+        ("dimitriadis_2002_corrections", "notbonded", (0.884, 0.781, 0.386, 0.0048), SlidingLayer),
+        ("garcia_2018_corrections", "paraboloid", (1.133, 1.497, 1.469, 0.755), None),
+    ],
+)
+def test_corrections_for_thin_layers_err_as_their_notes_say(monkeypatch, table, column, coefficients, solid):
+    if solid is not None:
+        monkeypatch.setattr(flat_punch, "LayeredHalfSpace", solid)
+    table = read_table(FOLDER / f"{table}.csv")
+    found = []
+    for a in table.numbers("a_over_h"):
+        exact = flat_punch.pressed(a, ((1.0, 0.5, 1.0),), RIGID)
+        found.append(by_formula(exact.approach / 100, coefficients) / (exact.load / 100))
+    # Half of their fourth decimal.
+    assert found == pytest.approx(table.numbers(column), abs=5e-5)
+
+
+def test_sphere_pressed_to_a_radius_is_the_sphere_under_its_load():
+    for layer, base in ((((1.0, 0.5, 1.0),), RIGID), (((1.0, 0.3, 0.4), (5.0, 0.2, 1.0)), (2.0, 0.4))):
+        found = flat_punch.pressed(0.8, layer, base)
+        same = integral_equation.solve(
+            radius=100.0, load=found.load / 100, coatings=layer, substrate=base, estimate_uncertainty=False
+        )
+        assert same.contact_radius == pytest.approx(0.8, rel=1e-9)
+        assert same.approach == pytest.approx(found.approach / 100, rel=1e-9)
 
 
 def test_semianalytical_sphere_on_an_incompressible_layer_is_exact():

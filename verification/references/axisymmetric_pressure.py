@@ -67,6 +67,10 @@ class AbelPressure:
         signed = self.c * (-1.0) ** np.arange(self.c.size)
         return self.a * (signed @ _even_spherical_bessel(self.c.size, k * self.a))
 
+    def sink(self, r: Array) -> Array:
+        """No claim is made on the displacement under a contact; raises ValueError."""
+        raise ValueError("the integral equation claims no displacement field; ask one of the methods")
+
     def bessel_integral(self, order: int, r: Array) -> Array:
         """int_0^inf phat(k) J_order(kr) k dk [Pa] for odd ``order``; shape of ``r``.
 

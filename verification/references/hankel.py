@@ -4,6 +4,7 @@ Normal load, then friction q = f p in +x (the first, second and third harmonics 
 
     sigma_rz = -int T phat J1 k dk,   sigma_zz = int S phat J0 k dk
     sigma_xx, sigma_yy = int (ll+tt)/2 phat J0 k dk -+ cos 2theta int (ll-tt)/2 phat J2 k dk
+    u_r = -int U phat J1 k dk,         u_z = int w phat J0 k dk
 
 Amplitudes per wavenumber come from ``layered``; on the surface the homogeneous part, which decays too
 slowly for quadrature, is taken in closed form from the Abel potential of the pressure.
@@ -11,16 +12,16 @@ Sneddon, Fourier Transforms (1951); sliding worked out from the rotation of the 
 """
 
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.special import j0, j1, jv
 
-from verification.references.axisymmetric_pressure import AbelPressure
 from verification.references.layered import Amplitudes, LayeredHalfSpace, bending_length
 from verification.references.quadrature import wavenumber_panels
 
-__all__ = ["HankelField", "layer_at"]
+__all__ = ["AxisymmetricPressure", "HankelField", "layer_at"]
 
 Array = NDArray[np.float64]
 Coatings = tuple[tuple[float, float, float], ...]
@@ -49,6 +50,18 @@ def layer_at(z: Array, coatings: Coatings, layer: int | None) -> NDArray[np.int_
     return np.full(z.shape, layer)
 
 
+class AxisymmetricPressure(Protocol):
+    """A pressure on r <= a with its transforms; see ``axisymmetric_pressure`` and ``uniform_disc``."""
+
+    @property
+    def a(self) -> float: ...
+    def pressure(self, r: ArrayLike) -> Array: ...
+    def resultant(self, r: ArrayLike) -> Array: ...
+    def transform(self, k: Array) -> Array: ...
+    def bessel_integral(self, order: int, r: Array) -> Array: ...
+    def sink(self, r: Array) -> Array: ...
+
+
 @dataclass(frozen=True, eq=False)
 class HankelField:
     """Stress below ``pressure``, with friction q = f p, in ``coatings`` on ``substrate``.
@@ -56,7 +69,7 @@ class HankelField:
     nodes : Gauss points a panel; tail : exponent at which the decaying integrands are cut.
     """
 
-    pressure: AbelPressure
+    pressure: AxisymmetricPressure
     coatings: Coatings
     substrate: tuple[float, float]
     friction: float = 0.0
@@ -73,6 +86,37 @@ class HankelField:
             here = (z == depth) & (layers == number)
             sigma[:, :, here] = self._plane(r[here], theta[here], depth, number)
         return sigma
+
+    def displacement(self, x: ArrayLike, y: ArrayLike, z: ArrayLike) -> Array:
+        """u[i, ...] [m] towards infinity, shape (3,) + points. Raises ValueError where there is friction."""
+        if self.friction:
+            raise ValueError(f"friction = {self.friction:g}; displacements are claimed without friction only")
+        x, y, z = np.broadcast_arrays(*(np.asarray(v, dtype=float) for v in (x, y, z)))
+        layers = layer_at(z, self.coatings, None)
+        u_r, u_z = np.zeros(x.shape), np.zeros(x.shape)
+        r = np.hypot(x, y)
+        for depth, number in sorted(set(zip(z.ravel().tolist(), layers.ravel().tolist(), strict=True))):
+            here = (z == depth) & (layers == number)
+            u_r[here], u_z[here] = self._displaced(r[here], depth, number)
+        theta = np.arctan2(y, x)
+        return np.stack([u_r * np.cos(theta), u_r * np.sin(theta), u_z])
+
+    def _displaced(self, r: Array, z: float, layer: int) -> tuple[Array, Array]:
+        u_r, u_z = np.zeros(r.size), np.zeros(r.size)
+        if z == 0:
+            E, nu = self.coatings[0][:2] if self.coatings else self.substrate
+            # Johnson (3.20a, b): the load inside r draws the surface in.
+            inside = np.where(r > 0, self.pressure.resultant(r) / np.where(r > 0, r, 1.0), 0.0)
+            u_r, u_z = -(1 - 2 * nu) * (1 + nu) / E * inside, (1 - nu**2) / E * self.pressure.sink(r)
+            if not self.coatings:
+                return u_r, u_z
+        k, weight = self._wavenumbers(z or 2 * self.coatings[0][2], float(r.max(initial=0.0)))
+        solid = LayeredHalfSpace(self.coatings, self.substrate, k)
+        bare = LayeredHalfSpace((), (float(solid.E[0]), float(solid.nu[0])), k) if z == 0 else None
+        A = _difference(solid, bare, z, layer, "normal")
+        weighted = weight * k * self.pressure.transform(k)
+        J = _bessel(k, r, highest=1)
+        return u_r - (weighted * A.U) @ J[1], u_z + (weighted * A.w) @ J[0]
 
     def _plane(self, r: Array, theta: Array, z: float, layer: int) -> Array:
         total = np.zeros((3, 3, r.size))

@@ -10,7 +10,7 @@ import numpy as np
 from verification.profile import Profile
 from verification.report.cells import Cell, Row, Table
 from verification.report.matrix import outcome_cell
-from verification.report.names import METHODS, OUTCOMES, OutcomeStyle, source_label
+from verification.report.names import EXACT, METHODS, OUTCOMES, OutcomeStyle, source_label
 from verification.report.numbers import engineering, plain, scientific
 from verification.report.tables import budget_table, diagnostics_table, layer_table, verdict_table
 from verification.result import CaseResult
@@ -19,6 +19,17 @@ from verification.verdict import Outcome
 __all__ = ["PublishedView", "published_overview", "published_view"]
 
 PRINTED = "published"
+_SAID = {
+    "peak_pressure": "p0",
+    "contact_radius": "a",
+    "approach": "delta",
+    "load": "W",
+    "kappa": "stiffness of the flat punch over 2 a E1*",
+    "series_over_load": "load by the formula over W",
+    "series_over_kappa": "stiffness by the formula over that of the flat punch",
+    "tau_max": "largest shear on the axis",
+    "von_mises_max": "largest von Mises stress on the axis",
+}
 
 
 @dataclass(frozen=True)
@@ -39,9 +50,17 @@ class PublishedView:
     diagnostics: Table | None
 
 
+def _sources(result: CaseResult) -> tuple[str, ...]:
+    """Both methods, and the exact reference where it was asked."""
+    claimed = {source for claim, _ in result.verdicts for source in claim.between}
+    return METHODS + tuple(source for source in EXACT if source in claimed)
+
+
 def published_overview(results: Sequence[CaseResult], anchors: Mapping[int, str]) -> Table:
     """Every source at a glance: year, how it was read, values that count, verdict of each method."""
     rows = []
+    shown = [result for result in results if result.published]
+    sources = tuple(dict.fromkeys(source for result in shown for source in _sources(result)))
     for number, result in enumerate(results):
         if not result.published:
             continue
@@ -58,29 +77,32 @@ def published_overview(results: Sequence[CaseResult], anchors: Mapping[int, str]
             Cell(str(counted), counted),
             Cell(str(total - counted), total - counted),
         ]
-        for method in METHODS:
-            cells += _method_cells(result, method)
+        for source in sources:
+            cells += _method_cells(result, source) if source in _sources(result) else [Cell("–"), Cell("–")]
         head = Cell(result.title, note=result.source, href=f"#{anchors[number]}")
         rows.append(
             Row(head, cells, "" if result.outcome is Outcome.AGREES else OUTCOMES[result.outcome].css)
         )
     return Table(
         "A method meets a value when the difference is within the reading uncertainty of the source and the "
-        "method's own uncertainty together. Values that the source is known to have misprinted are shown "
-        "below and never counted. Differences are over the pressure for stresses, over the largest value "
-        "printed for displacements and strains, over the value for scalars of a contact.",
-        ["source", "verdict", "year", "read", "values", "misprints"]
-        + ["met", "largest difference"] * len(METHODS),
+        "method's own uncertainty together. Values known to be misprints, or second-hand where better ones "
+        "stand beside, are shown below and never counted. Differences are over the pressure for stresses, "
+        "over the largest value printed for displacements, strains and loading curves, over the value for "
+        "scalars of a contact.",
+        ["source", "verdict", "year", "read", "values", "not counted"]
+        + ["met", "largest difference"] * len(sources),
         rows,
-        [("", 6), *((source_label(method), 2) for method in METHODS)],
+        [("", 6), *((source_label(source), 2) for source in sources)],
     )
 
 
 def _method_cells(result: CaseResult, method: str) -> list[Cell]:
     met = total = 0
     for item in result.published["printed"]:
-        gap, allowed = _gap(result, item, method)
         counted = np.array(item["counted"], dtype=bool)
+        if not any(method in c.between and c.line == item["line"] for c, _ in result.verdicts):
+            continue
+        gap, allowed = _gap(result, item, method)
         total += int(counted.sum())
         if gap is not None and allowed is not None:
             met += int((np.abs(gap) <= allowed)[counted].sum())
@@ -142,12 +164,12 @@ def _tables(result: CaseResult) -> list[tuple[str, Table]]:
 
 
 def _table(result: CaseResult, column: str, quantity: str, items: Sequence[Mapping[str, Any]]) -> Table:
-    first = items[0]
+    first, sources = items[0], _sources(result)
     rows = []
     for item in items:
         place = item["line"].split(f", {item['file'].removesuffix('.csv')}")[0]
         methods = {
-            method: (_profile(result, item, method), *_gap(result, item, method)) for method in METHODS
+            method: (_profile(result, item, method), *_gap(result, item, method)) for method in sources
         }
         reading = _profile(result, item, PRINTED)
         for n, text in enumerate(item["text"]):
@@ -161,8 +183,11 @@ def _table(result: CaseResult, column: str, quantity: str, items: Sequence[Mappi
                 Cell(_in(spread, item), spread),
             ]
             met = []
-            for method in METHODS:
+            for method in sources:
                 profile, gap, allowed = methods[method]
+                if method not in METHODS and profile is None:
+                    cells += [Cell("–")] * 3
+                    continue
                 if profile is None or gap is None:
                     cells += [Cell("no result", css="no-result"), Cell("–"), Cell("–")]
                     met.append(False)
@@ -173,7 +198,8 @@ def _table(result: CaseResult, column: str, quantity: str, items: Sequence[Mappi
                 cells.append(Cell(_in(None if allowed is None else float(allowed[n]), item)))
                 met.append(allowed is not None and bool(abs(gap[n]) <= allowed[n]))
             if not counted:
-                cells.append(Cell("misprint, not counted", css="verdict inconclusive"))
+                why = item.get("why_not", ("misprint",) * len(item["text"]))[n]
+                cells.append(Cell(f"{why}, not counted", css="verdict inconclusive"))
             else:
                 cells.append(
                     Cell("✓", css="verdict agrees") if all(met) else Cell("✗", css="verdict disagrees")
@@ -184,19 +210,20 @@ def _table(result: CaseResult, column: str, quantity: str, items: Sequence[Mappi
             )
             rows.append(Row(head, cells, "" if counted else "inconclusive"))
     unit = f" in {first['unit']}" if first["unit"] != "1" else ""
+    said = _SAID.get(quantity, quantity) + (" here, of the other sign" if first["to_si"] < 0 else " here")
     return Table(
-        f"{column}{unit}, as printed ({quantity} here{', of the other sign' if first['to_si'] < 0 else ''}): "
+        f"{column}{unit}, as printed ({said}): "
         "the difference of each method from it, and the uncertainty of both together that allows for it.",
         [
             "where",
             f"{first['coordinate']} in {first['position_unit']}",
             "printed",
             "reading U",
-            *["value", "difference", "U of both"] * len(METHODS),
+            *["value", "difference", "U of both"] * len(sources),
             "met",
         ],
         rows,
-        [("", 4), *((source_label(method), 3) for method in METHODS), ("", 1)],
+        [("", 4), *((source_label(source), 3) for source in sources), ("", 1)],
         "verdicts",
     )
 
