@@ -25,6 +25,11 @@ app = App(
 for name, place, said in (
     ("run", "run:run", "Solve cases by every method and reference, judge every claim, write the report."),
     ("list", "list_cases:list_cases", "List the shipped cases and published results with their sources."),
+    (
+        "report",
+        "report:report",
+        "Write the report of a stored run again, nothing solved; print it with --pdf.",
+    ),
     ("view", "view:view", "Look at the fields of a case, in a window or as a picture."),
     ("study", "study:study", "Sweep a parameter with both methods behind every number."),
     ("bench", "bench:bench", "Time the semi-analytical contact beside its peers; ratios first."),
