@@ -81,9 +81,9 @@ def write_study_report(
     solved = sum(c.h.size for c in every)
     lost = sum(len(c.failures) for c in every)
     text = f"{solved} points solved" + (f", {lost} could not be" if lost else "") + f": {study.title}"
-    page = folder / "study.html"
+    page = folder / f"{study.name}.html"
     footer = (
-        "Written by coatcheck from the table beside this file, study.parquet; figures/ holds PDF, PNG, CSV."
+        f"Written by coatcheck from {table.name} beside this file; figures/{study.name} holds PDF, PNG, CSV."
     )
     write_atomically(page, render_sections("coatcheck study", text, head, sections, footer))
     return page
@@ -184,7 +184,7 @@ def _drawn_section(anchor: str, title: str, drawings: Sequence[Drawn]) -> Sectio
         )
         for d in drawings
     ]
-    text = "For print, in figures/: " + ", ".join(f"{d.name}.pdf" for d in drawings) + "."
+    text = "For print, in the folder of figures: " + ", ".join(f"{d.name}.pdf" for d in drawings) + "."
     return Section(anchor, title, [Part("", gallery=Gallery([], panels, text))])
 
 
