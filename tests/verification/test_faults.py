@@ -17,8 +17,9 @@ from verification.faults.record import Catch, Record, from_json, row_of, to_json
 from verification.faults.trial import Trial, clean_path, try_fault
 from verification.references.hertz import Hertz
 from verification.report.faults import faults_page
+from verification.result import from_json as result_from_json
 from verification.result import to_json as result_to_json
-from verification.store import write_checked
+from verification.store import read_checked, write_checked
 from verification.verdict import Outcome
 
 # What issue after issue of such codes has been about, each by the fault that stands for it.
@@ -73,7 +74,7 @@ def test_the_catalogue_holds_every_fault_that_was_asked_for():
 
 @pytest.mark.parametrize("fault", FAULTS.values(), ids=lambda fault: fault.name)
 def test_a_fault_says_what_is_wrong_where_it_sits_what_should_catch_it(fault):
-    assert len(fault.sentence.split()) > 4
+    assert len(fault.sentence.split()) > 2
     assert not fault.sentence.endswith(".")
     assert fault.changes
     assert fault.expected
@@ -214,6 +215,22 @@ def test_a_crash_alone_does_not_count_as_caught():
     assert row.catch is Catch.NO_RESULT
     assert not row.caught
     assert not row.as_expected
+
+
+def test_a_check_that_fails_without_the_fault_is_no_evidence(clean, tmp_path):
+    path = clean_path(clean, "01_uncoated_steel")
+    result = result_from_json(read_checked(path))
+    claim, verdict = result.verdicts[-1]
+    spoiled = (*result.verdicts[:-1], (claim, replace(verdict, outcome=Outcome.DISAGREES)))
+    write_checked(clean_path(tmp_path, result.name), result_to_json(replace(result, verdicts=spoiled)))
+    fault = FAULTS["hertz_exponent"]
+    whole, without = try_fault(fault, clean), try_fault(fault, tmp_path)
+    assert len(without.checks) == len(whole.checks) - 1
+    assert len(without.already) == 1
+    assert claim.quantity in without.already[0]
+    record = _record(without)
+    assert record.already == without.already
+    assert not record.passed
 
 
 def test_drift_alone_counts_only_where_it_was_foretold():

@@ -179,6 +179,8 @@ def _print(found: "Record", page: Path) -> None:
         console.print(f"[bold red]changes nothing[/] {row.name}", highlight=False)
     for row in found.alarms:
         console.print(f"[bold red]alarm[/] {row.name}, nothing planted: {escape(row.by)}", highlight=False)
+    for said in found.already:
+        console.print(f"[bold red]fails without a fault[/] {escape(said)}", highlight=False)
     said = f"{found.caught} of {len(found.rows)} faults caught ({100 * found.share:.0f} %), "
     said += f"{found.as_expected} by a check named for it beforehand"
     if found.blanks:

@@ -95,6 +95,7 @@ def record_of(
         commit=commit,
         machine=machine,
         versions=versions,
+        already=tuple(sorted({said for trial in trials for said in trial.already})),
     )
 
 

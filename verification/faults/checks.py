@@ -3,7 +3,6 @@
 from dataclasses import dataclass
 
 from verification.baseline import Drift
-from verification.case import Case
 from verification.invariants import Invariant
 from verification.self_test import SelfTest
 from verification.verdict import Claim, Outcome, Verdict
@@ -40,6 +39,16 @@ class Check:
     def passed(self) -> bool:
         return self.outcome is Outcome.AGREES
 
+    @property
+    def key(self) -> tuple[str, str, str, str]:
+        """What tells it from every other check."""
+        return self.column, self.name, self.case, self.detail
+
+    @property
+    def said(self) -> str:
+        """The check with its reason, in one sentence."""
+        return f"{self.name} ({', '.join(filter(None, (self.detail, self.case)))}): {self.reason}"[:400]
+
 
 def of_claim(claim: Claim, verdict: Verdict, case: str, coated: bool, kind: str = "") -> Check:
     """A comparison; ``kind`` "printed" where one side is a printed table."""
@@ -55,11 +64,11 @@ def of_claim(claim: Claim, verdict: Verdict, case: str, coated: bool, kind: str 
     return Check(column, claim.quantity, case, detail, verdict.outcome, verdict.reason)
 
 
-def of_invariant(row: Invariant, case: Case) -> Check:
+def of_invariant(row: Invariant, case: str) -> Check:
     """An invariant; its number at the end (interface 1, layer 0) belongs to the detail."""
     name, _, place = row.name.partition(", ")
     detail = ", ".join(filter(None, (place, row.source)))
-    return Check("invariants", name, case.name, detail, row.outcome, row.sentence)
+    return Check("invariants", name, case, detail, row.outcome, row.sentence)
 
 
 def of_baseline(row: Drift, case: str, same: bool) -> Check:

@@ -80,7 +80,8 @@ class Row:
 class Record:
     """All trials of one run of ``coatcheck faults``, with when, where, by which versions it was made.
 
-    blanks : the trials in which nothing was planted.   seconds : of the clock; core_seconds : of all trials.
+    blanks : the trials in which nothing was planted.   already : checks that no trial could count, for they
+    do not pass without a fault either.   seconds : of the clock; core_seconds : of all trials.
     """
 
     rows: tuple[Row, ...]
@@ -91,6 +92,7 @@ class Record:
     commit: str | None
     machine: str
     versions: dict[str, str]
+    already: tuple[str, ...] = ()
 
     @property
     def caught(self) -> int:
@@ -126,8 +128,9 @@ class Record:
 
     @property
     def passed(self) -> bool:
-        """True where enough is caught, every survivor explained, every fault real, no blank noticed."""
-        return self.share >= PASS_SHARE and not (self.unexplained or self.idle or self.alarms)
+        """True where enough is caught, each survivor explained, each fault real, nothing wrong without one."""
+        silent = not (self.unexplained or self.idle or self.alarms or self.already)
+        return self.share >= PASS_SHARE and silent
 
 
 def row_of(fault: Fault, trial: Trial) -> Row:
@@ -196,8 +199,7 @@ def _loudest(bad: Sequence[Check]) -> str:
     for outcome in (Outcome.DISAGREES, Outcome.INCONCLUSIVE, Outcome.NO_RESULT):
         for check in bad:
             if check.outcome is outcome:
-                place = ", ".join(filter(None, (check.detail, check.case)))
-                return f"{check.name} ({place}): {check.reason}"[:400]
+                return check.said
     return ""
 
 
@@ -239,6 +241,7 @@ def from_json(data: dict[str, Any]) -> Record:
         commit=data["commit"],
         machine=str(data["machine"]),
         versions=dict(data["versions"]),
+        already=tuple(data["already"]),
     )
 
 

@@ -34,7 +34,8 @@ class Trial:
 
     checks : every check that was made, passed or not.   change : the largest change of a value over its
     scale, or of an uncertainty over itself where no value moved; what changed stands in ``changed``.
-    seconds : of one core.   failure : why there was no trial.
+    already : checks that do not pass without the fault either, so that they are no evidence and not among
+    ``checks``.   seconds : of one core.   failure : why there was no trial.
     """
 
     fault: str
@@ -43,6 +44,7 @@ class Trial:
     changed: str = ""
     seconds: float = 0.0
     failure: str | None = None
+    already: tuple[str, ...] = ()
 
 
 def clean_path(folder: Path, case: str) -> Path:
@@ -62,6 +64,7 @@ def try_fault(fault: Fault, clean_folder: Path) -> Trial:
     printed = {name: _as_read(read_published(published_cases()[name])) for name in fault.published}
     checks: list[Check] = []
     changes: list[tuple[float, str]] = []
+    failing = {check.key: check for result in clean.values() for check in _of_clean(result)}
     with planted(fault.changes):
         for name in fault.cases:
             found, profiles = _judged(read_case(shipped_cases()[name]), clean[name], fault)
@@ -77,7 +80,18 @@ def try_fault(fault: Fault, clean_folder: Path) -> Trial:
     if turned:
         changes.append((float(len(turned)), f"answers of the harness: {', '.join(turned)}"))
     change, changed = max(changes, default=(0.0, "nothing"))
-    return Trial(fault.name, tuple(checks), change, changed, time.process_time() - began)
+    seconds = time.process_time() - began
+    already = tuple(sorted({f"{failing[c.key].said}" for c in checks if c.key in failing}))
+    evidence = tuple(check for check in checks if check.key not in failing)
+    return Trial(fault.name, evidence, change, changed, seconds, already=already)
+
+
+def _of_clean(result: CaseResult) -> list[Check]:
+    """The checks of a clean run that do not pass."""
+    coated = bool(result.problem["coatings"])
+    checks = [of_claim(claim, verdict, result.name, coated) for claim, verdict in result.verdicts]
+    checks += [of_invariant(row, result.name) for row in result.invariants]
+    return [check for check in checks if not check.passed]
 
 
 def _judged(case: Case, clean: CaseResult, fault: Fault) -> tuple[list[Check], Profiles]:
@@ -98,7 +112,7 @@ def _judged(case: Case, clean: CaseResult, fault: Fault) -> tuple[list[Check], P
             continue
         fresh |= {(p.quantity, p.line, source): p for p in found}
         rows = invariants_of(solution, source, case.problem)
-        checks += [of_invariant(row, case) for row in rows]
+        checks += [of_invariant(row, case.name) for row in rows]
     profiles |= fresh
     edge = _edge(clean, profiles)
     touched = [c for c in case.claims if set(c.between) & set(solve)] if available else list(case.claims)
@@ -200,4 +214,5 @@ def trial_to_json(trial: Trial) -> dict[str, Any]:
 def trial_from_json(data: dict[str, Any]) -> Trial:
     """The inverse of ``trial_to_json``."""
     checks = tuple(Check(**{**c, "outcome": Outcome(c["outcome"])}) for c in data["checks"])
-    return Trial(**{**data, "checks": checks, "change": float(data["change"])})
+    made = {"checks": checks, "change": float(data["change"]), "already": tuple(data["already"])}
+    return Trial(**{**data, **made})

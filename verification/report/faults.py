@@ -57,6 +57,7 @@ def faults_section(record: Record) -> Section:
     failures = [f"{row.name} changes no number; it is not a fault." for row in record.idle]
     failures += [f"{row.name}, in which nothing is planted, is caught: {row.by}" for row in record.alarms]
     failures += [f"{row.name}: {row.failure}" for row in record.rows if row.failure]
+    failures += [f"Without any fault already, so that it is no evidence: {said}" for said in record.already]
     return Section("faults", "Planted faults", parts, failures)
 
 
