@@ -128,7 +128,7 @@ class Record:
 
     @property
     def passed(self) -> bool:
-        """True where enough is caught, each survivor explained, each fault real, nothing wrong without one."""
+        """True where enough is caught, each survivor explained, each fault real, nothing amiss without."""
         silent = not (self.unexplained or self.idle or self.alarms or self.already)
         return self.share >= PASS_SHARE and silent
 
