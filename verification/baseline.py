@@ -64,7 +64,8 @@ class State(StrEnum):
 class Numbers:
     """What is kept of one profile, in SI units.
 
-    scale : what a change of ``value`` is measured by.   rms : root mean square over all ``size`` points.
+    scale : what a change of ``value`` is measured by.   rms : root mean square over all ``size`` points,
+    a number of its own where not all of them are kept.
     uncertainty : the largest that is stated, None where there is none.
     """
 
@@ -86,7 +87,12 @@ class Numbers:
     @property
     def count(self) -> int:
         """How many numbers these are: the values, the root mean square, the uncertainty."""
-        return self.value.size + 1 + (self.uncertainty is not None)
+        return self.value.size + self.thinned + (self.uncertainty is not None)
+
+    @property
+    def thinned(self) -> bool:
+        """True where the profile has more points than are kept."""
+        return self.size > self.value.size
 
 
 @dataclass(frozen=True)
@@ -237,12 +243,14 @@ def drift(then: Numbers, now: Numbers) -> Drift:
         said = f"sampled at {now.size} points instead of {then.size}"
         return Drift(*then.key, State.DRIFTED, then.count, then.count, None, said)
     scale = max(then.scale, np.finfo(float).tiny)
-    before, after = np.append(then.value, then.rms), np.append(now.value, now.rms)
+    before, after = then.value, now.value
+    if then.thinned:
+        before, after = np.append(before, then.rms), np.append(after, now.rms)
     change = np.where(np.isnan(before) & np.isnan(after), 0.0, np.abs(after - before) / scale)
     moved = ~(change <= RELATIVE)  # a NaN that was a number has changed, too
     words = []
     reach = max(_size(then.position), np.finfo(float).tiny)
-    shift = _size(now.position - then.position) / reach
+    shift = float(np.abs(now.position - then.position).max()) / reach
     if not shift <= RELATIVE:
         words.append(f"its points moved by {shift:.1e} of the line")
         moved[:] = True
@@ -328,7 +336,7 @@ def _numbers(profile: Profile, faint: float, points: int) -> Numbers:
         scale,
         float(np.sqrt(np.mean(profile.value**2))),
         size,
-        None if profile.uncertainty is None else _size(profile.uncertainty),
+        None if profile.uncertainty is None else float(np.abs(profile.uncertainty).max()),
     )
 
 
@@ -337,8 +345,8 @@ def _kind(profile: Profile) -> str:
 
 
 def _size(values: Array) -> float:
-    """The largest magnitude; a NaN stays one."""
-    return float(np.abs(values).max())
+    """The largest magnitude of what is finite."""
+    return float(np.abs(values[np.isfinite(values)]).max(initial=0.0))
 
 
 def _spread_changed(then: Numbers, now: Numbers, scale: float) -> str:

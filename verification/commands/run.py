@@ -258,5 +258,4 @@ def _state(beside: Regression, name: str) -> str:
     found = beside.of(name)
     if found is None:
         return "-"
-    change = "" if not found.change else f" {found.change:.0e}"
-    return f"[{'green' if found.state is State.SAME else 'yellow'}]{found.state}[/]{change}"
+    return f"[{'green' if found.state is State.SAME else 'yellow'}]{found.state}[/]"

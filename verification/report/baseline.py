@@ -26,11 +26,11 @@ _RULE = (
 )
 
 
-def state_cell(case: CaseDrift, href: str = "") -> Cell:
-    """What became of a case, as mark and word; it sorts by how bad it is."""
+def state_cell(case: CaseDrift, *, short: bool = False) -> Cell:
+    """What became of a case, as mark and word, or as mark alone; it sorts by how bad it is."""
     mark, css, rank = _STATES[case.state]
-    note = case.said or f"largest change {_change(case.change)} of the scale"
-    return Cell(f"{mark} {case.state}", float(rank), f"verdict {css}".strip(), note, href)
+    note = f"{case.state}: {case.said or f'largest change {_change(case.change)} of the scale'}"
+    return Cell(mark if short else f"{mark} {case.state}", float(rank), f"verdict {css}".strip(), note)
 
 
 def baseline_sentence(found: Regression) -> str:
@@ -61,7 +61,9 @@ def baseline_section(found: Regression, anchors: Mapping[str, str]) -> Section:
     if found.other_versions:
         said = "; ".join(f"{name} {then} then, {now} now" for name, then, now in found.other_versions)
         parts.append(Part(f"The digits may differ because this run stands on something else: {said}."))
-    moved = [(c, d) for c in found.cases for d in c.drifts if d.state in (State.DRIFTED, State.GONE)]
+    # A case that is gone as a whole has its row above.
+    here = [c for c in found.cases if any(d.state is not State.GONE for d in c.drifts)]
+    moved = [(c, d) for c in here for d in c.drifts if d.state in (State.DRIFTED, State.GONE)]
     parts.append(Part("", [_case_table(found.cases, anchors), *([drift_table(moved)] if moved else [])]))
     return Section(ANCHOR, "Baseline", parts)
 

@@ -16,7 +16,7 @@ from verification.report.accuracy import accuracies
 from verification.report.cells import Cell, Row, Table
 from verification.report.matrix import outcome_cell
 from verification.report.names import METHODS, pair_label, source_label
-from verification.report.numbers import plain, scientific
+from verification.report.numbers import factor, plain, scientific
 from verification.report.reading import layers, scale
 from verification.result import CaseResult
 from verification.verdict import Outcome
@@ -129,7 +129,7 @@ def bracket_table(results: Sequence[CaseResult]) -> Table | None:
                 Cell(name),
                 Cell(f"{good} of {len(mine)}", good / len(mine)),
                 Cell(f"{plain(100 * good / len(mine), 3)} %", good / len(mine)),
-                Cell(plain(middle, 2), middle if isfinite(middle) else None),
+                Cell(factor(middle, 1.0), middle if isfinite(middle) else None),
                 Cell(scientific(worst), worst),
             ]
             rows.append(Row(Cell(source_label(method)), cells))
