@@ -47,7 +47,7 @@ def bonded_displacement(solution: Solution, source: str, problem: CoatedContact,
         error = error + np.abs(parabola - line)
     bound = None
     if solution.uncertainty is not None:
-        bound = (error + 2 * uncertain_displacement(solution, problem, np.hypot(x, y))) / solution.approach
+        bound = (error + 2 * uncertain_displacement(solution, problem, x, y, z)) / solution.approach
     law = f"u passes interface {k} unchanged, over the approach"
     return decide(
         f"bonded displacements, interface {k}", source, law, (at[0] - at[1]) / solution.approach, bound
@@ -87,12 +87,15 @@ def sphere(solution: Solution, source: str, problem: CoatedContact) -> Invariant
     """
     inside, outside = np.array([0.0, 0.25, 0.5, 0.75, 0.95]), np.array([1.05, 1.2, 1.6])
     y = solution.contact_radius * np.concatenate([inside, outside])
-    u = solution.displacement(np.zeros_like(y), y, np.zeros_like(y))[2]
+    zero = np.zeros_like(y)
+    u = solution.displacement(zero, y, zero)[2]
     gap = (u + y**2 / (2 * problem.radius) - solution.approach) / solution.approach
     residual = np.where(y <= solution.contact_radius, gap, np.minimum(gap, 0.0))
     stated, bound = solution.uncertainty, None
     if stated is not None:
-        bound = (stated.approach + uncertain_displacement(solution, problem, y)) / solution.approach
+        bound = (
+            stated.approach + uncertain_displacement(solution, problem, zero, y, zero)
+        ) / solution.approach
     law = "u_z + r^2/2R = approach in the contact, no less outside, over the approach"
     return decide("sphere", source, law, residual, bound)
 
@@ -105,23 +108,28 @@ def crossed(solution: Solution, source: str, problem: CoatedContact) -> Invarian
     """
     x = solution.contact_radius * np.array([0.3, 0.6, 0.9, 1.3, 2.0])
     y = 0.2 * x
-    ahead, behind = (solution.displacement(side * x, y, np.zeros_like(x)) for side in (1.0, -1.0))
+    zero = np.zeros_like(x)
+    ahead, behind = (solution.displacement(side * x, y, zero) for side in (1.0, -1.0))
     odd = (ahead - behind) / 2
     bound = None
     if solution.uncertainty is not None:
-        bound = (1 + problem.friction) * uncertain_displacement(solution, problem, np.hypot(x, y))
+        bound = (1 + problem.friction) * uncertain_displacement(solution, problem, x, y, zero)
         bound = bound / solution.approach
     law = "u_z odd in x, by sliding, is -f times u_x odd in x, by the load; over the approach"
     residual = (odd[2] + problem.friction * odd[0]) / solution.approach
     return decide("reciprocity of load and sliding", source, law, residual, bound)
 
 
-def uncertain_displacement(solution: Solution, problem: CoatedContact | PrescribedLoad, r: Array) -> Array:
-    """Uncertainty of displacements at radii ``r`` [m]: that of the approach, plus what U_p would press in,
+def uncertain_displacement(
+    solution: Solution, problem: CoatedContact | PrescribedLoad, x: Array, y: Array, z: Array
+) -> Array:
+    """Uncertainty of displacements at points [m]: that of the approach, plus what U_p would press in,
 
         u(r) = 4/(pi E*) int U_p(s) K(m) s/(r+s) ds,   m = 4 r s/(r+s)^2
 
-    on the half-space of the most compliant material, with K the complete elliptic integral. Johnson (3.96).
+    on the half-space of the most compliant material, with K the complete elliptic integral, Johnson (3.96),
+    plus, where a solution carries coarser companions, what the first changes, or a third of what the second
+    does where the first agrees by chance: u is evaluated on patches too.
     """
     a = solution.contact_radius
     t, w = legendre.leggauss(64)
@@ -131,9 +139,18 @@ def uncertain_displacement(solution: Solution, problem: CoatedContact | Prescrib
     weight = a * np.concatenate([np.pi / 4 * w * np.cos(phi), 0.05 * w])
     U = solution.pressure_uncertainty(s * np.cos(ANGLE), s * np.sin(ANGLE))
     E_star = min(E / (1 - nu**2) for E, nu in [c[:2] for c in problem.coatings] + [problem.substrate])
+    r = np.hypot(x, y)
     along = r[:, None] + s
     deflection = (ellipk(4 * r[:, None] * s / along**2) * s / along) @ (weight * U)
-    return 4 / (np.pi * E_star) * deflection + float(solution.uncertainty.approach)
+    spread = 4 / (np.pi * E_star) * deflection + float(solution.uncertainty.approach)
+    share = 1.0
+    finer, companion = solution, getattr(solution, "coarser", None)
+    change = np.zeros_like(r)
+    while companion is not None:
+        gap = np.abs(finer.displacement(x, y, z) - companion.displacement(x, y, z)).max(axis=0)
+        change = np.maximum(change, share * gap)
+        finer, companion, share = companion, getattr(companion, "coarser", None), share / 3
+    return spread + change
 
 
 def _line(solution: Solution, problem: CoatedContact, k: int) -> tuple[Array, Array, Array]:
