@@ -112,7 +112,7 @@ def faults(
             cases = campaign.clean_cases(wanted)
             stood = kept_results(cases, campaign.clean_folder(output)) if resume else {}
             tasks = [case_task(c, campaign.clean_folder(output)) for c in cases if c.name not in stood]
-            if said := campaign.unfit([*stood.values(), *solve(tasks, jobs, time_limit, True)]):
+            if said := campaign.unfit([*stood.values(), *solve(tasks, jobs, time_limit, quiet or as_json)]):
                 complain(said)
                 return EXIT[Outcome.NO_RESULT]
             kept = {f.name: t for f in wanted if resume and (t := campaign.kept_trial(f, output))}
