@@ -1,0 +1,220 @@
+"""Kill a run with kill -9 at random moments, resume it each time, hold what it ends with against a calm run.
+
+python tests/rough/kill_default_run.py [CASE ...] --kills 50 --output FOLDER
+
+Without cases it is the default run that is killed. Every second kill takes the run alone, the others its
+workers too; every third is aimed at a file being written. Ends with 1 where a finished case was lost, a
+damaged file was taken for a result, a process was left over, or a number differs from those of the calm run.
+"""
+
+import argparse
+import json
+import os
+import random
+import signal
+import subprocess
+import sys
+import time
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import Any
+
+from verification.store import PART, StoreError, read_checked
+
+__all__ = ["disturbed", "largest_difference", "main", "resumed"]
+
+# What a second run of the same case may measure differently: times, and what they are part of.
+TIMES = ("seconds", "started", "diagnostics")
+
+
+def resumed(output: Path, cases: Sequence[str], jobs: int) -> subprocess.Popen[bytes]:
+    """A run that goes on with what ``output`` holds, as the leader of a group of its own."""
+    words = ["run", *cases, "--resume", "--quiet", "--jobs", str(jobs), "--output", str(output)]
+    return subprocess.Popen(
+        [sys.executable, "-m", "verification.cli", *words],
+        start_new_session=True,
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+    )
+
+
+def whole(output: Path) -> dict[str, bytes]:
+    """The finished cases with the content of their files. Raises StoreError where any stored file is damaged."""
+    for path in sorted(output.rglob("*.json")):
+        if path.name != "report.json":
+            read_checked(path)
+    return {path.name: path.read_bytes() for path in sorted((output / "cases").glob("*.json"))}
+
+
+def descendants(pid: int) -> list[int]:
+    """Processes below ``pid``."""
+    children: dict[int, list[int]] = {}
+    for entry in Path("/proc").iterdir():
+        if entry.name.isdigit():
+            try:
+                parent = int((entry / "stat").read_text().rpartition(")")[2].split()[1])
+            except (OSError, IndexError, ValueError):
+                continue
+            children.setdefault(parent, []).append(int(entry.name))
+    found, front = [], [pid]
+    while front:
+        front = [child for one in front for child in children.get(one, [])]
+        found += front
+    return found
+
+
+def running(pid: int) -> bool:
+    """True for a process that is there and no zombie."""
+    try:
+        return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0] != "Z"
+    except OSError:
+        return False
+
+
+def kill_at(
+    run: subprocess.Popen[bytes], output: Path, moment: float, *, aimed: bool, group: bool
+) -> Counter[str]:
+    """Wait for the moment [s] or, ``aimed``, for a file being written; kill; count what was seen."""
+    seen: Counter[str] = Counter()
+    begin = time.monotonic()
+    places = (output, *(output / name for name in ("cases", "planes")))
+    while run.poll() is None and time.monotonic() - begin < moment * (3 if aimed else 1):
+        if aimed and time.monotonic() - begin > moment / 2:
+            if any(next(place.glob(f".*{PART}"), None) for place in places):
+                seen["while a file was written"] += 1
+                break
+            continue
+        time.sleep(0.005)
+    if run.poll() is not None:
+        seen["too late: the run had ended"] += 1
+        return seen
+    below = descendants(run.pid)
+    seen["with workers at work" if below else "without workers"] += 1
+    for pid in [run.pid, *(below if group else [])]:
+        try:
+            os.kill(pid, signal.SIGKILL)
+        except ProcessLookupError:
+            continue
+    run.wait()
+    deadline = time.monotonic() + 10
+    while any(running(pid) for pid in below) and time.monotonic() < deadline:
+        time.sleep(0.01)
+    seen["processes left over"] += sum(running(pid) for pid in below)
+    seen["kills"] += 1
+    return seen
+
+
+def numbers(node: Any, path: tuple[str, ...] = ()) -> Iterator[tuple[tuple[str, ...], Any]]:
+    """Every leaf of a stored result but the times."""
+    if isinstance(node, dict):
+        for key, value in node.items():
+            if key not in TIMES:
+                yield from numbers(value, (*path, key))
+    elif isinstance(node, list):
+        for n, value in enumerate(node):
+            yield from numbers(value, (*path, str(n)))
+    else:
+        yield path, node
+
+
+def largest_difference(one: Path, other: Path) -> tuple[float, int]:
+    """Largest difference of the numbers of two run directories over the larger of the list each stands in.
+
+    Infinite where anything else differs: a verdict, a name, the number of values. And how many there were.
+    """
+    largest, count = 0.0, 0
+    names = [{p.name for p in (folder / "cases").glob("*.json")} for folder in (one, other)]
+    if names[0] != names[1]:
+        return float("inf"), 0
+    for name in sorted(names[0]):
+        a, b = (dict(numbers(read_checked(folder / "cases" / name))) for folder in (one, other))
+        if a.keys() != b.keys():
+            return float("inf"), count
+        scale: dict[tuple[str, ...], float] = {}
+        for path, value in a.items():
+            if isinstance(value, float):
+                scale[path[:-1]] = max(scale.get(path[:-1], 0.0), abs(value))
+        for path, value in a.items():
+            count += 1
+            if value == b[path]:
+                continue
+            if not (isinstance(value, float) and isinstance(b[path], float)):
+                return float("inf"), count
+            largest = max(largest, abs(value - b[path]) / scale[path[:-1]])
+    return largest, count
+
+
+def disturbed(
+    output: Path, cases: Sequence[str], kills: int, longest: float, jobs: int, seed: int = 8
+) -> Counter[str]:
+    """Kill and resume runs until ``kills`` are counted; whenever all is done a new directory is begun."""
+    rng = random.Random(seed)
+    counts: Counter[str] = Counter()
+    turn = 0
+    while counts["kills"] < kills:
+        folder = output / f"round-{turn}"
+        kept: dict[str, bytes] = {}
+        finished = False
+        while counts["kills"] < kills and not finished:
+            run = resumed(folder, cases, jobs)
+            number = counts["kills"]
+            counts += kill_at(
+                run, folder, rng.uniform(0, longest), aimed=number % 3 == 2, group=number % 2 == 1
+            )
+            finished = run.returncode is not None and run.returncode >= 0
+            try:
+                found = whole(folder)
+            except StoreError:
+                counts["partial files under the name of a result"] += 1
+                raise
+            # A finished case stays as it is, to the letter: it was neither lost nor computed again.
+            counts["finished cases lost"] += sum(kept[name] != found.get(name) for name in kept)
+            counts["cases finished"] += len(found.keys() - kept.keys())
+            kept = found
+        if not finished:
+            run = resumed(folder, cases, jobs)
+            code = run.wait()
+            counts[f"last run of a round ended with {code}"] += 1
+            found = whole(folder)
+            counts["finished cases lost"] += sum(kept[name] != found.get(name) for name in kept)
+        counts["rounds"] += 1
+        json.loads((folder / "report.json").read_text())
+        counts["half-written files left"] += len(list(folder.rglob(f".*{PART}")))
+        turn += 1
+    return counts
+
+
+def main() -> int:
+    """Run, print the counts; 1 where anything was lost."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("cases", nargs="*")
+    parser.add_argument("--kills", type=int, default=50)
+    parser.add_argument("--output", type=Path, required=True)
+    parser.add_argument("--jobs", type=int, default=2)
+    parser.add_argument(
+        "--longest", type=float, help="latest moment of a kill [s]; else a third of the calm run"
+    )
+    chosen = parser.parse_args()
+    begin = time.monotonic()
+    calm = chosen.output / "calm"
+    code = resumed(calm, chosen.cases, chosen.jobs).wait()
+    seconds = time.monotonic() - begin
+    sys.stdout.write(f"calm run: {seconds:.0f} s, code {code}, {len(whole(calm))} cases\n")
+    sys.stdout.flush()
+    rough = chosen.output / "rough"
+    counts = disturbed(rough, chosen.cases, chosen.kills, chosen.longest or seconds / 3, chosen.jobs)
+    largest = 0.0
+    for folder in sorted(rough.iterdir()):
+        difference, compared = largest_difference(calm, folder)
+        largest = max(largest, difference)
+        sys.stdout.write(f"{folder.name}: {compared} values, largest difference {difference:.2g}\n")
+    for name, count in sorted(counts.items()):
+        sys.stdout.write(f"{count:5d} {name}\n")
+    forbidden = ("finished cases lost", "processes left over", "half-written files left")
+    lost = sum(counts[name] for name in forbidden)
+    return int(lost > 0 or largest > 1e-12 or counts["kills"] < chosen.kills)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
