@@ -19,13 +19,13 @@ SCHEMA = "coatcheck-alarms/1"
 
 @dataclass(frozen=True)
 class Alarm:
-    """One comparison that does not agree, with its problem as a case file."""
+    """One comparison that does not agree, or law of one source that does not hold, with its case file."""
 
     case: str
     title: str
     quantity: str
     line: str
-    between: tuple[str, str]
+    between: tuple[str, ...]
     outcome: Outcome
     reason: str
     toml: str
@@ -35,7 +35,7 @@ class Alarm:
 class AlarmRecord:
     """What ``problems`` clean problems of ``seed`` came to, when, with what; seconds of the whole.
 
-    agreeing : problems in which every one of the ``comparisons`` agrees.
+    agreeing : problems in which every one of the ``comparisons`` agrees, every one of the ``laws`` holds.
     smallest_margin : of U - |A - B| over U, the least of all that agree; how near an alarm was.
     """
 
@@ -43,6 +43,7 @@ class AlarmRecord:
     problems: int
     agreeing: int
     comparisons: int
+    laws: int
     alarms: tuple[Alarm, ...]
     smallest_margin: float | None
     started: str
@@ -60,6 +61,17 @@ def counted(results: Sequence[CaseResult], seed: int, info: RunInfo) -> AlarmRec
         for c, v in r.verdicts
         if v.outcome is not Outcome.AGREES
     ]
+    alarms += [
+        Alarm(r.name, r.title, law.name, "", (law.source,), law.outcome, law.sentence, r.text)
+        for r in results
+        for law in r.invariants
+        if law.outcome is not Outcome.AGREES
+    ]
+    alarms += [
+        Alarm(r.name, r.title, "", "", (), Outcome.NO_RESULT, "nothing was compared", r.text)
+        for r in results
+        if not r.verdicts
+    ]
     margins = [
         verdict.margin / (verdict.margin + verdict.difference)
         for result in results
@@ -71,6 +83,7 @@ def counted(results: Sequence[CaseResult], seed: int, info: RunInfo) -> AlarmRec
         len(results),
         sum(result.outcome is Outcome.AGREES for result in results),
         sum(len(result.verdicts) for result in results),
+        sum(len(result.invariants) for result in results),
         tuple(alarms),
         min(margins, default=None),
         info.started,

@@ -257,6 +257,6 @@ def _short_alarms(evidence: Evidence) -> str:
     if record is None:
         return "not measured"
     return (
-        f"{len(record.alarms)} false alarms in {record.comparisons} comparisons of {record.problems} clean "
-        f"random problems; {record.agreeing} of the problems agree throughout."
+        f"{len(record.alarms)} false alarms in {record.comparisons} comparisons and {record.laws} laws of "
+        f"{record.problems} clean random problems; {record.agreeing} of the problems agree throughout."
     )

@@ -240,7 +240,7 @@ def alarm_table(record: AlarmRecord | None) -> Table | None:
                 outcome_cell(alarm.outcome),
                 Cell(alarm.quantity),
                 Cell(alarm.line),
-                Cell(pair_label(alarm.between)),
+                Cell(" – ".join(source_label(source) for source in alarm.between)),
                 Cell(alarm.reason, css="words"),
             ],
         )
