@@ -38,9 +38,7 @@ def faults_sentence(record: Record) -> str:
     )
     if record.blanks:
         number = len(record.blanks)
-        said += (
-            f"; in {number} trials with nothing planted {len(record.alarms) or 'no'} check raised an alarm"
-        )
+        said += f"; of {number} trials with nothing planted {len(record.alarms) or 'none'} raised an alarm"
     return said + "."
 
 
@@ -50,7 +48,7 @@ def faults_section(record: Record) -> Section:
     if record.survivors:
         parts.append(Part("What was not caught, why, what would catch it.", [_survivors(record)]))
     groups = [(title, [row for row in record.rows if row.group == key]) for key, title in GROUPS.items()]
-    parts.append(Part(_reading(), [_matrix(rows, title) for title, rows in groups if rows]))
+    parts.append(Part(_reading(record), [_matrix(rows, title) for title, rows in groups if rows]))
     if record.blanks:
         said = "The same trials with nothing planted: whatever is caught here is a false alarm."
         parts.append(Part(said, [_matrix(record.blanks, "Nothing planted")]))
@@ -87,13 +85,28 @@ def _method(record: Record) -> str:
     )
 
 
-def _reading() -> str:
+def _reading(record: Record) -> str:
     columns = "; ".join(f"“{title}”: {said}" for title, said in COLUMNS.items())
+    blind = sum(_only_coated(row) for row in record.rows)
+    said = (
+        f"{blind} faults pass every comparison of the uncoated cases, with Hertz and Hamilton too, and are "
+        "caught on coated cases alone. "
+        if blind
+        else ""
+    )
     return (
-        "Each cell counts the checks that do not pass, of those that were made: ✓ a disagreement, ? an "
-        "uncertainty beyond its cap, ∅ no result. An empty cell is a check that was not made, since the "
+        f"{said}Each cell counts the checks that do not pass, of those that were made: ✓ a disagreement, "
+        "? an uncertainty beyond its cap, ∅ no result. An empty cell is a check that was not made, since the "
         f"fault does not reach it. The columns: {columns}."
     )
+
+
+def _only_coated(row: FaultRow) -> bool:
+    """True where comparisons on uncoated cases all pass and some on coated ones do not."""
+    bare = [seen for column, seen in row.columns.items() if column.startswith("bare")]
+    coated = [seen for column, seen in row.columns.items() if column.startswith("coated")]
+    passed = all(seen.disagree + seen.inconclusive + seen.no_result == 0 for seen in bare)
+    return bool(bare) and passed and any(seen.disagree + seen.inconclusive for seen in coated)
 
 
 def _score(record: Record) -> Table:
@@ -145,12 +158,11 @@ def _matrix(rows: Sequence[FaultRow], caption: str) -> Table:
             _catch_cell(row),
             Cell("✓" if row.as_expected else "–", note=row.by),
             *(_seen_cell(row.columns.get(column)) for column in COLUMNS),
-            Cell(scientific(row.change), row.change, note=row.changed),
-            Cell(seconds(row.seconds), row.seconds),
+            Cell(scientific(row.change), row.change, note=f"{row.changed}; {seconds(row.seconds)}"),
         ]
         made.append(Row(Cell(row.name, note=row.by), cells))
-    columns = ["fault", "what is wrong", "in", "outcome", "as foretold", *COLUMNS, "change", "time"]
-    spans = [("", 5), ("checks that do not pass", len(COLUMNS)), ("", 2)]
+    columns = ["fault", "what is wrong", "in", "outcome", "as foretold", *COLUMNS, "change"]
+    spans = [("", 5), ("checks that do not pass", len(COLUMNS)), ("", 1)]
     return Table(caption, columns, made, spans, "faults")
 
 
