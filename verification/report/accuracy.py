@@ -20,10 +20,19 @@ from verification.report.reading import (
 from verification.result import CaseResult
 from verification.verdict import Claim
 
-__all__ = ["Accuracy", "accuracies", "accuracy_overview", "accuracy_sentence", "accuracy_table"]
+__all__ = [
+    "Accuracy",
+    "accuracies",
+    "accuracy_overview",
+    "accuracy_sentence",
+    "accuracy_table",
+    "coverage_table",
+]
 
 # An estimate below half the true error is no estimate.
 TOO_SMALL = 0.5
+# Share of quantities whose true error an uncertainty must hold, the level at which it is usually stated.
+COVERED = 0.95
 
 
 @dataclass(frozen=True)
@@ -157,6 +166,41 @@ def _overview_cell(found: Sequence[Accuracy]) -> Cell:
         note += f"; smallest ratio {plain(weakest.ratio, 2)}: {weakest.quantity} on {weakest.line}"
     text = f"{scientific(worst.error)} | {scientific(worst.estimate)}{mark}"
     return Cell(text, worst.error, f"flag {weakest.css}", note)
+
+
+def coverage_table(results: Sequence[CaseResult]) -> Table | None:
+    """How often the uncertainty a method states holds its true error; None without an exact reference."""
+    rows = []
+    for source in METHODS:
+        found = [(result, item) for result in results for item in accuracies(result) if item.source == source]
+        if not found:
+            continue
+        held = sum(item.brackets for _, item in found)
+        case, worst = min(found, key=lambda pair: -1.0 if pair[1].ratio is None else pair[1].ratio)
+        stated = [item.ratio for _, item in found if item.ratio is not None and np.isfinite(item.ratio)]
+        reach = "not stated" if not worst.ratio else plain(1 / worst.ratio, 2)
+        cells = [
+            Cell(f"{held} of {len(found)}", held),
+            Cell(f"{100 * held / len(found):.1f} %", held / len(found), _covered_css(held / len(found))),
+            Cell(reach, 1 / worst.ratio if worst.ratio else None),
+            Cell(f"{worst.quantity.replace('_', ' ')} on {worst.line}, {case.title}"),
+            Cell(plain(float(np.median(stated)), 2) if stated else "–"),
+        ]
+        rows.append(Row(Cell(source_label(source)), cells))
+    if not rows:
+        return None
+    return Table(
+        "Quantities on all lines of all cases whose true error, known from the exact reference, lies within "
+        f"the stated uncertainty at every judged point; at least {100 * COVERED:.0f} % are asked for. The "
+        "largest error over its uncertainty, and the median of the smallest ratios of uncertainty to error.",
+        ["method", "held", "share", "largest error / U", "there", "median U / error"],
+        rows,
+        css="overview",
+    )
+
+
+def _covered_css(share: float) -> str:
+    return f"flag {'agrees' if share >= COVERED else 'disagrees'}"
 
 
 def accuracy_sentence(results: Sequence[CaseResult], source: str) -> str:

@@ -117,4 +117,6 @@ def _badness(one: Invariant) -> tuple[int, float]:
 def _percent(share: float | None) -> str:
     if share is None:
         return "–"
-    return f"{plain(100 * share, 2)} %" if share >= 1e-4 else "< 0.01 %"
+    if share < 1e-4:
+        return "< 0.01 %"
+    return f"{100 * share:.0f} %" if share >= 0.1 else f"{plain(100 * share, 2)} %"

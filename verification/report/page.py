@@ -16,7 +16,7 @@ from markupsafe import Markup
 from verification.accuracy_study import AccuracyStudy
 from verification.baseline import Regression
 from verification.plane import Plane
-from verification.report.accuracy import accuracy_overview, accuracy_sentence, accuracy_table
+from verification.report.accuracy import accuracy_overview, accuracy_sentence, accuracy_table, coverage_table
 from verification.report.baseline import baseline_section, state_cell
 from verification.report.cells import Part, Section, Table
 from verification.report.convergence import convergence_sections
@@ -192,6 +192,8 @@ def _sections(
         for source in METHODS
         if (overview := accuracy_overview(found, places, source)) is not None
     ]
+    if (coverage := coverage_table(found)) is not None:
+        accuracy.insert(0, Part("", [coverage]))
     if accuracy:
         sections.append(Section("accuracy", "Accuracy against the exact reference", accuracy))
     if (laws := invariant_section(found, places)) is not None:
@@ -274,7 +276,8 @@ def _line(result: CaseResult, line: str, anchor: str, file: str) -> LineView:
     return LineView(
         anchor=key,
         title=f"Along the {line}" if line in ("surface", "axis") else line.capitalize(),
-        figures=line_figures(result, line, key),
+        # Named in every figure many times over: short names for the identifiers within.
+        figures=line_figures(result, line, f"f{hashlib.blake2s(key.encode(), digest_size=5).hexdigest()}"),
         csv=embedded(line_csv(result, line)),
         file=f"{file}-{slug(line)}.csv",
     )

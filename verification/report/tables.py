@@ -119,25 +119,25 @@ def verdict_table(
                     Cell(claim.quantity, note=claim.why),
                     Cell(claim.line),
                     Cell(pair_label(claim.between)),
-                    Cell(verdict.reason, css="reason"),
                     Cell(scientific(verdict.difference), verdict.difference),
                     Cell(scientific(verdict.uncertainty), verdict.uncertainty),
                     Cell(scientific(claim.cap), claim.cap),
                     Cell(scientific(verdict.margin, sign=True), verdict.margin),
                     *([Cell(knob(claim, verdict))] if knob is not None else []),
                     Cell(where, verdict.worst),
+                    Cell(verdict.reason, css="reason"),
                 ],
                 "" if verdict.outcome is Outcome.AGREES else OUTCOMES[verdict.outcome].css,
             )
         )
-    columns = ["verdict", "quantity", "line", "between", "reason", "max |A − B|", "max U", "cap", "margin"]
+    columns = ["verdict", "quantity", "line", "between", "max |A − B|", "max U", "cap", "margin"]
     columns += ["U mostly from"] if knob is not None else []
     said = "the side and the knob that give U its largest part there; " if knob is not None else ""
     return Table(
         "Largest difference and largest uncertainty U = U_A + U_B over the judged points, the cap on U, the "
         "smallest margin U − |A − B|, all as fractions of the value (p0, a, approach) or of p_h; "
         f"{said}the point that decides.",
-        [*columns, "at"],
+        [*columns, "at", "reason"],
         rows,
         css="verdicts",
     )
