@@ -14,7 +14,7 @@ EVERY = 1_000_000  # points of a profile
 
 @dataclass(frozen=True)
 class VerdictChange:
-    """A claim whose outcome is not what it was; None where one of the runs does not make it."""
+    """A claim of a case of both runs whose outcome is not what it was; None where one does not make it."""
 
     case: str
     quantity: str
@@ -67,7 +67,9 @@ def compare_runs(a: StoredRun, b: StoredRun) -> RunComparison:
     )
     names = list(dict.fromkeys(result.name for result in (*a.results, *b.results)))
     found = {name: (a.result(name), b.result(name)) for name in names}
-    changes = [change for name, pair in found.items() for change in _verdicts(name, *pair)]
+    changes = [
+        change for name, (one, two) in found.items() if one and two for change in _verdicts(name, one, two)
+    ]
     return RunComparison(
         (str(a.path), str(b.path)),
         (a.info.started, b.info.started),
@@ -81,10 +83,9 @@ def compare_runs(a: StoredRun, b: StoredRun) -> RunComparison:
     )
 
 
-def _verdicts(name: str, one: CaseResult | None, two: CaseResult | None) -> list[VerdictChange]:
+def _verdicts(name: str, one: CaseResult, two: CaseResult) -> list[VerdictChange]:
     before, after = (
-        {(c.quantity, c.line, c.between): v for c, v in result.verdicts} if result is not None else {}
-        for result in (one, two)
+        {(c.quantity, c.line, c.between): v for c, v in result.verdicts} for result in (one, two)
     )
     found = []
     for key in dict.fromkeys([*before, *after]):

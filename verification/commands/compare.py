@@ -21,7 +21,7 @@ from verification.verdict import Outcome
 
 __all__ = ["compare"]
 
-MOST_SHOWN = 20
+MOST_SHOWN = 8
 
 
 def compare(
@@ -71,7 +71,9 @@ def compare(
 
 def _print(found: RunComparison) -> None:
     console = Console()
-    table = Table("case", "state", *State, "largest change", "s", "s", box=None, header_style="bold")
+    table = Table(
+        "case", "state", *State, "largest change", "first s", "second s", box=None, header_style="bold"
+    )
     times = {name: (then, now) for name, then, now in found.seconds}
     for case in found.cases:
         colour = "green" if case.state is State.SAME else "yellow"
@@ -86,6 +88,9 @@ def _print(found: RunComparison) -> None:
         )
         what = f"{change.case}, {change.quantity} on {change.line}, {' against '.join(change.between)}"
         console.print(f"{escape(what)}: {said}; {escape(one_line(change.reason))}", highlight=False)
+    more = len(found.verdicts) - MOST_SHOWN
+    if more > 0:
+        console.print(f"... with {more} more, which --output or --json shows", highlight=False)
     for name, then, now in found.versions:
         console.print(escape(f"{name}: {one_line(then)} to {one_line(now)}"), highlight=False)
     from verification.report.compare import comparison_sentence
