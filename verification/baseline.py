@@ -364,7 +364,7 @@ def _gone(then: Numbers) -> Drift:
 
 
 def _new(now: Numbers) -> Drift:
-    return Drift(*now.key, State.NEW, now.count, 0, None, "is not in the baseline")
+    return Drift(*now.key, State.NEW, now.count, 0, None, "was not there before")
 
 
 def digest(text: str) -> str:

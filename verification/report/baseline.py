@@ -82,7 +82,7 @@ def drift_table(moved: Sequence[tuple[CaseDrift, Drift]]) -> Table:
             Cell(_change(drift.change), drift.change if _finite(drift.change) else None),
             Cell(drift.said),
         ]
-        rows.append(Row(Cell(case.title, note=case.name), cells))
+        rows.append(Row(Cell(case.name, note=case.title), cells))
     more = f" The {MOST} of {len(order)} with the largest change." if len(order) > MOST else ""
     return Table(
         f"What is not as it was; changes over the largest magnitude of the profile.{more}",

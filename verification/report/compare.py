@@ -53,7 +53,7 @@ def _verdicts(found: RunComparison) -> Part:
                 Cell(change.quantity),
                 Cell(change.line),
                 Cell(pair_label(change.between)),
-                Cell(change.reason),
+                Cell(change.reason, css="words"),
             ],
         )
         for change in sorted(found.verdicts, key=lambda change: not change.worse)
@@ -68,14 +68,16 @@ def _numbers(found: RunComparison) -> Part:
         counts = [case.count(state) for state in (State.SAME, State.DRIFTED, State.GONE, State.NEW)]
         cells = [state_cell(case), *(Cell(str(count), float(count)) for count in counts)]
         rows.append(
-            Row(Cell(case.title, note=case.name), [*cells, Cell(scientific(case.change), case.change)])
+            Row(Cell(case.name, note=case.title), [*cells, Cell(scientific(case.change), case.change)])
         )
     table = Table(
         "Every point of every profile of the second run against the first.",
         ["case", "state", "same", "drifted", "gone", "new", "largest change"],
         rows,
     )
-    moved = [(c, d) for c in found.cases for d in c.drifts if d.state is not State.SAME]
+    # Cases that only one run has are told above.
+    both = [c for c in found.cases if {d.state for d in c.drifts} - {State.NEW, State.GONE}]
+    moved = [(c, d) for c in both for d in c.drifts if d.state is not State.SAME]
     text = "" if len(moved) <= MOST else f"{len(moved)} profiles are not what they were."
     return Part(text, [table, *([drift_table(moved)] if moved else [])])
 
