@@ -1,13 +1,12 @@
 """Files of a run directory: written whole or not at all, read back only if their checksum holds."""
 
-import errno
 import hashlib
 import json
 import os
 import re
 import stat
 import tempfile
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
@@ -18,8 +17,6 @@ __all__ = [
     "locked",
     "read_bounded",
     "read_checked",
-    "read_sealed",
-    "seal",
     "write_atomically",
     "write_checked",
 ]
@@ -105,36 +102,6 @@ def read_bounded(path: Path, most: int) -> bytes:
     if len(raw) > most:
         raise StoreError(f"{path}: larger than {most} bytes; not a file of this program")
     return raw
-
-
-def seal(path: Path, files: Sequence[Path], text: str) -> None:
-    """Store at ``path`` the SHA-256 of ``files`` beside it, with the full input ``text`` they came from."""
-    sums = {file.name: hashlib.sha256(file.read_bytes()).hexdigest() for file in files}
-    write_checked(path, {"input": text, "sha256": sums})
-
-
-def read_sealed(path: Path) -> dict[str, Path]:
-    """The files sealed at ``path`` by name. Raises StoreError naming the one that is missing or damaged."""
-    payload = read_checked(path)
-    sums = payload.get("sha256")
-    if not isinstance(sums, dict) or not all(isinstance(stated, str) for stated in sums.values()):
-        raise StoreError(f"{path}: names no files; it is damaged, run the case again")
-    found = {}
-    for name, stated in sums.items():
-        if Path(name).name != name:
-            raise StoreError(f"{path}: names {name!r}, which does not lie beside it; it is damaged")
-        file = path.parent / name
-        try:
-            if not file.is_file():
-                raise FileNotFoundError(errno.ENOENT, "there is no such file")
-            with file.open("rb") as opened:
-                digest = hashlib.file_digest(opened, "sha256").hexdigest()
-        except OSError as error:
-            raise StoreError(f"{file}: cannot be read ({error.strerror})") from None
-        if digest != stated:
-            raise StoreError(f"{file}: its checksum does not hold; the file is damaged, run the case again")
-        found[name] = file
-    return found
 
 
 @contextmanager

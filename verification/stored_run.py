@@ -3,9 +3,10 @@
 import json
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from verification.result import CaseResult, RunInfo, from_json, to_json
-from verification.store import MAX_BYTES, StoreError, read_checked
+from verification.store import MAX_BYTES, StoreError, read_bounded, read_checked
 
 __all__ = ["StoredRun", "confirm", "read_run"]
 
@@ -30,21 +31,27 @@ def read_run(place: Path) -> StoredRun:
     """
     path = place / "report.json" if place.is_dir() else place
     try:
-        with path.open("rb") as file:
-            raw = file.read(MAX_BYTES + 1)
-    except OSError as error:
-        raise StoreError(
-            f"{path}: cannot be read ({error.strerror or error}); give the directory of a run, or report.json"
-        ) from None
-    if len(raw) > MAX_BYTES:
-        raise StoreError(f"{path}: larger than {MAX_BYTES} bytes; not a report of this program")
+        raw = read_bounded(path, MAX_BYTES)
+    except StoreError as error:
+        raise StoreError(f"{error}; give the directory of a run, or its report.json") from None
     try:
         data = json.loads(raw)
-        known = {name: data["run"][name] for name in RunInfo.__dataclass_fields__}
-        return StoredRun(path, RunInfo(**known), tuple(from_json(case) for case in data["cases"]))
-    except (ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
+        return StoredRun(path, _info(data["run"]), tuple(from_json(case) for case in data["cases"]))
+    except (ValueError, KeyError, TypeError, AttributeError, OverflowError, RecursionError) as error:
         said = " ".join(str(error).split())[:120]
         raise StoreError(f"{path}: not a report of this program ({said}); run the cases again") from None
+
+
+def _info(run: dict[str, Any]) -> RunInfo:
+    """Every part brought to its type: the report may be a stranger's."""
+    texts = {name: str(run[name]) for name in ("command", "started", "machine")}
+    return RunInfo(
+        **texts,
+        seconds=float(run["seconds"]),
+        jobs=int(run["jobs"]),
+        commit=None if run["commit"] is None else str(run["commit"]),
+        versions={str(name): str(version) for name, version in run["versions"].items()},
+    )
 
 
 def confirm(run: StoredRun) -> None:

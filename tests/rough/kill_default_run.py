@@ -40,7 +40,7 @@ def resumed(output: Path, cases: Sequence[str], jobs: int) -> subprocess.Popen[b
 
 
 def whole(output: Path) -> dict[str, bytes]:
-    """The finished cases with the content of their files. Raises StoreError where any stored file is damaged."""
+    """The finished cases with the content of their files. Raises StoreError for any stored file damaged."""
     for path in sorted(output.rglob("*.json")):
         if path.name != "report.json":
             read_checked(path)

@@ -26,8 +26,6 @@ from verification.store import (
     locked,
     read_bounded,
     read_checked,
-    read_sealed,
-    seal,
     write_atomically,
     write_checked,
 )
@@ -210,24 +208,6 @@ def test_pipe_device_or_directory_in_the_place_of_a_file_holds_nobody_up(tmp_pat
     os.mkfifo(tmp_path / "run" / ".lock")
     with locked(tmp_path / "run"):
         pass
-
-
-def test_seal_notices_a_changed_missing_or_foreign_file(tmp_path):
-    files = [tmp_path / "a.vtu", tmp_path / "a.vtr"]
-    for file in files:
-        file.write_bytes(os.urandom(1000))
-    seal(tmp_path / "a.json", files, FAST)
-    assert sorted(read_sealed(tmp_path / "a.json").values()) == sorted(files)
-    assert read_checked(tmp_path / "a.json")["input"] == FAST
-    files[0].write_bytes(files[0].read_bytes()[:-1] + b"!")
-    with pytest.raises(StoreError, match=r"a\.vtu: its checksum does not hold"):
-        read_sealed(tmp_path / "a.json")
-    files[0].unlink()
-    with pytest.raises(StoreError, match=r"a\.vtu: cannot be read"):
-        read_sealed(tmp_path / "a.json")
-    write_checked(tmp_path / "a.json", {"input": "", "sha256": {"../b": "0" * 64}})
-    with pytest.raises(StoreError, match="does not lie beside it"):
-        read_sealed(tmp_path / "a.json")
 
 
 def test_nothing_is_written_through_a_link(tmp_path):
