@@ -26,7 +26,7 @@ TITLES = {"von_mises": "von Mises"}
 SEQUENTIAL, DIVERGING, DIFFERENCE = "viridis", "RdBu_r", "cividis"
 FLOOR, TOP = -8.0, -3.0  # exponents of the difference over p_h; the same in all cases, to be compared
 EDGE = 0.05  # of a: as near to the contact edge nothing is judged on the surface
-EVERY = 2  # of the columns in the table of numbers
+EVERY = 3  # of the columns in the table of numbers
 
 
 @dataclass(frozen=True)
@@ -62,17 +62,17 @@ def pictures(result: CaseResult, plane: Plane | None) -> Pictures | None:
 
 
 def plane_csv(plane: Plane) -> str:
-    """Position, layer, stresses of every source at every second x; SI units in the column heads."""
+    """Position, layer, stresses of every source at every third x; SI units in the column heads."""
     x = plane.x[::EVERY]
     columns = [["layer"], ["x [m]"], ["z [m]"]]
     for k, z in enumerate(plane.depths):
         columns[0] += [str(k)] * (z.size * x.size)
-        columns[1] += [f"{v:.7g}" for v in np.tile(x, z.size)]
-        columns[2] += [f"{v:.7g}" for v in np.repeat(z, x.size)]
+        columns[1] += [f"{v:.6g}" for v in np.tile(x, z.size)]
+        columns[2] += [f"{v:.6g}" for v in np.repeat(z, x.size)]
     for source, layers in plane.stress.items():
         for name in (*COMPONENTS, "von_mises"):
             values = np.concatenate([_quantity(sigma, name)[:, ::EVERY].ravel() for sigma in layers])
-            columns.append([f"{name} [Pa] {source}", *(f"{v:.7g}" for v in values)])
+            columns.append([f"{name} [Pa] {source}", *(f"{v:.6g}" for v in values)])
     return written(list(zip_longest(*columns, fillvalue="")))
 
 

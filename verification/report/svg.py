@@ -74,6 +74,8 @@ def _attributes(
                 written["id"] = names[value]
         elif name.endswith("href"):
             written["href"] = f"#{names[value[1:]]}"
+        elif name == "clip-path" and "-grid" in _style(node.get("style", ""), colours).get("class", ""):
+            continue  # grid lines end at the frame as they are
         elif name == "clip-path":
             written["clip-path"] = f"url(#{names[value[5:-1]]})"
         elif name == "d":
@@ -105,7 +107,7 @@ def _relative(path: str) -> str:
         return " ".join(path.split())
     written = []
     x = y = 0
-    for command, px, py in _PAIR.findall(path):
+    for command, px, py in _straightened(_PAIR.findall(path)):
         nx, ny = round(10 * float(px)), round(10 * float(py))
         if command == "M":
             written.append(f"M{_tenths(nx)} {_tenths(ny)}")
@@ -115,6 +117,28 @@ def _relative(path: str) -> str:
             written.append(f"{start}{dx}{'' if dy[0] == '-' else ' '}{dy}")
         x, y = nx, ny
     return "".join(written) + ("z" if path.rstrip().endswith("z") else "")
+
+
+def _straightened(points: list[tuple[str, str, str]]) -> list[tuple[str, str, str]]:
+    """``points`` without those in the middle of a level or upright stretch that keeps its direction."""
+    kept: list[tuple[str, str, str]] = []
+    for point in points:
+        while (
+            len(kept) > 1 and point[0] == "L" and kept[-1][0] == "L" and _needless(kept[-2], kept[-1], point)
+        ):
+            kept.pop()
+        kept.append(point)
+    return kept
+
+
+def _needless(
+    before: tuple[str, str, str], middle: tuple[str, str, str], after: tuple[str, str, str]
+) -> bool:
+    for along, across in ((1, 2), (2, 1)):
+        a, b, c = (round(10 * float(p[along])) for p in (before, middle, after))
+        if len({round(10 * float(p[across])) for p in (before, middle, after)}) == 1:
+            return a <= b <= c or a >= b >= c
+    return False
 
 
 def _tenths(value: int) -> str:
