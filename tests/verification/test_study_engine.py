@@ -1,4 +1,4 @@
-"""The engine of a study on made-up answers: nothing lost, nothing solved twice, the same table whatever came."""
+"""The engine of a study on made-up answers: nothing lost, nothing solved twice, the same table always."""
 
 import json
 from contextlib import contextmanager

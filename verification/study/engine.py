@@ -11,18 +11,18 @@ import logging
 import os
 import time
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 from dataclasses import dataclass, field
 from itertools import chain, groupby, islice
 from pathlib import Path
-from typing import IO, Any
+from typing import Any
 
 from verification.run import sentence
 from verification.schedule import THREAD_VARIABLES, cores
 from verification.store import StoreError, locked
 from verification.study.cache import Cache, code_version, solve_key
 from verification.study.plan import Solve, Study
-from verification.study.point import answer, table_rows
+from verification.study.point import answer, peak_memory, table_rows
 from verification.study.table import SOURCES, write_table
 
 __all__ = ["Outcome", "SchedulerError", "connected", "run_study", "table_path"]
@@ -126,17 +126,16 @@ def run_study(
     begin = time.perf_counter()
     with locked(folder):
         run = _Run(study, folder, limit, report)
-        try:
-            waiting = run.missing()
-            first = next(waiting, None)
-            if first is not None:
-                with client() as open_client:
+        waiting = run.missing()
+        first = next(waiting, None)
+        with nullcontext() if first is None else client() as open_client:
+            try:
+                if first is not None:
                     run.solve(chain([first], waiting), open_client, solve)
-            run.outcome.complete = limit is None
-        finally:
-            run.write_table()
-            run.ledger.close()
-            run.outcome.seconds = time.perf_counter() - begin
+                run.outcome.complete = limit is None
+            finally:
+                run.write_table()
+                run.outcome.seconds = time.perf_counter() - begin
     return run.outcome
 
 
@@ -148,7 +147,7 @@ class _Run:
         self.cache = Cache(folder / "cache")
         points = study.points if limit is None else min(limit, study.points)
         self.outcome = Outcome(table_path(folder, study), points)
-        self.ledger: IO[str] = (folder / "ledger.jsonl").open("a")
+        self.ledger = folder / "ledger.jsonl"
         self.asked: set[bytes] = set()
         self.total = dict.fromkeys(SOURCES, 0)
         self.finished = dict.fromkeys(SOURCES, 0)
@@ -227,7 +226,7 @@ class _Run:
                 "versions of its dependencies on every worker"
             )
         self.cache.put(key, one.request, found)
-        self._note("stored", key, one.source, found["seconds"])
+        self._note("stored", key, one.source, seconds=found["seconds"], memory=found.get("memory", 0))
         self.outcome.done += 1
         self.count(one)
         self._write_now_and_then()
@@ -248,10 +247,12 @@ class _Run:
         self.finished[one.source] += self.covered(one)
         self.report(one.source, self.finished[one.source], self.total[one.source])
 
-    def _note(self, event: str, key: str, source: str, seconds: float | None = None) -> None:
-        line = {"event": event, "key": key, "source": source, "process": os.getpid(), "seconds": seconds}
-        self.ledger.write(json.dumps(line) + "\n")
-        self.ledger.flush()
+    def _note(self, event: str, key: str, source: str, **more: float) -> None:
+        """A line of the ledger, with this process and, once stored, the worker's seconds and peak memory."""
+        line = {"event": event, "key": key, "source": source, "process": os.getpid(), **more}
+        line |= {"at": round(time.perf_counter() - self.begin, 3), "client_memory": peak_memory()}
+        with self.ledger.open("a") as file:
+            file.write(json.dumps(line) + "\n")
 
     def _write_now_and_then(self) -> None:
         now = time.perf_counter()

@@ -5,6 +5,7 @@ can answer: a worker on another machine, a test in its own.
 """
 
 import json
+import sys
 import time
 from collections.abc import Mapping
 from typing import Any
@@ -18,15 +19,15 @@ from verification.study.quantities import quantities
 from verification.study.table import SCALARS
 from verification.surroundings import versions
 
-__all__ = ["answer", "problem_of", "table_rows"]
+__all__ = ["answer", "peak_memory", "problem_of", "table_rows"]
 
 
 def answer(request: Mapping[str, Any]) -> dict[str, Any]:
     """Solve ``request`` and find every quantity at each of its frictions.
 
     request : source, numerics (its own keywords), frictions, radius, load, coating (E, nu, thickness),
-    substrate (E, nu).  Returns {"rows": [one dictionary a friction], "seconds", "versions",
-    "code"}; a solve that fails leaves its sentence in every row.
+    substrate (E, nu).  Returns {"rows": [one dictionary a friction], "seconds", "versions", "code",
+    "memory" [bytes]}; a solve that fails leaves its sentence in every row.
     """
     begin = time.perf_counter()
     frictions = [float(f) for f in request["frictions"]]
@@ -43,7 +44,18 @@ def answer(request: Mapping[str, Any]) -> dict[str, Any]:
         "seconds": time.perf_counter() - begin,
         "versions": versions(),
         "code": code_version(request["source"]),
+        "memory": peak_memory(),
     }
+
+
+def peak_memory() -> int:
+    """The most memory that this process has held so far [bytes]; 0 where the system does not tell."""
+    try:
+        import resource
+    except ImportError:
+        return 0
+    most = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    return most if sys.platform == "darwin" else 1024 * most
 
 
 def problem_of(request: Mapping[str, Any], friction: float) -> CoatedContact:

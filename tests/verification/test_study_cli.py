@@ -1,0 +1,60 @@
+"""The study command: bad input is one sentence with exit code 2, nothing written; else what came of it."""
+
+import json
+
+import pytest
+from synthetic_solves import STUDY
+
+from verification.commands.study import thickness
+from verification.study.table import read_columns
+
+
+def written(folder):
+    return [
+        path
+        for path in folder.rglob("*")
+        if path.is_file() and path.suffix != ".toml" and path.stat().st_size
+    ]
+
+
+@pytest.mark.parametrize(
+    ("plan", "options", "said"),
+    [
+        ("no_such_study", {}, "neither a shipped study (default, "),
+        ("no_such_study.toml", {}, "there is no such file"),
+        (".", {}, "is a directory"),
+        ("bad.toml", {}, "bad.toml: problem.radius must be a number"),
+        ("good.toml", {"jobs": 0}, "--jobs = 0"),
+        ("good.toml", {"limit": 0}, "--limit = 0"),
+        ("good.toml", {"scheduler": "nowhere"}, "--scheduler nowhere"),
+    ],
+)
+def test_bad_input_is_one_sentence_and_nothing_is_written(plan, options, said, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "good.toml").write_text(STUDY)
+    (tmp_path / "bad.toml").write_text(STUDY.replace("10e-3", "'ten'"))
+    assert thickness(plan, output=tmp_path / "out", **options) == 2
+    out, err = capsys.readouterr()
+    assert out == ""
+    assert err.count("\n") == 1
+    assert said in err
+    assert written(tmp_path) == []
+
+
+def test_a_study_of_one_point_from_the_command_line(tmp_path, capfd):
+    plan = tmp_path / "one.toml"
+    plan.write_text(STUDY + "[semianalytic]\npatches = 33\nestimate_uncertainty = false\n")
+    words = {"output": tmp_path / "out", "jobs": 1, "limit": 1, "cross_check": False}
+    assert thickness(str(plan), **words, as_json=True) == 0
+    out, err = capfd.readouterr()
+    assert err == ""
+    said = json.loads(out)
+    assert (said["points"], said["rows"], said["done"], said["failed"]) == (1, 1, 1, 0)
+    found = read_columns(tmp_path / "out" / "one.parquet")
+    assert found["status"].tolist() == ["solved"]
+    assert found["sigma_xx_base"][0] > 0
+    # found again, said in a sentence
+    assert thickness(str(plan), **words) == 0
+    out, err = capfd.readouterr()
+    assert err == ""
+    assert "0 solves done, 1 found in the cache, 0 of 1 rows failed" in " ".join(out.split())
