@@ -21,7 +21,7 @@ from scipy.interpolate import make_interp_spline
 
 from verification.problem import Solution
 
-__all__ = ["XX", "XZ", "YY", "ZZ", "Parts", "Plane", "crowded", "plane", "surface"]
+__all__ = ["XX", "XZ", "YY", "ZZ", "Parts", "Plane", "crowded", "plane", "stress_at", "surface"]
 
 Array = NDArray[np.float64]
 Curve = Callable[[Array], Array]
@@ -120,6 +120,14 @@ def _signed(curves: tuple[Curve, Curve], x: Array, friction: float) -> Array:
     left = x < 0
     sign = np.where(left, PARITY.reshape(4, *[1] * x.ndim), 1.0)
     return sign * (normal + friction * np.where(left, -1.0, 1.0) * tangential)
+
+
+def stress_at(parts: Parts, x: float, z: float, layer: int, friction: float) -> tuple[Array, Array]:
+    """xx, yy, zz, xz [Pa] at one point (x, 0, z), (4,), with their uncertainty: the solution's own."""
+    r = np.array([abs(x)])
+    normal, tangential, spread = parts(r, z, layer)
+    stress = _signed((lambda _: normal, lambda _: tangential), np.array([x]), friction)[:, 0]
+    return stress, parts.uncertainty(spread if x >= 0 else spread[::-1], friction)[:, 0]
 
 
 def crowded(a: float, width: float, reach: float) -> Array:

@@ -14,7 +14,7 @@ from scipy.interpolate import CubicSpline
 from scipy.optimize import minimize_scalar
 
 from verification.problem import CoatedContact, Solution
-from verification.study.planes import XX, XZ, YY, ZZ, Parts, Plane, crowded, plane, surface
+from verification.study.planes import XX, XZ, YY, ZZ, Parts, Plane, crowded, plane, stress_at, surface
 
 __all__ = ["QUANTITIES", "Located", "quantities", "von_mises"]
 
@@ -128,23 +128,10 @@ def _between(parts: Parts, planes: Sequence[Plane], knots: Array, friction: floa
         return []
     at_z = _vertex(z[i - 1 : i + 2], value[i - 1 : i + 2, j])
     at_x = _vertex(x[j - 1 : j + 2], value[i, j - 1 : j + 2])
-    # Steeper than any interpolation, a layer's thin skin is spoken for by its planes: this one must be met.
-    normal, tangential, spread = parts(np.array([abs(at_x)]), at_z, planes[1].layer)
-    here = Plane(
-        parts,
-        at_z,
-        planes[1].layer,
-        np.array([abs(at_x)] * 2),
-        (lambda r: normal + 0 * r, lambda r: tangential + 0 * r),
-        (lambda r: normal + 0 * r, lambda r: tangential + 0 * r),
-        np.repeat(spread, 2, axis=2),
-        np.zeros((2, 4)),
-        0.0,
-    )
-    s = here(np.array([at_x]), friction)[:, 0]
-    best = float(von_mises(s))
-    U = _propagated(von_mises, s, here.uncertainty(at_x, friction))
-    return [Located(best, U + abs(best - float(value[i, j])), at_x, at_z)]
+    stress_there, spread = stress_at(parts, at_x, at_z, planes[1].layer, friction)
+    best = float(von_mises(stress_there))
+    missed = abs(best - float(value[i, j]))  # by the interpolation, which may have led to the wrong place
+    return [Located(best, _propagated(von_mises, stress_there, spread) + missed, at_x, at_z)]
 
 
 def _both_sides(knots: Array, fine: int) -> Array:
