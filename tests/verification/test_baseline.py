@@ -299,3 +299,16 @@ def test_a_run_that_agrees_but_drifted_ends_with_code_5(tmp_path):
 def changed_by(result: CaseResult, share: float) -> CaseResult:
     first, *others = result.profiles
     return replace(result, profiles=(replace(first, value=first.value * (1 + share)), *others))
+
+
+ROOT = Path(__file__).resolve().parents[2]
+
+
+@pytest.mark.skipif(not path_in(ROOT / "reports" / "baseline").exists(), reason="no baseline is recorded")
+def test_the_recorded_baseline_is_whole_small_and_has_its_reasons():
+    folder = ROOT / "reports" / "baseline"
+    stored = read_baseline(folder)
+    assert stored is not None
+    assert sorted(stored.cases) == sorted(shipped_cases())
+    assert path_in(folder).stat().st_size < 500_000
+    assert all(update.why and update.when and update.versions for update in stored.history)
