@@ -25,7 +25,7 @@ __all__ = ["LayerTable", "deflection", "layer_table"]
 
 Array = NDArray[np.floating]
 
-CYCLES = 700.0  # largest k a: thinner coatings than h = a/50 have no better edge
+CYCLES = 1400.0  # largest k a: coatings thinner than h = a/100 have no better edge
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,13 +41,18 @@ class LayerTable:
 
 
 def layer_table(
-    excess: Callable[[Array], Array], thickness: float, radius: float, reach: float
+    excess: Callable[[Array], Array],
+    thickness: float,
+    radius: float,
+    reach: float,
+    *,
+    cycles: float = CYCLES,
 ) -> LayerTable:
     """Table for contacts of about ``radius`` and points r <= reach, by Gauss panels of half an oscillation.
 
-    excess : M(k) - 1, k [rad/m].  thickness : of the first coating [m].
+    excess : M(k) - 1, k [rad/m].  thickness : of the first coating [m].  cycles : largest k a.
     """
-    k_max = min(14 / thickness, CYCLES / radius)  # exp(-28) is rounding
+    k_max = min(14 / thickness, cycles / radius)  # exp(-28) is rounding
     width = 5 / (1.1 * radius + reach)
     edges = np.concatenate(
         [[0], np.geomspace(1e-4 * width, width, 10), np.linspace(width, k_max, int(k_max / width) + 2)[1:]]

@@ -17,6 +17,7 @@ class Numerics:
     patches : per side of the finest grid.  tolerance : gap and penetration over the approach.
     conversion : "split", with ``hankel_points``; "split-fft" or "plain", with ``enlarge``.
     fill : half-width of the grid over the contact radius.  edge_rounds : corrections of the contact edge.
+    edge_terms : of the profile they are made with, over what the finest grid takes.
     """
 
     patches: int = 257
@@ -27,6 +28,7 @@ class Numerics:
     enlarge: int = 4
     fill: float = 1.12
     edge_rounds: int = 3
+    edge_terms: float = 1.0
     threads: int = 1
 
     def __post_init__(self) -> None:

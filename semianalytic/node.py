@@ -76,19 +76,19 @@ def _block_of_rectangle(rectangle: Field, dx: float, dy: float, z: float) -> Arr
 
     For integer offsets the edges of the rectangle come to lie on knots of w. Next to them the Gauss nodes
     crowd towards the knots, for the logarithms and steps at z = 0, and at 0 < z << d once more towards
-    the layer of width z: 1e-7 of the largest influence at any depth.
+    the layer of width z: 1e-8 of the largest influence at any depth.
     """
     cell = np.meshgrid(np.arange(-BLOCK - 1, BLOCK + 2), np.arange(-1, BLOCK + 2), indexing="ij")
     i, j = cell[0].ravel(), cell[1].ravel()
     touched = (np.abs(i) <= 1) & (np.abs(j) <= 1)
-    layer = 10 * z / min(dx, dy)
-    if 1e-8 < layer < 0.25:
-        ends, middle = _crowded(16, layer), _crowded(24, 1 - 2 * layer)
+    layer = 8 * z / min(dx, dy)
+    if 1e-8 < layer < 0.45:
+        ends, middle = _crowded(24, layer), _crowded(24, 1 - 2 * layer)
         shift = (1 - layer) / 2
         t = np.concatenate([ends[0] - shift, middle[0], ends[0] + shift])
         crowded = t, np.concatenate([ends[1], middle[1], ends[1]])
     else:
-        crowded = _crowded(24, 1.0)
+        crowded = _crowded(32, 1.0)
     moments: Array | None = None
     for cells, (t, weight) in ((touched, crowded), (~touched, _gauss(6))):
         # w(s) = w(s + 1) - B'(s + 1/2) = -sum_k B'(s + 1/2 + k), s = c + t in the cells c = -1, 0, 1

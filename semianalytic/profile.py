@@ -19,6 +19,7 @@ __all__ = ["Prescribed", "Profile", "fit", "of_contact", "patch_mean"]
 Array = NDArray[np.floating]
 
 MISFIT = 0.02  # of the peak: a contact whose pressure is that far from a profile has no such edge
+GOOD = 0.003  # of the peak: no need to look for a better one
 
 
 @dataclass(frozen=True, eq=False)
@@ -100,27 +101,35 @@ def fit(pressure: Array, r: Array, d: float, *, radius: float, terms: int, skip:
 
 
 def of_contact(
-    pressure: Array, r: Array, d: float, *, thickness: float | None, skip: float
+    pressure: Array, r: Array, d: float, *, thickness: float | None, skip: float, share: float = 1.0
 ) -> Profile | None:
     """Profile of a contact's patch pressures, None where they have none to within ``MISFIT`` of their peak.
 
     A coating much thinner than the contact bends the pressure within its thickness of the edge, so the number
-    of terms grows as the square root of the radius over it, as far as the patches can tell them.
+    of terms grows as the square root of the radius over it, as far as the patches can tell them; so a ladder
+    that refines the patches refines the terms too, by ``share``.
 
     pressure [Pa], r [m] : (n, n), n odd, symmetric; one quadrant is used.  thickness : of the first coating
-    [m], None when uncoated.  skip : patches inside the edge that are left out.
+    [m], None when uncoated.  skip : patches inside the edge that are left out.  share : of the terms wanted.
     """
     c = len(pressure) // 2
     p, r = pressure[c:, c:], r[c:, c:]
     a = float(np.sqrt(np.count_nonzero(pressure) / np.pi) * d)
-    wanted = 6 + 2.3 * np.sqrt(a / thickness) if thickness else 6
-    terms = int(min(wanted, 16, a / d / 5))
-    if terms < 3:
-        return None
-    shape = fit(p, r, d, radius=a, terms=terms, skip=skip)
-    used = r < shape.radius - skip * d
-    misfit = float(np.max(np.abs(p - shape.pressure(r)), where=used, initial=0))
-    return shape if misfit < MISFIT * float(p.max()) else None
+    wanted = 6 + 3.2 * np.sqrt(a / thickness) if thickness else 6
+    terms = int(min(share * wanted, 20, a / d / 5))
+    least, best = MISFIT * float(p.max()), None
+    while terms >= 3:
+        # patches next to the edge may be too rough for as many terms: leave out more, then fewer terms
+        for more in (0.0, 0.5, 1.5):
+            shape = fit(p, r, d, radius=a, terms=terms, skip=skip + more)
+            used = r < shape.radius - (skip + more) * d
+            misfit = float(np.max(np.abs(p - shape.pressure(r)), where=used, initial=0))
+            if misfit < least:
+                least, best = misfit, shape
+            if least < GOOD * float(p.max()):
+                return best
+        terms = int(0.8 * terms)
+    return best
 
 
 def patch_mean(shape: Profile | Prescribed, x: Array, d: float) -> Array:

@@ -23,11 +23,20 @@ Motion = Callable[[ArrayLike, ArrayLike, ArrayLike], Array]
 EVALUATION = (5e-6, 5e-7)
 
 
+def safety(ratio: float) -> float:
+    """What a change on refining the patches ``ratio`` times is multiplied by: at least 1.
+
+    At order 3/2, the lowest seen, the error left is the change over ratio^(3/2) - 1; never below the change.
+    """
+    return float(max(1.0, 1 / (ratio**1.5 - 1)))
+
+
 @dataclass(frozen=True)
 class Uncertainty:
     """Numerical uncertainty in SI units; budget : rows (quantity, knob, value).
 
-    Knobs: patch size, conversion, domain, iteration. The three scalars are the sums of their rows.
+    Knobs: patch size, conversion, domain, iteration; coating where the first is thinner than four patches. The
+    three scalars are the sums of their rows.
     """
 
     contact_radius: float
@@ -39,21 +48,33 @@ class Uncertainty:
     def from_ladders(
         cls,
         fine: dict[str, float],
-        half: dict[str, float],
-        quarter: dict[str, float],
+        middle: dict[str, float],
+        coarse: dict[str, float],
         knobs: dict[str, dict[str, float]],
+        *,
+        base: dict[str, float],
+        ratio: float,
     ) -> "Uncertainty":
-        """From the results on N, N/2, N/4 patches, and on N/2 with each other knob turned to the worse.
+        """From the results on three grids, and on that of ``base`` with each other knob turned to the worse.
 
-        Patch size: the change from N/2 to N, or a third of that from N/4 to N/2 where the first is small by
-        chance; at order 1.5 and more the error left is below half of either.
+        Patch size: the change to the finest grid, of ``ratio`` times the patches a side, times ``safety``; or
+        a sixth of the change before where the last is small by chance.
         """
         rows = []
         for name, value in fine.items():
-            change = max(abs(value - half[name]), abs(half[name] - quarter[name]) / 3)
-            rows.append((name, "patch size", change))
-            rows += [(name, knob, abs(result[name] - half[name])) for knob, result in knobs.items()]
-        total = {name: sum(row[2] for row in rows if row[0] == name) for name in fine}
+            last, before = abs(value - middle[name]), abs(middle[name] - coarse[name])
+            rows.append((name, "patch size", max(safety(ratio) * last, before / 6)))
+            rows += [(name, knob, abs(result[name] - base[name])) for knob, result in knobs.items()]
+        return cls._of(rows)
+
+    def extended(self, rows: list[tuple[str, str, float]]) -> "Uncertainty":
+        """The same with more rows in the budget."""
+        return self._of([*self.budget, *rows])
+
+    @classmethod
+    def _of(cls, rows: list[tuple[str, str, float]]) -> "Uncertainty":
+        names = ("contact_radius", "approach", "peak_pressure")
+        total = {name: sum(row[2] for row in rows if row[0] == name) for name in names}
         return cls(**total, budget=tuple(rows))
 
 
@@ -150,21 +171,24 @@ class Solution:
     def pressure_uncertainty(self, x: ArrayLike, y: ArrayLike = 0.0) -> Array:
         """Uncertainty of the pressure [Pa] from the coarser companion.
 
-        The largest difference of the two within two coarse patches, and what the other knobs do to the peak:
-        twice, since they were turned on half the patches and a pressure answers a gap in proportion to the
-        patches. Plus what the uncertain radius does to the pressure or, where the edge is a staircase, all
-        that twice.
+        The largest difference of the two within a patch of the coarser, times ``safety``; and what the other
+        knobs do to the peak: twice, since they were turned on half the patches and a pressure answers a gap
+        in proportion to the patches. Plus what the uncertain radius does to the pressure within three
+        patches of the coarser from the edge or, where the edge is a staircase, all that twice.
         Raises ValueError where no uncertainty was estimated.
         """
         coarser, floor = self._companion()
         difference = np.abs(self.patch_pressure - coarser.pressure(self.nodes[:, None], self.nodes[None, :]))
-        widened = maximum_filter(difference, size=9, mode="nearest")
+        ratio = len(self.nodes) / len(coarser.nodes)
+        reach = 2 * int(np.ceil(ratio if self._profile is not None else 2 * ratio)) + 1
+        widened = safety(ratio) * maximum_filter(difference, size=reach, mode="nearest")
         spread = _at(self.nodes, widened, x, y, order=1) + 2 * floor * self.peak_pressure
         if self._profile is None or self.uncertainty is None:
             return 2 * spread
         r, shift = np.hypot(x, y), self.uncertainty.contact_radius
         moved = np.abs([self._profile(r + s) - self._profile(r) for s in (-shift, shift)]).max(axis=0)
-        return spread + moved
+        edge = np.abs(r - self.contact_radius) < 3 * coarser.diagnostics.patch_size + shift
+        return spread + np.where(edge, moved, 0.0)
 
     def stress_uncertainty(self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None) -> Array:
         """Uncertainty of the stress [Pa], shape (3, 3) + points; see ``stress_with_uncertainty``.
@@ -178,18 +202,18 @@ class Solution:
     ) -> tuple[Array, Array]:
         """Stress and its uncertainty [Pa], shape (3, 3) + points each, the latter from coarser companions.
 
-        The largest difference over the six components, of this grid and half of it or, an eighth of it, of
-        half and a quarter, for every component alike; plus what the other knobs do to the peak pressure, and
-        the error of the evaluation, ``EVALUATION`` of the peak.
+        The largest difference over the six components, for every component alike: of this grid and the
+        next, times ``safety``, or an eighth of that of the next and the one after; plus what the other knobs
+        do to the peak pressure, and the error of the evaluation, ``EVALUATION`` of the peak.
         Raises ValueError where no uncertainty was estimated.
         """
         coarser, floor = self._companion()
         sigma = self.stress(x, y, z, layer)
-        halved = coarser.stress(x, y, z, layer)
-        spread = np.abs(sigma - halved).max(axis=(0, 1))
+        second = coarser.stress(x, y, z, layer)
+        spread = safety(len(self.nodes) / len(coarser.nodes)) * np.abs(sigma - second).max(axis=(0, 1))
         if coarser.coarser is not None:
-            quartered = coarser.coarser.stress(x, y, z, layer)
-            spread = np.maximum(spread, np.abs(halved - quartered).max(axis=(0, 1)) / 8)
+            third = coarser.coarser.stress(x, y, z, layer)
+            spread = np.maximum(spread, np.abs(second - third).max(axis=(0, 1)) / 8)
         shallow = np.asarray(z) < 4 * self.diagnostics.patch_size
         total = spread + (floor + np.where(shallow, *EVALUATION)) * self.peak_pressure
         return sigma, np.broadcast_to(total, (3, 3, *spread.shape)).copy()

@@ -32,7 +32,7 @@ Press = Callable[
     [Array | float, float, "Level | None", float], "Level"
 ]  # (defect, missing, start, tolerance)
 
-USUAL, MOST = 257, 385  # patches a side
+USUAL, MOST = 257, 513  # patches a side
 PER_COATING = 8  # patches that the pressure needs to follow a coating at the contact edge
 WIDER = 1.25  # the box of the domain ladder over the box in use
 SKIPS = (2.5, 1.5, 1.0)  # patches inside the edge that the profile is not fitted to, round by round
@@ -43,7 +43,8 @@ FINE = 8  # patches; stresses nearer to the surface are found from patches of ha
 class Indenter:
     """Undeformed gap on a grid, and either the load [N] or the approach [m].
 
-    round : axisymmetric with a smooth edge, which can be corrected; table : what that takes under a coating.
+    round : axisymmetric with a smooth edge, which can be corrected; table : what that takes under a coating,
+    coarse_table : a poorer one, where the coating is too thin for the better one to be perfect.
     """
 
     gap: Callable[[Grid], Array]
@@ -51,6 +52,7 @@ class Indenter:
     approach: float | None
     round: bool
     table: disc.LayerTable | None = None
+    coarse_table: disc.LayerTable | None = None
 
 
 @dataclass(frozen=True)
@@ -121,7 +123,7 @@ def solve(
 
     coatings ((E, nu, thickness), ...) from the surface down; substrate (E, nu); friction f in q = f p.
     approach : delta [m] instead of the load, which then is None.
-    patches : per side of the finest grid, odd; None takes 257, or up to 385 where a first coating is thin
+    patches : per side of the finest grid, odd; None takes 257, or up to 513 where a first coating is thin
     enough to need them. The other numerics: ``inputs.Numerics``; the conversions: ``influence``. The
     correction of the edge (edge_rounds > 0) takes the error of a poor conversion away with its own.
 
@@ -152,8 +154,11 @@ def solve(
     half_width = fill * first.radius
     if coatings and edge_rounds:
         reach = 1.01 * 2**0.5 * WIDER * half_width
-        table = disc.layer_table(_excess(body), body.thickness[0], first.radius, reach)
-        sphere = replace(sphere, table=table)
+        geometry = (_excess(body), body.thickness[0], first.radius, reach)
+        table = coarse = disc.layer_table(*geometry)
+        if estimate_uncertainty and table.k[-1] * first.radius > disc.CYCLES / 2:
+            coarse = disc.layer_table(*geometry, cycles=disc.CYCLES / 2)
+        sphere = replace(sphere, table=table, coarse_table=coarse)
     if patches is None and coatings:
         resolved = odd(PER_COATING * 2 * half_width / body.thickness[0])
         numerics = replace(numerics, patches=min(max(USUAL, resolved), MOST))
@@ -281,7 +286,8 @@ def solve_prescribed(
             "domain": level(sizes[1], WIDER, numerics).scalars,
         }
         fine, half, quarter = (one.scalars for one in ladder[::-1])
-        solution = replace(solution, uncertainty=Uncertainty.from_ladders(fine, half, quarter, knobs))
+        stated = Uncertainty.from_ladders(fine, half, quarter, knobs, base=half, ratio=2.0)
+        solution = replace(solution, uncertainty=stated)
     seconds = time.perf_counter() - began
     return replace(solution, diagnostics=replace(solution.diagnostics, seconds=seconds))
 
@@ -309,16 +315,22 @@ def _refine(
     estimate_uncertainty: bool,
     began: float,
 ) -> Solution:
-    """Contacts on .., N/4, N/2 and N patches a side, each started from the one before."""
+    """Contacts on .., N/4, N/2 and N patches a side, each started from the one before.
+
+    Where the edge is corrected the error falls fast: half the patches would say little of it, N/sqrt(2)
+    patches, with fewer terms of the edge profile in proportion, are held against N.
+    """
     sizes = [numerics.patches]
     while sizes[0] > 2 * COARSEST or len(sizes) < 3:
         sizes.insert(0, odd(sizes[0] / 2))
+    if estimate_uncertainty and numerics.edge_rounds:
+        sizes.insert(-1, odd(sizes[-1] / 2**0.5))
     ladder = []
     level = first
     kept = 3 if estimate_uncertainty else 1
     starter = replace(numerics, tolerance=max(1e-5, numerics.tolerance), edge_rounds=0)
     for k, n in enumerate(sizes):
-        used = numerics if k >= len(sizes) - kept else starter
+        used = replace(numerics, edge_terms=n / numerics.patches) if k >= len(sizes) - kept else starter
         level = _press(Grid(n, 2 * half_width / n), level, indenter, body, used)
         ladder.append(level)
     solution = None
@@ -378,7 +390,8 @@ def _press_round(
     rounds = numerics.edge_rounds
     level = press(0.0, 0.0, None, max(numerics.tolerance, 1e-5) if rounds else numerics.tolerance)
     thickness = body.thickness[0] if body.coatings else None
-    fit = partial(edge_profile.of_contact, r=grid.radius, d=grid.d, thickness=thickness)
+    share = numerics.edge_terms
+    fit = partial(edge_profile.of_contact, r=grid.radius, d=grid.d, thickness=thickness, share=share)
     shape = None
     for k in range(rounds):
         shape = fit(level.found.pressure, skip=SKIPS[min(k, len(SKIPS) - 1)])
@@ -570,18 +583,29 @@ def _as_solution(level: Level, coarser: Solution | None, body: Body) -> Solution
 
 
 def _uncertainty(ladder: list[Level], indenter: Indenter, body: Body, numerics: Numerics) -> Uncertainty:
-    """One ladder per knob; all but the patch size on half the patches, from the same start."""
-    fine, half, quarter = (level.scalars for level in ladder[:-4:-1])
-    grid, start = ladder[-2].grid, ladder[-3]
-    coarser = _other_conversion(numerics)
+    """One ladder per knob; all but the patch size on the coarsest grid of its ladder, from the same start."""
+    fine, middle, coarse = (level.scalars for level in ladder[:-4:-1])
+    grid, start = ladder[-3].grid, ladder[-4] if len(ladder) > 3 else None
+    numerics = replace(numerics, edge_terms=grid.n / numerics.patches)
     looser = replace(numerics, tolerance=min(100 * numerics.tolerance, 1e-2))
     wider = Grid(odd(WIDER * grid.n), grid.d)
+    poorer = replace(indenter, table=indenter.coarse_table)
     knobs = {
-        "conversion": _press(grid, start, indenter, body, coarser).scalars,
+        "conversion": _press(grid, start, poorer, body, _other_conversion(numerics)).scalars,
         "domain": _press(wider, start, indenter, body, numerics).scalars,
         "iteration": _press(grid, start, indenter, body, looser).scalars,
     }
-    return Uncertainty.from_ladders(fine, half, quarter, knobs)
+    ratio = numerics.patches / ladder[-2].grid.n
+    stated = Uncertainty.from_ladders(fine, middle, coarse, knobs, base=coarse, ratio=ratio)
+    if indenter.round and body.coatings:
+        # the layer that a coating thinner than the patches bends the pressure in is on no grid of the ladder
+        h, d = body.thickness[0], ladder[-1].grid.d
+        unseen = 0.3 * h / ladder[-1].radius * max(0.0, 1 - h / (4 * d))
+        if unseen:
+            powers = {"contact_radius": 1, "approach": 2, "peak_pressure": 2}
+            rows = [(name, "coating", unseen**power * fine[name]) for name, power in powers.items()]
+            stated = stated.extended(rows)
+    return stated
 
 
 def _other_conversion(numerics: Numerics) -> Numerics:
