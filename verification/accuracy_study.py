@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from verification.convergence import ConversionError, Ladder, Level, conversion_errors, elements, ladder
+from verification.knobs import KnobLadder, Stated, study
 from verification.problem import CoatedContact
 from verification.result import plain
 from verification.schedule import Task
@@ -52,7 +53,7 @@ PROBLEM = "a sphere of 10 mm under 20 N on steel, bare or with a coating of E1/E
 class AccuracyStudy:
     """What was measured, in what was stood on; ``failures`` are the sentences of what could not be had.
 
-    conversions : of the coated solid.   commit : None outside a checkout.
+    conversions, knobs, stated : of the coated solid.   commit : None outside a checkout.
     """
 
     ladders: tuple[Ladder, ...]
@@ -61,6 +62,8 @@ class AccuracyStudy:
     seconds: float
     commit: str | None
     versions: dict[str, str]
+    knobs: tuple[KnobLadder, ...] = ()
+    stated: tuple[Stated, ...] = ()
 
 
 def measure() -> AccuracyStudy:
@@ -81,8 +84,16 @@ def measure() -> AccuracyStudy:
         conversions = conversion_errors(COATED)
     except Exception as error:  # as in a ladder: a sentence of the report, not a traceback
         failures.append(f"conversions of the influence coefficients: {' '.join(str(error).split())[:400]}")
+    turned: tuple[KnobLadder, ...] = ()
+    said: tuple[Stated, ...] = ()
+    try:
+        turned, said = study(COATED, "coated")
+    except Exception as error:
+        failures.append(f"uncertainty by knob: {' '.join(str(error).split())[:400]}")
+    failures += [f"{one.method}, {one.knob}, {one.failure}" for one in turned if one.failure]
+    seconds = time.perf_counter() - begin
     return AccuracyStudy(
-        tuple(ladders), conversions, tuple(failures), time.perf_counter() - begin, commit(), versions()
+        tuple(ladders), conversions, tuple(failures), seconds, commit(), versions(), turned, said
     )
 
 
@@ -167,6 +178,30 @@ def from_json(data: dict[str, Any]) -> AccuracyStudy:
         seconds=float(data["seconds"]),
         commit=data["commit"],
         versions={str(name): str(version) for name, version in data["versions"].items()},
+        knobs=tuple(_knob_ladder(one) for one in data["knobs"]),
+        stated=tuple(
+            Stated(
+                str(one["method"]),
+                str(one["solid"]),
+                {str(name): float(value) for name, value in one["uncertainty"].items()},
+                tuple((str(q), str(k), float(v)) for q, k, v in one["budget"]),
+                {str(name): float(value) for name, value in one["error"].items()},
+            )
+            for one in data["stated"]
+        ),
+    )
+
+
+def _knob_ladder(one: dict[str, Any]) -> KnobLadder:
+    return KnobLadder(
+        str(one["method"]),
+        str(one["solid"]),
+        str(one["knob"]),
+        float(one["order"]),
+        tuple(str(name) for name in one["levels"]),
+        tuple(float(step) for step in one["steps"]),
+        {str(name): tuple(float(v) for v in values) for name, values in one["values"].items()},
+        None if one["failure"] is None else str(one["failure"]),
     )
 
 

@@ -46,7 +46,7 @@ class Fit:
 class Estimate:
     """Uncertainty of the finest value of a ladder, in its unit.
 
-    order : observed, None where none could be.   limit : the value at step 0 that the fit points to.
+    order : observed, None where none is to be believed.   limit : the value at step 0 that the fit points to.
     method : "least squares", "three levels" or "two levels".
     """
 
@@ -81,8 +81,7 @@ def least_squares(h: Sequence[float], phi: Sequence[float], order: float = THEOR
         found = (TRUSTED if trusted else SAFE) * epsilon + fit.deviation + missed
     else:
         found = SAFE * fit.deviation / spread * (epsilon + fit.deviation + missed)
-    observed = fit.powers[0] if len(fit.powers) == 1 else None
-    return Estimate(found, observed, fit.limit, "least squares")
+    return Estimate(found, fit.powers[0] if trusted else None, fit.limit, "least squares")
 
 
 def convergence_index(h: Sequence[float], phi: Sequence[float], order: float = THEORETICAL_ORDER) -> Estimate:
@@ -108,7 +107,9 @@ def convergence_index(h: Sequence[float], phi: Sequence[float], order: float = T
     used = observed if trusted else min(max(observed, LEAST_ORDER), order)
     error = abs(change) / (ratio**used - 1)
     limit = float(values[0]) - change / (ratio**used - 1)
-    return Estimate((TRUSTED if trusted else SAFE) * error, observed, limit, "three levels")
+    return Estimate(
+        (TRUSTED if trusted else SAFE) * error, observed if trusted else None, limit, "three levels"
+    )
 
 
 def _checked(h: Sequence[float], phi: Sequence[float], least: int) -> tuple[Array, Array]:

@@ -75,7 +75,7 @@ def test_oscillating_values_are_not_believed_and_their_swing_is_the_uncertainty(
 def test_order_beyond_the_theoretical_one_is_not_trusted():
     """The factor is 3, on the fit of order 1 or 2 that explains the values best."""
     found = least_squares(STEPS, ladder(4.0))
-    assert found.order in (1.0, 2.0)
+    assert found.order is None
     assert found.uncertainty > 3 * 0.05
     assert least_squares(STEPS, ladder(4.0), order=4.0).uncertainty == pytest.approx(1.25 * 0.05, rel=1e-3)
 

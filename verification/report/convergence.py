@@ -6,6 +6,7 @@ from verification.accuracy_study import CORRECTED, PLAIN, PROBLEM, STAIRCASE, Ac
 from verification.convergence import QUANTITIES, Ladder, settled
 from verification.report.cells import Cell, Gallery, Panel, Part, Row, Section, Table
 from verification.report.conversion import conversion_part
+from verification.report.knobs import knob_section
 from verification.report.loglog import Trail, decades, draw_loglog
 from verification.report.names import Style
 from verification.report.numbers import factor, plain, scientific, seconds
@@ -56,6 +57,8 @@ def convergence_sections(study: AccuracyStudy) -> list[Section]:
     if elements:
         parts = _element_parts(elements) if any(one.levels for one in elements) else []
         sections.append(Section("finite-element-accuracy", "Finite element accuracy", parts, theirs))
+    if study.stated:
+        sections.append(knob_section(study.knobs, study.stated))
     return sections
 
 
