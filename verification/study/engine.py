@@ -12,7 +12,7 @@ import os
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, nullcontext
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from itertools import chain, groupby, islice
 from pathlib import Path
 from typing import Any
@@ -29,6 +29,7 @@ __all__ = ["Outcome", "SchedulerError", "connected", "run_study", "table_path"]
 
 WINDOW = 3  # solves out at a time for each thread of the cluster
 DIED = "every worker it was sent to died, most likely for want of memory; run fewer --jobs"
+PATIENCE = 60.0  # s to wait for the first worker
 PAUSE = 5.0  # s between two writings of the table
 SHARE = 0.02  # of the time may go into writing the table while it grows
 
@@ -39,7 +40,7 @@ class SchedulerError(Exception):
     """A cluster that cannot be used; the message says why."""
 
 
-@dataclass
+@dataclass(frozen=True)
 class Outcome:
     """What a run of a study came to.
 
@@ -50,14 +51,14 @@ class Outcome:
 
     table: Path
     points: int
-    rows: int = 0
-    failed: int = 0
-    done: int = 0
-    kept: int = 0
-    damaged: list[str] = field(default_factory=list)
-    lost: dict[str, str] = field(default_factory=dict)
-    complete: bool = False
-    seconds: float = 0.0
+    rows: int
+    failed: int
+    done: int
+    kept: int
+    damaged: tuple[str, ...]
+    lost: dict[str, str]
+    complete: bool
+    seconds: float
 
 
 def table_path(folder: Path, study: Study) -> Path:
@@ -123,7 +124,6 @@ def run_study(
     Raises StoreError where ``folder`` cannot be written or another run holds it, SchedulerError where the
     cluster fails, KeyboardInterrupt after writing the table of what is done.
     """
-    begin = time.perf_counter()
     with locked(folder):
         run = _Run(study, folder, limit, report)
         waiting = run.missing()
@@ -132,11 +132,21 @@ def run_study(
             try:
                 if first is not None:
                     run.solve(chain([first], waiting), open_client, solve)
-                run.outcome.complete = limit is None
+                run.complete = limit is None
             finally:
                 run.write_table()
-                run.outcome.seconds = time.perf_counter() - begin
-    return run.outcome
+    return run.outcome()
+
+
+def _threads(client: Any) -> int:
+    """How many solves the cluster works on at a time; waits for its first worker."""
+    try:
+        client.wait_for_workers(1, timeout=PATIENCE)
+    except TimeoutError:
+        raise SchedulerError(
+            f"no worker joined the scheduler within {PATIENCE:.0f} s; start one with: dask worker ADDRESS"
+        ) from None
+    return sum(client.nthreads().values())
 
 
 class _Run:
@@ -145,9 +155,12 @@ class _Run:
     def __init__(self, study: Study, folder: Path, limit: int | None, report: Report) -> None:
         self.study, self.limit, self.report = study, limit, report
         self.cache = Cache(folder / "cache")
-        points = study.points if limit is None else min(limit, study.points)
-        self.outcome = Outcome(table_path(folder, study), points)
-        self.ledger = folder / "ledger.jsonl"
+        self.points = study.points if limit is None else min(limit, study.points)
+        self.table, self.ledger = table_path(folder, study), folder / "ledger.jsonl"
+        self.rows = self.failed = self.done = self.kept = 0
+        self.damaged: list[str] = []
+        self.lost: dict[str, str] = {}
+        self.complete = False
         self.asked: set[bytes] = set()
         self.total = dict.fromkeys(SOURCES, 0)
         self.finished = dict.fromkeys(SOURCES, 0)
@@ -156,16 +169,22 @@ class _Run:
         self.spent = 0.0  # s, in writing the table
         self.begin = self.written = time.perf_counter()
 
+    def outcome(self) -> Outcome:
+        """What the run came to so far."""
+        seconds = time.perf_counter() - self.begin
+        counts = (self.points, self.rows, self.failed, self.done, self.kept)
+        return Outcome(self.table, *counts, tuple(self.damaged), dict(self.lost), self.complete, seconds)
+
     def solves(self) -> Iterator[Solve]:
         """The solves of the points asked for, in the order of the table."""
         for one in self.study.solves():
-            if one.first >= self.outcome.points:
+            if one.first >= self.points:
                 return
             yield one
 
     def covered(self, one: Solve) -> int:
         """How many of the points asked for a solve speaks for."""
-        return min(len(self.study.frictions), self.outcome.points - one.first)
+        return min(len(self.study.frictions), self.points - one.first)
 
     def missing(self) -> Iterator[Solve]:
         """The distinct solves that the cache cannot answer: first the curves, then their checks."""
@@ -185,10 +204,7 @@ class _Run:
         """Keep a window of solves out until none is left; store each answer as it arrives."""
         from distributed import as_completed
 
-        threads = sum(client.nthreads().values())
-        if not threads:
-            client.wait_for_workers(1, timeout=60)
-            threads = sum(client.nthreads().values())
+        threads = _threads(client)
         out: dict[Any, tuple[Solve, str]] = {}
 
         def send(one: Solve) -> Any:
@@ -208,14 +224,19 @@ class _Run:
                 if following is not None:
                     arriving.add(send(following))
         finally:
-            client.cancel(list(out), force=True)
+            if client.status == "running":
+                client.cancel(list(out), force=True)
 
     def _take(self, one: Solve, key: str, future: Any) -> None:
+        if future.cancelled():
+            raise SchedulerError(
+                "the scheduler is gone; what was solved is kept, the same command goes on there"
+            )
         error = future.exception()
         if error is not None:
             # A solver's failure is an answer; this is a worker's: it is not stored, the next run tries again.
             died = type(error).__name__ == "KilledWorker"
-            self.outcome.lost[key] = DIED if died else sentence(error)
+            self.lost[key] = DIED if died else sentence(error)
             self._note("lost", key, one.source)
             self.count(one)
             return
@@ -227,7 +248,7 @@ class _Run:
             )
         self.cache.put(key, one.request, found)
         self._note("stored", key, one.source, seconds=found["seconds"], memory=found.get("memory", 0))
-        self.outcome.done += 1
+        self.done += 1
         self.count(one)
         self._write_now_and_then()
 
@@ -237,9 +258,9 @@ class _Run:
         try:
             self.cache.get(key, one.request)
         except StoreError as error:
-            self.outcome.damaged.append(str(error))
+            self.damaged.append(str(error))
             return False
-        self.outcome.kept += 1
+        self.kept += 1
         return True
 
     def count(self, one: Solve) -> None:
@@ -262,14 +283,14 @@ class _Run:
     def write_table(self) -> None:
         """Write the rows of everything stored, in the order of the points."""
         begin = time.perf_counter()
-        self.outcome.failed = 0
+        self.failed = 0
         about = {
             "name": self.study.name,
             "text": self.study.text,
-            "points": self.outcome.points,
-            "complete": self.outcome.complete,
+            "points": self.points,
+            "complete": self.complete,
         }
-        self.outcome.rows = write_table(self.outcome.table, self._rows(), about)
+        self.rows = write_table(self.table, self._rows(), about)
         self.written = time.perf_counter()
         self.spent += self.written - begin
 
@@ -277,13 +298,13 @@ class _Run:
         for _, sources in groupby(self.solves(), key=lambda one: one.first):
             rows = [row for one in sources for row in self._rows_of(one)]
             for row in sorted(rows, key=lambda row: row["point"]):
-                self.outcome.failed += row["status"] == "failed"
+                self.failed += row["status"] == "failed"
                 yield row
 
     def _rows_of(self, one: Solve) -> list[dict[str, Any]]:
         key = solve_key(one.request)
-        if key in self.outcome.lost:
-            sentence = self.outcome.lost[key]
+        if key in self.lost:
+            sentence = self.lost[key]
             failed = [
                 {"friction": f, "status": "failed", "failure": sentence} for f in one.request["frictions"]
             ]
