@@ -5,6 +5,8 @@ from dataclasses import dataclass
 
 from markupsafe import Markup
 
+from verification.report.csvdata import embedded, written
+
 __all__ = ["Cell", "Gallery", "Panel", "Part", "Row", "Section", "Table"]
 
 
@@ -57,11 +59,15 @@ class Panel:
 
 @dataclass(frozen=True)
 class Gallery:
-    """Figures side by side under one ``legend`` of (swatch, words), over one ``caption``."""
+    """Figures side by side under one ``legend`` of (swatch, words), over one ``caption``.
+
+    csv : the numbers behind, where they are not those of the tables beside the figures.
+    """
 
     legend: Sequence[tuple[Markup, str]]
     panels: Sequence[Panel]
     caption: str
+    csv: str = ""
 
 
 @dataclass(frozen=True)
@@ -73,6 +79,13 @@ class Part:
     gallery: Gallery | None = None
     title: str = ""
 
+    @property
+    def download(self) -> str:
+        """The numbers behind the gallery as an address that carries them; "" without a gallery."""
+        if self.gallery is None:
+            return ""
+        return embedded(self.gallery.csv or written([row for item in self.tables for row in _cells_of(item)]))
+
 
 @dataclass(frozen=True)
 class Section:
@@ -82,3 +95,19 @@ class Section:
     title: str
     parts: Sequence[Part]
     failures: Sequence[str] = ()
+
+
+def _cells_of(table: Table) -> list[list[str]]:
+    """Heads, then rows: the number behind a cell where it has one, else what it says."""
+    heads = list(table.columns)
+    if table.groups:
+        over = [title for title, count in table.groups for _ in range(count)]
+        heads = [f"{group}: {head}" if group else head for group, head in zip(over, heads, strict=True)]
+    rows = [
+        [
+            cell.text if cell.sort is None or cell.text in ("", "–") else f"{cell.sort:.9g}"
+            for cell in row.cells
+        ]
+        for row in table.rows
+    ]
+    return [heads, *([row.head.text, *cells] for row, cells in zip(table.rows, rows, strict=True)), []]

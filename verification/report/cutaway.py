@@ -92,7 +92,8 @@ def _scene(result: CaseResult, plane: Plane) -> Scene | None:
         bottoms,
         ((moduli - moduli.min()) / span).tolist()[: len(bottoms)],
         frame.half,
-        coloured(raster, Scale(0.0, largest, "viridis")).tolist(),
+        len(raster),
+        base64.b64encode(coloured(raster, Scale(0.0, largest, "viridis")).tobytes()).decode(),
     )
 
 
@@ -145,9 +146,7 @@ def _flat(scene: Scene) -> Image.Image:
             Rectangle((-BLOCK, -bottom), 2 * BLOCK, bottom - top, facecolor=colour, edgecolor="#1b232d")
         )
         top = bottom
-    axes.imshow(
-        np.array(scene.pixels, dtype=np.uint8), extent=(-scene.half, scene.half, -depth, 0.0), zorder=2
-    )
+    axes.imshow(scene.image, extent=(-scene.half, scene.half, -depth, 0.0), zorder=2)
     for bottom in scene.bottoms[:-1]:
         axes.plot([-scene.half, scene.half], [-bottom, -bottom], color="white", linewidth=1.2, zorder=3)
     axes.plot([-1, 1], [0, 0], color="#d62728", linewidth=4, zorder=4)

@@ -5,12 +5,14 @@ for each E1/E2 at one thickness, without friction or with one coefficient.
 """
 
 from collections.abc import Sequence
+from itertools import zip_longest
 from typing import NamedTuple
 
 import numpy as np
 from markupsafe import Markup
 
 from verification.report.cells import Cell, Gallery, Panel, Part, Row, Section, Table
+from verification.report.csvdata import written
 from verification.report.drawing import HEX, canvas, inline, look
 from verification.report.figures import HUGE
 from verification.report.names import source_label, source_style
@@ -97,7 +99,22 @@ def _gallery(members: Sequence[Member], key: str) -> Gallery:
     sources = dict.fromkeys(s for m in members for s in sources_with_profiles(m.result))
     legend = [(swatch(source_style(source)), source_label(source)) for source in sources]
     caption = "At each curve its E1/E2, the sources over each other; each case says by how much they differ."
-    return Gallery(legend, panels, caption)
+    return Gallery(legend, panels, caption, _curves_csv(members, shown))
+
+
+def _curves_csv(members: Sequence[Member], shown: Sequence[tuple[str, str]]) -> str:
+    """Every curve drawn, lengths over a_h, stresses over p_h."""
+    columns = []
+    for member in members:
+        a_h, p_h = scale(member.result, "a_h"), scale(member.result, "p_h")
+        for profile in member.result.profiles:
+            if (profile.quantity, profile.line) in shown:
+                what = f"E1/E2 = {plain(member.ratio, 3)}, {profile.source}, {profile.line}"
+                along = [f"{x:.6g}" for x in profile.position / a_h]
+                columns.append([f"{coordinate(profile.line)} / a_h, {what}", *along])
+                name = "p" if profile.quantity == "pressure" else profile.quantity
+                columns.append([f"{name} / p_h, {what}", *(f"{v:.6g}" for v in profile.value / p_h)])
+    return written(list(zip_longest(*columns, fillvalue="")))
 
 
 def _numbers(members: Sequence[Member]) -> Table:

@@ -7,6 +7,7 @@ python -m verification.report.scene FOLDER < scenes.json
 ``scenes.json`` is a list of Scene as dictionaries; FOLDER/0.png, 1.png ... are written in their order.
 """
 
+import base64
 import json
 import sys
 from dataclasses import dataclass
@@ -14,6 +15,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 __all__ = ["Scene", "render"]
 
@@ -30,13 +32,19 @@ class Scene:
 
     bottoms : depth of the lower side of each layer, the substrate's where the drawing ends.
     stiffness : of each layer from 0 (softest) to 1.   half : the field reaches from -half to half.
-    pixels : the field on the cut as RGB bytes, rows from the surface down.
+    pixels : the field on the cut as base64 of RGB bytes, ``rows`` of them from the surface down.
     """
 
     bottoms: list[float]
     stiffness: list[float]
     half: float
-    pixels: list[list[list[int]]]
+    rows: int
+    pixels: str
+
+    @property
+    def image(self) -> NDArray[np.uint8]:
+        """The field on the cut, (rows, columns, 3)."""
+        return np.frombuffer(base64.b64decode(self.pixels), dtype=np.uint8).reshape(self.rows, -1, 3)
 
 
 def half_sphere() -> list[tuple[Any, dict[str, Any]]]:
@@ -82,7 +90,7 @@ def render(scene: Scene, sphere: list[tuple[Any, dict[str, Any]]], path: Path) -
     # Corners by hand: the orientation of a plane's own texture coordinates is nobody's promise.
     x, z = face.points[:, 0], face.points[:, 2]
     face.active_texture_coordinates = np.stack([(x + scene.half) / (2 * scene.half), 1 + z / top], axis=1)
-    texture = pv.Texture(np.ascontiguousarray(np.array(scene.pixels, dtype=np.uint8)))
+    texture = pv.Texture(np.ascontiguousarray(scene.image))
     texture.InterpolateOn()
     plotter.add_mesh(face, texture=texture, lighting=False)
     for bottom in scene.bottoms[:-1]:

@@ -47,3 +47,13 @@ addEventListener("beforeprint", () => {
 addEventListener("afterprint", () => {
   for (const item of folded) item.open = false;
 });
+// Dark or light as the system has it, until the button says otherwise.
+const theme = document.querySelector("button.theme");
+if (theme) {
+  theme.hidden = false;
+  theme.addEventListener("click", () => {
+    const root = document.documentElement;
+    const dark = (root.style.colorScheme || (matchMedia("(prefers-color-scheme: dark)").matches ? "dark" : "light")) === "dark";
+    root.style.colorScheme = dark ? "light" : "dark";
+  });
+}
