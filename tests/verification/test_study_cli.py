@@ -44,7 +44,7 @@ def test_bad_input_is_one_sentence_and_nothing_is_written(plan, options, said, t
 def test_a_study_of_one_point_from_the_command_line(tmp_path, capfd):
     plan = tmp_path / "one.toml"
     plan.write_text(STUDY + "[semianalytic]\npatches = 33\nestimate_uncertainty = false\n")
-    words = {"output": tmp_path / "out", "jobs": 1, "limit": 1, "cross_check": False}
+    words = {"output": tmp_path / "out", "jobs": 1, "limit": 1, "cross_check": False, "figures": False}
     assert thickness(str(plan), **words, as_json=True) == 0
     out, err = capfd.readouterr()
     assert err == ""

@@ -45,7 +45,7 @@ pytestmark = pytest.mark.slow
 
 
 def command(plan, output, *more):
-    words = ["study", "thickness", str(plan), "--output", str(output), "--quiet", *more]
+    words = ["study", "thickness", str(plan), "--output", str(output), "--quiet", "--no-figures", *more]
     return [sys.executable, "-m", "verification.cli", *words]
 
 
@@ -193,9 +193,11 @@ def test_a_worker_killed_in_the_middle_loses_no_point(plan, undisturbed, tmp_pat
 
 
 def test_ctrl_c_leaves_what_was_done_and_says_so(plan, undisturbed, tmp_path):
-    process = subprocess.Popen(command(plan, tmp_path), env=ENVIRONMENT, stderr=subprocess.PIPE, text=True)
+    process = subprocess.Popen(
+        command(plan, tmp_path), env=ENVIRONMENT, stderr=subprocess.PIPE, text=True, start_new_session=True
+    )
     wait_until(lambda: len(keys(ledger(tmp_path), "stored")) >= 3, "three stored solves")
-    process.send_signal(signal.SIGINT)
+    os.killpg(process.pid, signal.SIGINT)  # as a terminal does: to the workers, too
     _, said = process.communicate(timeout=120)
     assert process.returncode == 130
     assert said.strip().count("\n") == 0
