@@ -1,11 +1,12 @@
 """The command line of coatcheck.
 
 Exit codes: 0 all agree, 1 a disagreement, 2 bad input, 3 a missing result, 4 inconclusive, 5 all agree but
-a number is not that of the baseline.
+a number is not that of the baseline, 130 stopped by Ctrl-C.
 """
 
 import sys
 from importlib.metadata import version
+from typing import NamedTuple
 
 from cyclopts import App, CycloptsError
 
@@ -13,43 +14,141 @@ from verification.commands.common import complain
 
 __all__ = ["app", "main"]
 
-app = App(
-    name="coatcheck",
-    help="Verify coated point contact: two independent methods, Hertz and an exact reference in one report.",
-    help_epilogue="Exit codes: 0 all agree, 1 disagreement, 2 bad input, 3 no result, 4 inconclusive, 5 all "
-    "agree but a number is not that of the baseline.",
-    version=lambda: version("coatcheck"),
-    help_format="plaintext",
+CODES = (
+    "Exit codes: 0 all agree, 1 disagreement, 2 bad input, 3 no result, 4 inconclusive, 5 all agree but a "
+    "number is not that of the baseline, 130 stopped by Ctrl-C."
 )
-# Named as text, so that a command loads only what it needs.
-for name, place, said in (
-    ("run", "run:run", "Solve cases by every method and reference, judge every claim, write the report."),
-    ("list", "list_cases:list_cases", "List the shipped cases and published results with their sources."),
-    (
+
+
+class Command(NamedTuple):
+    """A command: ``place`` is module:function of the commands, as text, so that only one is loaded."""
+
+    name: str
+    place: str
+    said: str
+    examples: tuple[str, ...]
+
+
+COMMANDS = (
+    Command(
+        "run",
+        "run:run",
+        "Solve cases by every method and reference, judge every claim, write the report.",
+        (
+            "coatcheck run",
+            "coatcheck run 05_ratio_4 my_coating.toml --output reports/mine --fields",
+            "coatcheck run published",
+            "coatcheck run --resume -v",
+        ),
+    ),
+    Command(
+        "list",
+        "list_cases:list_cases",
+        "List the shipped cases and published results with their sources.",
+        ("coatcheck list", "coatcheck list --json"),
+    ),
+    Command(
         "report",
         "report:report",
         "Write the report of a stored run again, nothing solved; print it with --pdf.",
+        ("coatcheck report", "coatcheck report reports/mine --pdf"),
     ),
-    ("view", "view:view", "Look at the fields of a case, in a window or as a picture."),
-    ("study", "study:study", "Sweep a parameter with both methods behind every number."),
-    ("bench", "bench:bench", "Time the semi-analytical contact beside its peers; ratios first."),
-    ("compare", "compare:compare", "Show two runs side by side: verdicts, numbers, versions, times."),
-    (
+    Command(
+        "view",
+        "view:view",
+        "Look at the fields of a case, in a window or as a picture.",
+        (
+            "coatcheck run 05_ratio_4 --fields",
+            "coatcheck view 05_ratio_4",
+            "coatcheck view 05_ratio_4 --quantity sigma_xx --screenshot sigma_xx.png",
+        ),
+    ),
+    Command(
+        "compare",
+        "compare:compare",
+        "Show two runs side by side: verdicts, numbers, versions, times.",
+        ("coatcheck compare reports reports/mine --output compared.html",),
+    ),
+    Command(
         "faults",
         "faults:faults",
         "Plant one mistake at a time; report which checks of the default run catch it.",
+        ("coatcheck faults", "coatcheck faults --group stress", "coatcheck faults --list"),
     ),
-    ("alarms", "alarms:alarms", "Solve clean random problems; count the verdicts that are not AGREES."),
-):
-    app.command(f"verification.commands.{place}", name=name, help=said)
+    Command(
+        "alarms",
+        "alarms:alarms",
+        "Solve clean random problems; count the verdicts that are not AGREES.",
+        ("coatcheck alarms", "coatcheck alarms --count 5 --seed 7"),
+    ),
+    Command(
+        "bench",
+        "bench:bench",
+        "Time the semi-analytical contact beside its peers; ratios first.",
+        ("coatcheck bench", "coatcheck bench --sizes 128 256 --threads 1"),
+    ),
+    Command(
+        "completion",
+        "completion:completion",
+        "Print the script that completes commands and options in a shell.",
+        (
+            'eval "$(coatcheck completion bash)"',
+            "coatcheck completion fish > ~/.config/fish/completions/coatcheck.fish",
+        ),
+    ),
+)
+STUDY = (
+    Command(
+        "thickness",
+        "study:thickness",
+        "Which thickness? Stresses of a coating against thickness, stiffness and friction, cross-checked.",
+        ("coatcheck study thickness",),
+    ),
+)
+BASELINE = (
+    Command(
+        "update",
+        "baseline:update",
+        "Make a stored default run the baseline, with the reason why.",
+        ('coatcheck baseline update --why "finer default grid"',),
+    ),
+    Command(
+        "show",
+        "baseline:show",
+        "Show what the baseline holds and every update it has seen.",
+        ("coatcheck baseline show",),
+    ),
+)
 
-baseline = App(name="baseline", help="The stored numbers that every run is held against.")
-for name, said in (
-    ("update", "Make a stored default run the baseline, with the reason why."),
-    ("show", "Show what the baseline holds and every update it has seen."),
-):
-    baseline.command(f"verification.commands.baseline:{name}", name=name, help=said)
+
+def _add(parent: App, command: Command) -> None:
+    examples = "\n".join(f"    {example}" for example in command.examples)
+    parent.command(
+        f"verification.commands.{command.place}",
+        name=command.name,
+        help=command.said,
+        help_epilogue=f"Examples:\n\n{examples}\n\n{CODES}",
+    )
+
+
+app = App(
+    name="coatcheck",
+    help="Verify coated point contact: two independent methods, Hertz and an exact reference in one report.",
+    help_epilogue=f"Examples:\n\n    coatcheck run\n    coatcheck run --help\n\n{CODES}",
+    version=lambda: version("coatcheck"),
+    help_format="plaintext",
+)
+baseline = App(
+    name="baseline", help="The stored numbers that every run is held against.", help_epilogue=CODES
+)
+study = App(
+    name="study", help="Sweep a parameter with both methods behind every number.", help_epilogue=CODES
+)
+for parent, entries in ((app, COMMANDS), (baseline, BASELINE), (study, STUDY)):
+    for entry in entries:
+        _add(parent, entry)
 app.command(baseline)
+app.command(study)
 
 
 def main() -> None:
