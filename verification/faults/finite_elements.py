@@ -83,9 +83,21 @@ FAULTS = (
     ),
     _fault(
         "reduced_quadrature",
-        "the stiffness is integrated with a quadrature of half the order",
-        (*SCALARS, *STRESS),
-        Edit(f"{DISCRETISATION}.basis", "intorder=2 * self.order", "intorder=self.order"),
+        "the friction is integrated with one point an edge",
+        ("sigma_xx", "sigma_yy", "sigma_xz"),
+        Edit(
+            f"{DISCRETISATION}.surface_load",
+            "self.surface_basis(facets)",
+            "FacetBasis(self.triangulation, ELEMENTS[self.order](), facets=facets, intorder=1)",
+        ),
+        cases=SLIDING,
+    ),
+    _fault(
+        "reduced_quadrature_contact",
+        "the mass of the contact is integrated with a rule of too low an order",
+        ("peak_pressure", "pressure"),
+        Edit(f"{DISCRETISATION}.surface_basis", "intorder=2 * self.order + 1", "intorder=self.order + 2"),
+        cases=BARE,
     ),
     _fault(
         "averaged_interface_stress",
