@@ -106,9 +106,10 @@ def run(
         complain(f"gmsh lacks system libraries here; install them with: apt-get install {' '.join(lacking)}")
         return EXIT[Outcome.NO_RESULT]
 
-    from verification import accuracy_study  # SciPy and matplotlib take a second to load
+    from verification import accuracy_study, effective_study  # SciPy and matplotlib take a second to load
     from verification.accuracy_study import AccuracyStudy
     from verification.commands.writing import write
+    from verification.effective_study import EffectiveStudy
 
     tests = self_tests()
     for test in tests:
@@ -120,13 +121,16 @@ def run(
         with locked(output):
             kept = kept_results(chosen, output, fields=fields) if resume else {}
             study = kept_study(output) if resume and not cases else None
-            tasks: list[Task[CaseResult | AccuracyStudy]] = []
+            tasks: list[Task[CaseResult | AccuracyStudy | EffectiveStudy]] = []
             if not cases and study is None:
                 tasks.append(accuracy_study.task(output))
+            if "published" in cases:
+                tasks.append(effective_study.task(output))
             tasks += [_task(c, output, fields) for c in chosen if c.name not in kept]
             solved = solve(tasks, jobs, time_limit, quiet or as_json, verbose=verbose)
             results = {r.name: r for r in solved if isinstance(r, CaseResult)}
             study = next((r for r in solved if isinstance(r, AccuracyStudy)), study)
+            formulas = next((r for r in solved if isinstance(r, EffectiveStudy)), None)
             ordered = [kept.get(case.name) or results[case.name] for case in chosen]
             info = RunInfo(
                 command=" ".join(["coatcheck run", *cases]),
@@ -138,7 +142,7 @@ def run(
                 versions=versions(),
             )
             beside = regression(ordered, known, str(baseline), info, whole=not cases)
-            page = write(ordered, output, info, study, beside, records, tests)
+            page = write(ordered, output, info, study, beside, records, tests, formulas)
     except StoreError as error:
         return complain(str(error))
     except KeyboardInterrupt:

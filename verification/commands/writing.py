@@ -6,9 +6,11 @@ from pathlib import Path
 from verification.accuracy_study import AccuracyStudy
 from verification.baseline import Regression
 from verification.credibility import gather
+from verification.effective_study import EffectiveStudy
 from verification.plane import read_planes
 from verification.report import write_report
 from verification.report.credibility import credibility_section
+from verification.report.effective import effective_sections
 from verification.report.self_tests import self_test_section
 from verification.result import CaseResult, RunInfo
 from verification.self_test import SelfTest
@@ -25,15 +27,19 @@ def write(
     beside: Regression,
     records: Path,
     tests: Sequence[SelfTest],
+    formulas: EffectiveStudy | None = None,
 ) -> Path:
     """Write the report of ``results`` into ``folder``, where their planes lie; returns the path of the page.
 
-    records : directory of what is known of the method's credibility.   Raises StoreError.
+    records : directory of what is known of the method's credibility.   formulas : what was measured of them.
+    Raises StoreError.
     """
     extra = [
         self_test_section(tests),
         credibility_section(results, info, study, gather(records), beside),
     ]
+    if formulas is not None:
+        extra += effective_sections(formulas)
     try:
         return write_report(results, folder, info, study, extra, read_planes(folder, results), beside)
     except OSError as error:

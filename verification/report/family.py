@@ -5,6 +5,7 @@ for each E1/E2 at one thickness, without friction or with one coefficient.
 """
 
 from collections.abc import Sequence
+from dataclasses import replace
 from itertools import zip_longest
 from typing import NamedTuple
 
@@ -149,11 +150,15 @@ def _numbers(members: Sequence[Member]) -> Table:
 def _draw(members: Sequence[Member], quantity: str, line: str, key: str) -> Markup:
     with canvas(WIDTH, HEIGHT) as figure:
         axes = figure.add_axes((0.15, 0.145, 0.83, 0.83))
+        alone = len({p.source for m in members for p in m.result.profiles}) == 1
         for member in members:
             a_h, p_h = scale(member.result, "a_h"), scale(member.result, "p_h")
             found = [p for p in member.result.profiles if (p.quantity, p.line) == (quantity, line)]
             for profile in sorted(found, key=lambda p: -source_style(p.source).width):
                 style = source_style(profile.source)
+                if alone:
+                    # The broad road of the exact curve is for others to drive on.
+                    style = replace(style, width=1.6, opacity=1.0)
                 x, y = profile.position / a_h, profile.value / p_h
                 drawn = np.where(np.abs(y) < HUGE, y, np.nan)
                 options = {"dashes": style.dash} if style.dash else {}
