@@ -12,7 +12,7 @@ SURVIVORS: dict[str, tuple[str, str]] = {
         "grew; a result whose error lies within what it states is not wrong, only poorer",
     ),
     "far_load_missing": (
-        "a clamped boundary at 1000 contact radii costs 6e-4 of the approach and nothing else; the ladder over "
+        "a clamped boundary at 1000 contact radii costs 6e-4 of the approach, nothing else; the ladder over "
         "the outer boundary sees it, so that the uncertainty stated grows a thousandfold to just that, and "
         "0.1 % is what the cap on the approach allows",
         "a cap of 1e-4 on the approach, of which both methods state 1e-5 at most; or the baseline, which "
@@ -21,7 +21,7 @@ SURVIVORS: dict[str, tuple[str, str]] = {
     "reduced_quadrature_contact": (
         "the peak pressure is off by 3e-5, and the ladder over the element size sees it: the uncertainty "
         "stated grows sixtyfold, to 7e-4, and 0.1 % is what the cap on the peak pressure allows",
-        "a cap of 2e-4 on the peak pressure, of which both methods state 4e-5 at most; or the baseline, which "
+        "a cap of 2e-4 on the peak pressure, of which both methods state 4e-5 at most; or the baseline, that "
         "reports that value and uncertainty changed",
     ),
 }
