@@ -35,7 +35,7 @@ Coatings = tuple[tuple[float, float, float], ...]
 QUALITY = {"fast": 0.36, "default": 0.16, "fine": 0.12}
 _COARSE = 0.5
 _COMPANION = 1.4
-_LOAD_TOLERANCE = 2e-7
+LOAD_TOLERANCE = 2e-7
 _NEARER = 2.0
 _EDGE_SIZE = 1e-6
 # The last triangle misplaces the edge by this share of its size, whatever the solid: close to the edge all
@@ -55,6 +55,7 @@ def solve(
     size: float | None = None,
     far: float = 1000.0,
     max_iterations: int = 30,
+    load_tolerance: float = LOAD_TOLERANCE,
     estimate_uncertainty: bool = True,
 ) -> Solution:
     """Rigid sphere pressed on, and with friction slid over, a coated half-space.
@@ -68,12 +69,15 @@ def solve(
     ``quality``
     far     : distance of the outer boundary over (a_h + thickness of all coatings)
     max_iterations : contact solves allowed on each mesh level
+    load_tolerance : relative, at which the contact radius is settled on the last two levels
     The approach is that of the sphere towards points at infinity.
     Poisson ratios up to 0.49 do not lock at order 4; above, digits are lost as 1/(1 - 2 nu), and 0.5 is
     refused. Raises ValueError for bad input, NotConverged when no contact radius carries the load.
     """
     started = time.perf_counter()
-    check_positive(radius=radius, load=load, far=far, max_iterations=max_iterations)
+    check_positive(
+        radius=radius, load=load, far=far, max_iterations=max_iterations, load_tolerance=load_tolerance
+    )
     check_materials(coatings, substrate, friction)
     check_choice("order", order, (2, 3, 4))
     size = _size(quality, size)
@@ -118,8 +122,8 @@ def solve(
 
     level("rough", Grading.of(0.6), 2, 0.02)
     level("coarse", Grading.of(_COARSE), order, 1e-3)
-    companion = level("companion", _companion(size), order, _LOAD_TOLERANCE) if estimate_uncertainty else None
-    final = level("final", Grading.of(size, _EDGE_SIZE), order, _LOAD_TOLERANCE)
+    companion = level("companion", _companion(size), order, load_tolerance) if estimate_uncertainty else None
+    final = level("final", Grading.of(size, _EDGE_SIZE), order, load_tolerance)
     found = final.touch
     if found.contact_radius * a_h >= radius:
         raise ValueError(

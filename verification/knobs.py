@@ -76,6 +76,11 @@ KNOBS = (
         "outer boundary",
         tuple((f"at {d:g}", {"far": d, "size": 0.36}, 1 / d) for d in (125.0, 250.0, 500.0, 1000.0)),
     ),
+    Knob(
+        "fem_reference",
+        "load balance",
+        tuple((f"{t:.0e}", {"load_tolerance": t, "size": 0.36}, t) for t in (1e-3, 1e-4, 1e-5, 1e-6)),
+    ),
 )
 
 

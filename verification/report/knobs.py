@@ -59,17 +59,15 @@ def _totals(one: Stated, ladders: Sequence[KnobLadder]) -> Table:
 def _orders(ladders: Sequence[KnobLadder]) -> Table:
     names = list(dict.fromkeys(name for ladder in ladders for name in ladder.values))
     rows = []
-    for ladder in ladders:
-        cells = [Cell(", ".join(ladder.levels))]
-        for name in names:
-            found = ladder.estimate(name)
-            order = None if found is None else found.order
-            cells.append(Cell("–" if order is None else plain(order, 2), order))
-        rows.append(Row(Cell(ladder.knob), cells))
+    for name in names:
+        found = [ladder.estimate(name) for ladder in ladders]
+        orders = [None if one is None else one.order for one in found]
+        rows.append(Row(Cell(name), [Cell("–" if p is None else plain(p, 2), p) for p in orders]))
+    levels = "; ".join(f"{ladder.knob}: {', '.join(ladder.levels)}" for ladder in ladders)
     return Table(
-        "The levels of each ladder, and the observed order in the step; a dash where the values follow no "
-        "power of the step that can be believed, being at rest, noise or falling too fast.",
-        ["knob", "levels", *names],
+        "Observed order in the step of each ladder; a dash where the values follow no power of the step that "
+        f"can be believed, being at rest, noise or falling too fast. The levels, {levels}.",
+        ["quantity", *(ladder.knob for ladder in ladders)],
         rows,
     )
 
