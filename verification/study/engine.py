@@ -166,6 +166,9 @@ class _Run:
         self.finished = dict.fromkeys(SOURCES, 0)
         for one in self.solves():
             self.total[one.source] += self.covered(one)
+        for source, total in self.total.items():
+            if total:
+                report(source, 0, total)
         self.spent = 0.0  # s, in writing the table
         self.begin = self.written = time.perf_counter()
 

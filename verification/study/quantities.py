@@ -150,7 +150,8 @@ def _tensile(found: Located) -> Located:
     """Compression is no tension: 0, uncertain by what the bound reaches above it."""
     if found.value > 0:
         return found
-    return Located(0.0, max(0.0, found.uncertainty + found.value), float("nan"), float("nan"))
+    reaches = float(np.maximum(0.0, found.uncertainty + found.value))  # NaN where no bound is stated
+    return Located(0.0, reaches, float("nan"), float("nan"))
 
 
 def _vertex(x: Array, y: Array) -> float:
