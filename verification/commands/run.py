@@ -218,6 +218,7 @@ def _summary(
                 "outcome": result.outcome,
                 "baseline": states.get(result.name),
                 "verdicts": {o: sum(v.outcome is o for _, v in result.verdicts) for o in Outcome},
+                "invariants": {o: sum(law.outcome is o for law in result.invariants) for o in Outcome},
             }
             for result in results
         },
@@ -249,6 +250,17 @@ def _print_table(results: Sequence[CaseResult], page: Path, seconds: float, besi
                     f"{escape(one_line(source.failure))}",
                     highlight=False,
                 )
+        for law in result.invariants:
+            if law.outcome is not Outcome.AGREES:
+                console.print(
+                    f"[{STYLE[law.outcome]}]{escape(result.name)}, {law.source}, {escape(law.name)}:[/] "
+                    f"{escape(one_line(law.sentence))}",
+                    highlight=False,
+                )
+    laws = [law for result in results for law in result.invariants]
+    if laws:
+        held = sum(law.outcome is Outcome.AGREES for law in laws)
+        console.print(f"{held} of {len(laws)} invariants hold", highlight=False)
     if beside.update is not None:
         from verification.report.baseline import baseline_sentence
 
