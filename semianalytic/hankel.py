@@ -8,7 +8,9 @@ be smooth at k = 0. What it does there, F_0 + F_1 k, is taken off first in close
     int_0^inf e^{-kL} J_m(k r) dk = t^m / rho,     rho = sqrt(r^2 + L^2),   t = (rho - L) / r,
 
 with its derivatives by L, because the logarithmic grid has to end somewhere above k = 0: a rest of order
-k^3 then leaves errors of 2e-8 of the largest value, weighted with (1 + r/L)^2, over 0.01 < r/L < 1000.
+k^3 then leaves errors of 2e-8 of the largest value, weighted with (1 + r/L)^2, over 0.01 < r/L < 1000. A
+stiff coating bends on a base far softer over lengths much beyond L, and F changes from one level to another
+at k L << 1: the two levels are taken off each on its own length.
 
 Sources
 -------
@@ -46,25 +48,52 @@ def hankel(F: Array, order: int, scale: float, *, over_k: bool = False) -> Array
     Returns g, unit of F / m^2, or of F / m with ``over_k``; shape of ``F``.
     """
     x, r = WAVENUMBERS, RADII
-    decay = np.exp(-x)
-    rho = np.hypot(r, 1)
-    t_m = (r / (rho + 1)) ** order
-    leg = (1 + order * rho) / rho**3
-    powers = (t_m / rho, t_m * leg, t_m * (leg * (order / rho + 3 / rho**2) - (1 + order / rho) / rho**3))
-
     F_0, slope = _at_zero(F)
-    slope = slope + F_0  # of what is left of F once F_0 e^{-x} is taken off
+    low, length = _low_level(F, F_0)
     first = 0 if over_k else 1
-    g = F_0 * powers[first] + slope * powers[first + 1]
-    rest = (F - (F_0 + slope * x) * decay) * x**first
+    g = 0.0
+    rest = F
+    for height, incline, L in (
+        (low, np.where(low, slope, 0.0), length),
+        (F_0 - low, slope * (low == 0), 1.0),
+    ):
+        incline = incline + height * L  # of what is left of F once the height e^{-xL} is taken off
+        powers = _closed_forms(order, L)
+        g = g + height * powers[first] + incline * powers[first + 1]
+        rest = rest - (height + incline * x) * np.exp(-x * L)
     # offset 0 keeps the radii free of the order; the ringing it allows stays below the errors above
-    g = g + fht(rest, _STEP, order, offset=0.0, bias=(_BIAS_OVER_K if over_k else _BIAS)[order]) / r
+    bias = (_BIAS_OVER_K if over_k else _BIAS)[order]
+    tail = fht(rest * x**first, _STEP, order, offset=0.0, bias=bias)
+    if order == 0 and not over_k and np.any(low):
+        # what wraps around from r >> L is large then, and weighs on small r the less the smaller the bias
+        near = slice(0, int(np.searchsorted(r, 10.0)))
+        tail[..., near] = fht(rest * x, _STEP, order, offset=0.0, bias=0.1)[..., near]
+    g = g + tail / r
     return g / (2 * np.pi * (scale if over_k else scale**2))
+
+
+def _closed_forms(order: int, L: Array | float) -> tuple[Array, Array, Array]:
+    """int x^n e^{-xL} J_m(x r) dx at RADII for n = 0, 1, 2; L broadcast against them."""
+    rho = np.hypot(RADII, L)
+    t_m = (RADII / (rho + L)) ** order
+    return (
+        t_m / rho,
+        t_m * (L + order * rho) / rho**3,
+        t_m * (3 * L**2 + 3 * order * L * rho + (order**2 - 1) * rho**2) / rho**5,
+    )
+
+
+def _low_level(F: Array, F_0: Array) -> tuple[Array, Array]:
+    """How much of F_0 is gone at k L = 0.03, zero where that is little, and the length over which it goes."""
+    low = F_0 - F[..., [np.searchsorted(WAVENUMBERS, 0.03)]]
+    low = np.where(np.abs(low) > 0.1 * np.abs(F).max(axis=-1, keepdims=True), low, 0.0)
+    half = np.argmax(np.abs(F - F_0) > 0.5 * np.abs(low), axis=-1)[..., None]
+    return low, np.where(low, np.log(2) / WAVENUMBERS[half], 1.0)
 
 
 def _at_zero(F: Array) -> tuple[Array, Array]:
     """F and dF/dx at x = 0 by the parabola through three small x."""
-    nodes = np.searchsorted(WAVENUMBERS, [0, 1e-7, 2e-7])
+    nodes = np.searchsorted(WAVENUMBERS, [0, 3e-8, 6e-8])
     inverse = np.linalg.inv(np.vander(WAVENUMBERS[nodes] * 1e7, 3, increasing=True))
     F_0, slope, _ = np.moveaxis(F[..., nodes] @ inverse.T, -1, 0)[..., None]
     return F_0, slope * 1e7

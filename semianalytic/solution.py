@@ -35,8 +35,8 @@ def safety(ratio: float) -> float:
 class Uncertainty:
     """Numerical uncertainty in SI units; budget : rows (quantity, knob, value).
 
-    Knobs: patch size, conversion, domain, iteration; coating where the first is thinner than four patches. The
-    three scalars are the sums of their rows.
+    Knobs: patch size, conversion, domain, iteration; coating, where the first is thinner than four patches.
+    The three scalars are the sums of their rows.
     """
 
     contact_radius: float
