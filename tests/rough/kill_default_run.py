@@ -118,37 +118,54 @@ def numbers(node: Any, path: tuple[str, ...] = ()) -> Iterator[tuple[tuple[str, 
         yield path, node
 
 
-def largest_difference(one: Path, other: Path) -> tuple[float, int]:
-    """Largest difference of the numbers of two run directories over the larger of the list each stands in.
+def scale_of(payload: dict[str, Any], path: tuple[str, ...], value: float) -> float:
+    """What a difference of the number at ``path`` is divided by: the scale that verdicts use, or itself."""
+    scales = {"peak_pressure": "p_h", "contact_radius": "a_h", "approach": "delta_h"}
+    if path[0] in ("verdicts", "invariants"):
+        return 1.0  # fractions of such scales already
+    if path[0] == "profiles" and path[2] in ("value", "uncertainty"):
+        profile = payload["profiles"][int(path[1])]
+        return payload["problem"][scales.get(profile["quantity"], "p_h")]
+    if path[0] == "sources" and "budget" in path:
+        quantity = payload["sources"][int(path[1])]["budget"][int(path[3])][0]
+        return payload["problem"][scales.get(quantity, "p_h")]
+    return abs(value)
 
-    Infinite where anything else differs: a verdict, a name, the number of values. And how many there were.
+
+def largest_difference(one: Path, other: Path) -> tuple[float, int]:
+    """Largest difference of the numbers of two run directories over their scales, and how many there were.
+
+    Infinite where anything else differs: a verdict, a name, the number of values.
     """
     largest, count = 0.0, 0
     names = [{p.name for p in (folder / "cases").glob("*.json")} for folder in (one, other)]
-    if names[0] != names[1]:
+    if names[0] != names[1] or not names[0]:
         return float("inf"), 0
     for name in sorted(names[0]):
-        a, b = (dict(numbers(read_checked(folder / "cases" / name))) for folder in (one, other))
+        payload = read_checked(one / "cases" / name)
+        a, b = dict(numbers(payload)), dict(numbers(read_checked(other / "cases" / name)))
         if a.keys() != b.keys():
             return float("inf"), count
-        scale: dict[tuple[str, ...], float] = {}
-        for path, value in a.items():
-            if isinstance(value, float):
-                scale[path[:-1]] = max(scale.get(path[:-1], 0.0), abs(value))
         for path, value in a.items():
             count += 1
             if value == b[path]:
                 continue
+            # A verdict says its figures in words too; those are compared as numbers.
+            if path[-1] in ("reason", "sentence"):
+                continue
             if not (isinstance(value, float) and isinstance(b[path], float)):
                 return float("inf"), count
-            largest = max(largest, abs(value - b[path]) / scale[path[:-1]])
+            largest = max(largest, abs(value - b[path]) / scale_of(payload, path, value))
     return largest, count
 
 
 def disturbed(
-    output: Path, cases: Sequence[str], kills: int, longest: float, jobs: int, seed: int = 8
+    output: Path, cases: Sequence[str], kills: int, longest: float, jobs: int, total: int, seed: int = 8
 ) -> Counter[str]:
-    """Kill and resume runs until ``kills`` are counted; whenever all is done a new directory is begun."""
+    """Kill and resume runs until ``kills`` are counted; where all is done a new directory is begun.
+
+    longest : latest moment of a kill [s].
+    """
     rng = random.Random(seed)
     counts: Counter[str] = Counter()
     turn = 0
@@ -156,7 +173,8 @@ def disturbed(
         folder = output / f"round-{turn}"
         kept: dict[str, bytes] = {}
         finished = False
-        while counts["kills"] < kills and not finished:
+        reporting = 0  # kills since the last case was finished
+        while counts["kills"] < kills and not finished and reporting < 3:
             run = resumed(folder, cases, jobs)
             number = counts["kills"]
             counts += kill_at(
@@ -171,7 +189,10 @@ def disturbed(
             # A finished case stays as it is, to the letter: it was neither lost nor computed again.
             counts["finished cases lost"] += sum(kept[name] != found.get(name) for name in kept)
             counts["cases finished"] += len(found.keys() - kept.keys())
+            reporting = reporting + 1 if found.keys() == kept.keys() and len(found) >= total else 0
             kept = found
+            sys.stdout.write(f"{counts['kills']} kills, round {turn}: {len(found)} of {total} cases\n")
+            sys.stdout.flush()
         if not finished:
             run = resumed(folder, cases, jobs)
             code = run.wait()
@@ -203,7 +224,8 @@ def main() -> int:
     sys.stdout.write(f"calm run: {seconds:.0f} s, code {code}, {len(whole(calm))} cases\n")
     sys.stdout.flush()
     rough = chosen.output / "rough"
-    counts = disturbed(rough, chosen.cases, chosen.kills, chosen.longest or seconds / 3, chosen.jobs)
+    longest = chosen.longest or seconds / 3
+    counts = disturbed(rough, chosen.cases, chosen.kills, longest, chosen.jobs, len(whole(calm)))
     largest = 0.0
     for folder in sorted(rough.iterdir()):
         difference, compared = largest_difference(calm, folder)

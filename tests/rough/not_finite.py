@@ -74,7 +74,7 @@ PLACES = (
     Place("semianalytic.contact", "press", "approach"),
     Place("semianalytic.profile", "patch_mean"),
     Place("semianalytic.hankel", "hankel"),
-    Place("semianalytic.grid", "sharpen"),
+    Place("semianalytic.lattice", "nodal_forces"),
     Place("semianalytic.subsurface", "stress"),
     Place("semianalytic.solution", "Solution.pressure"),
     Place("semianalytic.solution", "Solution.stress_with_uncertainty", 0),

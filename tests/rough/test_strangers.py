@@ -50,7 +50,13 @@ SCRIPT = "<script>alert(1)</script><img src=x onerror=alert(1)>{{ 7 * 7 }}{% raw
 
 
 def called(node: ast.Call) -> str:
-    return ast.unparse(node.func)
+    """The dotted name of what is called."""
+    names, function = [], node.func
+    while isinstance(function, ast.Attribute):
+        names.append(function.attr)
+        function = function.value
+    names.append(function.id if isinstance(function, ast.Name) else "")
+    return ".".join(reversed(names))
 
 
 def test_nothing_makes_code_or_objects_out_of_files():
@@ -66,11 +72,11 @@ def test_nothing_makes_code_or_objects_out_of_files():
             found += [(name, m) for m in modules if m.split(".")[0] in UNSAFE]
             if not isinstance(node, ast.Call):
                 continue
-            words = {word.arg: ast.unparse(word.value) for word in node.keywords}
+            words = {w.arg: str(w.value.value) for w in node.keywords if isinstance(w.value, ast.Constant)}
             if called(node) in CODE and name != PLANTED:
                 found.append((name, ast.unparse(node)))
             if called(node).endswith((".load", ".loads", ".load_module")) and not called(node).startswith(
-                ("json.", "tomllib.", "MeshTri.", "Mesh.")
+                ("json.", "tomllib.", "MeshTri.", "Mesh.", "image.")
             ):
                 found.append((name, ast.unparse(node)))
             if words.get("allow_pickle") == "True" or words.get("shell") == "True":
@@ -161,7 +167,7 @@ def test_no_name_of_a_case_leads_out_of_the_output_directory(tmp_path):
 
 
 def test_run_with_strange_names_writes_into_its_output_directory_only(tmp_path):
-    for name in ("..", "-rf", "../up"):
+    for name in ("..", "../-rf"):
         (tmp_path / "here").mkdir(exist_ok=True)
         (tmp_path / "here" / f"{name}.toml").write_text(FAST)
     before = sorted(tmp_path.rglob("*"))
@@ -200,12 +206,12 @@ def test_run_with_strange_names_writes_into_its_output_directory_only(tmp_path):
     [
         ("a = " + "[" * 100_000, "nested too deeply"),
         ("a." * 100_000 + "a = 1", "dots"),
-        ("\n".join(f"k{i}." + "a." * 200 + "a = 1" for i in range(600)), ""),
+        ("\n".join(f"k{i}." + "a." * 200 + "a = 1" for i in range(200)), r"mine\.toml: "),
         ("[[problem.coatings]]\nE = 1.0\nnu = 0.3\nthickness = 1.0\n" * 1_000_000, "larger than"),
-        ("coatings = [" + "{E=1},\n" * 30_000 + "]", ""),
+        ("coatings = [" + "{E=1},\n" * 30_000 + "]", r"mine\.toml: "),
         ("load = " + "9" * 200_000, "not TOML"),
-        ("a = '" + "x" * 240_000 + "'", ""),
-        ("a = [" + "1e308," * 40_000 + "]", ""),
+        ("a = '" + "x" * 240_000 + "'", r"mine\.toml: "),
+        ("a = [" + "1e308," * 40_000 + "]", r"mine\.toml: "),
         ("[a]\n" * 60_000, "not TOML"),
     ],
     ids=range(9),
