@@ -2,7 +2,7 @@
 
 python tests/rough/repetitions.py [CASE ...] --times 10 --output FOLDER
 
-The repetitions change what must not matter: the cases side by side (--jobs) and with that the threads of each.
+The repetitions change what must not matter: how many cases run side by side, and the threads of each.
 The differences are printed for each; it ends with 1 where one exceeds 1e-12.
 """
 
