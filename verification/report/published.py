@@ -90,7 +90,7 @@ def published_overview(results: Sequence[CaseResult], anchors: Mapping[int, str]
         "over the largest value printed for displacements, strains and loading curves, over the value for "
         "scalars of a contact.",
         ["source", "verdict", "year", "read", "values", "not counted"]
-        + ["met", "largest difference"] * len(sources),
+        + ["met", "largest gap"] * len(sources),
         rows,
         [("", 6), *((source_label(source), 2) for source in sources)],
     )

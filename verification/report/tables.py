@@ -46,7 +46,7 @@ def layer_table(result: CaseResult) -> Table:
             Cell(plain(E / found[-1][0], 3), E),
             Cell(plain(nu), nu),
             Cell("∞" if below else engineering(thickness, "m"), thickness),
-            Cell("∞" if below else plain(thickness / a_h, 3), thickness),
+            Cell("∞" if below else plain(thickness / a_h, 3) if a_h > 0 else "–", thickness),
         ]
         rows.append(Row(Cell("substrate" if below else f"coating {number}"), cells))
     return Table("Layers from the surface down.", ["layer", "E", "E / E_s", "nu", "h", f"h / {length}"], rows)
