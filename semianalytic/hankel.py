@@ -64,9 +64,9 @@ def hankel(F: Array, order: int, scale: float, *, over_k: bool = False) -> Array
     # offset 0 keeps the radii free of the order; the ringing it allows stays below the errors above
     bias = (_BIAS_OVER_K if over_k else _BIAS)[order]
     tail = fht(rest * x**first, _STEP, order, offset=0.0, bias=bias)
-    if order == 0 and not over_k and np.any(low):
-        # what wraps around from r >> L is large then, and weighs on small r the less the smaller the bias
-        near = slice(0, int(np.searchsorted(r, 10.0)))
+    if order == 0 and not over_k:
+        # what wraps around from r >> L weighs on small r the less the smaller the bias
+        near = slice(0, int(np.searchsorted(r, 3.0)))
         tail[..., near] = fht(rest * x, _STEP, order, offset=0.0, bias=0.1)[..., near]
     g = g + tail / r
     return g / (2 * np.pi * (scale if over_k else scale**2))
