@@ -34,3 +34,11 @@ def solved(name: str) -> CaseResult:
 def test_case_agrees(name, index):
     _, verdict = solved(name).verdicts[index]
     assert verdict.outcome is Outcome.AGREES, verdict.reason
+
+
+@pytest.mark.cases
+@pytest.mark.parametrize("name", [pytest.param(name, marks=pytest.mark.xdist_group(name)) for name in CASES])
+def test_invariants_of_every_solution_hold(name):
+    found = solved(name).invariants
+    assert len(found) >= 30
+    assert [row.sentence for row in found if row.outcome is not Outcome.AGREES] == []
