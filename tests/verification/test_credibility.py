@@ -9,6 +9,8 @@ from synthetic_study import study
 from verification.alarms import counted, write_record
 from verification.baseline import regression
 from verification.credibility import Evidence, gather
+from verification.faults import campaign
+from verification.faults.record import Catch, Record, Row
 from verification.independence import PARTS, imports_of, parts, shared
 from verification.report.cells import Part, Section
 from verification.report.credibility import credibility_section, figures
@@ -91,6 +93,28 @@ def test_figures_of_a_record_carry_date_and_commit(evidence, tmp_path):
     assert figures(known)[1] in text
     glance = {row.head.text: [c.text for c in row.cells] for row in section(known).parts[0].tables[0].rows}
     assert glance["False alarms"][1] == "2026-10-09, c0ffee123456"
+
+
+def test_the_fault_score_and_its_survivors_come_from_the_record(tmp_path):
+    def row(name: str, catch: Catch, **more: str) -> Row:
+        named = catch is Catch.DISAGREES
+        return Row(
+            name, "frf", f"{name} is wrong", "semianalytic", catch, named, "", {}, 1.0, "", 2.0, (), **more
+        )
+
+    rows = [row(f"fault_{n}", Catch.DISAGREES) for n in range(19)]
+    rows.append(row("shy", Catch.SURVIVED, reason="no case sees it", cure="a thicker film would"))
+    record = Record(
+        tuple(rows), (), "2026-10-09T08:00:00+00:00", 60.0, 90.0, "c0ffee123456", "m", dict(INFO.versions)
+    )
+    campaign.write_record(tmp_path / campaign.RECORD, record)
+    found = gather(tmp_path)
+    assert found.failures == ()
+    text = said(part(section(found), STEPS[5]))
+    assert "19 of 20 planted faults are caught, 95 %; 19 of them by the comparison named beforehand" in text
+    assert "Measured 2026-10-09, c0ffee123456" in text
+    for words in ("shy is wrong", "no case sees it", "a thicker film would"):
+        assert words in text
 
 
 def test_a_damaged_record_is_named_and_its_figure_is_not_measured(tmp_path):
