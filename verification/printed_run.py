@@ -2,14 +2,15 @@
 
 import time
 from collections.abc import Callable, Mapping
-from dataclasses import asdict, fields, replace
+from dataclasses import fields, replace
 from functools import partial
 from typing import Any
 
 from verification.case import METHODS
 from verification.limits import towards_limits
 from verification.loading import Loading, LoadingCurve, exact_loading, loading
-from verification.printed import PRINTED, REFERENCE, Printed, Problem, PublishedCase
+from verification.printed import REFERENCE, PublishedCase
+from verification.printed_columns import PRINTED, Printed, Problem
 from verification.problem import CoatedContact, PrescribedLoad, Solution
 from verification.profile import Profile
 from verification.quantity import POINTWISE, QUANTITIES, values
@@ -126,7 +127,7 @@ def _blank(case: PublishedCase) -> CaseResult:
         name=case.name,
         title=case.title,
         source=case.source,
-        problem=asdict(case.problem) if isinstance(case.problem, LoadingCurve) else describe(case.problem),
+        problem=describe(case.problem),
         sources=(),
         profiles=(),
         verdicts=(),

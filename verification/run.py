@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from verification.case import Case
 from verification.invariants import Invariant, check, laws
+from verification.loading import LoadingCurve
 from verification.problem import CoatedContact, PrescribedLoad, Solution
 from verification.profile import Line, Profile, sample, sample_contact
 from verification.result import CaseResult, SourceResult
@@ -206,9 +207,9 @@ def _positions(case: Case, solutions: Mapping[str, Solution]) -> dict[Line, Arra
     return {line: z if line.depth is None else x for line in case.lines}
 
 
-def describe(problem: CoatedContact | PrescribedLoad) -> dict[str, Any]:
+def describe(problem: CoatedContact | PrescribedLoad | LoadingCurve) -> dict[str, Any]:
     """The fields of a problem; of a contact its Hertz scales and interfaces besides."""
-    if isinstance(problem, PrescribedLoad):
+    if not isinstance(problem, CoatedContact):
         return asdict(problem)
     return asdict(problem) | {
         "a_h": problem.a_h,
