@@ -21,7 +21,9 @@ def self_test_section(tests: Sequence[SelfTest]) -> Section:
         )
         for test in tests
     ]
-    table = Table("Asked before the first case was solved.", ["part", "passed", "what must hold", "found"], rows)
+    table = Table(
+        "Asked before the first case was solved.", ["part", "passed", "what must hold", "found"], rows
+    )
     said = (
         "Methods and references watch each other; what reads the cases, samples the solutions, judges and "
         "stores is watched by questions whose answer was worked out by hand."
