@@ -226,8 +226,10 @@ class _Run:
                 following = next(waiting, None)
                 if following is not None:
                     arriving.add(send(following))
+                if not out:
+                    break
         finally:
-            if client.status == "running":
+            if out and client.status == "running":
                 client.cancel(list(out), force=True)
 
     def _take(self, one: Solve, key: str, future: Any) -> None:
