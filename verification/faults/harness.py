@@ -205,9 +205,9 @@ FAULTS = (
         "published",
         (
             Edit(
-                "verification.printed:_points",
-                'unit = _unit(at.unit, units, "at")',
-                'unit = _unit(at.unit, units, "at") * 0.01 / 0.0254',
+                "verification.printed_columns:_points",
+                'unit = si_of(at.unit, units, "at")',
+                'unit = si_of(at.unit, units, "at") * 0.01 / 0.0254',
             ),
         ),
         ("sigma_zz", "u_z", "printed table"),

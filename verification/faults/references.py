@@ -146,7 +146,13 @@ FAULTS = (
         GROUP,
         "a printed compression keeps the positive sign of its source",
         "published",
-        (Edit("verification.printed:_printed", "to_si = column.factor *", "to_si = abs(column.factor) *"),),
+        (
+            Edit(
+                "verification.printed_columns:columns_of",
+                "to_si = column.factor *",
+                "to_si = abs(column.factor) *",
+            ),
+        ),
         ("sigma_zz", "sigma_xx", "printed table"),
         published=KENPAVE,
     ),
@@ -157,7 +163,7 @@ FAULTS = (
         "published",
         (
             Edit(
-                "verification.printed:Printed.counted",
+                "verification.printed_columns:Printed.counted",
                 "np.array([not why for why in self.why_not])",
                 "np.ones(len(self.why_not), dtype=bool)",
             ),
