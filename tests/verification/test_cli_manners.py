@@ -1,0 +1,208 @@
+"""The command line as people expect it: examples, exit codes, completion, plain pipes, a stop that keeps."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+
+import pytest
+from synthetic_results import INFO, contact, result_of
+
+from verification.commands.printing import NoBrowser, browser, printed
+from verification.report.write import report_json
+from verification.result import to_json
+from verification.store import write_checked
+
+COMMAND = [sys.executable, "-m", "verification.cli"]
+COMMANDS = (
+    "run",
+    "list",
+    "report",
+    "view",
+    "compare",
+    "faults",
+    "alarms",
+    "bench",
+    "completion",
+    "baseline update",
+    "baseline show",
+    "study thickness",
+)
+QUICK = """
+title = "Quick"
+[problem]
+radius = 10e-3
+load = 20
+substrate = { E = 210e9, nu = 0.3 }
+[[claim]]
+quantity = "peak_pressure"
+line = "contact"
+between = ["integral_equation", "hertz"]
+cap = 1e-6
+why = "two references, no method"
+"""
+
+
+def coatcheck(*words, cwd, **environment):
+    return subprocess.run(
+        [*COMMAND, *words],
+        cwd=cwd,
+        env=os.environ | environment,
+        capture_output=True,
+        text=True,
+        timeout=200,
+    )
+
+
+def asked(capsys, *words):
+    """Exit code, output and complaints of a command in this process."""
+    from verification.cli import app
+
+    code = app([str(word) for word in words], result_action="return_value")
+    said = capsys.readouterr()
+    return code, said.out, said.err
+
+
+@pytest.fixture
+def stored(tmp_path):
+    """A run directory with two made-up cases, without its page."""
+    results = [
+        result_of(contact(), name=name, title=f"Case <{name}>", points=5, text=f"title = '{name}'")
+        for name in ("second", "first")
+    ]
+    for result in results:
+        write_checked(tmp_path / "run" / "cases" / f"{result.name}.json", to_json(result))
+    (tmp_path / "run" / "report.json").write_text(report_json(results, INFO))
+    return tmp_path / "run"
+
+
+def test_every_command_has_examples_and_exit_codes(capsys):
+    from verification.cli import app
+
+    for words in COMMANDS:
+        app([*words.split(), "--help"], result_action="return_value")
+        said = capsys.readouterr().out
+        assert "Examples:\n\n    " in said, words
+        assert f"    coatcheck {words.split()[0]}" in said or "coatcheck completion" in said, words
+        assert "Exit codes: 0 all agree" in said, words
+        assert "130" in said, words
+
+
+@pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])
+def test_completion_knows_commands_and_options(capsys, shell):
+    from verification.cli import app
+
+    assert app(["completion", shell], result_action="return_value") == 0
+    script = capsys.readouterr().out
+    for word in ("coatcheck", "baseline", "screenshot", "resume"):
+        assert word in script
+
+
+def test_what_is_piped_has_no_colours(tmp_path):
+    (tmp_path / "quick.toml").write_text(QUICK)
+    done = coatcheck("run", "quick.toml", "-v", cwd=tmp_path, TERM="xterm-256color")
+    assert done.returncode == 0, done.stderr
+    assert "\x1b" not in done.stdout + done.stderr
+    # Verbose: every source with its seconds.
+    lines = [line.split() for line in done.stderr.splitlines()]
+    assert {words[0] for words in lines if words[-1:] == ["s"] or "iterations" in words} >= {"hertz"}
+
+
+def test_ctrl_c_keeps_what_was_done_and_says_so(tmp_path):
+    (tmp_path / "quick.toml").write_text(QUICK)
+    words = ["run", "quick.toml", "05_ratio_4", "--jobs", "1", "--output", "out"]
+    process = subprocess.Popen(
+        [*COMMAND, *words], cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    )
+    kept = tmp_path / "out" / "cases" / "quick.json"
+    deadline = time.monotonic() + 120
+    while not kept.exists() and process.poll() is None and time.monotonic() < deadline:
+        time.sleep(0.05)
+    time.sleep(0.3)
+    process.send_signal(signal.SIGINT)
+    _, said = process.communicate(timeout=60)
+    assert process.returncode == 130, said
+    assert "stopped; 1 of 2 cases are finished and kept in out" in said
+    assert "--resume" in said
+    assert "Traceback" not in said
+    assert not (tmp_path / "out" / "cases" / "05_ratio_4.json").exists()
+    written = kept.stat().st_mtime_ns
+    again = coatcheck("run", "quick.toml", "--output", "out", "--resume", "--json", cwd=tmp_path)
+    assert again.returncode == 0, again.stderr
+    assert kept.stat().st_mtime_ns == written
+
+
+def test_the_report_of_a_stored_run_is_written_again(stored, capsys):
+    code, out, _ = asked(capsys, "report", stored, "--json")
+    assert code == 0
+    (page,) = json.loads(out)["files"]
+    first = (stored / "report.html").read_text(encoding="utf-8")
+    assert page == str(stored / "report.html")
+    # The order and the particulars of the run it was.
+    assert first.index("Case &lt;second&gt;") < first.index("Case &lt;first&gt;")
+    assert INFO.started.split("T")[0] in first
+    assert asked(capsys, "report", stored, "-q") == (0, "", "")
+    assert (stored / "report.html").read_text(encoding="utf-8") == first
+
+
+def test_a_stopped_run_has_a_report_of_what_there_is(stored, capsys):
+    (stored / "report.json").unlink()
+    assert asked(capsys, "report", stored)[0] == 0
+    text = (stored / "report.html").read_text(encoding="utf-8")
+    assert "stopped before its report" in text
+    assert text.count('<article class="case"') == 2
+
+
+@pytest.mark.parametrize("spoiled", ["flipped", "cut", "text"])
+def test_a_damaged_case_is_named_and_the_page_left_alone(stored, capsys, spoiled):
+    path = stored / "cases" / "first.json"
+    data = bytearray(path.read_bytes())
+    if spoiled == "flipped":
+        data[len(data) // 2] ^= 1
+    path.write_bytes({"flipped": bytes(data), "cut": bytes(data[:-50]), "text": b"{}"}[spoiled])
+    code, _, complaint = asked(capsys, "report", stored)
+    assert code == 2
+    assert "first.json" in complaint
+    assert len(complaint.splitlines()) == 1
+    assert not (stored / "report.html").exists()
+
+
+def test_no_run_is_one_sentence(tmp_path, capsys):
+    code, _, complaint = asked(capsys, "report", tmp_path / "nowhere")
+    assert (code, len(complaint.splitlines())) == (2, 1)
+    assert "nowhere: holds no run" in complaint
+    assert not list(tmp_path.iterdir())
+
+
+def test_printing_without_a_browser_is_one_sentence(stored, capsys, monkeypatch):
+    monkeypatch.setenv("PATH", "")
+    code, _, complaint = asked(capsys, "report", stored, "--pdf")
+    assert code == 3
+    assert "--pdf needs Chromium or Chrome" in complaint
+    assert len(complaint.splitlines()) == 1
+    assert (stored / "report.html").exists()
+
+
+@pytest.mark.parametrize(
+    ("script", "said"), [("exit 7", "ended with code 7"), ("exec sleep 60", "did not print")]
+)
+def test_a_browser_that_fails_is_one_sentence(tmp_path, monkeypatch, script, said):
+    program = tmp_path / "bin" / "chromium"
+    program.parent.mkdir()
+    program.write_text(f"#!/bin/sh\n{script}\n")
+    program.chmod(0o755)
+    monkeypatch.setenv("PATH", f"{program.parent}:/usr/bin:/bin")
+    with pytest.raises(NoBrowser, match=said):
+        printed(tmp_path / "page.html", tmp_path / "page.pdf", 1.0)
+    assert not (tmp_path / "page.pdf").exists()
+
+
+@pytest.mark.skipif(browser() is None, reason="no Chromium on this machine")
+def test_a_page_is_printed(tmp_path):
+    page = tmp_path / "page.html"
+    page.write_text("<!DOCTYPE html><title>x</title><p>Printed.")
+    data = printed(page, tmp_path / "page.pdf", 120.0).read_bytes()
+    assert data.startswith(b"%PDF-")
+    assert data.rstrip().endswith(b"%%EOF")
