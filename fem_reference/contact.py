@@ -139,9 +139,10 @@ def complementarity(contact: Touch, discretisation: Discretisation) -> tuple[flo
     d = discretisation
     r = d.locations[0, d.surface]
     gap = r**2 / 2 + contact.fields[d.N + d.surface] - contact.approach
-    penetration = max(0.0, -float(gap[r > contact.contact_radius].min()))
+    # In this order NaN is handed on: max(0.0, nan) would be 0.
+    penetration = max(-float(gap[r > contact.contact_radius].min()), 0.0)
     p = contact.pressure.values
-    return penetration / contact.approach, max(0.0, -float(p.min())) / float(p.max())
+    return penetration / contact.approach, max(-float(p.min()), 0.0) / float(p.max())
 
 
 def _even_at_the_axis(nodes: np.ndarray, order: int) -> sp.csr_matrix:

@@ -63,7 +63,7 @@ class Uncertainty:
         rows = []
         for name, value in fine.items():
             last, before = abs(value - middle[name]), abs(middle[name] - coarse[name])
-            rows.append((name, "patch size", max(safety(ratio) * last, before / 6)))
+            rows.append((name, "patch size", float(np.maximum(safety(ratio) * last, before / 6))))
             rows += [(name, knob, abs(result[name] - base[name])) for knob, result in knobs.items()]
         return cls._of(rows)
 

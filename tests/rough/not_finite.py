@@ -98,7 +98,7 @@ PLACES = (
     Place("fem_reference.contact", "complementarity", 0),
     Place("fem_reference.contact", "Multiplier.__call__"),
     Place("fem_reference.loading", "loaded"),
-    Place("fem_reference.recovery", "HarmonicField.__call__", 0),
+    Place("fem_reference.recovery", "HarmonicField.__call__", 1),
     Place("fem_reference.estimate", "PressureBound.__call__"),
     Place("fem_reference.estimate", "StressBound.__call__"),
     Place("fem_reference.solution", "Solution.stress"),

@@ -17,6 +17,8 @@ from verification import schedule
 from verification.case import parse_case
 from verification.commands.solving import kept_results
 from verification.plane import plane_path, sample_plane, write_plane
+from verification.printed import published_cases, read_published
+from verification.printed_run import failed as printed_failed
 from verification.result import from_json, to_json
 from verification.run import judge_case, solve_case
 from verification.schedule import case_task, kept_result, result_path, run_tasks
@@ -343,3 +345,13 @@ def test_of_eight_runs_at_once_one_works_and_the_others_say_why_not(tmp_path):
     assert read_checked(tmp_path / "out" / "cases" / "quick.json")["outcome"] == "AGREES"
     assert json.loads((tmp_path / "out" / "report.json").read_text())
     sys.stdout.write(f"8 runs at once: {len(worked)} worked, {len(refused)} said why not\n")
+
+
+def test_result_of_every_published_case_is_known_as_its_own(tmp_path):
+    # Spheres, discs and loading curves: each kind of problem comes back from its file as it went in.
+    for path in published_cases().values():
+        case = read_published(path)
+        stored = to_json(printed_failed(case, "a process that died", 1.0)) | {"made_by": fingerprint()}
+        write_checked(result_path(tmp_path, case), stored)
+        # It is the case's own, but a result it is not, so it is computed again.
+        assert kept_result(tmp_path, case) is None
