@@ -75,25 +75,27 @@ def connected(scheduler: str | None, jobs: int | None) -> Iterator[Any]:
     import dask
     from distributed import Client, LocalCluster
 
-    quiet = {"logging": {"distributed": "critical", "tornado": "critical"}}
-    for name in ("distributed", "tornado"):
-        logging.getLogger(name).setLevel(logging.CRITICAL)
     if scheduler is not None:
-        try:
-            client = Client(scheduler, timeout="5s", set_as_default=False)
-        except (OSError, ValueError, TimeoutError) as error:
-            said = " ".join(str(error).split())[:200]
-            raise SchedulerError(f"--scheduler {scheduler}: {said}; start one with: dask scheduler") from None
-        with client:
-            yield client
+        with _hushed():
+            try:
+                client = Client(scheduler, timeout="5s", set_as_default=False)
+            except (OSError, ValueError, TimeoutError) as error:
+                said = " ".join(str(error).split())[:200]
+                raise SchedulerError(
+                    f"--scheduler {scheduler}: {said}; start one with: dask scheduler"
+                ) from None
+            with client:
+                yield client
         return
     environment = {
         "distributed.nanny.pre-spawn-environ": {"MALLOC_TRIM_THRESHOLD_": 65536}
         | dict.fromkeys(THREAD_VARIABLES, 1),
         "distributed.admin.log-length": 100,
+        "logging": {"distributed": "critical", "tornado": "critical"},
     }
     with (
-        dask.config.set(environment | quiet),
+        _hushed(),
+        dask.config.set(environment),
         LocalCluster(
             n_workers=jobs or cores(),
             threads_per_worker=1,
@@ -106,6 +108,20 @@ def connected(scheduler: str | None, jobs: int | None) -> Iterator[Any]:
         Client(cluster, set_as_default=False) as client,
     ):
         yield client
+
+
+@contextmanager
+def _hushed() -> Iterator[None]:
+    """Dask's loggers silent: what goes wrong with a worker is said by the study, once."""
+    loggers = [logging.getLogger(name) for name in ("distributed", "tornado")]
+    levels = [logger.level for logger in loggers]
+    for logger in loggers:
+        logger.setLevel(logging.CRITICAL)
+    try:
+        yield
+    finally:
+        for logger, level in zip(loggers, levels, strict=True):
+            logger.setLevel(level)
 
 
 def run_study(
