@@ -137,8 +137,8 @@ def _thick(solve: Solve, source: str, problem: CoatedContact) -> Invariant:
 def _thin(solve: Solve, source: str, problem: CoatedContact) -> Invariant:
     """A very thin coating leaves Hertz of the substrate but for a first-order term.
 
-    The second order is minus the square of the first, over the approach, to a few per cent at h = 0.01 a_h and
-    below; twice that is allowed.
+    The second order is minus the square of the first, over the approach, to a few per cent from h = 0.01 a_h
+    down; twice that is allowed.
     """
     E, nu, _ = problem.coatings[0]
     thin = replace(problem, coatings=((E, nu, THIN_AT * problem.a_h),))
