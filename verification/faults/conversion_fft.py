@@ -88,9 +88,14 @@ FAULTS = (
     ),
     _fault(
         "no_patch_averaging_stress",
-        "the mean of p over a patch is taken for its value at the centre",
+        "stresses near the surface are those of constant patches, not averaged over the pressure between",
         STRESS,
-        Edit("semianalytic.lattice:samples", "return middle - (across - 4 * middle) / 24", "return middle"),
+        Edit(
+            "semianalytic.node:near_influence",
+            "_block_of_rectangle(rectangle, dx, dy, z)",
+            "rectangle(*np.meshgrid(np.arange(-BLOCK, BLOCK + 1) * dx, np.arange(BLOCK + 1) * dy, "
+            'indexing="ij"))',
+        ),
     ),
     _fault(
         "half_patch_shift",
