@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from verification.limits import towards_limits
-from verification.printed import PRINTED, published_cases, read_published
+from verification.printed import published_cases, read_published
+from verification.printed_columns import PRINTED
 from verification.printed_run import failed, run, solvers
 from verification.problem import PrescribedLoad
 from verification.quantity import Points, values
