@@ -1,10 +1,11 @@
-"""Speed and memory of the semi-analytical contact, side by side with its peer.
+"""Speed and memory of the semi-analytical contact, side by side with its peers.
 
 A rigid sphere on a homogeneous half-space, not periodic, on the square [-2a, 2a]^2 of N x N patches, solved
-by ``semianalytic.indent`` and by the Polonsky-Keer solver of tamaas with its DC-FFT operator. Both are held
-to one judge that is neither's: the patch pressures are put through Love's coefficients coded here, and gap in
-contact, penetration (over the approach) and load have to be met within ``JUDGE``. Every measurement is a
-process of its own with the threads set from outside, so that peak memory and threads mean what they say.
+by ``semianalytic.indent``, by the Polonsky-Keer solver of tamaas with its DC-FFT operator, and by aspher as
+it is fastest (nested grids, FFT operator, FFT preconditioner). All are held to one judge that is none's: the
+patch pressures are put through Love's coefficients coded here, and gap in contact, penetration (over the
+approach) and load have to be met within ``JUDGE``. Every measurement is a process of its own with the threads
+set from outside, so that peak memory and threads mean what they say.
 
 Results are ratios. The seconds belong to the machine they were measured on.
 """
@@ -15,6 +16,7 @@ import resource
 import subprocess
 import sys
 import time
+import tracemalloc
 from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass
 from importlib.util import find_spec
@@ -24,7 +26,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.fft import irfft2, next_fast_len, rfft2
 
-__all__ = ["BenchRow", "CoatedRow", "ratios", "run_bench", "run_coated"]
+__all__ = ["BenchRow", "CoatedRow", "PlaneRow", "ratios", "run_bench", "run_coated", "run_plane"]
 
 Array = NDArray[np.floating]
 
@@ -33,8 +35,9 @@ ENOUGH = 120.0  # seconds of one measurement after which it is not repeated
 SIZES = (128, 256, 512, 1024, 2048)
 A, R, E_STAR = 1.0, 1.0, 1.0  # lengths in contact radii, moduli in E*
 W = 4 / 3 * E_STAR * A**3 / R
-# tolerances with which each solver just meets the judge; both measure their own gap, over their own scale
-TOLERANCE = {"semianalytic": 8e-7, "tamaas": 1e-6}
+# tolerances with which each solver just meets the judge; all measure their own gap, over their own scale
+TOLERANCE = {"semianalytic": 8e-7, "tamaas": 1e-6, "aspher": 8e-7}
+PEERS = ("tamaas", "aspher")
 
 
 @dataclass(frozen=True)
@@ -78,6 +81,26 @@ class CoatedRow:
     setup_seconds: float
 
 
+@dataclass(frozen=True)
+class PlaneRow:
+    """Six stresses of one depth below every patch, beside six inverse real FFTs of the padded size; medians.
+
+    seconds, transforms : for one pressure.  setup_seconds : of the influence, once for all pressures.
+    memory : largest arrays held at a time, over those of the six results.
+    """
+
+    patches: int
+    seconds: float
+    transforms: float
+    setup_seconds: float
+    memory: float
+
+    @property
+    def ratio(self) -> float:
+        """Stresses over transforms."""
+        return self.seconds / self.transforms
+
+
 def run_bench(
     *,
     sizes: Sequence[int] = SIZES,
@@ -88,7 +111,7 @@ def run_bench(
 ) -> list[BenchRow]:
     """Measure every solver on every grid with every number of threads.
 
-    solvers : among "semianalytic" and "tamaas"; None takes those that are installed.
+    solvers : among "semianalytic", "tamaas" and "aspher"; None takes those that are installed.
     progress : called with a line before each measurement.
     Raises RuntimeError with the child's last words when a measurement fails.
     """
@@ -112,10 +135,15 @@ def ratios(rows: Sequence[BenchRow]) -> list[tuple[str, float]]:
         where = f"N = {patches}, threads {threads}"
         if solver == "semianalytic":
             found.append((f"solve / full convolution, {where}", row.seconds / row.full_convolution))
-            peer = by.get(("tamaas", patches, threads))
-            if peer:
-                found.append((f"solve / tamaas, {where}", row.seconds / peer.seconds))
+            for name in PEERS:
+                peer = by.get((name, patches, threads))
+                if peer:
+                    found.append((f"solve / {name}, {where}", row.seconds / peer.seconds))
             found.append((f"convolutions on the finest grid, {where}", float(row.convolutions)))
+            coarser = by.get((solver, 256, threads))
+            if coarser and patches > 256:
+                growth = row.iterations / coarser.iterations
+                found.append((f"iterations over those at N = 256, {where}", growth))
         found.append((f"{solver}: bytes per grid point, {where}", row.memory))
     for solver, threads in sorted({(row.solver, row.threads) for row in rows}):
         line = [(row.patches, row.seconds) for row in rows if (row.solver, row.threads) == (solver, threads)]
@@ -130,7 +158,7 @@ def ratios(rows: Sequence[BenchRow]) -> list[tuple[str, float]]:
 def run_coated(
     *,
     modulus_ratios: Sequence[float] = (0.1, 0.25, 1.0, 4.0, 10.0),
-    thicknesses: Sequence[float] = (0.1, 0.3, 1.0, 3.0),
+    thicknesses: Sequence[float] = (0.05, 0.1, 0.3, 1.0, 3.0),
     patches: int = 512,
 ) -> list[CoatedRow]:
     """Iterations and set-up of coated solids on such a grid; thickness in uncoated contact radii."""
@@ -158,6 +186,45 @@ def run_coated(
             setup = _setup_seconds(n, 2 * half_width / patches, coatings)
             d = s.diagnostics
             rows.append(CoatedRow(ratio, h, patches, d.iterations, d.convolutions, seconds, setup))
+    return rows
+
+
+def run_plane(*, sizes: Sequence[int] = (256, 512), repeats: int = 9) -> list[PlaneRow]:
+    """Time the six stresses at the interface of a sliding coating, against six transforms, taken in turns."""
+    from semianalytic import frf, halfspace, subsurface
+
+    rows = []
+    for patches in sizes:
+        x = (np.arange(patches) - (patches - 1) / 2) * (2.2 * A / patches)
+        pressure = np.sqrt(np.maximum(1 - (x[:, None] ** 2 + x[None, :] ** 2) / A**2, 0))
+        began = time.perf_counter()
+        plane = subsurface.stress_plane(
+            0.3 * A,
+            0,
+            grid_x=x,
+            grid_y=x,
+            friction=0.25,
+            coatings=((4 * E_STAR, 0.3, 0.3 * A),),
+            substrate=(E_STAR, 0.3),
+            rectangle=(halfspace.normal_stress, halfspace.tangential_stress),
+            stress_frf=frf.stress_frf,
+        )
+        setup = time.perf_counter() - began
+        ours, theirs = [], []
+        wave = plane.spectrum[0].copy()
+        for _ in range(repeats):
+            began = time.perf_counter()
+            plane(pressure)
+            ours.append(time.perf_counter() - began)
+            began = time.perf_counter()
+            for _ in range(6):
+                irfft2(wave, plane.size)
+            theirs.append(time.perf_counter() - began)
+        tracemalloc.start()
+        result = plane(pressure)
+        memory = tracemalloc.get_traced_memory()[1] / result.nbytes
+        tracemalloc.stop()
+        rows.append(PlaneRow(patches, median(ours), median(theirs), setup, memory))
     return rows
 
 
@@ -190,7 +257,7 @@ def _measure(solver: str, patches: int, threads: int, repeats: int) -> BenchRow:
 
 
 def _child(solver: str, patches: int, threads: int, repeats: int) -> BenchRow:
-    run = {"semianalytic": _semianalytic, "tamaas": _tamaas}[solver]
+    run = {"semianalytic": _semianalytic, "tamaas": _tamaas, "aspher": _aspher}[solver]
     run(64, threads)  # imports and plans are not what is measured
     before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
     times = []
@@ -253,6 +320,29 @@ def _tamaas(patches: int, threads: int) -> tuple[Array, int, int]:
     solver.max_iter = 10_000
     solver.solve(W / side**2)
     return np.array(model.traction), -1, -1
+
+
+def _aspher(patches: int, threads: int) -> tuple[Array, int, int]:
+    import aspher
+
+    x = _centres(patches)
+    coarsest = patches
+    while coarsest > 64 and coarsest % 2 == 0:
+        coarsest //= 2
+    result = aspher.solve_nested(
+        grid_size=patches,
+        gap=_sphere(x[:, None], x[None, :]).ravel(),
+        p_nominal=W / (4 * A) ** 2,
+        domain_size=4 * A,
+        E_star=E_STAR,
+        coarsest=coarsest,
+        backend="fft",
+        precond=True,
+        precond_engine="fft",
+        tol=TOLERANCE["aspher"],
+    )
+    pressure = np.array(result.pressure, dtype=float).reshape(patches, patches)
+    return pressure, int(result.iterations), int(result.matvec_count)
 
 
 def _centres(n: int) -> Array:

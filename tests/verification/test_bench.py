@@ -29,6 +29,21 @@ def test_ratios_are_ratios():
     assert found["semianalytic: time grows as N^, threads 1"] == pytest.approx(2)
 
 
+def test_every_peer_has_its_ratio_and_growth_counts_from_256():
+    rows = [row("semianalytic", 256, 1.0), row("semianalytic", 1024, 16.0, iterations=6)]
+    rows += [row("aspher", 1024, 40.0)]
+    found = dict(bench.ratios(rows))
+    assert found["solve / aspher, N = 1024, threads 1"] == pytest.approx(0.4)
+    assert found["iterations over those at N = 256, N = 1024, threads 1"] == pytest.approx(1.2)
+
+
+def test_stresses_of_a_plane_cost_about_as_much_as_their_transforms():
+    (found,) = bench.run_plane(sizes=(96,), repeats=3)
+    assert 6 < found.memory * 6 < 60
+    # seven transforms and a product beside six; a busy machine blurs it, the benchmark measures it
+    assert 0.5 < found.ratio < 10
+
+
 def test_judge_accepts_hertz_roughly_and_no_guess():
     n = 128
     x = bench._centres(n)

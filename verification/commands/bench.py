@@ -27,11 +27,14 @@ def bench(
     threads: Annotated[tuple[int, ...], Parameter(consume_multiple=True, negative="")] = (1, 2),
     repeats: int = 5,
     coated: Annotated[bool, Parameter(negative="")] = False,
+    plane: Annotated[bool, Parameter(negative="")] = False,
     as_json: Annotated[bool, Parameter(name="--json", negative="")] = False,
 ) -> int:
-    """Time the semi-analytical contact beside tamaas (extra "bench"), both held to one judge; ratios first.
+    """Time the semi-analytical contact beside tamaas and aspher, all held to one judge; ratios first.
 
-    The full set takes half an hour: coatcheck bench --sizes 128 256 512 1024 2048 --coated
+    tamaas comes with the extra "bench"; aspher is taken if it is installed (pip install aspher, which builds
+    it with CMake, a C++17 compiler and Eigen). The full set takes half an hour:
+    coatcheck bench --sizes 128 256 512 1024 2048 --coated --plane
 
     Parameters
     ----------
@@ -43,22 +46,36 @@ def bench(
         Measurements of each; the median counts.
     coated
         Also count the iterations of coated solids on 512 x 512 patches.
+    plane
+        Also time the six stresses of a plane beside six inverse real FFTs.
     as_json
         Print everything measured as JSON.
     """
     if min(sizes) < 16 or max(sizes) > 4096 or min(threads) < 1 or repeats < 1:
         return complain("--sizes from 16 to 4096, --threads and --repeats from 1")
-    from verification.bench import ratios, run_bench, run_coated
+    from verification.bench import ratios, run_bench, run_coated, run_plane
 
     console = Console(stderr=True)
     rows = run_bench(sizes=sizes, threads=threads, repeats=repeats, progress=lambda line: console.print(line))
     found = ratios(rows)
     layered = run_coated() if coated else []
+    planes = run_plane() if plane else []
+    for p in planes:
+        found.append((f"six stresses of a plane / six inverse FFTs, {p.patches} patches", p.ratio))
+        found.append((f"memory of it / the six stresses, {p.patches} patches", p.memory))
+        found.append((f"setting it up / one evaluation, {p.patches} patches", p.setup_seconds / p.seconds))
+    if layered:
+        bare = min(c.iterations for c in layered if c.modulus_ratio == 1)
+        most = max(c.iterations for c in layered)
+        found.append(("iterations of coated solids, most / homogeneous", most / bare))
+        setup = max(c.setup_seconds / c.seconds for c in layered)
+        found.append(("setting up coefficients / the whole solve, most", setup))
     if as_json:
         content = {
             "rows": [asdict(r) for r in rows],
             "ratios": dict(found),
             "coated": [asdict(r) for r in layered],
+            "planes": [asdict(r) for r in planes],
         }
         sys.stdout.write(json.dumps(content, indent=2) + "\n")
         return 0
