@@ -25,7 +25,13 @@ _SOURCES = {
     "fem_reference": ("fem_reference",),
     "integral_equation": ("verification.references",),
 }
-_SEARCH = ("verification.study.quantities", "verification.study.point", "verification.problem")
+_SEARCH = (
+    "verification.study.quantities",
+    "verification.study.planes",
+    "verification.study.point",
+    "verification.problem",
+    "verification.run",
+)
 _DIGITS = ("python", "numpy", "scipy", "ducc0", "scikit-fem", "gmsh")
 
 

@@ -29,6 +29,7 @@ __all__ = ["Outcome", "SchedulerError", "connected", "run_study", "table_path"]
 
 WINDOW = 3  # solves out at a time for each thread of the cluster
 DIED = "every worker it was sent to died, most likely for want of memory; run fewer --jobs"
+LOGGERS = ("distributed", "distributed.client", "tornado", "tornado.application")
 PATIENCE = 60.0  # s to wait for the first worker
 PAUSE = 5.0  # s between two writings of the table
 SHARE = 0.02  # of the time may go into writing the table while it grows
@@ -113,7 +114,7 @@ def connected(scheduler: str | None, jobs: int | None) -> Iterator[Any]:
 @contextmanager
 def _hushed() -> Iterator[None]:
     """Dask's loggers silent: what goes wrong with a worker is said by the study, once."""
-    loggers = [logging.getLogger(name) for name in ("distributed", "tornado")]
+    loggers = [logging.getLogger(name) for name in LOGGERS]
     levels = [logger.level for logger in loggers]
     for logger in loggers:
         logger.setLevel(logging.CRITICAL)
@@ -250,9 +251,7 @@ class _Run:
 
     def _take(self, one: Solve, key: str, future: Any) -> None:
         if future.cancelled():
-            raise SchedulerError(
-                "the scheduler is gone; what was solved is kept, the same command goes on there"
-            )
+            raise SchedulerError("the scheduler is gone; what was solved is kept, the same command goes on")
         error = future.exception()
         if error is not None:
             # A solver's failure is an answer; this is a worker's: it is not stored, the next run tries again.
