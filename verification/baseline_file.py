@@ -7,7 +7,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from verification.baseline import Baseline, Numbers, Update
+from verification.baseline import Baseline, Update
+from verification.drift import Numbers
 from verification.result import plain
 from verification.store import StoreError, read_checked, write_checked
 

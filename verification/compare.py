@@ -2,7 +2,8 @@
 
 from dataclasses import dataclass
 
-from verification.baseline import Baseline, CaseDrift, State, Update, against, digest, measured
+from verification.baseline import Baseline, CaseDrift, Update, against, digest
+from verification.drift import State, measured
 from verification.result import CaseResult
 from verification.stored_run import StoredRun
 from verification.verdict import Outcome

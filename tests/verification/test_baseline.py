@@ -12,16 +12,15 @@ from synthetic_results import INFO, STEEL, contact, result_of
 
 from verification.baseline import (
     Baseline,
-    State,
     against,
     case_drift,
-    measured,
     regression,
     regression_json,
     updated,
 )
 from verification.baseline_file import path_in, read_baseline, write_baseline
 from verification.case import shipped_cases
+from verification.drift import State, measured
 from verification.report.write import report_json
 from verification.result import CaseResult, to_json
 from verification.store import StoreError, write_checked

@@ -11,8 +11,8 @@ import pytest
 from headless import browser, page
 from synthetic_results import INFO, STEEL, contact, result_of
 
-from verification.baseline import State
 from verification.compare import compare_runs
+from verification.drift import State
 from verification.report.compare import comparison_page, comparison_sentence
 from verification.report.write import report_json
 from verification.result import CaseResult, RunInfo

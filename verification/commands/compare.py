@@ -11,9 +11,9 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
-from verification.baseline import State
 from verification.commands.common import DRIFTED, EXIT, STYLE, complain, one_line
 from verification.compare import RunComparison, compare_runs
+from verification.drift import State
 from verification.result import plain
 from verification.store import StoreError, write_atomically
 from verification.stored_run import read_run

@@ -3,7 +3,8 @@
 from collections.abc import Mapping, Sequence
 from math import isfinite
 
-from verification.baseline import FACTOR, RELATIVE, CaseDrift, Drift, Regression, State
+from verification.baseline import CaseDrift, Regression
+from verification.drift import FACTOR, RELATIVE, Drift, State
 from verification.report.cells import Cell, Part, Row, Section, Table
 from verification.report.names import source_label
 from verification.report.numbers import scientific

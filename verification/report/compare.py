@@ -1,7 +1,7 @@
 """Two runs side by side: a page of its own."""
 
-from verification.baseline import State
 from verification.compare import RunComparison
+from verification.drift import State
 from verification.report.baseline import MOST, drift_table, state_cell
 from verification.report.cells import Cell, Part, Row, Section, Table
 from verification.report.matrix import outcome_cell
