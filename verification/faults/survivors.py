@@ -6,8 +6,8 @@ __all__ = ["SURVIVORS"]
 SURVIVORS: dict[str, tuple[str, str]] = {
     "load_of_the_rim": (
         "what the rim lacks shrinks with the patches, so that the ladder over the patch size sees it: the "
-        "result is off by 5e-5 of p_h at most, and the method says so, for its uncertainty grows tenfold and "
-        "stays far below the caps",
+        "result is off by 5e-5 of p_h at most, and the uncertainty stated grows to cover it, still far below "
+        "the caps",
         "caps drawn as tight as the method usually is, or the baseline, which reports that the uncertainty "
         "grew; a result whose error lies within what it states is not wrong, only poorer",
     ),
