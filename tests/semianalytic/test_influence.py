@@ -62,6 +62,22 @@ def test_split_coefficients_are_the_quadrature(ratio, h, layers):
         assert C[j, i] == pytest.approx(C[i, j], rel=1e-13)
 
 
+@pytest.mark.parametrize("nu", [0.0, 0.5])
+@pytest.mark.parametrize("ratio", [0.1, 10.0])
+def test_split_coefficients_are_the_quadrature_at_both_ends_of_poissons_ratio(ratio, nu):
+    coatings, substrate = ((ratio * SUBSTRATE[0], nu, 3.0),), (SUBSTRATE[0], nu)
+
+    def excess(k):
+        return frf.compliance_excess(k, coatings, substrate)
+
+    image = influence.split_image(excess, [3.0])
+    C = image[0] * halfspace.surface_deflection(40, 40, 1.0, 1.0, image[1])
+    C += influence.remainder_coefficients(40, 1.0, excess, [3.0], image)
+    largest = abs(halfspace.surface_deflection(1, 1, 1.0, 1.0)[0, 0] + C[0, 0])
+    for i, j in PLACES:
+        assert C[i, j] == pytest.approx(by_quadrature(i, j, 1.0, excess, 3.0), abs=1e-7 * largest)
+
+
 def test_halving_the_hankel_grid_moves_nothing():
     coatings = stack(4.0, 3.0, 1)
     thickness = [c[2] for c in coatings]

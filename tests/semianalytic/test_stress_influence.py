@@ -1,0 +1,128 @@
+"""Influence coefficients of the stress held against direct quadrature of their definition."""
+
+import numpy as np
+import pytest
+from scipy.special import jv
+
+from semianalytic import halfspace, node
+from semianalytic.frf import stress_frf
+from semianalytic.pointload import stress_below
+
+SUBSTRATE = (210e9, 0.3)
+FRICTION = 0.5
+SIX = ((0, 1, 2, 0, 0, 1), (0, 1, 2, 1, 2, 2))
+FIELDS = (halfspace.normal_stress, halfspace.tangential_stress)
+ASKED = 1e-7  # of the largest coefficient
+NEAR = [1 / 30, *(pytest.param(z, marks=pytest.mark.slow) for z in (0.0, 0.01, 0.026, 0.06))]
+
+
+def by_quadrature(r, c, s, z, layer, scale, excess, body):
+    """Stress xx, yy, zz, xy, xz, yz below a point force at (r c, r s): Gauss panels of a period and less."""
+    out = []
+    for radius in r:
+        width = min(1 / scale, 2 / radius if radius else np.inf)
+        edges = np.concatenate([[0], np.geomspace(1e-6, 1, 25), np.arange(2, int(45 / scale / width) + 2)])
+        u, w = np.polynomial.legendre.leggauss(12)
+        half = np.diff(edges * width)[:, None] / 2
+        k = (edges[:-1, None] * width + half * (1 + u)).ravel()
+        weight = (half * w).ravel() * k / (2 * np.pi)
+
+        def response(load, k=k):
+            return stress_frf(k, np.array([z]), layer, load=load, excess=excess, **body)[:, 0]
+
+        def H(m, F, k=k, weight=weight, radius=radius):
+            return (jv(m, k * radius) * F) @ weight
+
+        zz, Lz, LL, TT = response("normal")
+        mean, half_difference = H(0, (LL + TT) / 2), -(c * c - s * s) * H(2, (LL - TT) / 2)
+        xy, xz, yz, s_zz = -2 * c * s * H(2, (LL - TT) / 2), -c * H(1, Lz), -s * H(1, Lz), H(0, zz)
+        zz, Lz, LL, TT = response("in-plane")
+        A, B = response("anti-plane")
+        E, G = H(1, (LL - TT) / 2 - B), H(3, (LL - TT) / 2 + B)
+        cos3, sin3 = 4 * c**3 - 3 * c, 3 * s - 4 * s**3
+        mean -= FRICTION * c * H(1, (LL + TT) / 2)
+        half_difference -= FRICTION * (c * E - cos3 * G) / 2
+        s_zz -= FRICTION * c * H(1, zz)
+        xy -= FRICTION * (s * E - sin3 * G) / 2
+        xz -= FRICTION * (H(0, Lz + A) - (c * c - s * s) * H(2, Lz - A)) / 2
+        yz += FRICTION * c * s * H(2, Lz - A)
+        out.append([mean + half_difference, mean - half_difference, s_zz, xy, xz, yz])
+    return np.array(out).T
+
+
+def stack(ratio, h, layers, nu):
+    E = ratio * SUBSTRATE[0]
+    if layers == 1:
+        return ((E, nu, h),)
+    return tuple(
+        (E if i % 2 == 0 else np.sqrt(E * SUBSTRATE[0]), 0.1 * i, h * (1 + i / 2)) for i in range(layers)
+    )
+
+
+def check_tables(ratio, h, layers, nu, asked=ASKED):
+    """Tables above and below every kind of interface; patches of side 1, shallow ones within 3 of them."""
+    coatings = stack(ratio, h, layers, nu)
+    body = {"coatings": coatings, "substrate": SUBSTRATE}
+    interfaces = np.cumsum([c[2] for c in coatings])
+    places = [(0.0, 0, True), (min(h, 2.9), 0, True), (interfaces[0], 1, False)]
+    places += [(3.0, int(np.searchsorted(interfaces, 3.0)), False), (interfaces[-1] + 1, layers, False)]
+    for z, layer, excess in places:
+        scale = 2.0 ** np.floor(np.log2(2 * h - z if excess else z))
+        (table,) = stress_below(
+            np.array([z]), layer, scale, stress_frf=stress_frf, friction=FRICTION, excess=excess, **body
+        )
+        r = np.array([0, 0.004, 0.1, 1, 7]) * scale
+        expected = by_quadrature(r, 0.8, 0.6, z, layer, scale, excess, body)
+        # shallow in the first layer the closed form, of order 1, is added to the table
+        largest = max(np.abs(expected).max(), float(excess))
+        assert np.abs(table(0.8 * r, 0.6 * r) - expected).max() <= asked * largest, (z, layer)
+
+
+@pytest.mark.parametrize(
+    ("ratio", "h", "layers", "nu"),
+    [(100.0, 2560.0, 1, 0.5), (0.01, 0.5, 1, 0.0), (100.0, 0.5, 2, 0.25), (0.01, 3.0, 5, 0.25)],
+)
+def test_coated_influence_is_the_quadrature(ratio, h, layers, nu):
+    check_tables(ratio, h, layers, nu)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("layers", [1, 2, 5])
+@pytest.mark.parametrize("h", [0.5, 3.0, 40.0, 2560.0])  # patches: half a patch .. 20 a_h at 128 to a_h
+@pytest.mark.parametrize("ratio", [0.01, 0.25, 4.0, 100.0])
+def test_coated_influence_is_the_quadrature_over_the_range(ratio, h, layers):
+    for nu in (0.0, 0.5) if layers == 1 else (0.25,):
+        check_tables(ratio, h, layers, nu)
+
+
+def graded(levels, points):
+    """Gauss panels halved towards both ends of a side of length 1 around 0."""
+    half = np.concatenate([[0], 0.5 * 2.0 ** -np.arange(levels, -1, -1)])
+    edges = np.concatenate([half, 1 - half[-2::-1]]) - 0.5
+    s, w = np.polynomial.legendre.leggauss(points)
+    width = np.diff(edges)[:, None] / 2
+    return ((edges[:-1] + edges[1:])[:, None] / 2 + width * s).ravel(), (width * w).ravel()
+
+
+@pytest.mark.parametrize("z", NEAR)
+def test_influence_of_a_node_near_the_surface_is_the_quadrature(z):
+    # the offsets whose cells touch the rectangle, where layers of width z need resolving
+    levels = int(np.ceil(np.log2(1 / max(z, 1e-4)))) + 4
+    t, weight = graded(levels, 8)
+
+    def rectangle(X, Y):
+        stresses = [field(X, Y, z, 1.0, 1.0, 0.3) for field in FIELDS]
+        return np.concatenate([stress[SIX] for stress in stresses])
+
+    block = node._block_of_rectangle(rectangle, 1.0, 1.0, z)
+    largest = np.abs(block).max()
+    for m, n in ((0, 0), (1, 1)):
+        expected = np.zeros(12)
+        for c in (-1, 0, 1):
+            for e in (-1, 0, 1):
+                w_c = -sum(node._keys_slope(c + t + 0.5 + k) for k in range(3)) * weight
+                w_e = -sum(node._keys_slope(e + t + 0.5 + k) for k in range(3)) * weight
+                X, Y = np.broadcast_arrays((m - c - t)[:, None], n - e - t)
+                expected += np.einsum("axy,x,y->a", rectangle(X, Y), w_c, w_e, optimize=True)
+        found = block[:, m + node.BLOCK, n]
+        assert np.abs(found - expected).max() <= ASKED * largest
