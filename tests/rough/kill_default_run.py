@@ -100,7 +100,10 @@ def kill_at(
     deadline = time.monotonic() + 10
     while any(running(pid) for pid in below) and time.monotonic() < deadline:
         time.sleep(0.01)
-    seen["processes left over"] += sum(running(pid) for pid in below)
+    for pid in filter(running, below):
+        seen["processes left over"] += 1
+        words = Path(f"/proc/{pid}/cmdline").read_bytes().split(b"\0")
+        sys.stdout.write(f"left over: {b' '.join(words).decode(errors='replace')}\n")
     seen["kills"] += 1
     return seen
 
