@@ -198,7 +198,10 @@ def test_every_figure_says_what_it_shows_and_carries_its_numbers(document, resul
     assert len(panels) == len(drawn) - len(results)
     assert len([a for a in document.all("section") if a.get("class") == "line"]) == lines
     tables = [a for a in document.all("a") if "data-csv" in a]
-    assert len(tables) == lines + sum(bool(r.profiles) for r in results)
+    # One for each row of figures, those of the lines among them, and one for the scalars of each case.
+    galleries = [a for a in document.all("div") if a.get("class", "").startswith("panels")]
+    assert len(galleries) > lines
+    assert len(tables) == len(galleries) + sum(bool(r.profiles) for r in results)
     for link in tables:
         kind, _, packed = link["href"].partition(",")
         assert kind == "data:application/gzip;base64"
