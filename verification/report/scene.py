@@ -9,7 +9,10 @@ python -m verification.report.scene FOLDER < scenes.json
 
 import base64
 import json
+import os
 import sys
+import threading
+import time
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -109,10 +112,17 @@ def render(scene: Scene, sphere: list[tuple[Any, dict[str, Any]]], path: Path) -
 
 
 def main(folder: str) -> None:
-    """Render every scene on standard input into ``folder``."""
+    """Render every scene on standard input into ``folder``; end where the process that asked for it does."""
+    threading.Thread(target=_end_with, args=(os.getppid(),), daemon=True).start()
     sphere = half_sphere()
     for number, scene in enumerate(json.load(sys.stdin)):
         render(Scene(**scene), sphere, Path(folder) / f"{number}.png")
+
+
+def _end_with(parent: int) -> None:
+    while os.getppid() == parent:
+        time.sleep(0.5)
+    os._exit(1)
 
 
 if __name__ == "__main__":
