@@ -1,4 +1,4 @@
-"""What is drawn below the contact: the very stresses of the Solutions, kept to the ninth digit and checked."""
+"""What is drawn below the contact: the very stresses of the Solutions, kept to nine digits and checked."""
 
 import numpy as np
 import pytest
