@@ -9,6 +9,8 @@ the points: it is the same whatever the order of the answers, however often the 
 import json
 import logging
 import os
+import signal
+import threading
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, nullcontext
@@ -89,26 +91,37 @@ def connected(scheduler: str | None, jobs: int | None) -> Iterator[Any]:
                 yield client
         return
     environment = {
-        "distributed.nanny.pre-spawn-environ": {"MALLOC_TRIM_THRESHOLD_": 65536}
+        "distributed.nanny.pre-spawn-environ": {"MALLOC_TRIM_THRESHOLD_": 65536, "MALLOC_ARENA_MAX": 1}
         | dict.fromkeys(THREAD_VARIABLES, 1),
         "distributed.admin.log-length": 100,
         "logging": {"distributed": "critical", "tornado": "critical"},
     }
-    with (
-        _hushed(),
-        dask.config.set(environment),
-        LocalCluster(
-            n_workers=jobs or cores(),
-            threads_per_worker=1,
-            processes=True,
-            host="127.0.0.1",
-            dashboard_address="127.0.0.1:0",
-            memory_limit=0,
-            silence_logs=logging.CRITICAL,
-        ) as cluster,
-        Client(cluster, set_as_default=False) as client,
-    ):
-        yield client
+    with _hushed(), dask.config.set(environment):
+        with _deaf():
+            cluster = LocalCluster(
+                n_workers=jobs or cores(),
+                threads_per_worker=1,
+                processes=True,
+                host="127.0.0.1",
+                dashboard_address="127.0.0.1:0",
+                memory_limit=0,
+                silence_logs=logging.CRITICAL,
+            )
+        with cluster, Client(cluster, set_as_default=False) as client:
+            yield client
+
+
+@contextmanager
+def _deaf() -> Iterator[None]:
+    """Processes started here do not hear Ctrl-C, which a terminal sends to all; the client acts on it."""
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, before)
 
 
 @contextmanager
