@@ -47,7 +47,8 @@ def bonded_displacement(solution: Solution, source: str, problem: CoatedContact,
         error = error + np.abs(parabola - line)
     bound = None
     if solution.uncertainty is not None:
-        bound = (error + 2 * uncertain_displacement(solution, problem, x, y, z)) / solution.approach
+        spread = uncertain_displacement(solution, problem, x, y, z, given_pressure=True)
+        bound = (error + 2 * spread) / solution.approach
     law = f"u passes interface {k} unchanged, over the approach"
     return decide(
         f"bonded displacements, interface {k}", source, law, (at[0] - at[1]) / solution.approach, bound
@@ -113,15 +114,21 @@ def crossed(solution: Solution, source: str, problem: CoatedContact) -> Invarian
     odd = (ahead - behind) / 2
     bound = None
     if solution.uncertainty is not None:
-        bound = (1 + problem.friction) * uncertain_displacement(solution, problem, x, y, zero)
-        bound = bound / solution.approach
+        spread = uncertain_displacement(solution, problem, x, y, zero, given_pressure=True)
+        bound = (1 + problem.friction) * spread / solution.approach
     law = "u_z odd in x, by sliding, is -f times u_x odd in x, by the load; over the approach"
     residual = (odd[2] + problem.friction * odd[0]) / solution.approach
     return decide("reciprocity of load and sliding", source, law, residual, bound)
 
 
 def uncertain_displacement(
-    solution: Solution, problem: CoatedContact | PrescribedLoad, x: Array, y: Array, z: Array
+    solution: Solution,
+    problem: CoatedContact | PrescribedLoad,
+    x: Array,
+    y: Array,
+    z: Array,
+    *,
+    given_pressure: bool = False,
 ) -> Array:
     """Uncertainty of displacements at points [m]: that of the approach, plus what U_p would press in,
 
@@ -129,8 +136,23 @@ def uncertain_displacement(
 
     on the half-space of the most compliant material, with K the complete elliptic integral, Johnson (3.96),
     plus, where a solution carries coarser companions, what the first changes, or a third of what the second
-    does where the first agrees by chance: u is evaluated on patches too.
+    does where the first agrees by chance: u is evaluated on patches too. A law that holds for whatever
+    pressure there is, ``given_pressure``, is not blurred by U_p.
     """
+    spread = np.full(np.shape(x), float(solution.uncertainty.approach))
+    if not given_pressure:
+        spread += _pressed_in(solution, problem, x, y)
+    share = 1.0
+    finer, companion = solution, getattr(solution, "coarser", None)
+    change = np.zeros_like(spread)
+    while companion is not None:
+        gap = np.abs(finer.displacement(x, y, z) - companion.displacement(x, y, z)).max(axis=0)
+        change = np.maximum(change, share * gap)
+        finer, companion, share = companion, getattr(companion, "coarser", None), share / 3
+    return spread + change
+
+
+def _pressed_in(solution: Solution, problem: CoatedContact | PrescribedLoad, x: Array, y: Array) -> Array:
     a = solution.contact_radius
     t, w = legendre.leggauss(64)
     phi = np.pi / 4 * (t + 1)
@@ -142,15 +164,7 @@ def uncertain_displacement(
     r = np.hypot(x, y)
     along = r[:, None] + s
     deflection = (ellipk(4 * r[:, None] * s / along**2) * s / along) @ (weight * U)
-    spread = 4 / (np.pi * E_star) * deflection + float(solution.uncertainty.approach)
-    share = 1.0
-    finer, companion = solution, getattr(solution, "coarser", None)
-    change = np.zeros_like(r)
-    while companion is not None:
-        gap = np.abs(finer.displacement(x, y, z) - companion.displacement(x, y, z)).max(axis=0)
-        change = np.maximum(change, share * gap)
-        finer, companion, share = companion, getattr(companion, "coarser", None), share / 3
-    return spread + change
+    return 4 / (np.pi * E_star) * deflection
 
 
 def _line(solution: Solution, problem: CoatedContact, k: int) -> tuple[Array, Array, Array]:
