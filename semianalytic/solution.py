@@ -58,12 +58,12 @@ class Uncertainty:
         """From the results on three grids, and on that of ``base`` with each other knob turned to the worse.
 
         Patch size: the change to the finest grid, of ``ratio`` times the patches a side, times ``safety``; or
-        a sixth of the change before where the last is small by chance.
+        a third of the change before where the last is small by chance.
         """
         rows = []
         for name, value in fine.items():
             last, before = abs(value - middle[name]), abs(middle[name] - coarse[name])
-            rows.append((name, "patch size", float(np.maximum(safety(ratio) * last, before / 6))))
+            rows.append((name, "patch size", float(np.maximum(safety(ratio) * last, before / 3))))
             rows += [(name, knob, abs(result[name] - base[name])) for knob, result in knobs.items()]
         return cls._of(rows)
 
@@ -203,7 +203,7 @@ class Solution:
         """Stress and its uncertainty [Pa], shape (3, 3) + points each, the latter from coarser companions.
 
         The largest difference over the six components, for every component alike: of this grid and the
-        next, times ``safety``, or an eighth of that of the next and the one after; plus what the other knobs
+        next, times ``safety``, or a third of that of the next and the one after; plus what the other knobs
         do to the peak pressure, and the error of the evaluation, ``EVALUATION`` of the peak.
         Raises ValueError where no uncertainty was estimated.
         """
@@ -213,7 +213,7 @@ class Solution:
         spread = safety(len(self.nodes) / len(coarser.nodes)) * np.abs(sigma - second).max(axis=(0, 1))
         if coarser.coarser is not None:
             third = coarser.coarser.stress(x, y, z, layer)
-            spread = np.maximum(spread, np.abs(second - third).max(axis=(0, 1)) / 8)
+            spread = np.maximum(spread, np.abs(second - third).max(axis=(0, 1)) / 3)
         shallow = np.asarray(z) < 4 * self.diagnostics.patch_size
         total = spread + (floor + np.where(shallow, *EVALUATION)) * self.peak_pressure
         return sigma, np.broadcast_to(total, (3, 3, *spread.shape)).copy()
