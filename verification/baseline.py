@@ -101,6 +101,11 @@ class Regression:
         """True where a number of the baseline is not what it was, or not there."""
         return any(case.state in (State.DRIFTED, State.GONE) for case in self.cases)
 
+    @property
+    def unexplained(self) -> bool:
+        """True where it drifted on the very machine and versions of the baseline: the code did it."""
+        return self.drifted and not self.other_versions
+
     def of(self, name: str) -> CaseDrift | None:
         """What became of the case ``name``."""
         return next((case for case in self.cases if case.name == name), None)

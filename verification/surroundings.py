@@ -76,7 +76,21 @@ def fingerprint() -> str:
 
 def machine() -> str:
     """System and processor, without a host name."""
-    return f"{platform.system()} {platform.machine()}"
+    return f"{platform.system()} {platform.machine()}{_processor()}"
+
+
+def _processor() -> str:
+    """Name, family, model of the processor where Linux tells: what last digits may depend on."""
+    try:
+        lines = Path("/proc/cpuinfo").read_text(encoding="utf-8", errors="replace").splitlines()
+    except OSError:
+        return ""
+    told: dict[str, str] = {}
+    for line in lines:
+        name, _, value = line.partition(":")
+        told.setdefault(name.strip(), value.strip())
+    found = [told[name] for name in ("model name", "cpu family", "model", "stepping") if name in told]
+    return f", {' '.join(found)}" if found else ""
 
 
 def missing_libraries() -> tuple[str, ...]:

@@ -149,6 +149,16 @@ def test_cases_and_sources_come_and_go():
     assert not regression([dead], None, "b", INFO, whole=True).drifted
 
 
+def test_drift_elsewhere_is_told_but_is_no_fault_of_the_code():
+    base = baseline_of(RESULT)
+    moved = changed(RESULT, 0, 1e-6)
+    assert regression([moved], base, "b", INFO, whole=False).unexplained
+    for other in (replace(INFO, machine="another processor"), replace(INFO, versions={"numpy": "0"})):
+        found = regression([moved], base, "b", other, whole=False)
+        assert found.drifted
+        assert not found.unexplained
+
+
 def test_another_case_file_and_other_versions_are_said():
     found = regression(
         [replace(RESULT, text="title = 'other'\n")],

@@ -66,7 +66,7 @@ def run(
         coatcheck run published
 
     Exit codes: 0 all agree, 1 disagreement, 2 bad input, 3 no result, 4 inconclusive, 5 all agree but a
-    number is not that of the baseline.
+    number is not that of the baseline, on its machine with its versions; elsewhere the report tells of it.
 
     Parameters
     ----------
@@ -159,7 +159,7 @@ def _code(results: Sequence[CaseResult], beside: Regression, tests: Sequence[Sel
     code = exit_code(results)
     if not all(test.passed for test in tests):
         return code or EXIT[Outcome.DISAGREES]
-    return DRIFTED if code == EXIT[Outcome.AGREES] and beside.drifted else code
+    return DRIFTED if code == EXIT[Outcome.AGREES] and beside.unexplained else code
 
 
 def _choose(names: Sequence[str]) -> list[Case | PublishedCase]:
