@@ -171,17 +171,22 @@ class Solution:
     def pressure_uncertainty(self, x: ArrayLike, y: ArrayLike = 0.0) -> Array:
         """Uncertainty of the pressure [Pa] from the coarser companion.
 
-        The largest difference of the two within a patch of the coarser, times ``safety``; and what the other
-        knobs do to the peak: twice, since they were turned on half the patches and a pressure answers a gap
-        in proportion to the patches. Plus what the uncertain radius does to the pressure within three
-        patches of the coarser from the edge or, where the edge is a staircase, all that twice.
+        The largest difference of the two within a patch of the coarser, times ``safety``, or a third of that
+        of the next two; and what the other knobs do to the peak: twice, since they were turned on half the
+        patches and a pressure answers a gap in proportion to the patches. Plus what the uncertain radius
+        does to the pressure within three patches of the coarser from the edge or, where the edge is a
+        staircase, all that twice.
         Raises ValueError where no uncertainty was estimated.
         """
         coarser, floor = self._companion()
-        difference = np.abs(self.patch_pressure - coarser.pressure(self.nodes[:, None], self.nodes[None, :]))
+        i, j = self.nodes[:, None], self.nodes[None, :]
+        second = coarser.pressure(i, j)
         ratio = len(self.nodes) / len(coarser.nodes)
+        difference = safety(ratio) * np.abs(self.patch_pressure - second)
+        if coarser.coarser is not None:
+            difference = np.maximum(difference, np.abs(second - coarser.coarser.pressure(i, j)) / 3)
         reach = 2 * int(np.ceil(ratio if self._profile is not None else 2 * ratio)) + 1
-        widened = safety(ratio) * maximum_filter(difference, size=reach, mode="nearest")
+        widened = maximum_filter(difference, size=reach, mode="nearest")
         spread = _at(self.nodes, widened, x, y, order=1) + 2 * floor * self.peak_pressure
         if self._profile is None or self.uncertainty is None:
             return 2 * spread
