@@ -21,6 +21,8 @@ Motion = Callable[[ArrayLike, ArrayLike, ArrayLike], Array]
 
 # error of the stress of a given pressure, over its peak, against Hankel quadrature: above 4 patches, below
 EVALUATION = (5e-6, 5e-7)
+# Likewise of a pressure: what the iteration leaves of a gap, answered in proportion to the patches.
+RESOLUTION = 1e-7
 
 
 def safety(ratio: float) -> float:
@@ -58,12 +60,12 @@ class Uncertainty:
         """From the results on three grids, and on that of ``base`` with each other knob turned to the worse.
 
         Patch size: the change to the finest grid, of ``ratio`` times the patches a side, times ``safety``; or
-        a third of the change before where the last is small by chance.
+        a sixth of the change before where the last is small by chance.
         """
         rows = []
         for name, value in fine.items():
             last, before = abs(value - middle[name]), abs(middle[name] - coarse[name])
-            rows.append((name, "patch size", float(np.maximum(safety(ratio) * last, before / 3))))
+            rows.append((name, "patch size", float(np.maximum(safety(ratio) * last, before / 6))))
             rows += [(name, knob, abs(result[name] - base[name])) for knob, result in knobs.items()]
         return cls._of(rows)
 
@@ -171,11 +173,11 @@ class Solution:
     def pressure_uncertainty(self, x: ArrayLike, y: ArrayLike = 0.0) -> Array:
         """Uncertainty of the pressure [Pa] from the coarser companion.
 
-        The largest difference of the two within a patch of the coarser, times ``safety``, or a third of that
+        The largest difference of the two within a patch of the coarser, times ``safety``, or a sixth of that
         of the next two; and what the other knobs do to the peak: twice, since they were turned on half the
         patches and a pressure answers a gap in proportion to the patches. Plus what the uncertain radius
         does to the pressure within three patches of the coarser from the edge or, where the edge is a
-        staircase, all that twice.
+        staircase, all that twice; and ``RESOLUTION`` of the peak.
         Raises ValueError where no uncertainty was estimated.
         """
         coarser, floor = self._companion()
@@ -184,10 +186,10 @@ class Solution:
         ratio = len(self.nodes) / len(coarser.nodes)
         difference = safety(ratio) * np.abs(self.patch_pressure - second)
         if coarser.coarser is not None:
-            difference = np.maximum(difference, np.abs(second - coarser.coarser.pressure(i, j)) / 3)
+            difference = np.maximum(difference, np.abs(second - coarser.coarser.pressure(i, j)) / 6)
         reach = 2 * int(np.ceil(ratio if self._profile is not None else 2 * ratio)) + 1
         widened = maximum_filter(difference, size=reach, mode="nearest")
-        spread = _at(self.nodes, widened, x, y, order=1) + 2 * floor * self.peak_pressure
+        spread = _at(self.nodes, widened, x, y, order=1) + (2 * floor + RESOLUTION) * self.peak_pressure
         if self._profile is None or self.uncertainty is None:
             return 2 * spread
         r, shift = np.hypot(x, y), self.uncertainty.contact_radius
@@ -208,7 +210,7 @@ class Solution:
         """Stress and its uncertainty [Pa], shape (3, 3) + points each, the latter from coarser companions.
 
         The largest difference over the six components, for every component alike: of this grid and the
-        next, times ``safety``, or a third of that of the next and the one after; plus what the other knobs
+        next, times ``safety``, or a quarter of that of the next and the one after; plus what the other knobs
         do to the peak pressure, and the error of the evaluation, ``EVALUATION`` of the peak.
         Raises ValueError where no uncertainty was estimated.
         """
@@ -218,7 +220,7 @@ class Solution:
         spread = safety(len(self.nodes) / len(coarser.nodes)) * np.abs(sigma - second).max(axis=(0, 1))
         if coarser.coarser is not None:
             third = coarser.coarser.stress(x, y, z, layer)
-            spread = np.maximum(spread, np.abs(second - third).max(axis=(0, 1)) / 3)
+            spread = np.maximum(spread, np.abs(second - third).max(axis=(0, 1)) / 4)
         shallow = np.asarray(z) < 4 * self.diagnostics.patch_size
         total = spread + (floor + np.where(shallow, *EVALUATION)) * self.peak_pressure
         return sigma, np.broadcast_to(total, (3, 3, *spread.shape)).copy()

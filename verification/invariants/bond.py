@@ -5,6 +5,7 @@ from numpy.polynomial import legendre
 from numpy.typing import NDArray
 from scipy.special import ellipk
 
+from verification.invariants.ladder import INNER, followed
 from verification.invariants.record import Invariant, decide
 from verification.invariants.stencil import Stencil
 from verification.problem import CoatedContact, PrescribedLoad, Solution
@@ -135,24 +136,20 @@ def uncertain_displacement(
         u(r) = 4/(pi E*) int U_p(s) K(m) s/(r+s) ds,   m = 4 r s/(r+s)^2
 
     on the half-space of the most compliant material, with K the complete elliptic integral, Johnson (3.96),
-    plus, where a solution carries coarser companions, what the first changes, or a third of what the second
-    does where the first agrees by chance: u is evaluated on patches too. A law that holds for whatever
-    pressure there is, ``given_pressure``, is not blurred by U_p.
+    plus, where a solution carries coarser companions, what they change, which then speaks for the edge. A law
+    that holds for whatever pressure there is, ``given_pressure``, is not blurred by U_p.
     """
     spread = np.full(np.shape(x), float(solution.uncertainty.approach))
+    change = followed(solution, lambda s: s.displacement(x, y, z))
     if not given_pressure:
-        spread += _pressed_in(solution, problem, x, y)
-    share = 1.0
-    finer, companion = solution, getattr(solution, "coarser", None)
-    change = np.zeros_like(spread)
-    while companion is not None:
-        gap = np.abs(finer.displacement(x, y, z) - companion.displacement(x, y, z)).max(axis=0)
-        change = np.maximum(change, share * gap)
-        finer, companion, share = companion, getattr(companion, "coarser", None), share / 3
-    return spread + change
+        spread += _pressed_in(solution, problem, x, y, 1.0 if change is None else INNER)
+    return spread if change is None else spread + change.max(axis=0)
 
 
-def _pressed_in(solution: Solution, problem: CoatedContact | PrescribedLoad, x: Array, y: Array) -> Array:
+def _pressed_in(
+    solution: Solution, problem: CoatedContact | PrescribedLoad, x: Array, y: Array, reach: float
+) -> Array:
+    """What U_p presses in, of the part of the contact within ``reach`` of its radius."""
     a = solution.contact_radius
     t, w = legendre.leggauss(64)
     phi = np.pi / 4 * (t + 1)
@@ -160,6 +157,8 @@ def _pressed_in(solution: Solution, problem: CoatedContact | PrescribedLoad, x: 
     s = a * np.concatenate([np.sin(phi), 1 + 0.05 * (t + 1)])
     weight = a * np.concatenate([np.pi / 4 * w * np.cos(phi), 0.05 * w])
     U = solution.pressure_uncertainty(s * np.cos(ANGLE), s * np.sin(ANGLE))
+    if reach < 1:
+        U = np.where(s < reach * a, U, 0.0)
     E_star = min(E / (1 - nu**2) for E, nu in [c[:2] for c in problem.coatings] + [problem.substrate])
     r = np.hypot(x, y)
     along = r[:, None] + s

@@ -4,6 +4,7 @@ import numpy as np
 from numpy.polynomial import legendre
 from numpy.typing import NDArray
 
+from verification.invariants.ladder import INNER, followed
 from verification.invariants.record import Invariant, decide
 from verification.invariants.stencil import Stencil
 from verification.problem import CoatedContact, Solution
@@ -23,16 +24,23 @@ PART_OF_REACH = 1 / 16
 def load_balance(solution: Solution, source: str, problem: CoatedContact) -> Invariant:
     """The pressure carries the load: int p dA = W, out to 1.1 a.
 
-    Bounded by the integral of the pressure's uncertainty and by what a coarser quadrature changes.
+    Bounded by the integral of the pressure's uncertainty, near the edge by what coarser companions change
+    where there are any, and by what a coarser quadrature changes.
     """
-    fine, coarse = (_load(solution, problem, n) for n in (40, 28))
-    stated = solution.uncertainty is not None
-    bound = fine[1] + abs(fine[0] - coarse[0]) if stated else None
+    change = followed(solution, lambda s: np.array(_load(s, problem, 40)[0]))
+    reach = np.inf if change is None else INNER
+    fine, coarse = (_load(solution, problem, n, reach) for n in (40, 28))
+    bound = None
+    if solution.uncertainty is not None:
+        bound = fine[1] + abs(fine[0] - coarse[0]) + (0.0 if change is None else float(change))
     return decide("load balance", source, "int p dA = W, over W", fine[0] - 1, bound)
 
 
-def _load(solution: Solution, problem: CoatedContact, n: int) -> tuple[float, float]:
-    """int p dA and int U_p dA over W, by Gauss points in phi of r = a sin(phi) and in an outer ring."""
+def _load(solution: Solution, problem: CoatedContact, n: int, reach: float = np.inf) -> tuple[float, float]:
+    """int p dA and, within ``reach`` of a, int U_p dA over W.
+
+    By Gauss points in phi of r = a sin(phi) and in an outer ring.
+    """
     a = solution.contact_radius
     s, w = legendre.leggauss(n)
     phi = np.pi / 4 * (s + 1)
@@ -44,7 +52,8 @@ def _load(solution: Solution, problem: CoatedContact, n: int) -> tuple[float, fl
     weight = weight[:, None] * 2 * np.pi / 8 / problem.load
     p = solution.pressure(x, y)
     U = solution.pressure_uncertainty(x, y) if solution.uncertainty is not None else np.zeros_like(p)
-    return float((weight * p).sum()), float((weight * U).sum())
+    within = np.where(r < reach * a, 1.0, 0.0)[:, None]
+    return float((weight * p).sum()), float((weight * within * U).sum())
 
 
 def surface(solution: Solution, source: str, problem: CoatedContact) -> tuple[Invariant, ...]:
