@@ -210,7 +210,7 @@ class Solution:
         """Stress and its uncertainty [Pa], shape (3, 3) + points each, the latter from coarser companions.
 
         The largest difference over the six components, for every component alike: of this grid and the
-        next, times ``safety``, or a quarter of that of the next and the one after; plus what the other knobs
+        next, times ``safety``, or a third of that of the next and the one after; plus what the other knobs
         do to the peak pressure, and the error of the evaluation, ``EVALUATION`` of the peak.
         Raises ValueError where no uncertainty was estimated.
         """
@@ -220,7 +220,7 @@ class Solution:
         spread = safety(len(self.nodes) / len(coarser.nodes)) * np.abs(sigma - second).max(axis=(0, 1))
         if coarser.coarser is not None:
             third = coarser.coarser.stress(x, y, z, layer)
-            spread = np.maximum(spread, np.abs(second - third).max(axis=(0, 1)) / 4)
+            spread = np.maximum(spread, np.abs(second - third).max(axis=(0, 1)) / 3)
         shallow = np.asarray(z) < 4 * self.diagnostics.patch_size
         total = spread + (floor + np.where(shallow, *EVALUATION)) * self.peak_pressure
         return sigma, np.broadcast_to(total, (3, 3, *spread.shape)).copy()

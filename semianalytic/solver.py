@@ -33,7 +33,7 @@ Press = Callable[
 ]  # (defect, missing, start, tolerance)
 
 USUAL, MOST = 257, 513  # patches a side
-PER_COATING = 10  # patches that the pressure needs to follow a coating at the contact edge
+PER_COATING = 12  # patches that the pressure needs to follow a coating at the contact edge
 WIDER = 1.25  # the box of the domain ladder over the box in use
 SKIPS = (2.5, 1.5, 1.0)  # patches inside the edge that the profile is not fitted to, round by round
 FINE = 8  # patches; stresses nearer to the surface are found from patches of half the side
