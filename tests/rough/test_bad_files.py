@@ -34,9 +34,7 @@ KNOBS = {
 }
 CASES = [tomllib.loads(path.read_text(encoding="utf-8")) for path in shipped_cases().values()]
 CASES += [tree | KNOBS | {"claim": [CLAIM, CLAIM]} for tree in CASES if tree["problem"].get("coatings")][:4]
-PUBLISHED = [
-    published_cases()[name] for name in ("jones_1962", "hermanowicz_2021", "ellea1_halfspace_axis")
-]
+PUBLISHED = [published_cases()[name] for name in ("jones_1962", "hermanowicz_2021", "ellea1_halfspace_axis")]
 REFUSED, QUICK = 2000, 200
 
 
