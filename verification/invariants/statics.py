@@ -25,14 +25,16 @@ def load_balance(solution: Solution, source: str, problem: CoatedContact) -> Inv
     """The pressure carries the load: int p dA = W, out to 1.1 a.
 
     Bounded by the integral of the pressure's uncertainty, near the edge by what coarser companions change
-    where there are any, and by what a coarser quadrature changes.
+    where that is less, and by what a coarser quadrature changes.
     """
-    change = followed(solution, lambda s: np.array(_load(s, problem, 40)[0]))
-    reach = np.inf if change is None else INNER
-    fine, coarse = (_load(solution, problem, n, reach) for n in (40, 28))
+    fine, coarse = (_load(solution, problem, n) for n in (40, 28))
     bound = None
     if solution.uncertainty is not None:
-        bound = fine[1] + abs(fine[0] - coarse[0]) + (0.0 if change is None else float(change))
+        bound = fine[1]
+        change = followed(solution, lambda s: np.array(_load(s, problem, 40)[0]))
+        if change is not None:
+            bound = min(bound, _load(solution, problem, 40, INNER)[1] + float(change))
+        bound += abs(fine[0] - coarse[0])
     return decide("load balance", source, "int p dA = W, over W", fine[0] - 1, bound)
 
 
