@@ -146,6 +146,7 @@ def test_level_that_fails_is_a_sentence_and_the_coarser_ones_stay():
     assert found.failure == "N = 65: not settled after 3 iterations; raise max_iterations"
 
 
+@pytest.mark.slow
 def test_study_goes_on_where_a_part_of_it_fails(monkeypatch):
     def broken(*_, **__):
         raise ValueError("no grid fits")
