@@ -167,8 +167,12 @@ def _thickness(c: PrintedLayer, length: float, a_h: float | None) -> float:
 def _units(problem: Problem) -> dict[str, float]:
     """The units a table of this problem may be printed in: those of UNITS and its own scales."""
     if isinstance(problem, LoadingCurve):
-        h, R = problem.coatings[0][2] if problem.coatings else float("inf"), problem.radius
-        return UNITS | {"R": R, "h": h, "h^2/R": h**2 / R, "E* h^3/R": problem.E_star * h**3 / R}
+        R = problem.radius
+        layer: dict[str, float] = {}
+        if problem.coatings:
+            h = problem.coatings[0][2]
+            layer = {"h": h, "h^2/R": h**2 / R, "E* h^3/R": problem.E_star * h**3 / R}
+        return UNITS | {"R": R} | layer
     if isinstance(problem, PrescribedLoad):
         return UNITS | {"q": problem.pressure, "a": problem.load_radius}
     return UNITS | {"a_h": problem.a_h, "p_h": problem.p_h, "delta_h": problem.delta_h}

@@ -1,6 +1,7 @@
 """Columns of a published table as profiles on lines, each with the reading uncertainty of its source."""
 
 from dataclasses import dataclass
+from math import isfinite
 
 import numpy as np
 from numpy.typing import NDArray
@@ -53,6 +54,8 @@ def si_of(name: str, units: dict[str, float], where: str) -> float:
     """SI value of a unit. Raises ValueError naming ``where`` it stands."""
     if name not in units:
         raise ValueError(f"{where}: unit {name!r} is unknown; known are {', '.join(units)}")
+    if not (isfinite(units[name]) and units[name] > 0):
+        raise ValueError(f"{where}: unit {name!r} is {units[name]:g} in this problem; give another unit")
     return units[name]
 
 
@@ -124,18 +127,22 @@ def _points(
     if at is None:
         return Points.origin(n)
 
-    def numbers(given: str | float) -> Array:
-        return np.array(content.numbers(given)) if isinstance(given, str) else np.full(n, given)
-
-    x, y, z = (numbers(v) for v in (at.x, at.y, at.z))
     try:
         unit = si_of(at.unit, units, "at")
+
+        def metres(given: str | float) -> Array:
+            value = np.array(content.numbers(given)) if isinstance(given, str) else np.full(n, given)
+            if not np.all(abs(value) <= np.finfo(float).max / max(unit, 1.0)):
+                raise ValueError(f"at: {given} in {at.unit!r} is beyond all numbers; give another unit")
+            return value * unit
+
         if isinstance(problem, LoadingCurve):
             for control in CONTROLS:
                 if (given := getattr(at, control)) is not None:
-                    return Points.on_curve(control, numbers(given) * unit, at.unit, unit)
+                    return Points.on_curve(control, metres(given), at.unit, unit)
             raise ValueError(f"at: give {' or '.join(CONTROLS)}, for the sphere has no load")
-        return Points.of(x * unit, y * unit, z * unit, problem.coatings, at.layer, at.unit, unit)
+        x, y, z = (metres(v) for v in (at.x, at.y, at.z))
+        return Points.of(x, y, z, problem.coatings, at.layer, at.unit, unit)
     except ValueError as error:
         raise PublishedError(f"{where}: {error}") from None
 

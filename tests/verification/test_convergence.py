@@ -236,7 +236,7 @@ def test_process_that_dies_leaves_its_reason(tmp_path):
 
 @pytest.fixture
 def one_case(tmp_path, monkeypatch):
-    """The shipped cases are one that takes no method."""
+    """Arguments of a run whose shipped cases are one that takes no method, beside no baseline."""
     case = tmp_path / "quick.toml"
     case.write_text(
         "title = 'Quick'\n[problem]\nradius = 10e-3\nload = 20\nsubstrate = { E = 210e9, nu = 0.3 }\n"
@@ -244,17 +244,17 @@ def one_case(tmp_path, monkeypatch):
         "between = ['integral_equation', 'hertz']\ncap = 1e-6\nwhy = 'no method, so nothing else can fail'\n"
     )
     monkeypatch.setattr(command, "shipped_cases", lambda: {"quick": case})
+    return {"quiet": True, "baseline": tmp_path / "none", "records": tmp_path / "none"}
 
 
-@pytest.mark.usefixtures("one_case")
-def test_study_that_fails_is_a_sentence_of_the_report_and_no_verdict(tmp_path, monkeypatch):
+def test_study_that_fails_is_a_sentence_of_the_report_and_no_verdict(one_case, tmp_path, monkeypatch):
     whole = accuracy_study.task
 
     def broken(folder):
         return replace(whole(folder), command=("verification.no_such_module",))
 
     monkeypatch.setattr(accuracy_study, "task", broken)
-    assert command.run(output=tmp_path / "all", quiet=True) == 0
+    assert command.run(output=tmp_path / "all", **one_case) == 0
     page = (tmp_path / "all" / "report.html").read_text()
     assert "No module named verification.no_such_module" in page
     report = json.loads((tmp_path / "all" / "report.json").read_text())
@@ -262,14 +262,13 @@ def test_study_that_fails_is_a_sentence_of_the_report_and_no_verdict(tmp_path, m
     assert [c["outcome"] for c in report["cases"]] == ["AGREES"]
 
     # A run of chosen cases measures no convergence.
-    assert command.run("quick", output=tmp_path / "one", quiet=True) == 0
+    assert command.run("quick", output=tmp_path / "one", **one_case) == 0
     assert 'id="semi-analytical-accuracy"' not in (tmp_path / "one" / "report.html").read_text()
     assert json.loads((tmp_path / "one" / "report.json").read_text())["accuracy"] is None
 
 
-@pytest.mark.usefixtures("one_case")
-def test_resumed_run_keeps_the_study(tmp_path, monkeypatch):
+def test_resumed_run_keeps_the_study(one_case, tmp_path, monkeypatch):
     monkeypatch.setattr(accuracy_study, "stored", lambda folder: study())
     monkeypatch.setattr(accuracy_study, "task", lambda folder: pytest.fail("measured again"))
-    assert command.run(output=tmp_path / "out", quiet=True, resume=True) == 0
+    assert command.run(output=tmp_path / "out", resume=True, **one_case) == 0
     assert 'id="finite-element-accuracy"' in (tmp_path / "out" / "report.html").read_text()
