@@ -17,6 +17,7 @@ import sys
 import time
 from collections import Counter
 from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -26,6 +27,8 @@ __all__ = ["disturbed", "largest_difference", "main", "resumed"]
 
 # What a second run of the same case may measure differently: times, and what they are part of.
 TIMES = ("seconds", "started", "diagnostics")
+MARK = "COATCHECK_KILLED_BY"  # variable that every process of a run inherits, whoever its parent becomes
+PATIENCE = 10.0  # s, for the end of a process whose parent was killed
 
 
 def resumed(output: Path, cases: Sequence[str], jobs: int) -> subprocess.Popen[bytes]:
@@ -34,33 +37,34 @@ def resumed(output: Path, cases: Sequence[str], jobs: int) -> subprocess.Popen[b
     return subprocess.Popen(
         [sys.executable, "-m", "verification.cli", *words],
         start_new_session=True,
+        env=os.environ | {MARK: str(os.getpid())},
         stdout=subprocess.DEVNULL,
         stderr=subprocess.DEVNULL,
     )
 
 
 def whole(output: Path) -> dict[str, bytes]:
-    """The finished cases with the content of their files. Raises StoreError for any stored file damaged."""
+    """The finished cases with the content of their files. Raises StoreError for any stored file damaged.
+
+    A case is finished with its result, and its plane stands already; the study of a whole run is one more.
+    """
     for path in sorted(output.rglob("*.json")):
         if path.name != "report.json":
             read_checked(path)
-    return {path.name: path.read_bytes() for path in sorted((output / "cases").glob("*.json"))}
+    found = {}
+    for path in (*sorted((output / "cases").glob("*.json")), *output.glob("accuracy.json")):
+        plane = output / "planes" / path.name
+        found[path.name] = path.read_bytes() + (plane.read_bytes() if plane.exists() else b"")
+    return found
 
 
-def descendants(pid: int) -> list[int]:
-    """Processes below ``pid``."""
-    children: dict[int, list[int]] = {}
+def descendants() -> list[int]:
+    """Processes that runs of this script started, at any depth, and that are still there."""
+    mark, found = f"{MARK}={os.getpid()}".encode(), []
     for entry in Path("/proc").iterdir():
-        if entry.name.isdigit():
-            try:
-                parent = int((entry / "stat").read_text().rpartition(")")[2].split()[1])
-            except (OSError, IndexError, ValueError):
-                continue
-            children.setdefault(parent, []).append(int(entry.name))
-    found, front = [], [pid]
-    while front:
-        front = [child for one in front for child in children.get(one, [])]
-        found += front
+        with suppress(OSError):
+            if entry.name.isdigit() and mark in (entry / "environ").read_bytes().split(b"\0"):
+                found.append(int(entry.name))
     return found
 
 
@@ -80,16 +84,15 @@ def kill_at(
     begin = time.monotonic()
     places = (output, *(output / name for name in ("cases", "planes")))
     while run.poll() is None and time.monotonic() - begin < moment * (3 if aimed else 1):
-        if aimed and time.monotonic() - begin > moment / 2:
-            if any(next(place.glob(f".*{PART}"), None) for place in places):
-                seen["while a file was written"] += 1
-                break
-            continue
-        time.sleep(0.005)
+        writing = (place.glob(f".*{PART}") for place in places)
+        if aimed and time.monotonic() - begin > moment / 2 and any(next(w, None) for w in writing):
+            seen["while a file was written"] += 1
+            break
+        time.sleep(0.0005 if aimed else 0.005)
     if run.poll() is not None:
         seen["too late: the run had ended"] += 1
         return seen
-    below = descendants(run.pid)
+    below = [pid for pid in descendants() if pid != run.pid]
     seen["with workers at work" if below else "without workers"] += 1
     for pid in [run.pid, *(below if group else [])]:
         try:
@@ -97,10 +100,11 @@ def kill_at(
         except ProcessLookupError:
             continue
     run.wait()
-    deadline = time.monotonic() + 10
-    while any(running(pid) for pid in below) and time.monotonic() < deadline:
+    deadline = time.monotonic() + PATIENCE
+    # Looked up anew: a process may have been started after the look above.
+    while any(map(running, descendants())) and time.monotonic() < deadline:
         time.sleep(0.01)
-    for pid in filter(running, below):
+    for pid in filter(running, descendants()):
         seen["processes left over"] += 1
         words = Path(f"/proc/{pid}/cmdline").read_bytes().split(b"\0")
         sys.stdout.write(f"left over: {b' '.join(words).decode(errors='replace')}\n")
@@ -124,7 +128,7 @@ def numbers(node: Any, path: tuple[str, ...] = ()) -> Iterator[tuple[tuple[str, 
 def scale_of(payload: dict[str, Any], path: tuple[str, ...], value: float) -> float:
     """What a difference of the number at ``path`` is divided by: the scale that verdicts use, or itself."""
     scales = {"peak_pressure": "p_h", "contact_radius": "a_h", "approach": "delta_h"}
-    if path[0] in ("verdicts", "invariants"):
+    if path[0] in ("verdicts", "invariants", "conversions"):
         return 1.0  # fractions of such scales already
     if path[0] == "profiles" and path[2] in ("value", "uncertainty"):
         profile = payload["profiles"][int(path[1])]
@@ -141,12 +145,15 @@ def largest_difference(one: Path, other: Path) -> tuple[float, int]:
     Infinite where anything else differs: a verdict, a name, the number of values.
     """
     largest, count = 0.0, 0
-    names = [{p.name for p in (folder / "cases").glob("*.json")} for folder in (one, other)]
+    names = [
+        {p.relative_to(folder) for p in (*folder.glob("cases/*.json"), *folder.glob("accuracy.json"))}
+        for folder in (one, other)
+    ]
     if names[0] != names[1] or not names[0]:
         return float("inf"), 0
     for name in sorted(names[0]):
-        payload = read_checked(one / "cases" / name)
-        a, b = dict(numbers(payload)), dict(numbers(read_checked(other / "cases" / name)))
+        payload = read_checked(one / name)
+        a, b = dict(numbers(payload)), dict(numbers(read_checked(other / name)))
         if a.keys() != b.keys():
             return float("inf"), count
         for path, value in a.items():

@@ -1,7 +1,12 @@
 """Runs that are killed and resumed, or repeated, come to the same numbers."""
 
+import os
+import signal
+import subprocess
+import sys
 from pathlib import Path
 
+import kill_default_run
 import pytest
 from kill_default_run import disturbed, largest_difference, resumed
 from repetitions import LIMIT, repeated
@@ -83,3 +88,33 @@ def test_comparison_of_runs_sees_a_changed_number_and_a_changed_verdict(tmp_path
         write_checked(tmp_path / "b" / "cases" / "x.json", payload | change)
         difference, _ = largest_difference(tmp_path / "a", tmp_path / "b")
         assert difference == pytest.approx(expected, rel=1e-6)
+
+
+# Stands for a run that goes wrong: it solves what it has solved before, and leaves a process behind.
+LOSER = """
+import subprocess, sys, time
+from pathlib import Path
+from verification.store import write_checked
+write_checked(Path(sys.argv[1]) / "cases" / "a.json", {"outcome": "AGREES", "value": time.time()})
+subprocess.Popen(["sleep", "30"], start_new_session=True)
+(Path(sys.argv[1]) / "report.json").write_text("{}")
+time.sleep(1.0)
+"""
+
+
+@pytest.mark.slow
+def test_the_count_of_kills_sees_a_case_lost_and_a_process_left_over(tmp_path, monkeypatch):
+    def losing(output, cases, jobs):
+        mark = {kill_default_run.MARK: str(os.getpid())}
+        words = [sys.executable, "-c", LOSER, str(output)]
+        return subprocess.Popen(words, env=os.environ | mark, start_new_session=True)
+
+    monkeypatch.setattr(kill_default_run, "resumed", losing)
+    monkeypatch.setattr(kill_default_run, "PATIENCE", 0.1)
+    try:
+        counts = disturbed(tmp_path, (), kills=3, longest=0.9, jobs=1, total=2, seed=1)
+    finally:
+        for pid in kill_default_run.descendants():
+            os.kill(pid, signal.SIGKILL)
+    assert counts["finished cases lost"] >= 1
+    assert counts["processes left over"] >= 1
