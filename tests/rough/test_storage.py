@@ -12,6 +12,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from quick_case import COMMAND, QUICK, coatcheck
 
 from verification import schedule
 from verification.case import parse_case
@@ -33,27 +34,6 @@ from verification.store import (
 )
 from verification.surroundings import fingerprint
 
-COMMAND = [sys.executable, "-m", "verification.cli"]
-FAST = """
-title = "Quick"
-[problem]
-radius = 10e-3
-load = 20
-substrate = { E = 210e9, nu = 0.3 }
-[[claim]]
-quantity = "peak_pressure"
-line = "contact"
-between = ["integral_equation", "hertz"]
-cap = 1e-6
-why = "two references, no method, so that the files alone are on trial"
-"""
-
-
-def coatcheck(*words, cwd, **keywords):
-    return subprocess.run(
-        [*COMMAND, *words], cwd=cwd, capture_output=True, text=True, timeout=300, check=False, **keywords
-    )
-
 
 def content(folder: Path) -> dict[str, bytes]:
     return {str(p.relative_to(folder)): p.read_bytes() for p in sorted(folder.rglob("*")) if p.is_file()}
@@ -63,7 +43,7 @@ def content(folder: Path) -> dict[str, bytes]:
 def stored(tmp_path_factory):
     """Twenty cases with their results as workers leave them, solved once."""
     folder = tmp_path_factory.mktemp("stored")
-    cases = [parse_case(FAST.encode(), Path(f"case-{n}.toml")) for n in range(20)]
+    cases = [parse_case(QUICK.encode(), Path(f"case-{n}.toml")) for n in range(20)]
     solved = solve_case(cases[0])
     result = judge_case(cases[0], solved)
     for case in cases:
@@ -264,7 +244,7 @@ def one_sentence(done: subprocess.CompletedProcess, said: str) -> None:
 
 @pytest.mark.slow
 def test_full_disk_is_one_sentence_and_the_earlier_results_stay(tmp_path, small_disk):
-    (tmp_path / "quick.toml").write_text(FAST)
+    (tmp_path / "quick.toml").write_text(QUICK)
     out = small_disk / "out"
     assert coatcheck("run", "quick.toml", "-q", "-o", str(out), cwd=tmp_path).returncode == 0
     earlier = content(out)
@@ -291,7 +271,7 @@ def test_full_disk_is_one_sentence_and_the_earlier_results_stay(tmp_path, small_
 
 @pytest.mark.slow
 def test_read_only_disk_is_one_sentence(tmp_path, small_disk):
-    (tmp_path / "quick.toml").write_text(FAST)
+    (tmp_path / "quick.toml").write_text(QUICK)
     out = small_disk / "out"
     assert coatcheck("run", "quick.toml", "-q", "-o", str(out), cwd=tmp_path).returncode == 0
     earlier = content(out)
@@ -305,7 +285,7 @@ def test_read_only_disk_is_one_sentence(tmp_path, small_disk):
 
 def test_limit_on_file_size_is_one_sentence_and_the_earlier_results_stay(tmp_path):
     # What a full disk does, on any machine: no file may grow beyond 60 kB, which a result exceeds.
-    (tmp_path / "quick.toml").write_text(FAST)
+    (tmp_path / "quick.toml").write_text(QUICK)
     earlier = {name: b"earlier" for name in ("report.html", "report.json", "junit.xml")}
     (tmp_path / "out").mkdir()
     for name, text in earlier.items():
@@ -323,7 +303,7 @@ def test_limit_on_file_size_is_one_sentence_and_the_earlier_results_stay(tmp_pat
 
 @pytest.mark.slow
 def test_of_eight_runs_at_once_one_works_and_the_others_say_why_not(tmp_path):
-    (tmp_path / "quick.toml").write_text(FAST.replace("hertz", "fem_reference").replace("1e-6", "1e-2"))
+    (tmp_path / "quick.toml").write_text(QUICK.replace("hertz", "fem_reference").replace("1e-6", "1e-2"))
     runs = [
         subprocess.Popen(
             [*COMMAND, "run", "quick.toml", "-q", "-o", "out"],

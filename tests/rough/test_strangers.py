@@ -11,6 +11,7 @@ from html.parser import HTMLParser
 from pathlib import Path
 
 import pytest
+from quick_case import QUICK
 
 from verification.case import CaseError, parse_case, read_case
 from verification.commands.common import one_line
@@ -33,19 +34,6 @@ UNSAFE = {"pickle", "cPickle", "dill", "cloudpickle", "joblib", "marshal", "shel
 CODE = {"eval", "exec", "compile", "__import__"}
 # A planted fault is made from this program's own source and catalogue; no file is read for it.
 PLANTED = "verification/faults/fault.py"
-FAST = """
-title = "Quick"
-[problem]
-radius = 10e-3
-load = 20
-substrate = { E = 210e9, nu = 0.3 }
-[[claim]]
-quantity = "peak_pressure"
-line = "contact"
-between = ["integral_equation", "hertz"]
-cap = 1e-6
-why = "two references, no method"
-"""
 SCRIPT = "<script>alert(1)</script><img src=x onerror=alert(1)>{{ 7 * 7 }}{% raw %}]]></style>"
 
 
@@ -112,7 +100,7 @@ def tags_of(page: str) -> Tags:
 
 def page_of(text: str) -> str:
     """The page of a failed case in which every text is ``text``."""
-    case = parse_case(FAST.encode(), Path("mine.toml"))
+    case = parse_case(QUICK.encode(), Path("mine.toml"))
     result = failed(case, text, 1.0)
     claim = replace(result.verdicts[0][0], why=text, quantity=text, line=text, between=(text, text))
     result = replace(
@@ -155,7 +143,7 @@ NAMES = [
 
 def test_no_name_of_a_case_leads_out_of_the_output_directory(tmp_path):
     for name in NAMES:
-        (tmp_path / f"{name}.toml").write_text(FAST)
+        (tmp_path / f"{name}.toml").write_text(QUICK)
         case = read_case(tmp_path / f"{name}.toml")
         for path in (
             result_path(tmp_path, case),
@@ -169,7 +157,7 @@ def test_no_name_of_a_case_leads_out_of_the_output_directory(tmp_path):
 def test_run_with_strange_names_writes_into_its_output_directory_only(tmp_path):
     for name in ("..", "../-rf"):
         (tmp_path / "here").mkdir(exist_ok=True)
-        (tmp_path / "here" / f"{name}.toml").write_text(FAST)
+        (tmp_path / "here" / f"{name}.toml").write_text(QUICK)
     before = sorted(tmp_path.rglob("*"))
     done = subprocess.run(
         [

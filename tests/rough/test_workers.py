@@ -10,6 +10,7 @@ from collections import Counter
 from pathlib import Path
 
 import pytest
+from quick_case import QUICK
 
 from verification import schedule
 from verification.commands import run as command
@@ -28,19 +29,6 @@ REASONS = {
     "nothing": r"its process left no result; run the case alone.*",
     "hang": r"not finished after \d+ s; raise --time-limit or coarsen the case",
 }
-FAST = """
-title = "Quick"
-[problem]
-radius = 10e-3
-load = 20
-substrate = { E = 210e9, nu = 0.3 }
-[[claim]]
-quantity = "peak_pressure"
-line = "contact"
-between = ["integral_equation", "hertz"]
-cap = 1e-6
-why = "two references, no method, so that the scheduler alone is on trial"
-"""
 
 
 @pytest.fixture(autouse=True)
@@ -177,9 +165,9 @@ def test_workers_of_ten_killed_runs_end_with_them(tmp_path):
 @pytest.mark.slow
 def test_every_death_ten_times_in_a_run_that_still_writes_its_report(tmp_path, monkeypatch, capsys):
     names = {f"{how.replace(' ', '_')}-{n}": how for how in REASONS for n in range(10)}
-    (tmp_path / "quick.toml").write_text(FAST)
+    (tmp_path / "quick.toml").write_text(QUICK)
     for name in names:
-        (tmp_path / f"{name}.toml").write_text(FAST)
+        (tmp_path / f"{name}.toml").write_text(QUICK)
     popen = subprocess.Popen
 
     def planted(words, **keywords):

@@ -6,7 +6,7 @@ from scipy.special import gamma, hyp2f1
 
 from semianalytic import halfspace
 from semianalytic.frf import displacement_frf, stress_frf
-from semianalytic.hankel import RADII, WAVENUMBERS, hankel
+from semianalytic.hankel import LONG, USUAL, hankel
 from semianalytic.pointload import displacement_below, stress_below
 
 
@@ -20,16 +20,17 @@ def laplace(m, n, r, L):
 @pytest.mark.parametrize("order", [0, 1, 2, 3])
 @pytest.mark.parametrize("over_k", [False, True])
 @pytest.mark.parametrize("decay", [1.0, 1.7, 4.0])
-def test_transform_of_polynomials_times_exponentials_is_the_closed_form(order, over_k, decay):
+@pytest.mark.parametrize("grid", [USUAL, LONG])
+def test_transform_of_polynomials_times_exponentials_is_the_closed_form(order, over_k, decay, grid):
     scale = 3e-5  # lengths in metres as they come
-    x = WAVENUMBERS
+    x, radii = grid.wavenumbers, grid.radii
     F = (1 + 0.5 * x - 0.3 * x**2) * np.exp(-decay * x)
     first = 0 if over_k else 1
-    exact = sum(c * laplace(order, first + n, RADII, decay) for n, c in enumerate((1, 0.5, -0.3)))
+    exact = sum(c * laplace(order, first + n, radii, decay) for n, c in enumerate((1, 0.5, -0.3)))
     exact = exact / (2 * np.pi * scale ** (1 if over_k else 2))
-    g = hankel(F, order, scale, over_k=over_k)
-    used = (RADII > 0.01) & (RADII < 1e3)
-    weight = (1 + RADII) ** (1 if over_k else 2)
+    g = hankel(F, order, scale, over_k=over_k, grid=grid)
+    used = (radii > 0.01) & (radii < 1e3)
+    weight = (1 + radii) ** (1 if over_k else 2)
     error = np.abs(g - exact)[used] * weight[used] / np.abs(exact[used]).max()
     # 2e-8 as the module states for features on the scale L; smoother ones cost more, wavenumbers being few
     assert error.max() < 2e-8 * decay**2

@@ -71,7 +71,7 @@ def check_tables(ratio, h, layers, nu, asked=ASKED):
         (table,) = stress_below(
             np.array([z]), layer, scale, stress_frf=stress_frf, friction=FRICTION, excess=excess, **body
         )
-        r = np.array([0, 0.004, 0.1, 1, 7]) * scale
+        r = np.array([0, 0.004, 0.01, 0.02, 0.1, 1, 7]) * scale
         expected = by_quadrature(r, 0.8, 0.6, z, layer, scale, excess, body)
         # shallow in the first layer the closed form, of order 1, is added to the table
         largest = max(np.abs(expected).max(), float(excess))
@@ -80,7 +80,13 @@ def check_tables(ratio, h, layers, nu, asked=ASKED):
 
 @pytest.mark.parametrize(
     ("ratio", "h", "layers", "nu"),
-    [(100.0, 2560.0, 1, 0.5), (0.01, 0.5, 1, 0.0), (100.0, 0.5, 2, 0.25), (0.01, 3.0, 5, 0.25)],
+    [
+        (100.0, 2560.0, 1, 0.5),
+        (100.0, 5120.0, 5, 0.25),
+        (0.01, 0.5, 1, 0.0),
+        (100.0, 0.5, 2, 0.25),
+        (0.01, 3.0, 5, 0.25),
+    ],
 )
 def test_coated_influence_is_the_quadrature(ratio, h, layers, nu):
     check_tables(ratio, h, layers, nu)

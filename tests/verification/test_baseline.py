@@ -1,13 +1,12 @@
 """The baseline: what counts as the same number, what an update keeps, what the command line says."""
 
 import json
-import subprocess
-import sys
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
+from quick_case import QUICK, coatcheck
 from synthetic_results import INFO, STEEL, contact, result_of
 
 from verification.baseline import (
@@ -27,7 +26,6 @@ from verification.store import StoreError, write_checked
 
 E, NU = STEEL
 RESULT = result_of(contact((2 * E, NU, 1.0)), text="title = 'stiff'\n")
-COMMAND = [sys.executable, "-m", "verification.cli"]
 
 
 def baseline_of(*results: CaseResult) -> Baseline:
@@ -202,10 +200,6 @@ def test_a_damaged_baseline_is_one_sentence_that_names_it(tmp_path):
         read_baseline(tmp_path)
 
 
-def coatcheck(*words: str, cwd: Path) -> subprocess.CompletedProcess[str]:
-    return subprocess.run([*COMMAND, *words], cwd=cwd, capture_output=True, text=True, timeout=120)
-
-
 def run_directory(folder: Path, results: list[CaseResult]) -> None:
     """What a run leaves: the report with a checked file beside it for each case."""
     folder.mkdir()
@@ -254,21 +248,6 @@ def test_the_command_updates_from_a_whole_run_and_shows_its_history(tmp_path):
     done = coatcheck("baseline", "update", "--why", "again", cwd=tmp_path)
     assert done.returncode == 2
     assert "of another run" in done.stderr
-
-
-QUICK = """
-title = "Quick"
-[problem]
-radius = 10e-3
-load = 20
-substrate = { E = 210e9, nu = 0.3 }
-[[claim]]
-quantity = "peak_pressure"
-line = "contact"
-between = ["integral_equation", "hertz"]
-cap = 1e-6
-why = "two references, no method, so that the baseline alone is on trial"
-"""
 
 
 def test_a_run_that_agrees_but_drifted_ends_with_code_5(tmp_path):

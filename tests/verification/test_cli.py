@@ -3,9 +3,9 @@
 import json
 import os
 import subprocess
-import sys
 
 import pytest
+from quick_case import COMMAND, QUICK, coatcheck
 
 from verification.case import Case, read_case, shipped_cases
 from verification.commands.common import exit_code
@@ -13,25 +13,6 @@ from verification.printed import published_cases
 from verification.result import CaseResult
 from verification.schedule import run_cases
 from verification.verdict import Claim, Outcome, Verdict
-
-COMMAND = [sys.executable, "-m", "verification.cli"]
-FAST = """
-title = "Quick"
-[problem]
-radius = 10e-3
-load = 20
-substrate = { E = 210e9, nu = 0.3 }
-[[claim]]
-quantity = "peak_pressure"
-line = "contact"
-between = ["integral_equation", "hertz"]
-cap = 1e-6
-why = "two references, no method, so that the command line alone is on trial"
-"""
-
-
-def coatcheck(*words, cwd):
-    return subprocess.run([*COMMAND, *words], cwd=cwd, capture_output=True, text=True, timeout=120)
 
 
 @pytest.mark.parametrize(
@@ -51,7 +32,7 @@ def coatcheck(*words, cwd):
     ],
 )
 def test_bad_input_is_one_sentence_code_2_and_nothing_written(tmp_path, words, said):
-    (tmp_path / "bad.toml").write_text(FAST.replace("load = 20", "load = 0"))
+    (tmp_path / "bad.toml").write_text(QUICK.replace("load = 20", "load = 0"))
     before = sorted(tmp_path.rglob("*"))
     done = coatcheck(*words, cwd=tmp_path)
     assert done.returncode == 2
@@ -62,7 +43,7 @@ def test_bad_input_is_one_sentence_code_2_and_nothing_written(tmp_path, words, s
 
 
 def test_run_writes_the_report_and_resume_keeps_what_is_whole(tmp_path):
-    (tmp_path / "quick.toml").write_text(FAST)
+    (tmp_path / "quick.toml").write_text(QUICK)
     done = coatcheck("run", "quick.toml", "--json", cwd=tmp_path)
     assert done.returncode == 0, done.stderr
     summary = json.loads(done.stdout)
@@ -79,7 +60,7 @@ def test_run_writes_the_report_and_resume_keeps_what_is_whole(tmp_path):
 
 
 def test_output_that_cannot_be_written_is_one_sentence(tmp_path):
-    (tmp_path / "quick.toml").write_text(FAST)
+    (tmp_path / "quick.toml").write_text(QUICK)
     (tmp_path / "file").write_text("in the way")
     done = coatcheck("run", "quick.toml", "--output", "file/below", cwd=tmp_path)
     assert done.returncode == 2
@@ -88,7 +69,7 @@ def test_output_that_cannot_be_written_is_one_sentence(tmp_path):
 
 def test_case_that_exceeds_its_time_is_no_result_and_the_others_finish(tmp_path):
     slow = read_case(shipped_cases()["05_ratio_4"])
-    (tmp_path / "quick.toml").write_text(FAST)
+    (tmp_path / "quick.toml").write_text(QUICK)
     quick = read_case(tmp_path / "quick.toml")
     # Importing the methods alone takes longer than this.
     results = run_cases([slow, quick], tmp_path, jobs=2, time_limit=0.2)
@@ -99,7 +80,7 @@ def test_case_that_exceeds_its_time_is_no_result_and_the_others_finish(tmp_path)
 
 
 def test_process_that_ends_badly_is_no_result_with_the_reason(tmp_path):
-    (tmp_path / "quick.toml").write_text(FAST)
+    (tmp_path / "quick.toml").write_text(QUICK)
     quick = read_case(tmp_path / "quick.toml")
     broken = Case(quick.name, quick.title, quick.problem, quick.claims, text="not = [toml")
     result = run_cases([broken], tmp_path, jobs=1, time_limit=100)[0]
@@ -140,7 +121,7 @@ def test_missing_system_library_names_the_packages_and_writes_nothing(tmp_path):
     (tmp_path / "fake" / "gmsh.py").write_text(
         "raise OSError('libGLU.so.1: cannot open shared object file: No such file or directory')\n"
     )
-    (tmp_path / "quick.toml").write_text(FAST)
+    (tmp_path / "quick.toml").write_text(QUICK)
     done = subprocess.run(
         [*COMMAND, "run", "quick.toml"],
         cwd=tmp_path,
@@ -157,10 +138,10 @@ def test_missing_system_library_names_the_packages_and_writes_nothing(tmp_path):
 
 
 def test_solver_that_does_not_converge_is_a_row_and_the_other_case_still_finishes(tmp_path):
-    (tmp_path / "quick.toml").write_text(FAST)
+    (tmp_path / "quick.toml").write_text(QUICK)
     # Three iterations cannot converge; the claims of this case stand on the semi-analytical method.
     (tmp_path / "hopeless.toml").write_text(
-        FAST.replace('"integral_equation"', '"semianalytic"').replace(
+        QUICK.replace('"integral_equation"', '"semianalytic"').replace(
             "[problem]", "[semianalytic]\nmax_iterations = 3\n[problem]"
         )
     )

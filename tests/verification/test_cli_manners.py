@@ -4,10 +4,10 @@ import json
 import os
 import signal
 import subprocess
-import sys
 import time
 
 import pytest
+from quick_case import COMMAND, QUICK, coatcheck
 from synthetic_results import INFO, contact, result_of
 
 from verification.commands.printing import NoBrowser, browser, printed
@@ -15,7 +15,6 @@ from verification.report.write import report_json
 from verification.result import to_json
 from verification.store import write_checked
 
-COMMAND = [sys.executable, "-m", "verification.cli"]
 COMMANDS = (
     "run",
     "list",
@@ -30,30 +29,6 @@ COMMANDS = (
     "baseline show",
     "study thickness",
 )
-QUICK = """
-title = "Quick"
-[problem]
-radius = 10e-3
-load = 20
-substrate = { E = 210e9, nu = 0.3 }
-[[claim]]
-quantity = "peak_pressure"
-line = "contact"
-between = ["integral_equation", "hertz"]
-cap = 1e-6
-why = "two references, no method"
-"""
-
-
-def coatcheck(*words, cwd, **environment):
-    return subprocess.run(
-        [*COMMAND, *words],
-        cwd=cwd,
-        env=os.environ | environment,
-        capture_output=True,
-        text=True,
-        timeout=200,
-    )
 
 
 def asked(capsys, *words):
@@ -102,7 +77,7 @@ def test_completion_knows_commands_and_options(capsys, shell):
 
 def test_what_is_piped_has_no_colours(tmp_path):
     (tmp_path / "quick.toml").write_text(QUICK)
-    done = coatcheck("run", "quick.toml", "-v", cwd=tmp_path, TERM="xterm-256color")
+    done = coatcheck("run", "quick.toml", "-v", cwd=tmp_path, env=os.environ | {"TERM": "xterm-256color"})
     assert done.returncode == 0, done.stderr
     assert "\x1b" not in done.stdout + done.stderr
     # Verbose: every source with its seconds.

@@ -60,7 +60,7 @@ def test_default_contact_meets_the_exact_one_over_the_range(coatings):
     check(coatings)
 
 
-@pytest.mark.parametrize("friction", [0.0, 0.25])
+@pytest.mark.parametrize("friction", [pytest.param(0.0, marks=pytest.mark.slow), 0.25])
 @pytest.mark.parametrize("coatings", [(), QUICK[1], QUICK[2]])
 def test_stress_meets_the_exact_one(coatings, friction):
     problem = {"radius": R, "load": W, "coatings": coatings, "substrate": STEEL, "friction": friction}

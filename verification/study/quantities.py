@@ -13,10 +13,11 @@ from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 from scipy.optimize import minimize_scalar
 
+from verification.plane import von_mises
 from verification.problem import CoatedContact, Solution
-from verification.study.planes import XX, XZ, YY, ZZ, Parts, Plane, crowded, plane, stress_at, surface
+from verification.study.planes import XX, XZ, ZZ, Parts, Plane, crowded, plane, stress_at, surface
 
-__all__ = ["QUANTITIES", "Located", "quantities", "von_mises"]
+__all__ = ["QUANTITIES", "Located", "quantities"]
 
 Array = NDArray[np.float64]
 Measure = Callable[[Array], Array]
@@ -43,12 +44,6 @@ class Located:
     uncertainty: float
     x: float
     z: float
-
-
-def von_mises(s: Array) -> Array:
-    """sqrt(((xx - yy)^2 + (yy - zz)^2 + (zz - xx)^2)/2 + 3 xz^2) of ``s`` = xx, yy, zz, xz in y = 0 [Pa]."""
-    xx, yy, zz, xz = s[XX], s[YY], s[ZZ], s[XZ]
-    return np.sqrt(((xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2) / 2 + 3 * xz**2)
 
 
 def quantities(
