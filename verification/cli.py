@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 from cyclopts import App, CycloptsError
 
-from verification.commands.common import complain
+from verification.commands.common import STOPPED, complain
 
 __all__ = ["app", "main"]
 
@@ -159,7 +159,7 @@ def main() -> None:
         code = complain(" ".join(str(error).split()) + " Try: coatcheck --help")
     except KeyboardInterrupt:
         sys.stderr.write("\ncoatcheck: stopped; finished cases are kept, go on with --resume\n")
-        code = 130
+        code = STOPPED
     sys.exit(code)
 
 

@@ -3,7 +3,6 @@
 import datetime
 import json
 import sys
-import time
 from dataclasses import asdict
 from pathlib import Path
 from typing import Annotated
@@ -15,14 +14,12 @@ from rich.table import Table
 
 from verification.alarms import AlarmRecord, counted, write_record
 from verification.case import Case, parse_case
-from verification.commands.common import EXIT, RECORDS, STYLE, complain, exit_code, one_line
+from verification.commands.common import RECORDS, STYLE, complain, exit_code, no_gmsh, one_line, run_info
 from verification.commands.solving import kept_results, solve
 from verification.draws import draw
-from verification.result import RunInfo, plain
+from verification.result import plain
 from verification.schedule import case_task, cores
 from verification.store import StoreError, locked, write_atomically
-from verification.surroundings import commit, machine, missing_libraries, versions
-from verification.verdict import Outcome
 
 __all__ = ["alarms"]
 
@@ -82,14 +79,12 @@ def alarms(
             f"--count = {count}, --seed = {seed}, --jobs = {jobs}, --time-limit = {time_limit:g}; only the "
             "seed may be zero, none negative"
         )
-    lacking = missing_libraries()
-    if lacking:
-        complain(f"gmsh lacks system libraries here; install them with: apt-get install {' '.join(lacking)}")
-        return EXIT[Outcome.NO_RESULT]
+    if (code := no_gmsh()) is not None:
+        return code
 
     from verification.report import write_report  # matplotlib takes a second to load
 
-    begin, started = time.perf_counter(), datetime.datetime.now(datetime.UTC)
+    started = datetime.datetime.now(datetime.UTC)
     try:
         with locked(output):
             cases = [_case(seed, number, output) for number in range(count)]
@@ -97,15 +92,7 @@ def alarms(
             tasks = [case_task(case, output) for case in cases if case.name not in kept]
             solved = {r.name: r for r in solve(tasks, jobs, time_limit, quiet or as_json)}
             results = [kept.get(case.name) or solved[case.name] for case in cases]
-            info = RunInfo(
-                command=f"coatcheck alarms --count {count} --seed {seed}",
-                started=started.isoformat(timespec="seconds"),
-                seconds=time.perf_counter() - begin,
-                jobs=jobs,
-                commit=commit(),
-                machine=f"{machine()}, {cores()} cores",
-                versions=versions(),
-            )
+            info = run_info(f"coatcheck alarms --count {count} --seed {seed}", started, jobs)
             page = write_report(results, output, info)
             found = counted(results, seed, info)
             stored = write_record(records, found) if record else None

@@ -1,5 +1,6 @@
 """What the commands share: exit codes, colours of outcomes, one-sentence complaints, a bar with time left."""
 
+import datetime
 import sys
 from collections.abc import Sequence
 from pathlib import Path
@@ -9,12 +10,15 @@ from rich.progress import (
     BarColumn,
     MofNCompleteColumn,
     Progress,
+    ProgressColumn,
     TextColumn,
     TimeElapsedColumn,
     TimeRemainingColumn,
 )
 
-from verification.result import CaseResult
+from verification.result import CaseResult, RunInfo
+from verification.schedule import cores
+from verification.surroundings import commit, machine, missing_libraries, versions
 from verification.verdict import Outcome
 
 __all__ = [
@@ -23,16 +27,20 @@ __all__ = [
     "DRIFTED",
     "EXIT",
     "RECORDS",
+    "STOPPED",
     "STYLE",
     "complain",
     "exit_code",
+    "no_gmsh",
     "one_line",
     "progress_bar",
+    "run_info",
 ]
 
 BASELINE = Path("reports/baseline")
 RECORDS = Path("reports/credibility")
 BAD_INPUT = 2
+STOPPED = 130  # as a shell has it of SIGINT
 DRIFTED = 5  # all agree, but not with the digits of the baseline
 EXIT = {Outcome.DISAGREES: 1, Outcome.NO_RESULT: 3, Outcome.INCONCLUSIVE: 4, Outcome.AGREES: 0}
 STYLE = {
@@ -64,12 +72,37 @@ def one_line(sentence: str, most: int = 1000) -> str:
     return shown if len(shown) <= most else f"{shown[: most - 3]}..."
 
 
-def progress_bar(console: Console, *, silent: bool = False) -> Progress:
-    """A bar that counts, with time gone and left; nothing at all where ``console`` is not a terminal."""
+def no_gmsh() -> int | None:
+    """The exit code where gmsh cannot be loaded here, having said what to install; None where it can."""
+    if not (lacking := missing_libraries()):
+        return None
+    complain(f"gmsh lacks system libraries here; install them with: apt-get install {' '.join(lacking)}")
+    return EXIT[Outcome.NO_RESULT]
+
+
+def run_info(command: str, started: datetime.datetime, jobs: int) -> RunInfo:
+    """What a report says of the run that ends now."""
+    return RunInfo(
+        command=command,
+        started=started.isoformat(timespec="seconds"),
+        seconds=(datetime.datetime.now(datetime.UTC) - started).total_seconds(),
+        jobs=jobs,
+        commit=commit(),
+        machine=f"{machine()}, {cores()} cores",
+        versions=versions(),
+    )
+
+
+def progress_bar(console: Console, *more: ProgressColumn, silent: bool = False) -> Progress:
+    """A bar that counts, with time gone and left; nothing at all where ``console`` is not a terminal.
+
+    more : columns behind the count.
+    """
     return Progress(
         TextColumn("{task.description}", markup=False),
         BarColumn(),
         MofNCompleteColumn(),
+        *more,
         TimeElapsedColumn(),
         TextColumn("left"),
         TimeRemainingColumn(),

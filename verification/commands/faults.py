@@ -14,11 +14,11 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
-from verification.commands.common import EXIT, complain
+from verification.commands.common import EXIT, complain, no_gmsh
 from verification.commands.solving import kept_results, solve
 from verification.schedule import case_task, cores
 from verification.store import StoreError, locked, write_atomically
-from verification.surroundings import commit, machine, missing_libraries, versions
+from verification.surroundings import commit, machine, versions
 from verification.verdict import Outcome
 
 if TYPE_CHECKING:
@@ -97,10 +97,8 @@ def faults(
         return 0
     if record and (names or group):
         return complain("--record stores the matrix of all faults; leave names and --group out")
-    lacking = missing_libraries()
-    if lacking:
-        complain(f"gmsh lacks system libraries here; install them with: apt-get install {' '.join(lacking)}")
-        return EXIT[Outcome.NO_RESULT]
+    if (code := no_gmsh()) is not None:
+        return code
 
     from verification.faults import campaign
     from verification.faults.record import to_json

@@ -12,25 +12,15 @@ from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import App, Parameter
 from rich.console import Console
-from rich.progress import (
-    BarColumn,
-    MofNCompleteColumn,
-    Progress,
-    ProgressColumn,
-    Task,
-    TaskID,
-    TextColumn,
-    TimeElapsedColumn,
-    TimeRemainingColumn,
-)
+from rich.progress import ProgressColumn, Task, TaskID, TextColumn
 from rich.text import Text
 
 from verification.case import CaseError
-from verification.commands.common import EXIT, complain
+from verification.commands.common import EXIT, STOPPED, complain, no_gmsh, progress_bar
 from verification.schedule import cores
 from verification.store import StoreError
 from verification.study.plan import Study, read_study_file, shipped_studies
-from verification.surroundings import commit, machine, missing_libraries
+from verification.surroundings import commit, machine
 from verification.verdict import Outcome
 
 if TYPE_CHECKING:
@@ -41,8 +31,6 @@ __all__ = ["study", "thickness"]
 study = App(
     name="study", help="Sweep a parameter with both methods behind every number.", help_format="plaintext"
 )
-
-INTERRUPTED = 130
 
 
 @study.command
@@ -96,9 +84,8 @@ def thickness(
         return complain(str(error))
     if not cross_check:
         chosen = replace(chosen, cross_check=0)
-    if chosen.cross_check and (lacking := missing_libraries()):
-        complain(f"gmsh lacks system libraries here; install them with: apt-get install {' '.join(lacking)}")
-        return EXIT[Outcome.NO_RESULT]
+    if chosen.cross_check and (code := no_gmsh()) is not None:
+        return code
 
     from verification.study.engine import SchedulerError, connected, run_study, table_path
 
@@ -115,7 +102,7 @@ def thickness(
             f"\ncoatcheck: stopped; what was solved is in {table_path(output, chosen)}, "
             "the same command goes on from there\n"
         )
-        return INTERRUPTED
+        return STOPPED
     for sentence in came.damaged:
         complain(f"{sentence.split(';')[0]}; solved again")
     if as_json:
@@ -166,19 +153,7 @@ class _Rate(ProgressColumn):
 def _bars(silent: bool) -> Iterator[Callable[[str, int, int], None]]:
     """A bar for the points of each source, with rate and time left; nothing where nobody looks."""
     console = Console(stderr=True)
-    bar = Progress(
-        TextColumn("{task.description}"),
-        BarColumn(),
-        MofNCompleteColumn(),
-        TextColumn("points"),
-        _Rate(),
-        TimeElapsedColumn(),
-        TextColumn("left"),
-        TimeRemainingColumn(),
-        console=console,
-        transient=True,
-        disable=silent or not console.is_terminal,
-    )
+    bar = progress_bar(console, TextColumn("points"), _Rate(), silent=silent)
     tasks: dict[str, TaskID] = {}
 
     def report(source: str, done: int, total: int) -> None:
