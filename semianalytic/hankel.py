@@ -9,8 +9,10 @@ be smooth at k = 0. What it does there, F_0 + F_1 k, is taken off first in close
 
 with its derivatives by L, because the logarithmic grid has to end somewhere above k = 0: a rest of order
 k^3 then leaves errors of 2e-8 of the largest value, weighted with (1 + r/L)^2, over 0.01 < r/L < 1000. A
-stiff coating bends on a base far softer over lengths much beyond L, and F changes from one level to another
-at k L << 1: the two levels are taken off each on its own length.
+stiff coating bends and stretches on a base far softer over lengths much beyond L, and F changes from one
+level to another at k L << 1: the two levels are taken off each on its own length. Where that length is more
+than 1e4 L the grid has to begin at smaller wavenumbers too: what F still changes below its end is lost, and
+comes back as an error of the small radii. Nearer than L/10 the power series of J_m is exact to rounding.
 
 Sources
 -------
@@ -19,37 +21,61 @@ A. J. S. Hamilton, Mon. Not. R. Astron. Soc. 312 (2000) 257-284.
 G. N. Watson, A Treatise on the Theory of Bessel Functions, Cambridge University Press, 1944.
 """
 
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.fft import fht
+from scipy.special import factorial
 
-__all__ = ["RADII", "WAVENUMBERS", "hankel"]
+__all__ = ["LONG", "NEAR", "USUAL", "LogGrid", "hankel", "log_grid", "near_axis"]
 
 Array = NDArray[Any]
 
-_N = 1500
-_STEP = np.log(3e10) / (_N - 1)
-_CENTRE = np.sqrt(1e-8 * 3e2)
-_LADDER = np.exp(_STEP * (np.arange(_N) - (_N - 1) / 2))
+_STEP = np.log(3e10) / 1499
 
-WAVENUMBERS: Array = _CENTRE * _LADDER  # k L, from 1e-8 to 3e2
-RADII: Array = _LADDER / _CENTRE  # r / L, from 3e-3 to 1e8
+
+@dataclass(frozen=True, eq=False)
+class LogGrid:
+    """Wavenumbers k L up to 3e2 and radii r / L from 3e-3, as many, both growing by the same factor."""
+
+    wavenumbers: Array
+    radii: Array
+
+
+def _log_grid(n: int) -> LogGrid:
+    ladder = np.exp(_STEP * (np.arange(n) - (n - 1) / 2))
+    centre = 3e2 / ladder[-1]
+    return LogGrid(centre * ladder, ladder / centre)
+
+
+USUAL = _log_grid(1500)  # wavenumbers from 1e-8, radii to 1e8
+LONG = _log_grid(1929)  # from 1e-11, to 1e11
+
+
+def log_grid(longest: float) -> LogGrid:
+    """The grid for an F that changes over lengths of up to ``longest`` times L."""
+    return USUAL if longest < 1e4 else LONG
+
+
+NEAR = 0.1  # r / L
+_TERMS = 8  # the rest is below NEAR^16
+
 # balance what the finite grid cuts off at its two ends, per order
 _BIAS = (0.7, 0.25, 0.0, 0.0)
 _BIAS_OVER_K = (0.25, 0.0, -0.25, -0.25)
 
 
-def hankel(F: Array, order: int, scale: float, *, over_k: bool = False) -> Array:
-    """g(r) at r = scale * RADII of F given at k = WAVENUMBERS / scale; with ``over_k`` of F/k.
+def hankel(F: Array, order: int, scale: float, *, over_k: bool = False, grid: LogGrid = USUAL) -> Array:
+    """g(r) at r = scale * grid.radii of F given at k = grid.wavenumbers / scale; with ``over_k`` of F/k.
 
     F : (..., nk), tends to a constant at k = 0.  order : m = 0..3.  scale : L [m].
     Returns g, unit of F / m^2, or of F / m with ``over_k``; shape of ``F``.
     """
-    x, r = WAVENUMBERS, RADII
-    F_0, slope = _at_zero(F)
-    low, length = _low_level(F, F_0)
+    x, r = grid.wavenumbers, grid.radii
+    F_0, slope = _at_zero(F, x)
+    low, length = _low_level(F, F_0, x)
     first = 0 if over_k else 1
     g = 0.0
     rest = F
@@ -58,24 +84,46 @@ def hankel(F: Array, order: int, scale: float, *, over_k: bool = False) -> Array
         (F_0 - low, slope * (low == 0), 1.0),
     ):
         incline = incline + height * L  # of what is left of F once the height e^{-xL} is taken off
-        powers = _closed_forms(order, L)
+        powers = _closed_forms(order, L, r)
         g = g + height * powers[first] + incline * powers[first + 1]
         rest = rest - (height + incline * x) * np.exp(-x * L)
     # offset 0 keeps the radii free of the order; the ringing it allows stays below the errors above
     bias = (_BIAS_OVER_K if over_k else _BIAS)[order]
     tail = fht(rest * x**first, _STEP, order, offset=0.0, bias=bias)
-    if order == 0 and not over_k:
+    if order == 0:
         # what wraps around from r >> L weighs on small r the less the smaller the bias
-        near = slice(0, int(np.searchsorted(r, 3.0)))
-        tail[..., near] = fht(rest * x, _STEP, order, offset=0.0, bias=0.1)[..., near]
+        bias, end = (-0.05, 10.0) if over_k else (0.1, 3.0)
+        near = slice(0, int(np.searchsorted(r, end)))
+        tail[..., near] = fht(rest * x**first, _STEP, order, offset=0.0, bias=bias)[..., near]
     g = g + tail / r
     return g / (2 * np.pi * (scale if over_k else scale**2))
 
 
-def _closed_forms(order: int, L: Array | float) -> tuple[Array, Array, Array]:
-    """int x^n e^{-xL} J_m(x r) dx at RADII for n = 0, 1, 2; L broadcast against them."""
-    rho = np.hypot(RADII, L)
-    t_m = (RADII / (rho + L)) ** order
+def near_axis(
+    F: Array, order: int, scale: float, r: Array, *, over_k: bool = False, grid: LogGrid = USUAL
+) -> Array:
+    """g(r) as `hankel`, at r [m] up to ``NEAR`` L: int F J_m(kr) k dk by the moments of F.
+
+        J_m(x) = sum_j (-1)^j (x/2)^(m+2j) / (j! (m+j)!),    Watson (1944), 3.1
+
+    r : (nr,).  Returns (..., nr).
+    """
+    x, s = grid.wavenumbers, np.asarray(r) / scale
+    powers = order + 2 * np.arange(_TERMS)
+    exponent = powers + (1 if over_k else 2)
+    # a trapezoidal rule in log k, spectrally accurate, and what lies below the first wavenumber
+    weight = _STEP * x[:, None] ** exponent
+    weight[0] = weight[0] / 2 + x[0] ** exponent / exponent
+    j = np.arange(_TERMS)
+    moments = (F @ weight) * (-1.0) ** j / (factorial(j) * factorial(order + j))
+    g: Array = moments @ (s / 2) ** powers[:, None]
+    return g / (2 * np.pi * (scale if over_k else scale**2))
+
+
+def _closed_forms(order: int, L: Array | float, r: Array) -> tuple[Array, Array, Array]:
+    """int x^n e^{-xL} J_m(x r) dx for n = 0, 1, 2; L broadcast against r."""
+    rho = np.hypot(r, L)
+    t_m = (r / (rho + L)) ** order
     return (
         t_m / rho,
         t_m * (L + order * rho) / rho**3,
@@ -83,17 +131,17 @@ def _closed_forms(order: int, L: Array | float) -> tuple[Array, Array, Array]:
     )
 
 
-def _low_level(F: Array, F_0: Array) -> tuple[Array, Array]:
+def _low_level(F: Array, F_0: Array, x: Array) -> tuple[Array, Array]:
     """How much of F_0 is gone at k L = 0.03, zero where that is little, and the length over which it goes."""
-    low = F_0 - F[..., [np.searchsorted(WAVENUMBERS, 0.03)]]
+    low = F_0 - F[..., [np.searchsorted(x, 0.03)]]
     low = np.where(np.abs(low) > 0.1 * np.abs(F).max(axis=-1, keepdims=True), low, 0.0)
     half = np.argmax(np.abs(F - F_0) > 0.5 * np.abs(low), axis=-1)[..., None]
-    return low, np.where(low, np.log(2) / WAVENUMBERS[half], 1.0)
+    return low, np.where(low, np.log(2) / x[half], 1.0)
 
 
-def _at_zero(F: Array) -> tuple[Array, Array]:
+def _at_zero(F: Array, x: Array) -> tuple[Array, Array]:
     """F and dF/dx at x = 0 by the parabola through three small x."""
-    nodes = np.searchsorted(WAVENUMBERS, [0, 3e-8, 6e-8])
-    inverse = np.linalg.inv(np.vander(WAVENUMBERS[nodes] * 1e7, 3, increasing=True))
+    nodes, unit = np.searchsorted(x, x[0] * np.array([0, 3, 6])), 10 * x[0]
+    inverse = np.linalg.inv(np.vander(x[nodes] / unit, 3, increasing=True))
     F_0, slope, _ = np.moveaxis(F[..., nodes] @ inverse.T, -1, 0)[..., None]
-    return F_0, slope * 1e7
+    return F_0, slope / unit

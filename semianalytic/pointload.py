@@ -28,7 +28,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
-from .hankel import RADII, WAVENUMBERS, hankel
+from .hankel import NEAR, LogGrid, hankel, log_grid, near_axis
 
 __all__ = [
     "PointLoad",
@@ -42,8 +42,7 @@ Array = NDArray[Any]
 Response = Callable[..., Array]
 Field = Callable[[Array, Array], Array]
 
-_FIRST = int(np.searchsorted(RADII, 1e-2))  # the transform is not used below r = 0.01 L, see `hankel`
-_NODES = np.concatenate([[0.0], np.arcsinh(RADII[_FIRST:])])
+_INNER = np.linspace(0, NEAR, 60, endpoint=False)  # r / L of the table, as dense as beyond
 
 
 @dataclass(frozen=True)
@@ -82,21 +81,24 @@ def stress_below(
     z : (nz,) [m].  scale : L [m] such that the response dies at least like exp(-k L).
     excess : leave out the homogeneous half-space of the first coating.
     """
-    k = WAVENUMBERS / scale
+    grid = _grid(coatings, substrate, scale)
+    k = grid.wavenumbers / scale
 
     def response(load: str) -> Array:
         kwargs = {"coatings": coatings, "substrate": substrate, "load": load, "excess": excess}
         return stress_frf(k, z, layer, **kwargs)
 
     zz, Lz, LL, TT = response("normal")
-    columns = [_radial(F, m, scale) for F, m in ((zz, 0), ((LL + TT) / 2, 0), (Lz, 1), ((LL - TT) / 2, 2))]
+    columns = [
+        _radial(F, m, scale, grid) for F, m in ((zz, 0), ((LL + TT) / 2, 0), (Lz, 1), ((LL - TT) / 2, 2))
+    ]
     if friction:
         zz, Lz, LL, TT = response("in-plane")
         A, B = response("anti-plane")
         D = (LL - TT) / 2
         pairs = ((zz, 1), ((LL + TT) / 2, 1), (Lz + A, 0), (Lz - A, 2), (D - B, 1), (D + B, 3))
-        columns += [_radial(F, m, scale) for F, m in pairs]
-    return _tabulate(columns, scale, friction, _combine_stress)
+        columns += [_radial(F, m, scale, grid) for F, m in pairs]
+    return _tabulate(columns, grid, scale, friction, _combine_stress)
 
 
 def displacement_below(
@@ -111,19 +113,20 @@ def displacement_below(
     excess: bool = False,
 ) -> list[PointLoad]:
     """Displacement below a point force at each depth ``z`` of one layer; arguments as in `stress_below`."""
-    k = WAVENUMBERS / scale
+    grid = _grid(coatings, substrate, scale)
+    k = grid.wavenumbers / scale
 
     def response(load: str) -> Array:
         kwargs = {"coatings": coatings, "substrate": substrate, "load": load, "excess": excess}
         return displacement_frf(k, z, layer, **kwargs)
 
     uz, U = response("normal")
-    columns = [_radial(uz, 0, scale, over_k=True), _radial(U, 1, scale, over_k=True)]
+    columns = [_radial(F, m, scale, grid, over_k=True) for F, m in ((uz, 0), (U, 1))]
     if friction:
         uz, U = response("in-plane")
         (V,) = response("anti-plane")
-        columns += [_radial(F, m, scale, over_k=True) for F, m in ((uz, 1), (U + V, 0), (U - V, 2))]
-    return _tabulate(columns, scale, friction, _combine_displacement)
+        columns += [_radial(F, m, scale, grid, over_k=True) for F, m in ((uz, 1), (U + V, 0), (U - V, 2))]
+    return _tabulate(columns, grid, scale, friction, _combine_displacement)
 
 
 def stress_from_lines(field: Field, reach: Array, friction: float) -> PointLoad:
@@ -159,23 +162,28 @@ def _outer(columns: list[Array], reach: Array, friction: float, combine: Callabl
     return PointLoad(CubicSpline(np.arcsinh(reach / reach[0]), table), float(reach[0]), friction, combine)
 
 
-def _tabulate(columns: list[Array], scale: float, friction: float, combine: Callable) -> list[PointLoad]:
-    """Splines through the radial functions (nz, nr + 1, columns), the value on the axis first."""
+def _grid(
+    coatings: Sequence[tuple[float, float, float]], substrate: tuple[float, float], scale: float
+) -> LogGrid:
+    """Grid of the transforms: a film E, h stretches on a base E' over a length h E/E', bends over less."""
+    moduli = [material[0] for material in (*coatings, substrate)]
+    return log_grid(sum(h for _, _, h in coatings) * max(moduli) / min(moduli) / scale)
+
+
+def _tabulate(
+    columns: list[Array], grid: LogGrid, scale: float, friction: float, combine: Callable
+) -> list[PointLoad]:
+    """Splines through the radial functions (nz, nr, columns)."""
     tables = np.stack(columns, axis=-1)
-    return [PointLoad(CubicSpline(_NODES, table), scale, friction, combine) for table in tables]
+    nodes = np.arcsinh(np.concatenate([_INNER, grid.radii[grid.radii >= NEAR]]))
+    return [PointLoad(CubicSpline(nodes, table), scale, friction, combine) for table in tables]
 
 
-def _radial(F: Array, order: int, scale: float, *, over_k: bool = False) -> Array:
-    """The transform on the axis, then at scale * RADII[_FIRST:]; (nz, nr + 1)."""
-    off_axis = hankel(F, order, scale, over_k=over_k)[:, _FIRST:]
-    axis = np.zeros((len(F), 1))
-    if order == 0:  # a trapezoidal rule in log k, spectrally accurate
-        power = 1 if over_k else 2
-        k = WAVENUMBERS / scale
-        weight = np.log(k[1] / k[0]) * k**power
-        weight[0] = weight[0] / 2 + k[0] ** power / power  # and what lies below the first wavenumber
-        axis[:, 0] = F @ weight / (2 * np.pi)
-    return np.concatenate([axis, off_axis], axis=1)
+def _radial(F: Array, order: int, scale: float, grid: LogGrid, *, over_k: bool = False) -> Array:
+    """The transform at scale times ``_INNER`` and all radii beyond, (nz, nr)."""
+    inner = near_axis(F, order, scale, scale * _INNER, over_k=over_k, grid=grid)
+    outer = hankel(F, order, scale, over_k=over_k, grid=grid)[:, grid.radii >= NEAR]
+    return np.concatenate([inner, outer], axis=1)
 
 
 def _combine_stress(table: Array, c: Array, s: Array, f: float) -> Array:
