@@ -211,7 +211,7 @@ def disturbed(
             counts["finished cases lost"] += sum(kept[name] != found.get(name) for name in kept)
         counts["rounds"] += 1
         json.loads((folder / "report.json").read_text())
-        counts["half-written files left"] += len(list(folder.rglob(f".*{PART}")))
+        counts["half-written files left"] += sum(path.name != ".lock" for path in folder.rglob(".*"))
         turn += 1
     return counts
 

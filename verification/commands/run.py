@@ -3,6 +3,7 @@
 import datetime
 import json
 import os
+import shlex
 import sys
 import time
 import unicodedata
@@ -133,7 +134,7 @@ def run(
             formulas = next((r for r in solved if isinstance(r, EffectiveStudy)), None)
             ordered = [kept.get(case.name) or results[case.name] for case in chosen]
             info = RunInfo(
-                command=" ".join(["coatcheck run", *cases]),
+                command=shlex.join(["coatcheck", "run", *cases]),
                 started=started.isoformat(timespec="seconds"),
                 seconds=time.perf_counter() - begin,
                 jobs=jobs,

@@ -11,6 +11,7 @@ from verification.plane import read_planes
 from verification.report import write_report
 from verification.report.credibility import credibility_section
 from verification.report.effective import effective_sections
+from verification.report.faults import faults_section
 from verification.report.self_tests import self_test_section
 from verification.result import CaseResult, RunInfo
 from verification.self_test import SelfTest
@@ -34,10 +35,10 @@ def write(
     records : directory of what is known of the method's credibility.   formulas : what was measured of them.
     Raises StoreError.
     """
-    extra = [
-        self_test_section(tests),
-        credibility_section(results, info, study, gather(records), beside),
-    ]
+    evidence = gather(records)
+    extra = [self_test_section(tests), credibility_section(results, info, study, evidence, beside)]
+    if evidence.faults is not None:
+        extra.append(faults_section(evidence.faults))
     if formulas is not None:
         extra += effective_sections(formulas)
     try:

@@ -2,7 +2,6 @@
 
 import base64
 import hashlib
-import shlex
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -17,6 +16,7 @@ from verification.accuracy_study import AccuracyStudy
 from verification.baseline import Regression
 from verification.plane import Plane
 from verification.report.accuracy import accuracy_overview, accuracy_sentence, accuracy_table, coverage_table
+from verification.report.again import again
 from verification.report.baseline import baseline_section, state_cell
 from verification.report.cells import Part, Section, Table
 from verification.report.convergence import convergence_sections
@@ -152,11 +152,15 @@ def _render(
         )
         if contacts
         else None,
-        printed=[published_view(result, anchors[n]) for n, result in enumerate(results) if result.published],
+        printed=[
+            published_view(result, anchors[n], again(result.name, info.command))
+            for n, result in enumerate(results)
+            if result.published
+        ],
         outcomes=OUTCOMES.values(),
         sections=[*sections, *extra],
         cases=[
-            _case(result, anchor, planes.get(result.name), cutaways.get(result.name))
+            _case(result, anchor, info, planes.get(result.name), cutaways.get(result.name))
             for result, anchor in zip(contacts, contact_anchors.values(), strict=True)
         ],
         seconds=seconds,
@@ -238,7 +242,9 @@ def _summary(results: Sequence[CaseResult]) -> str:
     return text + "."
 
 
-def _case(result: CaseResult, anchor: str, plane: Plane | None, cutaway: Cutaway | None) -> CaseView:
+def _case(
+    result: CaseResult, anchor: str, info: RunInfo, plane: Plane | None, cutaway: Cutaway | None
+) -> CaseView:
     style = OUTCOMES[result.outcome]
     bad = [item for item in result.verdicts if item[1].outcome is not Outcome.AGREES]
     broken = [one for one in result.invariants if one.outcome is not Outcome.AGREES]
@@ -249,7 +255,7 @@ def _case(result: CaseResult, anchor: str, plane: Plane | None, cutaway: Cutaway
         result=result,
         outcome=style,
         sentence=_case_sentence(result, len(bad), len(broken)),
-        command=f"coatcheck run {shlex.quote(result.name)}",
+        command=again(result.name, info.command),
         facts=_facts(result),
         sketch=sketch(result),
         cutaway=cutaway,

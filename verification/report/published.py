@@ -1,6 +1,5 @@
 """Published sources in the report: their citation, every table as printed beside what the methods give."""
 
-import shlex
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -114,8 +113,8 @@ def _method_cells(result: CaseResult, method: str) -> list[Cell]:
     ]
 
 
-def published_view(result: CaseResult, anchor: str) -> PublishedView:
-    """Citation, problem, tables and verdicts of one published source."""
+def published_view(result: CaseResult, anchor: str, command: str) -> PublishedView:
+    """Citation, problem, tables and verdicts of one published source; ``command`` solves it again."""
     bad = sum(verdict.outcome is not Outcome.AGREES for _, verdict in result.verdicts)
     total = len(result.verdicts)
     return PublishedView(
@@ -123,7 +122,7 @@ def published_view(result: CaseResult, anchor: str) -> PublishedView:
         result=result,
         outcome=OUTCOMES[result.outcome],
         sentence=f"{bad} of {total} comparisons do not agree." if bad else f"All {total} comparisons agree.",
-        command=f"coatcheck run {shlex.quote(result.name)}",
+        command=command,
         facts=_facts(result),
         failures=[(source_label(s.source), s.failure) for s in result.sources if s.failure is not None],
         layers=layer_table(result),

@@ -15,6 +15,7 @@ from verification.report.cutaway import cutaways
 from verification.report.junit import junit_xml
 from verification.report.page import render
 from verification.result import SCHEMA, CaseResult, RunInfo, to_json
+from verification.store import PART
 
 __all__ = ["report_json", "write_report"]
 
@@ -48,7 +49,7 @@ def write_report(
     ready: dict[Path, Path] = {}
     try:
         for name, text in texts.items():
-            handle, path = tempfile.mkstemp(prefix=f".{name}.", dir=folder)
+            handle, path = tempfile.mkstemp(prefix=f".{name}.", suffix=PART, dir=folder)
             ready[Path(path)] = folder / name
             with os.fdopen(handle, "wb") as file:
                 # A lone surrogate in a stranger's title must not cost the whole report.
