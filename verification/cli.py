@@ -5,6 +5,7 @@ a number is not that of the baseline, 130 stopped by Ctrl-C.
 """
 
 import sys
+from collections.abc import Sequence
 from importlib.metadata import version
 from typing import NamedTuple
 
@@ -93,6 +94,7 @@ COMMANDS = (
         "Print the script that completes commands and options in a shell.",
         (
             'eval "$(coatcheck completion bash)"',
+            'eval "$(coatcheck completion zsh)"',
             "coatcheck completion fish > ~/.config/fish/completions/coatcheck.fish",
         ),
     ),
@@ -102,7 +104,11 @@ STUDY = (
         "thickness",
         "study:thickness",
         "Which thickness? Stresses of a coating against thickness, stiffness and friction, cross-checked.",
-        ("coatcheck study thickness",),
+        (
+            "coatcheck study thickness",
+            "coatcheck study thickness dlc_on_steel --output reports/dlc",
+            "coatcheck study thickness my_coating.toml --scheduler tcp://host:8786",
+        ),
     ),
 )
 BASELINE = (
@@ -121,28 +127,36 @@ BASELINE = (
 )
 
 
+def _epilogue(examples: Sequence[str]) -> str:
+    """What stands below the options of a command: how it is called, how it ends."""
+    return "Examples:\n\n" + "\n".join(f"    {example}" for example in examples) + f"\n\n{CODES}"
+
+
 def _add(parent: App, command: Command) -> None:
-    examples = "\n".join(f"    {example}" for example in command.examples)
     parent.command(
         f"verification.commands.{command.place}",
         name=command.name,
         help=command.said,
-        help_epilogue=f"Examples:\n\n{examples}\n\n{CODES}",
+        help_epilogue=_epilogue(command.examples),
     )
 
 
 app = App(
     name="coatcheck",
     help="Verify coated point contact: two independent methods, Hertz and an exact reference in one report.",
-    help_epilogue=f"Examples:\n\n    coatcheck run\n    coatcheck run --help\n\n{CODES}",
+    help_epilogue=_epilogue(["coatcheck run", "coatcheck run --help"]),
     version=lambda: version("coatcheck"),
     help_format="plaintext",
 )
 baseline = App(
-    name="baseline", help="The stored numbers that every run is held against.", help_epilogue=CODES
+    name="baseline",
+    help="The stored numbers that every run is held against.",
+    help_epilogue=_epilogue([example for entry in BASELINE for example in entry.examples]),
 )
 study = App(
-    name="study", help="Sweep a parameter with both methods behind every number.", help_epilogue=CODES
+    name="study",
+    help="Sweep a parameter with both methods behind every number.",
+    help_epilogue=_epilogue([example for entry in STUDY for example in entry.examples]),
 )
 for parent, entries in ((app, COMMANDS), (baseline, BASELINE), (study, STUDY)):
     for entry in entries:

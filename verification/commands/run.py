@@ -10,13 +10,14 @@ import unicodedata
 from collections import Counter
 from collections.abc import Sequence
 from contextlib import suppress
+from functools import partial
 from pathlib import Path
 from typing import Annotated
 
 from cyclopts import Parameter
 from rich.console import Console
 from rich.markup import escape
-from rich.table import Table
+from rich.table import Column, Table
 
 from verification.baseline import Regression, State, regression, regression_json
 from verification.baseline_file import read_baseline
@@ -26,23 +27,25 @@ from verification.commands.common import (
     DRIFTED,
     EXIT,
     RECORDS,
+    STOPPED,
     STYLE,
     complain,
     exit_code,
+    no_gmsh,
     one_line,
+    run_info,
 )
 from verification.commands.solving import kept_results, kept_study, solve
 from verification.printed import PublishedCase, is_published, published_cases, read_published
-from verification.result import CaseResult, RunInfo
+from verification.result import CaseResult
 from verification.schedule import Task, case_task, cores, kept_result, published_task
 from verification.self_test import SelfTest, self_tests
 from verification.store import StoreError, locked
-from verification.surroundings import commit, machine, missing_libraries, versions
 from verification.verdict import Outcome
 
 __all__ = ["run"]
 
-STOPPED = 130  # as a shell has it of SIGINT
+NARROW = 80  # columns
 
 
 def run(
@@ -72,8 +75,7 @@ def run(
     Parameters
     ----------
     cases
-        Names of shipped cases (see coatcheck list) or paths of .toml case files; "published" stands for all
-        results that others printed.
+        Names of shipped cases, see coatcheck list; paths of .toml files; "published" for all printed results.
     output
         Directory of the report: report.html, report.json, junit.xml and one file per case.
     jobs
@@ -102,10 +104,8 @@ def run(
         chosen = _choose(cases)
     except CaseError as error:
         return complain(str(error))
-    lacking = missing_libraries()
-    if lacking:
-        complain(f"gmsh lacks system libraries here; install them with: apt-get install {' '.join(lacking)}")
-        return EXIT[Outcome.NO_RESULT]
+    if (code := no_gmsh()) is not None:
+        return code
 
     from verification import accuracy_study, effective_study  # SciPy and matplotlib take a second to load
     from verification.accuracy_study import AccuracyStudy
@@ -133,15 +133,7 @@ def run(
             study = next((r for r in solved if isinstance(r, AccuracyStudy)), study)
             formulas = next((r for r in solved if isinstance(r, EffectiveStudy)), None)
             ordered = [kept.get(case.name) or results[case.name] for case in chosen]
-            info = RunInfo(
-                command=shlex.join(["coatcheck", "run", *cases]),
-                started=started.isoformat(timespec="seconds"),
-                seconds=time.perf_counter() - begin,
-                jobs=jobs,
-                commit=commit(),
-                machine=f"{machine()}, {cores()} cores",
-                versions=versions(),
-            )
+            info = run_info(shlex.join(["coatcheck", "run", *cases]), started, jobs)
             beside = regression(ordered, known, str(baseline), info, whole=not cases)
             page = write(ordered, output, info, study, beside, records, tests, formulas)
     except StoreError as error:
@@ -227,9 +219,15 @@ def _summary(
 
 
 def _print_table(results: Sequence[CaseResult], page: Path, seconds: float, beside: Regression) -> None:
-    heads = ["case", *(outcome.lower() for outcome in Outcome), "largest difference"]
+    console = Console()
+    # Broken by hand to stand in 80 columns beside the longest name of a shipped case; letters in fewer.
+    heads = ["agrees", "dis-\nagrees", "incon-\nclusive", "no\nresult", "largest\ndifference"]
+    if console.width < NARROW:
+        heads = ["A", "D", "I", "N", "largest"]
     heads += ["baseline"] if beside.update is not None else []
-    table = Table(*heads, box=None, header_style="bold")
+    table = Table(Column("case", overflow="fold"), box=None, header_style="bold", pad_edge=False)
+    for head in heads:
+        table.add_column(head, no_wrap=True, vertical="bottom")
     for result in results:
         worst = max((v.difference for _, v in result.verdicts if v.difference is not None), default=None)
         table.add_row(
@@ -241,34 +239,29 @@ def _print_table(results: Sequence[CaseResult], page: Path, seconds: float, besi
             "-" if worst is None else f"{worst:.1e}",
             *([_state(beside, result.name)] if beside.update is not None else []),
         )
-    console = Console()
     console.print(table)
+    # What is read by another program stays one line a sentence.
+    say = partial(console.print, highlight=False, soft_wrap=not console.is_terminal)
     for result in results:
         for source in result.sources:
             if source.failure:
-                console.print(
-                    f"[bold red]{escape(result.name)}, {source.source}:[/] "
-                    f"{escape(one_line(source.failure))}",
-                    highlight=False,
+                say(
+                    f"[bold red]{escape(result.name)}, {source.source}:[/] {escape(one_line(source.failure))}"
                 )
         for law in result.invariants:
             if law.outcome is not Outcome.AGREES:
-                console.print(
+                say(
                     f"[{STYLE[law.outcome]}]{escape(result.name)}, {law.source}, {escape(law.name)}:[/] "
-                    f"{escape(one_line(law.sentence))}",
-                    highlight=False,
+                    f"{escape(one_line(law.sentence))}"
                 )
     laws = [law for result in results for law in result.invariants]
     if laws:
-        held = sum(law.outcome is Outcome.AGREES for law in laws)
-        console.print(f"{held} of {len(laws)} invariants hold", highlight=False)
+        say(f"{sum(law.outcome is Outcome.AGREES for law in laws)} of {len(laws)} invariants hold")
     if beside.update is not None:
         from verification.report.baseline import baseline_sentence
 
-        console.print(
-            escape(f"baseline of {beside.update.when[:10]}: {baseline_sentence(beside)}"), highlight=False
-        )
-    console.print(f"{len(results)} cases in {seconds:.0f} s; report: {escape(str(page))}", highlight=False)
+        say(escape(f"baseline of {beside.update.when[:10]}: {baseline_sentence(beside)}"))
+    say(f"{len(results)} cases in {seconds:.0f} s; report: {escape(str(page))}")
 
 
 def _state(beside: Regression, name: str) -> str:
