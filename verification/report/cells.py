@@ -72,12 +72,16 @@ class Gallery:
 
 @dataclass(frozen=True)
 class Part:
-    """A paragraph of a section with the figures and the tables it introduces, under a ``title`` or none."""
+    """A paragraph of a section with the figures and the tables it introduces, under a ``title`` or none.
+
+    folded : what the reader clicks to unfold all of it; "" where it lies open.
+    """
 
     text: str
     tables: Sequence[Table] = ()
     gallery: Gallery | None = None
     title: str = ""
+    folded: str = ""
 
     @property
     def download(self) -> str:

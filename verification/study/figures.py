@@ -47,6 +47,7 @@ COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00", "#0
 DASHES: tuple[Any, ...] = ("-", (0, (5, 2)), (0, (1.2, 1.4)), (0, (5, 1.5, 1, 1.5)))
 MARKS = {"fem_reference": ("o", "finite elements"), "integral_equation": ("+", "exact reference")}
 DPI = 200
+LEAST = 1e-7  # smaller differences are drawn here
 NAMES = {
     "sigma_xx_surface": r"largest $\sigma_{xx}$, surface",
     "sigma_xx_base": r"largest $\sigma_{xx}$, base of the coating",
@@ -164,12 +165,22 @@ def _against_thickness(
     sides = [(said, members) for said, members in sides if members]
     frictions = sorted({c.friction for c in curves})
     ratios = sorted({c.ratio for c in curves})
+    colours = {ratio: COLOURS[i % len(COLOURS)] for i, ratio in enumerate(ratios)}
     rows = [["E1/E2", "f", "h / a_h", f"{quantity} over its scale", "source"]]
-    with sheet(85 * len(sides), 68) as figure:
-        panels = figure.subplots(1, len(sides), sharey=True, squeeze=False)[0]
+    checked = any(curve.marks for curve in curves)
+    with sheet(85 * len(sides), 92 if checked else 68) as figure:
+        grid = figure.subplots(
+            1 + checked,
+            len(sides),
+            sharey="row",
+            sharex="col",
+            squeeze=False,
+            height_ratios=(3, 1)[: 1 + checked],
+        )
+        panels = grid[0]
         for axes, (said, members) in zip(panels, sides, strict=True):
             for curve in members:
-                colour = COLOURS[ratios.index(curve.ratio) % len(COLOURS)]
+                colour = colours[curve.ratio]
                 dash = DASHES[frictions.index(curve.friction) % len(DASHES)]
                 axes.plot(curve.h, values(curve), color=colour, linestyle=dash)
                 for source, marks in curve.marks.items():
@@ -184,6 +195,10 @@ def _against_thickness(
                     ]
             _thickness_axis(axes, said)
         panels[0].set_ylabel(label)
+        if checked:
+            for axes in panels:
+                axes.set_xlabel("")
+            _differences(grid[1], sides, quantity, lambda curve: colours[curve.ratio], values)
         if in_pascal:
             p_h = curves[0].p_h / 1e6
             second = panels[-1].secondary_yaxis("right", functions=(lambda y: y * p_h, lambda y: y / p_h))
@@ -191,9 +206,34 @@ def _against_thickness(
         _legend(figure, ratios, frictions, {s for c in curves for s in c.marks})
         caption = (
             "Lines: semi-analytical method; circles: finite elements; crosses: the exact reference, at the "
-            "cross-checked points."
+            "cross-checked points; below, how far these are from the lines, over the same scale."
+            if checked
+            else "Lines: semi-analytical method; no point was cross-checked."
         )
         return drawn(figure, name, title, caption, rows)
+
+
+def _differences(
+    panels: Sequence[Axes],
+    sides: Sequence[tuple[str, Sequence[Curve]]],
+    quantity: str,
+    colour: Callable[[Curve], str],
+    values: Callable[[Curve], Array],
+) -> None:
+    """|mark - curve| at every cross-checked thickness, on a logarithmic scale that ends at ``LEAST``."""
+    for axes, (_, members) in zip(panels, sides, strict=True):
+        for curve in members:
+            for source, marks in curve.marks.items():
+                at, value = marks[quantity]
+                known = np.isin(at, curve.h)
+                here = values(curve)[np.searchsorted(curve.h, at[known])]
+                _mark(axes, at[known], np.maximum(np.abs(value[known] - here), LEAST), source, colour(curve))
+        axes.set_yscale("log")
+        axes.set_ylim(0.6 * LEAST, 1e-2)
+        axes.axhline(5e-3, color="#666666", linewidth=0.7, linestyle=(0, (4, 2)))
+        axes.axhline(1e-3, color="#666666", linewidth=0.7, linestyle=(0, (1, 1.5)))
+        _thickness_axis(axes, "")
+    panels[0].set_ylabel("difference")
 
 
 def _mark(axes: Axes, h: Array, value: Array, source: str, colour: str) -> None:

@@ -25,8 +25,14 @@ from verification.study.figures import (
 )
 from verification.study.plan import Study
 from verification.study.quantities import QUANTITIES
-from verification.study.summary import agreement_sentences, curve_sentences, preference_sentences
-from verification.study.table import SCALARS, read_columns
+from verification.study.recommendation import near, recommendation_sentences
+from verification.study.summary import (
+    agreement_sentences,
+    curve_sentences,
+    main_sentences,
+    preference_sentences,
+)
+from verification.study.table import SCALARS, SOURCES, read_columns
 
 __all__ = ["write_study_report"]
 
@@ -62,11 +68,11 @@ def write_study_report(
         for drawing in drawings:
             write_drawn(drawing, folder / "figures" / study.name)
     sections = [
-        _summary(found, judgements, checks),
         _preference(study, judgements),
+        _summary(found, checks),
         *(_drawn_section(*group) for group in groups if group[2]),
         *_checks(checks),
-        Section("extremes", "Extremes of every curve", [Part("", [_extremes(found)])]),
+        Section("extremes", "Extremes of every curve", [_extremes(found)]),
         *_failed(every, failures),
     ]
     p_h, a_h = (found[0].p_h, found[0].a_h) if found else (float("nan"), float("nan"))
@@ -89,17 +95,21 @@ def write_study_report(
     return page
 
 
-def _summary(found: Sequence[Curve], judgements: Sequence[Judged], checks: Sequence[Difference]) -> Section:
+def _summary(found: Sequence[Curve], checks: Sequence[Difference]) -> Section:
     if not found:
         return Section("summary", "What the curves say", [], ["No curve has two solved points."])
-    parts = [Part(sentence) for sentence in curve_sentences(found)]
+    parts = [Part(sentence) for sentence in main_sentences(found)]
     parts += [Part(sentence) for sentence in agreement_sentences(checks)]
     if not checks:
         parts.append(Part("No point was cross-checked."))
+    parts += [
+        Part(sentence, folded=f"Every curve of {quantity}")
+        for quantity, sentence in zip(MODES, curve_sentences(found), strict=True)
+    ]
     return Section("summary", "What the curves say", parts)
 
 
-def _extremes(found: Sequence[Curve]) -> Table:
+def _extremes(found: Sequence[Curve]) -> Part:
     rows = []
     for curve in found:
         for quantity in (*QUANTITIES, *SCALARS):
@@ -115,7 +125,7 @@ def _extremes(found: Sequence[Curve]) -> Table:
                 places = f"{curve.x[quantity][i]:.3f}, {curve.z[quantity][i]:.3f}".replace("nan", "–")
             cells.append(Cell(places))
             rows.append(Row(Cell(quantity), cells))
-    return Table(
+    table = Table(
         "Extremes of every curve among its solved points, and where in the solid the largest lies.",
         [
             "quantity",
@@ -130,6 +140,7 @@ def _extremes(found: Sequence[Curve]) -> Table:
         ],
         rows,
     )
+    return Part("", [table], folded=f"{len(rows)} rows")
 
 
 def _preference(study: Study, judgements: Sequence[Judged]) -> Section:
@@ -149,6 +160,7 @@ def _preference(study: Study, judgements: Sequence[Judged]) -> Section:
                     Cell(f"{mode}: {MODES[mode]}"),
                     Cell((ranges or "none") if j.limited else "no strengths given"),
                     Cell(scientific(j.reading), j.reading),
+                    *_near_cells(j, h, mode),
                 ],
                 "" if j.admissible or not j.limited else "disagrees",
             )
@@ -156,7 +168,9 @@ def _preference(study: Study, judgements: Sequence[Judged]) -> Section:
     limited = any(j.limited for j in judgements)
     table = Table(
         "The preferable thickness of every curve. Reading error: the largest change at a point read from the "
-        "others, over the largest use; the curve itself, with twice the points, is read more closely.",
+        "others, over the largest use; the curve itself, with twice the points, is read more closely. "
+        "Last: the differences of the governing stress, over p_h, at the checked thickness nearest to the "
+        "preferable one.",
         [
             "coating",
             "h / a_h",
@@ -165,11 +179,27 @@ def _preference(study: Study, judgements: Sequence[Judged]) -> Section:
             "governing mode",
             "admissible h [µm]",
             "reading error",
+            "checked at h / a_h",
+            "finite elements",
+            "exact reference",
         ],
         rows,
     )
-    parts = [Part(study.criteria.sentence()), *(Part(s) for s in preference_sentences(judgements))]
-    return Section("preferable", "Which thickness", [*parts, Part("", [table])])
+    parts = [Part(study.criteria.sentence()), *(Part(s) for s in recommendation_sentences(judgements))]
+    every = Part(" ".join(preference_sentences(judgements)), folded="Every curve in words")
+    return Section("preferable", "Which thickness", [*parts, Part("", [table]), every])
+
+
+def _near_cells(judgement: Judged, h: float, mode: str) -> list[Cell]:
+    """The thickness checked next to ``h``, what each other source differs by there; dashes for none."""
+    by_source = {one.source: one for one in near(judgement, h, mode)}
+    cells = [Cell("–")]
+    for source in SOURCES[1:]:
+        one = by_source.get(source)
+        if one is not None:
+            cells[0] = Cell(f"{one.h:.3g}", one.h)
+        cells.append(Cell("–") if one is None else Cell(scientific(one.difference), one.difference))
+    return cells
 
 
 def _drawn_section(anchor: str, title: str, drawings: Sequence[Drawn]) -> Section:

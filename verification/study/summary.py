@@ -8,7 +8,7 @@ from verification.study.criteria import MODES, Judged
 from verification.study.curves import Curve, Difference
 from verification.study.table import SCALARS
 
-__all__ = ["agreement_sentences", "curve_sentences", "preference_sentences"]
+__all__ = ["agreement_sentences", "curve_sentences", "main_sentences", "preference_sentences"]
 
 FLAT = 0.02  # of its own largest value; a curve that changes less does not depend on thickness
 NOWHERE = 1e-3  # of p_h
@@ -21,6 +21,45 @@ QUANTITY = {
     "von_mises_coating": "von Mises stress of the coating",
     "von_mises_substrate": "von Mises stress of the substrate",
 }
+
+
+def main_sentences(curves: Sequence[Curve]) -> list[str]:
+    """A sentence for each stress, one for the contact: how large, where, which way over the thickness."""
+    return [*(_main(quantity, curves) for quantity in MODES), _contact(curves)]
+
+
+def _main(quantity: str, curves: Sequence[Curve]) -> str:
+    said = QUANTITY[quantity]
+    worst = max(curves, key=lambda c: c.extremes(quantity)[1][1])
+    h, value = worst.extremes(quantity)[1]
+    if value < NOWHERE:
+        return f"{said[0].upper()}{said[1:]} stays below {NOWHERE:g} p_h everywhere."
+    i = int(worst.stress[quantity].argmax())
+    x, z = worst.x[quantity][i], worst.z[quantity][i]
+    at = f" at x = {x:.2f} a_h, z = {z:.2f} a_h" if np.isfinite(x) else ""
+    beside = [c for c in curves if c.friction == worst.friction]
+    ends = {min(c.ratio for c in beside), max(c.ratio for c in beside)}
+    courses = [_course(c, quantity, value) for c in beside if c.ratio in ends]
+    return (
+        f"{said[0].upper()}{said[1:]} reaches {value:.3g} p_h, {value * worst.p_h / 1e6:.4g} MPa, with "
+        f"{worst.label}, h = {h:.2g} a_h{at}; over the thickness, at f = {worst.friction:g}, "
+        f"{'; '.join(courses)}."
+    )
+
+
+def _contact(curves: Sequence[Curve]) -> str:
+    """Ranges of the scalars of the contact, with the coating of each end."""
+    symbols = {"peak_pressure": "p0", "contact_radius": "a", "approach": "delta"}
+    found = []
+    for name, scale in SCALARS.items():
+        low = min(curves, key=lambda c: c.extremes(name)[0][1])
+        high = max(curves, key=lambda c: c.extremes(name)[1][1])
+        (h_low, least), (h_high, most) = low.extremes(name)[0], high.extremes(name)[1]
+        found.append(
+            f"{symbols[name]} is between {least:.3g} {scale} (E1/E2 = {low.ratio:.3g}, h = {h_low:.2g} a_h) "
+            f"and {most:.3g} {scale} (E1/E2 = {high.ratio:.3g}, h = {h_high:.2g} a_h)"
+        )
+    return f"Of the contact, {'; '.join(found)}."
 
 
 def curve_sentences(curves: Sequence[Curve]) -> list[str]:
