@@ -1,15 +1,12 @@
 """The report page: from case results to one HTML text that needs nothing else."""
 
-import base64
 import hashlib
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
-from pathlib import Path
 
 import numpy as np
-from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 
 from verification.accuracy_study import AccuracyStudy
@@ -22,6 +19,7 @@ from verification.report.cells import Part, Section, Table
 from verification.report.convergence import convergence_sections
 from verification.report.csvdata import embedded, line_csv
 from verification.report.cutaway import Cutaway
+from verification.report.dress import dressed
 from verification.report.family import family_section
 from verification.report.invariants import invariant_cell, invariant_section, invariant_table
 from verification.report.matrix import verdict_matrix
@@ -46,7 +44,6 @@ from verification.verdict import Outcome
 
 __all__ = ["render"]
 
-HERE = Path(__file__).parent
 # A failed source fails every comparison; the figures should still be within reach.
 MOST_FAILING = 6
 
@@ -128,20 +125,9 @@ def _render(
     drifts = baseline.cases if baseline is not None else ()
     contacts = [result for result in results if not result.published]
     contact_anchors = dict(enumerate(anchors[n] for n, result in enumerate(results) if not result.published))
-    script = (HERE / "script.js").read_text(encoding="utf-8")
-    digest = base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()
-    environment = Environment(
-        loader=FileSystemLoader(HERE),
-        autoescape=True,
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
-    return environment.get_template("page.html").render(
+    return dressed(
+        "page.html",
         info=info,
-        style=Markup((HERE / "style.css").read_text(encoding="utf-8")),
-        script=Markup(script),
-        script_hash=digest,
         summary=_summary(results),
         counts=_counts(results),
         matrix=verdict_matrix(
