@@ -27,7 +27,16 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.fft import irfft2, next_fast_len, rfft2
 
-__all__ = ["BenchRow", "CoatedRow", "PlaneRow", "ratios", "run_bench", "run_coated", "run_plane"]
+__all__ = [
+    "BenchRow",
+    "CoatedRow",
+    "PlaneRow",
+    "coated_ratios",
+    "ratios",
+    "run_bench",
+    "run_coated",
+    "run_plane",
+]
 
 Array = NDArray[np.floating]
 
@@ -158,36 +167,49 @@ def ratios(rows: Sequence[BenchRow]) -> list[tuple[str, float]]:
 
 def run_coated(
     *,
-    modulus_ratios: Sequence[float] = (0.1, 0.25, 1.0, 4.0, 10.0),
+    sizes: Sequence[int] = (512,),
+    modulus_ratios: Sequence[float] = (0.1, 0.25, 0.5, 1.0, 2.0, 4.0, 10.0),
     thicknesses: Sequence[float] = (0.05, 0.1, 0.3, 1.0, 3.0),
-    patches: int = 512,
 ) -> list[CoatedRow]:
-    """Iterations and set-up of coated solids on such a grid; thickness in uncoated contact radii."""
+    """Iterations and set-up of coated solids on such grids; thickness in uncoated contact radii."""
+    return [_coated(patches, ratio, h) for patches in sizes for ratio in modulus_ratios for h in thicknesses]
+
+
+def coated_ratios(rows: Sequence[CoatedRow]) -> list[tuple[str, float]]:
+    """Iterations over those of equal moduli on the same grid, set-up over the solve; the largest of each."""
+    found = []
+    for patches in sorted({row.patches for row in rows}):
+        here = [row for row in rows if row.patches == patches]
+        bare = min(row.iterations for row in here if row.modulus_ratio == 1)
+        most = max(row.iterations for row in here)
+        found.append((f"iterations of coated solids, most / homogeneous, N = {patches}", most / bare))
+        setup = max(row.setup_seconds / row.seconds for row in here)
+        found.append((f"setting up coefficients / the whole solve, most, N = {patches}", setup))
+    return found
+
+
+def _coated(patches: int, ratio: float, h: float) -> CoatedRow:
     import semianalytic
 
-    rows = []
-    for ratio in modulus_ratios:
-        for h in thicknesses:
-            coatings = ((ratio * E_STAR, 0.0, h * A),)
-            half_width = 2 * A * max(1.0, ratio ** (-1 / 3))
-            began = time.perf_counter()
-            s = semianalytic.indent(
-                profile=_sphere,
-                half_width=half_width,
-                load=W,
-                coatings=coatings,
-                substrate=(E_STAR, 0.0),
-                patches=patches,
-                tolerance=TOLERANCE["semianalytic"],
-                estimate_uncertainty=False,
-            )
-            seconds = time.perf_counter() - began
-            loaded = np.flatnonzero(s.patch_pressure.any(axis=1))
-            n = int(1.1 * (loaded[-1] - loaded[0]))
-            setup = _setup_seconds(n, 2 * half_width / patches, coatings)
-            d = s.diagnostics
-            rows.append(CoatedRow(ratio, h, patches, d.iterations, d.convolutions, seconds, setup))
-    return rows
+    coatings = ((ratio * E_STAR, 0.0, h * A),)
+    half_width = 2 * A * max(1.0, ratio ** (-1 / 3))
+    began = time.perf_counter()
+    s = semianalytic.indent(
+        profile=_sphere,
+        half_width=half_width,
+        load=W,
+        coatings=coatings,
+        substrate=(E_STAR, 0.0),
+        patches=patches,
+        tolerance=TOLERANCE["semianalytic"],
+        estimate_uncertainty=False,
+    )
+    seconds = time.perf_counter() - began
+    loaded = np.flatnonzero(s.patch_pressure.any(axis=1))
+    n = int(1.1 * (loaded[-1] - loaded[0]))
+    setup = _setup_seconds(n, 2 * half_width / patches, coatings)
+    d = s.diagnostics
+    return CoatedRow(ratio, h, patches, d.iterations, d.convolutions, seconds, setup)
 
 
 def run_plane(*, sizes: Sequence[int] = (256, 512), repeats: int = 9) -> list[PlaneRow]:

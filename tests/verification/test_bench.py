@@ -68,3 +68,23 @@ def test_a_measurement_satisfies_the_judge():
 def test_a_failing_child_is_an_error_with_its_last_words():
     with pytest.raises(RuntimeError, match="KeyError"):
         bench.run_bench(sizes=(64,), threads=(1,), repeats=1, solvers=("nobody",))
+
+
+def check_coated(sizes, ratios, thicknesses):
+    rows = bench.run_coated(sizes=sizes, modulus_ratios=(1.0, *ratios), thicknesses=thicknesses)
+    found = dict(bench.coated_ratios(rows))
+    for n in sizes:
+        # the figure asked; times are for the benchmark to judge
+        assert found[f"iterations of coated solids, most / homogeneous, N = {n}"] <= 1.5
+        assert found[f"setting up coefficients / the whole solve, most, N = {n}"] > 0
+    assert max(row.convolutions for row in rows) <= 16
+
+
+def test_coated_solids_take_about_the_iterations_of_the_homogeneous():
+    # the film that took most, and its opposites
+    check_coated((128, 256), (0.1, 10.0), (0.05, 1.0))
+
+
+@pytest.mark.slow
+def test_coated_solids_take_about_the_iterations_of_the_homogeneous_over_the_range():
+    check_coated((128, 256, 512, 1024), (0.1, 0.25, 0.5, 2.0, 4.0, 10.0), (0.05, 0.1, 0.3, 1.0, 3.0))
