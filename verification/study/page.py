@@ -145,6 +145,7 @@ def _extremes(found: Sequence[Curve]) -> Part:
 
 def _preference(study: Study, judgements: Sequence[Judged]) -> Section:
     rows = []
+    limited = any(j.limited for j in judgements)
     for j in judgements:
         h, use, mode = j.preferable
         ranges = "; ".join(
@@ -158,14 +159,13 @@ def _preference(study: Study, judgements: Sequence[Judged]) -> Section:
                     Cell(f"{h * j.curve.a_h * 1e6:.3g}", h * j.curve.a_h),
                     Cell(f"{use:.4f}", use),
                     Cell(f"{mode}: {MODES[mode]}"),
-                    Cell((ranges or "none") if j.limited else "no strengths given"),
+                    *([Cell(ranges or "none")] if limited else []),
                     Cell(scientific(j.reading), j.reading),
                     *_near_cells(j, h, mode),
                 ],
                 "" if j.admissible or not j.limited else "disagrees",
             )
         )
-    limited = any(j.limited for j in judgements)
     table = Table(
         "The preferable thickness of every curve. Reading error: the largest change at a point read from the "
         "others, over the largest use; the curve itself, with twice the points, is read more closely. "
@@ -177,11 +177,11 @@ def _preference(study: Study, judgements: Sequence[Judged]) -> Section:
             "h [µm]",
             "largest stress over strength" if limited else "largest stress over p_h",
             "governing mode",
-            "admissible h [µm]",
+            *(["admissible h [µm]"] if limited else []),
             "reading error",
             "checked at h / a_h",
-            "finite elements",
-            "exact reference",
+            "off finite elements",
+            "off exact reference",
         ],
         rows,
     )
