@@ -206,8 +206,8 @@ def _against_thickness(
         _legend(figure, ratios, frictions, {s for c in curves for s in c.marks})
         caption = (
             "Lines: semi-analytical method; circles: finite elements; crosses: the exact reference, at the "
-            "cross-checked points; below, how far these are from the lines, over the same scale; dashes 0.5 %, "
-            "dots 0.1 %."
+            "cross-checked points; below, how far these are from the lines, over the same scale; dashes 0.5 "
+            "percent, dots 0.1."
             if checked
             else "Lines: semi-analytical method; no point was cross-checked."
         )
