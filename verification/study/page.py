@@ -153,12 +153,12 @@ def _preference(study: Study, judgements: Sequence[Judged]) -> Section:
         )
         rows.append(
             Row(
-                Cell(j.curve.label),
+                Cell(j.curve.label.replace(" ", "\N{NO-BREAK SPACE}")),
                 [
                     Cell(f"{h:.3g}", h),
                     Cell(f"{h * j.curve.a_h * 1e6:.3g}", h * j.curve.a_h),
                     Cell(f"{use:.4f}", use),
-                    Cell(f"{mode}: {MODES[mode]}"),
+                    Cell(mode, note=MODES[mode]),
                     *([Cell(ranges or "none")] if limited else []),
                     Cell(scientific(j.reading), j.reading),
                     *_near_cells(j, h, mode),

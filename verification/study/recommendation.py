@@ -93,9 +93,9 @@ def _of_modulus(members: Sequence[Judged]) -> list[str]:
         ends = [_bound(members, low, thinner=True), _bound(members, high, thinner=False)]
         at = members[0].h
         inside = np.flatnonzero((at >= low) & (at <= high))
-        use = np.array([np.interp(at[inside], j.h, j.largest) for j in members])
-        best = int(use.max(axis=0).argmin())
-        worst = members[int(use[:, best].argmax())]
+        taken = np.array([np.interp(at[inside], j.h, j.largest) for j in members])
+        best = int(taken.max(axis=0).argmin())
+        worst = members[int(taken[:, best].argmax())]
         h = float(at[inside[best]])
         mode = worst.modes[worst.governing[int(np.abs(worst.h - h).argmin())]]
         beyond = "; ".join(
@@ -105,7 +105,7 @@ def _of_modulus(members: Sequence[Judged]) -> list[str]:
         found.append(
             f"{name}: h = {low * curve.a_h * 1e6:.3g} to {_micrometres(worst, high)} is admissible at every "
             f"friction ({every}). {beyond[0].upper()}{beyond[1:]}. "
-            f"Within it h = {_micrometres(worst, h)} takes least, {use[:, best].max():.2f} of the strength "
+            f"Within it h = {_micrometres(worst, h)} takes least, {taken[:, best].max():.2f} of the strength "
             f"in {mode} with f = {worst.curve.friction:g}. {_checked([*asked, (worst, h, mode)])}"
         )
     return found
