@@ -179,10 +179,20 @@ def _von_mises(sigma: Array) -> Array:
 
 def _saved(grid: Any, file: str, case: Case, method: str, radius: float) -> bytes:
     """The bytes of the file that VTK writes of ``grid``, with the case file inside."""
-    grid.field_data["case file"] = [case.text]
-    grid.field_data["method"] = [method]
+    import pyvista as pv
+
+    said = {
+        "case file": case.text,
+        "method": method,
+        "axes": "metres, origin at first contact, x along sliding, z into the solid",
+    }
+    for name, text in said.items():
+        # meshio refuses a mesh with text in it, so there it stands as bytes.
+        if isinstance(grid, pv.UnstructuredGrid):
+            grid.field_data[f"{name} [UTF-8]"] = np.frombuffer(text.encode(), dtype=np.uint8)
+        else:
+            grid.field_data[name] = [text]
     grid.field_data["contact radius [m]"] = [radius]
-    grid.field_data["axes"] = ["metres, origin at first contact, x along sliding, z into the solid"]
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / file
         grid.save(path)

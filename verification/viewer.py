@@ -17,7 +17,9 @@ __all__ = ["plotter"]
 
 DEPTH = 1.6  # of the part of the finite element mesh shown, over the contact radius; wider by half a radius
 MICRO = 1e6
-SIZE = [1500, 720]
+SIZE = [1500, 760]
+ROOM = 0.84  # of the picture, the rest left to axes and bar
+BAR = {"vertical": False, "position_x": 0.2, "position_y": 0.015, "width": 0.6, "height": 0.07, "n_labels": 5}
 
 
 def plotter(fields: Fields, name: str, *, off_screen: bool) -> Any:
@@ -58,16 +60,25 @@ def plotter(fields: Fields, name: str, *, off_screen: bool) -> Any:
                 scalars=name,
                 cmap=colours,
                 clim=limits,
-                scalar_bar_args={"title": name, "vertical": False},
+                # Bars of one title are one bar, so that the second picture would have none.
+                scalar_bar_args=BAR | {"title": name + number * " "},
             )
             window.add_mesh(micro.outline(), color="black", line_width=1)
         window.add_text(title, font_size=11, color="black")
         window.show_bounds(
-            xtitle="x [um]", ytitle="y [um]", ztitle="z [um]", font_size=9, location="outer", color="black"
+            xtitle="x [um]",
+            ytitle="y [um]",
+            ztitle="z [um]",
+            n_ylabels=2,
+            fmt="%.0f",
+            font_size=9,
+            location="outer",
+            color="black",
         )
         window.set_background("white")
         # z runs into the solid: the surface is up.
         window.view_vector((-0.25, 1.0, -0.3), viewup=(0.0, 0.0, -1.0))
+        window.camera.zoom(ROOM)
     return window
 
 

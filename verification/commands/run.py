@@ -222,9 +222,12 @@ def _print_table(results: Sequence[CaseResult], page: Path, seconds: float, besi
     console = Console()
     # Broken by hand to stand in 80 columns beside the longest name of a shipped case; letters in fewer.
     heads = ["agrees", "dis-\nagrees", "incon-\nclusive", "no\nresult", "largest\ndifference"]
-    if console.width < NARROW:
+    narrow = console.width < NARROW
+    if narrow:
         heads = ["A", "D", "I", "N", "largest"]
-    heads += ["baseline"] if beside.update is not None else []
+    # What stands below the table says it for all cases.
+    states = beside.update is not None and not narrow
+    heads += ["baseline"] if states else []
     table = Table(Column("case", overflow="fold"), box=None, header_style="bold", pad_edge=False)
     for head in heads:
         table.add_column(head, no_wrap=True, vertical="bottom")
@@ -237,7 +240,7 @@ def _print_table(results: Sequence[CaseResult], page: Path, seconds: float, besi
                 for o in Outcome
             ),
             "-" if worst is None else f"{worst:.1e}",
-            *([_state(beside, result.name)] if beside.update is not None else []),
+            *([_state(beside, result.name)] if states else []),
         )
     console.print(table)
     # What is read by another program stays one line a sentence.
@@ -261,7 +264,8 @@ def _print_table(results: Sequence[CaseResult], page: Path, seconds: float, besi
         from verification.report.baseline import baseline_sentence
 
         say(escape(f"baseline of {beside.update.when[:10]}: {baseline_sentence(beside)}"))
-    say(f"{len(results)} cases in {seconds:.0f} s; report: {escape(str(page))}")
+    number = "1 case" if len(results) == 1 else f"{len(results)} cases"
+    say(f"{number} in {seconds:.0f} s; report: {escape(str(page))}")
 
 
 def _state(beside: Regression, name: str) -> str:
