@@ -65,7 +65,8 @@ def contour_figure(study: Study, curve: Curve, thicknesses: Sequence[float]) -> 
                 axes.set_ylim(deep, 0)
                 axes.set_title(f"{name}, h = {h:.3g} $a_h$", fontsize=7.5)
             bar = figure.colorbar(filled, ax=panels[:, column], location="bottom", shrink=0.9, aspect=28)
-            bar.set_ticks(levels[:: max(2, levels.size // 5)].tolist())
+            ticks = MaxNLocator(4).tick_values(levels[0], levels[-1])
+            bar.set_ticks(ticks[(ticks >= levels[0]) & (ticks <= levels[-1])].tolist())
         for axes in panels[-1]:
             axes.set_xlabel("$x / a_h$")
         for axes in panels[:, 0]:

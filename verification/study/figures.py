@@ -17,6 +17,7 @@ from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.backends.backend_pdf import FigureCanvasPdf
 from matplotlib.colors import ListedColormap
+from matplotlib.contour import QuadContourSet
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
@@ -346,7 +347,7 @@ def governing_figure(judgements: Sequence[Judged]) -> list[Drawn]:
                 rasterized=True,
             )  # fmt: skip
             lines = axes.contour(h, ratio, largest, levels=8, colors="#555555", linewidths=0.6)
-            axes.clabel(lines, fontsize=6, fmt="%.3g")
+            axes.clabel(lines, fontsize=6, fmt="%.3g", manual=_middles(lines, (h[0] * h[-1]) ** 0.5))
             if judgements[0].limited:
                 axes.contour(h, ratio, largest, levels=[1.0], colors="#c02a2a", linewidths=1.6)
             for judgement in judgements:
@@ -385,6 +386,13 @@ def governing_figure(judgements: Sequence[Judged]) -> list[Drawn]:
                 rows,
             )
         ]
+
+
+def _middles(lines: QuadContourSet, h: float) -> list[tuple[float, float]]:
+    """The point of each line nearest to ``h``, where its number does not run into the frame."""
+    every = [np.asarray(path.vertices) for path in lines.get_paths()]
+    nearest = [v[np.abs(np.log(v[:, 0] / h)).argmin()] for v in every if v.size]
+    return [(float(x), float(y)) for x, y in nearest]
 
 
 def _pale(colour: str) -> tuple[float, float, float]:
