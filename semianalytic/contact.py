@@ -162,7 +162,9 @@ def press(
         residual = float(np.abs(r).max()) / scale
         first = residual if since == 0 else first
         tension = inside & (p < 0)
-        enter = ~inside & (g < -0.5 * tolerance * scale)
+        # on the way patches enter with a margin; at the end what was asked decides
+        deep = (1.0 if residual <= tolerance else 0.5) * tolerance * scale
+        enter = ~inside & (g < -deep)
         penetration = -float(np.min(g, where=~inside, initial=0.0)) / scale
         settled = not (tension.any() or enter.any())
         if settled and residual <= tolerance:
