@@ -19,7 +19,7 @@ DEPTH = 1.6  # of the part of the finite element mesh shown, over the contact ra
 MICRO = 1e6
 SIZE = [1500, 760]
 ROOM = 0.84  # of the picture, the rest left to axes and bar
-BAR = {"vertical": False, "position_x": 0.2, "position_y": 0.015, "width": 0.6, "height": 0.07, "n_labels": 5}
+BAR = {"vertical": False, "position_x": 0.2, "position_y": 0.015, "width": 0.6, "height": 0.1, "n_labels": 5}
 
 
 def plotter(fields: Fields, name: str, *, off_screen: bool) -> Any:

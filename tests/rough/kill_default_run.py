@@ -174,7 +174,7 @@ def disturbed(
 ) -> Counter[str]:
     """Kill and resume runs until ``kills`` are counted; where all is done a new directory is begun.
 
-    longest : latest moment of a kill [s].
+    longest : latest moment of a kill [s], as long as some cases are finished before.
     """
     rng = random.Random(seed)
     counts: Counter[str] = Counter()
@@ -184,11 +184,17 @@ def disturbed(
         kept: dict[str, bytes] = {}
         finished = False
         reporting = 0  # kills since the last case was finished
+        idle = 0  # kills since any case was finished
         while counts["kills"] < kills and not finished and reporting < 3:
             run = resumed(folder, cases, jobs)
             number = counts["kills"]
             counts += kill_at(
-                run, folder, rng.uniform(0, longest), aimed=number % 3 == 2, group=number % 2 == 1
+                # On a machine too busy to finish a case meanwhile, moments come later until one is finished.
+                run,
+                folder,
+                rng.uniform(0, longest * (1 + idle // 4)),
+                aimed=number % 3 == 2,
+                group=number % 2 == 1,
             )
             finished = run.returncode is not None and run.returncode >= 0
             try:
@@ -200,6 +206,7 @@ def disturbed(
             counts["finished cases lost"] += sum(kept[name] != found.get(name) for name in kept)
             counts["cases finished"] += len(found.keys() - kept.keys())
             reporting = reporting + 1 if found.keys() == kept.keys() and len(found) >= total else 0
+            idle = 0 if found.keys() - kept.keys() else idle + 1
             kept = found
             sys.stdout.write(f"{counts['kills']} kills, round {turn}: {len(found)} of {total} cases\n")
             sys.stdout.flush()

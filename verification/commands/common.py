@@ -15,6 +15,9 @@ from rich.progress import (
     TimeElapsedColumn,
     TimeRemainingColumn,
 )
+from rich.progress import Task as RichTask
+from rich.table import Column
+from rich.text import Text
 
 from verification.result import CaseResult, RunInfo
 from verification.schedule import cores
@@ -37,6 +40,7 @@ __all__ = [
     "run_info",
 ]
 
+NARROW = 60  # columns
 BASELINE = Path("reports/baseline")
 RECORDS = Path("reports/credibility")
 BAD_INPUT = 2
@@ -93,14 +97,22 @@ def run_info(command: str, started: datetime.datetime, jobs: int) -> RunInfo:
     )
 
 
+class _Description(ProgressColumn):
+    """What is at work, on one line."""
+
+    def render(self, task: RichTask) -> Text:
+        return Text(task.description, no_wrap=True, overflow="ellipsis")
+
+
 def progress_bar(console: Console, *more: ProgressColumn, silent: bool = False) -> Progress:
     """A bar that counts, with time gone and left; nothing at all where ``console`` is not a terminal.
 
     more : columns behind the count.
     """
     return Progress(
-        TextColumn("{task.description}", markup=False),
-        BarColumn(),
+        # Words and bar give way where the terminal is narrow; counts and times stay whole.
+        _Description(table_column=Column(no_wrap=False)),
+        *([BarColumn(table_column=Column(no_wrap=False))] if console.width >= NARROW else []),
         MofNCompleteColumn(),
         *more,
         TimeElapsedColumn(),
