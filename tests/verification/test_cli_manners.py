@@ -2,9 +2,11 @@
 
 import json
 import os
+import shutil
 import signal
 import subprocess
 import time
+from dataclasses import replace
 
 import pytest
 from quick_case import COMMAND, QUICK, coatcheck
@@ -25,8 +27,10 @@ COMMANDS = (
     "alarms",
     "bench",
     "completion",
+    "baseline",
     "baseline update",
     "baseline show",
+    "study",
     "study thickness",
 )
 
@@ -73,6 +77,54 @@ def test_completion_knows_commands_and_options(capsys, shell):
     script = capsys.readouterr().out
     for word in ("coatcheck", "baseline", "screenshot", "resume"):
         assert word in script
+
+
+@pytest.mark.parametrize(
+    ("shell", "words"),
+    [
+        # What each shell does on Tab: the word begun, then what it may become.
+        ("bash", 'COMP_WORDS=(coatcheck re) COMP_CWORD=1; _coatcheck; echo "${COMPREPLY[@]}"; complete -p'),
+        (
+            "zsh",
+            "whence -f $_comps[coatcheck] && [[ -n $_comps[coatcheck] ]] && echo default",
+        ),
+        ("fish", "complete -C 'coatcheck re'; echo default"),
+    ],
+)
+def test_completion_works_in_the_shell_itself(capsys, tmp_path, shell, words):
+    if shutil.which(shell) is None:
+        pytest.skip(f"no {shell} on this machine")
+    script = tmp_path / "completion"
+    script.write_text(asked(capsys, "completion", shell)[1])
+    begin = "autoload -Uz compinit; compinit -u -D; " if shell == "zsh" else ""
+    done = subprocess.run(
+        [shell, "-c", f"{begin}source {script}; {words}"], capture_output=True, text=True, timeout=60
+    )
+    assert "report" in done.stdout, done.stderr
+    # Where no command fits, the names of files.
+    assert "default" in done.stdout
+
+
+@pytest.mark.parametrize("width", [40, 80])
+def test_the_table_stands_in_a_narrow_terminal(stored, capsys, monkeypatch, width):
+    from verification.baseline import Update, regression
+    from verification.commands.run import _print_table
+    from verification.stored_run import read_run
+
+    monkeypatch.setenv("COLUMNS", str(width))
+    monkeypatch.setenv("TERM", "dumb")
+    results = [replace(result, name="15_dlc_chromium_sliding") for result in read_run(stored).results[:1]]
+    beside = regression(results, None, "reports/baseline", INFO, whole=False)
+    _print_table(
+        results,
+        stored / "report.html",
+        1.0,
+        replace(beside, update=Update("why", "2026-11-21", None, "", {}, 0, {})),
+    )
+    lines = capsys.readouterr().out.splitlines()
+    table = lines[: next(n for n, line in enumerate(lines) if line.startswith("baseline of"))]
+    assert max(len(line.rstrip()) for line in table) <= width
+    assert not any("\N{HORIZONTAL ELLIPSIS}" in line for line in table)
 
 
 def test_what_is_piped_has_no_colours(tmp_path):
