@@ -346,8 +346,8 @@ def governing_figure(judgements: Sequence[Judged]) -> list[Drawn]:
                 h, ratio, governing, cmap=colours, vmin=-0.5, vmax=len(modes) - 0.5, shading="nearest",
                 rasterized=True,
             )  # fmt: skip
-            lines = axes.contour(h, ratio, largest, levels=8, colors="#555555", linewidths=0.6)
-            axes.clabel(lines, fontsize=6, fmt="%.3g", manual=_middles(lines, (h[0] * h[-1]) ** 0.5))
+            lines = axes.contour(h, ratio, largest, levels=6, colors="#555555", linewidths=0.6)
+            axes.clabel(lines, fontsize=6, fmt="%.3g", manual=_places(lines, h, ratio))
             if judgements[0].limited:
                 axes.contour(h, ratio, largest, levels=[1.0], colors="#c02a2a", linewidths=1.6)
             for judgement in judgements:
@@ -388,11 +388,18 @@ def governing_figure(judgements: Sequence[Judged]) -> list[Drawn]:
         ]
 
 
-def _middles(lines: QuadContourSet, h: float) -> list[tuple[float, float]]:
-    """The point of each line nearest to ``h``, where its number does not run into the frame."""
-    every = [np.asarray(path.vertices) for path in lines.get_paths()]
-    nearest = [v[np.abs(np.log(v[:, 0] / h)).argmin()] for v in every if v.size]
-    return [(float(x), float(y)) for x, y in nearest]
+def _places(lines: QuadContourSet, h: Array, ratio: Array) -> list[tuple[float, float]]:
+    """A point of each contour line for its number: off the frame, off the numbers of the lines beside it."""
+    low, high = np.log(ratio[[0, -1]]) + 0.06 * np.log(ratio[-1] / ratio[0]) * np.array([1, -1])
+    found = []
+    for i, path in enumerate(lines.get_paths()):
+        x, y = np.log(np.asarray(path.vertices).reshape(-1, 2)).T
+        inside = np.flatnonzero((y > low) & (y < high))
+        if inside.size:
+            wanted = np.log(h[0]) + (0.3, 0.5, 0.7)[i % 3] * np.log(h[-1] / h[0])
+            at = inside[np.abs(x[inside] - wanted).argmin()]
+            found.append((float(np.exp(x[at])), float(np.exp(y[at]))))
+    return found
 
 
 def _pale(colour: str) -> tuple[float, float, float]:

@@ -153,8 +153,9 @@ def _preference(study: Study, judgements: Sequence[Judged]) -> Section:
         )
         rows.append(
             Row(
-                Cell(j.curve.label.replace(" ", "\N{NO-BREAK SPACE}")),
+                Cell(f"{j.curve.ratio:.4g}", j.curve.ratio),
                 [
+                    Cell(f"{j.curve.friction:g}", j.curve.friction),
                     Cell(f"{h:.3g}", h),
                     Cell(f"{h * j.curve.a_h * 1e6:.3g}", h * j.curve.a_h),
                     Cell(f"{use:.4f}", use),
@@ -172,14 +173,15 @@ def _preference(study: Study, judgements: Sequence[Judged]) -> Section:
         "Last: the differences of the governing stress, over p_h, at the checked thickness nearest to the "
         "preferable one.",
         [
-            "coating",
+            "E1/E2",
+            "f",
             "h / a_h",
             "h [µm]",
-            "largest stress over strength" if limited else "largest stress over p_h",
+            "stress / strength" if limited else "stress / p_h",
             "governing mode",
             *(["admissible h [µm]"] if limited else []),
             "reading error",
-            "checked at h / a_h",
+            "checked at",
             "off finite elements",
             "off exact reference",
         ],
