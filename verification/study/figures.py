@@ -169,7 +169,7 @@ def _against_thickness(
     colours = {ratio: COLOURS[i % len(COLOURS)] for i, ratio in enumerate(ratios)}
     rows = [["E1/E2", "f", "h / a_h", f"{quantity} over its scale", "source"]]
     checked = any(curve.marks for curve in curves)
-    with sheet(85 * len(sides), 92 if checked else 68) as figure:
+    with sheet(170 if len(sides) == 2 else 130, 92 if checked else 68) as figure:
         grid = figure.subplots(
             1 + checked,
             len(sides),

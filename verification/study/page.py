@@ -183,7 +183,7 @@ def _preference(study: Study, judgements: Sequence[Judged]) -> Section:
             "reading error",
             "checked at",
             "off finite elements",
-            "off exact reference",
+            "off exact",
         ],
         rows,
     )
