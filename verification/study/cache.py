@@ -29,6 +29,7 @@ _SEARCH = (
     "verification.study.quantities",
     "verification.study.planes",
     "verification.study.point",
+    "verification.plane",
     "verification.problem",
     "verification.run",
 )
