@@ -131,7 +131,7 @@ def solve(
             f"radius of the sphere, {radius:g} m; small strains need a far smaller load"
         )
     penetration, tension = complementarity(found, final.discretisation)
-    if not (penetration <= 1e-3 and tension <= 1e-3):  # so that NaN is refused too
+    if not (0 <= penetration <= 1e-3 and 0 <= tension <= 1e-3):  # so that NaN and -inf are refused too
         raise NotConverged(
             f"the contact is not one disc: penetration outside is {penetration:.2g} of the approach, tension "
             f"inside {tension:.2g} of the peak pressure; use quality='fine', or check the Poisson ratios"

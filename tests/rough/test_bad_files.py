@@ -92,8 +92,9 @@ def names(sentence: str, path: Path, keys: tuple[str, ...]) -> bool:
         return True
     # What concerns two keys at once is told of the part that holds both: "problem: moduli differ".
     first = re.split(r"[ .:=]", said)[0]
-    # A claim speaks of a line that only a coating makes.
-    return any(first in (key.split(".")[0], "claim" if key.startswith("problem") else None) for key in keys)
+    # A claim speaks of a line that only a coating makes, and laws need one.
+    needy = ("claim", "laws")
+    return any(first == key.split(".")[0] or (first in needy and key.startswith("problem")) for key in keys)
 
 
 def bad_files(tmp_path, monkeypatch, wanted):
