@@ -32,6 +32,8 @@ def main(how: str, path: str) -> None:
         os.abort()
     elif how == "hang":
         child = subprocess.Popen([sys.executable, "-c", "import time; time.sleep(600)"])
+        # The first of a run may come before anything else has made the folder.
+        Path(path).parent.mkdir(parents=True, exist_ok=True)
         Path(f"{path}.pids").write_text(f"{os.getpid()} {child.pid}\n")
         time.sleep(600)
     elif how == "memory":
