@@ -1,6 +1,7 @@
 """Workers that crash, hang or run out of memory: no result of their own, nobody else's lost, none left."""
 
 import json
+import os
 import re
 import signal
 import subprocess
@@ -33,7 +34,7 @@ REASONS = {
 
 @pytest.fixture(autouse=True)
 def _planted(monkeypatch):
-    monkeypatch.setenv("PYTHONPATH", str(HERE))
+    monkeypatch.setenv("PYTHONPATH", os.pathsep.join([str(HERE), str(HERE.parent / "verification")]))
 
 
 def task(how: str, folder: Path, number: int = 0) -> Task[str]:
@@ -138,6 +139,7 @@ def orphans_of(folder: Path) -> float:
     said = [folder / f"hang-{n}.json.pids" for n in range(2)]
     begin = time.monotonic()
     while not all(path.exists() and path.read_text().endswith("\n") for path in said):
+        assert parent.poll() is None, "the run ended before its workers had begun"
         assert time.monotonic() - begin < 60
         time.sleep(0.02)
     pids = [int(pid) for path in said for pid in path.read_text().split()]

@@ -276,7 +276,7 @@ def test_a_run_that_agrees_but_drifted_ends_with_code_5(tmp_path):
     page = (tmp_path / "reports" / "report.html").read_text()
     assert "≠ drifted" in page
     said = coatcheck("run", "quick.toml", "--resume", "--baseline", "base", cwd=tmp_path).stdout
-    assert "drifted" in next(line for line in said.splitlines() if line.startswith(" quick"))
+    assert "drifted" in next(line for line in said.splitlines() if line.split()[:1] == ["quick"])
     assert "largest change is 1.0e-6" in " ".join(said.split())
     path_in(tmp_path / "base").write_text("{}")
     done = coatcheck(*words, cwd=tmp_path)
