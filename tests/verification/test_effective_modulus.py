@@ -15,9 +15,6 @@ from verification.report.page import render
 from verification.result import RunInfo
 from verification.store import read_checked
 
-pytestmark = pytest.mark.xdist_group("effective modulus")  # what the tests share is made once
-
-
 INFO = RunInfo("coatcheck run published", "2026-01-01T00:00:00+00:00", 1.0, 1, None, "a machine", {})
 
 

@@ -9,10 +9,7 @@ from verification.plane import sample_plane
 from verification.references.hertz import Hertz
 from verification.report import write_report
 
-pytestmark = [
-    pytest.mark.skipif(browser() is None, reason="no Chromium on this machine"),
-    pytest.mark.xdist_group("report in a browser"),  # one browser, one page
-]
+pytestmark = pytest.mark.skipif(browser() is None, reason="no Chromium on this machine")
 
 # Whatever sticks out of the page makes all of it scroll sideways.
 STICKING_OUT = "document.documentElement.scrollWidth - document.documentElement.clientWidth"

@@ -17,9 +17,6 @@ from verification.report.page import render
 from verification.result import CaseResult, RunInfo, from_json, to_json
 from verification.verdict import Outcome
 
-pytestmark = pytest.mark.xdist_group("report page")  # what the tests share is made once
-
-
 VOID = {"meta", "link", "br", "hr", "img", "input"}
 
 

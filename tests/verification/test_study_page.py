@@ -13,8 +13,6 @@ from verification.study.page import write_study_report
 from verification.study.quantities import QUANTITIES
 from verification.study.table import read_columns
 
-pytestmark = pytest.mark.xdist_group("study page")  # what the tests share is made once
-
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):

@@ -10,9 +10,6 @@ import semianalytic
 from verification.references.hamilton import Hamilton
 from verification.references.hertz import Hertz
 
-pytestmark = pytest.mark.xdist_group("textbook")  # what the tests share is made once
-
-
 PROBLEM = {"radius": 10e-3, "load": 20.0, "coatings": (), "substrate": (210e9, 0.3)}
 SOLID = (10e-3, 20.0, 210e9, 0.3)
 SOURCES = ["closed form", "semianalytic", "fem_reference"]
