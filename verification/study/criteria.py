@@ -8,7 +8,7 @@ few stresses over p_h, as if their strengths were equal.
 """
 
 from dataclasses import dataclass
-from typing import Annotated, Literal
+from typing import Annotated
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +17,7 @@ from scipy.interpolate import PchipInterpolator
 
 from verification.case import Strict
 from verification.study.curves import Curve
+from verification.study.quantities import Stress
 
 __all__ = ["MODES", "Criteria", "Judged", "judged"]
 
@@ -32,15 +33,6 @@ MODES = {
     "von_mises_coating": "the coating yields",
     "von_mises_substrate": "the substrate yields",
 }
-Mode = Literal[
-    "sigma_xx_surface",
-    "sigma_xx_base",
-    "sigma_xx_substrate",
-    "sigma_xz_interface",
-    "sigma_zz_interface",
-    "von_mises_coating",
-    "von_mises_substrate",
-]
 PLACES = 4001  # on which a curve is read between its points
 
 
@@ -51,9 +43,9 @@ class Criteria(Strict):
     minimise : without strengths, the stresses whose largest is to be smallest.
     """
 
-    strength: Annotated[dict[Mode, Annotated[float, Field(gt=0)]], Field(min_length=1)] | None = None
+    strength: Annotated[dict[Stress, Annotated[float, Field(gt=0)]], Field(min_length=1)] | None = None
     safety: Annotated[float, Field(ge=1, le=100)] = 1.0
-    minimise: Annotated[list[Mode], Field(min_length=1)] | None = None
+    minimise: Annotated[list[Stress], Field(min_length=1)] | None = None
 
     @model_validator(mode="after")
     def _one(self) -> "Criteria":

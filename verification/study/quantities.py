@@ -7,6 +7,7 @@ of depths, then evaluated by the solution itself at the place found.
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import Literal, get_args
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,13 +18,13 @@ from verification.plane import von_mises
 from verification.problem import CoatedContact, Solution
 from verification.study.planes import XX, XZ, ZZ, Parts, Plane, crowded, plane, stress_at, surface
 
-__all__ = ["QUANTITIES", "Located", "quantities"]
+__all__ = ["QUANTITIES", "Located", "Stress", "quantities"]
 
 Array = NDArray[np.float64]
 Measure = Callable[[Array], Array]
 
 # The stresses of a study [Pa], each with its place, in the order of the columns.
-QUANTITIES = (
+Stress = Literal[
     "sigma_xx_surface",
     "sigma_xx_base",
     "sigma_xx_substrate",
@@ -31,7 +32,8 @@ QUANTITIES = (
     "sigma_zz_interface",
     "von_mises_coating",
     "von_mises_substrate",
-)
+]
+QUANTITIES: tuple[str, ...] = get_args(Stress)
 DENSE = 16  # places tried between two samples of a line
 FINE = 8  # between two samples of a layer, each way
 
