@@ -39,7 +39,7 @@ def test_recommended_is_what_is_admissible_at_every_friction(found):
         "Thinner, the coating cracks at its surface (sigma_xx_surface, f = 0.25)",
         "thicker, the coating cracks at its surface",
         "0.78 of the strength in sigma_xx_surface",
-        "the finite elements by at most 3.0e-04 p_h",
+        "at most 3.0e-04 p_h off the finite elements",
     ):
         assert part in said
 

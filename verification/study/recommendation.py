@@ -148,7 +148,7 @@ def _checked(asked: Sequence[tuple[Judged, float, str]]) -> str:
             ((j, one) for j, one in found if one.source == source), key=lambda item: item[1].difference
         )
         said.append(
-            f"{SOURCE[source]} by at most {one.difference:.1e} p_h ({one.mode}, "
+            f"at most {one.difference:.1e} p_h off {SOURCE[source]} ({one.mode}, "
             f"h = {_micrometres(j, one.h)}, f = {j.curve.friction:g})"
         )
-    return f"In these stresses, at the checked thicknesses nearest to it, {' and '.join(said)} differ."
+    return f"At the checked thicknesses nearest to it these stresses are {' and '.join(said)}."
