@@ -137,6 +137,9 @@ def solve(
             f"inside {tension:.2g} of the peak pressure; use quality='fine', or check the Poisson ratios"
         )
 
+    if not np.isfinite(found.stiffness):
+        raise NotConverged(f"the contact's stiffness dW/d delta is {found.stiffness}; use quality='fine'")
+
     load_miss = abs(found.load / target - 1)
     result = _state(solid, final.discretisation, found.fields, found.pressure, friction)
     bounds, stiffness_bound = _NO_BOUNDS, None

@@ -116,6 +116,10 @@ def press(
     """
     if (total is None) == (approach is None):
         raise ValueError("give either total (load control) or approach, not both and not neither")
+    if not np.isfinite(start).all():
+        raise NotConverged(
+            "the first guess of the pressure is not finite; look at the influence coefficients"
+        )
 
     def balanced(p: Array) -> Array:
         return p if total is None else p * (total / p.sum())
