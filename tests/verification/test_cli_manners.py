@@ -141,7 +141,12 @@ def test_ctrl_c_keeps_what_was_done_and_says_so(tmp_path):
     (tmp_path / "quick.toml").write_text(QUICK)
     words = ["run", "quick.toml", "05_ratio_4", "--jobs", "1", "--output", "out"]
     process = subprocess.Popen(
-        [*COMMAND, *words], cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+        [*COMMAND, *words],
+        cwd=tmp_path,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),  # ignored below nohup and the like
     )
     kept = tmp_path / "out" / "cases" / "quick.json"
     deadline = time.monotonic() + 120

@@ -194,7 +194,12 @@ def test_a_worker_killed_in_the_middle_loses_no_point(plan, undisturbed, tmp_pat
 
 def test_ctrl_c_leaves_what_was_done_and_says_so(plan, undisturbed, tmp_path):
     process = subprocess.Popen(
-        command(plan, tmp_path), env=ENVIRONMENT, stderr=subprocess.PIPE, text=True, start_new_session=True
+        command(plan, tmp_path),
+        env=ENVIRONMENT,
+        stderr=subprocess.PIPE,
+        text=True,
+        start_new_session=True,
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),  # ignored below nohup and the like
     )
     wait_until(lambda: len(keys(ledger(tmp_path), "stored")) >= 3, "three stored solves")
     os.killpg(process.pid, signal.SIGINT)  # as a terminal does: to the workers, too
