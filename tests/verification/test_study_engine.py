@@ -1,5 +1,6 @@
 """The engine of a study on made-up answers: nothing lost, nothing solved twice, the same table always."""
 
+import gc
 import json
 from contextlib import contextmanager
 from pathlib import Path
@@ -30,6 +31,7 @@ def threads(n):
     """A cluster within this process."""
     from distributed import Client, LocalCluster
 
+    gc.collect()  # as `connected` does
     with (
         LocalCluster(
             n_workers=1, threads_per_worker=n, processes=False, dashboard_address="127.0.0.1:0"

@@ -6,6 +6,7 @@ An answer is stored before it counts; the table is written anew, whole, from wha
 the points: it is the same whatever the order of the answers, however often the study was killed.
 """
 
+import gc
 import json
 import logging
 import os
@@ -81,6 +82,8 @@ def connected(scheduler: str | None, jobs: int | None) -> Iterator[Any]:
     import dask
     from distributed import Client, LocalCluster
 
+    # A client of an earlier study that is thrown away while a new one starts would wait for it forever.
+    gc.collect()
     if scheduler is not None:
         with _hushed():
             try:
