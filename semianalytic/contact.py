@@ -76,19 +76,34 @@ class _Surroundings:
     """The contact set, and how what is known on it is continued beyond: means of ``reach`` patches."""
 
     def __init__(self, inside: Mask, reach: float) -> None:
-        self.inside, self.reach = inside, reach
-        share = _blurred(inside.astype(float), reach)
-        self._weight = 1 / np.maximum(share, 0.1)  # fading where less than a tenth of the mean is known
+        self.reach = reach
+        self.indicator = inside.astype(float)
+        share = self._mean(self.indicator, np.empty_like(self.indicator))
+        # fading where less than a tenth of the mean is known
+        self._weight = (1 - self.indicator) / np.maximum(share, 0.1)
+        share *= self._weight
+        share += self.indicator
+        self.one = share  # a gap of 1, continued
 
-    def continued(self, g: Array) -> Array:
-        """g in contact, its local mean just outside, 0 far away."""
-        g = np.where(self.inside, g, 0.0)
-        return np.where(self.inside, g, _blurred(g, self.reach) * self._weight)
+    def continued(self, r: Array, out: Array) -> Array:
+        """r, which is 0 outside, in contact, its local mean just outside, 0 far away."""
+        self._mean(r, out)
+        out *= self._weight
+        out += r
+        return out
+
+    def _mean(self, r: Array, out: Array) -> Array:
+        gaussian_filter(r, self.reach, mode="constant", truncate=3, output=out)
+        return out
 
 
-def _blurred(g: Array, reach: float) -> Array:
-    blurred: Array = gaussian_filter(g, reach, mode="constant", truncate=3)
-    return blurred
+def _largest(a: Array) -> float:
+    return float(max(a.max(), -a.min()))
+
+
+def _dot(a: Array, b: Array) -> float:
+    # not by BLAS: its threads go on turning after such a short sum, in the way of those of the FFT
+    return float(np.einsum("ij,ij->", a, b))
 
 
 def press(
@@ -121,97 +136,121 @@ def press(
             "the first guess of the pressure is not finite; look at the influence coefficients"
         )
 
+    # what every iteration fills anew: gap, gap in contact now and before, continued, P of it, an odd job's
+    g, r, last, c, z, work = (np.empty(gap.shape) for _ in range(6))
+
     def balanced(p: Array) -> Array:
         return p if total is None else p * (total / p.sum())
 
-    def free(r: Array, near: _Surroundings) -> Array:
+    def free(r: Array, continued: Array, out: Array) -> Array:
+        """P of the residual r, on the contact set."""
         if iterations >= STUBBORN:
-            return np.where(near.inside, r, 0.0)
-        r = near.continued(r) if iterations < EAGER else np.where(near.inside, r, 0.0)
-        return np.where(near.inside, precondition(r), 0.0)
+            out[:] = r
+            return out
+        return np.multiply(precondition(continued if iterations < EAGER else r), near.indicator, out=out)
 
-    def direction(g: Array, near: _Surroundings, P_one: Array) -> tuple[Array, float]:
-        """z = P (g - delta) on the contact set, and the delta that keeps the load."""
+    def of_one() -> Array:
+        return free(near.indicator, near.one, np.empty_like(gap)) if approach is None else gap
+
+    def look(final: bool = False) -> float:
+        """Fill g, r, c and z, with the delta that keeps the load; returns how far it moved, c not yet.
+
+        final : delta stays as it is, and g and r are all that is filled.
+        """
+        np.add(u, gap, out=g)
+        np.subtract(g, delta, out=g)
+        np.multiply(g, near.indicator, out=r)
+        if final:
+            return 0.0
+        free(r, near.continued(r, c), z)
         if approach is not None:
-            return free(g - approach, near), approach
-        z = free(g, near)
-        delta = float(z.sum() / P_one.sum())
-        return z - delta * P_one, delta
-
-    def of_one(near: _Surroundings) -> Array:
-        return free(np.ones_like(gap), near) if approach is None else gap
+            return 0.0
+        more = float(z.sum() / P_one.sum())
+        np.subtract(g, more, out=g)
+        np.multiply(g, near.indicator, out=r)
+        np.subtract(z, np.multiply(P_one, more, out=work), out=z)
+        return more
 
     p = balanced(np.maximum(start, 0.0))
     u = deflection(p)
     inside = p > 0
     near = _Surroundings(inside, reach)
     convolutions, updates, iterations, since, first = 1, 0, 0, 0, 0.0
-    P_one = of_one(near)
+    P_one = of_one()
+    delta = approach or 0.0
     history: list[tuple[float, float]] = []
-    step = last = p  # of no consequence before the first step
-    slope, carried = 1.0, False
+    step = np.zeros_like(gap)
+    slope, carried, final = 1.0, False, False
     while True:
         if iterations == STUBBORN and since:
             # where the preconditioner misleads it has led far astray: begin again
             p = balanced(np.maximum(start, 0.0))
             u, inside, carried = deflection(p), p > 0, False
             near = _Surroundings(inside, reach)
-            P_one, since, updates = of_one(near), 0, CALM
+            P_one, since, updates = of_one(), 0, CALM
             convolutions += 1
         if iterations == EAGER and since:
-            P_one, since = of_one(near), 0
-        z, delta = direction(u + gap, near, P_one)
-        g = u + gap - delta
-        r = np.where(inside, g, 0.0)
-        residual = float(np.abs(r).max()) / scale
+            P_one, since = of_one(), 0
+        more = look(final)
+        delta += more
+        residual = _largest(r) / scale
         first = residual if since == 0 else first
-        tension = inside & (p < 0)
+        depth = float(np.subtract(r, g, out=work).max())  # of the penetration outside
         # on the way patches enter with a margin; at the end what was asked decides
         deep = (1.0 if residual <= tolerance else 0.5) * tolerance * scale
-        enter = ~inside & (g < -deep)
-        penetration = -float(np.min(g, where=~inside, initial=0.0)) / scale
-        settled = not (tension.any() or enter.any())
+        settled = bool(p.min() >= 0) and depth <= deep
         if settled and residual <= tolerance:
             if not carried:
                 break
-            u, carried = deflection(p), False  # the test must hold for A p itself
+            u, carried, final = deflection(p), False, True  # the test must hold for A p itself
             convolutions += 1
             continue
-        history.append((residual, penetration))
+        if final:
+            final = False
+            continue
+        history.append((residual, depth / scale))
         if iterations >= max_iterations:
             raise NotConverged(
-                f"gap in contact {residual:.1e} and penetration {penetration:.1e} of the scale {scale:.3g} m "
-                f"after {max_iterations} iterations (asked for {tolerance:.0e}); raise max_iterations or "
-                "tolerance"
+                f"gap in contact {residual:.1e} and penetration {depth / scale:.1e} of the scale "
+                f"{scale:.3g} m after {max_iterations} iterations (asked for {tolerance:.0e}); raise "
+                "max_iterations or tolerance"
             )
-        if not settled and updates < CALM:
-            due = residual <= max(FALL * first, 0.3 * tolerance) or since >= PATIENCE
-            # what the set will be once the residual, and its continuation outside, are gone
-            enter = ~inside & (g - near.continued(g) < -0.5 * tolerance * scale)
-            tension = tension & (p < z)
+        if not settled:
+            tension, enter, due = inside & (p < 0), ~inside, True
+            if updates >= CALM:
+                enter &= g < -deep
+            else:
+                due = residual <= max(FALL * first, 0.3 * tolerance) or since >= PATIENCE
+                # what the set will be once the residual, and its continuation outside, are gone
+                c -= np.multiply(near.one, more, out=work)
+                enter &= np.subtract(g, c, out=work) < -0.5 * tolerance * scale
+                tension &= p < z
             settled = not (due and (tension.any() or enter.any()))
         if not settled:
             inside = (inside & ~tension) | enter
             near = _Surroundings(inside, reach)
-            P_one = of_one(near)
+            P_one = of_one()
             updates, since = updates + 1, 0
             if tension.any():
                 p = balanced(np.where(tension, 0.0, p))
                 u, carried = deflection(p), False
                 convolutions += 1
-            z, delta = direction(u + gap, near, P_one)
-            r = np.where(inside, u + gap - delta, 0.0)
-            first = float(np.abs(r).max()) / scale
-        descent = float(np.vdot(r, z))
-        beta = 0.0 if since == 0 else max(0.0, descent - float(np.vdot(last, z))) / slope
-        step = z + beta * step if beta else z
-        slope, last = descent, r
+            delta += look()
+            first = _largest(r) / scale
+        descent = _dot(r, z)
+        beta = 0.0 if since == 0 else max(0.0, descent - _dot(last, z)) / slope
+        slope = descent
+        step *= beta
+        step += z
         Au = deflection(step)
         convolutions += 1
-        alpha = float(np.vdot(r, step)) / float(np.vdot(step, Au))
-        p = p - alpha * step
-        u = u - alpha * Au
+        alpha = _dot(r, step) / _dot(step, Au)
+        p -= np.multiply(step, alpha, out=work)
+        u -= np.multiply(Au, alpha, out=work)
         carried = True
+        r, last = last, r
         iterations, since = iterations + 1, since + 1
     error = 0.0 if total is None else abs(float(p.sum()) / total - 1)
-    return Contact(p, g, delta, residual, penetration, error, iterations, convolutions, tuple(history))
+    return Contact(
+        p, g, delta, residual, max(0.0, depth) / scale, error, iterations, convolutions, tuple(history)
+    )

@@ -18,7 +18,7 @@ __all__ = ["circulant_inverse", "even_convolution", "good_size"]
 
 Array = NDArray[np.floating]
 
-SHARED = 2**21  # points of a transform below which a second thread was measured to cost more than it brings
+SHARED = 2**18  # points of a transform below which a second thread was measured to bring nothing
 
 
 def good_size(n: int) -> int:
@@ -67,12 +67,17 @@ def _apply_even(spectrum: Array, nx: int, ny: int, threads: int) -> Callable[[Ar
     if mx * my < SHARED:
         threads = 1
 
+    wave = np.empty((mx, my // 2 + 1), dtype=complex)
+    # the real rows lie, where they fit, in that part of the memory which is idle while they are in use
+    idle = wave[nx:].reshape(-1).view(float)
+    rows = (idle if idle.size >= nx * my else np.empty(nx * my))[: nx * my].reshape(nx, my)
+
     def apply(p: Array) -> Array:
         """Transform rows, then columns: rows of zeros are never transformed, nor rows nobody reads."""
-        rows = np.zeros((nx, my))
         rows[:, :ny] = p
-        wave = np.zeros((mx, my // 2 + 1), dtype=complex)
+        rows[:, ny:] = 0
         ducc0.fft.r2c(rows, axes=(1,), nthreads=threads, out=wave[:nx])
+        wave[nx:] = 0
         ducc0.fft.c2c(wave, axes=(0,), nthreads=threads, out=wave)
         wave[: half + 1] *= spectrum
         wave[half + 1 :] *= spectrum[half - 1 : 0 : -1]

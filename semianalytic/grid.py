@@ -102,11 +102,15 @@ def carry_over(
     """
     loaded = np.pad(pressure > 0, 1)
     inner = loaded[2:, 1:-1] & loaded[:-2, 1:-1] & loaded[1:-1, 2:] & loaded[1:-1, :-2]
+    beside = loaded[:-2] | loaded[1:-1] | loaded[2:]
+    beside = beside[:, :-2] | beside[:, 1:-1] | beside[:, 2:]
     loaded = loaded[1:-1, 1:-1]
     # a rim patch lies 0.6 d from the edge on average
     K2 = float(np.mean(pressure[loaded & ~inner] ** 2)) / (0.6 * source.d)
-    opening = (np.maximum(gap, 0) * (0.75 * E_star) / np.sqrt(K2)) ** (2 / 3)
-    level = np.where(loaded, pressure**2, -K2 * opening)
+    level = pressure**2
+    # patches that touch no loaded one share no interpolation with one: any value that is not positive will do
+    beside &= ~loaded
+    level[beside] = -K2 * (np.maximum(gap[beside], 0) * (0.75 * E_star) / np.sqrt(K2)) ** (2 / 3)
     rows, columns = window.slices
     level = _linear(_linear(level, source, target.x[rows]).T, source, target.x[columns]).T
     return np.sqrt(np.maximum(level, 0))

@@ -223,7 +223,7 @@ def indent(
             assert callable(profile)
             z = np.asarray(profile(grid.x[:, None], grid.x[None, :]), dtype=float)
             z = np.broadcast_to(z, (grid.n, grid.n))
-            if not np.all(np.isfinite(z)):
+            if not np.isfinite(z.min()) or not np.isfinite(z.max()):
                 raise ValueError("profile(x, y) must return finite heights [m] all over the square")
         return z - z.min()
 
@@ -365,28 +365,35 @@ def _find_contact(half_width: float, indenter: Indenter, body: Body, numerics: N
 def _press(grid: Grid, before: Level | None, indenter: Indenter, body: Body, numerics: Numerics) -> Level:
     """Contact on a grid: of a sphere its edge corrected, of another indenter on the window it needs."""
     whole = Window(0, grid.n, 0, grid.n)
+    gap = indenter.gap(grid)
     if indenter.round:
-        return _press_round(grid, whole, before, indenter, body, numerics)
+        return _press_round(grid, gap, before, indenter, body, numerics)
+    depth = float(np.ptp(gap))
     if before is not None:
         window = window_around(before.found.pressure, before.grid, grid)
         if window.shape != whole.shape:
-            press, _ = _press_in(grid, window, before, indenter, body, numerics)
+            lowest, gap = _lowest_of_four(gap), gap[window.slices].copy()
+            press = _press_in(grid, gap, depth, window, before, indenter, body, numerics)[0]
             level = press(0.0, 0.0, None, numerics.tolerance)
-            if _is_alone(level, window, indenter, body, numerics):
+            del press  # the memory of its transforms is needed again
+            level = replace(level, found=level.found.embedded(window.slices, grid.n, depth))
+            if _is_alone(level, lowest, window, body, numerics):
                 return level
-    press, _ = _press_in(grid, whole, before, indenter, body, numerics)
+            gap = indenter.gap(grid)
+    press = _press_in(grid, gap, depth, whole, before, indenter, body, numerics)[0]
     return press(0.0, 0.0, None, numerics.tolerance)
 
 
 def _press_round(
-    grid: Grid, whole: Window, before: Level | None, indenter: Indenter, body: Body, numerics: Numerics
+    grid: Grid, gap: Array, before: Level | None, indenter: Indenter, body: Body, numerics: Numerics
 ) -> Level:
     """Contact with its edge corrected.
 
     What constant patches make of the square root at the edge is measured on the fitted profile, whose exact
     deflection is known, and added to the gap; the profile is fitted anew to the pressure that results.
     """
-    press, deflection = _press_in(grid, whole, before, indenter, body, numerics)
+    whole, depth = Window(0, grid.n, 0, grid.n), float(np.ptp(gap))
+    press, deflection = _press_in(grid, gap, depth, whole, before, indenter, body, numerics)
     rounds = numerics.edge_rounds
     level = press(0.0, 0.0, None, max(numerics.tolerance, 1e-5) if rounds else numerics.tolerance)
     thickness = body.thickness[0] if body.coatings else None
@@ -408,26 +415,31 @@ def _press_round(
 
 
 def _press_in(
-    grid: Grid, window: Window, before: Level | None, indenter: Indenter, body: Body, numerics: Numerics
+    grid: Grid,
+    gap: Array,
+    depth: float,
+    window: Window,
+    before: Level | None,
+    indenter: Indenter,
+    body: Body,
+    numerics: Numerics,
 ) -> tuple[Press, Callable[[Array], Array]]:
     """Function that presses the indenter on a window of the grid, and the deflection u = A p there.
 
+    gap [m] : on the window.  depth [m] : the largest gap on the grid.
     defect [m] : added to the gap.  missing [N] : load that the patches do not carry.  start : level on the
-    same grid, None to start from ``before``.
+    same window, None to start from ``before``.
     """
     n = max(window.shape)
     kernel = _coefficients(Grid(n, grid.d), body, numerics)[: window.shape[0], : window.shape[1]]
     deflection = convolution.even_convolution(kernel, threads=numerics.threads)
     precondition = convolution.circulant_inverse(kernel, threads=numerics.threads)
     del kernel
-    gap = indenter.gap(grid)
-    depth = float(np.ptp(gap))
-    gap = gap[window.slices].copy()
 
     def press(defect: Array | float, missing: float, level: Level | None, tolerance: float) -> Level:
         spent = 0
         if level is not None:
-            start, spent = level.found.pressure[window.slices], level.convolutions + 1
+            start, spent = level.found.pressure, level.convolutions + 1
         elif before is not None:
             start = carry_over(
                 before.found.pressure, before.found.gap, before.grid, grid, window, body.moduli[0]
@@ -447,8 +459,6 @@ def _press_in(
             reach=_reach(body, grid.d),
         )
         load = float(found.pressure.sum() * grid.d**2) + missing
-        if window.shape != (grid.n, grid.n):
-            found = found.embedded(window.slices, grid.n, depth)
         return Level(grid, found, None, load, spent + found.convolutions)
 
     return press, deflection
@@ -464,22 +474,29 @@ def _reach(body: Body, d: float) -> float:
     return min(contact.REACH, max(1.0, 0.3 * body.thickness[0] / d))
 
 
-def _is_alone(level: Level, window: Window, indenter: Indenter, body: Body, numerics: Numerics) -> bool:
+def _lowest_of_four(gap: Array) -> Array:
+    """Smallest gap on patches of twice the side."""
+    if len(gap) % 2:
+        gap = np.pad(gap, (0, 1), mode="edge")
+    rows = np.minimum(gap[::2], gap[1::2])
+    return np.minimum(rows[:, ::2], rows[:, 1::2])
+
+
+def _is_alone(level: Level, lowest: Array, window: Window, body: Body, numerics: Numerics) -> bool:
     """Whether nothing but the window is in contact: its rim is free, and the gap beyond it open.
 
     The deflection beyond is found from patches of twice the side, which at the distance of the window's
-    margin is good to 1e-3 of what they add; the smallest gap of the four stands for them.
+    margin is good to 1e-3 of what they add; the smallest gap of the four, ``lowest``, stands for them.
     """
     p = level.found.pressure
-    inner = p[window.slices]
-    if touches_rim(inner):
+    if touches_rim(p[window.slices]):
         return False
-    m = (level.grid.n + 1) // 2
-    gap = np.pad(indenter.gap(level.grid), (0, 2 * m - level.grid.n), mode="edge")
-    lowest = gap.reshape(m, 2, m, 2).min(axis=(1, 3))
-    del gap
-    merged = np.pad(p, (0, 2 * m - level.grid.n)).reshape(m, 2, m, 2).mean(axis=(1, 3))
-    kernel = _coefficients(Grid(m, 2 * level.grid.d), body, numerics)
+    if level.grid.n % 2:
+        p = np.pad(p, (0, 1))
+    rows = p[::2] + p[1::2]
+    merged = (rows[:, ::2] + rows[:, 1::2]) / 4
+    del rows
+    kernel = _coefficients(Grid(len(lowest), 2 * level.grid.d), body, numerics)
     g = lowest + convolution.even_convolution(kernel, threads=numerics.threads)(merged) - level.found.approach
     g[window.i0 // 2 : -(-window.i1 // 2), window.j0 // 2 : -(-window.j1 // 2)] = np.inf
     return bool(g.min() > 0)
