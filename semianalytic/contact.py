@@ -180,7 +180,7 @@ def press(
     delta = approach or 0.0
     history: list[tuple[float, float]] = []
     step = np.zeros_like(gap)
-    slope, carried, final = 1.0, False, False
+    slope, carried, final, fresh = 1.0, False, False, False
     while True:
         if iterations == STUBBORN and since:
             # where the preconditioner misleads it has led far astray: begin again
@@ -208,14 +208,14 @@ def press(
         if final:
             final = False
             continue
-        history.append((residual, depth / scale))
         if iterations >= max_iterations:
             raise NotConverged(
                 f"gap in contact {residual:.1e} and penetration {depth / scale:.1e} of the scale "
                 f"{scale:.3g} m after {max_iterations} iterations (asked for {tolerance:.0e}); raise "
                 "max_iterations or tolerance"
             )
-        if not settled:
+        stays = settled or fresh
+        if not stays:
             tension, enter, due = inside & (p < 0), ~inside, True
             if updates >= CALM:
                 enter &= g < -deep
@@ -225,8 +225,8 @@ def press(
                 c -= np.multiply(near.one, more, out=work)
                 enter &= np.subtract(g, c, out=work) < -0.5 * tolerance * scale
                 tension &= p < z
-            settled = not (due and (tension.any() or enter.any()))
-        if not settled:
+            stays = not (due and (tension.any() or enter.any()))
+        if not stays:
             inside = (inside & ~tension) | enter
             near = _Surroundings(inside, reach)
             P_one = of_one()
@@ -235,8 +235,10 @@ def press(
                 p = balanced(np.where(tension, 0.0, p))
                 u, carried = deflection(p), False
                 convolutions += 1
-            delta += look()
-            first = _largest(r) / scale
+            fresh = True
+            continue
+        fresh = False
+        history.append((residual, depth / scale))
         descent = _dot(r, z)
         beta = 0.0 if since == 0 else max(0.0, descent - _dot(last, z)) / slope
         slope = descent
