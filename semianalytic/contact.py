@@ -198,7 +198,8 @@ def press(
         depth = float(np.subtract(r, g, out=work).max())  # of the penetration outside
         # on the way patches enter with a margin; at the end what was asked decides
         deep = (1.0 if residual <= tolerance else 0.5) * tolerance * scale
-        settled = bool(p.min() >= 0) and depth <= deep
+        tension = p < 0
+        settled = not tension.any() and depth <= deep
         if settled and residual <= tolerance:
             if not carried:
                 break
@@ -216,7 +217,7 @@ def press(
             )
         stays = settled or fresh
         if not stays:
-            tension, enter, due = inside & (p < 0), ~inside, True
+            enter, due = ~inside, True
             if updates >= CALM:
                 enter &= g < -deep
             else:

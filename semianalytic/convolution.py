@@ -30,7 +30,8 @@ def even_convolution(kernel: Array, *, threads: int = 1) -> Callable[[Array], Ar
     """Linear convolution with a kernel even in both indices.
 
     kernel : K(i, j) for i, j >= 0, shape (nx, ny), the largest offsets between two patches.
-    Returns u(p) for p of shape (nx, ny); u has its shape, units K times p.
+    Returns u(p) for p of shape (nx, ny); u has its shape, units K times p. It works in memory of its own,
+    so that two threads need one each.
     """
     nx, ny = kernel.shape
     spectrum = _even_spectrum(kernel, good_size(2 * nx - 1), good_size(2 * ny - 1), threads)

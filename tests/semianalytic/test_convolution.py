@@ -31,6 +31,25 @@ def test_nothing_wraps_around():
     np.testing.assert_allclose(u[:8], 1, atol=1e-14)
 
 
+def test_a_later_call_leaves_what_an_earlier_one_returned():
+    A = convolution.even_convolution(RNG.normal(size=(12, 12)))
+    p, q = RNG.normal(size=(2, 12, 12))
+    first = A(p)
+    kept = first.copy()
+    A(q)
+    np.testing.assert_array_equal(first, kept)
+    np.testing.assert_array_equal(A(p), kept)
+
+
+def test_a_second_thread_changes_no_more_than_rounding():
+    n = 260  # so that the transforms are large enough to be shared between threads
+    assert convolution.good_size(2 * n - 1) ** 2 > convolution.SHARED
+    kernel, p = RNG.normal(size=(2, n, n))
+    for build in (convolution.even_convolution, convolution.circulant_inverse):
+        one, two = build(kernel, threads=1)(p), build(kernel, threads=2)(p)
+        np.testing.assert_allclose(two, one, rtol=0, atol=1e-14 * np.abs(one).max())
+
+
 def test_convolution_is_symmetric():
     r = np.hypot(*np.meshgrid(np.arange(21), np.arange(21)))
     A = convolution.even_convolution(1 / (1 + r))

@@ -49,19 +49,15 @@ FAULTS = (
         (*SCALARS, "sphere"),
         Edit(
             PRESS,
-            "settled = not (tension.any() or enter.any())",
-            "tension, enter = tension & False, enter & False; settled = True",
+            "settled = not tension.any() and depth <= deep",
+            "settled = True",
         ),
     ),
     _fault(
         "tension_kept",
         "negative pressure is kept: no patch ever leaves the contact",
         (*SCALARS, "surface tractions"),
-        Edit(
-            PRESS,
-            "settled = not (tension.any() or enter.any())",
-            "tension = tension & False; settled = not enter.any()",
-        ),
+        Edit(PRESS, "tension = p < 0", "tension = p < -np.inf"),
     ),
     _fault(
         "sphere_for_parabola",

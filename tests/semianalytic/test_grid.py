@@ -1,0 +1,27 @@
+"""First guesses on finer grids held against the contact they were taken from."""
+
+import numpy as np
+
+from semianalytic.grid import Grid, Window, carry_over
+
+
+def _hertz(grid):
+    """Pressure over p0 and gap of a sphere with a = R = 1, E* = 1, beyond the contact to leading orders exact."""
+    r = grid.radius
+    outside = np.maximum(r, 1)
+    # Johnson (1985) eq. 3.42a, with p0 = 2 / pi
+    u = ((2 - outside**2) * np.arcsin(1 / outside) + np.sqrt(outside**2 - 1)) / np.pi
+    gap = np.where(r > 1, u + r**2 / 2 - 1, 0)
+    return 2 / np.pi * np.sqrt(np.maximum(1 - r**2, 0)), gap
+
+
+def test_carried_over_contact_is_hertz_with_its_edge_between_the_patches():
+    source, target = Grid(40, 0.06), Grid(160, 0.015)
+    p, gap = _hertz(source)
+    start = carry_over(p, gap, source, target, Window(10, 150, 10, 150), 1.0)
+    exact = _hertz(target)[0][10:150, 10:150]
+    # linear interpolation of p^2, and of its continuation across the edge
+    assert np.abs(start - exact)[target.radius[10:150, 10:150] < 0.9].max() < 2e-3
+    # a quarter of the source's patch: without the continuation the edge is a patch of the source too wide
+    a = np.sqrt(np.count_nonzero(start) / np.pi) * target.d
+    assert abs(a - 1) < 0.25 * source.d
