@@ -6,7 +6,7 @@ from semianalytic.grid import Grid, Window, carry_over
 
 
 def _hertz(grid):
-    """Pressure over p0 and gap of a sphere with a = R = 1, E* = 1, beyond the contact to leading orders exact."""
+    """Pressure [E*] under a sphere and the gap beside it, a = R = E* = 1."""
     r = grid.radius
     outside = np.maximum(r, 1)
     # Johnson (1985) eq. 3.42a, with p0 = 2 / pi
