@@ -8,11 +8,14 @@ Hertz: phi = p0 (a^2 - t^2)/(2a). Sneddon, Int. J. Engng Sci. 3 (1965) 47-57.
 """
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.polynomial import legendre
 from numpy.typing import ArrayLike, NDArray
 from scipy.optimize import minimize_scalar
+
+from verification.references.quadrature import gauss_legendre
 
 __all__ = ["AbelPressure"]
 
@@ -41,7 +44,7 @@ class AbelPressure:
         """W = 2 pi int_0^a phi dt [N]: only P_0 has a mean."""
         return float(2 * np.pi * self.a * self.c[0])
 
-    @property
+    @cached_property
     def peak(self) -> float:
         """Largest p [Pa]: at r = 0, but on a ring where a stiff film on a soft solid bends like a plate."""
         r = np.linspace(0, self.a, 401)
@@ -77,7 +80,7 @@ class AbelPressure:
         = -int_0^min(r,a) phi'(t) sin(order asin(t/r)) / sqrt(r^2 - t^2) dt, with t = r sin(psi).
         """
         psi_max = np.arcsin(np.minimum(self.a / np.maximum(r, 1e-300), 1.0))
-        x, weight = legendre.leggauss(max(64, 2 * self.c.size))
+        x, weight = gauss_legendre(max(64, 2 * self.c.size))
         psi = 0.5 * psi_max[..., None] * (1 + x)
         slope = self._slope_over_t(r[..., None] * np.sin(psi)) * r[..., None] * np.sin(psi)
         return -0.5 * psi_max * (slope * np.sin(order * psi) @ weight)
@@ -85,7 +88,7 @@ class AbelPressure:
     def _over_ring(self, r: Array, power: int) -> Array:
         """-int_r^a phi'(t) (t^2 - r^2)^((power-1)/2) dt, with s^2 = t^2 - r^2."""
         reach = np.sqrt(np.maximum(self.a**2 - r**2, 0.0))
-        x, weight = legendre.leggauss(max(64, 2 * self.c.size))
+        x, weight = gauss_legendre(max(64, 2 * self.c.size))
         s = 0.5 * reach[..., None] * (1 + x)
         t = np.minimum(np.hypot(r[..., None], s), self.a)
         return -0.5 * reach * ((self._slope_over_t(t) * s**power) @ weight)

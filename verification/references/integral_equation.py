@@ -10,6 +10,7 @@ Yu, Sanday and Rath, J. Mech. Phys. Solids 38 (1990) 745-764.
 """
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.polynomial import legendre
@@ -72,7 +73,7 @@ class ExactSolution:
         """The pressure is known everywhere; 401 points on [-2a, 2a]."""
         return 2 * self.abel.a * np.linspace(-1, 1, 401)
 
-    @property
+    @cached_property
     def uncertainty(self) -> ExactUncertainty | None:
         """Twice the difference from the coarser companion, with the rounding of the last digits."""
         if self.coarser is None:

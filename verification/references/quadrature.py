@@ -1,12 +1,22 @@
-"""Gauss-Legendre panels along the wavenumber."""
+"""Gauss-Legendre quadrature, each rule found once."""
+
+from functools import cache
 
 import numpy as np
 from numpy.polynomial import legendre
 from numpy.typing import NDArray
 
-__all__ = ["wavenumber_panels"]
+__all__ = ["gauss_legendre", "wavenumber_panels"]
 
 Array = NDArray[np.float64]
+
+
+@cache
+def gauss_legendre(nodes: int) -> tuple[Array, Array]:
+    """Nodes on [-1, 1] with their weights, not to be written to."""
+    s, w = legendre.leggauss(nodes)
+    s.flags.writeable = w.flags.writeable = False
+    return s, w
 
 
 def wavenumber_panels(end: float, first: float, widest: float, nodes: int) -> tuple[Array, Array]:
@@ -19,6 +29,6 @@ def wavenumber_panels(end: float, first: float, widest: float, nodes: int) -> tu
     while edges[-1] < end:
         edges.append(min(edges[-1] + width, end))
         width = min(1.5 * width, widest)
-    left, (s, w) = np.array(edges), legendre.leggauss(nodes)
+    left, (s, w) = np.array(edges), gauss_legendre(nodes)
     half = 0.5 * np.diff(left)
     return ((left[:-1] + half)[:, None] + half[:, None] * s).ravel(), (half[:, None] * w).ravel()
