@@ -57,9 +57,9 @@ def imports_of(name: str, strangers: tuple[str, ...] = ()) -> Part:
     files = statements = 0
     for path in sorted(folder.rglob("*.py")):
         files += 1
-        tree = ast.parse(path.read_text(encoding="utf-8"))
+        nodes = list(ast.walk(ast.parse(path.read_text(encoding="utf-8"))))
         place = path.relative_to(folder).as_posix()
-        for module in _imported(tree):
+        for module in _imported(nodes):
             statements += 1
             for stranger in strangers:
                 if module == stranger or module.startswith(f"{stranger}."):
@@ -67,7 +67,7 @@ def imports_of(name: str, strangers: tuple[str, ...] = ()) -> Part:
             top = module.partition(".")[0]
             if top not in sys.stdlib_module_names and not (module + ".").startswith(f"{name}."):
                 modules.add(module)
-        hidden += [f"{name}/{place} calls {called}" for called in _called_by_name(tree)]
+        hidden += [f"{name}/{place} calls {called}" for called in _called_by_name(nodes)]
     return Part(name, files, statements, tuple(sorted(modules)), tuple(forbidden), tuple(hidden))
 
 
@@ -79,9 +79,9 @@ def _folder(name: str) -> Path:
     return Path(places[0])
 
 
-def _imported(tree: ast.AST) -> Iterator[str]:
+def _imported(nodes: list[ast.AST]) -> Iterator[str]:
     """The module of each import, ``from scipy import special`` being one of scipy.special."""
-    for node in ast.walk(tree):
+    for node in nodes:
         if isinstance(node, ast.Import):
             yield from (alias.name for alias in node.names)
         elif isinstance(node, ast.ImportFrom) and node.level == 0 and node.module:
@@ -90,9 +90,9 @@ def _imported(tree: ast.AST) -> Iterator[str]:
                 yield whole if node.module == "scipy" else node.module
 
 
-def _called_by_name(tree: ast.AST) -> Iterator[str]:
-    for node in ast.walk(tree):
+def _called_by_name(nodes: list[ast.AST]) -> Iterator[str]:
+    for node in nodes:
         if isinstance(node, ast.Call):
-            called = ast.unparse(node.func)
-            if called.rpartition(".")[2] in ("import_module", "__import__", "exec", "eval"):
-                yield called
+            name = getattr(node.func, "id", None) or getattr(node.func, "attr", None)
+            if name in ("import_module", "__import__", "exec", "eval"):
+                yield ast.unparse(node.func)

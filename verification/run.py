@@ -110,10 +110,10 @@ def solve_case(case: Case, available: Mapping[str, Solver] | None = None) -> Sol
     return Solved(solutions, outcomes, laws(case.problem, available) if case.laws else ())
 
 
-def judge_case(case: Case, solved: Solved) -> CaseResult:
+def judge_case(case: Case, solved: Solved, *, invariants: bool = True) -> CaseResult:
     """Sample what was solved at the same points of every line, then decide each claim of ``case``.
 
-    Each solution is held against its own invariants besides.
+    invariants : whether each solution is held against its own laws besides.
     """
     started = time.perf_counter()
     solutions, outcomes = dict(solved.solutions), dict(solved.outcomes)
@@ -136,8 +136,11 @@ def judge_case(case: Case, solved: Solved) -> CaseResult:
     edge = next(
         (solutions[s].contact_radius for s in reversed(list(solutions)) if not outcomes[s].failure), 0.0
     )
-    invariants = [row for s, solution in solutions.items() for row in check(solution, s, case.problem)]
-    invariants += solved.laws
+    held: list[Invariant] = []
+    if invariants:
+        for source, solution in solutions.items():
+            held += check(solution, source, case.problem)
+        held += solved.laws
     verdicts = tuple((claim, decide(claim, profiles, outcomes, case.problem, edge)) for claim in case.claims)
     return CaseResult(
         name=case.name,
@@ -149,7 +152,7 @@ def judge_case(case: Case, solved: Solved) -> CaseResult:
         verdicts=verdicts,
         seconds=sum(s.seconds for s in solved.outcomes.values()) + time.perf_counter() - started,
         text=case.text,
-        invariants=tuple(invariants),
+        invariants=tuple(held),
     )
 
 
