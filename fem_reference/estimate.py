@@ -3,7 +3,8 @@
 The difference of two solutions crosses zero at points where neither is exact, so it is not taken point by
 point: the bound at a vertex is the largest difference found in the triangles around it, and between vertices
 it is linear. The companion is coarser, hence the difference is about the error of the companion, which
-exceeds the error sought; a factor of safety covers the places where it does not.
+exceeds the error sought; a factor of safety covers the places where it does not, times a ``caution`` that
+the solver raises on meshes too coarse for errors to have begun to fall as they should.
 """
 
 from collections.abc import Callable
@@ -27,16 +28,21 @@ _INWARDS = 1e-7
 
 
 def line_bound(
-    difference: Callable[[np.ndarray], np.ndarray], vertices: np.ndarray, samples: int = 7, reach: int = 1
+    difference: Callable[[np.ndarray], np.ndarray],
+    vertices: np.ndarray,
+    samples: int = 7,
+    reach: int = 1,
+    caution: float = 1.0,
 ) -> tuple[np.ndarray, np.ndarray]:
-    """SAFETY times the largest |difference| within ``reach`` cells of each of the increasing ``vertices``.
+    """SAFETY, times caution, times the largest |difference| within ``reach`` cells of each vertex.
 
-    difference : (n,) positions -> (..., n).  Returns (vertices, bound of shape (..., vertices)).
+    difference : (n,) positions -> (..., n).  vertices : increasing.
+    Returns (vertices, bound of shape (..., vertices)).
     """
     t = np.linspace(0, 1, samples)
     points = vertices[:-1, None] + np.diff(vertices)[:, None] * t
     values = np.abs(difference(points.ravel()))
-    worst = SAFETY * values.reshape(*values.shape[:-1], *points.shape).max(axis=-1)
+    worst = SAFETY * caution * values.reshape(*values.shape[:-1], *points.shape).max(axis=-1)
     padded = np.concatenate([worst[..., :1]] * reach + [worst] + [worst[..., -1:]] * reach, axis=-1)
     bound = np.max([padded[..., k : k + vertices.size] for k in range(2 * reach)], axis=0)
     return vertices, bound
@@ -57,11 +63,15 @@ class PressureBound:
     vertices: np.ndarray
     radius_error: float
     everywhere: float = 0.0
+    caution: float = 1.0
 
     @cached_property
     def _around(self) -> tuple[np.ndarray, np.ndarray]:
+        def difference(r: np.ndarray) -> np.ndarray:
+            return self.pressure(r) - self.companion(r)
+
         # the first cells are few and smooth: two solutions may agree by chance in one of them
-        return line_bound(lambda r: self.pressure(r) - self.companion(r), self.vertices, reach=2)
+        return line_bound(difference, self.vertices, reach=2, caution=self.caution)
 
     def __call__(self, r: np.ndarray) -> np.ndarray:
         vertices, bound = self._around
@@ -81,6 +91,7 @@ class StressBound:
     field: HarmonicField
     companion: HarmonicField
     everywhere: float = 0.0
+    caution: float = 1.0
 
     def _difference(self, r: np.ndarray, z: np.ndarray, layer: np.ndarray) -> np.ndarray:
         return np.abs(self.field(r, z, layer)[1] - self.companion(r, z, layer)[1])
@@ -98,7 +109,8 @@ class StressBound:
         layer = np.broadcast_to(d.mesh.layer, r.shape)
         reach = self.companion.discretisation.mesh.points.max()
         inside = np.minimum(r, reach).ravel(), np.minimum(z, reach).ravel()
-        worst = SAFETY * self._difference(*inside, layer.ravel()).reshape(6, *r.shape).max(axis=1)
+        difference = self._difference(*inside, layer.ravel()).reshape(6, *r.shape)
+        worst = SAFETY * self.caution * difference.max(axis=1)
         vertices = t + d.mesh.layer * d.mesh.points.shape[1]
         bound = np.zeros((6, int(vertices.max()) + 1))
         for corner in vertices:
@@ -121,7 +133,7 @@ class StressBound:
                 return self._difference(r, np.full(r.shape, depth), np.full(r.shape, layer))
 
             vertices = np.sort(mesh.points[0, mesh.points[1] == depth])
-            planes[depth, layer] = line_bound(difference, vertices[vertices < reach])
+            planes[depth, layer] = line_bound(difference, vertices[vertices < reach], caution=self.caution)
         return planes
 
     def __call__(self, r: np.ndarray, z: np.ndarray, layer: np.ndarray) -> np.ndarray:

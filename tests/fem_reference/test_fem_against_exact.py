@@ -92,6 +92,16 @@ def test_fast_level_is_good_to_a_thousandth(ratio, thickness, nu):
         assert error.max() < 1e-3 * p_h, name
 
 
+def test_fast_level_knows_how_far_it_is_off():
+    s, exact, a_h = both(100 / 210, 1.5, (0.25, 0.3), quality="fast", reference_estimate=True)
+    a, h = exact.contact_radius, 1.5 * a_h
+    x, z = np.linspace(-2, 2, 81) * a, np.linspace(0, 1.5, 61) * a
+    p_h = 3 * W / (2 * np.pi * a_h**2)
+    for place in ((0 * z, 0.0, z, None), (x, 0.0, h, 0), (x, 0.0, h, 1)):
+        error = np.abs(s.stress(*place) - exact.stress(*place))
+        assert np.all(error <= s.stress_uncertainty(*place) + exact.stress_uncertainty(*place) + 1e-12 * p_h)
+
+
 def test_nearly_incompressible_layers_do_not_lock():
     s, exact, _ = both(0.25, 0.3, (0.49, 0.49), quality="fast", estimate_uncertainty=False)
     # as good as at nu = 0.3 on the same mesh
