@@ -27,9 +27,9 @@ Law = Callable[[], Invariant]
 
 # Each as coarse as leaves the uncertainty below the caps; stresses and thin coatings want more of a mesh.
 Numerics = Mapping[str, Mapping[str, Any]]
-COARSE: Numerics = {"semianalytic": {"patches": 129}, "fem_reference": {"quality": "fast"}}
-STRESSES: Numerics = {"semianalytic": {"patches": 129}, "fem_reference": {"size": 0.28}}
-THIN: Numerics = {"semianalytic": {"patches": 129}, "fem_reference": {"size": 0.25}}
+COARSE: Numerics = {"semianalytic": {"patches": 129}, "fem_reference": {"size": 0.25}}
+STRESSES: Numerics = {"semianalytic": {"patches": 129}, "fem_reference": {"size": 0.22}}
+THIN: Numerics = {"semianalytic": {"patches": 129}, "fem_reference": {"size": 0.22}}
 
 # Of a_h: far enough in the limit for what is left of the coating to be bounded below the caps.
 THICK_AT, THIN_AT = 20.0, 0.03
