@@ -28,21 +28,16 @@ _INWARDS = 1e-7
 
 
 def line_bound(
-    difference: Callable[[np.ndarray], np.ndarray],
-    vertices: np.ndarray,
-    samples: int = 7,
-    reach: int = 1,
-    caution: float = 1.0,
+    difference: Callable[[np.ndarray], np.ndarray], vertices: np.ndarray, samples: int = 7, reach: int = 1
 ) -> tuple[np.ndarray, np.ndarray]:
-    """SAFETY, times caution, times the largest |difference| within ``reach`` cells of each vertex.
+    """SAFETY times the largest |difference| within ``reach`` cells of each of the increasing ``vertices``.
 
-    difference : (n,) positions -> (..., n).  vertices : increasing.
-    Returns (vertices, bound of shape (..., vertices)).
+    difference : (n,) positions -> (..., n).  Returns (vertices, bound of shape (..., vertices)).
     """
     t = np.linspace(0, 1, samples)
     points = vertices[:-1, None] + np.diff(vertices)[:, None] * t
     values = np.abs(difference(points.ravel()))
-    worst = SAFETY * caution * values.reshape(*values.shape[:-1], *points.shape).max(axis=-1)
+    worst = SAFETY * values.reshape(*values.shape[:-1], *points.shape).max(axis=-1)
     padded = np.concatenate([worst[..., :1]] * reach + [worst] + [worst[..., -1:]] * reach, axis=-1)
     bound = np.max([padded[..., k : k + vertices.size] for k in range(2 * reach)], axis=0)
     return vertices, bound
@@ -56,6 +51,7 @@ class PressureBound:
     ring
         between the two contact edges and the infinite slope of p beside it
     everywhere : added inside the contact, for errors that are no matter of element size
+    caution : times the bound, above 1 on meshes too coarse
     """
 
     pressure: Callable[[np.ndarray], np.ndarray]
@@ -67,18 +63,16 @@ class PressureBound:
 
     @cached_property
     def _around(self) -> tuple[np.ndarray, np.ndarray]:
-        def difference(r: np.ndarray) -> np.ndarray:
-            return self.pressure(r) - self.companion(r)
-
         # the first cells are few and smooth: two solutions may agree by chance in one of them
-        return line_bound(difference, self.vertices, reach=2, caution=self.caution)
+        return line_bound(lambda r: self.pressure(r) - self.companion(r), self.vertices, reach=2)
 
     def __call__(self, r: np.ndarray) -> np.ndarray:
         vertices, bound = self._around
         p = self.pressure(r)
         shifted = [self.pressure(np.abs(r + shift)) - p for shift in (-self.radius_error, self.radius_error)]
         inside = np.where(r <= vertices[-1], self.everywhere, 0.0)
-        return np.interp(r, vertices, bound, right=0.0) + np.max(np.abs(shifted), axis=0) + inside
+        between = self.caution * np.interp(r, vertices, bound, right=0.0)
+        return between + np.max(np.abs(shifted), axis=0) + inside
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,6 +80,7 @@ class StressBound:
     """Bound of |stress - companion's stress| as a function of position, for one harmonic.
 
     everywhere : added at every point, for errors that are no matter of element size
+    caution : times the bound, above 1 on meshes too coarse
     """
 
     field: HarmonicField
@@ -109,8 +104,7 @@ class StressBound:
         layer = np.broadcast_to(d.mesh.layer, r.shape)
         reach = self.companion.discretisation.mesh.points.max()
         inside = np.minimum(r, reach).ravel(), np.minimum(z, reach).ravel()
-        difference = self._difference(*inside, layer.ravel()).reshape(6, *r.shape)
-        worst = SAFETY * self.caution * difference.max(axis=1)
+        worst = SAFETY * self._difference(*inside, layer.ravel()).reshape(6, *r.shape).max(axis=1)
         vertices = t + d.mesh.layer * d.mesh.points.shape[1]
         bound = np.zeros((6, int(vertices.max()) + 1))
         for corner in vertices:
@@ -133,7 +127,7 @@ class StressBound:
                 return self._difference(r, np.full(r.shape, depth), np.full(r.shape, layer))
 
             vertices = np.sort(mesh.points[0, mesh.points[1] == depth])
-            planes[depth, layer] = line_bound(difference, vertices[vertices < reach], caution=self.caution)
+            planes[depth, layer] = line_bound(difference, vertices[vertices < reach])
         return planes
 
     def __call__(self, r: np.ndarray, z: np.ndarray, layer: np.ndarray) -> np.ndarray:
@@ -146,4 +140,4 @@ class StressBound:
         for (depth, side), (vertices, values) in self._planes.items():
             here = (z == depth) & (layer == side)
             bound[:, here] = [np.interp(r[here], vertices, row) for row in values]
-        return bound + self.everywhere
+        return self.caution * bound + self.everywhere
