@@ -20,6 +20,7 @@ plain      M/k times the transform of the patch, aliases summed, FFT on an enlar
 """
 
 from collections.abc import Callable, Sequence
+from functools import partial
 
 import ducc0
 import numpy as np
@@ -27,14 +28,43 @@ from numpy.typing import NDArray
 from scipy.fft import fht, fhtoffset
 from scipy.interpolate import CubicSpline
 
-__all__ = ["CONVERSIONS", "plain_coefficients", "remainder_coefficients", "split_image"]
+from semianalytic import frf, halfspace
+from semianalytic.inputs import Body, Numerics
+
+__all__ = ["plain_coefficients", "remainder_coefficients", "split_image", "surface_coefficients"]
 
 Array = NDArray[np.floating]
 Response = Callable[[Array], Array]
 
-CONVERSIONS = ("split", "split-fft", "plain")
 DIGITS = 1e-11  # what the quadrature over a patch aims at, relative to the value at its centre
 SMOOTH = 12.0  # patches from the nearest singularity, beyond which finite differences average a patch
+
+
+def surface_coefficients(n: int, d: float, body: Body, numerics: Numerics) -> Array:
+    """Influence coefficients K [m/Pa] of the surface displacement by the conversion of ``numerics``.
+
+    n : offsets 0..n-1.  d : side of the patches [m].  Returns shape (n, n), even in both indices.
+    """
+    scale = 1 / (np.pi * body.moduli[0])
+    excess = partial(frf.compliance_excess, coatings=body.coatings, substrate=body.substrate)
+    if numerics.conversion == "plain":
+        C = plain_coefficients(n, d, excess, enlarge=numerics.enlarge, threads=numerics.threads)
+        return scale * C
+    C = halfspace.surface_deflection(n, n, d, d)
+    if body.coatings:
+        image = split_image(excess, body.thickness)
+        C += image[0] * halfspace.surface_deflection(n, n, d, d, image[1])
+        C += remainder_coefficients(
+            n,
+            d,
+            excess,
+            body.thickness,
+            image,
+            points=numerics.hankel_points,
+            enlarge=numerics.enlarge if numerics.conversion == "split-fft" else 0,
+            threads=numerics.threads,
+        )
+    return scale * C
 
 
 def split_image(excess: Response, thickness: Sequence[float]) -> tuple[float, float]:

@@ -16,7 +16,7 @@ LOAD = 4 / 3
 
 def press(gap=R2 / 2, tolerance=1e-10, max_iterations=400, **control):
     control = control or {"total": LOAD / D**2}
-    return contact.press(
+    return contact.solve(
         A,
         gap,
         start=np.where(R2 < 1.3, 1.0, 0.0),
@@ -64,7 +64,7 @@ def test_load_and_approach_control_find_the_same_contact():
 
 def test_start_does_not_matter():
     found = press()
-    again = contact.press(
+    again = contact.solve(
         A,
         R2 / 2,
         total=LOAD / D**2,
@@ -79,7 +79,7 @@ def test_start_does_not_matter():
 
 def test_a_useless_preconditioner_costs_iterations_but_no_accuracy():
     found = press()
-    plain = contact.press(
+    plain = contact.solve(
         A,
         R2 / 2,
         total=LOAD / D**2,
@@ -95,7 +95,7 @@ def test_a_useless_preconditioner_costs_iterations_but_no_accuracy():
 
 def test_a_solution_is_accepted_without_an_iteration():
     found = press()
-    again = contact.press(
+    again = contact.solve(
         A,
         R2 / 2,
         total=LOAD / D**2,
@@ -115,7 +115,7 @@ def test_iterations_hardly_grow_with_the_grid():
         x = (np.arange(n) - n // 2) * d
         r2 = x[:, None] ** 2 + x[None, :] ** 2
         kernel = halfspace.surface_deflection(n, n, d, d) / np.pi
-        found = contact.press(
+        found = contact.solve(
             convolution.even_convolution(kernel),
             r2 / 2,
             total=LOAD / d**2,

@@ -5,9 +5,8 @@ import pytest
 from scipy.special import gamma, hyp2f1
 
 from semianalytic import halfspace
-from semianalytic.frf import displacement_frf, stress_frf
 from semianalytic.hankel import LONG, USUAL, hankel
-from semianalytic.pointload import displacement_below, stress_below
+from semianalytic.point_force import displacement_below, stress_below
 
 
 def laplace(m, n, r, L):
@@ -43,8 +42,8 @@ def test_point_load_tables_are_boussinesq_and_cerruti(nu):
     x, y = rng.normal(size=(2, 40)) * 4
     x[:3], y[:3] = (0, 1e-3, 100), (0, 2e-3, 40)
     body = {"coatings": (), "substrate": (E, nu), "friction": f}
-    stresses = stress_below(z, 0, 1.0, stress_frf=stress_frf, **body)
-    displacements = displacement_below(z, 0, 1.0, displacement_frf=displacement_frf, **body)
+    stresses = stress_below(z, 0, 1.0, **body)
+    displacements = displacement_below(z, 0, 1.0, **body)
     for depth, stress, displacement in zip(z, stresses, displacements, strict=True):
         exact = np.zeros((6, x.size))
         moved = np.zeros((3, x.size))

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from scipy.special import jv
 
-from semianalytic import halfspace, node
+from semianalytic import halfspace, interpolation_kernel
 from semianalytic.frf import displacement_frf, stress_frf
-from semianalytic.pointload import displacement_below, stress_below
+from semianalytic.point_force import displacement_below, stress_below
 
 SUBSTRATE = (210e9, 0.3)
 FRICTION = 0.5
@@ -97,9 +97,7 @@ def check_tables(ratio, h, layers, nu, asked=ASKED):
     places += [(3.0, int(np.searchsorted(interfaces, 3.0)), False), (interfaces[-1] + 1, layers, False)]
     for z, layer, excess in places:
         scale = 2.0 ** np.floor(np.log2(2 * h - z if excess else z))
-        (table,) = stress_below(
-            np.array([z]), layer, scale, stress_frf=stress_frf, friction=FRICTION, excess=excess, **body
-        )
+        (table,) = stress_below(np.array([z]), layer, scale, friction=FRICTION, excess=excess, **body)
         r = RADII * scale
         expected = by_quadrature(r, 0.8, 0.6, z, layer, scale, excess, body)
         # shallow in the first layer the closed form, of order 1, is added to the table
@@ -107,9 +105,7 @@ def check_tables(ratio, h, layers, nu, asked=ASKED):
         assert np.abs(table(0.8 * r, 0.6 * r) - expected).max() <= asked * largest, (z, layer)
     z, layer, _ = places[3]
     scale = 2.0 ** np.floor(np.log2(z))
-    (table,) = displacement_below(
-        np.array([z]), layer, scale, displacement_frf=displacement_frf, friction=FRICTION, **body
-    )
+    (table,) = displacement_below(np.array([z]), layer, scale, friction=FRICTION, **body)
     expected = displacement_by_quadrature(RADII * scale, 0.8, 0.6, z, layer, scale, body)
     error = table(0.8 * RADII * scale, 0.6 * RADII * scale) - expected
     assert np.abs(error).max() <= asked * np.abs(expected).max(), "displacement"
@@ -157,15 +153,15 @@ def test_influence_of_a_node_near_the_surface_is_the_quadrature(z):
         stresses = [field(X, Y, z, 1.0, 1.0, 0.3) for field in FIELDS]
         return np.concatenate([stress[SIX] for stress in stresses])
 
-    block = node._block_of_rectangle(rectangle, 1.0, 1.0, z)
+    block = interpolation_kernel._block_of_rectangle(rectangle, 1.0, 1.0, z)
     largest = np.abs(block).max()
     for m, n in ((0, 0), (1, 1)):
         expected = np.zeros(12)
         for c in (-1, 0, 1):
             for e in (-1, 0, 1):
-                w_c = -sum(node._keys_slope(c + t + 0.5 + k) for k in range(3)) * weight
-                w_e = -sum(node._keys_slope(e + t + 0.5 + k) for k in range(3)) * weight
+                w_c = -sum(interpolation_kernel._keys_slope(c + t + 0.5 + k) for k in range(3)) * weight
+                w_e = -sum(interpolation_kernel._keys_slope(e + t + 0.5 + k) for k in range(3)) * weight
                 X, Y = np.broadcast_arrays((m - c - t)[:, None], n - e - t)
                 expected += np.einsum("axy,x,y->a", rectangle(X, Y), w_c, w_e, optimize=True)
-        found = block[:, m + node.BLOCK, n]
+        found = block[:, m + interpolation_kernel.BLOCK, n]
         assert np.abs(found - expected).max() <= ASKED * largest

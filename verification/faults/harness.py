@@ -66,7 +66,7 @@ FAULTS = (
         "the semi-analytical method states ten times the uncertainty of p0, a and approach",
         ("baseline",),
         Edit(
-            "semianalytic.solution:Uncertainty._of",
+            "semianalytic.uncertainty:Uncertainty._of",
             "total = {name: sum(",
             "total = {name: 10 * sum(",
         ),

@@ -1,4 +1,4 @@
-"""Stress below a point force on the layered half-space.
+"""Influence coefficients of a point force on the layered half-space (Boussinesq, Cerruti).
 
 A normal force 1 and a tangential force f in +x at the origin give, with the response functions of unit
 traction in the frame of the wave vector (zz, Lz, LL, TT of `frf.stress_frf`; A = s_Tz, B = s_LT of the
@@ -17,7 +17,7 @@ T0 = 1, t = 1. Displacements follow the same pattern, with U = u_L and V = u_T:
     u_z = H0[u_z] - f cos t H1[u_z]     u_x = -cos t H1[U] - f (H0[U + V] - cos 2t H2[U - V]) / 2
                                         u_y = -sin t H1[U] + f sin 2t H2[U - V] / 2
 
-Every radial function is tabulated once per depth over asinh(r / L), fair to r = 0 as to large r.
+Every radial function is tabulated once per depth over asinh(r / L), which resolves r = 0 as well as large r.
 """
 
 from collections.abc import Callable, Sequence
@@ -28,10 +28,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
+from .frf import Load, displacement_frf, stress_frf
 from .hankel import NEAR, LogGrid, hankel, log_grid, near_axis
 
 __all__ = [
-    "PointLoad",
+    "PointForce",
     "displacement_below",
     "displacement_from_lines",
     "stress_below",
@@ -39,14 +40,13 @@ __all__ = [
 ]
 
 Array = NDArray[Any]
-Response = Callable[..., Array]
 Field = Callable[[Array, Array], Array]
 
 _INNER = np.linspace(0, NEAR, 60, endpoint=False)  # r / L of the table, as dense as beyond
 
 
 @dataclass(frozen=True)
-class PointLoad:
+class PointForce:
     """Field at one depth of a normal force 1 with a tangential force ``friction``, as radial tables."""
 
     radial: CubicSpline
@@ -70,12 +70,11 @@ def stress_below(
     layer: int,
     scale: float,
     *,
-    stress_frf: Response,
     coatings: Sequence[tuple[float, float, float]],
     substrate: tuple[float, float],
     friction: float,
     excess: bool = False,
-) -> list[PointLoad]:
+) -> list[PointForce]:
     """Stress below a point force at each depth ``z`` of one layer.
 
     z : (nz,) [m].  scale : L [m] such that the response dies at least like exp(-k L).
@@ -84,9 +83,8 @@ def stress_below(
     grid = _grid(coatings, substrate, scale)
     k = grid.wavenumbers / scale
 
-    def response(load: str) -> Array:
-        kwargs = {"coatings": coatings, "substrate": substrate, "load": load, "excess": excess}
-        return stress_frf(k, z, layer, **kwargs)
+    def response(load: Load) -> Array:
+        return stress_frf(k, z, layer, coatings=coatings, substrate=substrate, load=load, excess=excess)
 
     zz, Lz, LL, TT = response("normal")
     columns = [
@@ -106,19 +104,17 @@ def displacement_below(
     layer: int,
     scale: float,
     *,
-    displacement_frf: Response,
     coatings: Sequence[tuple[float, float, float]],
     substrate: tuple[float, float],
     friction: float,
     excess: bool = False,
-) -> list[PointLoad]:
+) -> list[PointForce]:
     """Displacement below a point force at each depth ``z`` of one layer; arguments as in `stress_below`."""
     grid = _grid(coatings, substrate, scale)
     k = grid.wavenumbers / scale
 
-    def response(load: str) -> Array:
-        kwargs = {"coatings": coatings, "substrate": substrate, "load": load, "excess": excess}
-        return displacement_frf(k, z, layer, **kwargs)
+    def response(load: Load) -> Array:
+        return displacement_frf(k, z, layer, coatings=coatings, substrate=substrate, load=load, excess=excess)
 
     uz, U = response("normal")
     columns = [_radial(F, m, scale, grid, over_k=True) for F, m in ((uz, 0), (U, 1))]
@@ -129,7 +125,7 @@ def displacement_below(
     return _tabulate(columns, grid, scale, friction, _combine_displacement)
 
 
-def stress_from_lines(field: Field, reach: Array, friction: float) -> PointLoad:
+def stress_from_lines(field: Field, reach: Array, friction: float) -> PointForce:
     """Radial tables of a point force away from it, from its stress on the two axes.
 
     field(x, y) : xx, yy, zz, xy, xz, yz below a normal and below a tangential unit force, (2, 6, n).
@@ -146,7 +142,7 @@ def stress_from_lines(field: Field, reach: Array, friction: float) -> PointLoad:
     return _outer(columns, reach, friction, _combine_stress)
 
 
-def displacement_from_lines(field: Field, reach: Array, friction: float) -> PointLoad:
+def displacement_from_lines(field: Field, reach: Array, friction: float) -> PointForce:
     """As `stress_from_lines`, from the displacements (2, 3, n)."""
     zero = np.zeros_like(reach)
     (ux, _, uz), (ux_t, _, uz_t) = field(reach, zero)
@@ -157,9 +153,9 @@ def displacement_from_lines(field: Field, reach: Array, friction: float) -> Poin
     return _outer(columns, reach, friction, _combine_displacement)
 
 
-def _outer(columns: list[Array], reach: Array, friction: float, combine: Callable) -> PointLoad:
+def _outer(columns: list[Array], reach: Array, friction: float, combine: Callable) -> PointForce:
     table = np.stack(columns, axis=-1)
-    return PointLoad(CubicSpline(np.arcsinh(reach / reach[0]), table), float(reach[0]), friction, combine)
+    return PointForce(CubicSpline(np.arcsinh(reach / reach[0]), table), float(reach[0]), friction, combine)
 
 
 def _grid(
@@ -172,11 +168,11 @@ def _grid(
 
 def _tabulate(
     columns: list[Array], grid: LogGrid, scale: float, friction: float, combine: Callable
-) -> list[PointLoad]:
+) -> list[PointForce]:
     """Splines through the radial functions (nz, nr, columns)."""
     tables = np.stack(columns, axis=-1)
     nodes = np.arcsinh(np.concatenate([_INNER, grid.radii[grid.radii >= NEAR]]))
-    return [PointLoad(CubicSpline(nodes, table), scale, friction, combine) for table in tables]
+    return [PointForce(CubicSpline(nodes, table), scale, friction, combine) for table in tables]
 
 
 def _radial(F: Array, order: int, scale: float, grid: LogGrid, *, over_k: bool = False) -> Array:

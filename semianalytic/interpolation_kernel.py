@@ -5,9 +5,9 @@ Between the nodes of a uniform grid the pressure is the cubic convolution of Key
     p(x) = sum_i p_i B(x/d - i) in each direction,   B cubic on |t| < 1 and on 1 < |t| < 2,
 
 which reproduces parabolas. B(t) = int_{t-1/2}^{t+1/2} w, w quadratic between the knots -3/2, -1/2, 1/2, 3/2:
-the field under a node is the closed form of a constant rectangle averaged with w(t_x) w(t_y). Fields known
-as smooth point-load tables are integrated with B itself. B has the moments 1, 0, 0, 0, -3/10; with the fourth
-taken off as a fourth difference, a node is a point force more than ``NEAR`` patches away.
+the field under a node is the closed form of a constant rectangle averaged with w(t_x) w(t_y). Fields given
+by smooth point-force tables are integrated with B itself. B has the moments 1, 0, 0, 0, -3/10; with the
+fourth subtracted as a fourth difference, a node is a point force more than ``NEAR`` patches away.
 
 Source: R. G. Keys, IEEE Trans. Acoust. Speech Signal Process. 29 (1981) 1153-1160, eq. 15.
 """
@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .pointload import PointLoad
+from .point_force import PointForce
 
 __all__ = ["near_influence"]
 
@@ -32,8 +32,8 @@ POINTLIKE = 16.0  # patches; on a field of this scale the sixth moment of B is w
 
 def near_influence(
     rectangle: Field | None,
-    outside: PointLoad | None,
-    table: PointLoad | None,
+    outside: PointForce | None,
+    table: PointForce | None,
     dx: float,
     dy: float,
     z: float,
@@ -46,8 +46,8 @@ def near_influence(
     z : depth [m].
     """
     blocks: list[Array] = []
-    far: list[PointLoad] = []  # point forces beyond NEAR
-    smooth: list[PointLoad] = []  # point forces at any offset
+    far: list[PointForce] = []  # point forces beyond NEAR
+    smooth: list[PointForce] = []  # point forces at any offset
     if rectangle is not None and outside is not None:
         blocks.append(_block_of_rectangle(rectangle, dx, dy, z))
         far.append(outside)
@@ -108,8 +108,8 @@ def _block_of_rectangle(rectangle: Field, dx: float, dy: float, z: float) -> Arr
     return block
 
 
-def _block_of_table(table: PointLoad, dx: float, dy: float) -> Array:
-    """A smooth point-load table integrated with B B at the same offsets."""
+def _block_of_table(table: PointForce, dx: float, dy: float) -> Array:
+    """A smooth point-force table integrated with B B at the same offsets."""
     m, n = np.meshgrid(np.arange(-BLOCK, BLOCK + 1), np.arange(BLOCK + 1), indexing="ij")
     ratio = max(dx, dy) / table.scale
     # the table is singular at the distance L from panels of half-width d/2: the rule gains L/d digits a point
