@@ -16,8 +16,19 @@ Array = NDArray[np.floating]
 FINE = 8  # patches; stresses nearer to the surface are computed from patches of half the side
 
 
-def stress(level: Level, body: Body, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None) -> Array:
-    """Stress tensor [Pa] at points [m], broadcast; shape (3, 3) + points."""
+def stress(
+    level: Level,
+    body: Body,
+    x: ArrayLike,
+    y: ArrayLike,
+    z: ArrayLike,
+    layer: int | None,
+    kept: subsurface.Tables | None = None,
+) -> Array:
+    """Stress tensor [Pa] at points [m], broadcast; shape (3, 3) + points.
+
+    kept : tables shared by the levels of one contact, as in `subsurface.stress`.
+    """
     grid = level.grid
     x, y, z, where = np.broadcast_arrays(x, y, z, body.layer_of(z, layer))
     result = np.empty((3, 3, *z.shape))
@@ -27,7 +38,7 @@ def stress(level: Level, body: Body, x: ArrayLike, y: ArrayLike, z: ArrayLike, l
             patches, p = level.finer if fine else (grid, level.mean)
             points = x[part], y[part], z[part], where[part]
             result[..., part] = subsurface.stress(
-                *points, grid_x=patches.x, grid_y=patches.x, pressure=p, **_solid(body)
+                *points, grid_x=patches.x, grid_y=patches.x, pressure=p, kept=kept, **_solid(body)
             )
     return result
 

@@ -16,6 +16,7 @@ from scipy.ndimage import maximum_filter
 from semianalytic import fields
 from semianalytic.inputs import Body
 from semianalytic.level import Level
+from semianalytic.subsurface import Tables
 from semianalytic.uncertainty import Uncertainty, safety
 
 __all__ = ["Diagnostics", "Solution"]
@@ -202,11 +203,15 @@ class Solution:
         Raises ValueError where no uncertainty was estimated.
         """
         coarser, floor = self._companion()
-        sigma = self.stress(x, y, z, layer)
-        second = coarser.stress(x, y, z, layer)
+        kept: Tables = {}  # a point force does not depend on the grid
+
+        def stress(level: Level) -> Array:
+            return fields.stress(level, self._body, x, y, z, layer, kept)
+
+        sigma, second = stress(self._level), stress(coarser._level)
         change = safety(len(self.nodes) / len(coarser.nodes)) * np.abs(sigma - second).max(axis=(0, 1))
         if coarser.coarser is not None:
-            third = coarser.coarser.stress(x, y, z, layer)
+            third = stress(coarser.coarser._level)
             change = np.maximum(change, np.abs(second - third).max(axis=(0, 1)) / 3)
         shallow = np.asarray(z) < 4 * self.diagnostics.patch_size
         total = change + (floor + np.where(shallow, *EVALUATION)) * self.peak_pressure

@@ -19,7 +19,7 @@ below patch centres only, and interpolated between them by cubics.
 """
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any
 
@@ -51,10 +51,12 @@ __all__ = ["FieldPlane", "displacement", "displacement_plane", "stress", "stress
 Array = NDArray[Any]
 Field = Callable[..., Array]
 Coatings = Sequence[tuple[float, float, float]]
+Tables = dict[tuple[bytes, int, float, bool], list[PointForce]]
 
 SHALLOW = 3.0  # patches; above this depth a node is not yet a point force: aliases exp(-6 pi) = 7e-9
 COARSE = 12.0  # depth over lattice spacing; interpolation through ten sites then errs by 1e-8 of p_h
 CHEBYSHEV = 10  # shallow depths; more than these are interpolated, to 1e-6 three patches from the edge
+KEPT = 64  # depths of which point-force tables are kept, half a megabyte each
 SIX = ((0, 1, 2, 0, 0, 1), (0, 1, 2, 1, 2, 2))  # xx, yy, zz, xy, xz, yz
 
 
@@ -70,14 +72,18 @@ def stress(
     friction: float,
     coatings: Coatings,
     substrate: tuple[float, float],
+    kept: Tables | None = None,
 ) -> Array:
     """Stress at points (x, y, z) of the layers named, under pressure p with traction q = f p in +x.
 
     x, y, z : points [m], broadcast.  layer : which side is meant at an interface, integers, broadcast.
     pressure : mean of p over each patch [Pa], (nx, ny), centred at grid_x, grid_y [m], which are uniform.
+    kept : point-force tables of other calls for the same solid; those of this call are added.
     Returns sigma[i, j, ...] [Pa], shape (3, 3) + points.
     """
     response = _stress_response(friction, coatings, substrate)
+    if kept is not None:
+        response = replace(response, below=partial(_kept, kept, response.below))
     return tensor(_evaluate(x, y, z, layer, nodal_forces(grid_x, grid_y, pressure), response))
 
 
@@ -316,6 +322,16 @@ def _tables(
         for z, table in zip(run, tables, strict=True):
             yield float(z), shallow, table
         start = stop
+
+
+def _kept(kept: Tables, below: Callable[..., list[PointForce]], z: Array, layer, scale, *, excess):
+    """Point-force tables from ``kept``, or by ``below`` and then kept, for at most ``KEPT`` depths in all."""
+    key = (z.tobytes(), layer, scale, excess)
+    if key not in kept:
+        if z.size + sum(len(tables) for tables in kept.values()) > KEPT:
+            kept.clear()
+        kept[key] = below(z, layer, scale, excess=excess)
+    return kept[key]
 
 
 def _near(
