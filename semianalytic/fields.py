@@ -1,7 +1,5 @@
 """Stress and displacement fields of a contact from the pressure on its grid."""
 
-from typing import Any
-
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
@@ -38,7 +36,7 @@ def stress(
             patches, p = level.finer if fine else (grid, level.mean)
             points = x[part], y[part], z[part], where[part]
             result[..., part] = subsurface.stress(
-                *points, grid_x=patches.x, grid_y=patches.x, pressure=p, kept=kept, **_solid(body)
+                *points, grid_x=patches.x, grid_y=patches.x, pressure=p, kept=kept, body=body
             )
     return result
 
@@ -46,14 +44,14 @@ def stress(
 def stress_plane(level: Level, body: Body, z: float, layer: int | None) -> Array:
     """Stress tensor [Pa] below every patch centre at depth z [m]; shape (3, 3, n, n)."""
     x = level.grid.x
-    plane = subsurface.stress_plane(z, int(body.layer_of(z, layer)), grid_x=x, grid_y=x, **_solid(body))
+    plane = subsurface.stress_plane(z, int(body.layer_of(z, layer)), grid_x=x, grid_y=x, body=body)
     return subsurface.tensor(plane(level.mean))
 
 
 def displacement_plane(level: Level, body: Body, z: float) -> Array:
     """Displacement [m] below every patch centre at depth z [m]; shape (3, n, n)."""
     x = level.grid.x
-    plane = subsurface.displacement_plane(z, int(body.layer_of(z, None)), grid_x=x, grid_y=x, **_solid(body))
+    plane = subsurface.displacement_plane(z, int(body.layer_of(z, None)), grid_x=x, grid_y=x, body=body)
     return plane(level.mean)
 
 
@@ -61,9 +59,5 @@ def displacement(level: Level, body: Body, x: ArrayLike, y: ArrayLike, z: ArrayL
     """Displacement [m] at points [m], broadcast; shape (3,) + points."""
     patches = level.grid.x
     return subsurface.displacement(
-        x, y, z, body.layer_of(z, None), grid_x=patches, grid_y=patches, pressure=level.mean, **_solid(body)
+        x, y, z, body.layer_of(z, None), grid_x=patches, grid_y=patches, pressure=level.mean, body=body
     )
-
-
-def _solid(body: Body) -> dict[str, Any]:
-    return {"friction": body.friction, "coatings": body.coatings, "substrate": body.substrate}

@@ -46,7 +46,7 @@ def surface_coefficients(n: int, d: float, body: Body, numerics: Numerics) -> Ar
     n : offsets 0..n-1.  d : side of the patches [m].  Returns shape (n, n), even in both indices.
     """
     scale = 1 / (np.pi * body.moduli[0])
-    excess = partial(frf.compliance_excess, coatings=body.coatings, substrate=body.substrate)
+    excess = partial(frf.compliance_excess, **body.layers)
     if numerics.conversion == "plain":
         C = plain_coefficients(n, d, excess, enlarge=numerics.enlarge, threads=numerics.threads)
         return scale * C

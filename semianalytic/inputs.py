@@ -1,6 +1,7 @@
 """Checked input of the semi-analytical method."""
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -79,6 +80,11 @@ class Body:
     def materials(self) -> tuple[tuple[float, ...], ...]:
         """The coatings from the surface down, then the substrate."""
         return (*self.coatings, self.substrate)
+
+    @property
+    def layers(self) -> dict[str, Any]:
+        """Coatings and substrate as keywords of `frf`."""
+        return {"coatings": self.coatings, "substrate": self.substrate}
 
     @property
     def moduli(self) -> list[float]:

@@ -20,7 +20,7 @@ T0 = 1, t = 1. Displacements follow the same pattern, with U = u_L and V = u_T:
 Every radial function is tabulated once per depth over asinh(r / L), which resolves r = 0 as well as large r.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -30,6 +30,7 @@ from scipy.interpolate import CubicSpline
 
 from .frf import Load, displacement_frf, stress_frf
 from .hankel import NEAR, LogGrid, hankel, log_grid, near_axis
+from .inputs import Body
 
 __all__ = [
     "PointForce",
@@ -65,64 +66,48 @@ class PointForce:
         return self.combine(np.moveaxis(table, -1, 0), x / r, y / r, self.friction)
 
 
-def stress_below(
-    z: Array,
-    layer: int,
-    scale: float,
-    *,
-    coatings: Sequence[tuple[float, float, float]],
-    substrate: tuple[float, float],
-    friction: float,
-    excess: bool = False,
-) -> list[PointForce]:
+def stress_below(z: Array, layer: int, scale: float, body: Body, *, excess: bool = False) -> list[PointForce]:
     """Stress below a point force at each depth ``z`` of one layer.
 
     z : (nz,) [m].  scale : L [m] such that the response dies at least like exp(-k L).
-    excess : leave out the homogeneous half-space of the first coating.
+    body : the layers, and the friction.  excess : leave out the homogeneous half-space of the first coating.
     """
-    grid = _grid(coatings, substrate, scale)
+    grid = _grid(body, scale)
     k = grid.wavenumbers / scale
 
     def response(load: Load) -> Array:
-        return stress_frf(k, z, layer, coatings=coatings, substrate=substrate, load=load, excess=excess)
+        return stress_frf(k, z, layer, **body.layers, load=load, excess=excess)
 
     zz, Lz, LL, TT = response("normal")
     columns = [
         _radial(F, m, scale, grid) for F, m in ((zz, 0), ((LL + TT) / 2, 0), (Lz, 1), ((LL - TT) / 2, 2))
     ]
-    if friction:
+    if body.friction:
         zz, Lz, LL, TT = response("in-plane")
         A, B = response("anti-plane")
         D = (LL - TT) / 2
         pairs = ((zz, 1), ((LL + TT) / 2, 1), (Lz + A, 0), (Lz - A, 2), (D - B, 1), (D + B, 3))
         columns += [_radial(F, m, scale, grid) for F, m in pairs]
-    return _tabulate(columns, grid, scale, friction, _combine_stress)
+    return _tabulate(columns, grid, scale, body.friction, _combine_stress)
 
 
 def displacement_below(
-    z: Array,
-    layer: int,
-    scale: float,
-    *,
-    coatings: Sequence[tuple[float, float, float]],
-    substrate: tuple[float, float],
-    friction: float,
-    excess: bool = False,
+    z: Array, layer: int, scale: float, body: Body, *, excess: bool = False
 ) -> list[PointForce]:
     """Displacement below a point force at each depth ``z`` of one layer; arguments as in `stress_below`."""
-    grid = _grid(coatings, substrate, scale)
+    grid = _grid(body, scale)
     k = grid.wavenumbers / scale
 
     def response(load: Load) -> Array:
-        return displacement_frf(k, z, layer, coatings=coatings, substrate=substrate, load=load, excess=excess)
+        return displacement_frf(k, z, layer, **body.layers, load=load, excess=excess)
 
     uz, U = response("normal")
     columns = [_radial(F, m, scale, grid, over_k=True) for F, m in ((uz, 0), (U, 1))]
-    if friction:
+    if body.friction:
         uz, U = response("in-plane")
         (V,) = response("anti-plane")
         columns += [_radial(F, m, scale, grid, over_k=True) for F, m in ((uz, 1), (U + V, 0), (U - V, 2))]
-    return _tabulate(columns, grid, scale, friction, _combine_displacement)
+    return _tabulate(columns, grid, scale, body.friction, _combine_displacement)
 
 
 def stress_from_lines(field: Field, reach: Array, friction: float) -> PointForce:
@@ -158,12 +143,10 @@ def _outer(columns: list[Array], reach: Array, friction: float, combine: Callabl
     return PointForce(CubicSpline(np.arcsinh(reach / reach[0]), table), float(reach[0]), friction, combine)
 
 
-def _grid(
-    coatings: Sequence[tuple[float, float, float]], substrate: tuple[float, float], scale: float
-) -> LogGrid:
+def _grid(body: Body, scale: float) -> LogGrid:
     """Grid of the transforms: a film E, h stretches on a base E' over a length h E/E', bends over less."""
-    moduli = [material[0] for material in (*coatings, substrate)]
-    return log_grid(sum(h for _, _, h in coatings) * max(moduli) / min(moduli) / scale)
+    moduli = [material[0] for material in body.materials]
+    return log_grid(sum(body.thickness) * max(moduli) / min(moduli) / scale)
 
 
 def _tabulate(

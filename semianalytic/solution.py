@@ -5,6 +5,7 @@ estimated from the difference of the two at the points required, widened so that
 two does not count as accuracy.
 """
 
+import time
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
@@ -74,10 +75,27 @@ class Solution:
 
     @classmethod
     def of_levels(
-        cls, levels: Sequence[Level], body: Body, uncertainty: Uncertainty | None, seconds: float
+        cls, levels: Sequence[Level], body: Body, uncertainty: Uncertainty | None, began: float
     ) -> "Solution":
-        """Solution of the last level, those before as its coarser companions."""
-        *before, level = levels
+        """Solution of the last level; with an uncertainty, the two before are its coarser companions.
+
+        began : ``time.perf_counter()`` at the start of the solve.
+        """
+        solution: Solution | None = None
+        *before, last = levels[-3:] if uncertainty else levels[-1:]
+        for level in before:
+            solution = cls._of_level(level, body, solution, None, 0.0)
+        return cls._of_level(last, body, solution, uncertainty, time.perf_counter() - began)
+
+    @classmethod
+    def _of_level(
+        cls,
+        level: Level,
+        body: Body,
+        coarser: "Solution | None",
+        uncertainty: Uncertainty | None,
+        seconds: float,
+    ) -> "Solution":
         grid, found = level.grid, level.found
         beyond = max(int(np.ceil((2.05 * level.radius - grid.x[-1]) / grid.d)), 0)
         return cls(
@@ -99,7 +117,7 @@ class Solution:
             uncertainty=uncertainty,
             nodes=grid.x,
             patch_pressure=found.pressure,
-            coarser=cls.of_levels(before, body, None, 0.0) if before else None,
+            coarser=coarser,
             _level=level,
             _body=body,
         )

@@ -83,7 +83,7 @@ def solve(
     half_width = fill * first.radius
     if coatings and edge_rounds:
         reach = 1.01 * 2**0.5 * WIDER * half_width
-        excess = partial(frf.compliance_excess, coatings=body.coatings, substrate=body.substrate)
+        excess = partial(frf.compliance_excess, **body.layers)
         geometry = (excess, body.thickness[0], first.radius, reach)
         table = coarse = abel.layer_table(*geometry)
         if estimate_uncertainty and table.k[-1] * first.radius > abel.CYCLES / 2:
@@ -92,7 +92,9 @@ def solve(
     if patches is None and coatings:
         resolved = odd(PER_COATING * 2 * half_width / body.thickness[0])
         numerics = replace(numerics, patches=min(max(USUAL, resolved), MOST))
-    return _pressed(half_width, first, sphere, body, numerics, estimate_uncertainty, began)
+    levels = nested.levels(half_width, first, sphere, body, numerics, estimate_uncertainty)
+    estimate = uncertainty.of_contact(levels, sphere, body, numerics) if estimate_uncertainty else None
+    return Solution.of_levels(levels, body, estimate, began)
 
 
 def indent(
@@ -158,13 +160,14 @@ def indent(
         return z - z.min()
 
     indenter = Indenter(gap, load, approach, round=False)
-    solution = _pressed(half_width, None, indenter, body, numerics, estimate_uncertainty, began)
-    if heights is None and touches_rim(solution.patch_pressure):
+    levels = nested.levels(half_width, None, indenter, body, numerics, estimate_uncertainty)
+    if heights is None and touches_rim(levels[-1].found.pressure):
         raise NotConverged(
             f"the contact reaches the rim of the square, half_width = {half_width:g} m; widen it, or give "
             "the profile as an array if it has no surface beyond"
         )
-    return solution
+    estimate = uncertainty.of_contact(levels, indenter, body, numerics) if estimate_uncertainty else None
+    return Solution.of_levels(levels, body, estimate, began)
 
 
 def solve_prescribed(
@@ -204,7 +207,7 @@ def solve_prescribed(
         return _loaded(Grid(odd(wider * n), 2.04 * load_radius / n), shape, body, numerics)
 
     if not estimate_uncertainty:
-        return Solution.of_levels([level(patches, 1, numerics)], body, None, time.perf_counter() - began)
+        return Solution.of_levels([level(patches, 1, numerics)], body, None, began)
     sizes = [odd(patches / 4), odd(patches / 2), patches]
     levels = [level(n, 1, numerics) for n in sizes]
     variations = {
@@ -213,7 +216,7 @@ def solve_prescribed(
     }
     fine, half, quarter = (one.scalars for one in levels[::-1])
     estimate = Uncertainty.from_levels(fine, half, quarter, variations, base=half, ratio=2.0)
-    return Solution.of_levels(levels, body, estimate, time.perf_counter() - began)
+    return Solution.of_levels(levels, body, estimate, began)
 
 
 def _uniform(value: float, r: Array) -> Array:
@@ -229,23 +232,6 @@ def _loaded(grid: Grid, shape: edge_profile.Prescribed, body: Body, numerics: Nu
     u = deflection(sharpen(level.mean))
     centre = float(u[grid.n // 2, grid.n // 2])
     return replace(level, found=replace(found, gap=u - centre, approach=centre))
-
-
-def _pressed(
-    half_width: float,
-    first: Level | None,
-    indenter: Indenter,
-    body: Body,
-    numerics: Numerics,
-    estimate_uncertainty: bool,
-    began: float,
-) -> Solution:
-    """Nested iteration on a square and, if required, the refinement study."""
-    levels = nested.levels(half_width, first, indenter, body, numerics, estimate_uncertainty)
-    if not estimate_uncertainty:
-        return Solution.of_levels(levels[-1:], body, None, time.perf_counter() - began)
-    estimate = uncertainty.of_contact(levels, indenter, body, numerics)
-    return Solution.of_levels(levels[-3:], body, estimate, time.perf_counter() - began)
 
 
 def _body(coatings: Coatings, substrate: Substrate, friction: float) -> Body:

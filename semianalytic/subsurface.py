@@ -28,6 +28,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.fft import irfft2, next_fast_len, rfft2
 
 from . import halfspace
+from .inputs import Body
 from .interpolation_kernel import near_influence
 from .nodal_convolution import (
     Influence,
@@ -50,7 +51,6 @@ __all__ = ["FieldPlane", "displacement", "displacement_plane", "stress", "stress
 
 Array = NDArray[Any]
 Field = Callable[..., Array]
-Coatings = Sequence[tuple[float, float, float]]
 Tables = dict[tuple[bytes, int, float, bool], list[PointForce]]
 
 SHALLOW = 3.0  # patches; above this depth a node is not yet a point force: aliases exp(-6 pi) = 7e-9
@@ -69,9 +69,7 @@ def stress(
     grid_x: Array,
     grid_y: Array,
     pressure: Array,
-    friction: float,
-    coatings: Coatings,
-    substrate: tuple[float, float],
+    body: Body,
     kept: Tables | None = None,
 ) -> Array:
     """Stress at points (x, y, z) of the layers named, under pressure p with traction q = f p in +x.
@@ -81,7 +79,7 @@ def stress(
     kept : point-force tables of other calls for the same solid; those of this call are added.
     Returns sigma[i, j, ...] [Pa], shape (3, 3) + points.
     """
-    response = _stress_response(friction, coatings, substrate)
+    response = _stress_response(body)
     if kept is not None:
         response = replace(response, below=partial(_kept, kept, response.below))
     return tensor(_evaluate(x, y, z, layer, nodal_forces(grid_x, grid_y, pressure), response))
@@ -102,15 +100,13 @@ def displacement(
     grid_x: Array,
     grid_y: Array,
     pressure: Array,
-    friction: float,
-    coatings: Coatings,
-    substrate: tuple[float, float],
+    body: Body,
 ) -> Array:
     """Displacement at points (x, y, z); arguments as in `stress`.
 
     Returns u[i, ...] [m], shape (3,) + points; u_z into the solid.
     """
-    response = _displacement_response(friction, coatings, substrate)
+    response = _displacement_response(body)
     return _evaluate(x, y, z, layer, nodal_forces(grid_x, grid_y, pressure), response)
 
 
@@ -149,12 +145,10 @@ def stress_plane(
     *,
     grid_x: Array,
     grid_y: Array,
-    friction: float,
-    coatings: Coatings,
-    substrate: tuple[float, float],
+    body: Body,
 ) -> FieldPlane:
     """Set up the convolution for all patch centres at depth z [m]; arguments as in `stress`."""
-    return _plane(z, layer, grid_x, grid_y, _stress_response(friction, coatings, substrate))
+    return _plane(z, layer, grid_x, grid_y, _stress_response(body))
 
 
 def displacement_plane(
@@ -163,12 +157,10 @@ def displacement_plane(
     *,
     grid_x: Array,
     grid_y: Array,
-    friction: float,
-    coatings: Coatings,
-    substrate: tuple[float, float],
+    body: Body,
 ) -> FieldPlane:
     """Set up the convolution for all patch centres at depth z [m]; arguments as in `displacement`."""
-    return _plane(z, layer, grid_x, grid_y, _displacement_response(friction, coatings, substrate))
+    return _plane(z, layer, grid_x, grid_y, _displacement_response(body))
 
 
 def _plane(z: float, layer: int, grid_x: Array, grid_y: Array, response: "_Response") -> FieldPlane:
@@ -191,36 +183,33 @@ class _Response:
     from_lines : point-force table of the same away from the force.  odd_in_y : components odd in y.
     """
 
-    coatings: Coatings
+    body: Body
     below: Callable[..., list[PointForce]]
     closed: Field
     from_lines: Callable[..., PointForce]
-    friction: float
     components: int
     odd_in_y: tuple[int, ...]
 
 
-def _stress_response(friction, coatings, substrate) -> _Response:
+def _stress_response(body: Body) -> _Response:
     rectangle = halfspace.normal_stress, halfspace.tangential_stress
     return _Response(
-        coatings,
-        partial(stress_below, coatings=coatings, substrate=substrate, friction=friction),
-        partial(_closed, rectangle, friction, (*coatings, substrate)[0][1:2], SIX),
+        body,
+        partial(stress_below, body=body),
+        partial(_closed, rectangle, body.friction, body.materials[0][1:2], SIX),
         stress_from_lines,
-        friction,
         components=6,
         odd_in_y=(3, 5),
     )
 
 
-def _displacement_response(friction, coatings, substrate) -> _Response:
+def _displacement_response(body: Body) -> _Response:
     rectangle = halfspace.normal_displacement, halfspace.tangential_displacement
     return _Response(
-        coatings,
-        partial(displacement_below, coatings=coatings, substrate=substrate, friction=friction),
-        partial(_closed, rectangle, friction, (*coatings, substrate)[0][:2], (...,)),
+        body,
+        partial(displacement_below, body=body),
+        partial(_closed, rectangle, body.friction, body.materials[0][:2], (...,)),
         displacement_from_lines,
-        friction,
         components=3,
         odd_in_y=(1,),
     )
@@ -300,7 +289,7 @@ def _tables(
 
     Shallow in the first layer, the tables hold the difference to the homogeneous solid: None if uncoated.
     """
-    coatings = response.coatings
+    coatings = response.body.coatings
     keys = []
     for z in depths:
         shallow = bool(z < SHALLOW * d)
@@ -342,14 +331,14 @@ def _near(
 
     def rectangle(X: Array, Y: Array) -> Array:
         normal, tangential = response.closed(X, Y, z, dx, dy)
-        return normal + response.friction * tangential
+        return normal + response.body.friction * tangential
 
     if not first:
         return near_influence(None, None, table, dx, dy, z, response.odd_in_y)
     # a rectangle of d/50 is a point from some patches on
     reach = 6 * max(dx, dy) * np.exp(np.arange(0, 8.5, 0.02))
     outside = response.from_lines(
-        partial(response.closed, z=z, dx=dx / 50, dy=dy / 50), reach, response.friction
+        partial(response.closed, z=z, dx=dx / 50, dy=dy / 50), reach, response.body.friction
     )
     return near_influence(rectangle, outside, table, dx, dy, z, response.odd_in_y)
 

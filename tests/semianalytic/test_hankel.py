@@ -6,6 +6,7 @@ from scipy.special import gamma, hyp2f1
 
 from semianalytic import halfspace
 from semianalytic.hankel import LONG, USUAL, hankel
+from semianalytic.inputs import Body
 from semianalytic.point_force import displacement_below, stress_below
 
 
@@ -41,9 +42,9 @@ def test_point_load_tables_are_boussinesq_and_cerruti(nu):
     rng = np.random.default_rng(3)
     x, y = rng.normal(size=(2, 40)) * 4
     x[:3], y[:3] = (0, 1e-3, 100), (0, 2e-3, 40)
-    body = {"coatings": (), "substrate": (E, nu), "friction": f}
-    stresses = stress_below(z, 0, 1.0, **body)
-    displacements = displacement_below(z, 0, 1.0, **body)
+    body = Body((), (E, nu), f)
+    stresses = stress_below(z, 0, 1.0, body)
+    displacements = displacement_below(z, 0, 1.0, body)
     for depth, stress, displacement in zip(z, stresses, displacements, strict=True):
         exact = np.zeros((6, x.size))
         moved = np.zeros((3, x.size))

@@ -6,6 +6,7 @@ from scipy.special import jv
 
 from semianalytic import halfspace, interpolation_kernel
 from semianalytic.frf import displacement_frf, stress_frf
+from semianalytic.inputs import Body
 from semianalytic.point_force import displacement_below, stress_below
 
 SUBSTRATE = (210e9, 0.3)
@@ -97,7 +98,7 @@ def check_tables(ratio, h, layers, nu, asked=ASKED):
     places += [(3.0, int(np.searchsorted(interfaces, 3.0)), False), (interfaces[-1] + 1, layers, False)]
     for z, layer, excess in places:
         scale = 2.0 ** np.floor(np.log2(2 * h - z if excess else z))
-        (table,) = stress_below(np.array([z]), layer, scale, friction=FRICTION, excess=excess, **body)
+        (table,) = stress_below(np.array([z]), layer, scale, Body(friction=FRICTION, **body), excess=excess)
         r = RADII * scale
         expected = by_quadrature(r, 0.8, 0.6, z, layer, scale, excess, body)
         # shallow in the first layer the closed form, of order 1, is added to the table
@@ -105,7 +106,7 @@ def check_tables(ratio, h, layers, nu, asked=ASKED):
         assert np.abs(table(0.8 * r, 0.6 * r) - expected).max() <= asked * largest, (z, layer)
     z, layer, _ = places[3]
     scale = 2.0 ** np.floor(np.log2(z))
-    (table,) = displacement_below(np.array([z]), layer, scale, friction=FRICTION, **body)
+    (table,) = displacement_below(np.array([z]), layer, scale, Body(friction=FRICTION, **body))
     expected = displacement_by_quadrature(RADII * scale, 0.8, 0.6, z, layer, scale, body)
     error = table(0.8 * RADII * scale, 0.6 * RADII * scale) - expected
     assert np.abs(error).max() <= asked * np.abs(expected).max(), "displacement"

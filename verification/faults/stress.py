@@ -65,7 +65,8 @@ FAULTS = (
         "friction_backwards",
         "friction drags the solid in -x",
         ("sigma_xx", "sigma_xz"),
-        Edit("semianalytic.fields:_solid", "body.friction", "-body.friction"),
+        Edit("semianalytic.solver:_body", "float(friction)", "-float(friction)"),
+        Edit("semianalytic.solution:Solution.with_friction", "float(friction)", "-float(friction)"),
         cases=SLIDING,
     ),
     _fault(
@@ -81,8 +82,8 @@ FAULTS = (
         ("sigma_xx", "sigma_yy"),
         Edit(
             "semianalytic.subsurface:_stress_response",
-            "(*coatings, substrate)[0][1:2]",
-            "(*coatings, substrate)[-1][-1:]",
+            "body.materials[0][1:2]",
+            "body.materials[-1][-1:]",
         ),
         cases=FILMS,
     ),
