@@ -198,16 +198,16 @@ def solve(
     problem = _Problem(
         deflection, gap, total, approach, start, precondition, scale, tolerance, max_iterations, extension
     )
+    # numbered as by Polonsky and Keer; their last steps come first, for the first guess may be the solution
     state = _first_guess(problem)
-    while True:
-        _choose_preconditioner(state, problem)
-        _find_gap(state, problem)  # 1: gap, its preconditioned mean removed
-        if _is_solved(state, problem):  # 7: stopping criterion
-            return _contact(state, problem)
-        if _update_set(state, problem):  # 5, 6: tension leaves, overlap enters; balance of the load
-            continue
-        _find_direction(state)  # 2: conjugate direction
-        _advance(state, problem)  # 3, 4: step length and step
+    _find_gap(state, problem)  # 1: gap, its preconditioned mean removed
+    while not _is_solved(state, problem):  # 7: stopping criterion
+        if not _update_set(state, problem):  # 5, 6: tension leaves, overlap enters; balance of the load
+            _find_direction(state)  # 2: conjugate direction
+            _advance(state, problem)  # 3, 4: step length and step
+            _choose_preconditioner(state, problem)
+        _find_gap(state, problem)  # 1
+    return _contact(state, problem)
 
 
 def _first_guess(problem: _Problem) -> _State:

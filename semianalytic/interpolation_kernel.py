@@ -1,4 +1,4 @@
-"""Influence of one node of a smoothly interpolated pressure on points close below the surface.
+"""Influence of one node of Keys' cubic interpolation of the pressure close below the surface.
 
 Between the nodes of a uniform grid the pressure is the cubic convolution of Keys (1981),
 
@@ -25,9 +25,9 @@ __all__ = ["near_influence"]
 Array = NDArray[Any]
 Field = Callable[[Array, Array], Array]
 
-NEAR = 8  # patches; beyond, the sixth moment of B is worth 2e-6 of the pressure
+NEAR = 8  # patches; beyond, the sixth moment of B contributes 2e-6 of the pressure
 BLOCK = NEAR + 2  # offsets computed, two more for the fourth difference
-POINTLIKE = 16.0  # patches; on a field of this scale the sixth moment of B is worth 1e-6 of it
+POINTLIKE = 16.0  # patches; on a field of this scale the sixth moment of B contributes 1e-6 of it
 
 
 def near_influence(
@@ -42,7 +42,7 @@ def near_influence(
     """Influence of unit force on a node, a function of integer offsets (m, n).
 
     rectangle : field of unit force spread over a rectangle dx x dy, (x, y) -> (components, ...), or None.
-    outside : the same for a point force, used beyond NEAR.  table : what has to be added, smooth, or None.
+    outside : the same for a point force, used beyond NEAR.  table : smooth correction to add, or None.
     z : depth [m].
     """
     blocks: list[Array] = []
@@ -74,7 +74,7 @@ def near_influence(
 def _block_of_rectangle(rectangle: Field, dx: float, dy: float, z: float) -> Array:
     """The rectangle averaged with w w at |m| <= BLOCK, 0 <= n <= BLOCK; (components, 2 BLOCK + 1, BLOCK + 1).
 
-    For integer offsets the edges of the rectangle come to lie on knots of w. Next to them the Gauss nodes
+    For integer offsets the edges of the rectangle coincide with knots of w. Next to them the Gauss nodes
     crowd towards the knots, for the logarithms and steps at z = 0, and at 0 < z << d once more towards
     the layer of width z: 1e-8 of the largest influence at any depth.
     """
@@ -103,7 +103,7 @@ def _block_of_rectangle(rectangle: Field, dx: float, dy: float, z: float) -> Arr
     moments = moments.reshape(3, 3, -1, 2 * BLOCK + 3, BLOCK + 3)
     block = np.zeros((moments.shape[2], 2 * BLOCK + 1, BLOCK + 1))
     for c in (-1, 0, 1):
-        for e in (-1, 0, 1):  # offset m takes the cell m - c with the weights of c
+        for e in (-1, 0, 1):  # offset m uses the cell m - c with the weights of c
             block += moments[c + 1, e + 1, :, 1 - c : 2 * BLOCK + 2 - c, 1 - e : BLOCK + 2 - e]
     return block
 

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from semianalytic import abel, contact, convolution, edge_profile, influence
-from semianalytic.grid import Grid, Window, carry_over, refine
+from semianalytic.grid import Grid, Window, prolong, refine
 from semianalytic.inputs import Body, Numerics
 
 __all__ = ["Indenter", "Level", "LevelProblem"]
@@ -130,7 +130,7 @@ class LevelProblem:
             approach = self.indenter.approach or 0.25 * self.depth
             return self.precondition(np.maximum(self.gap.min() + approach - self.gap, 0))
         p, g, E_star = before.found.pressure, before.found.gap, self.body.moduli[0]
-        return carry_over(p, g, before.grid, self.grid, self.window, E_star)
+        return prolong(p, g, before.grid, self.grid, self.window, E_star)
 
 
 def _extension(body: Body, d: float) -> float:

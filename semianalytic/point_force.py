@@ -11,7 +11,7 @@ anti-plane part), S = (LL + TT)/2, D = (LL - TT)/2 and H_m the Hankel transform 
     (s_xx - s_yy)/2 = -cos 2t H2[D] - f (cos t H1[D - B] - cos 3t H3[D + B]) / 2
     s_xy            = -sin 2t H2[D] - f (sin t H1[D - B] - sin 3t H3[D + B]) / 2
 
-(x, y) = r (cos t, sin t); the terms without f take the response to p = 1, those with f the response to
+(x, y) = r (cos t, sin t); the terms without f use the response to p = 1, those with f the response to
 T0 = 1, t = 1. Displacements follow the same pattern, with U = u_L and V = u_T:
 
     u_z = H0[u_z] - f cos t H1[u_z]     u_x = -cos t H1[U] - f (H0[U + V] - cos 2t H2[U - V]) / 2
@@ -69,7 +69,7 @@ class PointForce:
 def stress_below(z: Array, layer: int, scale: float, body: Body, *, excess: bool = False) -> list[PointForce]:
     """Stress below a point force at each depth ``z`` of one layer.
 
-    z : (nz,) [m].  scale : L [m] such that the response dies at least like exp(-k L).
+    z : (nz,) [m].  scale : L [m] such that the response decays at least like exp(-k L).
     body : the layers, and the friction.  excess : leave out the homogeneous half-space of the first coating.
     """
     grid = _grid(body, scale)

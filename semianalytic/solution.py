@@ -82,20 +82,14 @@ class Solution:
         began : ``time.perf_counter()`` at the start of the solve.
         """
         solution: Solution | None = None
-        *before, last = levels[-3:] if uncertainty else levels[-1:]
-        for level in before:
-            solution = cls._of_level(level, body, solution, None, 0.0)
-        return cls._of_level(last, body, solution, uncertainty, time.perf_counter() - began)
+        for level in levels[-3:] if uncertainty else levels[-1:]:
+            solution = cls._of_level(level, body, solution)
+        assert solution is not None
+        diagnostics = replace(solution.diagnostics, seconds=time.perf_counter() - began)
+        return replace(solution, uncertainty=uncertainty, diagnostics=diagnostics)
 
     @classmethod
-    def _of_level(
-        cls,
-        level: Level,
-        body: Body,
-        coarser: "Solution | None",
-        uncertainty: Uncertainty | None,
-        seconds: float,
-    ) -> "Solution":
+    def _of_level(cls, level: Level, body: Body, coarser: "Solution | None") -> "Solution":
         grid, found = level.grid, level.found
         beyond = max(int(np.ceil((2.05 * level.radius - grid.x[-1]) / grid.d)), 0)
         return cls(
@@ -111,10 +105,10 @@ class Solution:
                 patches=int(np.count_nonzero(found.pressure)),
                 patches_per_side=grid.n,
                 patch_size=grid.d,
-                seconds=seconds,
+                seconds=0.0,
                 history=found.history,
             ),
-            uncertainty=uncertainty,
+            uncertainty=None,
             nodes=grid.x,
             patch_pressure=found.pressure,
             coarser=coarser,
@@ -139,7 +133,7 @@ class Solution:
         shape = self._level.shape
         if shape is None:
             square = self.patch_pressure**2
-            touched = _at(self.nodes, square, x, y, order=1) > 0  # where the cubic must not ring
+            touched = _at(self.nodes, square, x, y, order=1) > 0  # the cubic may oscillate beyond
             return np.sqrt(np.maximum(np.where(touched, _at(self.nodes, square, x, y), 0), 0))
         rest = self.patch_pressure - shape.pressure(np.hypot(self.nodes[:, None], self.nodes[None, :]))
         value = shape.pressure(np.hypot(x, y)) + _at(self.nodes, rest, x, y, order=1)

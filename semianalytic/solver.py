@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from semianalytic import abel, contact, convolution, edge_profile, frf, influence, nested, uncertainty
 from semianalytic.contact import NotConverged
-from semianalytic.grid import Grid, odd, sharpen, touches_rim
+from semianalytic.grid import Grid, deconvolve, odd, touches_rim
 from semianalytic.inputs import Body, Numerics, check_control, check_positive
 from semianalytic.level import Indenter, Level
 from semianalytic.solution import Solution
@@ -229,7 +229,7 @@ def _loaded(grid: Grid, shape: edge_profile.Prescribed, body: Body, numerics: Nu
     deflection = convolution.even_convolution(kernel, threads=numerics.threads)
     found = contact.Contact.of_load(shape.pressure(grid.radius))
     level = Level(grid, found, shape, shape.load, 1)
-    u = deflection(sharpen(level.mean))
+    u = deflection(deconvolve(level.mean))
     centre = float(u[grid.n // 2, grid.n // 2])
     return replace(level, found=replace(found, gap=u - centre, approach=centre))
 

@@ -2,7 +2,7 @@
 
 The pressure between patch centres is the cubic convolution of its values there, q = f p. At a depth z the
 field is then a discrete convolution of the nodal forces with the influence of one node, found in one of two
-ways (d the patch, L the scale on which the response of the solid dies, exp(-k L)):
+ways (d the patch, L the length over which the response of the solid decays, exp(-k L)):
 
 - z >= 3 d. A node is a point force, tabulated for the layered solid: the lattice sum of a function of scale z
   differs from an integral by its aliases, exp(-2 pi z/d). Deeper down the forces are first gathered on
@@ -11,9 +11,9 @@ ways (d the patch, L the scale on which the response of the solid dies, exp(-k L
   that material, and the rest of the response, which is smooth on the scale 2h - z >= h, from tables. In a
   deeper layer the whole response from tables of scale z >= h.
 
-Patches of constant pressure would do below, but not near the surface: the steps of p put sigma_xx of a
-sliding load off by p' d even at the patch centres. With p continuous the field is smooth enough to be found
-below patch centres only, and interpolated between them by cubics.
+Patches of constant pressure would suffice below, but not near the surface: the steps of p change sigma_xx of
+a sliding load by p' d even at the patch centres. With p continuous the field is smooth enough to be computed
+below patch centres only, with cubic interpolation between them.
 
 "Stress analysis of elastic coated solids in point contact", eqs. 1-4. Axes: z down; tension positive; SI.
 """
@@ -74,7 +74,7 @@ def stress(
 ) -> Array:
     """Stress at points (x, y, z) of the layers named, under pressure p with traction q = f p in +x.
 
-    x, y, z : points [m], broadcast.  layer : which side is meant at an interface, integers, broadcast.
+    x, y, z : points [m], broadcast.  layer : integers, which pick the side of an interface, broadcast.
     pressure : mean of p over each patch [Pa], (nx, ny), centred at grid_x, grid_y [m], which are uniform.
     kept : point-force tables of other calls for the same solid; those of this call are added.
     Returns sigma[i, j, ...] [Pa], shape (3, 3) + points.

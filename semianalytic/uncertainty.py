@@ -58,10 +58,6 @@ class Uncertainty:
             rows += [(name, varied, abs(result[name] - base[name])) for varied, result in variations.items()]
         return cls._of(rows)
 
-    def extended(self, rows: list[tuple[str, str, float]]) -> "Uncertainty":
-        """The same with more rows in the budget."""
-        return self._of([*self.budget, *rows])
-
     @classmethod
     def _of(cls, rows: list[tuple[str, str, float]]) -> "Uncertainty":
         names = ("contact_radius", "approach", "peak_pressure")
@@ -91,7 +87,7 @@ def of_contact(levels: list[Level], indenter: Indenter, body: Body, numerics: Nu
         if unresolved:
             powers = {"contact_radius": 1, "approach": 2, "peak_pressure": 2}
             rows = [(name, "coating", unresolved**power * fine[name]) for name, power in powers.items()]
-            estimate = estimate.extended(rows)
+            estimate = Uncertainty._of([*estimate.budget, *rows])
     return estimate
 
 

@@ -1,4 +1,4 @@
-"""Logarithmic Hankel transform against closed forms, point-load tables against small squares."""
+"""Logarithmic Hankel transform against closed forms, point-force tables against small squares."""
 
 import numpy as np
 import pytest
@@ -37,7 +37,7 @@ def test_transform_of_polynomials_times_exponentials_is_the_closed_form(order, o
 
 
 @pytest.mark.parametrize("nu", [0.0, 0.3, 0.5])
-def test_point_load_tables_are_boussinesq_and_cerruti(nu):
+def test_point_force_tables_are_boussinesq_and_cerruti(nu):
     f, E, z, side = 0.4, 2.0, np.array([1.0, 1.5]), 1e-2
     rng = np.random.default_rng(3)
     x, y = rng.normal(size=(2, 40)) * 4

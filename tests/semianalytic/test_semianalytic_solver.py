@@ -245,7 +245,7 @@ def test_uncertainty_brackets_the_error_and_not_by_orders():
         error = abs(getattr(s, name) - exact)
         assert error <= getattr(u, name) <= 100 * error
         assert getattr(u, name) == pytest.approx(sum(v for quantity, _, v in u.budget if quantity == name))
-    assert {knob for _, knob, _ in u.budget} == {"patch size", "conversion", "domain", "iteration"}
+    assert {parameter for _, parameter, _ in u.budget} == {"patch size", "conversion", "domain", "iteration"}
     x = s.surface_nodes
     error = np.abs(s.pressure(x) - P_H * np.sqrt(np.maximum(1 - (x / A_H) ** 2, 0)))
     assert np.all(error <= s.pressure_uncertainty(x))
@@ -262,7 +262,7 @@ def test_uncertainty_of_the_default_brackets_hertz():
     assert np.all(np.abs(zz) <= s.stress_uncertainty(0.0, 0.0, z)[2, 2])
 
 
-def test_uncertainty_not_asked_for_is_refused():
+def test_uncertainty_not_estimated_is_refused():
     s = solve(patches=65, estimate_uncertainty=False)
     assert s.uncertainty is None
     with pytest.raises(ValueError, match="estimate_uncertainty=True"):
@@ -278,8 +278,8 @@ def test_other_conversions_are_worse_and_say_so(conversion, worse_than):
     assert other.uncertainty is not None
     error = abs(other.approach - best.approach)
     assert error > worse_than * best.approach
-    rows = {knob: value for quantity, knob, value in other.uncertainty.budget if quantity == "approach"}
-    # read on half the patches, from the better conversion
+    rows = {row[1]: row[2] for row in other.uncertainty.budget if row[0] == "approach"}
+    # estimated on half the patches, from the better conversion
     assert rows["conversion"] == pytest.approx(error, rel=0.5)
 
 
@@ -441,7 +441,7 @@ def test_stopping_short_raises():
 
 
 @pytest.mark.parametrize(
-    ("changes", "sentence"),
+    ("changes", "message"),
     [
         ({"radius": -1.0}, "radius = -1"),
         ({"load": 0.0}, "load = 0"),
@@ -459,8 +459,8 @@ def test_stopping_short_raises():
         ({"fill": 1.0}, "fill = 1"),
     ],
 )
-def test_meaningless_input_is_refused_in_a_sentence(changes, sentence):
-    with pytest.raises(ValueError, match=sentence):
+def test_meaningless_input_is_refused_with_a_message(changes, message):
+    with pytest.raises(ValueError, match=message):
         solve(**changes)
 
 

@@ -1,4 +1,4 @@
-"""Influence coefficients of stress, and of displacement below the surface, held against direct quadrature."""
+"""Influence coefficients of stress, and of displacement below the surface, against direct quadrature."""
 
 import numpy as np
 import pytest
@@ -13,8 +13,8 @@ SUBSTRATE = (210e9, 0.3)
 FRICTION = 0.5
 SIX = ((0, 1, 2, 0, 0, 1), (0, 1, 2, 1, 2, 2))
 FIELDS = (halfspace.normal_stress, halfspace.tangential_stress)
-ASKED = 1e-7  # of the largest coefficient
-RADII = np.array([0, 0.004, 0.02, 0.1, 1, 7])  # over the depth, or what stands for it
+TOLERANCE = 1e-7  # of the largest coefficient
+RADII = np.array([0, 0.004, 0.02, 0.1, 1, 7])  # over the depth or the scale
 NEAR = [1 / 30, *(pytest.param(z, marks=pytest.mark.slow) for z in (0.0, 0.01, 0.026, 0.06))]
 
 
@@ -89,7 +89,7 @@ def stack(ratio, h, layers, nu):
     )
 
 
-def check_tables(ratio, h, layers, nu, asked=ASKED):
+def check_tables(ratio, h, layers, nu, tolerance=TOLERANCE):
     """Tables above and below every kind of interface; patches of side 1, shallow ones within 3 of them."""
     coatings = stack(ratio, h, layers, nu)
     body = {"coatings": coatings, "substrate": SUBSTRATE}
@@ -103,13 +103,13 @@ def check_tables(ratio, h, layers, nu, asked=ASKED):
         expected = by_quadrature(r, 0.8, 0.6, z, layer, scale, excess, body)
         # shallow in the first layer the closed form, of order 1, is added to the table
         largest = max(np.abs(expected).max(), float(excess))
-        assert np.abs(table(0.8 * r, 0.6 * r) - expected).max() <= asked * largest, (z, layer)
+        assert np.abs(table(0.8 * r, 0.6 * r) - expected).max() <= tolerance * largest, (z, layer)
     z, layer, _ = places[3]
     scale = 2.0 ** np.floor(np.log2(z))
     (table,) = displacement_below(np.array([z]), layer, scale, Body(friction=FRICTION, **body))
     expected = displacement_by_quadrature(RADII * scale, 0.8, 0.6, z, layer, scale, body)
     error = table(0.8 * RADII * scale, 0.6 * RADII * scale) - expected
-    assert np.abs(error).max() <= asked * np.abs(expected).max(), "displacement"
+    assert np.abs(error).max() <= tolerance * np.abs(expected).max(), "displacement"
 
 
 @pytest.mark.parametrize(
@@ -165,4 +165,4 @@ def test_influence_of_a_node_near_the_surface_is_the_quadrature(z):
                 X, Y = np.broadcast_arrays((m - c - t)[:, None], n - e - t)
                 expected += np.einsum("axy,x,y->a", rectangle(X, Y), w_c, w_e, optimize=True)
         found = block[:, m + interpolation_kernel.BLOCK, n]
-        assert np.abs(found - expected).max() <= ASKED * largest
+        assert np.abs(found - expected).max() <= TOLERANCE * largest

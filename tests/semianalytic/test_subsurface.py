@@ -221,7 +221,7 @@ def test_coated_stress_is_its_hankel_integral(coatings, substrate):
         s = sigma(x, 0.0, z, layer, f=0.3, coatings=coatings, substrate=substrate)
         mine = s[0, 0], s[1, 1], s[2, 2], s[0, 2]
         scale = max(1.0, np.abs(exact).max())
-        # 2e-4 p_h is what is asked of 257 patches; here 129, and stiff films carry many p_h
+        # 2e-4 p_h is required of 257 patches; here 129, and stiff films carry many p_h
         assert np.abs(np.array(mine) - np.array(exact)).max() < 2e-4 * scale, (z, layer)
 
 
