@@ -1,10 +1,10 @@
-"""Displacement of the solid under prescribed surface tractions, of harmonic 0 or 1.
+"""Displacement of the solid under prescribed surface tractions of harmonic 0 or 1.
 
 A pressure p(r) loads harmonic 0. A traction q(r) in +x loads harmonic 1,
 
     q_r = q cos(theta),   q_theta = -q sin(theta),   virtual work  int q (U - V) r dr = int q (S - 2 V) r dr,
 
-which is all that sliding friction q = f p needs: no third dimension.
+so sliding friction q = f p needs no third dimension.
 """
 
 from collections.abc import Callable
@@ -13,7 +13,7 @@ import numpy as np
 
 from .axisymmetric import Discretisation, constrained_solve
 
-__all__ = ["loaded", "resultant"]
+__all__ = ["resultant", "solve_traction"]
 
 Traction = Callable[[np.ndarray], np.ndarray]
 
@@ -24,7 +24,7 @@ def resultant(discretisation: Discretisation, traction: Traction) -> float:
     return float(2 * np.pi * d.surface_load(_inside(d), traction).sum())
 
 
-def loaded(
+def solve_traction(
     discretisation: Discretisation,
     *,
     harmonic: int,

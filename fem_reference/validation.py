@@ -1,4 +1,4 @@
-"""Checks of a stated problem, each failure one sentence."""
+"""Checks of the input; each failure raises ValueError with a message of one line."""
 
 import math
 from collections.abc import Callable, Sequence
@@ -9,6 +9,7 @@ import numpy as np
 __all__ = [
     "GivenPressure",
     "check_choice",
+    "check_friction",
     "check_materials",
     "check_positive",
     "check_proportions",
@@ -34,16 +35,20 @@ def check_choice(name: str, value: object, choices: Sequence[object]) -> None:
         raise ValueError(f"{name} = {value!r}; choose one of {', '.join(map(repr, choices))}")
 
 
+def check_friction(friction: float) -> None:
+    """Raise ValueError when ``friction`` is not a finite number."""
+    if not _is_number(friction) or not math.isfinite(friction):
+        raise ValueError(f"friction = {friction!r}; it has to be a finite number")
+
+
 def check_materials(
     coatings: Sequence[tuple[float, float, float]], substrate: tuple[float, float], friction: float
 ) -> None:
     """Raise ValueError for moduli, Poisson ratios, thicknesses or friction that make no elastic solid.
 
-    nu = 0.5 is refused: a displacement method cannot carry the undetermined pressure of an incompressible
-    solid.
+    nu = 0.5 is refused: displacements leave the pressure of an incompressible solid undetermined.
     """
-    if not _is_number(friction) or not math.isfinite(friction):
-        raise ValueError(f"friction = {friction!r}; it has to be a finite number")
+    check_friction(friction)
     if not isinstance(coatings, Sequence) or isinstance(coatings, str):
         raise ValueError(f"coatings = {coatings!r}; give a tuple of (E, nu, thickness), () for none")
     if len(coatings) > MAX_COATINGS:
@@ -73,13 +78,13 @@ def check_proportions(thicknesses: Sequence[float], unit: str) -> None:
     for k, h in enumerate(thicknesses, start=1):
         if h < MIN_THICKNESS:
             raise ValueError(
-                f"thickness of coating {k} is {h:.3g} {unit}, which no stress can feel; leave the "
+                f"thickness of coating {k} is {h:.3g} {unit}, too thin to change any stress; leave the "
                 "coating out, "
                 f"or keep it above {MIN_THICKNESS:g} {unit}"
             )
         if h > MAX_THICKNESS:
             raise ValueError(
-                f"thickness of coating {k} is {h:.3g} {unit}; take its material for the substrate instead, "
+                f"thickness of coating {k} is {h:.3g} {unit}; use its material for the substrate instead, "
                 f"or keep it below {MAX_THICKNESS:g} {unit}"
             )
 

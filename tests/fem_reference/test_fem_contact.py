@@ -8,7 +8,7 @@ import pytest
 
 from fem_reference import solve
 from fem_reference.axisymmetric import Discretisation
-from fem_reference.contact import touch
+from fem_reference.contact import solve_at_radius
 from fem_reference.far_field import boussinesq
 from fem_reference.mesh import Grading, meridian_mesh
 
@@ -187,7 +187,7 @@ def test_pressure_error_falls_at_the_expected_order(order):
         edge = 1e-4 * (size / 0.8) ** (order + 1)
         grading = Grading(size=size, edge_rate=size, edge_size=edge, axis_size=size, far_size=size)
         mesh = meridian_mesh(contact_radius=1.0, thicknesses=(), far=1000.0, grading=grading)
-        found = touch(
+        found = solve_at_radius(
             Discretisation(mesh, order),
             materials=((1.0, NU),),
             far_displacement=lambda r, z: boussinesq(r, z, 1.0, NU),

@@ -1,0 +1,74 @@
+"""Elastic state of the layered solid on one mesh."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from .axisymmetric import Discretisation
+from .loading import solve_traction
+from .location import LocatedPoints
+from .mesh import MeridianMesh
+from .recovery import HarmonicField
+from .scaling import LayeredSolid
+
+__all__ = ["ElasticState"]
+
+
+@dataclass(frozen=True, eq=False)
+class ElasticState:
+    """Fields of a ``solid`` under normal pressure and, with friction, a tangential traction; scaled units."""
+
+    solid: LayeredSolid
+    normal: HarmonicField
+    tangential: HarmonicField | None
+
+    @classmethod
+    def frictionless(
+        cls,
+        solid: LayeredSolid,
+        discretisation: Discretisation,
+        fields: np.ndarray,
+        pressure: Callable[[np.ndarray], np.ndarray],
+    ) -> "ElasticState":
+        """The state of a field vector (see ``axisymmetric``) of harmonic 0 under ``pressure`` (r)."""
+        normal = HarmonicField(discretisation, fields, solid.materials, 0, pressure, -1.0)
+        return cls(solid, normal, None)
+
+    def with_friction(self, friction: float) -> "ElasticState":
+        """The state with the tangential traction ``friction`` times the pressure; the pressure stays."""
+        if friction == 0:
+            return replace(self, tangential=None)
+        d, pressure = self.discretisation, self.pressure
+        fields = solve_traction(
+            d,
+            harmonic=1,
+            materials=self.solid.materials,
+            traction=lambda r: friction * pressure(r),
+            far_displacement=self.solid.far_sliding,
+        )
+        sliding = HarmonicField(d, fields, self.solid.materials, 1, pressure, -friction)
+        return replace(self, tangential=sliding)
+
+    @property
+    def discretisation(self) -> Discretisation:
+        return self.normal.discretisation
+
+    @property
+    def mesh(self) -> MeridianMesh:
+        return self.discretisation.mesh
+
+    @property
+    def pressure(self) -> Callable[[np.ndarray], np.ndarray]:
+        return self.normal.pressure
+
+    @property
+    def central_displacement(self) -> float:
+        """u_z at the origin."""
+        d = self.discretisation
+        origin = np.flatnonzero((d.locations[0] == 0) & (d.locations[1] == 0))
+        return float(self.normal.fields[d.N + origin[0]])
+
+    def located(self, r: np.ndarray, z: np.ndarray, layer: np.ndarray) -> LocatedPoints:
+        """The points (r, z) of shape (n,) inside ``layer``, with their triangles."""
+        return self.discretisation.locator.points(r, z, layer)
