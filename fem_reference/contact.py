@@ -75,6 +75,7 @@ class FixedRadiusContact:
     residual   : largest out-of-balance nodal force over the load
     """
 
+    discretisation: Discretisation
     fields: np.ndarray
     pressure: Multiplier
     approach: float
@@ -125,6 +126,7 @@ def solve_at_radius(
     values = p @ combine
     values[-1] = 0.0
     return FixedRadiusContact(
+        discretisation=d,
         fields=fields,
         pressure=Multiplier(nodes, values, d.order),
         approach=float(delta),
@@ -135,9 +137,9 @@ def solve_at_radius(
     )
 
 
-def complementarity(contact: FixedRadiusContact, discretisation: Discretisation) -> tuple[float, float]:
+def complementarity(contact: FixedRadiusContact) -> tuple[float, float]:
     """(deepest penetration outside over the approach, largest tension inside over the peak), both >= 0."""
-    d = discretisation
+    d = contact.discretisation
     r = d.locations[0, d.surface]
     gap = r**2 / 2 + contact.fields[d.N + d.surface] - contact.approach
     # in this order NaN is passed on: max(0.0, nan) would be 0

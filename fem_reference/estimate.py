@@ -10,29 +10,19 @@ the error of the solution; a factor of safety covers the places where it does no
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import NamedTuple
 
 import numpy as np
 
 from .axisymmetric import Discretisation
-from .contact import FixedRadiusContact, peak
+from .contact import peak
+from .levels import ContactLevels
 from .location import LocatedPoints
 from .mesh import EDGE_SIZE
 from .recovery import HarmonicField
 from .scaling import Units
 from .state import ElasticState
 
-__all__ = [
-    "Changes",
-    "Estimates",
-    "PressureEstimate",
-    "StressEstimate",
-    "Uncertainty",
-    "changes_of_boundary",
-    "coarse_mesh_factor",
-    "estimates",
-    "stiffness_uncertainty",
-]
+__all__ = ["Estimates", "PressureEstimate", "StressEstimate", "Uncertainty", "contact_estimates", "estimates"]
 
 # Roache's factor for an error estimated from two meshes only. He divides the difference by ratio^order - 1
 # as well, which is left out: the order observed at a point is not dependable.
@@ -59,14 +49,6 @@ class Uncertainty:
     approach: float
     peak_pressure: float
     budget: tuple[tuple[str, str, float], ...]
-
-
-class Changes(NamedTuple):
-    """Absolute changes of the scalars between two solutions, in scaled units."""
-
-    contact_radius: float
-    approach: float
-    peak_pressure: float = 0.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -131,10 +113,7 @@ class _ComparisonPoints:
 
     @cached_property
     def planes(self) -> dict[tuple[float, int], tuple[np.ndarray, tuple[LocatedPoints, LocatedPoints]]]:
-        """Vertices and points between them on the surface and on both sides of each interface.
-
-        The keys are (depth, layer).
-        """
+        """Vertices and points between them on the surface and both sides of interfaces, by (depth, layer)."""
         mesh = self.final.mesh
         reach = 0.9 * self.companion.mesh.far
         sides = [(0.0, 0)]
@@ -214,95 +193,88 @@ class Estimates:
 
     def with_friction(self, state: ElasticState, friction: float) -> "Estimates":
         """The estimates of ``state``, which slides with ``friction``; the companion is solved for it."""
-        companion = self.companion.with_friction(friction)
-        sliding = None
+        companion, estimate = self.companion.with_friction(friction), None
         if state.tangential is not None and companion.tangential is not None:
-            sliding = replace(
-                self.normal, field=state.tangential, companion=companion.tangential, everywhere=0.0
-            )
-        return replace(self, companion=companion, tangential=sliding)
+            points, factor = self.normal.points, self.normal.coarse_mesh_factor
+            estimate = StressEstimate(state.tangential, companion.tangential, points, 0.0, factor)
+        return replace(self, companion=companion, tangential=estimate)
 
 
-def coarse_mesh_factor(size: float) -> float:
-    """Factor on SAFETY, above 1 where triangles are too large for errors to fall at their asymptotic rate."""
-    return max(1.0, size / _ASYMPTOTIC_SIZE)
+def contact_estimates(
+    levels: ContactLevels, state: ElasticState, units: Units, load: float, size: float
+) -> tuple[Estimates, float]:
+    """Uncertainty of the frictionless contact ``state`` of the final level, and that of its stiffness.
 
-
-def changes_of_boundary(
-    companion: FixedRadiusContact, near: FixedRadiusContact, load: float, slope: float
-) -> Changes:
-    """Changes at fixed ``load`` when the outer boundary moves from that of ``companion`` to that of ``near``.
-
-    Both have the same contact radius; the load is corrected with ``slope`` = d log W / d log a and with the
-    stiffness of the contact.
+    size : of the final mesh.  The stiffness and its uncertainty, like ``load``, are in scaled ``units``.
     """
+    final, companion, near, factor = levels.final, levels.companion, levels.near, _coarse_mesh_factor(size)
+    assert companion is not None
+    assert near is not None
+    # changes at fixed load: that of the load is converted with the contact's own stiffness
     missing = companion.load - near.load
-    return Changes(
-        abs(missing / load / slope * companion.contact_radius),
+    boundary_changes = (
+        abs(missing / load / levels.slope * companion.contact_radius),
         abs(near.approach - companion.approach + missing / companion.stiffness),
         abs(near.pressure.values[0] - companion.pressure.values[0]),
     )
-
-
-def stiffness_uncertainty(
-    final: float, companion: float, near: float, load_residual: float, factor: float
-) -> float:
-    """Uncertainty of the stiffness from those of the companion and with a nearer boundary; scaled units."""
-    return float(SAFETY * factor * abs(final - companion) + abs(near - companion) + load_residual * final)
+    load_residual = abs(final.load / load - 1)
+    stiffness = (
+        SAFETY * factor * abs(final.stiffness - companion.stiffness)
+        + abs(near.stiffness - companion.stiffness)
+        + load_residual * final.stiffness
+    )
+    coarser = ElasticState.of_contact(state.solid, companion)
+    return estimates(state, coarser, units, boundary_changes, load_residual, size), float(stiffness)
 
 
 def estimates(
     state: ElasticState,
     companion: ElasticState,
-    *,
     units: Units,
-    size_changes: Changes,
-    boundary_changes: Changes,
+    boundary_changes: tuple[float, float, float],
     load_residual: float,
-    factor: float,
+    size: float,
 ) -> Estimates:
-    """Uncertainty of a frictionless ``state``.
+    """Uncertainty of a frictionless ``state`` on a mesh of ``size``.
 
-    size_changes : from the companion to the state.  boundary_changes : with a nearer outer boundary
-    load_residual : relative error of the load.  factor : see ``coarse_mesh_factor``
+    boundary_changes : of contact radius, approach and peak pressure with a nearer outer boundary
+    load_residual : relative error of the load
     """
-    d = state.discretisation
+    d, factor = state.discretisation, _coarse_mesh_factor(size)
     at, largest = peak(state.pressure, d.contact_vertices)
     a = d.mesh.contact_radius
-    everywhere = boundary_changes.peak_pressure + load_residual / 3 * largest
+    far_radius, far_approach, far_peak = boundary_changes
+    size_radius = abs(a - companion.mesh.contact_radius)
+    size_approach = abs(state.central_displacement - companion.central_displacement)
+    everywhere = far_peak + load_residual / 3 * largest
     pressure = PressureEstimate(
-        state.pressure,
-        companion.pressure,
-        d.contact_vertices,
-        size_changes.contact_radius,
-        everywhere,
-        factor,
+        state.pressure, companion.pressure, d.contact_vertices, size_radius, everywhere, factor
     )
     size_peak = float(pressure(np.array([at]))[0]) - everywhere
-    edge = _EDGE_FRACTION * EDGE_SIZE * a * (size_changes.contact_radius > 0)
-    length, displacement, stress = units.length, units.displacement, units.pressure
+    edge = _EDGE_FRACTION * EDGE_SIZE * a * (size_radius > 0)
+    displacement = units.displacement
     rows: tuple[tuple[str, str, float], ...] = (
-        ("contact_radius", "element size", SAFETY * factor * size_changes.contact_radius * length),
-        ("contact_radius", "edge size", edge * length),
-        ("contact_radius", "outer boundary", boundary_changes.contact_radius * length),
-        ("contact_radius", "load balance", load_residual / 3 * a * length),
-        ("approach", "element size", SAFETY * factor * size_changes.approach * displacement),
-        ("approach", "outer boundary", boundary_changes.approach * displacement),
+        ("contact_radius", "element size", SAFETY * factor * size_radius * units.length),
+        ("contact_radius", "edge size", edge * units.length),
+        ("contact_radius", "outer boundary", far_radius * units.length),
+        ("contact_radius", "load balance", load_residual / 3 * a * units.length),
+        ("approach", "element size", SAFETY * factor * size_approach * displacement),
+        ("approach", "outer boundary", far_approach * displacement),
         ("approach", "load balance", load_residual * state.central_displacement * displacement),
-        ("peak_pressure", "element size", size_peak * stress),
-        ("peak_pressure", "outer boundary", boundary_changes.peak_pressure * stress),
-        ("peak_pressure", "load balance", load_residual / 3 * largest * stress),
+        ("peak_pressure", "element size", size_peak * units.pressure),
+        ("peak_pressure", "outer boundary", far_peak * units.pressure),
+        ("peak_pressure", "load balance", load_residual / 3 * largest * units.pressure),
     )
     budget = tuple((quantity, origin, float(value)) for quantity, origin, value in rows)
     total = {name: sum(value for quantity, _, value in budget if quantity == name) for name, _, _ in budget}
     points = _ComparisonPoints(d, companion.discretisation)
-    return Estimates(
-        scalars=Uncertainty(**total, budget=budget),
-        pressure=pressure,
-        normal=StressEstimate(state.normal, companion.normal, points, everywhere, factor),
-        tangential=None,
-        companion=companion,
-    )
+    normal = StressEstimate(state.normal, companion.normal, points, everywhere, factor)
+    return Estimates(Uncertainty(**total, budget=budget), pressure, normal, None, companion)
+
+
+def _coarse_mesh_factor(size: float) -> float:
+    """Factor on SAFETY, above 1 where triangles are too large for errors to fall at their asymptotic rate."""
+    return max(1.0, size / _ASYMPTOTIC_SIZE)
 
 
 def _samples(vertices: np.ndarray) -> np.ndarray:

@@ -5,7 +5,6 @@ mesh, finds it closely and is the reference of the error estimate. The final mes
 lies at the contact radius of every level.
 """
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import partial
 
@@ -14,9 +13,8 @@ from .contact import FixedRadiusContact, solve_at_radius
 from .mesh import EDGE_SIZE, Grading, MeridianMesh, meridian_mesh
 from .radius_search import find_contact_radius
 from .scaling import LayeredSolid, first_radius
-from .state import ElasticState
 
-__all__ = ["ContactLevels", "LevelContact", "NotConverged", "companion_grading", "mesh_at", "solve_levels"]
+__all__ = ["ContactLevels", "NotConverged", "companion_grading", "mesh_at", "solve_levels"]
 
 _COARSE = 0.5
 _COMPANION = 1.4  # size of the companion over that of the final mesh
@@ -35,46 +33,15 @@ class _Level:
 
 
 @dataclass(frozen=True, eq=False)
-class LevelContact:
-    """Contact found on the mesh of one level."""
-
-    solid: LayeredSolid
-    contact: FixedRadiusContact
-    discretisation: Discretisation
-
-    @classmethod
-    def solved(cls, solid: LayeredSolid, order: int, mesh: MeridianMesh) -> "LevelContact":
-        """Contact of the ``solid`` at the contact radius of ``mesh``."""
-        d = Discretisation(mesh, order)
-        contact = solve_at_radius(d, materials=solid.materials, far_displacement=solid.far_displacement)
-        return cls(solid, contact, d)
-
-    @property
-    def load(self) -> float:
-        return self.contact.load
-
-    @property
-    def state(self) -> ElasticState:
-        """Elastic state without friction."""
-        return ElasticState.frictionless(
-            self.solid, self.discretisation, self.contact.fields, self.contact.pressure
-        )
-
-    def with_nearer_boundary(self) -> FixedRadiusContact:
-        """Contact of the same radius with the outer boundary at half the distance."""
-        mesh = self.discretisation.mesh.with_nearer_boundary()
-        return self.solved(self.solid, self.discretisation.order, mesh).contact
-
-
-@dataclass(frozen=True, eq=False)
 class ContactLevels:
     """Contacts on the last levels, d log W / d log a, and (level, a, W) of every solve; scaled units.
 
-    companion : None when no uncertainty is estimated.
+    companion, near : the latter is the former with a nearer boundary; None without an error estimate
     """
 
-    final: LevelContact
-    companion: LevelContact | None
+    final: FixedRadiusContact
+    companion: FixedRadiusContact | None
+    near: FixedRadiusContact | None
     slope: float
     history: tuple[tuple[str, float, float], ...]
 
@@ -94,10 +61,14 @@ def solve_levels(
     order, size, tolerance : of the final level.  max_iterations : contact solves allowed on each level
     Raises NotConverged when the load is not reached on one of the levels.
     """
+    levels = [_Level("rough", Grading.of(0.6), 2, 0.02), _Level("coarse", Grading.of(_COARSE), order, 1e-3)]
+    if with_companion:
+        levels.append(_Level("companion", companion_grading(size), order, tolerance))
+    levels.append(_Level("final", Grading.of(size), order, tolerance))
     a, slope = first_radius(solid, load), 3.0
     history: list[tuple[str, float, float]] = []
-    found: dict[str, LevelContact] = {}
-    for level in _levels(order, size, tolerance, with_companion):
+    found: dict[str, FixedRadiusContact] = {}
+    for level in levels:
         search = find_contact_radius(
             load,
             start=a,
@@ -105,29 +76,24 @@ def solve_levels(
             tolerance=level.tolerance,
             max_iterations=max_iterations,
             mesh_at=partial(mesh_at, solid, level.grading),
-            solve_on=partial(LevelContact.solved, solid, level.order),
+            solve_on=partial(_solve_on, solid, level.order),
         )
-        history += [(level.name, radius, W) for radius, W in search.history]
+        history += [(level.name, *entry) for entry in search.history]
+        a, W = search.history[-1]
         if not search.converged:
             raise NotConverged(
                 f"the contact radius did not converge on the {level.name} mesh: after "
-                f"{len(search.history)} solves, at {search.contact_radius:.4g} a_h, the load is "
-                f"{search.contact.load / load:.6g} of the required one; raise max_iterations, or check the "
-                "thicknesses and the ratio of the moduli"
+                f"{len(search.history)} solves, at {a:.4g} a_h, the load is {W / load:.6g} of the required "
+                "one; raise max_iterations, or check the thicknesses and the ratio of the moduli"
             )
         slope = search.slope
         # the next level starts at the radius where this one has exactly the load
-        a = search.contact_radius * (load / search.contact.load) ** (1 / slope)
+        a *= (load / W) ** (1 / slope)
         found[level.name] = search.contact
-    return ContactLevels(found["final"], found.get("companion"), slope, tuple(history))
-
-
-def _levels(order: int, size: float, tolerance: float, with_companion: bool) -> Iterator[_Level]:
-    yield _Level("rough", Grading.of(0.6), 2, 0.02)
-    yield _Level("coarse", Grading.of(_COARSE), order, 1e-3)
-    if with_companion:
-        yield _Level("companion", companion_grading(size), order, tolerance)
-    yield _Level("final", Grading.of(size), order, tolerance)
+    companion, near = found.get("companion"), None
+    if companion is not None:
+        near = _solve_on(solid, order, companion.discretisation.mesh.with_nearer_boundary())
+    return ContactLevels(found["final"], companion, near, slope, tuple(history))
 
 
 def companion_grading(size: float) -> Grading:
@@ -139,4 +105,10 @@ def mesh_at(solid: LayeredSolid, grading: Grading, contact_radius: float) -> Mer
     """Mesh of the ``solid`` with a vertex at the contact radius."""
     return meridian_mesh(
         contact_radius=contact_radius, thicknesses=solid.thicknesses, far=solid.far, grading=grading
+    )
+
+
+def _solve_on(solid: LayeredSolid, order: int, mesh: MeridianMesh) -> FixedRadiusContact:
+    return solve_at_radius(
+        Discretisation(mesh, order), materials=solid.materials, far_displacement=solid.far_displacement
     )

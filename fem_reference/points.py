@@ -5,32 +5,28 @@ from typing import Any
 
 import numpy as np
 
-from .mesh import MeridianMesh
+from .location import LocatedPoints, Locator
 
 __all__ = ["SolidPoints", "solid_points"]
 
 
 @dataclass(frozen=True, eq=False)
 class SolidPoints:
-    """Points of shape (n,): r and z over the unit of length, the angle, the layer.
+    """Points of shape (n,) in the meridian plane, their angle from x, and the shape they were given in."""
 
-    shape : of the points as given.
-    """
-
-    r: np.ndarray
-    z: np.ndarray
+    located: LocatedPoints
     cos: np.ndarray
     sin: np.ndarray
-    layer: np.ndarray
     shape: tuple[int, ...]
 
 
-def solid_points(mesh: MeridianMesh, length: float, x: Any, y: Any, z: Any, layer: int | None) -> SolidPoints:
+def solid_points(locator: Locator, length: float, x: Any, y: Any, z: Any, layer: int | None) -> SolidPoints:
     """Broadcast the points (x, y, z) [m], snap them to interfaces within rounding, find their layers.
 
-    length : unit of ``mesh`` [m].  layer : of all points, or None for the upper one at an interface
+    length : unit of the mesh [m].  layer : of all points, or None for the upper one at an interface
     Raises ValueError for a point outside the solid or outside ``layer``.
     """
+    mesh = locator.mesh
     x, y, z = np.broadcast_arrays(*(np.asarray(c, dtype=float) for c in (x, y, z)))
     shape = x.shape
     x, y, z = x.ravel(), y.ravel(), z.ravel().copy()
@@ -63,4 +59,4 @@ def solid_points(mesh: MeridianMesh, length: float, x: Any, y: Any, z: Any, laye
         layers = np.full(z.shape, layer)
     unit = np.where(r > 0, r, 1.0)
     cos = np.where(r > 0, x / unit, 1.0)
-    return SolidPoints(r / length, z / length, cos, y / unit, layers, shape)
+    return SolidPoints(locator.points(r / length, z / length, layers), cos, y / unit, shape)

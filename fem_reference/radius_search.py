@@ -8,8 +8,8 @@ ones generate a new one.
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Generic, Protocol, TypeVar
 
+from .contact import FixedRadiusContact
 from .mesh import MeridianMesh
 
 __all__ = ["RadiusSearch", "find_contact_radius"]
@@ -17,20 +17,11 @@ __all__ = ["RadiusSearch", "find_contact_radius"]
 _STRETCH = 1.05  # largest factor by which radii are stretched before a new mesh is generated
 
 
-class _Loaded(Protocol):
-    @property
-    def load(self) -> float: ...
-
-
-Contact = TypeVar("Contact", bound=_Loaded)
-
-
 @dataclass(frozen=True, eq=False)
-class RadiusSearch(Generic[Contact]):
-    """The contact found, d log W / d log a, and (contact radius, load) of every solve."""
+class RadiusSearch:
+    """The contact found, d log W / d log a there, and (contact radius, load) of every solve."""
 
-    contact: Contact
-    contact_radius: float
+    contact: FixedRadiusContact
     slope: float
     history: tuple[tuple[float, float], ...]
     converged: bool
@@ -44,11 +35,11 @@ def find_contact_radius(
     tolerance: float,
     max_iterations: int,
     mesh_at: Callable[[float], MeridianMesh],
-    solve_on: Callable[[MeridianMesh], Contact],
-) -> RadiusSearch[Contact]:
+    solve_on: Callable[[MeridianMesh], FixedRadiusContact],
+) -> RadiusSearch:
     """Find a with |W(a)/load - 1| <= ``tolerance``, from ``start`` and an initial ``slope``.
 
-    mesh_at : contact radius -> mesh with a vertex there.  solve_on : mesh -> contact with its ``load``.
+    mesh_at : contact radius -> mesh with a vertex there.  solve_on : mesh -> contact with its radius.
     """
     a = start
     mesh = mesh_at(a)
@@ -67,7 +58,7 @@ def find_contact_radius(
                 if abs(step) > (1e-5 if last[0] is mesh else 0.02):
                     slope = min(max((here[1] - last[2]) / step, 0.5), 12.0)
         if abs(miss) <= tolerance or not positive or len(history) >= max_iterations:
-            return RadiusSearch(contact, a, slope, tuple(history), abs(miss) <= tolerance)
+            return RadiusSearch(contact, slope, tuple(history), abs(miss) <= tolerance)
         last = (mesh, *here)
         a *= math.exp(min(max(miss / slope, -0.7), 0.7))
         if not 1 / _STRETCH < a / mesh.contact_radius < _STRETCH:

@@ -7,7 +7,6 @@ from typing import Any
 import numpy as np
 
 from .estimate import Estimates, Uncertainty
-from .location import LocatedPoints
 from .points import SolidPoints, solid_points
 from .scaling import Units
 from .state import ElasticState
@@ -103,8 +102,7 @@ class Solution:
             None the upper one
         Raises ValueError for a point outside the solid or outside its ``layer``.
         """
-        points, located = self._located(x, y, z, layer)
-        return self._stress(points, located)
+        return self._stress(self._points(x, y, z, layer))
 
     def stress_with_uncertainty(
         self, x: Any, y: Any, z: Any, layer: int | None = None
@@ -113,22 +111,22 @@ class Solution:
 
         Raises ValueError like ``stress``, and when the solution was solved without an estimate.
         """
-        estimates = self._estimated()
-        points, located = self._located(x, y, z, layer)
-        return self._stress(points, located), self._stress_uncertainty(estimates, points, located)
+        estimates, points = self._estimated(), self._points(x, y, z, layer)
+        return self._stress(points), self._stress_uncertainty(estimates, points)
 
     def stress_uncertainty(self, x: Any, y: Any, z: Any, layer: int | None = None) -> np.ndarray:
         """The second part of ``stress_with_uncertainty`` alone."""
-        return self._stress_uncertainty(self._estimated(), *self._located(x, y, z, layer))
+        return self._stress_uncertainty(self._estimated(), self._points(x, y, z, layer))
 
     def displacement(self, x: Any, y: Any, z: Any) -> np.ndarray:
         """Displacement (u_x, u_y, u_z) [m], u_z into the solid; shape (3,) + that of the points."""
-        points, located = self._located(x, y, z, None)
-        u, _ = self.state.normal(located)
+        points = self._points(x, y, z, None)
+        cos, sin = points.cos, points.sin
+        u, _ = self.state.normal(points.located)
         if self.state.tangential is not None:
-            sliding, _ = self.state.tangential(located)
-            u = u + sliding * np.stack([points.cos, points.sin, points.cos])
-        xyz = np.stack([u[0] * points.cos - u[1] * points.sin, u[0] * points.sin + u[1] * points.cos, u[2]])
+            sliding, _ = self.state.tangential(points.located)
+            u = u + sliding * np.stack([cos, sin, cos])
+        xyz = np.stack([u[0] * cos - u[1] * sin, u[0] * sin + u[1] * cos, u[2]])
         return xyz.reshape(3, *points.shape) * self.units.displacement
 
     def _estimated(self) -> Estimates:
@@ -139,28 +137,24 @@ class Solution:
     def _radius(self, x: Any, y: Any) -> np.ndarray:
         return np.hypot(np.asarray(x, dtype=float), np.asarray(y, dtype=float)) / self.units.length
 
-    def _located(self, x: Any, y: Any, z: Any, layer: int | None) -> tuple[SolidPoints, LocatedPoints]:
-        points = solid_points(self.state.mesh, self.units.length, x, y, z, layer)
-        return points, self.state.located(points.r, points.z, points.layer)
+    def _points(self, x: Any, y: Any, z: Any, layer: int | None) -> SolidPoints:
+        return solid_points(self.state.discretisation.locator, self.units.length, x, y, z, layer)
 
-    def _stress(self, points: SolidPoints, located: LocatedPoints) -> np.ndarray:
-        _, sigma = self.state.normal(located)
+    def _stress(self, points: SolidPoints) -> np.ndarray:
+        cos, sin = points.cos, points.sin
+        _, sigma = self.state.normal(points.located)
         if self.state.tangential is not None:
-            _, sliding = self.state.tangential(located)
-            sigma = sigma + sliding * np.stack([points.cos] * 4 + [points.sin] * 2)
-        sigma = _tensor(sigma * self.units.pressure, points.cos, points.sin)
-        return sigma.reshape(3, 3, *points.shape)
+            _, sliding = self.state.tangential(points.located)
+            sigma = sigma + sliding * np.stack([cos] * 4 + [sin] * 2)
+        return _tensor(sigma * self.units.pressure, cos, sin).reshape(3, 3, *points.shape)
 
-    def _stress_uncertainty(
-        self, estimates: Estimates, points: SolidPoints, located: LocatedPoints
-    ) -> np.ndarray:
+    def _stress_uncertainty(self, estimates: Estimates, points: SolidPoints) -> np.ndarray:
         cos, sin = np.abs(points.cos), np.abs(points.sin)
-        estimate = estimates.normal(located)
+        error = estimates.normal(points.located)
         if estimates.tangential is not None:
-            estimate = estimate + estimates.tangential(located) * np.stack([cos] * 4 + [sin] * 2)
+            error = error + estimates.tangential(points.located) * np.stack([cos] * 4 + [sin] * 2)
         # absolute values of all products in the rotation add up
-        estimate = _tensor(estimate * self.units.pressure, cos, sin, sign=1.0)
-        return estimate.reshape(3, 3, *points.shape)
+        return _tensor(error * self.units.pressure, cos, sin, sign=1.0).reshape(3, 3, *points.shape)
 
 
 def _tensor(s: np.ndarray, cos: np.ndarray, sin: np.ndarray, sign: float = -1.0) -> np.ndarray:

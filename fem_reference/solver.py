@@ -11,23 +11,15 @@ from collections.abc import Callable
 import numpy as np
 
 from .axisymmetric import Discretisation
-from .contact import complementarity, peak
-from .estimate import (
-    Changes,
-    Estimates,
-    changes_of_boundary,
-    coarse_mesh_factor,
-    estimates,
-    stiffness_uncertainty,
-)
-from .levels import ContactLevels, LevelContact, NotConverged, companion_grading, mesh_at, solve_levels
-from .loading import resultant, solve_traction
+from .contact import FixedRadiusContact, complementarity, peak
+from .estimate import contact_estimates, estimates
+from .levels import NotConverged, companion_grading, mesh_at, solve_levels
+from .loading import resultant
 from .mesh import Grading, MeridianMesh
 from .scaling import LayeredSolid, Units
 from .solution import Diagnostics, Solution
 from .state import ElasticState
 from .validation import (
-    GivenPressure,
     check_choice,
     check_materials,
     check_positive,
@@ -97,17 +89,17 @@ def solve(
         tolerance=load_tolerance,
         with_companion=estimate_uncertainty,
     )
-    final, d = levels.final.contact, levels.final.discretisation
+    final, d = levels.final, levels.final.discretisation
     if final.contact_radius * a_h >= radius:
         raise ValueError(
             f"load = {load:g} N presses the contact radius to {final.contact_radius * a_h:g} m, beyond the "
             f"radius of the sphere, {radius:g} m; small strains need a far smaller load"
         )
     penetration, tension = _checked_complementarity(levels.final)
-    residual = abs(final.load / target - 1)
+    state = ElasticState.of_contact(solid, final)
     found, stiffness_error = None, None
-    if levels.companion is not None:
-        found, stiffness_error = _estimates(levels, levels.companion, unit, target, residual, size)
+    if estimate_uncertainty:
+        found, stiffness_error = contact_estimates(levels, state, unit, target, size)
     frictionless = Solution(
         contact_radius=final.contact_radius * unit.length,
         approach=final.approach * unit.displacement,
@@ -121,17 +113,17 @@ def solve(
             order=order,
             residual_gap=penetration,
             residual_pressure=tension,
-            residual_load=residual,
+            residual_load=abs(final.load / target - 1),
             residual_equilibrium=final.residual,
             seconds=time.perf_counter() - started,
             history=tuple((name, a * a_h, W * unit.load) for name, a, W in levels.history),
         ),
-        state=levels.final.state,
+        state=state,
         units=unit,
         estimates=found,
         stiffness=final.stiffness * unit.load / unit.displacement,
         stiffness_uncertainty=(
-            None if stiffness_error is None else float(stiffness_error * unit.load / unit.displacement)
+            None if stiffness_error is None else stiffness_error * unit.load / unit.displacement
         ),
     )
     return frictionless.with_friction(friction)
@@ -166,22 +158,16 @@ def solve_prescribed(
     solid = LayeredSolid.scaled(coatings, substrate, load_radius, far)
     check_proportions(solid.thicknesses, "load_radius")
 
-    state = _loaded_state(solid, p, order, mesh_at(solid, Grading.of(size), 1.0))
-    d = state.discretisation
-    found = None
+    def state_on(mesh: MeridianMesh) -> ElasticState:
+        return ElasticState.under_pressure(solid, Discretisation(mesh, order), p)
+
+    state, found = state_on(mesh_at(solid, Grading.of(size), 1.0)), None
     if estimate_uncertainty:
         mesh = mesh_at(solid, companion_grading(size), 1.0)
-        companion = _loaded_state(solid, p, order, mesh)
-        near = _loaded_state(solid, p, order, mesh.with_nearer_boundary())
-        found = estimates(
-            state,
-            companion,
-            units=unit,
-            size_changes=Changes(0.0, abs(state.central_displacement - companion.central_displacement)),
-            boundary_changes=Changes(0.0, abs(companion.central_displacement - near.central_displacement)),
-            load_residual=0.0,
-            factor=coarse_mesh_factor(size),
-        )
+        companion, near = state_on(mesh), state_on(mesh.with_nearer_boundary())
+        changes = 0.0, abs(companion.central_displacement - near.central_displacement), 0.0
+        found = estimates(state, companion, unit, changes, load_residual=0.0, size=size)
+    d = state.discretisation
     nodes = _surface_nodes(d)
     frictionless = Solution(
         contact_radius=load_radius,
@@ -218,54 +204,20 @@ def _size(quality: str, size: float | None) -> float:
     return size
 
 
-def _checked_complementarity(level: LevelContact) -> tuple[float, float]:
+def _checked_complementarity(contact: FixedRadiusContact) -> tuple[float, float]:
     """Relative penetration outside and tension inside the contact.
 
     Raises NotConverged where either is too large, or where the stiffness is not finite.
     """
-    penetration, tension = complementarity(level.contact, level.discretisation)
+    penetration, tension = complementarity(contact)
     if not (0 <= penetration <= 1e-3 and 0 <= tension <= 1e-3):  # also true of NaN and -inf
         raise NotConverged(
             f"the contact is not one disc: penetration outside is {penetration:.2g} of the approach, tension "
             f"inside {tension:.2g} of the peak pressure; use quality='fine', or check the Poisson ratios"
         )
-    if not np.isfinite(level.contact.stiffness):
-        raise NotConverged(
-            f"the contact's stiffness dW/d delta is {level.contact.stiffness}; use quality='fine'"
-        )
+    if not np.isfinite(contact.stiffness):
+        raise NotConverged(f"the contact's stiffness dW/d delta is {contact.stiffness}; use quality='fine'")
     return penetration, tension
-
-
-def _estimates(
-    levels: ContactLevels, companion: LevelContact, unit: Units, load: float, residual: float, size: float
-) -> tuple[Estimates, float]:
-    """Uncertainties of the frictionless contact, that of its stiffness in scaled units."""
-    final, coarser, near = levels.final.contact, companion.contact, companion.with_nearer_boundary()
-    factor = coarse_mesh_factor(size)
-    found = estimates(
-        levels.final.state,
-        companion.state,
-        units=unit,
-        size_changes=Changes(
-            abs(final.contact_radius - coarser.contact_radius), abs(final.approach - coarser.approach)
-        ),
-        boundary_changes=changes_of_boundary(coarser, near, load, levels.slope),
-        load_residual=residual,
-        factor=factor,
-    )
-    return found, stiffness_uncertainty(final.stiffness, coarser.stiffness, near.stiffness, residual, factor)
-
-
-def _loaded_state(solid: LayeredSolid, p: GivenPressure, order: int, mesh: MeridianMesh) -> ElasticState:
-    d = Discretisation(mesh, order)
-    fields = solve_traction(
-        d,
-        harmonic=0,
-        materials=solid.materials,
-        traction=p,
-        far_displacement=solid.far_displacement,
-    )
-    return ElasticState.frictionless(solid, d, fields, p)
 
 
 def _surface_nodes(d: Discretisation) -> np.ndarray:

@@ -6,8 +6,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from .axisymmetric import Discretisation
+from .contact import FixedRadiusContact
 from .loading import solve_traction
-from .location import LocatedPoints
 from .mesh import MeridianMesh
 from .recovery import HarmonicField
 from .scaling import LayeredSolid
@@ -24,16 +24,24 @@ class ElasticState:
     tangential: HarmonicField | None
 
     @classmethod
-    def frictionless(
-        cls,
-        solid: LayeredSolid,
-        discretisation: Discretisation,
-        fields: np.ndarray,
-        pressure: Callable[[np.ndarray], np.ndarray],
+    def of_contact(cls, solid: LayeredSolid, contact: FixedRadiusContact) -> "ElasticState":
+        """The state of the frictionless ``contact``."""
+        d, pressure = contact.discretisation, contact.pressure
+        return cls(solid, HarmonicField(d, contact.fields, solid.materials, 0, pressure, -1.0), None)
+
+    @classmethod
+    def under_pressure(
+        cls, solid: LayeredSolid, d: Discretisation, pressure: Callable[[np.ndarray], np.ndarray]
     ) -> "ElasticState":
-        """The state of a field vector (see ``axisymmetric``) of harmonic 0 under ``pressure`` (r)."""
-        normal = HarmonicField(discretisation, fields, solid.materials, 0, pressure, -1.0)
-        return cls(solid, normal, None)
+        """The state under a prescribed ``pressure`` (r) within the contact radius of the mesh of ``d``."""
+        fields = solve_traction(
+            d,
+            harmonic=0,
+            materials=solid.materials,
+            traction=pressure,
+            far_displacement=solid.far_displacement,
+        )
+        return cls(solid, HarmonicField(d, fields, solid.materials, 0, pressure, -1.0), None)
 
     def with_friction(self, friction: float) -> "ElasticState":
         """The state with the tangential traction ``friction`` times the pressure; the pressure stays."""
@@ -68,7 +76,3 @@ class ElasticState:
         d = self.discretisation
         origin = np.flatnonzero((d.locations[0] == 0) & (d.locations[1] == 0))
         return float(self.normal.fields[d.N + origin[0]])
-
-    def located(self, r: np.ndarray, z: np.ndarray, layer: np.ndarray) -> LocatedPoints:
-        """The points (r, z) of shape (n,) inside ``layer``, with their triangles."""
-        return self.discretisation.locator.points(r, z, layer)
