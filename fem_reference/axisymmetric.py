@@ -169,8 +169,11 @@ class Discretisation:
         K = np.matmul(
             flat.reshape(triangles, rows, -1).transpose(0, 2, 1), stress.reshape(triangles, rows, -1)
         )
-        dofs = np.asarray(self.basis.element_dofs).T
-        numbers = (np.arange(fields)[:, None] * self.N + dofs[:, None, :]).reshape(triangles, -1)
+        # 32 bits as in the sparse matrix: it would copy others
+        dofs = np.asarray(self.basis.element_dofs, dtype=np.int32).T
+        numbers = (np.arange(fields, dtype=np.int32)[:, None] * self.N + dofs[:, None, :]).reshape(
+            triangles, -1
+        )
         i = np.repeat(numbers, numbers.shape[1], axis=1)
         j = np.tile(numbers, (1, numbers.shape[1]))
         shape = (fields * self.N, fields * self.N)

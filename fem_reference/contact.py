@@ -26,6 +26,7 @@ import scipy.sparse.linalg as sla
 from scipy.optimize import minimize_scalar
 
 from .axisymmetric import Discretisation, constrained_solve
+from .scaling import LayeredSolid
 
 __all__ = ["FixedRadiusContact", "Multiplier", "complementarity", "peak", "solve_at_radius"]
 
@@ -85,29 +86,20 @@ class FixedRadiusContact:
     residual: float
 
 
-def solve_at_radius(
-    discretisation: Discretisation,
-    *,
-    materials: tuple[tuple[float, float], ...],
-    far_displacement: Callable[[np.ndarray, np.ndarray], np.ndarray],
-) -> FixedRadiusContact:
-    """Solve the contact whose edge is the mesh's contact radius.
-
-    materials : (E, nu) per layer, E in units of E_0
-    far_displacement : (r, z) -> (2, n), displacement of the outer boundary per unit load
-    """
+def solve_at_radius(solid: LayeredSolid, discretisation: Discretisation) -> FixedRadiusContact:
+    """Solve the contact whose edge is the mesh's contact radius; E_0 is the modulus of the substrate."""
     d, N = discretisation, discretisation.N
     a = d.mesh.contact_radius
     edges = d.facets(lambda x: (x[1] == 0) & (x[0] < a))
     contact = d.unknowns_on(edges)
     contact = contact[np.argsort(d.locations[0, contact])]
     nodes = d.locations[0, contact]
-    K = d.stiffness(materials, 0)
+    K = d.stiffness(solid.materials, 0)
 
     given = np.zeros((2 * N, 3))
     given[N + contact, 0] = 1.0
     given[N + contact, 1] = -(nodes**2) / 2
-    given[d.outer, 2], given[N + d.outer, 2] = far_displacement(*d.locations[:, d.outer])
+    given[d.outer, 2], given[N + d.outer, 2] = solid.far_displacement(*d.locations[:, d.outer])
     given[d.axis] = 0.0
     u = constrained_solve(K, given, np.concatenate([d.axis, d.outer, N + d.outer, N + contact]))
 

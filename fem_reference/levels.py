@@ -109,6 +109,4 @@ def mesh_at(solid: LayeredSolid, grading: Grading, contact_radius: float) -> Mer
 
 
 def _solve_on(solid: LayeredSolid, order: int, mesh: MeridianMesh) -> FixedRadiusContact:
-    return solve_at_radius(
-        Discretisation(mesh, order), materials=solid.materials, far_displacement=solid.far_displacement
-    )
+    return solve_at_radius(solid, Discretisation(mesh, order))

@@ -12,6 +12,7 @@ from collections.abc import Callable
 import numpy as np
 
 from .axisymmetric import Discretisation, constrained_solve
+from .scaling import LayeredSolid
 
 __all__ = ["resultant", "solve_traction"]
 
@@ -25,20 +26,15 @@ def resultant(discretisation: Discretisation, traction: Traction) -> float:
 
 
 def solve_traction(
-    discretisation: Discretisation,
-    *,
-    harmonic: int,
-    materials: tuple[tuple[float, float], ...],
-    traction: Traction,
-    far_displacement: Callable[[np.ndarray, np.ndarray], np.ndarray],
+    discretisation: Discretisation, solid: LayeredSolid, harmonic: int, traction: Traction
 ) -> np.ndarray:
     """Field vector (see ``axisymmetric``) under ``traction`` within the mesh's contact radius.
 
     traction : r -> pressure (harmonic 0) or traction in +x (harmonic 1)
-    far_displacement : (r, z) -> amplitudes per unit force, (u_r, u_z) or (u_r, u_theta, u_z)
     """
     d, N = discretisation, discretisation.N
     force = d.surface_load(_inside(d), traction)
+    far_displacement = solid.far_displacement if harmonic == 0 else solid.far_sliding
     far = 2 * np.pi * force.sum() * far_displacement(*d.locations[:, d.outer])
     zero = np.zeros(N)
     if harmonic == 0:
@@ -55,7 +51,7 @@ def solve_traction(
     for field in on_axis:
         given[field * N + d.axis] = 0.0
     fixed = [field * N + d.outer for field, _ in fixed_fields] + [field * N + d.axis for field in on_axis]
-    K = d.stiffness(materials, harmonic)
+    K = d.stiffness(solid.materials, harmonic)
     return constrained_solve(K, given, np.unique(np.concatenate(fixed)), load)
 
 

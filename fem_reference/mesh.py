@@ -42,13 +42,8 @@ class Grading:
     @classmethod
     def of(cls, size: float, edge_size: float = EDGE_SIZE) -> "Grading":
         """All sizes from one; the fan at the edge and the far field need less fine triangles."""
-        return cls(
-            size=size,
-            edge_rate=min(1.4 * size, 0.6),
-            edge_size=edge_size,
-            axis_size=0.65 * size,
-            far_size=2 * size,
-        )
+        edge_rate = min(1.4 * size, 0.6)
+        return cls(size, edge_rate, edge_size, axis_size=0.65 * size, far_size=2 * size)
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,13 +69,8 @@ class MeridianMesh:
 
     def stretched(self, factor: float) -> "MeridianMesh":
         """The mesh with all radii multiplied by ``factor``: the contact edge moves, no depth does."""
-        points = self.points * np.array([[factor], [1.0]])
-        return replace(
-            self,
-            points=points,
-            contact_radius=self.contact_radius * factor,
-            stretch=self.stretch * factor,
-        )
+        points, stretch = self.points * np.array([[factor], [1.0]]), self.stretch * factor
+        return replace(self, points=points, contact_radius=self.contact_radius * factor, stretch=stretch)
 
     def with_nearer_boundary(self) -> "MeridianMesh":
         """The same triangles with the outer boundary at half the distance, unchanged in the near field.

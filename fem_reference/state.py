@@ -34,13 +34,7 @@ class ElasticState:
         cls, solid: LayeredSolid, d: Discretisation, pressure: Callable[[np.ndarray], np.ndarray]
     ) -> "ElasticState":
         """The state under a prescribed ``pressure`` (r) within the contact radius of the mesh of ``d``."""
-        fields = solve_traction(
-            d,
-            harmonic=0,
-            materials=solid.materials,
-            traction=pressure,
-            far_displacement=solid.far_displacement,
-        )
+        fields = solve_traction(d, solid, 0, pressure)
         return cls(solid, HarmonicField(d, fields, solid.materials, 0, pressure, -1.0), None)
 
     def with_friction(self, friction: float) -> "ElasticState":
@@ -48,13 +42,7 @@ class ElasticState:
         if friction == 0:
             return replace(self, tangential=None)
         d, pressure = self.discretisation, self.pressure
-        fields = solve_traction(
-            d,
-            harmonic=1,
-            materials=self.solid.materials,
-            traction=lambda r: friction * pressure(r),
-            far_displacement=self.solid.far_sliding,
-        )
+        fields = solve_traction(d, self.solid, 1, lambda r: friction * pressure(r))
         sliding = HarmonicField(d, fields, self.solid.materials, 1, pressure, -friction)
         return replace(self, tangential=sliding)
 

@@ -53,8 +53,7 @@ def check_materials(
         raise ValueError(f"coatings = {coatings!r}; give a tuple of (E, nu, thickness), () for none")
     if len(coatings) > MAX_COATINGS:
         raise ValueError(
-            f"{len(coatings)} coatings; the mesh holds at most {MAX_COATINGS}, merge thin ones into "
-            "effective layers"
+            f"{len(coatings)} coatings; at most {MAX_COATINGS} can be meshed, merge thin ones into one"
         )
     if not isinstance(substrate, Sequence) or len(substrate) != 2:
         raise ValueError(f"substrate = {substrate!r}; give (E, nu)")
@@ -66,9 +65,8 @@ def check_materials(
         contrast = coating[0] / substrate[0] if _is_number(substrate[0]) and substrate[0] > 0 else 1.0
         if not 1 / MAX_CONTRAST <= contrast <= MAX_CONTRAST:
             raise ValueError(
-                f"E of coating {k} is {contrast:g} times that of the substrate; the solver is good for "
-                "ratios between "
-                f"{1 / MAX_CONTRAST:g} and {MAX_CONTRAST:g}, treat the stiffer solid as rigid instead"
+                f"E of coating {k} is {contrast:g} times that of the substrate; the solver supports ratios "
+                f"between {1 / MAX_CONTRAST:g} and {MAX_CONTRAST:g}, treat the stiffer solid as rigid instead"
             )
     _check_material("of the substrate", *substrate)
 
@@ -78,8 +76,7 @@ def check_proportions(thicknesses: Sequence[float], unit: str) -> None:
     for k, h in enumerate(thicknesses, start=1):
         if h < MIN_THICKNESS:
             raise ValueError(
-                f"thickness of coating {k} is {h:.3g} {unit}, too thin to change any stress; leave the "
-                "coating out, "
+                f"thickness of coating {k} is {h:.3g} {unit}, too thin to change any stress; leave it out, "
                 f"or keep it above {MIN_THICKNESS:g} {unit}"
             )
         if h > MAX_THICKNESS:
@@ -135,14 +132,11 @@ def _check_material(where: str, E: float, nu: float) -> None:
     check_positive(**{f"E {where}": E})
     if not _is_number(nu) or not -1 < nu < 0.5:
         raise ValueError(
-            f"nu {where} = {nu!r}; the finite element method needs -1 < nu < 0.5, use 0.499 for nearly "
+            f"nu {where} = {nu!r}; the finite element method needs -1 < nu < 0.5, such as 0.499 for nearly "
             "incompressible"
         )
 
 
 def _is_number(value: object) -> bool:
-    return (isinstance(value, (int, float)) and not isinstance(value, bool)) or _is_numpy_scalar(value)
-
-
-def _is_numpy_scalar(value: object) -> bool:
-    return hasattr(value, "dtype") and getattr(value, "shape", None) == () and hasattr(value, "__float__")
+    numpy = hasattr(value, "dtype") and getattr(value, "shape", None) == () and hasattr(value, "__float__")
+    return numpy or (isinstance(value, (int, float)) and not isinstance(value, bool))
