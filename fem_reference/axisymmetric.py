@@ -25,7 +25,6 @@ import scipy.sparse.linalg as sla
 from skfem import (
     Basis,
     BilinearForm,
-    ElementTriP1,
     ElementTriP2,
     ElementTriP3,
     ElementTriP4,
@@ -40,7 +39,7 @@ from .mesh import MeridianMesh
 
 __all__ = ["ELEMENTS", "Discretisation", "constrained_solve", "elasticity", "strain_operator"]
 
-ELEMENTS = {1: ElementTriP1, 2: ElementTriP2, 3: ElementTriP3, 4: ElementTriP4}
+ELEMENTS = {2: ElementTriP2, 3: ElementTriP3, 4: ElementTriP4}
 
 
 def strain_operator(harmonic: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

@@ -40,6 +40,8 @@ _SAMPLES = np.array([[0, 1, 0, 1 / 2, 1 / 2, 0, 1 / 3], [0, 0, 1, 0, 1 / 2, 1 / 
 _INWARDS = 1e-7
 _CELL_SAMPLES = 7
 
+_Pair = tuple[LocatedPoints, LocatedPoints]  # on the final mesh, on that of the companion
+
 
 @dataclass(frozen=True)
 class Uncertainty:
@@ -93,13 +95,11 @@ class _ComparisonPoints:
         # pickled without the cached properties
         return {"final": self.final, "companion": self.companion}
 
-    def _on_both(
-        self, r: np.ndarray, z: np.ndarray, layer: np.ndarray
-    ) -> tuple[LocatedPoints, LocatedPoints]:
+    def _on_both(self, r: np.ndarray, z: np.ndarray, layer: np.ndarray) -> _Pair:
         return self.final.locator.points(r, z, layer), self.companion.locator.points(r, z, layer)
 
     @cached_property
-    def triangles(self) -> tuple[LocatedPoints, LocatedPoints]:
+    def triangles(self) -> _Pair:
         """``_SAMPLES`` of every triangle of the final mesh, shape (7 * triangles,)."""
         d = self.final
         s1, s2 = _SAMPLES
@@ -112,7 +112,7 @@ class _ComparisonPoints:
         return self._on_both(np.minimum(r, reach).ravel(), np.minimum(z, reach).ravel(), layer.ravel())
 
     @cached_property
-    def planes(self) -> dict[tuple[float, int], tuple[np.ndarray, tuple[LocatedPoints, LocatedPoints]]]:
+    def planes(self) -> dict[tuple[float, int], tuple[np.ndarray, _Pair]]:
         """Vertices and points between them on the surface and both sides of interfaces, by (depth, layer)."""
         mesh = self.final.mesh
         reach = 0.9 * self.companion.mesh.far
@@ -143,7 +143,7 @@ class StressEstimate:
     everywhere: float
     coarse_mesh_factor: float
 
-    def _difference(self, points: tuple[LocatedPoints, LocatedPoints]) -> np.ndarray:
+    def _difference(self, points: _Pair) -> np.ndarray:
         final, companion = points
         return np.abs(self.field(final)[1] - self.companion(companion)[1])
 
@@ -205,7 +205,7 @@ def contact_estimates(
 ) -> tuple[Estimates, float]:
     """Uncertainty of the frictionless contact ``state`` of the final level, and that of its stiffness.
 
-    size : of the final mesh.  The stiffness and its uncertainty, like ``load``, are in scaled ``units``.
+    size : of the final mesh.  load : in scaled ``units``, as ``levels``.
     """
     final, companion, near, factor = levels.final, levels.companion, levels.near, _coarse_mesh_factor(size)
     assert companion is not None
@@ -224,7 +224,8 @@ def contact_estimates(
         + load_residual * final.stiffness
     )
     coarser = ElasticState.of_contact(state.solid, companion)
-    return estimates(state, coarser, units, boundary_changes, load_residual, size), float(stiffness)
+    found = estimates(state, coarser, units, boundary_changes, load_residual, size)
+    return found, float(stiffness * units.load / units.displacement)
 
 
 def estimates(

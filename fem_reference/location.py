@@ -8,7 +8,7 @@ from scipy.spatial import cKDTree
 
 from .mesh import MeridianMesh
 
-__all__ = ["InterfacePoints", "LocatedPoints", "Locator"]
+__all__ = ["LocatedPoints", "Locator"]
 
 _NEIGHBOURS = 12
 # Smallest radius over the contact radius: u/r on the axis is the limit from outside, here exact to rounding.
@@ -32,34 +32,22 @@ class LocatedPoints:
     X: np.ndarray
 
     @cached_property
-    def interfaces(self) -> "tuple[InterfacePoints, ...]":
-        """Those of the points that lie on an interface, located on both of its sides."""
+    def interfaces(self) -> "list[tuple[int, np.ndarray, list[LocatedPoints]]]":
+        """Of each interface with points: the layer above, the points' numbers, the points on either side."""
         found = []
         for upper, depth in enumerate(self.locator.mesh.depths):
             numbers = np.flatnonzero(self.z == depth)
             if numbers.size:
                 r, z = self.r[numbers], self.z[numbers]
-                sides = (self.locator.points(r, z, np.full(r.size, k)) for k in (upper, upper + 1))
-                found.append(InterfacePoints(upper, numbers, (next(sides), next(sides))))
-        return tuple(found)
+                sides = [self.locator.points(r, z, np.full(r.size, k)) for k in (upper, upper + 1)]
+                found.append((upper, numbers, sides))
+        return found
 
     def triangles_as_given(self) -> tuple[np.ndarray, np.ndarray]:
         """Triangles and reference coordinates at ``r_given`` in place of ``r``."""
         if np.array_equal(self.r, self.r_given):
             return self.cells, self.X
         return self.locator.triangles(self.r_given, self.z, self.layer)
-
-
-@dataclass(frozen=True, eq=False)
-class InterfacePoints:
-    """Points on the interface below layer ``upper``.
-
-    numbers : places in the points they are taken from.  sides : the same points in the upper and lower layer.
-    """
-
-    upper: int
-    numbers: np.ndarray
-    sides: tuple[LocatedPoints, LocatedPoints]
 
 
 @dataclass(frozen=True, eq=False)

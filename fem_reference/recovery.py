@@ -16,7 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from .axisymmetric import Discretisation, elasticity, strain_operator
-from .location import InterfacePoints, LocatedPoints
+from .location import LocatedPoints
 
 __all__ = ["HarmonicField"]
 
@@ -47,11 +47,11 @@ class HarmonicField:
         surface = at.z == 0
         if np.any(surface):
             stress[:, surface] = self._on_plane(0, strain[:, surface], self._surface_tractions(at.r[surface]))
-        for interface in at.interfaces:
-            tractions = self._interface_tractions(interface)
-            for layer in (interface.upper, interface.upper + 1):
-                mine = at.layer[interface.numbers] == layer
-                numbers = interface.numbers[mine]
+        for upper, on_interface, sides in at.interfaces:
+            tractions = self._interface_tractions(upper, sides)
+            for layer in (upper, upper + 1):
+                mine = at.layer[on_interface] == layer
+                numbers = on_interface[mine]
                 stress[:, numbers] = self._on_plane(layer, strain[:, numbers], tractions[:, mine])
         displacement = np.zeros((3, at.r.size))
         if self.harmonic == 0:
@@ -79,14 +79,14 @@ class HarmonicField:
             d_z += u * (dphi[1] * J[0, 0] - dphi[0] * J[0, 1]) / det
         return values, A_r @ d_r + A_z @ d_z + A_0 @ (values / at.r)
 
-    def _interface_tractions(self, interface: InterfacePoints) -> np.ndarray:
-        """(sigma_zz, sigma_rz, sigma_tz) on the interface, shape (3, n).
+    def _interface_tractions(self, upper: int, sides: list[LocatedPoints]) -> np.ndarray:
+        """(sigma_zz, sigma_rz, sigma_tz) on the interface below layer ``upper``, shape (3, n).
 
         Each side is weighted by the inverse of its error: the error of strain is proportional to stress / E,
         and the modulus at fixed width converts it to stress.
         """
-        mean, total = np.zeros((3, interface.numbers.size)), 0.0
-        for layer, at in enumerate(interface.sides, start=interface.upper):
+        mean, total = np.zeros((3, sides[0].r.size)), 0.0
+        for layer, at in enumerate(sides, start=upper):
             E, nu = self.materials[layer]
             modulus = E * (1 - nu) / ((1 + nu) * (1 - 2 * nu))
             weight = E / modulus**2

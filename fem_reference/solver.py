@@ -122,9 +122,7 @@ def solve(
         units=unit,
         estimates=found,
         stiffness=final.stiffness * unit.load / unit.displacement,
-        stiffness_uncertainty=(
-            None if stiffness_error is None else stiffness_error * unit.load / unit.displacement
-        ),
+        stiffness_uncertainty=stiffness_error,
     )
     return frictionless.with_friction(friction)
 

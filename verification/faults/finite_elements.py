@@ -106,9 +106,9 @@ FAULTS = (
         Edit(
             "fem_reference.recovery:HarmonicField.__call__",
             "stress[:, numbers] = self._on_plane(layer, strain[:, numbers], tractions[:, mine])",
-            "strains = [self._fields_and_strains(side)[1][:, mine] for side in interface.sides]; "
-            "stress[:, numbers] = (self._on_plane(interface.upper, strains[0], tractions[:, mine])"
-            " + self._on_plane(interface.upper + 1, strains[1], tractions[:, mine])) / 2",
+            "strains = [self._fields_and_strains(side)[1][:, mine] for side in sides]; "
+            "stress[:, numbers] = (self._on_plane(upper, strains[0], tractions[:, mine])"
+            " + self._on_plane(upper + 1, strains[1], tractions[:, mine])) / 2",
         ),
         cases=SLIDING,
     ),
