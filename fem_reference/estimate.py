@@ -1,4 +1,4 @@
-"""Uncertainty from the difference between a solution and a coarser companion.
+"""Uncertainty estimated from a coarser companion solution.
 
 The difference of two solutions crosses zero at points where neither is exact, so it is not used point by
 point: the estimate at a vertex is the largest difference in the triangles around it, and between vertices it

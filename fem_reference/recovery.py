@@ -1,4 +1,4 @@
-"""Displacements and stresses of one harmonic anywhere in the meridian plane.
+"""Fields of one Fourier harmonic at any point of the meridian plane.
 
 Strains are the derivatives of the shape functions in the triangle that holds the point, so each side of an
 interface keeps its own value. On a plane z = const whose tractions are known more accurately than by
