@@ -17,10 +17,12 @@ from typing import Any
 import numpy as np
 import scipy.sparse as sp
 
-from verification.case import Case, parse_case, standard_claims
-from verification.result import CaseResult
-from verification.run import run, solvers
-from verification.verdict import Outcome
+from verification.cases.contact import Case, parse_case
+from verification.judging.claims import standard_claims
+from verification.judging.verdict import Outcome
+from verification.running.contact import run
+from verification.running.result import CaseResult
+from verification.sources.contact import solvers
 
 __all__ = ["BAD", "PLACES", "Place", "clean", "outcome_of", "planted"]
 

@@ -14,7 +14,7 @@ from pathlib import Path
 
 import numpy as np
 
-from verification.store import write_checked
+from verification.running.store import write_checked
 
 
 def main(how: str, path: str) -> None:

@@ -12,8 +12,8 @@ from pathlib import Path
 
 from kill_default_run import largest_difference
 
-from verification.case import read_case, shipped_cases
-from verification.schedule import run_cases
+from verification.cases.contact import read_case, shipped_cases
+from verification.running.tasks import run_cases
 
 __all__ = ["LIMIT", "main", "repeated"]
 

@@ -11,7 +11,7 @@ import pytest
 from kill_default_run import disturbed, largest_difference, resumed
 from repetitions import LIMIT, repeated
 
-from verification.store import write_checked
+from verification.running.store import write_checked
 
 QUICK = """
 title = "Quick"

@@ -14,10 +14,11 @@ from hypothesis import HealthCheck, Phase, given, settings
 from hypothesis import strategies as st
 from mangled import dump, garbled, mangled
 
-from verification import schedule
-from verification.case import CaseError, shipped_cases
+from verification.cases.contact import shipped_cases
+from verification.cases.published import published_cases, read_published
+from verification.cases.toml import CaseError
 from verification.commands import run as command
-from verification.printed import published_cases, read_published
+from verification.running import tasks as schedule
 from verification.study.plan import read_study_file, shipped_studies
 
 CLAIM = {

@@ -6,7 +6,7 @@ from collections import Counter
 import pytest
 from not_finite import BAD, PLACES, clean, outcome_of
 
-from verification.verdict import Outcome
+from verification.judging.verdict import Outcome
 
 
 def spoilt_cases_of(places, values):

@@ -14,16 +14,17 @@ from pathlib import Path
 import pytest
 from quick_case import COMMAND, QUICK, coatcheck
 
-from verification import schedule
-from verification.case import parse_case
+from verification.cases.contact import parse_case
+from verification.cases.published import published_cases, read_published
 from verification.commands.solving import kept_results
-from verification.plane import plane_path, sample_plane, write_plane
-from verification.printed import published_cases, read_published
-from verification.printed_run import failed as printed_failed
-from verification.result import from_json, to_json
-from verification.run import judge_case, solve_case
-from verification.schedule import case_task, kept_result, result_path, run_tasks
-from verification.store import (
+from verification.running import tasks as schedule
+from verification.running.contact import judge_case, solve_case
+from verification.running.planes import plane_path, write_plane
+from verification.running.pool import run_tasks
+from verification.running.provenance import fingerprint
+from verification.running.published import failed as printed_failed
+from verification.running.result import from_json, to_json
+from verification.running.store import (
     PART,
     StoreError,
     locked,
@@ -32,7 +33,8 @@ from verification.store import (
     write_atomically,
     write_checked,
 )
-from verification.surroundings import fingerprint
+from verification.running.tasks import case_task, kept_result, result_path
+from verification.sampling.plane import sample_plane
 
 
 def content(folder: Path) -> dict[str, bytes]:

@@ -13,18 +13,19 @@ from pathlib import Path
 import pytest
 from quick_case import QUICK
 
-from verification.case import CaseError, parse_case, read_case
+from verification.cases.contact import parse_case, read_case
+from verification.cases.published import is_published
+from verification.cases.toml import CaseError
 from verification.commands.common import one_line
-from verification.fields import fields_path
-from verification.plane import plane_path
-from verification.printed import is_published
+from verification.judging.verdict import Outcome, Verdict
 from verification.report.page import render
-from verification.result import RunInfo, SourceResult
-from verification.run import failed
-from verification.schedule import result_path
-from verification.store import StoreError
-from verification.stored_run import read_run
-from verification.verdict import Outcome, Verdict
+from verification.running.contact import failed
+from verification.running.fields import fields_path
+from verification.running.planes import plane_path
+from verification.running.result import RunInfo, SourceResult
+from verification.running.store import StoreError
+from verification.running.stored import read_run
+from verification.running.tasks import result_path
 
 HOUSE = Path(__file__).parents[2]
 PACKAGES = ("semianalytic", "fem_reference", "verification")

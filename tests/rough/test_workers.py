@@ -13,10 +13,10 @@ from pathlib import Path
 import pytest
 from quick_case import QUICK
 
-from verification import schedule
 from verification.commands import run as command
-from verification.schedule import Task, run_tasks
-from verification.store import StoreError, read_checked, write_checked
+from verification.running import tasks as schedule
+from verification.running.pool import Task, run_tasks
+from verification.running.store import StoreError, read_checked, write_checked
 
 HERE = Path(__file__).parent
 # What a process dies of, and how the reason must read.
@@ -175,7 +175,7 @@ def test_every_death_ten_times_in_a_run_that_still_writes_its_report(tmp_path, m
     def planted(words, **keywords):
         for name, how in names.items():
             if name in words:
-                place = words.index("verification.worker")
+                place = words.index("verification.running.worker")
                 words = [*words[:place], "planted_worker", how, words[place + 2]]
         return popen(words, **keywords)
 

@@ -9,7 +9,8 @@ import pytest
 from quick_case import QUICK, coatcheck
 from synthetic_results import INFO, STEEL, contact, result_of
 
-from verification.baseline import (
+from verification.cases.contact import shipped_cases
+from verification.regression.baseline import (
     Baseline,
     against,
     case_drift,
@@ -17,12 +18,11 @@ from verification.baseline import (
     regression_json,
     updated,
 )
-from verification.baseline_file import path_in, read_baseline, write_baseline
-from verification.case import shipped_cases
-from verification.drift import State, measured
+from verification.regression.drift import State, measured
+from verification.regression.record import path_in, read_baseline, write_baseline
 from verification.report.write import report_json
-from verification.result import CaseResult, to_json
-from verification.store import StoreError, write_checked
+from verification.running.result import CaseResult, to_json
+from verification.running.store import StoreError, write_checked
 
 E, NU = STEEL
 RESULT = result_of(contact((2 * E, NU, 1.0)), text="title = 'stiff'\n")
@@ -255,7 +255,7 @@ def test_a_run_that_agrees_but_drifted_ends_with_code_5(tmp_path):
     done = coatcheck("run", "quick.toml", "--json", cwd=tmp_path)
     assert done.returncode == 0, done.stderr
     assert json.loads(done.stdout)["baseline"]["recorded"] is None
-    from verification.stored_run import confirm, read_run
+    from verification.running.stored import confirm, read_run
 
     run = read_run(tmp_path / "reports")
     confirm(run)

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from verification import bench
+from verification.bench import contact as bench
 
 
 def row(solver, patches, seconds, **changes):

@@ -5,7 +5,9 @@ from pathlib import Path
 
 import pytest
 
-from verification.case import CaseError, parse_case, read_case, shipped_cases, standard_claims
+from verification.cases.contact import parse_case, read_case, shipped_cases
+from verification.cases.toml import CaseError
+from verification.judging.claims import standard_claims
 
 GOOD = """
 title = "Stiff coating"

@@ -7,12 +7,12 @@ import subprocess
 import pytest
 from quick_case import COMMAND, QUICK, coatcheck
 
-from verification.case import Case, read_case, shipped_cases
+from verification.cases.contact import Case, read_case, shipped_cases
+from verification.cases.published import published_cases
 from verification.commands.common import exit_code
-from verification.printed import published_cases
-from verification.result import CaseResult
-from verification.schedule import run_cases
-from verification.verdict import Claim, Outcome, Verdict
+from verification.judging.verdict import Claim, Outcome, Verdict
+from verification.running.result import CaseResult
+from verification.running.tasks import run_cases
 
 
 @pytest.mark.parametrize(

@@ -12,10 +12,10 @@ import pytest
 from quick_case import COMMAND, QUICK, coatcheck
 from synthetic_results import INFO, contact, result_of
 
-from verification.commands.printing import NoBrowser, browser, printed
+from verification.report.pdf import NoBrowser, browser, printed
 from verification.report.write import report_json
-from verification.result import to_json
-from verification.store import write_checked
+from verification.running.result import to_json
+from verification.running.store import write_checked
 
 COMMANDS = (
     "run",
@@ -107,9 +107,9 @@ def test_completion_works_in_the_shell_itself(capsys, tmp_path, shell, words):
 
 @pytest.mark.parametrize("width", [40, 80])
 def test_the_table_stands_in_a_narrow_terminal(stored, capsys, monkeypatch, width):
-    from verification.baseline import Update, regression
     from verification.commands.run import _print_table
-    from verification.stored_run import read_run
+    from verification.regression.baseline import Update, regression
+    from verification.running.stored import read_run
 
     monkeypatch.setenv("COLUMNS", str(width))
     monkeypatch.setenv("TERM", "dumb")

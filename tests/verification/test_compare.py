@@ -11,14 +11,14 @@ import pytest
 from headless import browser, page
 from synthetic_results import INFO, STEEL, contact, result_of
 
-from verification.compare import compare_runs
-from verification.drift import State
-from verification.report.compare import comparison_page, comparison_sentence
+from verification.judging.verdict import Outcome
+from verification.regression.comparison import compare_runs
+from verification.regression.drift import State
+from verification.report.sections.comparison import comparison_page, comparison_sentence
 from verification.report.write import report_json
-from verification.result import CaseResult, RunInfo
-from verification.store import StoreError
-from verification.stored_run import StoredRun, read_run
-from verification.verdict import Outcome
+from verification.running.result import CaseResult, RunInfo
+from verification.running.store import StoreError
+from verification.running.stored import StoredRun, read_run
 
 E, NU = STEEL
 COMMAND = [sys.executable, "-m", "verification.cli"]

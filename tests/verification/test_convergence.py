@@ -8,13 +8,14 @@ import numpy as np
 import pytest
 from synthetic_study import study
 
-from verification import accuracy_study
-from verification.accuracy_study import BARE, COATED, STEEL, AccuracyStudy, from_json, to_json
 from verification.commands import run as command
-from verification.convergence import QUANTITIES, conversion_errors, elements, ladder, order_of, settled
-from verification.references.patch import over_square, surface_coefficient
-from verification.schedule import Task, run_tasks
-from verification.store import StoreError, write_checked
+from verification.credibility import accuracy as accuracy_study
+from verification.credibility.accuracy import BARE, COATED, STEEL, AccuracyStudy, from_json, to_json
+from verification.credibility.refinement import QUANTITIES, elements, ladder, order_of, settled
+from verification.judging.invariants.influence import conversion_errors
+from verification.running.pool import Task, run_tasks
+from verification.running.store import StoreError, write_checked
+from verification.sources.references.patch import over_square, surface_coefficient
 
 PLACES = [(0, 0), (1, 0), (1, 1), (3, 2), (20, 0), (64, 64)]
 

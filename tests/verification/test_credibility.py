@@ -6,16 +6,16 @@ import pytest
 from synthetic_results import INFO, STEEL, contact, result_of
 from synthetic_study import study
 
-from verification.alarms import counted, write_record
-from verification.baseline import regression
-from verification.credibility import Evidence, gather
-from verification.faults import campaign
-from verification.faults.record import Catch, Record, Row
-from verification.independence import PARTS, imports_of, parts, shared
-from verification.report.cells import Part, Section
-from verification.report.credibility import credibility_section, figures
+from verification.credibility.alarms import counted, write_record
+from verification.credibility.faults import campaign
+from verification.credibility.faults.record import Catch, Record, Row
+from verification.credibility.independence import PARTS, imports_of, parts, shared
+from verification.regression.baseline import regression
+from verification.report.credibility.evidence import Evidence, gather
+from verification.report.credibility.section import credibility_section, figures
 from verification.report.page import render
-from verification.result import CaseResult
+from verification.report.tables.cells import Part, Section
+from verification.running.result import CaseResult
 
 E, NU = STEEL
 RESULTS = [

@@ -9,11 +9,20 @@ from pathlib import Path
 import pytest
 from synthetic_results import INFO, STEEL, contact, crashed, result_of
 
-from verification.alarms import counted, path_in, read_record, write_record
-from verification.case import Case, parse_case, standard_claims
-from verification.draws import FRICTION, MOST_COATINGS, POISSON, RATIO, THICKNESS, THINNEST, draw
-from verification.store import StoreError
-from verification.verdict import Outcome
+from verification.cases.contact import Case, parse_case
+from verification.cases.random_problems import (
+    FRICTION,
+    MOST_COATINGS,
+    POISSON,
+    RATIO,
+    THICKNESS,
+    THINNEST,
+    draw,
+)
+from verification.credibility.alarms import counted, path_in, read_record, write_record
+from verification.judging.claims import standard_claims
+from verification.judging.verdict import Outcome
+from verification.running.store import StoreError
 
 E, NU = STEEL
 COMMAND = [sys.executable, "-m", "verification.cli"]

@@ -5,15 +5,21 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from verification import effective_study
-from verification.effective_study import EffectiveStudy, from_json, measure, to_json
-from verification.references.effective_modulus import FORMULAS, I0, I1, perriot_barthel, perriot_barthel_x0
-from verification.references.flat_punch import pressed
-from verification.references.layer_limits import spring_bed, squeezed_film, thick
-from verification.report.effective import effective_sections
 from verification.report.page import render
-from verification.result import RunInfo
-from verification.store import read_checked
+from verification.report.sections.effective import effective_sections
+from verification.running.result import RunInfo
+from verification.running.store import read_checked
+from verification.sources.references.effective_modulus import (
+    FORMULAS,
+    I0,
+    I1,
+    perriot_barthel,
+    perriot_barthel_x0,
+)
+from verification.sources.references.flat_punch import pressed
+from verification.sources.references.layer_limits import spring_bed, squeezed_film, thick
+from verification.study import formulas as effective_study
+from verification.study.formulas import EffectiveStudy, from_json, measure, to_json
 
 INFO = RunInfo("coatcheck run published", "2026-01-01T00:00:00+00:00", 1.0, 1, None, "a machine", {})
 

@@ -6,21 +6,22 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-import verification.run
-from verification.case import read_case, shipped_cases
+from verification.cases.contact import read_case, shipped_cases
 from verification.commands.faults import faults
-from verification.faults import campaign
-from verification.faults.catalogue import BLANKS, FAULTS, GROUPS, chosen
-from verification.faults.checks import Check
-from verification.faults.fault import Constant, Edit, Fault, PlantError, planted
-from verification.faults.record import Catch, Record, from_json, row_of, to_json
-from verification.faults.trial import Trial, clean_path, try_fault
-from verification.references.hertz import Hertz
-from verification.report.faults import faults_page
-from verification.result import from_json as result_from_json
-from verification.result import to_json as result_to_json
-from verification.store import read_checked, write_checked
-from verification.verdict import Outcome
+from verification.credibility.faults import campaign
+from verification.credibility.faults.catalogue import BLANKS, FAULTS, GROUPS, chosen
+from verification.credibility.faults.checks import Check
+from verification.credibility.faults.planting import Constant, Edit, Fault, PlantError, planted
+from verification.credibility.faults.record import Catch, Record, from_json, row_of, to_json
+from verification.credibility.faults.trial import Trial, clean_path, try_fault
+from verification.judging.verdict import Outcome
+from verification.report.credibility.faults import faults_page
+from verification.running import contact as running
+from verification.running.result import from_json as result_from_json
+from verification.running.result import to_json as result_to_json
+from verification.running.store import read_checked, write_checked
+from verification.sources import contact as sources_of_contacts
+from verification.sources.references.hertz import Hertz
 
 # What issue after issue of such codes has been about, each by the fault that stands for it.
 NAMED = {
@@ -79,11 +80,11 @@ def test_a_fault_says_what_is_wrong_where_it_sits_what_should_catch_it(fault):
     assert fault.changes
     assert fault.expected
     assert set(fault.cases) <= set(shipped_cases())
-    assert fault.where in (*verification.run.solvers(), "harness", "published")
+    assert fault.where in (*sources_of_contacts.solvers(), "harness", "published")
 
 
 def test_names_are_unique_across_the_groups():
-    from verification.faults import catalogue
+    from verification.credibility.faults import catalogue
 
     names = [fault.name for module in catalogue._MODULES for fault in module.FAULTS]
     assert len(names) == len(set(names)) == len(FAULTS)
@@ -126,8 +127,8 @@ def test_a_function_imported_by_name_is_exchanged_there_too():
 
 
 def test_two_edits_of_one_function_both_take():
-    first = Edit("verification.references.hertz:Hertz.approach", "self.radius", "(2 * self.radius)")
-    second = Edit("verification.references.hertz:Hertz.approach", "**2 /", "**3 /")
+    first = Edit("verification.sources.references.hertz:Hertz.approach", "self.radius", "(2 * self.radius)")
+    second = Edit("verification.sources.references.hertz:Hertz.approach", "**2 /", "**3 /")
     hertz = Hertz(1e-2, 20.0, 210e9, 0.3)
     a = hertz.contact_radius
     with planted((first, second)):
@@ -138,9 +139,9 @@ def test_two_edits_of_one_function_both_take():
 @pytest.mark.parametrize(
     ("change", "said"),
     [
-        (Edit("verification.verdict:judge", "words that are not there", ""), "stands there 0 times"),
-        (Edit("verification.verdict:judge", "judged", ""), "times, not once"),
-        (Edit("verification.verdict:no_such_function", "a", "b"), "no such function"),
+        (Edit("verification.judging.verdict:judge", "words that are not there", ""), "stands there 0 times"),
+        (Edit("verification.judging.verdict:judge", "judged", ""), "times, not once"),
+        (Edit("verification.judging.verdict:no_such_function", "a", "b"), "no such function"),
         (Constant("fem_reference.estimate:SAFETY", 3.0), "nothing would be planted"),
     ],
 )
@@ -166,12 +167,12 @@ def clean(tmp_path_factory):
     """A clean run of the uncoated case in which the exact reference stands in for both methods."""
     folder = tmp_path_factory.mktemp("clean")
     case = read_case(shipped_cases()["01_uncoated_steel"])
-    known = verification.run.solvers()
+    known = sources_of_contacts.solvers()
     exact = known["integral_equation"]
     sources = {"semianalytic": exact, "fem_reference": exact} | {
         name: known[name] for name in ("integral_equation", "hertz")
     }
-    write_checked(clean_path(folder, case.name), result_to_json(verification.run.run(case, sources)))
+    write_checked(clean_path(folder, case.name), result_to_json(running.run(case, sources)))
     return folder
 
 

@@ -9,10 +9,11 @@ import pytest
 
 import fem_reference
 import semianalytic
-from verification.case import parse_case
+from verification.cases.contact import parse_case
 from verification.commands.view import _picture, view
-from verification.fields import NAMES, read_fields, write_fields
-from verification.store import StoreError
+from verification.running.fields import read_fields, write_fields
+from verification.running.store import StoreError
+from verification.sampling.vtk import NAMES
 
 pv = pytest.importorskip("pyvista")
 

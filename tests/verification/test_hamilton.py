@@ -5,14 +5,16 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from verification.case import parse_case, sources_of
-from verification.problem import CoatedContact
-from verification.references.axisymmetric_pressure import AbelPressure
-from verification.references.hamilton import Hamilton
-from verification.references.hankel import HankelField
-from verification.references.hertz import Hertz
-from verification.run import run, solvers
-from verification.verdict import Outcome
+from verification.cases.contact import parse_case
+from verification.judging.claims import sources_of
+from verification.judging.verdict import Outcome
+from verification.problem.contact import CoatedContact
+from verification.running.contact import run
+from verification.sources.contact import solvers
+from verification.sources.references.axisymmetric_pressure import AbelPressure
+from verification.sources.references.hamilton import Hamilton
+from verification.sources.references.hankel import HankelField
+from verification.sources.references.hertz import Hertz
 
 
 @pytest.fixture

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from verification.references.hertz import Hertz
+from verification.sources.references.hertz import Hertz
 
 
 @pytest.fixture

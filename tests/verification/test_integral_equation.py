@@ -1,16 +1,16 @@
 """The exact coated sphere against print, limits, closed forms and the laws of elasticity."""
 
 import csv
-from pathlib import Path
 
 import numpy as np
 import pytest
 import scipy.linalg
 
-from verification.problem import CoatedContact
-from verification.references import integral_equation
-from verification.references.hertz import Hertz
-from verification.references.layered import LayeredHalfSpace, _in_plane, _propagator
+from verification.cases.table import FOLDER
+from verification.problem.contact import CoatedContact
+from verification.sources.references import integral_equation
+from verification.sources.references.hertz import Hertz
+from verification.sources.references.layered import LayeredHalfSpace, _in_plane, _propagator
 
 STEEL = (210e9, 0.3)
 BARE = CoatedContact(10e-3, 20.0, (), STEEL)
@@ -160,9 +160,7 @@ def test_pressure_integrates_to_the_load_and_ends_at_the_edge():
 
 
 def test_published_pressure_table_is_met():
-    table = (
-        Path(integral_equation.__file__).parent / "published" / "coated_sphere_exact_pressure_h_equals_a0.csv"
-    )
+    table = FOLDER / "coated_sphere_exact_pressure_h_equals_a0.csv"
     rows = list(csv.reader(line for line in table.read_text().splitlines() if not line.startswith("#")))
     r = np.array([float(row[0]) for row in rows[1:]]) * BARE.a_h
     for column, name in enumerate(rows[0][1:], start=1):

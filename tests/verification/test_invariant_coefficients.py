@@ -3,12 +3,12 @@
 import pytest
 
 import semianalytic
-from verification.case import read_case, shipped_cases
-from verification.faults.fault import Edit, planted
-from verification.invariants import check
-from verification.invariants.coefficients import influence_coefficients
-from verification.problem import CoatedContact
-from verification.verdict import Outcome
+from verification.cases.contact import read_case, shipped_cases
+from verification.credibility.faults.planting import Edit, planted
+from verification.judging.invariants import check
+from verification.judging.invariants.coefficients import influence_coefficients
+from verification.judging.verdict import Outcome
+from verification.problem.contact import CoatedContact
 
 POOR = {
     "a domain too small": Edit(

@@ -8,15 +8,15 @@ import pytest
 
 import fem_reference
 import semianalytic
-from verification.invariants import check
-from verification.invariants.limits import thick_shift, thin_shift
-from verification.invariants.record import decide
-from verification.invariants.stencil import Stencil
-from verification.problem import CoatedContact
-from verification.references import integral_equation
-from verification.references.hamilton import Hamilton
-from verification.references.hertz import Hertz
-from verification.verdict import Outcome
+from verification.judging.invariant import decide
+from verification.judging.invariants import check
+from verification.judging.invariants.limits import thick_shift, thin_shift
+from verification.judging.invariants.stencil import Stencil
+from verification.judging.verdict import Outcome
+from verification.problem.contact import CoatedContact
+from verification.sources.references import integral_equation
+from verification.sources.references.hamilton import Hamilton
+from verification.sources.references.hertz import Hertz
 
 STEEL = (210e9, 0.3)
 BARE = CoatedContact(10e-3, 20.0, (), STEEL)
@@ -258,8 +258,8 @@ def test_thin_coating_changes_the_approach_by_the_first_order_of_perturbation():
 
 @pytest.mark.slow
 def test_laws_between_solutions_hold_for_both_methods():
-    from verification.invariants import laws
-    from verification.run import solvers
+    from verification.judging.invariants import laws
+    from verification.sources.contact import solvers
 
     found = laws(SLIDING, solvers())
     assert len(found) == 10

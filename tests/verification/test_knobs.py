@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from verification.accuracy_study import BARE, COATED
-from verification.knobs import KNOBS, Knob, stated, study, turn
-from verification.references.hertz import Hertz
+from verification.credibility.accuracy import BARE, COATED
+from verification.credibility.parameters import KNOBS, Knob, stated, study, turn
+from verification.sources.references.hertz import Hertz
 
 EXACT = Hertz(BARE.radius, BARE.load, *BARE.substrate)
 KNOB = Knob("semianalytic", "patch size", tuple((f"N = {n}", {"patches": n}, 1 / n) for n in (8, 16, 32, 64)))

@@ -7,8 +7,9 @@ import pytest
 
 import fem_reference
 import semianalytic
-from verification.loading import Loading, LoadingCurve, LoadingDiagnostics, exact_loading, loading
-from verification.references.flat_punch import pressed
+from verification.problem.loading import LoadingCurve
+from verification.sources.loading import Loading, LoadingDiagnostics, exact_loading, loading
+from verification.sources.references.flat_punch import pressed
 
 LAYER, RIGID = ((1.0, 0.4, 1.0),), (1e9, 0.3)
 CURVE = LoadingCurve(100.0, "contact_radius", (0.4, 1.0), LAYER, RIGID)

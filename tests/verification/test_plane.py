@@ -3,9 +3,11 @@
 import numpy as np
 import pytest
 
-from verification.plane import COMPONENTS, Plane, depths_of, read_plane, sample_plane, von_mises, write_plane
-from verification.references.hertz import Hertz
-from verification.store import StoreError
+from verification.problem.quantity import COMPONENTS, von_mises
+from verification.running.planes import read_plane, write_plane
+from verification.running.store import StoreError
+from verification.sampling.plane import Plane, depths_of, sample_plane
+from verification.sources.references.hertz import Hertz
 
 STEEL = Hertz(10e-3, 20.0, 210e9, 0.3)
 

@@ -3,13 +3,15 @@
 import numpy as np
 import pytest
 
-from verification.case import CaseError
-from verification.loading import LoadingCurve
-from verification.printed import REFERENCE, published_cases, read_published
-from verification.printed_run import run, solvers
+from verification.cases.published import published_cases, read_published
+from verification.cases.toml import CaseError
+from verification.judging.verdict import Outcome
+from verification.problem.loading import LoadingCurve
 from verification.report.page import render
-from verification.result import RunInfo, from_json, to_json
-from verification.verdict import Outcome
+from verification.running.published import run
+from verification.running.result import RunInfo, from_json, to_json
+from verification.sources.published import solvers
+from verification.sources.registry import REFERENCE
 
 SHIPPED = published_cases()
 INFO = RunInfo("coatcheck run published", "2026-01-01T00:00:00+00:00", 1.0, 1, None, "a machine", {})

@@ -5,14 +5,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from verification.limits import towards_limits
-from verification.printed import published_cases, read_published
-from verification.printed_columns import PRINTED
-from verification.printed_run import failed, run, solvers
-from verification.problem import PrescribedLoad
-from verification.quantity import Points, values
-from verification.result import from_json, to_json
-from verification.verdict import Outcome
+from verification.cases.published import published_cases, read_published
+from verification.judging.verdict import Outcome
+from verification.problem.contact import PrescribedLoad
+from verification.problem.points import Points
+from verification.running.published import failed, run
+from verification.running.result import from_json, to_json
+from verification.sampling.points import values
+from verification.sources.limits import towards_limits
+from verification.sources.published import solvers
+from verification.sources.registry import PUBLISHED
 
 SHIPPED = published_cases()
 DISC = PrescribedLoad(1e6, 0.1, (), (1e9, 0.3))
@@ -118,7 +120,7 @@ def test_result_survives_json(disc):
     back = from_json(to_json(result))
     assert to_json(back) == to_json(result)
     assert back.published["printed"][0]["text"][0] == "0.9349"
-    assert back.profile("sigma_xx", case.printed[0].profile.line, PRINTED) is not None
+    assert back.profile("sigma_xx", case.printed[0].profile.line, PUBLISHED) is not None
 
 
 def test_incompressible_solid_is_reached_by_extrapolation():

@@ -5,10 +5,11 @@ import shutil
 import numpy as np
 import pytest
 
-from verification.case import CaseError, shipped_cases
-from verification.printed import is_published, published_cases, read_published
-from verification.problem import CoatedContact, PrescribedLoad
-from verification.references.published import FOLDER, PublishedError, read_table
+from verification.cases.contact import shipped_cases
+from verification.cases.published import is_published, published_cases, read_published
+from verification.cases.table import FOLDER, PublishedError, read_table
+from verification.cases.toml import CaseError
+from verification.problem.contact import CoatedContact, PrescribedLoad
 
 TOML = """
 title = "A disc"

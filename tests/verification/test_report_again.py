@@ -4,7 +4,7 @@ import shlex
 
 import pytest
 
-from verification.report.again import again
+from verification.report.rerun import again
 
 
 @pytest.mark.parametrize(

@@ -5,9 +5,9 @@ from headless import Page, browser, page
 from synthetic_results import INFO, showcase
 from synthetic_study import study
 
-from verification.plane import sample_plane
-from verification.references.hertz import Hertz
 from verification.report import write_report
+from verification.sampling.plane import sample_plane
+from verification.sources.references.hertz import Hertz
 
 pytestmark = pytest.mark.skipif(browser() is None, reason="no Chromium on this machine")
 

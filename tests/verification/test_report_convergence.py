@@ -9,13 +9,13 @@ from synthetic_results import INFO, contact, result_of
 from synthetic_study import conversion, elements, falling, study
 from test_report_page import Document
 
-from verification.accuracy_study import CORRECTED, PLAIN, STAIRCASE, failed
-from verification.convergence import QUANTITIES
-from verification.report.convergence import convergence_sections
-from verification.report.loglog import Trail, decades, draw_loglog
-from verification.report.names import Style
-from verification.report.numbers import factor
+from verification.credibility.accuracy import CORRECTED, PLAIN, STAIRCASE, failed
+from verification.credibility.refinement import QUANTITIES
+from verification.report.figures.loglog import Trail, decades, draw_loglog
 from verification.report.page import render
+from verification.report.sections.refinement import convergence_sections
+from verification.report.tables.labels import Style
+from verification.report.tables.numbers import factor
 
 
 @pytest.fixture(scope="module")

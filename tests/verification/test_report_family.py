@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from synthetic_results import INFO, contact, result_of
 
-from verification.report.family import family_section
 from verification.report.page import render
+from verification.report.sections.family import family_section
 
 
 def member(ratio, thickness=1.0, friction=0.0, name=None):

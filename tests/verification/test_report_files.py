@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 from synthetic_results import INFO, STEEL, contact, result_of, showcase
 
+from verification.judging.verdict import Outcome
 from verification.report import write, write_report
 from verification.report.junit import junit_xml
-from verification.result import SCHEMA, CaseResult, SourceResult, from_json
-from verification.verdict import Outcome
+from verification.running.result import SCHEMA, CaseResult, SourceResult, from_json
 
 NAMES = {"report.html", "report.json", "junit.xml"}
 

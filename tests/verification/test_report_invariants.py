@@ -9,18 +9,18 @@ import pytest
 from synthetic_results import INFO, STEEL, contact, result_of
 from synthetic_study import study
 
-from verification.accuracy_study import from_json as study_from_json
-from verification.accuracy_study import to_json as study_to_json
-from verification.invariants import Invariant
-from verification.knobs import KnobLadder, Stated
-from verification.report.accuracy import coverage_table
-from verification.report.invariants import invariant_cell, invariant_section, invariant_table
+from verification.credibility.accuracy import from_json as study_from_json
+from verification.credibility.accuracy import to_json as study_to_json
+from verification.credibility.parameters import KnobLadder, Stated
+from verification.judging.invariants import Invariant
+from verification.judging.verdict import Outcome
 from verification.report.junit import junit_xml
-from verification.report.knobs import knob_section
 from verification.report.page import render
-from verification.report.tables import dominating_knob
-from verification.result import from_json, to_json
-from verification.verdict import Outcome
+from verification.report.sections.accuracy import coverage_table
+from verification.report.sections.invariants import invariant_cell, invariant_section, invariant_table
+from verification.report.sections.parameters import knob_section
+from verification.report.tables.case import dominating_knob
+from verification.running.result import from_json, to_json
 
 HOLDS = Invariant("load balance", "semianalytic", 1e-7, 1e-5, Outcome.AGREES, "int p dA = W: off by 1e-07")
 CLOSE = Invariant(

@@ -10,18 +10,18 @@ import pytest
 from markupsafe import Markup
 from synthetic_results import STEEL, contact, result_of
 
-from verification.report import panels
-from verification.report.accuracy import accuracies, accuracy_sentence
-from verification.report.csvdata import embedded, line_csv
-from verification.report.figures import FLOOR, Curve, Difference, draw
-from verification.report.matrix import verdict_matrix
-from verification.report.names import OUTCOMES, pair_style, source_style
-from verification.report.numbers import engineering, scientific, seconds, with_uncertainty
-from verification.report.panels import line_figures
-from verification.report.reading import baseline, contact_radius, difference, judged
-from verification.report.svg import compact
-from verification.report.tables import budget_table, contact_table, verdict_table
-from verification.verdict import Outcome
+from verification.judging.verdict import Outcome
+from verification.report.figures import panels
+from verification.report.figures.curves import FLOOR, Curve, Difference, draw
+from verification.report.figures.panels import line_figures
+from verification.report.figures.svg import compact
+from verification.report.sections.accuracy import accuracies, accuracy_sentence
+from verification.report.tables.case import budget_table, contact_table, verdict_table
+from verification.report.tables.csv import embedded, line_csv
+from verification.report.tables.labels import OUTCOMES, pair_style, source_style
+from verification.report.tables.lookup import baseline, contact_radius, difference, judged
+from verification.report.tables.matrix import verdict_matrix
+from verification.report.tables.numbers import engineering, scientific, seconds, with_uncertainty
 
 COATED = contact((2 * STEEL[0], 0.3, 1.0))
 

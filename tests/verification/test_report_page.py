@@ -11,11 +11,11 @@ import numpy as np
 import pytest
 from synthetic_results import INFO, STEEL, contact, crashed, result_of, showcase
 
-from verification import case
-from verification.report import names
+from verification.cases import contact as case
+from verification.judging.verdict import Outcome
 from verification.report.page import render
-from verification.result import CaseResult, RunInfo, from_json, to_json
-from verification.verdict import Outcome
+from verification.report.tables import labels as names
+from verification.running.result import CaseResult, RunInfo, from_json, to_json
 
 VOID = {"meta", "link", "br", "hr", "img", "input"}
 

@@ -11,13 +11,13 @@ import pytest
 from PIL import Image
 from synthetic_results import INFO, STEEL, contact, result_of
 
-from verification.plane import Plane, sample_plane
-from verification.references.hertz import Hertz
-from verification.report.cutaway import Cutaway, cutaways
+from verification.report.figures.cutaway import Cutaway, cutaways
+from verification.report.figures.fields import pictures
+from verification.report.figures.raster import Frame, Scale, coloured, rasterised
 from verification.report.page import render
-from verification.report.pictures import pictures
-from verification.report.raster import Frame, Scale, coloured, rasterised
-from verification.result import SourceResult
+from verification.running.result import SourceResult
+from verification.sampling.plane import Plane, sample_plane
+from verification.sources.references.hertz import Hertz
 
 HERTZ = Hertz(10e-3, 20.0, *STEEL)
 RESULT = result_of(contact(), name="bare", points=31)

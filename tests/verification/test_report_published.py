@@ -10,12 +10,13 @@ from xml.etree import ElementTree
 
 import pytest
 
-from verification.printed import published_cases, read_published
-from verification.printed_run import failed, run, solvers
+from verification.cases.published import published_cases, read_published
 from verification.report.junit import junit_xml
 from verification.report.page import render
-from verification.result import RunInfo, from_json
-from verification.store import read_checked
+from verification.running.published import failed, run
+from verification.running.result import RunInfo, from_json
+from verification.running.store import read_checked
+from verification.sources.published import solvers
 
 SHIPPED = published_cases()
 INFO = RunInfo("coatcheck run published", "2026-01-01T00:00:00+00:00", 1.0, 1, None, "a machine", {})

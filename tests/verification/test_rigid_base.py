@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 import semianalytic
-from verification.references import flat_punch, integral_equation
-from verification.references.flat_punch import kappa
-from verification.references.published import FOLDER, read_table
+from verification.cases.table import FOLDER, read_table
+from verification.sources.references import flat_punch, integral_equation
+from verification.sources.references.flat_punch import kappa
 
 HAYES = read_table(FOLDER / "hayes_1972_flat_punch_kappa.csv")
 RIGID = (1e9, 0.3)  # under layers of 1 Pa

@@ -7,12 +7,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from verification.case import parse_case
-from verification.references import integral_equation
-from verification.references.hertz import Hertz
-from verification.result import from_json, to_json
-from verification.run import judge_case, run, solve_case
-from verification.verdict import Outcome
+from verification.cases.contact import parse_case
+from verification.judging.verdict import Outcome
+from verification.running.contact import judge_case, run, solve_case
+from verification.running.result import from_json, to_json
+from verification.sources.references import integral_equation
+from verification.sources.references.hertz import Hertz
 
 CASE = b"""
 title = "One coating"

@@ -3,14 +3,14 @@
 import pytest
 from synthetic_results import contact, result_of
 
-from verification.baseline import Regression
 from verification.commands.common import EXIT
 from verification.commands.run import _code
-from verification.faults.catalogue import FAULTS
-from verification.faults.fault import planted
-from verification.report.self_tests import self_test_section
-from verification.self_test import SelfTest, self_tests
-from verification.verdict import Outcome
+from verification.credibility.faults.catalogue import FAULTS
+from verification.credibility.faults.planting import planted
+from verification.judging.verdict import Outcome
+from verification.regression.baseline import Regression
+from verification.report.credibility.self_tests import self_test_section
+from verification.running.self_tests import SelfTest, self_tests
 
 PASSED = SelfTest("judging", "verdicts are what they must be", True, "21 known answers")
 FAILED = SelfTest(

@@ -5,7 +5,7 @@ import pytest
 from scipy.interpolate import CubicSpline
 
 import semianalytic
-from verification.references import integral_equation
+from verification.sources.references import integral_equation
 
 R, W = 10e-3, 20.0
 E, NU = 210e9, 0.3

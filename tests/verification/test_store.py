@@ -4,7 +4,7 @@ import random
 
 import pytest
 
-from verification.store import StoreError, locked, read_checked, write_atomically, write_checked
+from verification.running.store import StoreError, locked, read_checked, write_atomically, write_checked
 
 PAYLOAD = {"name": "β-film <script>", "value": [1.0, 1e-300, -0.0, 0.1 + 0.2], "none": None}
 

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from synthetic_solves import STUDY, made_up
 
-from verification.store import StoreError
+from verification.running.store import StoreError
 from verification.study import cache
 from verification.study.cache import Cache, code_version, solve_key
 from verification.study.plan import parse_study
@@ -38,7 +38,7 @@ def imports(module):
 
 def test_whatever_finds_the_quantities_is_in_the_key():
     # the table and the cache only carry what was found; run brings the solvers, the reading of errors
-    carriers = {"verification.study.table", "verification.study.cache", "verification.surroundings"}
+    carriers = {"verification.study.table", "verification.study.cache", "verification.running.provenance"}
     searched = set(cache._SEARCH)
     for module in ("verification.study.point", "verification.study.quantities", "verification.study.planes"):
         assert imports(module) <= searched | carriers

@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 import study_table
 
-from verification.case import CaseError
+from verification.cases.toml import CaseError
+from verification.report.study.summary import agreement_sentences, curve_sentences, preference_sentences
 from verification.study.criteria import Criteria, judged
 from verification.study.curves import curves, differences
 from verification.study.plan import parse_study
-from verification.study.summary import agreement_sentences, curve_sentences, preference_sentences
 from verification.study.table import read_columns
 
 

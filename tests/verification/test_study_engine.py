@@ -10,7 +10,7 @@ import pytest
 import synthetic_solves
 from synthetic_solves import CRASHING, FAILING, STUDY, made_up
 
-from verification.store import StoreError, locked
+from verification.running.store import StoreError, locked
 from verification.study.engine import SchedulerError, connected, run_study
 from verification.study.plan import parse_study
 from verification.study.point import answer

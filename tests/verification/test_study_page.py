@@ -7,9 +7,9 @@ import pytest
 import study_table
 from PIL import Image
 
+from verification.report.study.figures import contact_figure
+from verification.report.study.page import write_study_report
 from verification.study.curves import curves
-from verification.study.figures import contact_figure
-from verification.study.page import write_study_report
 from verification.study.quantities import QUANTITIES
 from verification.study.table import read_columns
 

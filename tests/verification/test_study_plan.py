@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 from synthetic_solves import STUDY
 
-from verification.case import CaseError
+from verification.cases.toml import CaseError
 from verification.study.plan import parse_study, read_study_file, shipped_studies, thicknesses_between
 
 PATH = Path("mine.toml")

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 from synthetic_results import contact
 
-from verification.problem import CoatedContact
-from verification.references import integral_equation
-from verification.references.hamilton import Hamilton
+from verification.problem.contact import CoatedContact
+from verification.sources.references import integral_equation
+from verification.sources.references.hamilton import Hamilton
 from verification.study.quantities import QUANTITIES, quantities, von_mises
 
 FRICTIONS = (0.0, 0.25, 0.5)

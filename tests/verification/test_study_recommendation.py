@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 import study_table
 
+from verification.report.study.recommendation import near, recommendation_sentences
+from verification.report.study.summary import main_sentences
 from verification.study.criteria import Criteria, judged
 from verification.study.curves import curves
-from verification.study.recommendation import near, recommendation_sentences
-from verification.study.summary import main_sentences
 from verification.study.table import read_columns
 
 

@@ -15,7 +15,7 @@ import numpy as np
 import psutil
 import pytest
 
-from verification.store import read_checked
+from verification.running.store import read_checked
 from verification.study.table import read_columns
 
 STUDY = """

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import semianalytic
-from verification.references import integral_equation
+from verification.sources.references import integral_equation
 
 R, W, SUBSTRATE = 10e-3, 20.0, (210e9, 0.3)
 E_STAR = SUBSTRATE[0] / (1 - SUBSTRATE[1] ** 2)

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from verification.quantity import Points
-from verification.references.uniform_disc import solve_prescribed
-from verification.tabulated import tabulated
+from verification.problem.points import Points
+from verification.sampling.memo import tabulated
+from verification.sources.references.uniform_disc import solve_prescribed
 
 COATINGS = ((4e9, 0.3, 0.2),)
 

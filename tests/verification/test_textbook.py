@@ -7,8 +7,8 @@ import pytest
 
 import fem_reference
 import semianalytic
-from verification.references.hamilton import Hamilton
-from verification.references.hertz import Hertz
+from verification.sources.references.hamilton import Hamilton
+from verification.sources.references.hertz import Hertz
 
 PROBLEM = {"radius": 10e-3, "load": 20.0, "coatings": (), "substrate": (210e9, 0.3)}
 SOLID = (10e-3, 20.0, 210e9, 0.3)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import semianalytic
-from verification.references.uniform_disc import UniformDisc, solve_prescribed
+from verification.sources.references.uniform_disc import UniformDisc, solve_prescribed
 
 Q, A = 2e6, 0.15
 HALF_SPACE = {"pressure": Q, "load_radius": A, "coatings": (), "substrate": (1e9, 0.3)}

@@ -5,8 +5,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from verification.profile import Profile
-from verification.verdict import Outcome, compare, judge
+from verification.judging.verdict import Outcome, compare, judge
+from verification.problem.profile import Profile
 
 
 def profile(value, uncertainty=None, source="a", position=None):

@@ -12,14 +12,15 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
-from verification.alarms import AlarmRecord, counted, write_record
-from verification.case import Case, parse_case
+from verification.cases.contact import Case, parse_case
+from verification.cases.random_problems import draw
 from verification.commands.common import RECORDS, STYLE, complain, exit_code, no_gmsh, one_line, run_info
 from verification.commands.solving import kept_results, solve
-from verification.draws import draw
-from verification.result import plain
-from verification.schedule import case_task, cores
-from verification.store import StoreError, locked, write_atomically
+from verification.credibility.alarms import AlarmRecord, counted, write_record
+from verification.running.pool import cores
+from verification.running.result import plain
+from verification.running.store import StoreError, locked, write_atomically
+from verification.running.tasks import case_task
 
 __all__ = ["alarms"]
 
@@ -82,7 +83,7 @@ def alarms(
     if (code := no_gmsh()) is not None:
         return code
 
-    from verification.report import write_report  # matplotlib takes a second to load
+    from verification.report import write_report
 
     started = datetime.datetime.now(datetime.UTC)
     try:

@@ -12,13 +12,13 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
-from verification.baseline import Baseline, Update, updated
-from verification.baseline_file import path_in, read_baseline, write_baseline
-from verification.case import shipped_cases
+from verification.cases.contact import shipped_cases
 from verification.commands.common import BASELINE, complain
-from verification.store import StoreError, locked
-from verification.stored_run import StoredRun, confirm, read_run
-from verification.verdict import Outcome
+from verification.judging.verdict import Outcome
+from verification.regression.baseline import Baseline, Update, updated
+from verification.regression.record import path_in, read_baseline, write_baseline
+from verification.running.store import StoreError, locked
+from verification.running.stored import StoredRun, confirm, read_run
 
 __all__ = ["show", "update"]
 

@@ -19,10 +19,10 @@ from rich.progress import Task as RichTask
 from rich.table import Column
 from rich.text import Text
 
-from verification.result import CaseResult, RunInfo
-from verification.schedule import cores
-from verification.surroundings import commit, machine, missing_libraries, versions
-from verification.verdict import Outcome
+from verification.judging.verdict import Outcome
+from verification.running.pool import cores
+from verification.running.provenance import commit, machine, missing_libraries, versions
+from verification.running.result import CaseResult, RunInfo
 
 __all__ = [
     "BAD_INPUT",

@@ -16,14 +16,15 @@ from rich.table import Table
 
 from verification.commands.common import EXIT, complain, no_gmsh
 from verification.commands.solving import kept_results, solve
-from verification.schedule import case_task, cores
-from verification.store import StoreError, locked, write_atomically
-from verification.surroundings import commit, machine, versions
-from verification.verdict import Outcome
+from verification.judging.verdict import Outcome
+from verification.running.pool import cores
+from verification.running.provenance import commit, machine, versions
+from verification.running.store import StoreError, locked, write_atomically
+from verification.running.tasks import case_task
 
 if TYPE_CHECKING:
-    from verification.faults.fault import Fault
-    from verification.faults.record import Record
+    from verification.credibility.faults.planting import Fault
+    from verification.credibility.faults.record import Record
 
 __all__ = ["faults"]
 
@@ -83,7 +84,7 @@ def faults(
     jobs = cores() if jobs is None else jobs
     if jobs < 1 or not time_limit > 0:
         return complain(f"--jobs = {jobs}, --time-limit = {time_limit:g}; both must be positive")
-    from verification.faults.catalogue import GROUPS, chosen
+    from verification.credibility.faults.catalogue import GROUPS, chosen
 
     if group is not None and (group not in GROUPS or names):
         said = "give a group or names, not both" if names else f"choose one of {', '.join(GROUPS)}"
@@ -100,9 +101,9 @@ def faults(
     if (code := no_gmsh()) is not None:
         return code
 
-    from verification.faults import campaign
-    from verification.faults.record import to_json
-    from verification.report.faults import faults_page
+    from verification.credibility.faults import campaign
+    from verification.credibility.faults.record import to_json
+    from verification.report.credibility.faults import faults_page
 
     begin, started = time.perf_counter(), datetime.datetime.now(datetime.UTC)
     try:
@@ -152,8 +153,8 @@ def _list(wanted: Sequence["Fault"], as_json: bool) -> None:
 
 
 def _print(found: "Record", page: Path) -> None:
-    from verification.faults.catalogue import GROUPS
-    from verification.faults.record import Catch
+    from verification.credibility.faults.catalogue import GROUPS
+    from verification.credibility.faults.record import Catch
 
     shown = [catch for catch in Catch if any(row.catch is catch for row in found.rows)]
     table = Table("group", "faults", *shown, "as foretold", box=None, header_style="bold")

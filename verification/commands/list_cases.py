@@ -8,8 +8,8 @@ from cyclopts import Parameter
 from rich.console import Console
 from rich.table import Table
 
-from verification.case import Case, read_case, shipped_cases
-from verification.printed import PublishedCase, published_cases, read_published
+from verification.cases.contact import Case, read_case, shipped_cases
+from verification.cases.published import PublishedCase, published_cases, read_published
 
 __all__ = ["list_cases"]
 

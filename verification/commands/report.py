@@ -8,15 +8,15 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
-from verification.baseline import regression
-from verification.baseline_file import read_baseline
 from verification.commands.common import BASELINE, EXIT, RECORDS, complain, exit_code
-from verification.result import CaseResult, RunInfo, from_json, to_json
-from verification.self_test import self_tests
-from verification.store import StoreError, locked, read_checked
-from verification.stored_run import read_run
-from verification.surroundings import machine
-from verification.verdict import Outcome
+from verification.judging.verdict import Outcome
+from verification.regression.baseline import regression
+from verification.regression.record import read_baseline
+from verification.running.provenance import machine
+from verification.running.result import CaseResult, RunInfo, from_json, to_json
+from verification.running.self_tests import self_tests
+from verification.running.store import StoreError, locked, read_checked
+from verification.running.stored import read_run
 
 __all__ = ["report"]
 
@@ -51,10 +51,10 @@ def report(
     as_json
         Print one JSON object that names the files.
     """
-    from verification.accuracy_study import from_json as study_from_json
-    from verification.accuracy_study import path_in
-    from verification.commands.printing import NoBrowser, printed
-    from verification.commands.writing import write
+    from verification.credibility.accuracy import from_json as study_from_json
+    from verification.credibility.accuracy import path_in
+    from verification.report.assemble import write
+    from verification.report.pdf import NoBrowser, printed
 
     if not (folder / "cases").is_dir():
         return complain(f"{folder}: holds no run; write one with: coatcheck run --output {folder}")

@@ -19,9 +19,9 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Column, Table
 
-from verification.baseline import Regression, State, regression, regression_json
-from verification.baseline_file import read_baseline
-from verification.case import Case, CaseError, read_case, shipped_cases
+from verification.cases.contact import Case, read_case, shipped_cases
+from verification.cases.published import PublishedCase, is_published, published_cases, read_published
+from verification.cases.toml import CaseError
 from verification.commands.common import (
     BASELINE,
     DRIFTED,
@@ -36,12 +36,14 @@ from verification.commands.common import (
     run_info,
 )
 from verification.commands.solving import kept_results, kept_study, solve
-from verification.printed import PublishedCase, is_published, published_cases, read_published
-from verification.result import CaseResult
-from verification.schedule import Task, case_task, cores, kept_result, published_task
-from verification.self_test import SelfTest, self_tests
-from verification.store import StoreError, locked
-from verification.verdict import Outcome
+from verification.judging.verdict import Outcome
+from verification.regression.baseline import Regression, State, regression, regression_json
+from verification.regression.record import read_baseline
+from verification.running.pool import Task, cores
+from verification.running.result import CaseResult
+from verification.running.self_tests import SelfTest, self_tests
+from verification.running.store import StoreError, locked
+from verification.running.tasks import case_task, kept_result, published_task
 
 __all__ = ["run"]
 
@@ -107,10 +109,11 @@ def run(
     if (code := no_gmsh()) is not None:
         return code
 
-    from verification import accuracy_study, effective_study  # SciPy and matplotlib take a second to load
-    from verification.accuracy_study import AccuracyStudy
-    from verification.commands.writing import write
-    from verification.effective_study import EffectiveStudy
+    from verification.credibility import accuracy as accuracy_study
+    from verification.credibility.accuracy import AccuracyStudy
+    from verification.report.assemble import write
+    from verification.study import formulas as effective_study
+    from verification.study.formulas import EffectiveStudy
 
     tests = self_tests()
     for test in tests:
@@ -261,7 +264,7 @@ def _print_table(results: Sequence[CaseResult], page: Path, seconds: float, besi
     if laws:
         say(f"{sum(law.outcome is Outcome.AGREES for law in laws)} of {len(laws)} invariants hold")
     if beside.update is not None:
-        from verification.report.baseline import baseline_sentence
+        from verification.report.sections.baseline import baseline_sentence
 
         say(escape(f"baseline of {beside.update.when[:10]}: {baseline_sentence(beside)}"))
     number = "1 case" if len(results) == 1 else f"{len(results)} cases"

@@ -7,14 +7,15 @@ from typing import TypeVar
 from rich.console import Console
 from rich.markup import escape
 
-from verification import accuracy_study
-from verification.accuracy_study import AccuracyStudy
-from verification.case import Case
+from verification.cases.contact import Case
+from verification.cases.published import PublishedCase
 from verification.commands.common import STYLE, complain, one_line, progress_bar
-from verification.printed import PublishedCase
-from verification.result import CaseResult
-from verification.schedule import Task, kept_result, run_tasks
-from verification.store import StoreError
+from verification.credibility import accuracy as accuracy_study
+from verification.credibility.accuracy import AccuracyStudy
+from verification.running.pool import Task, run_tasks
+from verification.running.result import CaseResult
+from verification.running.store import StoreError
+from verification.running.tasks import kept_result
 
 __all__ = ["kept_results", "kept_study", "solve"]
 

@@ -15,13 +15,13 @@ from rich.console import Console
 from rich.progress import ProgressColumn, Task, TaskID, TextColumn
 from rich.text import Text
 
-from verification.case import CaseError
+from verification.cases.toml import CaseError
 from verification.commands.common import EXIT, STOPPED, complain, no_gmsh, progress_bar
-from verification.schedule import cores
-from verification.store import StoreError
+from verification.judging.verdict import Outcome
+from verification.running.pool import cores
+from verification.running.provenance import commit, machine
+from verification.running.store import StoreError
 from verification.study.plan import Study, read_study_file, shipped_studies
-from verification.surroundings import commit, machine
-from verification.verdict import Outcome
 
 if TYPE_CHECKING:
     from verification.study.engine import Outcome as StudyOutcome
@@ -122,7 +122,7 @@ def thickness(
 
 
 def _page(chosen: Study, came: "StudyOutcome", seconds: float) -> Path:
-    from verification.study.page import write_study_report
+    from verification.report.study.page import write_study_report
 
     facts = [
         ("solves", f"{came.done} done, {came.kept} from the cache"),

@@ -10,9 +10,9 @@ from typing import Annotated
 from cyclopts import Parameter
 
 from verification.commands.common import EXIT, complain
-from verification.fields import read_fields
-from verification.store import StoreError, write_atomically
-from verification.verdict import Outcome
+from verification.judging.verdict import Outcome
+from verification.running.fields import read_fields
+from verification.running.store import StoreError, write_atomically
 
 __all__ = ["view"]
 
@@ -53,7 +53,14 @@ def view(
         read_fields(output, case)
     except StoreError as error:
         return complain(f"{error}; fields are written by: coatcheck run {case} --fields")
-    words = [sys.executable, "-m", "verification.viewer", str(output), case, f"{quantity} [Pa]"]
+    words = [
+        sys.executable,
+        "-m",
+        "verification.report.figures.viewer",
+        str(output),
+        case,
+        f"{quantity} [Pa]",
+    ]
     if screenshot is not None:
         return _picture(words, screenshot, time_limit)
     if sys.platform == "linux" and not (os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")):

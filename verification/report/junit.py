@@ -4,9 +4,9 @@ import re
 from collections.abc import Sequence
 from xml.etree.ElementTree import Element, SubElement, indent, tostring
 
-from verification.report.numbers import scientific
-from verification.result import CaseResult, RunInfo
-from verification.verdict import Outcome
+from verification.judging.verdict import Outcome
+from verification.report.tables.numbers import scientific
+from verification.running.result import CaseResult, RunInfo
 
 __all__ = ["junit_xml"]
 

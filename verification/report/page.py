@@ -9,28 +9,26 @@ from functools import partial
 import numpy as np
 from markupsafe import Markup
 
-from verification.accuracy_study import AccuracyStudy
-from verification.baseline import Regression
-from verification.plane import Plane
-from verification.report.accuracy import accuracy_overview, accuracy_sentence, accuracy_table, coverage_table
-from verification.report.again import again
-from verification.report.baseline import baseline_section, state_cell
-from verification.report.cells import Part, Section, Table
-from verification.report.convergence import convergence_sections
-from verification.report.csvdata import embedded, line_csv
-from verification.report.cutaway import Cutaway
-from verification.report.dress import dressed
-from verification.report.family import family_section
-from verification.report.invariants import invariant_cell, invariant_section, invariant_table
-from verification.report.matrix import verdict_matrix
-from verification.report.names import METHODS, OUTCOMES, OutcomeStyle, source_label
-from verification.report.numbers import engineering, plain, scientific, seconds
-from verification.report.panels import LineFigures, line_figures
-from verification.report.pictures import Pictures, pictures
-from verification.report.published import published_overview, published_view
-from verification.report.reading import lines, scale, slug
-from verification.report.sketch import sketch
-from verification.report.tables import (
+from verification.credibility.accuracy import AccuracyStudy
+from verification.judging.verdict import Outcome
+from verification.regression.baseline import Regression
+from verification.report.figures.cutaway import Cutaway
+from verification.report.figures.fields import Pictures, pictures
+from verification.report.figures.panels import LineFigures, line_figures
+from verification.report.figures.sketch import sketch
+from verification.report.rerun import again
+from verification.report.sections.accuracy import (
+    accuracy_overview,
+    accuracy_sentence,
+    accuracy_table,
+    coverage_table,
+)
+from verification.report.sections.baseline import baseline_section, state_cell
+from verification.report.sections.family import family_section
+from verification.report.sections.invariants import invariant_cell, invariant_section, invariant_table
+from verification.report.sections.published import published_overview, published_view
+from verification.report.sections.refinement import convergence_sections
+from verification.report.tables.case import (
     budget_table,
     contact_table,
     diagnostics_table,
@@ -39,8 +37,15 @@ from verification.report.tables import (
     time_table,
     verdict_table,
 )
-from verification.result import CaseResult, RunInfo
-from verification.verdict import Outcome
+from verification.report.tables.cells import Part, Section, Table
+from verification.report.tables.csv import embedded, line_csv
+from verification.report.tables.labels import METHODS, OUTCOMES, OutcomeStyle, source_label
+from verification.report.tables.lookup import lines, scale, slug
+from verification.report.tables.matrix import verdict_matrix
+from verification.report.tables.numbers import engineering, plain, scientific, seconds
+from verification.report.templates import rendered
+from verification.running.result import CaseResult, RunInfo
+from verification.sampling.plane import Plane
 
 __all__ = ["render"]
 
@@ -125,7 +130,7 @@ def _render(
     drifts = baseline.cases if baseline is not None else ()
     contacts = [result for result in results if not result.published]
     contact_anchors = dict(enumerate(anchors[n] for n, result in enumerate(results) if not result.published))
-    return dressed(
+    return rendered(
         "page.html",
         info=info,
         summary=_summary(results),

@@ -6,16 +6,16 @@ import tempfile
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from verification import accuracy_study
-from verification.accuracy_study import AccuracyStudy
-from verification.baseline import Regression, regression_json
-from verification.plane import Plane
-from verification.report.cells import Section
-from verification.report.cutaway import cutaways
+from verification.credibility import accuracy as accuracy_study
+from verification.credibility.accuracy import AccuracyStudy
+from verification.regression.baseline import Regression, regression_json
+from verification.report.figures.cutaway import cutaways
 from verification.report.junit import junit_xml
 from verification.report.page import render
-from verification.result import SCHEMA, CaseResult, RunInfo, to_json
-from verification.store import PART
+from verification.report.tables.cells import Section
+from verification.running.result import SCHEMA, CaseResult, RunInfo, to_json
+from verification.running.store import PART
+from verification.sampling.plane import Plane
 
 __all__ = ["report_json", "write_report"]
 
