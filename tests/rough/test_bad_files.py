@@ -18,7 +18,7 @@ from verification.cases.contact import shipped_cases
 from verification.cases.published import published_cases, read_published
 from verification.cases.toml import CaseError
 from verification.commands import run as command
-from verification.running import tasks as schedule
+from verification.running import pool
 from verification.study.plan import read_study_file, shipped_studies
 
 CLAIM = {
@@ -62,7 +62,7 @@ def complaint_of(path: Path, monkeypatch: pytest.MonkeyPatch) -> str | None:
     def accept(*_: object, **__: object) -> None:
         raise Accepted
 
-    monkeypatch.setattr(schedule, "_Job", accept)
+    monkeypatch.setattr(pool, "_Job", accept)
     said, printed = io.StringIO(), io.StringIO()
     try:
         with redirect_stderr(said), redirect_stdout(printed):

@@ -17,7 +17,7 @@ from quick_case import COMMAND, QUICK, coatcheck
 from verification.cases.contact import parse_case
 from verification.cases.published import published_cases, read_published
 from verification.commands.solving import kept_results
-from verification.running import tasks as schedule
+from verification.running import pool
 from verification.running.contact import judge_case, solve_case
 from verification.running.planes import plane_path, write_plane
 from verification.running.pool import run_tasks
@@ -78,7 +78,7 @@ def test_two_hundred_damaged_files_are_named_and_computed_again(tmp_path, stored
         keywords.pop("pass_fds")
         return popen(["cp", origin / "cases" / path.name, path], **keywords)
 
-    monkeypatch.setattr(schedule.subprocess, "Popen", copied)
+    monkeypatch.setattr(pool.subprocess, "Popen", copied)
     count = 0
     for turn in range(10):
         files = [

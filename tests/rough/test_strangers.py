@@ -34,7 +34,7 @@ SOURCES = sorted(path for package in PACKAGES for path in (HOUSE / package).rglo
 UNSAFE = {"pickle", "cPickle", "dill", "cloudpickle", "joblib", "marshal", "shelve", "yaml", "xmlrpc"}
 CODE = {"eval", "exec", "compile", "__import__"}
 # A planted fault is made from this program's own source and catalogue; no file is read for it.
-PLANTED = "verification/faults/fault.py"
+PLANTED = "verification/credibility/faults/planting.py"
 SCRIPT = "<script>alert(1)</script><img src=x onerror=alert(1)>{{ 7 * 7 }}{% raw %}]]></style>"
 
 
@@ -80,7 +80,7 @@ def test_nothing_makes_code_or_objects_out_of_files():
 
 def test_toml_is_read_in_one_place_only():
     readers = [path.name for path in SOURCES if "tomllib" in path.read_text(encoding="utf-8")]
-    assert readers == ["case.py"]
+    assert readers == ["toml.py"]
 
 
 class Tags(HTMLParser):

@@ -14,7 +14,7 @@ import pytest
 from quick_case import QUICK
 
 from verification.commands import run as command
-from verification.running import tasks as schedule
+from verification.running import pool
 from verification.running.pool import Task, run_tasks
 from verification.running.store import StoreError, read_checked, write_checked
 
@@ -125,7 +125,7 @@ def test_process_that_cannot_be_started_is_a_reason(tmp_path, monkeypatch):
     def refuse(*_, **__):
         raise OSError(12, "Cannot allocate memory")
 
-    monkeypatch.setattr(schedule.subprocess, "Popen", refuse)
+    monkeypatch.setattr(pool.subprocess, "Popen", refuse)
     (reason,) = run_tasks([task("good", tmp_path)], jobs=1, time_limit=300)
     assert reason.startswith("its process could not be started (Cannot allocate memory)")
 
@@ -179,7 +179,7 @@ def test_every_death_ten_times_in_a_run_that_still_writes_its_report(tmp_path, m
                 words = [*words[:place], "planted_worker", how, words[place + 2]]
         return popen(words, **keywords)
 
-    monkeypatch.setattr(schedule.subprocess, "Popen", planted)
+    monkeypatch.setattr(pool.subprocess, "Popen", planted)
     files = [str(tmp_path / f"{name}.toml") for name in ("quick", *names)]
     output = tmp_path / "out"
     code = command.run(*files, output=output, jobs=10, time_limit=40, as_json=True)

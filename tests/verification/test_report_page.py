@@ -11,11 +11,11 @@ import numpy as np
 import pytest
 from synthetic_results import INFO, STEEL, contact, crashed, result_of, showcase
 
-from verification.cases import contact as case
 from verification.judging.verdict import Outcome
 from verification.report.page import render
 from verification.report.tables import labels as names
 from verification.running.result import CaseResult, RunInfo, from_json, to_json
+from verification.sources import registry
 
 VOID = {"meta", "link", "br", "hr", "img", "input"}
 
@@ -236,7 +236,7 @@ def test_problem_is_told_in_real_units():
 
 
 def test_the_report_knows_the_methods_that_cases_know():
-    assert names.METHODS == case.METHODS
+    assert names.METHODS == registry.METHODS
 
 
 def test_no_number_whatever_keeps_a_report_from_being_written(results):

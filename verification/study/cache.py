@@ -29,9 +29,10 @@ _SEARCH = (
     "verification.study.quantities",
     "verification.study.planes",
     "verification.study.point",
+    "verification.problem",
+    "verification.sources.contact",
     "verification.sampling.plane",
-    "verification.problem.contact",
-    "verification.running.contact",
+    "verification.running.result",
 )
 _DIGITS = ("python", "numpy", "scipy", "ducc0", "scikit-fem", "gmsh")
 

@@ -163,7 +163,7 @@ FAULTS = (
         "sigma_xx and sigma_yy of every source are sampled for each other",
         ("sampling",),
         Constant(
-            "verification.problem.profile:STRESSES",
+            "verification.sampling.lines:STRESSES",
             {"sigma_xx": (1, 1), "sigma_yy": (0, 0), "sigma_zz": (2, 2), "sigma_xz": (0, 2)},
         ),
         cases=(),
