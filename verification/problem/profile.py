@@ -7,9 +7,7 @@ one, so that a comparison never asks where a number came from.
 import re
 from dataclasses import dataclass
 
-import numpy as np
-from numpy.typing import NDArray
-
+from verification.problem.arrays import Array
 from verification.problem.contact import CoatedContact
 
 __all__ = ["SCALARS", "STRESSES", "Line", "Profile", "line_of", "lines_of"]
@@ -30,10 +28,10 @@ class Profile:
 
     quantity: str
     line: str
-    position: NDArray[np.float64]
-    value: NDArray[np.float64]
+    position: Array
+    value: Array
     source: str
-    uncertainty: NDArray[np.float64] | None = None
+    uncertainty: Array | None = None
 
 
 @dataclass(frozen=True)
