@@ -289,7 +289,7 @@ def changed_by(result: CaseResult, share: float) -> CaseResult:
     return replace(result, profiles=(replace(first, value=first.value * (1 + share)), *others))
 
 
-ROOT = Path(__file__).resolve().parents[2]
+ROOT = Path(__file__).resolve().parents[3]
 
 
 @pytest.mark.skipif(not path_in(ROOT / "reports" / "baseline").exists(), reason="no baseline is recorded")
