@@ -37,10 +37,10 @@ __all__ = [
     "STYLE",
     "BaselineFolder",
     "RecordsFolder",
-    "complain",
     "exit_code",
     "no_gmsh",
     "one_line",
+    "print_error",
     "progress_bar",
     "refuse_installed",
     "run_info",
@@ -74,7 +74,7 @@ def exit_code(results: Sequence[CaseResult]) -> int:
     return EXIT[Outcome.AGREES] if found else EXIT[Outcome.NO_RESULT]
 
 
-def complain(sentence: str) -> int:
+def print_error(sentence: str) -> int:
     """Say on standard error, in one line, what is wrong; the exit code of bad input."""
     sys.stderr.write(f"coatcheck: {one_line(sentence)}\n")
     return BAD_INPUT
@@ -90,7 +90,7 @@ def no_gmsh() -> int | None:
     """The exit code where gmsh cannot be loaded here, having said what to install; None where it can."""
     if not (lacking := missing_libraries()):
         return None
-    complain(f"gmsh lacks system libraries here; install them with: apt-get install {' '.join(lacking)}")
+    print_error(f"gmsh lacks system libraries here; install them with: apt-get install {' '.join(lacking)}")
     return EXIT[Outcome.NO_RESULT]
 
 
@@ -98,7 +98,7 @@ def refuse_installed(folder: Path, option: str) -> int | None:
     """The exit code where ``folder`` is the package's own and not of a source checkout, after a message."""
     if folder not in (BASELINE, RECORDS) or commit() is not None:
         return None
-    return complain(f"this coatcheck is installed, not a source checkout; name a directory with {option}")
+    return print_error(f"this coatcheck is installed, not a source checkout; name a directory with {option}")
 
 
 def within_package(folder: Path) -> str:

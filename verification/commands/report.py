@@ -14,8 +14,8 @@ from verification.commands.common import (
     RECORDS,
     BaselineFolder,
     RecordsFolder,
-    complain,
     exit_code,
+    print_error,
     within_package,
 )
 from verification.judging.verdict import Outcome
@@ -56,7 +56,7 @@ def report(
     time_limit
         Seconds that printing may take.
     quiet
-        Print nothing but complaints.
+        Print nothing but errors.
     as_json
         Print one JSON object that names the files.
     """
@@ -66,7 +66,7 @@ def report(
     from verification.report.pdf import NoBrowser, printed
 
     if not (folder / "cases").is_dir():
-        return complain(f"{folder}: holds no run; write one with: coatcheck run --output {folder}")
+        return print_error(f"{folder}: holds no run; write one with: coatcheck run --output {folder}")
     try:
         known = read_baseline(baseline)
         with locked(folder):
@@ -81,10 +81,10 @@ def report(
             if pdf:
                 files.append(printed(page, folder / "report.pdf", time_limit))
     except NoBrowser as error:
-        complain(str(error))
+        print_error(str(error))
         return EXIT[Outcome.NO_RESULT]
     except (StoreError, ValueError) as error:
-        return complain(str(error))
+        return print_error(str(error))
     if as_json:
         sys.stdout.write(json.dumps({"files": [str(file) for file in files]}, indent=2) + "\n")
     elif not quiet:
