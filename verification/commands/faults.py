@@ -14,7 +14,7 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
-from verification.commands.common import EXIT, complain, no_gmsh
+from verification.commands.common import EXIT, RECORDS, RecordsFolder, no_gmsh, print_error, refuse_installed
 from verification.commands.solving import kept_results, solve
 from verification.judging.verdict import Outcome
 from verification.running.pool import cores
@@ -28,8 +28,6 @@ if TYPE_CHECKING:
 
 __all__ = ["faults"]
 
-RECORDS = Path("reports/credibility")
-
 
 def faults(
     *names: str,
@@ -37,7 +35,7 @@ def faults(
     listed: Annotated[bool, Parameter(name="--list", negative="")] = False,
     output: Annotated[Path, Parameter(name=["--output", "-o"])] = Path("reports/faults"),
     record: Annotated[bool, Parameter(negative="")] = False,
-    records: Path = RECORDS,
+    records: RecordsFolder = RECORDS,
     jobs: Annotated[int | None, Parameter(name=["--jobs", "-j"])] = None,
     time_limit: float = 300.0,
     resume: Annotated[bool, Parameter(negative="")] = False,
@@ -69,7 +67,7 @@ def faults(
     record
         Store the matrix of all faults as RECORDS/faults.json, which the credibility page of a report reads.
     records
-        Directory of the records.
+        Directory of the records; in a source checkout that of the package unless given.
     jobs
         Faults tried side by side; all cores unless given.
     time_limit
@@ -77,27 +75,29 @@ def faults(
     resume
         Keep the trials already in the output directory that belong to the same faults, the same code.
     quiet
-        Print nothing but complaints.
+        Print nothing but errors.
     as_json
         Print the matrix as JSON.
     """
     jobs = cores() if jobs is None else jobs
     if jobs < 1 or not time_limit > 0:
-        return complain(f"--jobs = {jobs}, --time-limit = {time_limit:g}; both must be positive")
+        return print_error(f"--jobs = {jobs}, --time-limit = {time_limit:g}; both must be positive")
     from verification.credibility.faults.catalogue import GROUPS, chosen
 
     if group is not None and (group not in GROUPS or names):
         said = "give a group or names, not both" if names else f"choose one of {', '.join(GROUPS)}"
-        return complain(f"--group = {group}: {said}")
+        return print_error(f"--group = {group}: {said}")
     try:
         wanted = chosen(names, group)
     except KeyError as error:
-        return complain(f"{error.args[0]}: no fault has this name; see coatcheck faults --list")
+        return print_error(f"{error.args[0]}: no fault has this name; see coatcheck faults --list")
     if listed:
         _list(wanted, as_json)
         return 0
     if record and (names or group):
-        return complain("--record stores the matrix of all faults; leave names and --group out")
+        return print_error("--record stores the matrix of all faults; leave names and --group out")
+    if record and (code := refuse_installed(records, "--records")) is not None:
+        return code
     if (code := no_gmsh()) is not None:
         return code
 
@@ -112,7 +112,7 @@ def faults(
             stood = kept_results(cases, campaign.clean_folder(output)) if resume else {}
             tasks = [case_task(c, campaign.clean_folder(output)) for c in cases if c.name not in stood]
             if said := campaign.unfit([*stood.values(), *solve(tasks, jobs, time_limit, quiet or as_json)]):
-                complain(said)
+                print_error(said)
                 return EXIT[Outcome.NO_RESULT]
             kept = {f.name: t for f in wanted if resume and (t := campaign.kept_trial(f, output))}
             # the long ones first, so that no core waits at the end
@@ -133,7 +133,7 @@ def faults(
             if record:
                 campaign.write_record(records / campaign.RECORD, found)
     except StoreError as error:
-        return complain(str(error))
+        return print_error(str(error))
     if as_json:
         sys.stdout.write(json.dumps(to_json(found), indent=2) + "\n")
     elif not quiet:

@@ -8,7 +8,16 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
-from verification.commands.common import BASELINE, EXIT, RECORDS, complain, exit_code
+from verification.commands.common import (
+    BASELINE,
+    EXIT,
+    RECORDS,
+    BaselineFolder,
+    RecordsFolder,
+    exit_code,
+    print_error,
+    within_package,
+)
 from verification.judging.verdict import Outcome
 from verification.regression.baseline import regression
 from verification.regression.record import read_baseline
@@ -26,8 +35,8 @@ def report(
     /,
     *,
     pdf: Annotated[bool, Parameter(negative="")] = False,
-    baseline: Annotated[Path, Parameter(name=["--baseline", "-b"])] = BASELINE,
-    records: Path = RECORDS,
+    baseline: BaselineFolder = BASELINE,
+    records: RecordsFolder = RECORDS,
     time_limit: float = 300.0,
     quiet: Annotated[bool, Parameter(name=["--quiet", "-q"], negative="")] = False,
     as_json: Annotated[bool, Parameter(name="--json", negative="")] = False,
@@ -41,13 +50,13 @@ def report(
     pdf
         Also print the page to report.pdf there, through an installed Chromium or Chrome.
     baseline
-        Directory of the baseline; where it holds one, every number is held against it.
+        Directory of the baseline that every number is held against; that of the package unless given.
     records
-        Directory of the records of credibility.
+        Directory of the records of credibility; that of the package unless given.
     time_limit
         Seconds that printing may take.
     quiet
-        Print nothing but complaints.
+        Print nothing but errors.
     as_json
         Print one JSON object that names the files.
     """
@@ -57,7 +66,7 @@ def report(
     from verification.report.pdf import NoBrowser, printed
 
     if not (folder / "cases").is_dir():
-        return complain(f"{folder}: holds no run; write one with: coatcheck run --output {folder}")
+        return print_error(f"{folder}: holds no run; write one with: coatcheck run --output {folder}")
     try:
         known = read_baseline(baseline)
         with locked(folder):
@@ -66,16 +75,16 @@ def report(
             study = None
             if path_in(folder).exists():
                 study = study_from_json(read_checked(path_in(folder)))
-            beside = regression(results, known, str(baseline), info, whole=False)
+            beside = regression(results, known, within_package(baseline), info, whole=False)
             page = write(results, folder, info, study, beside, records, self_tests())
             files = [page]
             if pdf:
                 files.append(printed(page, folder / "report.pdf", time_limit))
     except NoBrowser as error:
-        complain(str(error))
+        print_error(str(error))
         return EXIT[Outcome.NO_RESULT]
     except (StoreError, ValueError) as error:
-        return complain(str(error))
+        return print_error(str(error))
     if as_json:
         sys.stdout.write(json.dumps({"files": [str(file) for file in files]}, indent=2) + "\n")
     elif not quiet:
