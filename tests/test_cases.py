@@ -4,10 +4,10 @@ import functools
 
 import pytest
 
-from verification.case import read_case, shipped_cases
-from verification.result import CaseResult
-from verification.run import run
-from verification.verdict import Outcome
+from verification.cases.contact import read_case, shipped_cases
+from verification.judging.verdict import Outcome
+from verification.running.contact import run
+from verification.running.result import CaseResult
 
 CASES = {name: read_case(path) for name, path in shipped_cases().items()}
 
@@ -41,4 +41,4 @@ def test_case_agrees(name, index):
 def test_invariants_of_every_solution_hold(name):
     found = solved(name).invariants
     assert len(found) >= 30
-    assert [row.sentence for row in found if row.outcome is not Outcome.AGREES] == []
+    assert [row.message for row in found if row.outcome is not Outcome.AGREES] == []

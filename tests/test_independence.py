@@ -10,8 +10,8 @@ import pytest
 
 import fem_reference
 import semianalytic
-from verification.problem import CoatedContact
-from verification.references import integral_equation
+from verification.problem.contact import CoatedContact
+from verification.sources.references import integral_equation
 
 ROOT = Path(__file__).resolve().parent.parent
 
@@ -38,7 +38,10 @@ def test_import_contracts_are_kept():
     [
         ("semianalytic", ("fem_reference", "verification", "skfem", "gmsh")),
         ("fem_reference", ("semianalytic", "verification", "ducc0")),
-        ("verification.references.integral_equation", ("semianalytic", "fem_reference", "skfem", "gmsh")),
+        (
+            "verification.sources.references.integral_equation",
+            ("semianalytic", "fem_reference", "skfem", "gmsh"),
+        ),
     ],
 )
 def test_each_part_is_usable_alone(package, strangers):

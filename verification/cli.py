@@ -4,14 +4,15 @@ Exit codes: 0 all agree, 1 a disagreement, 2 bad input, 3 a missing result, 4 in
 a number is not that of the baseline, 130 stopped by Ctrl-C.
 """
 
+import re
 import sys
 from collections.abc import Sequence
 from importlib.metadata import version
-from typing import NamedTuple
+from typing import Literal, NamedTuple
 
 from cyclopts import App, CycloptsError
 
-from verification.commands.common import STOPPED, complain
+from verification.commands.common import STOPPED, print_error
 
 __all__ = ["app", "main"]
 
@@ -88,16 +89,6 @@ COMMANDS = (
         "Time the semi-analytical contact beside its peers; ratios first.",
         ("coatcheck bench", "coatcheck bench --sizes 128 256 --threads 1"),
     ),
-    Command(
-        "completion",
-        "completion:completion",
-        "Print the script that completes commands and options in a shell.",
-        (
-            'eval "$(coatcheck completion bash)"',
-            'eval "$(coatcheck completion zsh)"',
-            "coatcheck completion fish > ~/.config/fish/completions/coatcheck.fish",
-        ),
-    ),
 )
 STUDY = (
     Command(
@@ -165,12 +156,54 @@ app.command(baseline)
 app.command(study)
 
 
+# The generated function alone does nothing: zsh has to call it where the file lies in a directory of $fpath,
+# and to be told of it where the text is evaluated.
+ZSH_END = """
+if [[ ${zsh_eval_context[-1]} == loadautofunc ]]; then
+  _cyclopts_coatcheck "$@"
+else
+  compdef _cyclopts_coatcheck coatcheck
+fi
+"""
+
+
+def completion(shell: Literal["bash", "zsh", "fish"], /) -> int:
+    """Print the script that completes coatcheck in a shell.
+
+    Parameters
+    ----------
+    shell
+        bash, zsh or fish.
+    """
+    script = app.generate_completion(prog_name="coatcheck", shell=shell)
+    # A word that no command or option begins with may be a case file; fish tries files by itself.
+    if shell == "bash":
+        script = re.sub(r"^complete -F", "complete -o bashdefault -o default -F", script, flags=re.MULTILINE)
+    elif shell == "zsh":
+        script = re.sub(r"^( +'(?:\*|\d):[^':]+)'", r"\1:_files'", script, flags=re.MULTILINE) + ZSH_END
+    sys.stdout.write(script)
+    return 0
+
+
+app.command(
+    completion,
+    help="Print the script that completes commands and options in a shell.",
+    help_epilogue=_epilogue(
+        [
+            'eval "$(coatcheck completion bash)"',
+            'eval "$(coatcheck completion zsh)"',
+            "coatcheck completion fish > ~/.config/fish/completions/coatcheck.fish",
+        ]
+    ),
+)
+
+
 def main() -> None:
     """Entry of the ``coatcheck`` command."""
     try:
         code = app(exit_on_error=False, print_error=False, result_action="return_value")
     except CycloptsError as error:
-        code = complain(" ".join(str(error).split()) + " Try: coatcheck --help")
+        code = print_error(" ".join(str(error).split()) + " Try: coatcheck --help")
     except KeyboardInterrupt:
         sys.stderr.write("\ncoatcheck: stopped; finished cases are kept, go on with --resume\n")
         code = STOPPED

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from fem_reference.axisymmetric import Discretisation, constrained_solve
-from verification.manufactured import (
+from verification.credibility.manufactured import (
     MATERIALS,
     boundary,
     design_orders,

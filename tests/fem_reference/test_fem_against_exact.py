@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from fem_reference import solve
-from verification.references import integral_equation
+from verification.sources.references import integral_equation
 
 R, W, E = 10e-3, 20.0, 210e9
 PAIRS = ((0.3, 0.3), (0.2, 0.4), (0.45, 0.25))

@@ -5,11 +5,11 @@ from typing import Any
 
 import numpy as np
 
-from verification.case import standard_claims
-from verification.problem import CoatedContact
-from verification.profile import SCALARS, STRESSES, Line, Profile, lines_of
-from verification.result import CaseResult, RunInfo, SourceResult
-from verification.verdict import Claim, Outcome, Verdict, compare, judge
+from verification.judging.claims import standard_claims
+from verification.judging.verdict import Claim, Outcome, Verdict, compare, judge
+from verification.problem.contact import CoatedContact
+from verification.problem.profile import SCALARS, STRESSES, Line, Profile, lines_of
+from verification.running.result import CaseResult, RunInfo, SourceResult
 
 STEEL = (210e9, 0.3)
 INFO = RunInfo(

@@ -4,7 +4,7 @@ import time
 from collections.abc import Mapping
 from typing import Any
 
-from verification.references.hertz import Hertz
+from verification.sources.references.hertz import Hertz
 from verification.study.cache import code_version
 
 FAILING = 7e-5  # m; a coating of this thickness has no solution here

@@ -1,7 +1,8 @@
 """A study of accuracy made up from power laws, for tests of the report."""
 
-from verification.accuracy_study import CORRECTED, PLAIN, STAIRCASE, AccuracyStudy
-from verification.convergence import QUANTITIES, ConversionError, Ladder, Level
+from verification.credibility.accuracy import CORRECTED, PLAIN, STAIRCASE, AccuracyStudy
+from verification.credibility.refinement import QUANTITIES, Ladder, Level
+from verification.judging.invariants.influence import ConversionError
 
 PATCHES = (33, 65, 129, 257)
 

@@ -12,14 +12,25 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
-from verification.alarms import AlarmRecord, counted, write_record
-from verification.case import Case, parse_case
-from verification.commands.common import RECORDS, STYLE, complain, exit_code, no_gmsh, one_line, run_info
+from verification.cases.contact import Case, parse_case
+from verification.cases.random_problems import draw
+from verification.commands.common import (
+    RECORDS,
+    STYLE,
+    RecordsFolder,
+    exit_code,
+    no_gmsh,
+    one_line,
+    print_error,
+    refuse_installed,
+    run_info,
+)
 from verification.commands.solving import kept_results, solve
-from verification.draws import draw
-from verification.result import plain
-from verification.schedule import case_task, cores
-from verification.store import StoreError, locked, write_atomically
+from verification.credibility.alarms import AlarmRecord, counted, write_record
+from verification.running.pool import cores
+from verification.running.result import plain
+from verification.running.store import StoreError, locked, write_atomically
+from verification.running.tasks import case_task
 
 __all__ = ["alarms"]
 
@@ -32,7 +43,7 @@ def alarms(
     seed: int = 1,
     output: Annotated[Path, Parameter(name=["--output", "-o"])] = Path("reports/alarms"),
     record: Annotated[bool, Parameter(negative="")] = False,
-    records: Path = RECORDS,
+    records: RecordsFolder = RECORDS,
     jobs: Annotated[int | None, Parameter(name=["--jobs", "-j"])] = None,
     time_limit: float = 600.0,
     resume: Annotated[bool, Parameter(negative="")] = False,
@@ -61,7 +72,7 @@ def alarms(
     record
         Store what was found as RECORDS/alarms.json, which the credibility page of every report reads.
     records
-        Directory of the records.
+        Directory of the records; in a source checkout that of the package unless given.
     jobs
         Problems solved side by side; all cores unless given.
     time_limit
@@ -69,20 +80,22 @@ def alarms(
     resume
         Keep the whole results already in the output directory.
     quiet
-        Print nothing but complaints.
+        Print nothing but errors.
     as_json
         Print the record as JSON.
     """
     jobs = cores() if jobs is None else jobs
     if jobs < 1 or not time_limit > 0 or count < 1 or seed < 0:
-        return complain(
+        return print_error(
             f"--count = {count}, --seed = {seed}, --jobs = {jobs}, --time-limit = {time_limit:g}; only the "
             "seed may be zero, none negative"
         )
+    if record and (code := refuse_installed(records, "--records")) is not None:
+        return code
     if (code := no_gmsh()) is not None:
         return code
 
-    from verification.report import write_report  # matplotlib takes a second to load
+    from verification.report import write_report
 
     started = datetime.datetime.now(datetime.UTC)
     try:
@@ -97,7 +110,7 @@ def alarms(
             found = counted(results, seed, info)
             stored = write_record(records, found) if record else None
     except (StoreError, OSError) as error:
-        return complain(str(error))
+        return print_error(str(error))
     if as_json:
         sys.stdout.write(json.dumps(plain(asdict(found)), indent=2) + "\n")
     elif not quiet:

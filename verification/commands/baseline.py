@@ -12,24 +12,22 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
-from verification.baseline import Baseline, Update, updated
-from verification.baseline_file import path_in, read_baseline, write_baseline
-from verification.case import shipped_cases
-from verification.commands.common import BASELINE, complain
-from verification.store import StoreError, locked
-from verification.stored_run import StoredRun, confirm, read_run
-from verification.verdict import Outcome
+from verification.cases.contact import shipped_cases
+from verification.commands.common import BASELINE, BaselineFolder, print_error, refuse_installed
+from verification.judging.verdict import Outcome
+from verification.regression.baseline import Baseline, Update, updated
+from verification.regression.record import path_in, read_baseline, write_baseline
+from verification.running.store import StoreError, locked
+from verification.running.stored import StoredRun, confirm, read_run
 
 __all__ = ["show", "update"]
-
-Folder = Annotated[Path, Parameter(name=["--baseline", "-b"])]
 
 
 def update(
     run: Path = Path("reports"),
     *,
     why: str = "",
-    baseline: Folder = BASELINE,
+    baseline: BaselineFolder = BASELINE,
     quiet: Annotated[bool, Parameter(name=["--quiet", "-q"], negative="")] = False,
 ) -> int:
     """Make a stored default run the baseline; nothing else ever changes it.
@@ -45,23 +43,25 @@ def update(
     why
         The reason, kept with date, commit and versions in the baseline's history. There is no update without.
     baseline
-        Directory of the baseline.
+        Directory of the baseline; in a source checkout that of the package unless given.
     quiet
-        Print nothing but complaints.
+        Print nothing but errors.
     """
     if not why.strip():
-        return complain('--why is empty; say why the numbers change: coatcheck baseline update --why "..."')
+        return print_error('--why is empty; give the reason: coatcheck baseline update --why "..."')
+    if (code := refuse_installed(baseline, "--baseline")) is not None:
+        return code
     try:
         found = read_run(run)
         unfit = _unfit(found)
         if unfit:
-            return complain(unfit)
+            return print_error(unfit)
         confirm(found)
         with locked(baseline):
             made = updated(read_baseline(baseline), found.results, found.info, " ".join(why.split()), _now())
             path = write_baseline(baseline, made)
     except StoreError as error:
-        return complain(str(error))
+        return print_error(str(error))
     if not quiet:
         console = Console()
         changed = made.last.changes
@@ -78,7 +78,7 @@ def update(
 
 def show(
     *,
-    baseline: Folder = BASELINE,
+    baseline: BaselineFolder = BASELINE,
     as_json: Annotated[bool, Parameter(name="--json", negative="")] = False,
 ) -> int:
     """Show what the baseline holds and every update it has seen, with its reason.
@@ -86,16 +86,16 @@ def show(
     Parameters
     ----------
     baseline
-        Directory of the baseline.
+        Directory of the baseline; that of the package unless given.
     as_json
         Print one JSON object instead of tables.
     """
     try:
         stored = read_baseline(baseline)
     except StoreError as error:
-        return complain(str(error))
+        return print_error(str(error))
     if stored is None:
-        return complain(
+        return print_error(
             f'{path_in(baseline)}: there is no baseline; make one with: coatcheck baseline update --why "..."'
         )
     if as_json:

@@ -11,13 +11,13 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
-from verification.commands.common import DRIFTED, EXIT, STYLE, complain, one_line
-from verification.compare import RunComparison, compare_runs
-from verification.drift import State
-from verification.result import plain
-from verification.store import StoreError, write_atomically
-from verification.stored_run import read_run
-from verification.verdict import Outcome
+from verification.commands.common import DRIFTED, EXIT, STYLE, one_line, print_error
+from verification.judging.verdict import Outcome
+from verification.regression.comparison import RunComparison, compare_runs
+from verification.regression.drift import State
+from verification.running.result import plain
+from verification.running.store import StoreError, write_atomically
+from verification.running.stored import read_run
 
 __all__ = ["compare"]
 
@@ -47,18 +47,18 @@ def compare(
     output
         Also write all of it to this HTML file.
     quiet
-        Print nothing but complaints.
+        Print nothing but errors.
     as_json
         Print everything as JSON.
     """
     try:
         found = compare_runs(read_run(first), read_run(second))
         if output is not None:
-            from verification.report.compare import comparison_page
+            from verification.report.sections.comparison import comparison_page
 
             write_atomically(output, comparison_page(found).encode("utf-8", errors="replace"))
     except StoreError as error:
-        return complain(str(error))
+        return print_error(str(error))
     if as_json:
         content = {**plain(asdict(found)), "drifted": found.drifted, "worse": found.worse}
         sys.stdout.write(json.dumps(content, indent=2) + "\n")
@@ -93,6 +93,6 @@ def _print(found: RunComparison) -> None:
         console.print(f"... with {more} more, which --output or --json shows", highlight=False)
     for name, then, now in found.versions:
         console.print(escape(f"{name}: {one_line(then)} to {one_line(now)}"), highlight=False)
-    from verification.report.compare import comparison_sentence
+    from verification.report.sections.comparison import comparison_sentence
 
     console.print(comparison_sentence(found), highlight=False)

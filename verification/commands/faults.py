@@ -14,20 +14,19 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
-from verification.commands.common import EXIT, complain, no_gmsh
+from verification.commands.common import EXIT, RECORDS, RecordsFolder, no_gmsh, print_error, refuse_installed
 from verification.commands.solving import kept_results, solve
-from verification.schedule import case_task, cores
-from verification.store import StoreError, locked, write_atomically
-from verification.surroundings import commit, machine, versions
-from verification.verdict import Outcome
+from verification.judging.verdict import Outcome
+from verification.running.pool import cores
+from verification.running.provenance import commit, machine, versions
+from verification.running.store import StoreError, locked, write_atomically
+from verification.running.tasks import case_task
 
 if TYPE_CHECKING:
-    from verification.faults.fault import Fault
-    from verification.faults.record import Record
+    from verification.credibility.faults.planting import Fault
+    from verification.credibility.faults.record import Record
 
 __all__ = ["faults"]
-
-RECORDS = Path("reports/credibility")
 
 
 def faults(
@@ -36,7 +35,7 @@ def faults(
     listed: Annotated[bool, Parameter(name="--list", negative="")] = False,
     output: Annotated[Path, Parameter(name=["--output", "-o"])] = Path("reports/faults"),
     record: Annotated[bool, Parameter(negative="")] = False,
-    records: Path = RECORDS,
+    records: RecordsFolder = RECORDS,
     jobs: Annotated[int | None, Parameter(name=["--jobs", "-j"])] = None,
     time_limit: float = 300.0,
     resume: Annotated[bool, Parameter(negative="")] = False,
@@ -68,7 +67,7 @@ def faults(
     record
         Store the matrix of all faults as RECORDS/faults.json, which the credibility page of a report reads.
     records
-        Directory of the records.
+        Directory of the records; in a source checkout that of the package unless given.
     jobs
         Faults tried side by side; all cores unless given.
     time_limit
@@ -76,33 +75,35 @@ def faults(
     resume
         Keep the trials already in the output directory that belong to the same faults, the same code.
     quiet
-        Print nothing but complaints.
+        Print nothing but errors.
     as_json
         Print the matrix as JSON.
     """
     jobs = cores() if jobs is None else jobs
     if jobs < 1 or not time_limit > 0:
-        return complain(f"--jobs = {jobs}, --time-limit = {time_limit:g}; both must be positive")
-    from verification.faults.catalogue import GROUPS, chosen
+        return print_error(f"--jobs = {jobs}, --time-limit = {time_limit:g}; both must be positive")
+    from verification.credibility.faults.catalogue import GROUPS, chosen
 
     if group is not None and (group not in GROUPS or names):
         said = "give a group or names, not both" if names else f"choose one of {', '.join(GROUPS)}"
-        return complain(f"--group = {group}: {said}")
+        return print_error(f"--group = {group}: {said}")
     try:
         wanted = chosen(names, group)
     except KeyError as error:
-        return complain(f"{error.args[0]}: no fault has this name; see coatcheck faults --list")
+        return print_error(f"{error.args[0]}: no fault has this name; see coatcheck faults --list")
     if listed:
         _list(wanted, as_json)
         return 0
     if record and (names or group):
-        return complain("--record stores the matrix of all faults; leave names and --group out")
+        return print_error("--record stores the matrix of all faults; leave names and --group out")
+    if record and (code := refuse_installed(records, "--records")) is not None:
+        return code
     if (code := no_gmsh()) is not None:
         return code
 
-    from verification.faults import campaign
-    from verification.faults.record import to_json
-    from verification.report.faults import faults_page
+    from verification.credibility.faults import campaign
+    from verification.credibility.faults.record import to_json
+    from verification.report.credibility.faults import faults_page
 
     begin, started = time.perf_counter(), datetime.datetime.now(datetime.UTC)
     try:
@@ -111,7 +112,7 @@ def faults(
             stood = kept_results(cases, campaign.clean_folder(output)) if resume else {}
             tasks = [case_task(c, campaign.clean_folder(output)) for c in cases if c.name not in stood]
             if said := campaign.unfit([*stood.values(), *solve(tasks, jobs, time_limit, quiet or as_json)]):
-                complain(said)
+                print_error(said)
                 return EXIT[Outcome.NO_RESULT]
             kept = {f.name: t for f in wanted if resume and (t := campaign.kept_trial(f, output))}
             # the long ones first, so that no core waits at the end
@@ -132,7 +133,7 @@ def faults(
             if record:
                 campaign.write_record(records / campaign.RECORD, found)
     except StoreError as error:
-        return complain(str(error))
+        return print_error(str(error))
     if as_json:
         sys.stdout.write(json.dumps(to_json(found), indent=2) + "\n")
     elif not quiet:
@@ -152,8 +153,8 @@ def _list(wanted: Sequence["Fault"], as_json: bool) -> None:
 
 
 def _print(found: "Record", page: Path) -> None:
-    from verification.faults.catalogue import GROUPS
-    from verification.faults.record import Catch
+    from verification.credibility.faults.catalogue import GROUPS
+    from verification.credibility.faults.record import Catch
 
     shown = [catch for catch in Catch if any(row.catch is catch for row in found.rows)]
     table = Table("group", "faults", *shown, "as foretold", box=None, header_style="bold")

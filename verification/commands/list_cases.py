@@ -8,8 +8,8 @@ from cyclopts import Parameter
 from rich.console import Console
 from rich.table import Table
 
-from verification.case import Case, read_case, shipped_cases
-from verification.printed import PublishedCase, published_cases, read_published
+from verification.cases.contact import Case, read_case, shipped_cases
+from verification.cases.published import PublishedCase, published_cases, read_published
 
 __all__ = ["list_cases"]
 
@@ -37,7 +37,7 @@ def list_cases(*, as_json: Annotated[bool, Parameter(name="--json", negative="")
         table.add_row(case.name, case.title, str(len(case.claims)), case.source)
     printed = Table("published", "title", "values", "year", "source", box=None, header_style="bold")
     for result in published:
-        values = sum(int(item.counted.sum()) for item in result.printed)
+        values = sum(int(item.counted.sum()) for item in result.columns)
         printed.add_row(result.name, result.title, str(values), str(result.citation["year"]), result.source)
     Console().print(table)
     Console().print()

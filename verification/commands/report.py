@@ -8,15 +8,24 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
-from verification.baseline import regression
-from verification.baseline_file import read_baseline
-from verification.commands.common import BASELINE, EXIT, RECORDS, complain, exit_code
-from verification.result import CaseResult, RunInfo, from_json, to_json
-from verification.self_test import self_tests
-from verification.store import StoreError, locked, read_checked
-from verification.stored_run import read_run
-from verification.surroundings import machine
-from verification.verdict import Outcome
+from verification.commands.common import (
+    BASELINE,
+    EXIT,
+    RECORDS,
+    BaselineFolder,
+    RecordsFolder,
+    exit_code,
+    print_error,
+    within_package,
+)
+from verification.judging.verdict import Outcome
+from verification.regression.baseline import regression
+from verification.regression.record import read_baseline
+from verification.running.provenance import machine
+from verification.running.result import CaseResult, RunInfo, from_json, to_json
+from verification.running.self_tests import self_tests
+from verification.running.store import StoreError, locked, read_checked
+from verification.running.stored import read_run
 
 __all__ = ["report"]
 
@@ -26,8 +35,8 @@ def report(
     /,
     *,
     pdf: Annotated[bool, Parameter(negative="")] = False,
-    baseline: Annotated[Path, Parameter(name=["--baseline", "-b"])] = BASELINE,
-    records: Path = RECORDS,
+    baseline: BaselineFolder = BASELINE,
+    records: RecordsFolder = RECORDS,
     time_limit: float = 300.0,
     quiet: Annotated[bool, Parameter(name=["--quiet", "-q"], negative="")] = False,
     as_json: Annotated[bool, Parameter(name="--json", negative="")] = False,
@@ -41,23 +50,23 @@ def report(
     pdf
         Also print the page to report.pdf there, through an installed Chromium or Chrome.
     baseline
-        Directory of the baseline; where it holds one, every number is held against it.
+        Directory of the baseline that every number is held against; that of the package unless given.
     records
-        Directory of the records of credibility.
+        Directory of the records of credibility; that of the package unless given.
     time_limit
         Seconds that printing may take.
     quiet
-        Print nothing but complaints.
+        Print nothing but errors.
     as_json
         Print one JSON object that names the files.
     """
-    from verification.accuracy_study import from_json as study_from_json
-    from verification.accuracy_study import path_in
-    from verification.commands.printing import NoBrowser, printed
-    from verification.commands.writing import write
+    from verification.credibility.accuracy import from_json as study_from_json
+    from verification.credibility.accuracy import path_in
+    from verification.report.assemble import write
+    from verification.report.pdf import NoBrowser, printed
 
     if not (folder / "cases").is_dir():
-        return complain(f"{folder}: holds no run; write one with: coatcheck run --output {folder}")
+        return print_error(f"{folder}: holds no run; write one with: coatcheck run --output {folder}")
     try:
         known = read_baseline(baseline)
         with locked(folder):
@@ -66,16 +75,16 @@ def report(
             study = None
             if path_in(folder).exists():
                 study = study_from_json(read_checked(path_in(folder)))
-            beside = regression(results, known, str(baseline), info, whole=False)
+            beside = regression(results, known, within_package(baseline), info, whole=False)
             page = write(results, folder, info, study, beside, records, self_tests())
             files = [page]
             if pdf:
                 files.append(printed(page, folder / "report.pdf", time_limit))
     except NoBrowser as error:
-        complain(str(error))
+        print_error(str(error))
         return EXIT[Outcome.NO_RESULT]
     except (StoreError, ValueError) as error:
-        return complain(str(error))
+        return print_error(str(error))
     if as_json:
         sys.stdout.write(json.dumps({"files": [str(file) for file in files]}, indent=2) + "\n")
     elif not quiet:

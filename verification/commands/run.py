@@ -19,9 +19,9 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Column, Table
 
-from verification.baseline import Regression, State, regression, regression_json
-from verification.baseline_file import read_baseline
-from verification.case import Case, CaseError, read_case, shipped_cases
+from verification.cases.contact import Case, read_case, shipped_cases
+from verification.cases.published import PublishedCase, is_published, published_cases, read_published
+from verification.cases.toml import CaseError
 from verification.commands.common import (
     BASELINE,
     DRIFTED,
@@ -29,19 +29,24 @@ from verification.commands.common import (
     RECORDS,
     STOPPED,
     STYLE,
-    complain,
+    BaselineFolder,
+    RecordsFolder,
     exit_code,
     no_gmsh,
     one_line,
+    print_error,
     run_info,
+    within_package,
 )
 from verification.commands.solving import kept_results, kept_study, solve
-from verification.printed import PublishedCase, is_published, published_cases, read_published
-from verification.result import CaseResult
-from verification.schedule import Task, case_task, cores, kept_result, published_task
-from verification.self_test import SelfTest, self_tests
-from verification.store import StoreError, locked
-from verification.verdict import Outcome
+from verification.judging.verdict import Outcome
+from verification.regression.baseline import Regression, State, regression, regression_json
+from verification.regression.record import read_baseline
+from verification.running.pool import Task, cores
+from verification.running.result import CaseResult
+from verification.running.self_tests import SelfTest, self_tests
+from verification.running.store import StoreError, locked
+from verification.running.tasks import case_task, kept_result, published_task
 
 __all__ = ["run"]
 
@@ -53,8 +58,8 @@ def run(
     output: Annotated[Path, Parameter(name=["--output", "-o"])] = Path("reports"),
     jobs: Annotated[int | None, Parameter(name=["--jobs", "-j"])] = None,
     time_limit: float = 600.0,
-    baseline: Annotated[Path, Parameter(name=["--baseline", "-b"])] = BASELINE,
-    records: Path = RECORDS,
+    baseline: BaselineFolder = BASELINE,
+    records: RecordsFolder = RECORDS,
     resume: Annotated[bool, Parameter(negative="")] = False,
     fields: Annotated[bool, Parameter(negative="")] = False,
     verbose: Annotated[bool, Parameter(name=["--verbose", "-v"], negative="")] = False,
@@ -83,9 +88,10 @@ def run(
     time_limit
         Seconds one case may take before it is stopped and reported as having no result.
     baseline
-        Directory of the baseline; where it holds one, every number is held against it.
+        Directory of the baseline that every number is held against; that of the package unless given.
     records
-        Directory of what coatcheck faults and coatcheck alarms recorded, for the credibility page.
+        Directory of the records of coatcheck faults and coatcheck alarms, which the credibility page shows;
+        that of the package unless given.
     resume
         Keep the whole results already in the output directory that belong to the same case files.
     fields
@@ -93,29 +99,30 @@ def run(
     verbose
         Say the seconds and iterations of every source as the cases finish.
     quiet
-        Print nothing but complaints.
+        Print nothing but errors.
     as_json
         Print one JSON object with the outcome of each case instead of a table.
     """
     jobs = cores() if jobs is None else jobs
     if jobs < 1 or not time_limit > 0:
-        return complain(f"--jobs = {jobs}, --time-limit = {time_limit:g}; both must be positive")
+        return print_error(f"--jobs = {jobs}, --time-limit = {time_limit:g}; both must be positive")
     try:
         chosen = _choose(cases)
     except CaseError as error:
-        return complain(str(error))
+        return print_error(str(error))
     if (code := no_gmsh()) is not None:
         return code
 
-    from verification import accuracy_study, effective_study  # SciPy and matplotlib take a second to load
-    from verification.accuracy_study import AccuracyStudy
-    from verification.commands.writing import write
-    from verification.effective_study import EffectiveStudy
+    from verification.credibility import accuracy as accuracy_study
+    from verification.credibility.accuracy import AccuracyStudy
+    from verification.report.assemble import write
+    from verification.study import formulas as effective_study
+    from verification.study.formulas import EffectiveStudy
 
     tests = self_tests()
     for test in tests:
         if not test.passed:
-            complain(f"self-test of the {test.name}: {test.found}; the verdicts of this run mean nothing")
+            print_error(f"self-test of the {test.name}: {test.found}; the verdicts of this run mean nothing")
     begin, started = time.perf_counter(), datetime.datetime.now(datetime.UTC)
     try:
         known = read_baseline(baseline)
@@ -134,10 +141,10 @@ def run(
             formulas = next((r for r in solved if isinstance(r, EffectiveStudy)), None)
             ordered = [kept.get(case.name) or results[case.name] for case in chosen]
             info = run_info(shlex.join(["coatcheck", "run", *cases]), started, jobs)
-            beside = regression(ordered, known, str(baseline), info, whole=not cases)
+            beside = regression(ordered, known, within_package(baseline), info, whole=not cases)
             page = write(ordered, output, info, study, beside, records, tests, formulas)
     except StoreError as error:
-        return complain(str(error))
+        return print_error(str(error))
     except KeyboardInterrupt:
         return _stopped(chosen, output)
     if as_json:
@@ -190,7 +197,7 @@ def _stopped(chosen: Sequence[Case | PublishedCase], output: Path) -> int:
     for case in chosen:
         with suppress(StoreError):
             finished += kept_result(output, case) is not None
-    complain(
+    print_error(
         f"stopped; {finished} of {len(chosen)} cases are finished and kept in {output}: go on with --resume, "
         f"or see what is there with coatcheck report {output}"
     )
@@ -255,15 +262,15 @@ def _print_table(results: Sequence[CaseResult], page: Path, seconds: float, besi
             if law.outcome is not Outcome.AGREES:
                 say(
                     f"[{STYLE[law.outcome]}]{escape(result.name)}, {law.source}, {escape(law.name)}:[/] "
-                    f"{escape(one_line(law.sentence))}"
+                    f"{escape(one_line(law.message))}"
                 )
     laws = [law for result in results for law in result.invariants]
     if laws:
         say(f"{sum(law.outcome is Outcome.AGREES for law in laws)} of {len(laws)} invariants hold")
-    if beside.update is not None:
-        from verification.report.baseline import baseline_sentence
+    from verification.report.sections.baseline import baseline_sentence
 
-        say(escape(f"baseline of {beside.update.when[:10]}: {baseline_sentence(beside)}"))
+    known = f"baseline of {beside.update.when[:10]} in {beside.folder}: " if beside.update is not None else ""
+    say(escape(f"{known}{baseline_sentence(beside)}"))
     number = "1 case" if len(results) == 1 else f"{len(results)} cases"
     say(f"{number} in {seconds:.0f} s; report: {escape(str(page))}")
 

@@ -7,14 +7,15 @@ from typing import TypeVar
 from rich.console import Console
 from rich.markup import escape
 
-from verification import accuracy_study
-from verification.accuracy_study import AccuracyStudy
-from verification.case import Case
-from verification.commands.common import STYLE, complain, one_line, progress_bar
-from verification.printed import PublishedCase
-from verification.result import CaseResult
-from verification.schedule import Task, kept_result, run_tasks
-from verification.store import StoreError
+from verification.cases.contact import Case
+from verification.cases.published import PublishedCase
+from verification.commands.common import STYLE, one_line, print_error, progress_bar
+from verification.credibility import accuracy as accuracy_study
+from verification.credibility.accuracy import AccuracyStudy
+from verification.running.pool import Task, run_tasks
+from verification.running.result import CaseResult
+from verification.running.store import StoreError
+from verification.running.tasks import kept_result
 
 __all__ = ["kept_results", "kept_study", "solve"]
 
@@ -30,7 +31,7 @@ def kept_results(
         try:
             result = kept_result(output, case, fields=fields)
         except StoreError as error:
-            complain(f"{error}; computed again")
+            print_error(f"{error}; computed again")
             continue
         if result is not None:
             kept[case.name] = result
@@ -42,7 +43,7 @@ def kept_study(output: Path) -> AccuracyStudy | None:
     try:
         return accuracy_study.stored(output)
     except StoreError as error:
-        complain(f"{error}; measured again")
+        print_error(f"{error}; measured again")
         return None
 
 

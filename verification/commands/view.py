@@ -9,10 +9,10 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
-from verification.commands.common import EXIT, complain
-from verification.fields import read_fields
-from verification.store import StoreError, write_atomically
-from verification.verdict import Outcome
+from verification.commands.common import EXIT, print_error
+from verification.judging.verdict import Outcome
+from verification.running.fields import read_fields
+from verification.running.store import StoreError, write_atomically
 
 __all__ = ["view"]
 
@@ -44,16 +44,23 @@ def view(
         Seconds that the picture may take.
     """
     if quantity not in QUANTITIES:
-        return complain(f"--quantity = {quantity}; there are {', '.join(QUANTITIES)}")
+        return print_error(f"--quantity = {quantity}; there are {', '.join(QUANTITIES)}")
     if Path(case).name != case:
-        return complain(f"{case}: not the name of a case; see coatcheck list")
+        return print_error(f"{case}: not the name of a case; see coatcheck list")
     if screenshot is not None and screenshot.suffix.lower() != ".png":
-        return complain(f"--screenshot = {screenshot}; the name has to end in .png")
+        return print_error(f"--screenshot = {screenshot}; the name has to end in .png")
     try:
         read_fields(output, case)
     except StoreError as error:
-        return complain(f"{error}; fields are written by: coatcheck run {case} --fields")
-    words = [sys.executable, "-m", "verification.viewer", str(output), case, f"{quantity} [Pa]"]
+        return print_error(f"{error}; fields are written by: coatcheck run {case} --fields")
+    words = [
+        sys.executable,
+        "-m",
+        "verification.report.figures.viewer",
+        str(output),
+        case,
+        f"{quantity} [Pa]",
+    ]
     if screenshot is not None:
         return _picture(words, screenshot, time_limit)
     if sys.platform == "linux" and not (os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")):
@@ -80,12 +87,12 @@ def _picture(words: list[str], path: Path, time_limit: float) -> int:
         try:
             write_atomically(path, drawn.read_bytes())
         except StoreError as error:
-            return complain(str(error))
+            return print_error(str(error))
     return 0
 
 
 def _none(sentence: str) -> int:
-    complain(sentence)
+    print_error(sentence)
     return EXIT[Outcome.NO_RESULT]
 
 

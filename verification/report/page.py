@@ -1,6 +1,5 @@
 """The report page: from case results to one HTML text that needs nothing else."""
 
-import hashlib
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -9,28 +8,25 @@ from functools import partial
 import numpy as np
 from markupsafe import Markup
 
-from verification.accuracy_study import AccuracyStudy
-from verification.baseline import Regression
-from verification.plane import Plane
-from verification.report.accuracy import accuracy_overview, accuracy_sentence, accuracy_table, coverage_table
-from verification.report.again import again
-from verification.report.baseline import baseline_section, state_cell
-from verification.report.cells import Part, Section, Table
-from verification.report.convergence import convergence_sections
-from verification.report.csvdata import embedded, line_csv
-from verification.report.cutaway import Cutaway
-from verification.report.dress import dressed
-from verification.report.family import family_section
-from verification.report.invariants import invariant_cell, invariant_section, invariant_table
-from verification.report.matrix import verdict_matrix
-from verification.report.names import METHODS, OUTCOMES, OutcomeStyle, source_label
-from verification.report.numbers import engineering, plain, scientific, seconds
-from verification.report.panels import LineFigures, line_figures
-from verification.report.pictures import Pictures, pictures
-from verification.report.published import published_overview, published_view
-from verification.report.reading import lines, scale, slug
-from verification.report.sketch import sketch
-from verification.report.tables import (
+from verification.credibility.accuracy import AccuracyStudy
+from verification.judging.verdict import Outcome
+from verification.regression.baseline import Regression
+from verification.report.figures.fields import Pictures, pictures
+from verification.report.figures.panels import LineFigures, line_figures
+from verification.report.figures.sketch import sketch
+from verification.report.rerun import again
+from verification.report.sections.accuracy import (
+    accuracy_overview,
+    accuracy_sentence,
+    accuracy_table,
+    coverage_table,
+)
+from verification.report.sections.baseline import baseline_section, state_cell
+from verification.report.sections.family import family_section
+from verification.report.sections.invariants import invariant_cell, invariant_section, invariant_table
+from verification.report.sections.published import published_overview, published_view
+from verification.report.sections.refinement import convergence_sections
+from verification.report.tables.case import (
     budget_table,
     contact_table,
     diagnostics_table,
@@ -39,8 +35,15 @@ from verification.report.tables import (
     time_table,
     verdict_table,
 )
-from verification.result import CaseResult, RunInfo
-from verification.verdict import Outcome
+from verification.report.tables.cells import Part, Section, Table
+from verification.report.tables.csv import embedded, line_csv
+from verification.report.tables.labels import METHODS, OUTCOMES, OutcomeStyle, source_label
+from verification.report.tables.lookup import lines, scale, slug
+from verification.report.tables.matrix import verdict_matrix
+from verification.report.tables.numbers import engineering, plain, scientific, seconds
+from verification.report.templates import rendered
+from verification.running.result import CaseResult, RunInfo
+from verification.sampling.plane import Plane
 
 __all__ = ["render"]
 
@@ -70,7 +73,6 @@ class CaseView:
     command: str
     facts: tuple[tuple[str, str], ...]
     sketch: Markup
-    cutaway: Cutaway | None
     failures: tuple[tuple[str, str], ...]
     layers: Table
     contact: Table
@@ -95,17 +97,15 @@ def render(
     extra: Sequence[Section] = (),
     planes: Mapping[str, Plane] | None = None,
     baseline: Regression | None = None,
-    cutaways: Mapping[str, Cutaway] | None = None,
 ) -> str:
     """The whole page as text. Every string of a result is escaped: a title "<script>" stays text.
 
-    planes : what to draw of the plane below the contact.   cutaways : pictures of the problem. Both by
-    name of the case.
+    planes : what to draw of the plane below the contact, by name of the case.
     baseline : what became of each number since the baseline.
     """
     # A report tells of numbers that overflow or are not finite; it must not stumble over them.
     with np.errstate(all="ignore"):
-        return _render(results, info, study, extra, planes or {}, baseline, cutaways or {})
+        return _render(results, info, study, extra, planes or {}, baseline)
 
 
 def _render(
@@ -115,7 +115,6 @@ def _render(
     extra: Sequence[Section],
     planes: Mapping[str, Plane],
     baseline: Regression | None,
-    cutaways: Mapping[str, Cutaway],
 ) -> str:
     anchors = _anchors(results)
     sections = _sections(results, anchors, study)
@@ -125,7 +124,7 @@ def _render(
     drifts = baseline.cases if baseline is not None else ()
     contacts = [result for result in results if not result.published]
     contact_anchors = dict(enumerate(anchors[n] for n, result in enumerate(results) if not result.published))
-    return dressed(
+    return rendered(
         "page.html",
         info=info,
         summary=_summary(results),
@@ -146,7 +145,7 @@ def _render(
         outcomes=OUTCOMES.values(),
         sections=[*sections, *extra],
         cases=[
-            _case(result, anchor, info, planes.get(result.name), cutaways.get(result.name))
+            _case(result, anchor, info, planes.get(result.name))
             for result, anchor in zip(contacts, contact_anchors.values(), strict=True)
         ],
         seconds=seconds,
@@ -228,9 +227,7 @@ def _summary(results: Sequence[CaseResult]) -> str:
     return text + "."
 
 
-def _case(
-    result: CaseResult, anchor: str, info: RunInfo, plane: Plane | None, cutaway: Cutaway | None
-) -> CaseView:
+def _case(result: CaseResult, anchor: str, info: RunInfo, plane: Plane | None) -> CaseView:
     style = OUTCOMES[result.outcome]
     bad = [item for item in result.verdicts if item[1].outcome is not Outcome.AGREES]
     broken = [one for one in result.invariants if one.outcome is not Outcome.AGREES]
@@ -244,7 +241,6 @@ def _case(
         command=again(result.name, info.command),
         facts=_facts(result),
         sketch=sketch(result),
-        cutaway=cutaway,
         failures=tuple((source_label(s.source), s.failure) for s in result.sources if s.failure is not None),
         layers=layer_table(result),
         contact=contact_table(result),
@@ -264,12 +260,10 @@ def _case(
 
 
 def _line(result: CaseResult, line: str, anchor: str, file: str) -> LineView:
-    key = f"{anchor}-{slug(line)}"
     return LineView(
-        anchor=key,
+        anchor=f"{anchor}-{slug(line)}",
         title=f"Along the {line}" if line in ("surface", "axis") else line.capitalize(),
-        # Named in every figure many times over: short names for the identifiers within.
-        figures=line_figures(result, line, f"f{hashlib.blake2s(key.encode(), digest_size=5).hexdigest()}"),
+        figures=line_figures(result, line),
         csv=embedded(line_csv(result, line)),
         file=f"{file}-{slug(line)}.csv",
     )

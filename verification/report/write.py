@@ -6,16 +6,15 @@ import tempfile
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from verification import accuracy_study
-from verification.accuracy_study import AccuracyStudy
-from verification.baseline import Regression, regression_json
-from verification.plane import Plane
-from verification.report.cells import Section
-from verification.report.cutaway import cutaways
+from verification.credibility import accuracy as accuracy_study
+from verification.credibility.accuracy import AccuracyStudy
+from verification.regression.baseline import Regression, regression_json
 from verification.report.junit import junit_xml
 from verification.report.page import render
-from verification.result import SCHEMA, CaseResult, RunInfo, to_json
-from verification.store import PART
+from verification.report.tables.cells import Section
+from verification.running.result import SCHEMA, CaseResult, RunInfo, to_json
+from verification.running.store import PART
+from verification.sampling.plane import Plane
 
 __all__ = ["report_json", "write_report"]
 
@@ -43,7 +42,7 @@ def write_report(
     texts = {
         "report.json": report_json(results, info, study, baseline),
         "junit.xml": junit_xml(results, info),
-        "report.html": render(results, info, study, extra, planes, baseline, cutaways(results, planes or {})),
+        "report.html": render(results, info, study, extra, planes, baseline),
     }
     folder.mkdir(parents=True, exist_ok=True)
     ready: dict[Path, Path] = {}

@@ -14,8 +14,8 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
-from verification.store import StoreError, read_checked, write_checked
-from verification.surroundings import versions
+from verification.running.provenance import versions
+from verification.running.store import StoreError, read_checked, write_checked
 
 __all__ = ["Cache", "code_version", "solve_key"]
 
@@ -23,15 +23,16 @@ __all__ = ["Cache", "code_version", "solve_key"]
 _SOURCES = {
     "semianalytic": ("semianalytic",),
     "fem_reference": ("fem_reference",),
-    "integral_equation": ("verification.references",),
+    "integral_equation": ("verification.sources.references",),
 }
 _SEARCH = (
     "verification.study.quantities",
     "verification.study.planes",
     "verification.study.point",
-    "verification.plane",
     "verification.problem",
-    "verification.run",
+    "verification.sources.contact",
+    "verification.sampling.plane",
+    "verification.running.result",
 )
 _DIGITS = ("python", "numpy", "scipy", "ducc0", "scikit-fem", "gmsh")
 

@@ -15,13 +15,13 @@ from numpy.typing import NDArray
 from pydantic import Field, model_validator
 from scipy.interpolate import PchipInterpolator
 
-from verification.case import Strict
+from verification.cases.toml import Strict
+from verification.problem.arrays import Array
 from verification.study.curves import Curve
 from verification.study.quantities import Stress
 
 __all__ = ["MODES", "Criteria", "Judged", "judged"]
 
-Array = NDArray[np.float64]
 
 # What each stress of a study breaks.
 MODES = {

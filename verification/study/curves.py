@@ -10,12 +10,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from verification.problem.arrays import Array
 from verification.study.quantities import QUANTITIES
 from verification.study.table import SCALARS, SOURCES
 
 __all__ = ["Curve", "Difference", "curves", "differences"]
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

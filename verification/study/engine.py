@@ -20,9 +20,9 @@ from itertools import chain, groupby, islice
 from pathlib import Path
 from typing import Any
 
-from verification.run import sentence
-from verification.schedule import THREAD_VARIABLES, cores
-from verification.store import StoreError, locked
+from verification.running.pool import THREAD_VARIABLES, cores
+from verification.running.result import sentence
+from verification.running.store import StoreError, locked
 from verification.study.cache import Cache, code_version, solve_key
 from verification.study.plan import Solve, Study
 from verification.study.point import answer, peak_memory, table_rows

@@ -16,24 +16,15 @@ from typing import Annotated, Any
 import numpy as np
 from pydantic import Discriminator, Field, Tag, model_validator
 
-from verification.case import (
-    CaseError,
-    Length,
-    Modulus,
-    Poisson,
-    Strict,
-    Text,
-    read_bounded,
-    read_toml,
-    refuse_unfit_scales,
-)
-from verification.problem import CoatedContact
+from verification.cases.contact import refuse_unfit_scales
+from verification.cases.toml import CaseError, Length, Modulus, Poisson, Strict, Text, read_bounded, read_toml
+from verification.problem.contact import CoatedContact
 from verification.study.criteria import Criteria
 from verification.study.table import SOURCES
 
 __all__ = ["Solve", "Study", "parse_study", "read_study_file", "shipped_studies", "thicknesses_between"]
 
-STUDIES = Path(__file__).parent.parent / "studies"
+STUDIES = Path(__file__).parent.parent / "cases" / "shipped" / "studies"
 MOST_POINTS = 1_000_000
 
 

@@ -19,11 +19,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import make_interp_spline
 
-from verification.problem import Solution
+from verification.problem.arrays import Array
+from verification.problem.contact import Solution
 
 __all__ = ["XX", "XZ", "YY", "ZZ", "Parts", "Plane", "crowded", "plane", "stress_at", "surface"]
 
-Array = NDArray[np.float64]
 Curve = Callable[[Array], Array]
 
 XX, YY, ZZ, XZ = range(4)

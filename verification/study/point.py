@@ -12,12 +12,13 @@ from typing import Any
 
 from threadpoolctl import threadpool_limits
 
-from verification.problem import CoatedContact
-from verification.run import sentence, solvers
+from verification.problem.contact import CoatedContact
+from verification.running.provenance import versions
+from verification.running.result import sentence
+from verification.sources.contact import solvers
 from verification.study.cache import code_version
 from verification.study.quantities import quantities
 from verification.study.table import SCALARS
-from verification.surroundings import versions
 
 __all__ = ["answer", "peak_memory", "problem_of", "table_rows"]
 

@@ -10,17 +10,16 @@ from dataclasses import dataclass
 from typing import Literal, get_args
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 from scipy.optimize import minimize_scalar
 
-from verification.plane import von_mises
-from verification.problem import CoatedContact, Solution
+from verification.problem.arrays import Array
+from verification.problem.contact import CoatedContact, Solution
+from verification.problem.quantity import von_mises
 from verification.study.planes import XX, XZ, ZZ, Parts, Plane, crowded, plane, stress_at, surface
 
 __all__ = ["QUANTITIES", "Located", "Stress", "quantities"]
 
-Array = NDArray[np.float64]
 Measure = Callable[[Array], Array]
 
 # The stresses of a study [Pa], each with its place, in the order of the columns.

@@ -23,7 +23,7 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 from numpy.typing import NDArray
 
-from verification.store import StoreError, write_atomically
+from verification.running.store import StoreError, write_atomically
 from verification.study.quantities import QUANTITIES
 
 __all__ = ["COLUMNS", "SCALARS", "SOURCES", "read_columns", "read_study", "write_table"]

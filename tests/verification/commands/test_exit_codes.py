@@ -1,0 +1,156 @@
+"""The command line: exit codes, complaints in one sentence, nothing written on bad input."""
+
+import json
+import os
+import subprocess
+
+import pytest
+from quick_case import COMMAND, QUICK, coatcheck
+
+from verification.cases.contact import Case, read_case, shipped_cases
+from verification.cases.published import published_cases
+from verification.commands.common import exit_code
+from verification.judging.verdict import Claim, Outcome, Verdict
+from verification.running.result import CaseResult
+from verification.running.tasks import run_cases
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["run", "no_such_case"], "no_such_case"),
+        (["run", "none.toml"], "none.toml: there is no such file"),
+        (["run", "."], "is a directory"),
+        (["run", "bad.toml"], "bad.toml: problem.load"),
+        (["run", "bad.toml", "01_uncoated_steel"], "bad.toml: problem.load"),
+        (["run", "01_uncoated_steel", "01_uncoated_steel"], "named twice"),
+        (["run", "--jobs", "0"], "--jobs = 0"),
+        (["run", "--jobs", "many"], "--jobs"),
+        (["run", "--time-limit", "-1"], "--time-limit = -1"),
+        (["run", "--frobnicate"], "--frobnicate"),
+        (["frobnicate"], "frobnicate"),
+    ],
+)
+def test_bad_input_is_one_sentence_code_2_and_nothing_written(tmp_path, words, said):
+    (tmp_path / "bad.toml").write_text(QUICK.replace("load = 20", "load = 0"))
+    before = sorted(tmp_path.rglob("*"))
+    done = coatcheck(*words, cwd=tmp_path)
+    assert done.returncode == 2
+    assert said in done.stderr
+    assert len(done.stderr.strip().splitlines()) == 1
+    assert "Traceback" not in done.stderr
+    assert sorted(tmp_path.rglob("*")) == before
+
+
+def test_run_writes_the_report_and_resume_keeps_what_is_whole(tmp_path):
+    (tmp_path / "quick.toml").write_text(QUICK)
+    done = coatcheck("run", "quick.toml", "--json", cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    summary = json.loads(done.stdout)
+    assert summary["cases"]["quick"]["outcome"] == "AGREES"
+    for name in ("report.html", "report.json", "junit.xml", "cases/quick.json"):
+        assert (tmp_path / "reports" / name).stat().st_size > 0
+    stored = tmp_path / "reports" / "cases" / "quick.json"
+    first = stored.stat().st_mtime_ns
+    assert coatcheck("run", "quick.toml", "--resume", "--quiet", cwd=tmp_path).returncode == 0
+    assert stored.stat().st_mtime_ns == first
+    stored.write_bytes(stored.read_bytes()[:-100])
+    assert coatcheck("run", "quick.toml", "--resume", "--quiet", cwd=tmp_path).returncode == 0
+    assert stored.stat().st_mtime_ns != first
+
+
+def test_output_that_cannot_be_written_is_one_sentence(tmp_path):
+    (tmp_path / "quick.toml").write_text(QUICK)
+    (tmp_path / "file").write_text("in the way")
+    done = coatcheck("run", "quick.toml", "--output", "file/below", cwd=tmp_path)
+    assert done.returncode == 2
+    assert done.stderr.startswith("coatcheck: file/below: cannot be written")
+
+
+def test_case_that_exceeds_its_time_is_no_result_and_the_others_finish(tmp_path):
+    slow = read_case(shipped_cases()["05_ratio_4"])
+    (tmp_path / "quick.toml").write_text(QUICK)
+    quick = read_case(tmp_path / "quick.toml")
+    # Importing the methods alone takes longer than this.
+    results = run_cases([slow, quick], tmp_path, jobs=2, time_limit=0.2)
+    assert [r.outcome for r in results] == [Outcome.NO_RESULT, Outcome.NO_RESULT]
+    assert "not finished after" in results[0].verdicts[0][1].reason
+    results = run_cases([quick], tmp_path, jobs=1, time_limit=100)
+    assert results[0].outcome is Outcome.AGREES
+
+
+def test_process_that_ends_badly_is_no_result_with_the_reason(tmp_path):
+    (tmp_path / "quick.toml").write_text(QUICK)
+    quick = read_case(tmp_path / "quick.toml")
+    broken = Case(quick.name, quick.title, quick.problem, quick.claims, text="not = [toml")
+    result = run_cases([broken], tmp_path, jobs=1, time_limit=100)[0]
+    assert result.outcome is Outcome.NO_RESULT
+    assert "ended with code 1" in result.verdicts[0][1].reason
+
+
+@pytest.mark.parametrize(
+    ("outcomes", "code"),
+    [
+        (["AGREES", "AGREES"], 0),
+        (["AGREES", "INCONCLUSIVE"], 4),
+        (["INCONCLUSIVE", "NO_RESULT"], 3),
+        (["NO_RESULT", "DISAGREES", "INCONCLUSIVE"], 1),
+        ([], 3),
+    ],
+)
+def test_exit_code_is_that_of_the_worst_outcome(outcomes, code):
+    claim = Claim("peak_pressure", "contact", ("semianalytic", "hertz"), 1e-3, "why")
+    results = [
+        CaseResult("n", "t", "s", {}, (), (), ((claim, Verdict(Outcome(outcome), "why")),), 0.0)
+        for outcome in outcomes
+    ]
+    assert exit_code(results) == code
+
+
+def test_help_and_list_answer_quickly_and_well(tmp_path):
+    for words in (["--help"], ["run", "--help"], ["list"], ["--version"]):
+        done = coatcheck(*words, cwd=tmp_path)
+        assert done.returncode == 0
+        assert done.stdout.strip()
+    names = [row["name"] for row in json.loads(coatcheck("list", "--json", cwd=tmp_path).stdout)]
+    assert names == [*shipped_cases(), *published_cases()]
+
+
+def test_missing_system_library_names_the_packages_and_writes_nothing(tmp_path):
+    (tmp_path / "fake").mkdir()
+    (tmp_path / "fake" / "gmsh.py").write_text(
+        "raise OSError('libGLU.so.1: cannot open shared object file: No such file or directory')\n"
+    )
+    (tmp_path / "quick.toml").write_text(QUICK)
+    done = subprocess.run(
+        [*COMMAND, "run", "quick.toml"],
+        cwd=tmp_path,
+        env=os.environ | {"PYTHONPATH": str(tmp_path / "fake")},
+        capture_output=True,
+        text=True,
+        timeout=120,
+    )
+    assert done.returncode == 3
+    assert "apt-get install" in done.stderr
+    assert "libglu1-mesa" in done.stderr
+    assert len(done.stderr.strip().splitlines()) == 1
+    assert not (tmp_path / "reports").exists()
+
+
+def test_solver_that_does_not_converge_is_a_row_and_the_other_case_still_finishes(tmp_path):
+    (tmp_path / "quick.toml").write_text(QUICK)
+    # Three iterations cannot converge; the claims of this case stand on the semi-analytical method.
+    (tmp_path / "hopeless.toml").write_text(
+        QUICK.replace('"integral_equation"', '"semianalytic"').replace(
+            "[problem]", "[semianalytic]\nmax_iterations = 3\n[problem]"
+        )
+    )
+    done = coatcheck("run", "hopeless.toml", "quick.toml", "--json", cwd=tmp_path)
+    assert done.returncode == 3, done.stderr
+    cases = json.loads(done.stdout)["cases"]
+    assert (cases["hopeless"]["outcome"], cases["quick"]["outcome"]) == ("NO_RESULT", "AGREES")
+    report = json.loads((tmp_path / "reports" / "report.json").read_text())
+    reason = report["cases"][0]["verdicts"][0]["verdict"]["reason"]
+    assert reason.startswith("semianalytic: ")
+    assert "max_iterations" in reason
+    assert "Traceback" not in done.stderr + reason

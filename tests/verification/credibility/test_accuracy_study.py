@@ -1,0 +1,275 @@
+"""Convergence of the methods: the yardsticks are right, the ladders fall, what fails is a sentence."""
+
+import json
+from dataclasses import replace
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from synthetic_study import study
+
+from verification.commands import run as command
+from verification.credibility import accuracy as accuracy_study
+from verification.credibility.accuracy import BARE, COATED, STEEL, AccuracyStudy, from_json, to_json
+from verification.credibility.refinement import QUANTITIES, elements, ladder, order_of, settled
+from verification.judging.invariants.influence import conversion_errors
+from verification.running.pool import Task, run_tasks
+from verification.running.store import StoreError, write_checked
+from verification.sources.references.patch import over_square, surface_coefficient
+
+PLACES = [(0, 0), (1, 0), (1, 1), (3, 2), (20, 0), (64, 64)]
+
+
+def potential(x, y, side, depth=0.0):
+    """int int 1/sqrt(r^2 + depth^2) over a square; Love (1929), as a sum over its corners."""
+
+    def corner(X, Y):
+        rho = np.sqrt(X * X + Y * Y + depth**2)
+        value = X * np.arcsinh(Y / np.hypot(X, depth)) + Y * np.arcsinh(X / np.hypot(Y, depth))
+        return value - (depth * np.arctan(X * Y / (depth * rho)) if depth else 0.0)
+
+    b = side / 2
+    return corner(x + b, y + b) - corner(x - b, y + b) - corner(x + b, y - b) + corner(x - b, y - b)
+
+
+@pytest.mark.parametrize(("i", "j"), PLACES)
+def test_quadrature_of_an_uncoated_patch_is_loves_closed_form(i, j):
+    E, nu = STEEL
+    d = 3e-6
+    love = (1 - nu**2) / (np.pi * E) * potential(i * d, j * d, d)
+    # Both sums lose digits as the square of the distance over the side.
+    assert surface_coefficient(i * d, j * d, d, (), STEEL) == pytest.approx(
+        love, rel=1e-15 * (10 + i * i) * 10
+    )
+
+
+@pytest.mark.parametrize(("i", "j"), PLACES)
+@pytest.mark.parametrize("depth", [0.5, 2.0, 30.0])
+def test_ring_integral_of_an_image_is_its_closed_form(i, j, depth):
+    # M = e^(-b k) is the homogeneous solid seen from depth b: g = 1/sqrt(r^2 + b^2).
+    found = over_square(i, j, 1.0, lambda r: 1 / (np.sqrt(r**2 + depth**2) + depth), panels=2)
+    assert found == pytest.approx(potential(i, j, 1.0, depth), rel=1e-10)
+
+
+def test_coating_of_the_substrates_own_moduli_changes_nothing():
+    d, h = 3e-6, 80e-6
+    for i, j in PLACES:
+        bare = surface_coefficient(i * d, j * d, d, (), STEEL)
+        assert surface_coefficient(i * d, j * d, d, ((*STEEL, h),), STEEL) == pytest.approx(bare, rel=1e-10)
+
+
+def test_far_from_a_thin_coating_only_the_substrate_is_felt():
+    d = 3e-6
+    near, far = (surface_coefficient(n * d, 0, d, ((4 * STEEL[0], 0.3, d),), STEEL) for n in (0, 60))
+    bare_near, bare_far = (surface_coefficient(n * d, 0, d, (), STEEL) for n in (0, 60))
+    assert near < 0.5 * bare_near
+    # What is left of the coating falls as (h/r)^2, here 3e-4.
+    assert far == pytest.approx(bare_far, rel=2e-3)
+
+
+def test_patch_with_the_origin_in_line_with_its_rim_is_refused():
+    with pytest.raises(ValueError, match="in line with the rim"):
+        surface_coefficient(1.5e-6, 0.0, 3e-6, (), STEEL)
+
+
+@pytest.fixture(scope="module")
+def conversions():
+    return conversion_errors(COATED, patches=33, enlarge=(2, 8))
+
+
+def test_split_conversion_is_exact_to_what_is_asked_of_it(conversions):
+    split = next(one for one in conversions if one.conversion == "split")
+    assert split.largest < 1e-7
+    # Every single coefficient, not only those near the load, is far better than that.
+    assert max(split.error) < 1e-9
+
+
+def test_split_conversion_beats_the_papers_by_a_million(conversions):
+    split = next(one for one in conversions if one.conversion == "split")
+    plain = [one for one in conversions if one.conversion == "plain" and one.aliases == 2]
+    assert min(max(one.error) for one in plain) > 1e6 * max(split.error)
+
+
+def test_plain_conversion_errs_as_theory_says(conversions):
+    by_aliases = {
+        a: [o.error for o in conversions if (o.conversion, o.aliases) == ("plain", a)] for a in (0, 2)
+    }
+    # On the homogeneous half-space some 16 % at the loaded patch without aliases, 0.4 % with two a side.
+    assert all(0.10 < error[0] < 0.20 for error in by_aliases[0])
+    assert all(0.002 < error[0] < 0.008 for error in by_aliases[2])
+    assert all(max(error) > 0.01 for error in by_aliases[2])
+
+
+def test_uncoated_split_conversion_is_loves_rectangle():
+    split = next(one for one in conversion_errors(BARE, enlarge=(2,)) if one.conversion == "split")
+    assert max(split.error) < 1e-11
+
+
+@pytest.fixture(scope="module")
+def staircase():
+    return ladder(COATED, (33, 65, 129), setting="staircase", edge_rounds=0)
+
+
+def test_staircase_edge_leaves_the_pressure_at_first_order(staircase):
+    assert staircase.failure is None
+    assert 0.8 < staircase.order("pressure") < 1.5
+    assert staircase.order("p0") > 1.3
+    assert staircase.order("stress") > 1.5
+
+
+def test_corrected_edge_beats_the_staircase_on_the_same_grid(staircase):
+    corrected = ladder(COATED, (65, 129))
+    assert corrected.failure is None
+    for mine, theirs in zip(corrected.levels, staircase.levels[1:], strict=True):
+        assert mine.resolution == theirs.resolution
+        assert 100 * mine.errors["pressure"] < theirs.errors["pressure"]
+        assert 100 * mine.errors["p0"] < theirs.errors["p0"]
+
+
+def test_elements_of_higher_order_are_closer_on_the_same_mesh():
+    found = [elements(COATED, order, ("fast",)) for order in (2, 3, 4)]
+    assert [one.failure for one in found] == [None] * 3
+    for low, high in pairwise(found):
+        for quantity in QUANTITIES:
+            assert 3 * high.levels[0].errors[quantity] < low.levels[0].errors[quantity], quantity
+
+
+def test_level_that_fails_is_a_sentence_and_the_coarser_ones_stay():
+    import semianalytic
+
+    def stops(*, patches, **others):
+        if patches > 33:
+            raise semianalytic.NotConverged("not settled after 3 iterations;\n raise max_iterations")
+        return semianalytic.solve(patches=patches, **others)
+
+    found = ladder(BARE, (33, 65, 129), solve=stops)
+    assert [level.name for level in found.levels] == ["N = 33"]
+    assert found.failure == "N = 65: not settled after 3 iterations; raise max_iterations"
+
+
+@pytest.mark.slow
+def test_study_goes_on_where_a_part_of_it_fails(monkeypatch):
+    def broken(*_, **__):
+        raise ValueError("no grid fits")
+
+    good = ladder(BARE, (33,))
+    monkeypatch.setattr(accuracy_study, "ladder", lambda *_, **__: good)
+    monkeypatch.setattr(accuracy_study, "elements", lambda *_, **__: replace(good, failure="fine: no mesh"))
+    monkeypatch.setattr(accuracy_study, "conversion_errors", broken)
+    found = accuracy_study.measure()
+    assert len(found.ladders) == 8
+    assert found.conversions == ()
+    assert found.failures[-1].endswith("no grid fits")
+    assert len(found.failures) == 4
+
+
+def test_order_of_a_power_law_is_its_exponent():
+    N = [10.0, 20.0, 40.0, 80.0]
+    assert order_of(N, [7 * n**-2.5 for n in N]) == pytest.approx(2.5, abs=1e-12)
+
+
+def test_order_ends_where_another_knob_takes_over():
+    assert order_of([10, 20, 40, 80, 160], [1e-2, 1e-4, 1e-6, 1e-6, 1e-6]) == pytest.approx(
+        np.log(1e4) / np.log(4), rel=1e-12
+    )
+    assert settled([1e-2, 1e-4, 1e-6, 1e-6]) == 2
+
+
+def test_luck_promises_no_order():
+    # The third error crosses zero; the fourth shows what the grid is good for.
+    lucky = order_of([10, 20, 40, 80], [1e-2, 2.5e-3, 1e-9, 1.6e-4])
+    assert lucky == pytest.approx(2.0, abs=0.3)
+
+
+def test_a_fall_within_less_than_a_doubling_is_no_order():
+    assert order_of([41.0, 49.0, 65.0, 129.0], [2e-7, 1e-8, 1e-8, 1e-8]) is None
+
+
+@pytest.mark.parametrize("errors", [[1e-3], [1e-3, 0.9e-3], [1e-3, np.nan], [0.0, 0.0], [1e-5, 1e-3]])
+def test_where_nothing_falls_there_is_no_order(errors):
+    assert order_of([10.0, 20.0][: len(errors)], errors) is None
+
+
+def test_study_survives_strict_json_to_the_last_bit():
+    spoiled = study("conversions: no grid fits")
+    level = replace(spoiled.ladders[0].levels[0], errors=dict.fromkeys(QUANTITIES, float("nan")))
+    spoiled = replace(spoiled, ladders=(replace(spoiled.ladders[0], levels=(level,)), *spoiled.ladders[1:]))
+    text = json.dumps(to_json(spoiled), allow_nan=False)
+    back = from_json(json.loads(text))
+    assert json.dumps(to_json(back), allow_nan=False) == text
+    assert back.ladders[1:] == spoiled.ladders[1:]
+    assert back.conversions == spoiled.conversions
+    assert np.isnan(back.ladders[0].levels[0].errors["p0"])
+    with pytest.raises(ValueError, match="schema"):
+        from_json(json.loads(text) | {"schema": "coatcheck-accuracy/0"})
+
+
+def kept(folder, found: AccuracyStudy, commit="a28aa40c1d2e", versions=None) -> bool:
+    write_checked(accuracy_study.path_in(folder), to_json(found))
+    packages = {"numpy": "2.4.0"} if versions is None else versions
+    return accuracy_study.stored(folder, lambda: commit, lambda: packages) == found
+
+
+def test_study_is_kept_for_the_very_same_code_only(tmp_path):
+    whole = study()
+    assert kept(tmp_path, whole)
+    assert not kept(tmp_path, whole, commit="b28aa40c1d2e")
+    assert not kept(tmp_path, whole, versions={"numpy": "2.5.0"})
+    # A changed tree has one mark whatever was changed.
+    assert not kept(tmp_path, replace(whole, commit="a28aa40c1d2e+"), commit="a28aa40c1d2e+")
+    assert not kept(tmp_path, study("order 3: no mesh"))
+    path = accuracy_study.path_in(tmp_path)
+    path.write_bytes(path.read_bytes()[:-100])
+    with pytest.raises(StoreError, match=r"accuracy\.json: "):
+        accuracy_study.stored(tmp_path)
+    assert accuracy_study.stored(tmp_path / "elsewhere") is None
+
+
+def test_process_that_dies_leaves_its_reason(tmp_path):
+    task = accuracy_study.task(tmp_path)
+    broken = Task(task.name, ("verification.no_such_module",), task.path, task.read, task.failed)
+    (found,) = run_tasks([broken], jobs=1, time_limit=60)
+    assert found.ladders == ()
+    assert "ended with code 1" in found.failures[0]
+    (found,) = run_tasks([task], jobs=1, time_limit=0.05)
+    assert "not finished after" in found.failures[0]
+
+
+@pytest.fixture
+def one_case(tmp_path, monkeypatch):
+    """Arguments of a run whose shipped cases are one that takes no method, beside no baseline."""
+    case = tmp_path / "quick.toml"
+    case.write_text(
+        "title = 'Quick'\n[problem]\nradius = 10e-3\nload = 20\nsubstrate = { E = 210e9, nu = 0.3 }\n"
+        "[[claim]]\nquantity = 'peak_pressure'\nline = 'contact'\n"
+        "between = ['integral_equation', 'hertz']\ncap = 1e-6\nwhy = 'no method, so nothing else can fail'\n"
+    )
+    monkeypatch.setattr(command, "shipped_cases", lambda: {"quick": case})
+    return {"quiet": True, "baseline": tmp_path / "none", "records": tmp_path / "none"}
+
+
+def test_study_that_fails_is_a_sentence_of_the_report_and_no_verdict(one_case, tmp_path, monkeypatch):
+    whole = accuracy_study.task
+
+    def broken(folder):
+        return replace(whole(folder), command=("verification.no_such_module",))
+
+    monkeypatch.setattr(accuracy_study, "task", broken)
+    assert command.run(output=tmp_path / "all", **one_case) == 0
+    page = (tmp_path / "all" / "report.html").read_text()
+    assert "No module named verification.no_such_module" in page
+    report = json.loads((tmp_path / "all" / "report.json").read_text())
+    assert report["accuracy"]["failures"]
+    assert [c["outcome"] for c in report["cases"]] == ["AGREES"]
+
+    # A run of chosen cases measures no convergence.
+    assert command.run("quick", output=tmp_path / "one", **one_case) == 0
+    assert 'id="semi-analytical-accuracy"' not in (tmp_path / "one" / "report.html").read_text()
+    assert json.loads((tmp_path / "one" / "report.json").read_text())["accuracy"] is None
+
+
+def test_resumed_run_keeps_the_study(one_case, tmp_path, monkeypatch):
+    monkeypatch.setattr(accuracy_study, "stored", lambda folder: study())
+    monkeypatch.setattr(accuracy_study, "task", lambda folder: pytest.fail("measured again"))
+    assert command.run(output=tmp_path / "out", resume=True, **one_case) == 0
+    assert 'id="finite-element-accuracy"' in (tmp_path / "out" / "report.html").read_text()

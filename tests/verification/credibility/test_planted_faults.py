@@ -1,0 +1,327 @@
+"""Planted faults: the catalogue is whole, plants leave no trace, trials see what they must."""
+
+import sys
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from verification.cases.contact import read_case, shipped_cases
+from verification.commands.faults import faults
+from verification.credibility.faults import campaign
+from verification.credibility.faults.catalogue import BLANKS, FAULTS, GROUPS, chosen
+from verification.credibility.faults.checks import Check
+from verification.credibility.faults.planting import Constant, Edit, Fault, PlantError, planted
+from verification.credibility.faults.record import Catch, Record, from_json, row_of, to_json
+from verification.credibility.faults.trial import Trial, clean_path, try_fault
+from verification.judging.verdict import Outcome
+from verification.report.credibility.faults import faults_page
+from verification.running import contact as running
+from verification.running.result import from_json as result_from_json
+from verification.running.result import to_json as result_to_json
+from verification.running.store import read_checked, write_checked
+from verification.sources import contact as sources_of_contacts
+from verification.sources.references.hertz import Hertz
+
+# What issue after issue of such codes has been about, each by the fault that stands for it.
+NAMED = {
+    "nu off by 0.01": "nu_off_substrate",
+    "moduli swapped": "moduli_swapped",
+    "plane-stress slip": "plane_stress_scale",
+    "dropped 4 kap x^2 term": "kap_x2_dropped",
+    "sign of kap": "kap_sign",
+    "z measured from the wrong interface": "z_from_wrong_interface",
+    "prefactor 1 % off": "prefactor_surface",
+    "anti-plane part dropped": "anti_plane_dropped",
+    "no padding": "no_padding",
+    "too small a domain": "grid_too_small",
+    "no patch averaging": "no_patch_averaging",
+    "half-patch shift": "half_patch_shift",
+    "transposed kernel": "transposed_kernel",
+    "k = 0 zeroed": "k_zero_zeroed",
+    "loose tolerance": "loose_tolerance",
+    "load 0.5 % off": "load_off",
+    "stale contact set": "stale_contact_set",
+    "negative pressure kept": "tension_kept",
+    "shear sign": "shear_sign",
+    "sigma_rr and sigma_theta swapped": "radial_for_hoop",
+    "wrong Bessel order": "bessel_order",
+    "depth off by a patch": "depth_off_by_a_patch",
+    "no r weight": "no_r_weight",
+    "u_r/r missing": "hoop_strain_missing",
+    "outer boundary too near": "domain_too_small",
+    "wrong interface tag": "wrong_interface_tag",
+    "reduced quadrature": "reduced_quadrature",
+    "averaged interface stress": "averaged_interface_stress",
+    "wrong axis condition of harmonic 1": "wrong_axis_condition",
+    "far-field load missing": "far_load_missing",
+    "wrong Hertz exponent": "hertz_exponent",
+    "table column swapped": "table_column_swapped",
+    "compressive sign kept": "compressive_sign_kept",
+    "NaN counted as agreement": "nan_agrees",
+    "absolute read as relative": "absolute_for_relative",
+    "stale cache reused": "stale_cache",
+    "units slipped": "units_slipped_case",
+    "U inflated tenfold": "u_inflated_in_the_judge",
+}
+ALL = tuple((FAULTS | BLANKS).values())
+
+
+def test_the_catalogue_holds_every_fault_that_was_asked_for():
+    assert set(NAMED.values()) <= set(FAULTS)
+    assert len(FAULTS) >= 48
+    assert {fault.group for fault in FAULTS.values()} == set(GROUPS)
+
+
+@pytest.mark.parametrize("fault", FAULTS.values(), ids=lambda fault: fault.name)
+def test_a_fault_says_what_is_wrong_where_it_sits_what_should_catch_it(fault):
+    assert len(fault.sentence.split()) > 2
+    assert not fault.sentence.endswith(".")
+    assert fault.changes
+    assert fault.expected
+    assert set(fault.cases) <= set(shipped_cases())
+    assert fault.where in (*sources_of_contacts.solvers(), "harness", "published")
+
+
+def test_names_are_unique_across_the_groups():
+    from verification.credibility.faults import catalogue
+
+    names = [fault.name for module in catalogue._MODULES for fault in module.FAULTS]
+    assert len(names) == len(set(names)) == len(FAULTS)
+
+
+def _targets(fault):
+    for change in fault.changes:
+        module, _, path = change.target.partition(":")
+        owner = sys.modules.get(module) or __import__(module, fromlist=["_"])
+        *parents, name = path.split(".")
+        for parent in parents:
+            owner = getattr(owner, parent)
+        yield owner, name
+
+
+@pytest.mark.parametrize("fault", [f for f in ALL if f.changes], ids=lambda fault: fault.name)
+def test_a_plant_fits_the_source_and_leaves_no_trace(fault):
+    before = [(owner, name, vars(owner)[name]) for owner, name in _targets(fault)]
+    with planted(fault.changes):
+        assert all(vars(owner)[name] is not original for owner, name, original in before)
+    assert all(vars(owner)[name] is original for owner, name, original in before)
+
+
+def test_a_plant_is_taken_out_when_the_trial_fails():
+    fault = FAULTS["hertz_exponent"]
+    original = vars(Hertz)["contact_radius"]
+    with pytest.raises(RuntimeError), planted(fault.changes):
+        raise RuntimeError("a trial that fails")
+    assert vars(Hertz)["contact_radius"] is original
+
+
+def test_a_function_imported_by_name_is_exchanged_there_too():
+    from fem_reference import axisymmetric, contact, loading
+
+    change = Edit("fem_reference.axisymmetric:constrained_solve", "u[free] = x", "u[free] = 2 * x")
+    with planted((change,)):
+        assert contact.constrained_solve is loading.constrained_solve is axisymmetric.constrained_solve
+        assert "planted" in contact.constrained_solve.__code__.co_filename
+    assert "planted" not in contact.constrained_solve.__code__.co_filename
+
+
+def test_two_edits_of_one_function_both_take():
+    first = Edit("verification.sources.references.hertz:Hertz.approach", "self.radius", "(2 * self.radius)")
+    second = Edit("verification.sources.references.hertz:Hertz.approach", "**2 /", "**3 /")
+    hertz = Hertz(1e-2, 20.0, 210e9, 0.3)
+    a = hertz.contact_radius
+    with planted((first, second)):
+        assert hertz.approach == pytest.approx(a**3 / 2e-2, rel=1e-14)
+    assert hertz.approach == pytest.approx(a**2 / 1e-2, rel=1e-14)
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        (Edit("verification.judging.verdict:judge", "words that are not there", ""), "stands there 0 times"),
+        (Edit("verification.judging.verdict:judge", "judged", ""), "times, not once"),
+        (Edit("verification.judging.verdict:no_such_function", "a", "b"), "no such function"),
+        (Constant("fem_reference.estimate:SAFETY", 3.0), "nothing would be planted"),
+    ],
+)
+def test_a_fault_that_no_longer_fits_the_source_is_refused(change, said):
+    with pytest.raises(PlantError, match=said), planted((change,)):
+        pass
+
+
+@pytest.mark.parametrize(
+    ("name", "part"),
+    [("components_swapped", "sampling"), ("units_slipped_case", "case file"), ("stale_code", "storing")],
+)
+def test_a_fault_of_the_harness_is_caught_by_the_self_test_named_for_it(name, part, tmp_path):
+    row = row_of(FAULTS[name], try_fault(FAULTS[name], tmp_path))
+    assert row.catch is Catch.DISAGREES
+    assert row.as_expected
+    assert part in row.by
+    assert row.change >= 1
+
+
+@pytest.fixture(scope="module")
+def clean(tmp_path_factory):
+    """A clean run of the uncoated case in which the exact reference stands in for both methods."""
+    folder = tmp_path_factory.mktemp("clean")
+    case = read_case(shipped_cases()["01_uncoated_steel"])
+    known = sources_of_contacts.solvers()
+    exact = known["integral_equation"]
+    sources = {"semianalytic": exact, "fem_reference": exact} | {
+        name: known[name] for name in ("integral_equation", "hertz")
+    }
+    write_checked(clean_path(folder, case.name), result_to_json(running.run(case, sources)))
+    return folder
+
+
+def test_a_wrong_exponent_in_hertz_is_caught_by_the_comparisons_with_hertz(clean):
+    fault = FAULTS["hertz_exponent"]
+    row = row_of(fault, try_fault(fault, clean))
+    assert row.catch is Catch.DISAGREES
+    assert row.as_expected
+    assert row.columns["bare, closed form"].disagree > 20
+    assert row.columns["self-tests"].disagree > 0
+    assert row.change > 1
+
+
+def test_hertz_is_blind_to_a_fault_of_the_coating(clean):
+    fault = replace(FAULTS["kernel_halved"], cases=("01_uncoated_steel",))
+    row = row_of(fault, try_fault(fault, clean))
+    assert all(seen.disagree + seen.inconclusive == 0 for seen in row.columns.values())
+    assert row.change == 0
+
+
+def test_nothing_planted_is_noticed_by_no_comparison(clean):
+    blank = Fault("blank", "blank", "nothing", "hertz", (), (), ("01_uncoated_steel",))
+    row = row_of(blank, try_fault(blank, clean))
+    assert row.catch is Catch.SURVIVED
+    assert row.change == 0
+
+
+def test_an_absolute_uncertainty_read_as_relative_is_caught(clean):
+    fault = FAULTS["absolute_for_relative"]
+    row = row_of(fault, try_fault(fault, clean))
+    assert row.catch is Catch.DISAGREES
+    assert row.as_expected
+
+
+def test_a_crash_alone_does_not_count_as_caught():
+    fault = FAULTS["kap_sign"]
+    lost = Check(
+        "coated, exact", "approach", "c", "contact", Outcome.NO_RESULT, "semianalytic: did not converge"
+    )
+    row = row_of(fault, Trial(fault.name, (lost,), 1.0, "approach"))
+    assert row.catch is Catch.NO_RESULT
+    assert not row.caught
+    assert not row.as_expected
+
+
+def test_a_check_that_fails_without_the_fault_is_no_evidence(clean, tmp_path):
+    path = clean_path(clean, "01_uncoated_steel")
+    result = result_from_json(read_checked(path))
+    claim, verdict = result.verdicts[-1]
+    spoiled = (*result.verdicts[:-1], (claim, replace(verdict, outcome=Outcome.DISAGREES)))
+    write_checked(clean_path(tmp_path, result.name), result_to_json(replace(result, verdicts=spoiled)))
+    fault = FAULTS["hertz_exponent"]
+    whole, without = try_fault(fault, clean), try_fault(fault, tmp_path)
+    assert len(without.checks) == len(whole.checks) - 1
+    assert len(without.already) == 1
+    assert claim.quantity in without.already[0]
+    record = _record(without)
+    assert record.already == without.already
+    assert not record.passed
+
+
+def test_drift_alone_counts_only_where_it_was_foretold():
+    moved = Check("baseline", "baseline", "c", "approach", Outcome.DISAGREES, "2 of 2 values changed")
+    unforeseen, foretold = FAULTS["kap_sign"], FAULTS["u_inflated_semianalytic"]
+    assert row_of(unforeseen, Trial(unforeseen.name, (moved,), 1.0)).catch is Catch.SURVIVED
+    assert row_of(foretold, Trial(foretold.name, (moved,), 1.0)).catch is Catch.DRIFTED
+
+
+def _record(*trials: Trial) -> Record:
+    return campaign.record_of(
+        trials, started="2026-11-21T12:00:00+00:00", seconds=1.0, commit=None, machine="here", versions={}
+    )
+
+
+def _trial(name: str, outcome: Outcome = Outcome.DISAGREES, change: float = 0.1) -> Trial:
+    check = Check("coated, exact", "approach", "14_ratio_4_sliding", "contact", outcome, "as <it> is")
+    return Trial(name, (check,), change, "approach", 2.0)
+
+
+def test_a_record_is_read_as_it_was_written():
+    record = _record(_trial("kap_sign"), _trial("load_off", Outcome.AGREES), Trial("blank_printed"))
+    assert from_json(to_json(record)) == record
+    with pytest.raises(ValueError, match="schema"):
+        from_json(to_json(record) | {"schema": "another"})
+
+
+def test_a_record_passes_only_where_enough_is_caught_and_nothing_is_left_unsaid():
+    assert _record(_trial("kap_sign"), Trial("blank_printed", change=0.0)).passed
+    assert not _record(_trial("kap_sign"), _trial("kap_x2_dropped", Outcome.AGREES)).passed
+    assert not _record(_trial("kap_sign", change=0.0)).passed
+    assert not _record(_trial("kap_sign"), _trial("blank_printed")).passed
+    many = [_trial(name) for name in FAULTS if name != "kap_sign"]
+    lost = _record(*many, _trial("kap_sign", Outcome.AGREES))
+    assert lost.share > 0.95
+    assert lost.unexplained
+    assert not lost.passed
+
+
+def test_the_page_shows_every_fault_and_escapes_what_checks_say():
+    record = _record(
+        _trial("kap_sign"), _trial("load_off", Outcome.AGREES), _trial("no_padding", Outcome.NO_RESULT)
+    )
+    page = faults_page(record)
+    assert all(name in page for name in ("kap_sign", "load_off", "no_padding"))
+    assert "as &lt;it&gt; is" in page
+    assert "<it>" not in page
+    assert "http://" not in page.replace("http://www.w3.org", "")
+    assert "1 of 3 planted faults are caught" in page
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        {"names": ("no_such_fault",)},
+        {"group": "no_such_group"},
+        {"group": "frf", "names": ("kap_sign",)},
+        {"group": "frf", "record": True},
+        {"jobs": 0},
+    ],
+)
+def test_a_wrong_question_is_bad_input_and_writes_nothing(arguments, tmp_path, capsys):
+    names = arguments.pop("names", ())
+    assert faults(*names, output=tmp_path / "out", records=tmp_path / "records", **arguments) == 2
+    assert capsys.readouterr().err.count("\n") == 1
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_the_command_tries_resumes_and_writes_matrix_and_page(tmp_path, capsys):
+    assert faults("sides_swapped", output=tmp_path, jobs=1) == 0
+    assert "1 of 1 faults caught" in capsys.readouterr().out.replace("\n", " ")
+    record = campaign.read_record(tmp_path / campaign.RECORD)
+    assert record is not None
+    assert record.rows[0].as_expected
+    assert (tmp_path / "faults.html").read_text().startswith("<!DOCTYPE html>")
+    stamp = (tmp_path / "trials" / "sides_swapped.json").stat().st_mtime_ns
+    assert faults("sides_swapped", output=tmp_path, jobs=1, resume=True, quiet=True) == 0
+    assert (tmp_path / "trials" / "sides_swapped.json").stat().st_mtime_ns == stamp
+
+
+def test_groups_and_names_choose_their_faults():
+    assert {fault.group for fault in chosen((), "frf")} == {"frf"}
+    assert [fault.name for fault in chosen(("kap_sign", "kap_sign"), None)] == ["kap_sign"]
+    assert len(chosen((), None)) == len(FAULTS) + len(BLANKS)
+
+
+@pytest.mark.slow
+def test_nineteen_of_twenty_faults_are_caught_and_every_survivor_is_explained(tmp_path):
+    assert faults(output=tmp_path, quiet=True) == 0
+    record = campaign.read_record(tmp_path / campaign.RECORD)
+    assert record is not None
+    assert record.share >= 0.95
+    assert np.isfinite(record.core_seconds)

@@ -1,0 +1,45 @@
+"""Influence coefficients are held against direct quadrature, and a poor conversion does not pass."""
+
+import pytest
+
+import semianalytic
+from verification.cases.contact import read_case, shipped_cases
+from verification.credibility.faults.planting import Edit, planted
+from verification.judging.invariants import check
+from verification.judging.invariants.coefficients import influence_coefficients
+from verification.judging.verdict import Outcome
+from verification.problem.contact import CoatedContact
+
+POOR = {
+    "a domain too small": Edit(
+        "semianalytic.influence:_radial", "low, high = 1e-7 / max(b, sum(thickness))", "low, high = 0.05 / h"
+    ),
+    "a prefactor 1 % off": Edit(
+        "semianalytic.frf:_one_coating_excess", "return th * (", "return 1.01 * th * ("
+    ),
+}
+
+
+@pytest.mark.parametrize("name", ["01_uncoated_steel", "12_polymer_glass", "15_dlc_chromium_sliding"])
+def test_the_default_conversion_meets_quadrature(name):
+    problem = read_case(shipped_cases()[name]).problem
+    row = influence_coefficients(None, "semianalytic", problem)
+    assert row.outcome is Outcome.AGREES
+    assert row.value < 1e-9
+
+
+@pytest.mark.parametrize("edit", POOR.values(), ids=list(POOR))
+def test_a_poor_conversion_does_not_pass(edit):
+    problem = read_case(shipped_cases()["05_ratio_4"]).problem
+    with planted((edit,)):
+        assert influence_coefficients(None, "semianalytic", problem).outcome is Outcome.DISAGREES
+
+
+def test_only_the_method_that_has_coefficients_is_asked():
+    problem = CoatedContact(1e-2, 20.0, (), (210e9, 0.3))
+    contact = semianalytic.solve(radius=1e-2, load=20.0, coatings=(), substrate=(210e9, 0.3), patches=65)
+    names = {
+        source: [row.name for row in check(contact, source, problem)] for source in ("semianalytic", "other")
+    }
+    assert "influence coefficients" in names["semianalytic"]
+    assert "influence coefficients" not in names["other"]

@@ -1,0 +1,266 @@
+"""What a sound solution satisfies, and which law each kind of slip breaks."""
+
+import functools
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import fem_reference
+import semianalytic
+from verification.judging.invariant import decide
+from verification.judging.invariants import check
+from verification.judging.invariants.limits import thick_shift, thin_shift
+from verification.judging.invariants.stencil import Stencil
+from verification.judging.verdict import Outcome
+from verification.problem.contact import CoatedContact
+from verification.sources.references import integral_equation
+from verification.sources.references.hamilton import Hamilton
+from verification.sources.references.hertz import Hertz
+
+STEEL = (210e9, 0.3)
+BARE = CoatedContact(10e-3, 20.0, (), STEEL)
+SLIDING = CoatedContact(10e-3, 20.0, ((840e9, 0.25, 0.8 * BARE.a_h),), STEEL, 0.25)
+
+
+def keywords(problem):
+    names = ("radius", "load", "coatings", "substrate", "friction")
+    return {name: getattr(problem, name) for name in names}
+
+
+@functools.cache
+def exact(problem=SLIDING):
+    return integral_equation.solve(**keywords(problem))
+
+
+@functools.cache
+def finite_elements():
+    return fem_reference.solve(**keywords(SLIDING), size=0.2)
+
+
+class Changed:
+    """A solution with some of its fields replaced by functions of the sound ones."""
+
+    def __init__(self, sound, **changes):
+        self._sound, self._changes = sound, changes
+
+    def __getattr__(self, name):
+        sound = getattr(self._sound, name)
+        change = self._changes.get(name)
+        if change is None:
+            return sound
+        return functools.partial(change, sound) if callable(sound) else change(sound)
+
+
+def rows(solution, problem=SLIDING, source="integral_equation"):
+    return {row.name: row for row in check(solution, source, problem)}
+
+
+def broken(solution, problem=SLIDING, source="integral_equation"):
+    return {name for name, row in rows(solution, problem, source).items() if row.outcome is Outcome.DISAGREES}
+
+
+@pytest.mark.parametrize(
+    ("solution", "problem", "count"),
+    [
+        (Hertz(BARE.radius, BARE.load, *STEEL), BARE, 8),
+        (Hamilton(BARE.radius, BARE.load, *STEEL, 0.25), replace(BARE, friction=0.25), 7),
+        (exact, SLIDING, 9),
+    ],
+)
+def test_exact_solutions_hold_every_law_that_they_claim(solution, problem, count):
+    found = check(solution() if callable(solution) else solution, "exact", problem)
+    assert len(found) == count
+    assert {row.outcome for row in found} == {Outcome.AGREES}
+    # exact, so only the error of the differences is left in the bound
+    assert all(row.bound < 1e-9 for row in found if "equilibrium" not in row.name)
+    assert all(row.bound < 1e-5 for row in found)
+
+
+def test_both_methods_hold_every_law_and_claim_their_displacements_too():
+    for source, solution in (
+        ("fem_reference", finite_elements()),
+        ("semianalytic", semianalytic.solve(**keywords(SLIDING), patches=129)),
+    ):
+        found = rows(solution, source=source)
+        assert {row.outcome for row in found.values()} == {Outcome.AGREES}, source
+        assert {"sphere", "bonded displacements, interface 1", "Hooke's law, substrate"} <= set(found)
+        assert found["reciprocity of load and sliding"].value < 1e-6
+
+
+def polar(stress, x, y, z, layer=None, swap=lambda s: s):
+    """The stress with something done to its cylindrical components."""
+    x, y, z = np.broadcast_arrays(x, y, z)
+    theta = np.arctan2(y, x)
+    cos, sin, zero = np.cos(theta), np.sin(theta), np.zeros_like(theta)
+    turn = np.array([[cos, sin, zero], [-sin, cos, zero], [zero, zero, zero + 1]])
+    s = np.einsum("ai...,bj...,ij...->ab...", turn, turn, stress(x, y, z, layer))
+    return np.einsum("ai...,bj...,ab...->ij...", turn, turn, swap(s.copy()))
+
+
+def swapped(s):
+    s[0, 0], s[1, 1] = s[1, 1].copy(), s[0, 0].copy()
+    return s
+
+
+def shear_reversed(s):
+    s[0, 2] *= -1
+    s[2, 0] *= -1
+    return s
+
+
+@pytest.mark.parametrize(
+    ("change", "law"),
+    [
+        ({"pressure": lambda p, x, y=0.0: 1.005 * p(x, y)}, "load balance"),
+        ({"pressure": lambda p, x, y=0.0: p(x, y) + 1e-4 * BARE.p_h}, "free surface"),
+        (
+            {"stress": lambda s, x, y, z, layer=None: s(x, y, np.asarray(z) + 0.01 * BARE.a_h, None)},
+            "surface pressure",
+        ),
+        (
+            {"stress": lambda s, x, y, z, layer=None: polar(s, x, y, z, layer, swapped)},
+            "equilibrium, substrate",
+        ),
+        (
+            {"stress": lambda s, x, y, z, layer=None: polar(s, x, y, z, layer, shear_reversed)},
+            "equilibrium, coating 1",
+        ),
+        ({"stress": lambda s, x, y, z, layer=None: s(-np.asarray(x), y, z, layer)}, "equilibrium, coating 1"),
+        (
+            {"stress": lambda s, x, y, z, layer=None: s(x, y, z, layer) * (1 + 1e-3 * np.sign(y))},
+            "mirror in y",
+        ),
+        (
+            {
+                "stress": lambda s, x, y, z, layer=None: (
+                    s(x, y, z, layer) * (1 + 1e-4 * np.cos(2 * np.arctan2(y, x)))
+                )
+            },
+            "harmonics round the axis",
+        ),
+        (
+            {"stress": lambda s, x, y, z, layer=None: s(x, y, z, layer) * (1 + 1e-6 * (layer == 1))},
+            "bonded tractions, interface 1",
+        ),
+    ],
+)
+def test_each_slip_breaks_the_law_that_speaks_of_it(change, law):
+    assert law in broken(Changed(exact(), **change))
+
+
+@pytest.mark.parametrize(
+    ("change", "law"),
+    [
+        (lambda u, x, y, z: 1.05 * u(x, y, z), "Hooke's law, coating 1"),
+        (lambda u, x, y, z: 1.001 * u(x, y, z), "sphere"),
+        (
+            lambda u, x, y, z: u(x, y, z) + 1e-3 * BARE.delta_h * (np.asarray(z) > SLIDING.interfaces[0]),
+            "bonded displacements, interface 1",
+        ),
+        (
+            lambda u, x, y, z: u(x, y, z) * np.array([1.1, 1, 1]).reshape(3, *[1] * np.ndim(x)),
+            "reciprocity of load and sliding",
+        ),
+    ],
+)
+def test_displacements_that_slip_break_their_laws(change, law):
+    assert law in broken(Changed(finite_elements(), displacement=change), source="fem_reference")
+
+
+@pytest.mark.parametrize("name", ["pressure", "stress", "pressure_uncertainty", "stress_uncertainty"])
+def test_number_that_is_none_is_never_agreement(name):
+    def spoilt(field, *args, **keys):
+        return field(*args, **keys) * np.nan
+
+    found = rows(Changed(exact(), **{name: spoilt}))
+    spoken = [row for row in found.values() if row.outcome is not Outcome.AGREES]
+    assert spoken
+    assert {row.outcome for row in spoken} == {Outcome.NO_RESULT}
+    assert found["surface pressure"].outcome is Outcome.NO_RESULT
+
+
+def test_law_that_cannot_be_evaluated_is_no_result_with_its_sentence_and_the_others_go_on():
+    def fails(*_, **__):
+        raise RuntimeError("no such plane")
+
+    found = rows(Changed(exact(), stress=fails))
+    assert found["load balance"].outcome is Outcome.AGREES
+    lost = [row for row in found.values() if row.outcome is Outcome.NO_RESULT]
+    assert lost
+    assert all("no such plane" in row.message for row in lost)
+
+
+def test_without_a_stated_uncertainty_no_law_is_held():
+    found = check(Changed(exact(), uncertainty=lambda _: None), "exact", SLIDING)
+    assert {row.outcome for row in found} == {Outcome.INCONCLUSIVE}
+
+
+def test_uncertainty_blown_up_is_inconclusive_not_agreement():
+    def vast(field, *args, **keys):
+        return field(*args, **keys) + 0.01 * BARE.p_h
+
+    found = rows(Changed(exact(), stress_uncertainty=vast))
+    assert found["surface pressure"].outcome is Outcome.INCONCLUSIVE
+    assert found["harmonics round the axis"].outcome is Outcome.INCONCLUSIVE
+
+
+def test_law_is_decided_where_the_residual_takes_the_largest_share_of_its_bound():
+    row = decide("law", "me", "it holds", [1e-3, 1e-6], [2e-3, 2e-7])
+    assert row.outcome is Outcome.DISAGREES
+    assert (row.value, row.bound) == (1e-6, pytest.approx(2e-7, rel=1e-4))
+    assert row.share == pytest.approx(5, rel=1e-4)
+    assert decide("law", "me", "it holds", [], []).outcome is Outcome.NO_RESULT
+
+
+def test_error_of_differences_lies_within_its_bound_and_a_polynomial_has_none():
+    stencil = Stencil(np.array([[0.3], [0.4], [0.5]]), np.full((3, 1), 0.02))
+    x, y, z = stencil.points
+    values = np.stack([np.sin(2 * x) * np.exp(-z) * np.cos(y), x**5 * y + z**6])
+    slope, error = stencil.gradient(values)
+    true = np.array(
+        [
+            [2 * np.cos(0.6) * np.exp(-0.5) * np.cos(0.4), 5 * 0.3**4 * 0.4],
+            [-np.sin(0.6) * np.exp(-0.5) * np.sin(0.4), 0.3**5],
+            [-np.sin(0.6) * np.exp(-0.5) * np.cos(0.4), 6 * 0.5**5],
+        ]
+    )
+    assert (np.abs(slope[..., 0] - true) <= error[..., 0] + 1e-13).all()
+    assert np.abs(slope[..., 0] - true).max() < 1e-9
+
+
+def test_spread_of_uncertain_values_bounds_the_gradient_of_any_error_within_it():
+    random = np.random.default_rng(1)
+    stencil = Stencil(np.array([[0.3, 1.0], [0.4, 1.0], [0.5, 2.0]]), np.full((3, 2), 0.02))
+    U = random.uniform(0, 1, (4, stencil.points.shape[1]))
+    for _ in range(20):
+        slope, _ = stencil.gradient(U * random.uniform(-1, 1, U.shape))
+        assert (np.abs(slope) <= stencil.spread(U)).all()
+
+
+def test_base_of_a_thick_coating_sinks_as_the_exact_solution_says():
+    alone = CoatedContact(10e-3, 20.0, (), (840e9, 0.3))
+    thick = replace(alone, coatings=((840e9, 0.3, 10 * alone.a_h),), substrate=STEEL)
+    sink, left = thick_shift(thick, alone)
+    found = integral_equation.solve(**keywords(thick), estimate_uncertainty=False)
+    assert 1e-6 < left < 2e-3
+    assert abs(found.approach - sink - alone.delta_h) <= left * alone.delta_h
+    assert abs(sink) > 50 * left * alone.delta_h
+
+
+def test_thin_coating_changes_the_approach_by_the_first_order_of_perturbation():
+    thin = replace(BARE, coatings=((840e9, 0.3, 0.03 * BARE.a_h),))
+    first = thin_shift(thin) / BARE.delta_h
+    found = integral_equation.solve(**keywords(thin), estimate_uncertainty=False)
+    assert -0.02 < first < -0.005
+    assert abs(found.approach / BARE.delta_h - 1 - first) <= 2 * first**2
+
+
+@pytest.mark.slow
+def test_invariants_between_solutions_hold_for_both_methods():
+    from verification.judging.invariants import resolved
+    from verification.sources.contact import solvers
+
+    found = resolved(SLIDING, solvers())
+    assert len(found) == 10
+    assert {row.outcome for row in found} == {Outcome.AGREES}

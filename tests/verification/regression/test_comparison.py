@@ -1,0 +1,163 @@
+"""Two runs side by side: what is told of verdicts, numbers, versions, times."""
+
+import json
+import subprocess
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from headless import browser, page
+from synthetic_results import INFO, STEEL, contact, result_of
+
+from verification.judging.verdict import Outcome
+from verification.regression.comparison import compare_runs
+from verification.regression.drift import State
+from verification.report.sections.comparison import comparison_page, comparison_sentence
+from verification.report.write import report_json
+from verification.running.result import CaseResult, RunInfo
+from verification.running.store import StoreError
+from verification.running.stored import StoredRun, read_run
+
+E, NU = STEEL
+COMMAND = [sys.executable, "-m", "verification.cli"]
+GOOD = result_of(contact((2 * E, NU, 1.0)), name="stiff", points=33)
+WRONG = result_of(
+    contact((2 * E, NU, 1.0)),
+    name="stiff",
+    points=33,
+    errors={"semianalytic": 2e-3},
+    stated={"semianalytic": 0.7},
+)
+
+
+def run_of(*results: CaseResult, info: RunInfo = INFO) -> StoredRun:
+    return StoredRun(Path("somewhere/report.json"), info, results)
+
+
+def write(folder: Path, *results: CaseResult, info: RunInfo = INFO) -> None:
+    folder.mkdir(parents=True)
+    (folder / "report.json").write_text(report_json(results, info))
+
+
+def test_a_run_beside_itself_shows_nothing():
+    found = compare_runs(run_of(GOOD), run_of(GOOD))
+    assert (found.drifted, found.worse, found.verdicts, found.versions) == (False, False, (), ())
+    assert found.seconds == (("stiff", 3.4, 3.4),)
+    assert "No verdict changed; all" in comparison_sentence(found)
+    assert "by at most" not in comparison_sentence(found)
+
+
+def test_every_point_counts_not_only_those_of_a_baseline():
+    profiles = list(GOOD.profiles)
+    index = next(i for i, p in enumerate(profiles) if p.quantity == "sigma_xx" and p.line == "axis")
+    value = profiles[index].value.copy()
+    value[1] += 3e-8 * np.abs(value).max()
+    profiles[index] = replace(profiles[index], value=value)
+    found = compare_runs(run_of(GOOD), run_of(replace(GOOD, profiles=tuple(profiles))))
+    assert found.drifted
+    assert not found.worse
+    assert found.cases[0].count(State.DRIFTED) == 1
+    assert found.cases[0].change == pytest.approx(3e-8, rel=1e-3)
+
+
+def test_verdicts_that_changed_are_told_with_the_worse_ones_first():
+    found = compare_runs(run_of(GOOD), run_of(WRONG))
+    assert found.worse
+    assert {c.before for c in found.verdicts} == {Outcome.AGREES}
+    assert {c.after for c in found.verdicts} == {Outcome.DISAGREES, Outcome.INCONCLUSIVE}
+    assert all(c.worse and "semianalytic" in c.between for c in found.verdicts)
+    better = compare_runs(run_of(WRONG), run_of(GOOD))
+    assert better.verdicts
+    assert not better.worse
+
+
+def test_cases_versions_and_times_of_one_run_only_are_told():
+    other = replace(GOOD, name="other", seconds=1.5)
+    info = replace(INFO, versions={**INFO.versions, "numpy": "2.5.0", "extra": "1"}, commit="0123456789ab")
+    found = compare_runs(run_of(GOOD, other), run_of(GOOD, replace(GOOD, name="new"), info=info))
+    assert {c.name: c.state for c in found.cases} == {
+        "stiff": State.SAME,
+        "other": State.GONE,
+        "new": State.NEW,
+    }
+    assert ("other", 1.5, None) in found.seconds
+    assert dict((name, (then, now)) for name, then, now in found.versions) == {
+        "commit": (INFO.commit, "0123456789ab"),
+        "numpy": ("2.4.0", "2.5.0"),
+        "extra": ("none", "1"),
+    }
+    # what only one of them ran is told by its numbers
+    assert found.drifted
+    assert found.verdicts == ()
+
+
+@pytest.mark.parametrize(
+    ("content", "said"),
+    [
+        ("", "not a report of this program"),
+        ("[]", "not a report of this program"),
+        ('{"run": {}, "cases": []}', "not a report of this program"),
+        ('{"run": 3, "cases": {}}', "not a report of this program"),
+        ("[" * 100_000, "not a report of this program"),
+        (None, "cannot be read"),
+    ],
+)
+def test_a_file_that_is_no_run_is_one_sentence(tmp_path, content, said):
+    path = tmp_path / "report.json"
+    if content is not None:
+        path.write_text(content)
+    with pytest.raises(StoreError, match=said) as caught:
+        read_run(path)
+    assert str(path) in str(caught.value)
+
+
+def test_a_run_comes_back_from_its_report(tmp_path):
+    write(tmp_path / "a", GOOD)
+    for place in (tmp_path / "a", tmp_path / "a" / "report.json"):
+        found = read_run(place)
+        assert found.info == INFO
+        assert not compare_runs(run_of(GOOD), found).drifted
+
+
+def test_the_command_says_it_by_code_by_words_and_as_a_page(tmp_path):
+    write(tmp_path / "a", GOOD)
+    write(tmp_path / "b", WRONG)
+
+    def coatcheck(*words: str) -> subprocess.CompletedProcess[str]:
+        return subprocess.run(
+            [*COMMAND, "compare", *words], cwd=tmp_path, capture_output=True, text=True, timeout=120
+        )
+
+    assert coatcheck("a", "a").returncode == 0
+    worse = coatcheck("a", "b", "--output", "pages/c.html")
+    assert worse.returncode == 1
+    assert "AGREES to DISAGREES" in " ".join(worse.stdout.split())
+    assert (tmp_path / "pages" / "c.html").read_text().startswith("<!DOCTYPE html>")
+    back = coatcheck("b", "a", "--json")
+    assert back.returncode == 5
+    assert json.loads(back.stdout)["worse"] is False
+    gone = coatcheck("a", "c")
+    assert gone.returncode == 2
+    assert "c: cannot be read" in gone.stderr
+    assert len(gone.stderr.strip().splitlines()) == 1
+
+
+def test_what_a_stranger_wrote_stays_text():
+    bad = replace(GOOD, name="<script>alert(1)</script>", title="<script>alert(2)</script>")
+    text = comparison_page(compare_runs(run_of(bad), run_of(GOOD)))
+    assert "<script>alert" not in text
+    assert "&lt;script&gt;alert" in text
+
+
+@pytest.mark.skipif(browser() is None, reason="no Chromium on this machine")
+def test_the_page_fits_a_phone(tmp_path):
+    path = tmp_path / "c.html"
+    path.write_text(comparison_page(compare_runs(run_of(GOOD), run_of(WRONG, replace(GOOD, name="new")))))
+    with page(tmp_path / "profile") as opened:
+        for width in (390, 1360):
+            opened.open(path, width=width)
+            sticking = "document.documentElement.scrollWidth - document.documentElement.clientWidth"
+            assert opened.evaluate(sticking) == 0
+            assert [e for e in opened.events if e["method"] == "Runtime.exceptionThrown"] == []

@@ -1,0 +1,65 @@
+"""The plots of one coating at several moduli: which cases make a family, and what is drawn of it."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from synthetic_results import INFO, contact, result_of
+
+from verification.report.page import render
+from verification.report.sections.family import family_section
+
+
+def member(ratio, thickness=1.0, friction=0.0, name=None):
+    coatings = ((210e9 * ratio, 0.3, thickness),) if ratio != 1 else ()
+    return result_of(contact(*coatings, friction=friction), name=name or f"ratio_{ratio:g}", points=31)
+
+
+@pytest.fixture(scope="module")
+def frictionless():
+    return [member(ratio) for ratio in (4, 0.25, 1, 2)]
+
+
+def test_coatings_of_one_thickness_and_the_bare_solid_are_a_family(frictionless):
+    section = family_section(frictionless)
+    assert len(section.parts) == 1
+    assert "h = 1 a_h, nu = 0.3, frictionless, for E1/E2 = 0.25, 1, 2, 4" in section.parts[0].text
+    panels = section.parts[0].gallery.panels
+    assert [panel.title for panel in panels].count("sigma_xx / p_h") == 4
+    # Each curve of the pressure says its modulus.
+    pressure = next(panel.figure for panel in panels if panel.title == "p / p_h")
+    assert all(f">{ratio}<" in pressure for ratio in ("0.25", "1", "2", "4"))
+
+
+def test_its_numbers_are_those_of_the_cases(frictionless):
+    table = family_section(frictionless).parts[0].tables[0]
+    assert [row.head.text for row in table.rows] == ["0.25", "1", "2", "4"]
+    stiff = frictionless[0]
+    radius = stiff.profile("contact_radius", "contact", "semianalytic").value[0] / stiff.problem["a_h"]
+    column = next(n for n, name in enumerate(table.columns[1:]) if name == "a / a_h")
+    assert float(table.rows[3].cells[column].text) == pytest.approx(radius, abs=5e-7)
+
+
+def test_other_thickness_friction_or_too_few_are_no_family(frictionless):
+    assert family_section(frictionless[:2]) is None
+    assert family_section([*frictionless[:2], member(3, thickness=0.5)]) is None
+    assert family_section([*frictionless[:2], member(3, friction=0.25)]) is None
+    assert family_section([*frictionless[:2], frictionless[0]]) is None
+
+
+def test_each_friction_has_a_family_of_its_own(frictionless):
+    sliding = [member(ratio, friction=0.25, name=f"sliding_{ratio:g}") for ratio in (0.5, 1, 2)]
+    section = family_section([*sliding, *frictionless])
+    assert len(section.parts) == 2
+    assert "sliding with f = 0.25, for E1/E2 = 0.5, 1, 2" in section.parts[1].text
+
+
+def test_no_number_keeps_the_page_from_being_written(frictionless):
+    spoilt = [
+        replace(
+            result, profiles=tuple(replace(p, value=np.full_like(p.value, np.nan)) for p in result.profiles)
+        )
+        for result in frictionless
+    ]
+    assert "Pressure and stress against the coating" in render(spoilt, INFO)
+    assert family_section([replace(result, problem={}) for result in frictionless]) is None

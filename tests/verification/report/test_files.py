@@ -1,0 +1,129 @@
+"""The files of a report: whole or not at all, strict JSON, JUnit XML that fails where the run failed."""
+
+import json
+import os
+from xml.etree import ElementTree
+
+import numpy as np
+import pytest
+from synthetic_results import INFO, STEEL, contact, result_of, showcase
+
+from verification.judging.verdict import Outcome
+from verification.report import write, write_report
+from verification.report.junit import junit_xml
+from verification.running.result import SCHEMA, CaseResult, SourceResult, from_json
+
+NAMES = {"report.html", "report.json", "junit.xml"}
+
+
+@pytest.fixture(scope="module")
+def results():
+    # Disagreement with inconclusive approach, NaN, crashed; few points, for only the files matter here.
+    chosen = showcase(points=31)
+    return [chosen[number] for number in (4, 9, 11)]
+
+
+def test_a_report_is_three_files_and_nothing_else(tmp_path, results):
+    page = write_report(results, tmp_path / "new" / "folder", INFO)
+    assert page == tmp_path / "new" / "folder" / "report.html"
+    assert {path.name for path in page.parent.iterdir()} == NAMES
+    assert all(path.stat().st_size > 100 for path in page.parent.iterdir())
+
+
+def test_an_earlier_report_survives_whatever_goes_wrong(tmp_path, results, monkeypatch):
+    write_report([], tmp_path, INFO)
+    before = {path.name: path.read_bytes() for path in tmp_path.iterdir()}
+
+    def full(_):
+        raise OSError(28, "No space left on device")
+
+    with monkeypatch.context() as patched:
+        patched.setattr(write.os, "fsync", full)
+        with pytest.raises(OSError, match="No space left"):
+            write_report(results, tmp_path, INFO)
+    with monkeypatch.context() as patched:
+        patched.setattr(write, "render", lambda *_: 1 / 0)
+        with pytest.raises(ZeroDivisionError):
+            write_report(results, tmp_path, INFO)
+    assert {path.name: path.read_bytes() for path in tmp_path.iterdir()} == before
+
+
+def test_a_title_that_is_no_text_costs_no_report(tmp_path):
+    # Lone surrogates are legal in JSON, so they can come back from a stored result.
+    write_report([result_of(contact(), title="half \ud800 pair", points=11)], tmp_path, INFO)
+    assert "half ? pair" in (tmp_path / "report.html").read_text(encoding="utf-8")
+
+
+def test_a_name_from_a_stranger_is_no_path(tmp_path):
+    folder = tmp_path / "out"
+    write_report([result_of(contact(), name="../../evil", points=11)], folder, INFO)
+    assert {path.name for path in tmp_path.iterdir()} == {"out"}
+    assert {path.name for path in folder.iterdir()} == NAMES
+
+
+def test_report_files_can_be_read_by_others(tmp_path):
+    page = write_report([], tmp_path, INFO)
+    assert oct(os.stat(page).st_mode & 0o777) == "0o644"
+
+
+def test_json_is_strict_versioned_and_complete(tmp_path, results):
+    write_report(results, tmp_path, INFO)
+    text = (tmp_path / "report.json").read_text()
+
+    def refuse(word):
+        raise AssertionError(f"{word} is not JSON")
+
+    data = json.loads(text, parse_constant=refuse)
+    assert data["schema"] == SCHEMA == "coatcheck-report/1"
+    assert data["run"]["command"] == INFO.command
+    assert data["run"]["versions"] == INFO.versions
+    assert [case["name"] for case in data["cases"]] == [result.name for result in results]
+    for case, result in zip(data["cases"], results, strict=True):
+        back = from_json(case)
+        assert back.outcome is result.outcome
+        for ours, theirs in zip(result.profiles, back.profiles, strict=True):
+            assert np.array_equal(ours.value, theirs.value, equal_nan=True)
+
+
+def test_junit_has_one_item_for_each_comparison(results):
+    root = ElementTree.fromstring(junit_xml(results, INFO))
+    items = root.findall("testsuite/testcase")
+    assert len(items) == sum(len(result.verdicts) for result in results)
+    assert len({(item.get("classname"), item.get("name")) for item in items}) == len(items)
+    assert int(root.get("tests")) == len(items)
+
+
+def test_junit_fails_exactly_where_the_run_did_not_agree(results):
+    root = ElementTree.fromstring(junit_xml(results, INFO))
+    outcomes = [verdict.outcome for result in results for _, verdict in result.verdicts]
+    assert len(set(outcomes)) >= 3
+    for item, outcome in zip(root.findall("testsuite/testcase"), outcomes, strict=True):
+        kinds = {Outcome.AGREES: [], Outcome.NO_RESULT: ["error"]}.get(outcome, ["failure"])
+        assert [child.tag for child in item] == kinds
+        assert all(child.get("type") == outcome.value for child in item)
+    assert int(root.get("errors")) == outcomes.count(Outcome.NO_RESULT)
+    failures = outcomes.count(Outcome.DISAGREES) + outcomes.count(Outcome.INCONCLUSIVE)
+    assert int(root.get("failures")) == failures
+    # A skipped item counts as passed in most readers; nothing that did not agree may pass.
+    assert root.findall(".//skipped") == []
+
+
+def test_a_case_without_comparisons_is_an_error_not_a_gap():
+    source = SourceResult("case", 1.0, "killed after 300 s")
+    empty = CaseResult("x", "x", "", {}, (source,), (), (), 1.0)
+    root = ElementTree.fromstring(junit_xml([empty], INFO))
+    assert root.get("tests") == root.get("errors") == "1"
+
+
+def test_junit_survives_characters_that_xml_forbids():
+    result = result_of(
+        contact((2 * STEEL[0], 0.3, 1.0)),
+        name="a\x00b\ufffe",
+        title="]]>&<\x1b[31m",
+        failures={"fem_reference": "bell \x07 and half a pair \ud800"},
+        points=11,
+    )
+    root = ElementTree.fromstring(junit_xml([result], INFO).encode())
+    assert root.find("testsuite").get("name") == "a\ufffdb\ufffd"
+    message = root.find(".//error").get("message")
+    assert "bell \ufffd and half a pair \ufffd" in message

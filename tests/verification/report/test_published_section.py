@@ -1,0 +1,118 @@
+"""The report's pages on published results: what was printed beside what was computed."""
+
+import json
+import re
+import subprocess
+import sys
+from dataclasses import replace
+from pathlib import Path
+from xml.etree import ElementTree
+
+import pytest
+
+from verification.cases.published import published_cases, read_published
+from verification.report.junit import junit_xml
+from verification.report.page import render
+from verification.running.published import failed, run
+from verification.running.result import RunInfo, from_json
+from verification.running.store import read_checked
+from verification.sources.published import solvers
+
+SHIPPED = published_cases()
+INFO = RunInfo("coatcheck run published", "2026-01-01T00:00:00+00:00", 1.0, 1, None, "a machine", {})
+
+
+@pytest.fixture(scope="module")
+def results():
+    """Two sources by the quick method alone, which here speaks for both."""
+    quick = solvers()["semianalytic"]
+    both = {"semianalytic": quick, "fem_reference": quick}
+    return [run(read_published(SHIPPED[n]), both) for n in ("ahlvin_ulery_1962", "jones_1962")]
+
+
+@pytest.fixture(scope="module")
+def page(results):
+    return render(results, INFO)
+
+
+def rows_of(page, anchor):
+    """The text of every row of the section, cells parted by |."""
+    section = page.split(f'<article class="case" id="case-{anchor}">')[1].split("</article>")[0]
+    rows = re.findall(r"<tr.*?</tr>", section, re.DOTALL)
+    return ["|".join(re.findall(r"<t[dh][^>]*>(?:<[^>]*>)*([^<]*)", row)) for row in rows]
+
+
+def test_citation_and_how_it_was_read_are_said_in_full(page):
+    assert "R. G. Ahlvin and H. H. Ulery, Highway Research Board Bulletin 342 (1962) 1-13" in page
+    assert "Second-hand, the primary source was not seen: as reproduced in textbooks." in page
+    # The notes of the table file.
+    assert "do not hold a method against those six" in page
+
+
+def test_every_printed_value_stands_beside_both_methods(page, results):
+    rows = rows_of(page, "ahlvin-ulery-1962")
+    printed = [text for item in results[0].published["columns"] for text in item["text"]]
+    assert len(printed) == 139
+    beside = [row.split("|") for row in rows if row.endswith(("✓", "✗", "not counted"))]
+    assert [cells[2] for cells in beside] == printed
+    first = beside[0]
+    # axis, z = 0.1 a: printed 0.90050, computed 0.900496 by both, met.
+    assert first[:3] == ["axis", "0.1", "0.90050"]
+    assert float(first[4]) == pytest.approx(0.900496, abs=5e-6)
+    assert first[4] == first[7]
+    assert first[-1] == "✓"
+
+
+def test_misprints_are_shown_and_not_counted(page):
+    rows = rows_of(page, "ahlvin-ulery-1962")
+    assert sum("misprint, not counted" in row for row in rows) == 6
+    overview = page.split('id="published"')[1].split("</section>")[0]
+    assert "133 of 133" in overview
+    assert "139" not in overview
+
+
+def test_values_keep_the_sign_and_unit_of_the_source(page):
+    factor = next(row for row in rows_of(page, "jones-1962") if "|1.97428|" in row).split("|")
+    assert float(factor[4]) == pytest.approx(1.974308, abs=1e-5)
+    # Computed less printed, in the source's own sign.
+    assert float(factor[5]) == pytest.approx(2.9e-5, abs=3e-6)
+
+
+def test_a_value_that_is_not_met_is_marked(results):
+    wrong = results[1]
+    profiles = tuple(
+        replace(p, value=p.value * 1.001) if p.source == "fem_reference" else p for p in wrong.profiles
+    )
+    rows = rows_of(render([replace(wrong, profiles=profiles)], INFO), "jones-1962")
+    assert sum(row.endswith("✗") for row in rows) == 2
+
+
+def test_a_failed_source_still_has_its_page():
+    case = read_published(SHIPPED["jones_1962"])
+    page = render([failed(case, "its process <died>", 1.0)], INFO)
+    assert "its process &lt;died&gt;" in page
+    assert "0 of 2" in page
+
+
+def test_junit_has_one_item_for_each_comparison(results):
+    root = ElementTree.fromstring(junit_xml(results, INFO))
+    assert int(root.attrib["tests"]) == sum(len(result.verdicts) for result in results)
+
+
+def test_command_line_runs_a_table_of_ones_own(tmp_path):
+    (tmp_path / "mine.toml").write_text(SHIPPED["jones_1962"].read_text().replace("nu = 0.5", "nu = 0.3"))
+    table = "factor,meaning,table_memory\nZZ1,a,0.5\nZZ1-RR1,b,1.0\n"
+    (tmp_path / "jones_1962_three_layer.csv").write_text(table)
+    words = [sys.executable, "-m", "verification.cli", "run", "mine.toml", "-o", "out", "--json"]
+    done = subprocess.run(words, cwd=tmp_path, capture_output=True, text=True, timeout=300, check=False)
+    # The numbers are made up, so they must disagree.
+    assert done.returncode == 1, done.stderr
+    assert json.loads(done.stdout)["cases"]["mine"]["outcome"] == "DISAGREES"
+    result = from_json(read_checked(tmp_path / "out" / "cases" / "mine.json"))
+    assert result.published["columns"][0]["text"] == ["0.5"]
+    (tmp_path / "jones_1962_three_layer.csv").write_text(table.replace("1.0", "one"))
+    done = subprocess.run(words, cwd=tmp_path, capture_output=True, text=True, timeout=60, check=False)
+    assert done.returncode == 2
+    said = "jones_1962_three_layer.csv, line 3, column table_memory: 'one' is not a finite number"
+    assert done.stderr.strip() == f"coatcheck: {said}"
+    assert Path(tmp_path / "out" / "report.html").exists()

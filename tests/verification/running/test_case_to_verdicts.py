@@ -1,0 +1,178 @@
+"""One case to verdicts: a source that fails, lies or goes silent is a row of the report, never agreement."""
+
+import functools
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from verification.cases.contact import parse_case
+from verification.judging.verdict import Outcome
+from verification.running.contact import judge_case, run, solve_case
+from verification.running.result import from_json, to_json
+from verification.sources.references import integral_equation
+from verification.sources.references.hertz import Hertz
+
+CASE = b"""
+title = "One coating"
+[problem]
+radius = 10e-3
+load = 20
+substrate = { E = 210e9, nu = 0.3 }
+[[problem.coatings]]
+E = 420e9
+nu = 0.25
+thickness_over_a_h = 0.5
+"""
+
+
+def exact(problem, _):
+    return solved(problem)
+
+
+@functools.cache
+def solved(problem):
+    return integral_equation.solve(
+        radius=problem.radius, load=problem.load, coatings=problem.coatings, substrate=problem.substrate
+    )
+
+
+@pytest.fixture
+def case(tmp_path):
+    return parse_case(CASE, tmp_path / "two.toml")
+
+
+def sources(**changed):
+    """The exact solution under every name, so that only what a test changes can matter."""
+    return {"semianalytic": exact, "fem_reference": exact, "integral_equation": exact} | changed
+
+
+def verdicts(result, source):
+    return [v for claim, v in result.verdicts if source in claim.between]
+
+
+def judged(case, available):
+    """A run without the invariants, for what looks at verdicts alone."""
+    return judge_case(case, solve_case(case, available), invariants=False)
+
+
+def test_sources_that_are_the_same_agree_in_every_claim(case):
+    result = run(case, sources())
+    assert result.outcome is Outcome.AGREES
+    assert len(result.verdicts) == len(case.claims) == 3 * (3 + 3 + 2 + 4 * 2)
+
+
+def test_source_that_raises_is_no_result_with_its_sentence_and_the_others_go_on(case):
+    def broken(problem, _):
+        raise ValueError("load balance off by 3e-3 after 200 iterations; widen the grid")
+
+    result = run(case, sources(semianalytic=broken))
+    assert {v.outcome for v in verdicts(result, "semianalytic")} == {Outcome.NO_RESULT}
+    assert all("load balance off by 3e-3" in v.reason for v in verdicts(result, "semianalytic"))
+    others = [v for claim, v in result.verdicts if "semianalytic" not in claim.between]
+    assert {v.outcome for v in others} == {Outcome.AGREES}
+
+
+def test_unexpected_error_is_named_and_no_traceback(case):
+    def broken(problem, _):
+        return {}["nothing"]
+
+    reasons = {v.reason for v in verdicts(run(case, sources(fem_reference=broken)), "fem_reference")}
+    assert reasons == {"fem_reference: KeyError: 'nothing'"}
+
+
+class Changed:
+    """A solution with some answers replaced."""
+
+    def __init__(self, solution, **answers):
+        self._solution, self._answers = solution, answers
+
+    def __getattr__(self, name):
+        return self._answers[name] if name in self._answers else getattr(self._solution, name)
+
+
+def test_stress_that_is_one_percent_off_disagrees(case):
+    def off(problem, numerics):
+        s = exact(problem, numerics)
+        return Changed(s, stress=lambda *a, **k: 1.01 * s.stress(*a, **k))
+
+    result = judged(case, sources(semianalytic=off))
+    stressed = [
+        v.outcome
+        for claim, v in result.verdicts
+        if "semianalytic" in claim.between and claim.quantity.startswith("sigma")
+    ]
+    assert set(stressed) == {Outcome.DISAGREES}
+
+
+@pytest.mark.parametrize("bad", [np.nan, np.inf])
+@pytest.mark.parametrize("name", ["stress", "pressure", "stress_uncertainty", "pressure_uncertainty"])
+def test_values_that_are_not_finite_never_agree(case, name, bad):
+    def broken(problem, numerics):
+        s = exact(problem, numerics)
+
+        def answer(*arguments, **keywords):
+            values = getattr(s, name)(*arguments, **keywords).copy()
+            values[..., 3] = bad
+            return values
+
+        return Changed(s, **{name: answer})
+
+    result = judged(case, sources(fem_reference=broken))
+    touched = [
+        v.outcome
+        for claim, v in result.verdicts
+        if "fem_reference" in claim.between
+        and claim.line != "contact"
+        and (claim.quantity == "pressure") == ("pressure" in name)
+    ]
+    assert set(touched) == {Outcome.NO_RESULT}
+
+
+@pytest.mark.parametrize("name", ["peak_pressure", "contact_radius", "approach"])
+def test_scalar_that_is_not_finite_is_no_result(case, name):
+    def broken(problem, numerics):
+        return Changed(exact(problem, numerics), **{name: float("nan")})
+
+    result = judged(case, sources(semianalytic=broken))
+    assert {v.outcome for v in verdicts(result, "semianalytic")} == {Outcome.NO_RESULT}
+    assert name in verdicts(result, "semianalytic")[0].reason
+
+
+def test_everything_failing_still_gives_a_row_for_every_claim(case):
+    def broken(problem, _):
+        raise ValueError("no")
+
+    result = run(case, dict.fromkeys(sources(), broken))
+    assert [v.outcome for _, v in result.verdicts] == [Outcome.NO_RESULT] * len(case.claims)
+
+
+def test_result_survives_strict_json_to_the_last_bit(case):
+    def broken(problem, _):
+        raise ValueError("no")
+
+    result = run(case, sources(semianalytic=broken))
+    text = json.dumps(to_json(result), allow_nan=False)
+    back = from_json(json.loads(text))
+    assert json.dumps(to_json(back), allow_nan=False) == text
+    for one, other in zip(result.profiles, back.profiles, strict=True):
+        assert np.array_equal(one.value, other.value)
+    with pytest.raises(ValueError, match="schema"):
+        from_json({"schema": "something else"})
+
+
+def test_hertz_is_asked_where_all_moduli_are_equal(tmp_path):
+    text = (
+        CASE.replace(b"420e9", b"210e9")
+        .replace(b"100e9", b"210e9")
+        .replace(b"0.25", b"0.3")
+        .replace(b"0.35", b"0.3")
+    )
+    case = parse_case(text, tmp_path / "same.toml")
+    available = sources(hertz=lambda p, _: Hertz(p.radius, p.load, *p.substrate))
+    result = run(case, available)
+    assert any(claim.between == ("integral_equation", "hertz") for claim, _ in result.verdicts)
+    assert result.outcome is Outcome.AGREES
+    wrong = sources(hertz=lambda p, _: replace(Hertz(p.radius, p.load, *p.substrate), nu=0.31))
+    assert run(case, wrong).outcome is Outcome.DISAGREES

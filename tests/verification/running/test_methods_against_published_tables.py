@@ -1,0 +1,148 @@
+"""Both methods against published tables: the right numbers agree, wrong ones do not."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from verification.cases.published import published_cases, read_published
+from verification.judging.verdict import Outcome
+from verification.problem.contact import PrescribedLoad
+from verification.problem.points import Points
+from verification.running.published import failed, run
+from verification.running.result import from_json, to_json
+from verification.sampling.points import values
+from verification.sources.limits import towards_limits
+from verification.sources.published import solvers
+from verification.sources.registry import PUBLISHED
+
+SHIPPED = published_cases()
+DISC = PrescribedLoad(1e6, 0.1, (), (1e9, 0.3))
+
+
+@pytest.fixture(scope="module")
+def disc():
+    """The homogeneous half-space under a uniform disc by the quick method."""
+    return solvers()["semianalytic"](DISC)
+
+
+def on_axis(z):
+    return Points.of(np.zeros_like(z), np.zeros_like(z), z, (), None, "m", 1.0)
+
+
+@pytest.mark.parametrize("method", ["semianalytic", "fem_reference"])
+@pytest.mark.parametrize("name", ["ellea1_halfspace_off_axis", "amadeus_three_layer_single_wheel"])
+def test_published_tables_are_met(name, method):
+    case = read_published(SHIPPED[name])
+    claims = tuple(claim for claim in case.claims if method in claim.between)
+    result = run(replace(case, claims=claims), {method: solvers()[method]})
+    assert [v.reason for _, v in result.verdicts if v.outcome is not Outcome.AGREES] == []
+    assert len(result.verdicts) == len(case.columns)
+
+
+@pytest.mark.cases
+@pytest.mark.parametrize("name", SHIPPED)
+def test_every_published_table_is_met_by_both_methods(name):
+    result = run(read_published(SHIPPED[name]))
+    assert [v.reason for _, v in result.verdicts if v.outcome is not Outcome.AGREES] == []
+
+
+def test_strains_follow_from_hookes_law_of_the_layer(disc):
+    # Ahlvin and Ulery: eps_z = q (1 + nu)/E [(1 - 2 nu) A + B] at z/R = 1, compression positive.
+    A, B, nu, E = 0.292893, 0.353553, 0.3, 1e9
+    found, spread = values(disc, "eps_zz", on_axis(np.array([0.1])), DISC)
+    assert found == pytest.approx([-1e6 * (1 + nu) / E * ((1 - 2 * nu) * A + B)], rel=1e-4)
+    assert 0 < spread[0] < 1e-3 * abs(found[0])
+
+
+def test_sums_of_stresses_are_sums_of_stresses(disc):
+    at = on_axis(np.array([0.05, 0.2]))
+    trace, _ = values(disc, "sigma_kk", at, DISC)
+    xx, yy, zz = (values(disc, f"sigma_{c}", at, DISC)[0] for c in ("xx", "yy", "zz"))
+    assert trace == pytest.approx(xx + yy + zz)
+    assert values(disc, "sigma_zz - sigma_xx", at, DISC)[0] == pytest.approx(zz - xx)
+
+
+def tampered(case, column, change):
+    """The case with one printed value changed by ``change`` times what it can bear."""
+    columns = []
+    for item in case.columns:
+        p = item.profile
+        if item.column == column:
+            moved = p.value.copy()
+            moved[3] += change * (p.uncertainty[3] + 1e-4 * item.scale)
+            p = replace(p, value=moved)
+        columns.append(replace(item, profile=p))
+    return replace(case, columns=tuple(columns))
+
+
+@pytest.mark.parametrize("column", ["sig_x", "sig_xz", "u_z"])
+def test_a_wrong_digit_in_a_table_disagrees(column):
+    case = read_published(SHIPPED["ellea1_halfspace_off_axis"])
+    solver = {"semianalytic": solvers()["semianalytic"]}
+    wrong = run(tampered(case, column, 3.0), solver)
+    disagreeing = {c.line.rsplit(" ", 1)[1] for c, v in wrong.verdicts if v.outcome is Outcome.DISAGREES}
+    assert disagreeing == {column}
+
+
+def test_a_misprint_that_is_not_marked_disagrees():
+    case = read_published(SHIPPED["ahlvin_ulery_1962"])
+    solver = {"semianalytic": solvers()["semianalytic"]}
+    marked = run(case, solver)
+    unmarked = run(
+        replace(case, columns=tuple(replace(p, why_not=("",) * len(p.why_not)) for p in case.columns)), solver
+    )
+    lines = {item.profile.line for item in case.columns if not item.counted.all()}
+    assert lines
+    for (claim, good), (_, bad) in zip(marked.verdicts, unmarked.verdicts, strict=True):
+        if claim.between[0] == "semianalytic":
+            assert good.outcome is Outcome.AGREES, good.reason
+            expected = Outcome.DISAGREES if claim.line in lines else Outcome.AGREES
+            assert bad.outcome is expected, claim.line
+
+
+def test_a_method_that_fails_leaves_its_sentence():
+    def refuses(problem):
+        raise ValueError("pressure = 1; not today")
+
+    case = read_published(SHIPPED["ellea1_halfspace_axis"])
+    result = run(case, {"semianalytic": refuses})
+    assert {v.outcome for _, v in result.verdicts} == {Outcome.NO_RESULT}
+    reasons = {v.reason for c, v in result.verdicts if "semianalytic" in c.between}
+    assert reasons == {"semianalytic: pressure = 1; not today"}
+    assert failed(case, "was killed", 1.0).outcome is Outcome.NO_RESULT
+
+
+def test_result_survives_json(disc):
+    case = read_published(SHIPPED["ellea1_halfspace_axis"])
+    case = replace(case, claims=tuple(c for c in case.claims if "semianalytic" in c.between))
+    result = run(case, {"semianalytic": lambda problem: solvers()["semianalytic"](problem)})
+    back = from_json(to_json(result))
+    assert to_json(back) == to_json(result)
+    assert back.published["columns"][0]["text"][0] == "0.9349"
+    assert back.profile("sigma_xx", case.columns[0].profile.line, PUBLISHED) is not None
+
+
+def test_incompressible_solid_is_reached_by_extrapolation():
+    soft = replace(DISC, substrate=(1e9, 0.5))
+    quick = solvers()["semianalytic"]
+    carried, direct = towards_limits(soft, quick), quick(soft)
+    z = np.array([0.03, 0.1, 0.3])
+    gap = np.abs(carried.stress(0.0, 0.0, z) - direct.stress(0.0, 0.0, z))
+    assert (gap <= carried.stress_uncertainty(0.0, 0.0, z)).all()
+    # The formula is linear in nu on a homogeneous solid, so nothing but rounding is left.
+    assert gap.max() <= 1e-6 * DISC.pressure
+    assert carried.approach == pytest.approx(direct.approach, rel=1e-5)
+    assert carried.uncertainty.approach >= abs(carried.approach - direct.approach)
+    assert towards_limits(DISC, lambda problem: problem) is DISC
+
+
+def test_rigid_base_is_reached_by_extrapolation():
+    quick = solvers()["semianalytic"]
+    rigid = PrescribedLoad(1e6, 0.1, ((1e9, 0.3, 0.1),), (1e15, 0.3))
+    carried, direct = towards_limits(rigid, quick), quick(rigid)
+    spread = carried.uncertainty.approach
+    assert abs(carried.approach - direct.approach) <= spread <= 1e-3 * direct.approach
+    # A base of 1e4 alone is further off by orders than the line through two of them.
+    alone = quick(replace(rigid, substrate=(1e13, 0.3)))
+    assert abs(alone.approach - direct.approach) > 100 * abs(carried.approach - direct.approach)

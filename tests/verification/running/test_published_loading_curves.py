@@ -1,0 +1,145 @@
+"""Published curves of a sphere pressed deeper and deeper: read, refused where malformed, met or not."""
+
+import numpy as np
+import pytest
+
+from verification.cases.published import published_cases, read_published
+from verification.cases.toml import CaseError
+from verification.judging.verdict import Outcome
+from verification.problem.loading import LoadingCurve
+from verification.report.page import render
+from verification.running.published import run
+from verification.running.result import RunInfo, from_json, to_json
+from verification.sources.published import solvers
+from verification.sources.registry import REFERENCE
+
+SHIPPED = published_cases()
+INFO = RunInfo("coatcheck run published", "2026-01-01T00:00:00+00:00", 1.0, 1, None, "a machine", {})
+TOML = """
+title = "A layer"
+source = "nobody"
+year = 1900
+primary_read = true
+read = "written for this test"
+
+[problem]
+length_unit = "mm"
+stress_unit = "MPa"
+radius = 10.0
+substrate = { E = 1e9, nu = 0.3 }
+coatings = [ { E = 2.0, nu = 0.3, thickness = 0.5 } ]
+
+[[table]]
+file = "t.csv"
+at = { contact_radius = "a", unit = "h" }
+column = [
+    { name = "k", quantity = "kappa", unit = "1" },
+    { name = "old", quantity = "kappa", unit = "1", not_counted = "superseded" },
+    { name = "d", quantity = "approach", unit = "h^2/R", relative = 0.1 },
+    { name = "s", quantity = "series_over_kappa", unit = "1", series = [1.0, 0.5] },
+]
+"""
+# kappa of Hayes and others, nu = 0.3; (1 + X + X^2/2)/kappa with it.
+CSV = "a,k,old,d,s\n0.2,1.206558,1.2,0.03,1.0111\n1.0,2.483525,2.5,0.6,1.0066\n"
+
+
+@pytest.fixture
+def files(tmp_path):
+    """Writes a case of one table and reads it."""
+
+    def read(toml=TOML, csv=CSV):
+        (tmp_path / "t.csv").write_text(csv)
+        (tmp_path / "curve.toml").write_text(toml)
+        return read_published(tmp_path / "curve.toml")
+
+    return read
+
+
+def test_a_sphere_without_a_load_is_a_loading_curve(files):
+    case = files()
+    assert case.problem == LoadingCurve(
+        10e-3, "contact_radius", (1e-4, 5e-4), ((2e6, 0.3, 0.5e-3),), (1e15, 0.3), punch=True
+    )
+    kappa, old, approach, series = case.columns
+    assert kappa.at.coordinate == "a"
+    assert approach.profile.value == pytest.approx(np.array([0.03, 0.6]) * 0.25e-6 / 10e-3)
+    assert approach.profile.uncertainty == pytest.approx(0.1 * approach.profile.value)
+    assert old.why_not == ("superseded", "superseded")
+    assert series.series == (1.0, 0.5)
+    assert {claim.line.rsplit(" ", 1)[1] for claim in case.claims} == {"k", "d", "s"}
+    plain = files(TOML.replace("kappa", "load").replace("series_over_load", "load"))
+    assert not plain.problem.punch
+
+
+def test_only_what_counts_is_judged_and_all_of_it_is_shown(files):
+    exact = {REFERENCE: solvers()[REFERENCE]}
+    result = run(files(), exact)
+    judged = {c.line.rsplit(" ", 1)[1]: v.outcome for c, v in result.verdicts if REFERENCE in c.between}
+    assert judged["k"] is Outcome.AGREES
+    assert judged["s"] is Outcome.AGREES
+    assert from_json(to_json(result)).problem["control"] == "contact_radius"
+    page = render([result], INFO)
+    assert "superseded, not counted" in page
+    assert "stiffness of the flat punch over 2 a E1*" in page
+    wrong = run(files(csv=CSV.replace("2.483525", "2.483535")), exact)
+    judged = {c.line.rsplit(" ", 1)[1]: v.outcome for c, v in wrong.verdicts if REFERENCE in c.between}
+    assert judged["k"] is Outcome.DISAGREES
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "said"),
+    [
+        (
+            'quantity = "kappa", unit = "1" }',
+            'quantity = "sigma_zz", unit = "MPa" }',
+            "does not go with this problem",
+        ),
+        (
+            'at = { contact_radius = "a", unit = "h" }',
+            'at = { z = "a", unit = "h" }',
+            "give contact_radius or approach",
+        ),
+        ('contact_radius = "a"', 'contact_radius = "b"', r"t\.csv: has no column 'b'"),
+        ('unit = "h" }\n', 'unit = "q" }\n', r"column k: at: unit 'q' is unknown; known are .*h\^2/R"),
+        ("relative = 0.1", "relative = -0.1", r"curve\.toml: table\.0\.column\.2\.relative"),
+        ("radius = 10.0\n", "radius = 10.0\nfriction = 0.1\n", "friction belongs to"),
+        ("radius = 10.0\n", "load = 10.0\n", "needs pressure and load_radius"),
+        ('at = { contact_radius = "a", unit = "h" }', "", "says nowhere where its values are"),
+    ],
+)
+def test_malformed_curves_are_refused_with_file_and_key(files, old, new, said):
+    assert old in TOML
+    with pytest.raises(CaseError, match=said):
+        files(TOML.replace(old, new))
+
+
+@pytest.mark.parametrize("a", ["nan", "-0.2", "0"])
+def test_points_without_meaning_are_refused(files, a):
+    with pytest.raises(CaseError, match=r"not a finite number|contact_radius"):
+        files(csv=CSV.replace("\n0.2,", f"\n{a},"))
+
+
+def test_one_case_has_one_control(files):
+    second = TOML.replace("kappa", "load").split("[[table]]")[1].replace("contact_radius", "approach")
+    second = second.replace("series_over_load", "load")
+    with pytest.raises(CaseError, match="has to say where every value of a loading curve is"):
+        files(TOML + "\n[[table]]" + second)
+
+
+@pytest.mark.parametrize(
+    "name", [n for n in SHIPPED if isinstance(read_published(SHIPPED[n]).problem, LoadingCurve)]
+)
+def test_exact_reference_meets_every_shipped_curve(name):
+    result = run(read_published(SHIPPED[name]), {REFERENCE: solvers()[REFERENCE]})
+    reasons = [
+        v.reason for c, v in result.verdicts if REFERENCE in c.between and v.outcome is not Outcome.AGREES
+    ]
+    assert reasons == []
+
+
+def test_the_second_hand_table_of_hayes_is_shown_and_short():
+    case = read_published(SHIPPED["hayes_1972_nu_05"])
+    exact, quoted = case.columns
+    assert exact.counted.all()
+    assert not quoted.counted.any()
+    assert (1 - quoted.profile.value / exact.profile.value).max() == pytest.approx(0.009, abs=5e-4)

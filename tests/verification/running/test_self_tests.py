@@ -1,0 +1,52 @@
+"""The harness answers what is known of it, and a run says so when it does not."""
+
+import pytest
+from synthetic_results import contact, result_of
+
+from verification.commands.common import EXIT
+from verification.commands.run import _code
+from verification.credibility.faults.catalogue import FAULTS
+from verification.credibility.faults.planting import planted
+from verification.judging.verdict import Outcome
+from verification.regression.baseline import Regression
+from verification.report.credibility.self_tests import self_test_section
+from verification.running.self_tests import SelfTest, self_tests
+
+PASSED = SelfTest("judging", "verdicts are what they must be", True, "21 known answers")
+FAILED = SelfTest(
+    "judging", "verdicts are what they must be", False, "NaN: AGREES, where it has to be NO_RESULT"
+)
+
+
+@pytest.mark.parametrize("test", self_tests(), ids=lambda test: test.name)
+def test_the_harness_gives_the_known_answer(test):
+    assert test.passed, test.found
+
+
+@pytest.mark.parametrize(
+    "name",
+    [f.name for f in FAULTS.values() if f.group == "harness" and not f.solve and f.where == "harness"],
+)
+def test_a_fault_of_the_harness_turns_the_answer_named_for_it(name):
+    fault = FAULTS[name]
+    with planted(fault.changes):
+        failed = {test.name for test in self_tests() if not test.passed}
+    assert failed & set(fault.expected)
+
+
+def test_a_run_is_no_better_than_its_harness(tmp_path):
+    agreeing = result_of(contact())
+    assert agreeing.outcome is Outcome.AGREES
+    nothing = Regression(tmp_path, None, ())
+    assert _code([agreeing], nothing, [PASSED]) == EXIT[Outcome.AGREES]
+    assert _code([agreeing], nothing, [PASSED, FAILED]) == EXIT[Outcome.DISAGREES]
+    lost = result_of(contact(), failures={"semianalytic": "did not converge"})
+    assert _code([lost], nothing, [FAILED]) == EXIT[Outcome.NO_RESULT]
+
+
+def test_the_report_says_which_answer_was_wrong():
+    section = self_test_section([PASSED, FAILED])
+    assert section.failures == [
+        "judging: NaN: AGREES, where it has to be NO_RESULT. The verdicts of this run mean nothing."
+    ]
+    assert len(section.parts[0].tables[0].rows) == 2

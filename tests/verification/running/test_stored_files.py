@@ -1,0 +1,49 @@
+"""Stored results: whole or refused, never half."""
+
+import random
+
+import pytest
+
+from verification.running.store import StoreError, locked, read_checked, write_atomically, write_checked
+
+PAYLOAD = {"name": "β-film <script>", "value": [1.0, 1e-300, -0.0, 0.1 + 0.2], "none": None}
+
+
+def test_what_is_stored_is_read_back(tmp_path):
+    write_checked(tmp_path / "a.json", PAYLOAD)
+    assert read_checked(tmp_path / "a.json") == PAYLOAD
+    assert [path.name for path in tmp_path.iterdir()] == ["a.json"]
+
+
+def test_two_hundred_damaged_files_are_all_noticed(tmp_path):
+    path = tmp_path / "a.json"
+    write_checked(path, PAYLOAD)
+    whole = path.read_bytes()
+    rng = random.Random(20261121)
+    for i in range(200):
+        damaged = bytearray(whole)
+        if i % 2:
+            damaged = damaged[: rng.randrange(len(whole))]
+        else:
+            damaged[rng.randrange(len(whole))] ^= 1 << rng.randrange(8)
+        path.write_bytes(damaged)
+        with pytest.raises(StoreError, match=r"a\.json: "):
+            read_checked(path)
+
+
+def test_missing_file_is_one_sentence(tmp_path):
+    with pytest.raises(StoreError, match=r"none\.json: cannot be read"):
+        read_checked(tmp_path / "none.json")
+
+
+def test_file_that_cannot_be_written_leaves_the_old_one(tmp_path):
+    write_atomically(tmp_path / "a", "old")
+    (tmp_path / "b").write_text("in the way")
+    with pytest.raises(StoreError, match="cannot be written"):
+        write_atomically(tmp_path / "b" / "c", "new")
+    assert (tmp_path / "a").read_text() == "old"
+
+
+def test_second_writer_is_told(tmp_path):
+    with locked(tmp_path), pytest.raises(StoreError, match="another coatcheck run"), locked(tmp_path):
+        pass

@@ -1,0 +1,89 @@
+"""A sphere pressed deeper and deeper: its stiffness is that of a flat punch, whoever solves it."""
+
+from dataclasses import fields
+
+import numpy as np
+import pytest
+
+import fem_reference
+import semianalytic
+from verification.problem.loading import LoadingCurve
+from verification.sources.loading import Loading, LoadingDiagnostics, exact_loading, loading
+from verification.sources.references.flat_punch import pressed
+
+LAYER, RIGID = ((1.0, 0.4, 1.0),), (1e9, 0.3)
+CURVE = LoadingCurve(100.0, "contact_radius", (0.4, 1.0), LAYER, RIGID)
+
+
+def solver(method, **numerics):
+    return lambda contact: method.solve(
+        **{f.name: getattr(contact, f.name) for f in fields(contact)}, **numerics
+    )
+
+
+METHODS = {"semianalytic": solver(semianalytic), "fem_reference": solver(fem_reference, size=0.36)}
+
+
+@pytest.mark.parametrize(
+    ("layer", "base"), [((), (2.0, 0.3)), (LAYER, (1.0, 0.4)), (LAYER, RIGID), (LAYER, (0.1, 0.3))]
+)
+def test_stiffness_of_the_sphere_is_that_of_the_punch(layer, base):
+    a, step = 0.7, 1e-4
+    low, here, high = (pressed(a * (1 + s), layer, base) for s in (-step, 0.0, step))
+    E, nu = layer[0][:2] if layer else base
+    S = (high.load - low.load) / (high.approach - low.approach)
+    # The difference quotient leaves out the square of the step.
+    assert here.kappa * 2 * a * E / (1 - nu**2) == pytest.approx(S, rel=10 * step**2)
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_both_methods_give_the_exact_curve_within_their_uncertainty(method):
+    found = loading(CURVE, METHODS[method], limits=method == "fem_reference")
+    exact = exact_loading(CURVE)
+    at = np.array(CURVE.at)
+    for name in ("kappa", "load", "approach"):
+        (value, U), (expected, V) = found.quantity(name, at), exact.quantity(name, at)
+        assert (np.abs(value - expected) <= U + V).all(), name
+        # Some 1e-5 is what STEP and a mesh of half the usual fineness are good for.
+        assert (U / value).max() <= 5e-5, name
+
+
+def test_finite_element_stiffness_on_a_half_space_is_hertz():
+    one = fem_reference.solve(radius=1.0, load=1e-3, coatings=(), substrate=(1.0, 0.3), size=0.36)
+    expected = 2 * one.contact_radius / (1 - 0.3**2)
+    # At this coarsest size the companion that bounds the error is itself off by some 1e-5.
+    assert abs(one.stiffness - expected) <= one.stiffness_uncertainty <= 2e-4 * expected
+    pressure = fem_reference.solve_prescribed(
+        pressure=1.0,
+        load_radius=1.0,
+        coatings=(),
+        substrate=(1.0, 0.3),
+        size=0.36,
+        estimate_uncertainty=False,
+    )
+    assert pressure.stiffness is None
+
+
+def test_a_point_asked_for_is_reached_from_a_load_that_missed_it():
+    exact = exact_loading(CURVE)
+    a, miss = np.array(CURVE.at), 1e-4
+    off = exact_loading(LoadingCurve(100.0, "contact_radius", tuple(a * (1 + miss)), LAYER, RIGID))
+    moved = Loading(CURVE, off.state, off.spread, LoadingDiagnostics(1))
+    for name in ("kappa", "load", "series_over_load"):
+        (value, U), (expected, _) = moved.quantity(name, a, (1.0,)), exact.quantity(name, a, (1.0,))
+        assert (np.abs(value - expected) <= U).all()
+        assert (np.abs(value - expected) <= miss * np.abs(value)).all()
+
+
+@pytest.mark.parametrize("control", ["contact_radius", "approach"])
+def test_the_control_is_what_is_asked_for(control):
+    curve = LoadingCurve(100.0, control, (0.01, 0.003), LAYER, RIGID)
+    value, _ = exact_loading(curve).quantity(control, np.array([0.003, 0.01]))
+    assert value == pytest.approx([0.003, 0.01], rel=1e-10)
+
+
+@pytest.mark.parametrize("wrong", [{"control": "load"}, {"at": ()}, {"at": (0.1, -1.0)}, {"radius": -1.0}])
+def test_a_curve_without_meaning_is_refused(wrong):
+    arguments = {"radius": 1.0, "control": "approach", "at": (0.1,), "coatings": LAYER, "substrate": RIGID}
+    with pytest.raises(ValueError, match=r"load|at|approach|radius"):
+        LoadingCurve(**(arguments | wrong))

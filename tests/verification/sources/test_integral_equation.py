@@ -1,0 +1,182 @@
+"""The exact coated sphere against print, limits, closed forms and the laws of elasticity."""
+
+import csv
+
+import numpy as np
+import pytest
+import scipy.linalg
+
+from verification.cases.table import FOLDER
+from verification.problem.contact import CoatedContact
+from verification.sources.references import integral_equation
+from verification.sources.references.hertz import Hertz
+from verification.sources.references.layered import LayeredHalfSpace, _in_plane, _propagator
+
+STEEL = (210e9, 0.3)
+BARE = CoatedContact(10e-3, 20.0, (), STEEL)
+
+
+def solve(coatings, substrate=STEEL, friction=0.0, load=20.0, radius=10e-3):
+    return integral_equation.solve(
+        radius=radius, load=load, coatings=coatings, substrate=substrate, friction=friction
+    )
+
+
+def closed_form_M(x, E1, nu1, E2, nu2):
+    """M of one coating, written from the Papkovich solution; the code under test uses impedances."""
+    m, th = E1 * (1 + nu2) / (E2 * (1 + nu1)), np.exp(-2 * x)
+    lam = 1 - 4 * (1 - nu1) / (1 + m * (3 - 4 * nu2))
+    kap = (m - 1) / (m + 3 - 4 * nu1)
+    return (1 + 4 * x * kap * th - lam * kap * th**2) / (
+        1 - (lam + kap + 4 * kap * x**2) * th + lam * kap * th**2
+    )
+
+
+# The exact digits that circulate for this configuration, printed to six places by two programs.
+@pytest.mark.parametrize(
+    ("ratio", "a", "p0", "approach"),
+    [(0.5, 1.206608, 0.704682, 1.227128), (1.0, 1.0, 1.0, 1.0), (2.0, 0.818478, 1.475437, 0.826870)],
+)
+def test_osullivan_king_1988_configuration(ratio, a, p0, approach):
+    exact = solve(((ratio * STEEL[0], 0.3, BARE.a_h),))
+    assert exact.contact_radius / BARE.a_h == pytest.approx(a, abs=5.1e-7)
+    assert exact.peak_pressure / BARE.p_h == pytest.approx(p0, abs=5.1e-7)
+    assert exact.approach / BARE.delta_h == pytest.approx(approach, abs=5.1e-7)
+
+
+def test_compliance_meets_the_closed_form_over_ten_decades():
+    k = np.logspace(-6, 4, 101)
+    for E1, nu1, E2, nu2 in [(4, 0.3, 1, 0.3), (0.05, 0.45, 1, 0.2), (100, 0.0, 1, 0.5), (0.01, 0.3, 1, 0.1)]:
+        M = LayeredHalfSpace(((E1, nu1, 1.0),), (E2, nu2), k).compliance
+        # The propagator's condition number, (k h)^2 up to 1600, times rounding.
+        assert pytest.approx(closed_form_M(k, E1, nu1, E2, nu2), rel=2e-12) == M
+
+
+@pytest.mark.parametrize("load", ["normal", "shear", "antiplane"])
+def test_splitting_a_layer_changes_nothing(load):
+    k = np.logspace(-3, 2.5, 56)
+    whole = LayeredHalfSpace(((4.0, 0.2, 1.0),), (1.0, 0.4), k)
+    split = LayeredHalfSpace(((4.0, 0.2, 0.2), (4.0, 0.2, 0.5), (4.0, 0.2, 0.3)), (1.0, 0.4), k)
+    for z, layer, same in [(0.0, 0, 0), (0.4, 0, 1), (1.5, 1, 3)]:
+        one, other = whole.amplitudes(z, layer, load), split.amplitudes(z, same, load)
+        for name in ("T", "S", "ll", "tt", "t", "lt"):
+            assert getattr(other, name) == pytest.approx(getattr(one, name), abs=2e-11)
+
+
+def test_propagator_is_the_matrix_exponential():
+    for x in (1e-4, 0.3, 0.49999, 0.50001, 3.0, -2.0):
+        direct = scipy.linalg.expm(_in_plane(2.0, 0.3) * x) * np.exp(-abs(x))
+        assert _propagator(np.array([x]), 2.0, 0.3)[0] == pytest.approx(direct, abs=1e-12)
+
+
+def test_equal_moduli_give_hertz():
+    a = BARE.a_h
+    exact, hertz = solve(((*STEEL, 0.3 * a), (*STEEL, 0.4 * a))), Hertz(10e-3, 20.0, *STEEL)
+    assert exact.contact_radius == pytest.approx(hertz.contact_radius, rel=1e-11)
+    x, y, z = np.random.default_rng(1).uniform(-2, 2, (3, 100)) * a
+    for depth in (np.abs(z) + 0.02 * a, 0 * z):
+        difference = exact.stress(x, y, depth) - hertz.stress(x, y, depth)
+        assert np.abs(difference).max() < 1e-9 * hertz.peak_pressure
+
+
+def test_thick_coating_gives_hertz_of_the_coating():
+    exact, hertz = solve(((70e9, 0.2, 3000 * BARE.a_h),)), Hertz(10e-3, 20.0, 70e9, 0.2)
+    # The substrate is felt as a/h: 1/3000 of the approach, its cube in the radius.
+    assert exact.contact_radius == pytest.approx(hertz.contact_radius, rel=1e-8)
+    assert exact.approach == pytest.approx(hertz.approach, rel=5e-4)
+
+
+def test_thin_coating_gives_hertz_of_the_substrate():
+    for h, allowed in ((1e-1, 1e-1), (1e-2, 1e-2)):
+        exact = solve(((420e9, 0.3, h * BARE.a_h),))
+        # A coating of thickness h shifts the contact by a quantity of order h/a.
+        assert abs(exact.contact_radius / BARE.a_h - 1) < allowed
+
+
+def test_answer_scales_with_load_and_radius():
+    one = solve(((420e9, 0.25, BARE.a_h),))
+    big = CoatedContact(70e-3, 900.0, (), STEEL)
+    other = solve(((420e9, 0.25, big.a_h),), load=900.0, radius=70e-3)
+    assert other.contact_radius / big.a_h == pytest.approx(one.contact_radius / BARE.a_h, rel=1e-11)
+    assert other.peak_pressure / big.p_h == pytest.approx(one.peak_pressure / BARE.p_h, rel=1e-9)
+    assert other.approach / big.delta_h == pytest.approx(one.approach / BARE.delta_h, rel=1e-11)
+
+
+@pytest.fixture(scope="module")
+def sliding():
+    """Two coatings with unequal Poisson ratios under friction."""
+    a = BARE.a_h
+    return solve(((420e9, 0.2, 0.5 * a), (100e9, 0.4, 0.3 * a)), friction=0.3)
+
+
+def test_sliding_coated_field_is_in_equilibrium(sliding):
+    a, p0, d = BARE.a_h, BARE.p_h, 2e-4 * BARE.a_h
+    for point in np.array([(0.7, 0.3, 0.2), (0.5, -0.8, 0.6), (0.4, 1.2, 1.5)]) * a:
+        steps = d * np.eye(3)
+        divergence = sum(
+            (sliding.stress(*(point + steps[j]))[:, j] - sliding.stress(*(point - steps[j]))[:, j]) / (2 * d)
+            for j in range(3)
+        )
+        # Central differences: d^2/6 = 7e-9 times third derivatives of order 100 p0/a^3.
+        assert np.abs(divergence).max() * a / p0 < 2e-6
+
+
+def test_tractions_are_continuous_across_every_interface(sliding):
+    x = np.linspace(-2, 2, 21) * BARE.a_h
+    for k, z in enumerate(np.cumsum([h for _, _, h in sliding.field.coatings])):
+        upper, lower = (sliding.stress(x, 0.2 * BARE.a_h, z, layer=side) for side in (k, k + 1))
+        assert np.abs(upper - lower)[:, 2].max() < 1e-10 * BARE.p_h
+        assert np.abs(upper - lower)[0, 0].max() > 1e-2 * BARE.p_h
+
+
+def test_surface_closed_form_continues_the_quadrature_below(sliding):
+    x = np.linspace(-2, 2, 12) * BARE.a_h
+    y, step = 0.3 * BARE.a_h, 2e-3 * BARE.a_h
+    away = np.abs(np.hypot(x, y) / sliding.contact_radius - 1) > 0.2
+    extrapolated = (
+        3 * sliding.stress(x, y, step) - 3 * sliding.stress(x, y, 2 * step) + sliding.stress(x, y, 3 * step)
+    )
+    difference = np.abs(extrapolated - sliding.stress(x, y, 0.0))[:, :, away]
+    # Quadratic extrapolation errs by step^3 = 8e-9 times third derivatives near the edge, up to 1e3.
+    assert difference.max() < 1e-5 * BARE.p_h
+
+
+def test_sliding_meets_the_closed_forms_of_a_homogeneous_solid():
+    exact, a, p0, nu, f = solve((), friction=0.25), BARE.a_h, BARE.p_h, 0.3, 0.25
+    Z = np.linspace(0.01, 4, 60)
+    shear = -1 + 1.5 * Z * np.arctan(1 / Z) - Z**2 / (2 * (1 + Z**2))
+    assert exact.stress(0, 0, Z * a)[0, 2] / (f * p0) == pytest.approx(shear, abs=1e-10)
+    edge = exact.stress(-exact.contact_radius, 0.0, 0.0)[0, 0] / p0
+    assert edge == pytest.approx((1 - 2 * nu) / 3 + f * np.pi * (4 + nu) / 8, abs=1e-6)
+
+
+def test_pressure_integrates_to_the_load_and_ends_at_the_edge():
+    exact = solve(((840e9, 0.3, BARE.a_h),))
+    assert 2 * np.pi * exact.abel.resultant(np.array(2 * exact.contact_radius)) == pytest.approx(
+        20.0, rel=1e-12
+    )
+    assert exact.pressure(1.0000001 * exact.contact_radius) == 0
+    assert exact.diagnostics.load_residual < 1e-12
+
+
+def test_published_pressure_table_is_met():
+    table = FOLDER / "coated_sphere_exact_pressure_h_equals_a0.csv"
+    rows = list(csv.reader(line for line in table.read_text().splitlines() if not line.startswith("#")))
+    r = np.array([float(row[0]) for row in rows[1:]]) * BARE.a_h
+    for column, name in enumerate(rows[0][1:], start=1):
+        exact = solve(((float(name[1:]) * STEEL[0], 0.3, BARE.a_h),))
+        printed = np.array([float(row[column]) for row in rows[1:]])
+        assert exact.pressure(r) / BARE.p_h == pytest.approx(printed, abs=6e-7)
+
+
+def test_stated_uncertainty_brackets_a_finer_solution():
+    arguments = {
+        "radius": 10e-3,
+        "load": 20.0,
+        "coatings": ((840e9, 0.3, 0.2 * BARE.a_h),),
+        "substrate": STEEL,
+    }
+    usual, fine = integral_equation.solve(**arguments), integral_equation.solve(**arguments, nodes=140)
+    for name in ("contact_radius", "approach", "peak_pressure"):
+        assert abs(getattr(usual, name) - getattr(fine, name)) <= getattr(usual.uncertainty, name)
+    assert usual.uncertainty.peak_pressure < 1e-8 * usual.peak_pressure

@@ -1,0 +1,108 @@
+"""The semi-analytical contact at its default numerics against the exact integral equation."""
+
+import numpy as np
+import pytest
+from scipy.interpolate import CubicSpline
+
+import semianalytic
+from verification.sources.references import integral_equation
+
+R, W = 10e-3, 20.0
+E, NU = 210e9, 0.3
+A_H = (0.75 * W * R * (1 - NU**2) / E) ** (1 / 3)
+P_H = 1.5 * W / (np.pi * A_H**2)
+STEEL = (E, NU)
+
+QUICK = [
+    ((10 * E, 0.2, 0.1 * A_H),),
+    ((0.1 * E, 0.4, 0.3 * A_H),),
+    ((4 * E, NU, A_H),),
+    ((2 * E, 0.2, 0.2 * A_H), (1.3 * E, 0.25, 0.1 * A_H)),
+]
+SWEEP = [
+    ((ratio * E, NU, h * A_H),) for ratio in (0.1, 0.5, 2.0, 10.0) for h in (0.05, 0.1, 0.3, 1.0, 3.0, 10.0)
+]
+
+
+def check(coatings):
+    ours = semianalytic.solve(radius=R, load=W, coatings=coatings, substrate=STEEL)
+    exact = integral_equation.solve(radius=R, load=W, coatings=coatings, substrate=STEEL)
+    a, d = exact.contact_radius, ours.diagnostics.patch_size
+    # smooth in the cosine of the meridian angle: 200 of them stand for all the patches
+    s = 0.5 * (1 - np.cos(np.linspace(0, np.pi, 201)))
+    spline = CubicSpline(s, exact.pressure(a * np.sqrt(1 - s**2)))
+    r = np.hypot(ours.nodes[:, None], ours.nodes[None, :])
+    p = np.where(r < a, spline(np.sqrt(np.maximum(1 - (r / a) ** 2, 0))), 0.0)
+    peak = p.max()
+    # the figures asked of the default numerics
+    assert ours.approach == pytest.approx(exact.approach, rel=1e-5)
+    assert ours.peak_pressure == pytest.approx(peak, rel=2e-5)
+    assert ours.contact_radius == pytest.approx(a, rel=5e-4)
+    away = np.abs(r - a) > 2 * d
+    assert np.abs(ours.patch_pressure - p)[away].max() <= 1e-4 * peak
+    assert ours.uncertainty is not None
+    assert abs(ours.approach - exact.approach) <= ours.uncertainty.approach
+    assert abs(ours.contact_radius - a) <= ours.uncertainty.contact_radius
+    assert abs(ours.peak_pressure - peak) <= ours.uncertainty.peak_pressure
+    x = ours.surface_nodes
+    error = np.abs(ours.pressure(x) - exact.pressure(x))
+    assert np.all(error <= ours.pressure_uncertainty(x) + exact.pressure_uncertainty(x))
+
+
+@pytest.mark.parametrize("coatings", QUICK)
+def test_default_contact_meets_the_exact_one(coatings):
+    check(coatings)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("coatings", SWEEP)
+def test_default_contact_meets_the_exact_one_over_the_range(coatings):
+    check(coatings)
+
+
+@pytest.mark.parametrize("friction", [pytest.param(0.0, marks=pytest.mark.slow), 0.25])
+@pytest.mark.parametrize("coatings", [(), QUICK[1], QUICK[2]])
+def test_stress_meets_the_exact_one(coatings, friction):
+    problem = {"radius": R, "load": W, "coatings": coatings, "substrate": STEEL, "friction": friction}
+    ours, exact = semianalytic.solve(**problem), integral_equation.solve(**problem)
+    a, d = exact.contact_radius, ours.diagnostics.patch_size
+    x = np.linspace(-4, 4, 33) * a
+    x = x[np.abs(np.abs(x) - a) > 3 * d]
+    depths = [(0.0, None), (1.5 * d, None), (0.2 * a, None), (a, None), (10 * a, None)]
+    if coatings:
+        h = coatings[0][2]
+        depths += [(h, 0), (h, 1)]
+    for z, layer in depths:
+        found, expected = ours.stress(x, 0.0, z, layer), exact.stress(x, 0.0, z, layer)
+        # the figure asked away from the contact edge
+        np.testing.assert_allclose(found, expected, atol=2e-4 * P_H, rtol=0)
+        covered = np.abs(found - expected) <= ours.stress_uncertainty(x, 0.0, z, layer) + 1e-6 * P_H
+        assert covered.all()
+
+
+def test_pressure_in_l2_converges_beyond_first_order():
+    coatings = ((4 * E, NU, 0.2 * A_H),)
+    exact = integral_equation.solve(radius=R, load=W, coatings=coatings, substrate=STEEL)
+    a = exact.contact_radius
+    s = 0.5 * (1 - np.cos(np.linspace(0, np.pi, 201)))
+    spline = CubicSpline(s, exact.pressure(a * np.sqrt(1 - s**2)))
+    errors = {}
+    for rounds in (0, 3):
+        for n in (65, 129):
+            ours = semianalytic.solve(
+                radius=R,
+                load=W,
+                coatings=coatings,
+                substrate=STEEL,
+                patches=n,
+                edge_rounds=rounds,
+                estimate_uncertainty=False,
+            )
+            r = np.hypot(ours.nodes[:, None], ours.nodes[None, :])
+            p = np.where(r < a, spline(np.sqrt(np.maximum(1 - (r / a) ** 2, 0))), 0.0)
+            errors[rounds, n] = np.sqrt(np.sum((ours.patch_pressure - p) ** 2)) / n
+    # a staircase edge is of first order; corrected, what counts is how well the fit resolves the coating,
+    # and gone as soon as it does: beyond second order, and below a hundredth of the staircase's
+    assert errors[0, 129] == pytest.approx(errors[0, 65] / 2, rel=0.35)
+    assert errors[3, 129] < errors[3, 65] / 4
+    assert errors[3, 129] < 0.01 * errors[0, 129]

@@ -1,0 +1,68 @@
+"""The key of a stored solve follows everything that its answer depends on."""
+
+import ast
+import json
+from importlib.util import find_spec
+from pathlib import Path
+
+import pytest
+from synthetic_solves import STUDY, made_up
+
+from verification.running.store import StoreError
+from verification.study import cache
+from verification.study.cache import Cache, code_version, solve_key
+from verification.study.plan import parse_study
+
+
+@pytest.fixture
+def request_():
+    return next(parse_study(STUDY.encode(), Path("x.toml")).solves()).request
+
+
+@pytest.mark.parametrize(
+    "name", ["radius", "load", "coating", "substrate", "frictions", "numerics", "source"]
+)
+def test_every_part_of_a_request_is_in_its_key(request_, name):
+    other = {"source": "fem_reference", "numerics": {"patches": 65}, "frictions": [0.3]}
+    changed = request_ | {name: other.get(name, [1.0, 0.2, 3.0] if name != "radius" else 1.0)}
+    assert solve_key(changed) != solve_key(request_)
+    assert solve_key(json.loads(json.dumps(request_))) == solve_key(request_)
+
+
+def imports(module):
+    """The modules of this package that ``module`` takes its functions from."""
+    tree = ast.parse(Path(find_spec(module).origin).read_text())
+    named = {node.module for node in ast.walk(tree) if isinstance(node, ast.ImportFrom) and node.module}
+    return {name for name in named if name.startswith("verification.")}
+
+
+def test_whatever_finds_the_quantities_is_in_the_key():
+    # the table and the cache only carry what was found; run brings the solvers, the reading of errors
+    carriers = {"verification.study.table", "verification.study.cache", "verification.running.provenance"}
+    searched = tuple(cache._SEARCH)
+    for module in ("verification.study.point", "verification.study.quantities", "verification.study.planes"):
+        assert all(name.startswith(searched) or name in carriers for name in imports(module))
+
+
+def test_a_changed_source_file_changes_every_key(request_, monkeypatch):
+    before = solve_key(request_)
+    planes = find_spec("verification.study.planes").origin
+    read = Path.read_bytes
+    monkeypatch.setattr(Path, "read_bytes", lambda path: read(path) + b" " * (str(path) == planes))
+    code_version.cache_clear()
+    try:
+        assert solve_key(request_) != before
+    finally:
+        code_version.cache_clear()
+
+
+def test_an_answer_comes_back_as_it_was_put(request_, tmp_path):
+    kept = Cache(tmp_path)
+    key = solve_key(request_)
+    assert not kept.has(key)
+    kept.put(key, request_, made_up(request_))
+    found = kept.get(key, request_)
+    assert found["rows"][0]["peak_pressure"] == made_up(request_)["rows"][0]["peak_pressure"]
+    assert found["rows"][0]["sigma_xx_base_x"] is None  # NaN, which strict JSON lacks
+    with pytest.raises(StoreError, match="another solve than its name says"):
+        kept.get(key, request_ | {"load": 21.0})

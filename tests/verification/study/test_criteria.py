@@ -1,0 +1,139 @@
+"""Which thickness is preferable, from curves whose answer is known."""
+
+import numpy as np
+import pytest
+import study_table
+
+from verification.cases.toml import CaseError
+from verification.report.study.summary import agreement_sentences, curve_sentences, preference_sentences
+from verification.study.criteria import Criteria, judged
+from verification.study.curves import curves, differences
+from verification.study.plan import parse_study
+from verification.study.table import read_columns
+
+
+@pytest.fixture(scope="module")
+def found(tmp_path_factory):
+    path = tmp_path_factory.mktemp("study") / "study.parquet"
+    study_table.write(path)
+    return curves(read_columns(path))
+
+
+def test_a_curve_holds_every_thickness_of_one_modulus_with_one_friction(found):
+    assert [(c.ratio, c.friction) for c in found] == [(0.5, 0.0), (0.5, 0.25), (2.0, 0.0), (2.0, 0.25)]
+    for curve in found:
+        assert (np.diff(curve.h) > 0).all()
+        np.testing.assert_allclose(
+            curve.stress["sigma_xx_surface"],
+            study_table.stress("sigma_xx_surface", curve.ratio, curve.h, curve.friction),
+        )
+
+
+def test_without_strengths_the_preferable_thickness_has_the_smallest_largest_stress(found):
+    curve = found[3]
+    (h, use, mode) = judged(curve, Criteria(minimise=["sigma_xx_surface"])).preferable
+    # the law has its minimum at h = a_h / 2; nine points on two decades read it this closely
+    assert h == pytest.approx(0.5, rel=0.02)
+    assert use == pytest.approx(0.35 * 2, rel=1e-3)
+    assert mode == "sigma_xx_surface"
+
+
+def test_admissible_range_ends_where_a_stress_meets_its_strength(found):
+    curve = found[3]
+    limit = 0.9 * study_table.P_H
+    ((low, high),) = judged(curve, Criteria(strength={"sigma_xx_surface": limit})).admissible
+    # (0.1 + f) E1/E2 (1 + log(2 h)^2 / 4) = 0.9
+    reach = np.exp(2 * np.sqrt(0.9 / 0.7 - 1))
+    assert low == pytest.approx(0.5 / reach, rel=0.02)
+    assert high == pytest.approx(0.5 * reach, rel=0.02)
+
+
+def test_safety_narrows_the_range_as_a_weaker_material_would(found):
+    strength = {"sigma_xx_surface": 0.9 * study_table.P_H}
+    weaker = {"sigma_xx_surface": 0.9 * study_table.P_H / 1.2}
+    with_safety = judged(found[3], Criteria(strength=strength, safety=1.2))
+    np.testing.assert_allclose(
+        with_safety.admissible, judged(found[3], Criteria(strength=weaker)).admissible, rtol=1e-12
+    )
+
+
+def test_nothing_is_admissible_where_every_thickness_breaks(found):
+    judgement = judged(found[3], Criteria(strength={"sigma_xx_surface": 1e6}))
+    assert judgement.admissible == ()
+    assert "No thickness of the sweep is admissible" in preference_sentences([judgement])[0]
+
+
+def test_the_governing_mode_is_the_one_closest_to_its_strength(found):
+    curve = found[3]
+    p_h = study_table.P_H
+    judgement = judged(curve, Criteria(strength={"sigma_xx_surface": p_h, "von_mises_coating": p_h}))
+    # thin: von Mises 0.6 ratio (1 + f) e^-h = 1.5 beats the surface's 0.9; thick: it is gone
+    assert judgement.modes[judgement.governing[0]] in ("von_mises_coating", "sigma_xx_surface")
+    dense = {
+        mode: study_table.stress(mode, curve.ratio, judgement.h, curve.friction) for mode in judgement.modes
+    }
+    exact = np.argmax([dense[mode] for mode in judgement.modes], axis=0)
+    # the modes change where the curves cross, read to a part in a hundred of the sweep
+    assert (exact != judgement.governing).mean() < 0.01
+
+
+def test_reading_error_bounds_what_a_curve_read_between_its_points_is_off_by(found):
+    judgement = judged(found[3], Criteria(minimise=["sigma_xx_surface"]))
+    exact = study_table.stress("sigma_xx_surface", 2.0, judgement.h, 0.25)
+    error = np.abs(judgement.largest - exact).max() / judgement.utilisation.max()
+    assert 0 < error < judgement.reading
+
+
+def test_uncertain_stress_shrinks_what_is_surely_admissible(found):
+    curve = found[3]
+    blurred = type(curve)(
+        **{**vars(curve), "uncertainty": {q: np.full(curve.h.size, 0.05) for q in curve.stress}}
+    )
+    strength = Criteria(strength={"sigma_xx_surface": 0.9 * study_table.P_H})
+    ((low, high),) = judged(curve, strength).admissible
+    ((sure_low, sure_high),) = judged(blurred, strength).admissible
+    assert low < sure_low < sure_high < high
+
+
+def test_differences_name_the_worst_point(tmp_path):
+    study_table.write(tmp_path / "s.parquet", checked=3e-4)
+    found = differences(read_columns(tmp_path / "s.parquet"))
+    assert {d.source for d in found} == {"fem_reference"}
+    for d in found:
+        assert d.largest == pytest.approx(
+            0.0 if d.quantity in ("peak_pressure", "contact_radius", "approach") else 3e-4
+        )
+    assert "3.0e-04 p_h" in agreement_sentences(found)[0]
+
+
+def test_sentences_say_which_way_a_stress_runs(found):
+    sentences = dict(zip(study_table.QUANTITIES, curve_sentences(found), strict=True))
+    assert "has a minimum of" in sentences["sigma_xx_surface"]
+    assert "falls from" in sentences["von_mises_substrate"]
+    assert "a factor of 3.50" in sentences["sigma_xx_surface"]
+
+
+@pytest.mark.parametrize(
+    ("criteria", "said"),
+    [
+        ("strength = { sigma_xx_surface = -1.0 }", "criteria.strength.sigma_xx_surface"),
+        ("strength = { hardness = 1e9 }", "criteria.strength"),
+        ("strength = { sigma_xx_surface = 1e9 }\nminimise = ['sigma_xx_base']", "not both"),
+        ("safety = 0.5", "criteria.safety"),
+        ("minimise = []", "criteria.minimise"),
+        ("color = 'red'", "criteria.color"),
+    ],
+)
+def test_bad_criteria_are_one_sentence_with_file_and_key(tmp_path, criteria, said):
+    with pytest.raises(CaseError) as error:
+        parse_study(f"{study_table.TEXT}\n[criteria]\n{criteria}\n".encode(), tmp_path / "mine.toml")
+    assert "mine.toml" in str(error.value)
+    assert said in str(error.value)
+    assert "\n" not in str(error.value)
+
+
+def test_one_thickness_has_no_preferable_one(found):
+    curve = found[0]
+    single = type(curve)(**{**vars(curve), "h": curve.h[:1]})
+    with pytest.raises(ValueError, match="needs two"):
+        judged(single, Criteria())

@@ -1,0 +1,92 @@
+"""A study file becomes its points; whatever is wrong with it is one sentence."""
+
+from itertools import pairwise
+from pathlib import Path
+
+import pytest
+from synthetic_solves import STUDY
+
+from verification.cases.toml import CaseError
+from verification.study.plan import parse_study, read_study_file, shipped_studies, thicknesses_between
+
+PATH = Path("mine.toml")
+
+
+def test_default_study_is_four_ratios_by_24_thicknesses_by_three_frictions():
+    study = read_study_file(shipped_studies()["default"])
+    assert [E / study.substrate[0] for E in study.moduli] == [0.25, 0.5, 2.0, 4.0]
+    assert len(study.thicknesses) == 24
+    assert study.frictions == (0.0, 0.25, 0.5)
+    assert study.points == 288
+    a_h = (0.75 * study.load * study.radius * (1 - 0.3**2) / 210e9) ** (1 / 3)
+    assert study.thicknesses[0] == pytest.approx(0.05 * a_h, rel=1e-12)
+    assert study.thicknesses[-1] == pytest.approx(5 * a_h, rel=1e-12)
+
+
+@pytest.mark.parametrize("path", shipped_studies().values(), ids=lambda path: path.stem)
+def test_shipped_studies_are_well_formed(path):
+    assert read_study_file(path).points > 0
+
+
+def test_thicknesses_crowd_around_their_geometric_middle():
+    h = thicknesses_between(0.05, 5.0, 25)
+    ratios = [b / a for a, b in pairwise(h)]
+    assert (h[0], h[-1]) == (0.05, 5.0)
+    assert h[12] == pytest.approx(0.5, rel=1e-12)
+    assert min(ratios) == pytest.approx(min(ratios[11:13]))
+    assert ratios[0] == pytest.approx(max(ratios))
+    assert max(ratios) > 1.2 * min(ratios) > 1
+
+
+def test_points_count_through_frictions_then_thicknesses_then_moduli():
+    study = parse_study(STUDY.encode(), PATH)
+    curve = [s for s in study.solves() if s.source == "semianalytic"]
+    assert [s.first for s in curve] == [0, 2, 4, 6, 8, 10]
+    assert [s.request["coating"][0] / 210e9 for s in curve] == [0.5] * 3 + [2.0] * 3
+    assert [s.request["coating"][2] for s in curve] == [2e-5, 4e-5, 8e-5] * 2
+    assert all(s.request["frictions"] == [0.0, 0.25] for s in curve)
+
+
+def test_every_kth_point_is_checked_by_both_others():
+    study = parse_study(STUDY.encode(), PATH)
+    for source in ("fem_reference", "integral_equation"):
+        # points 0, 5, 10 lie in the solves that begin at 0, 4, 10
+        assert [s.first for s in study.solves() if s.source == source] == [0, 4, 10]
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "said"),
+    [
+        ("radius = 10e-3", "radius = -1.0", "problem.radius"),
+        ("radius = 10e-3", "radios = 10e-3", "problem.radius is missing"),
+        ("load = 20.0", 'load = "heavy"', "problem.load must be a number"),
+        ("load = 20.0", "load = inf", "problem.load must be a finite number"),
+        ("load = 20.0", "load = 1e12", "problem.load: gives a contact radius"),
+        ("nu = 0.25", "nu = 0.5", "problem.coating.nu"),
+        ("nu = 0.25", "nu = 0.25, E = 1e9", "exactly one of problem.coating.E or sweep.modulus_ratio"),
+        ("modulus_ratio = [0.5, 2.0]", "", "exactly one of problem.coating.E or sweep.modulus_ratio"),
+        ("modulus_ratio = [0.5, 2.0]", "modulus_ratio = []", "sweep.modulus_ratio"),
+        ("modulus_ratio = [0.5, 2.0]", "modulus_ratio = [5e4]", "E1/E2 = 5e+04"),
+        ("[2e-5, 4e-5, 8e-5]", "[2e-5, 4.0]", "sweep.thickness: value 2 is"),
+        ("[2e-5, 4e-5, 8e-5]", "{ from = 2e-5, to = 1e-5, count = 3 }", "give from < to"),
+        ("[2e-5, 4e-5, 8e-5]", "[2e-5]\nthickness_over_a_h = [1.0]", "exactly one of thickness [m]"),
+        ("friction = [0.0, 0.25]", "friction = [-0.1]", "sweep.friction.0"),
+        ("friction = [0.0, 0.25]", "friction = 0.25", "sweep.friction"),
+        ("cross_check = 5", "cross_check = 2.5", "sweep.cross_check"),
+        ("[sweep]", "[semianalytic]\npatches = 5\n[sweep]", "semianalytic.patches"),
+        ("[2e-5, 4e-5, 8e-5]", "{ from = 1e-5, to = 1e-4, count = 99999 }", "points; a study has at most"),
+        ("[sweep]", "[sweep]\nk = 1", "sweep.k is an unknown key"),
+        ("title", "title = 3\n#", "title must be text"),
+        ("[sweep]", "[sweep", "not TOML"),
+    ],
+)
+def test_bad_study_is_one_sentence_with_file_and_key(old, new, said):
+    text = STUDY.replace(old, new, 1)
+    if "99999" in new:
+        text = text.replace("[0.0, 0.25]", f"{[0.1] * 200}")
+    with pytest.raises(CaseError) as caught:
+        parse_study(text.encode(), PATH)
+    sentence = str(caught.value)
+    assert sentence.startswith("mine.toml")
+    assert said in sentence
+    assert "\n" not in sentence

@@ -1,0 +1,190 @@
+"""A case: one coated contact with the claims made about it, read from a TOML file."""
+
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+from pydantic import AfterValidator, Field, model_validator
+
+from verification.cases.toml import CaseError, Length, Modulus, Poisson, Strict, Text, read_bounded, read_toml
+from verification.judging.claims import EDGE, sources_of, standard_claims
+from verification.judging.verdict import Claim
+from verification.problem.contact import CoatedContact
+from verification.problem.profile import Line, line_of, lines_of
+
+__all__ = ["Case", "parse_case", "read_case", "refuse_unfit_scales", "shipped_cases"]
+
+
+CASES = Path(__file__).parent / "shipped" / "contact"
+
+
+@dataclass(frozen=True)
+class Case:
+    """``problem`` with the ``claims`` about it; ``numerics`` holds each method's own keywords.
+
+    text : the file it was read from, kept with the results so that they carry their full input.
+    resolve : whether it is also solved scaled, with equal moduli, thick and thin (``invariants.resolved``).
+    """
+
+    name: str
+    title: str
+    problem: CoatedContact
+    claims: tuple[Claim, ...]
+    source: str = ""
+    numerics: dict[str, dict[str, Any]] = field(default_factory=dict)
+    text: str = ""
+    resolve: bool = False
+
+    @property
+    def lines(self) -> tuple[Line, ...]:
+        """The lines of the plane y = 0 on which this case is looked at."""
+        return lines_of(self.problem)
+
+
+class _Substrate(Strict):
+    E: Modulus
+    nu: Poisson
+
+
+class _Coating(_Substrate):
+    thickness: Length | None = None
+    thickness_over_a_h: Length | None = None
+
+    @model_validator(mode="after")
+    def _one_thickness(self) -> "_Coating":
+        if (self.thickness is None) == (self.thickness_over_a_h is None):
+            raise ValueError("needs exactly one of thickness [m] or thickness_over_a_h")
+        return self
+
+    def in_metres(self, a_h: float) -> float:
+        return self.thickness if self.thickness is not None else a_h * (self.thickness_over_a_h or 0.0)
+
+
+class _Problem(Strict):
+    radius: Length
+    load: Annotated[float, Field(gt=0)]
+    friction: Annotated[float, Field(ge=0, le=2)] = 0.0
+    substrate: _Substrate
+    coatings: Annotated[list[_Coating], Field(default_factory=list, max_length=50)]
+
+
+class _Claim(Strict):
+    quantity: Text
+    line: Text
+    between: Annotated[list[Text], Field(min_length=2, max_length=2)]
+    cap: Annotated[float, Field(gt=0, le=1)]
+    why: Text
+    edge: Annotated[float, Field(ge=0, lt=1)] | None = None
+
+
+def _odd(number: int) -> int:
+    if number % 2 == 0:
+        raise ValueError("must be odd, so that a patch lies in the middle")
+    return number
+
+
+class _SemianalyticNumerics(Strict):
+    patches: Annotated[int, Field(ge=33, le=4097), AfterValidator(_odd)] | None = None
+    conversion: Literal["split", "split-fft", "plain"] | None = None
+    max_iterations: Annotated[int, Field(ge=1, le=100_000)] | None = None
+
+
+class _FemNumerics(Strict):
+    order: Annotated[int, Field(ge=2, le=4)] | None = None
+    quality: Literal["fast", "default", "fine"] | None = None
+
+
+class _CaseFile(Strict):
+    title: Text
+    source: Text = "no source stated"
+    problem: _Problem
+    semianalytic: _SemianalyticNumerics = _SemianalyticNumerics()
+    fem_reference: _FemNumerics = _FemNumerics()
+    claim: Annotated[list[_Claim], Field(default_factory=list, max_length=1000)]
+    resolve: bool = False
+
+
+def read_case(path: Path) -> Case:
+    """Read and check one case file. Raises CaseError: one sentence with file and key."""
+    return parse_case(read_bounded(path, "case", "one problem"), path)
+
+
+def parse_case(raw: bytes, path: Path) -> Case:
+    """Check the content of a case file; ``path`` names it in complaints. Raises CaseError."""
+    text, checked = read_toml(raw, path, _CaseFile)
+    try:
+        p = checked.problem
+        bare = CoatedContact(p.radius, p.load, (), (p.substrate.E, p.substrate.nu), p.friction)
+        problem = replace(bare, coatings=tuple((c.E, c.nu, c.in_metres(bare.a_h)) for c in p.coatings))
+    except (ValueError, OverflowError, ZeroDivisionError) as error:
+        raise CaseError(f"{path}: problem: {error}") from None
+    refuse_unfit_scales(path, problem)
+    if checked.resolve and not problem.coatings:
+        raise CaseError(f"{path}: resolve: requires a coating; add one, or leave resolve out")
+    return Case(
+        name=path.stem,
+        title=checked.title,
+        problem=problem,
+        claims=_claims(path, checked, problem),
+        source=checked.source,
+        numerics={
+            "semianalytic": checked.semianalytic.model_dump(exclude_none=True),
+            "fem_reference": checked.fem_reference.model_dump(exclude_none=True),
+        },
+        text=text,
+        resolve=checked.resolve,
+    )
+
+
+def refuse_unfit_scales(path: Path, problem: CoatedContact) -> None:
+    """Raise CaseError where the parabolic sphere, a method or floating point no longer holds."""
+    if problem.a_h > problem.radius:
+        raise CaseError(
+            f"{path}: problem.load: gives a contact radius of {problem.a_h:.3g} m on a sphere of "
+            f"{problem.radius:.3g} m; lower the load"
+        )
+    if not 1e-12 < problem.a_h < 1e3:
+        raise CaseError(
+            f"{path}: problem: contact radius a_h = {problem.a_h:.3g} m; check units of radius, load, E"
+        )
+    for i, (_, _, thickness) in enumerate(problem.coatings):
+        if not 1e-3 <= thickness / problem.a_h <= 1e3:
+            raise CaseError(
+                f"{path}: problem.coatings.{i}.thickness: {thickness / problem.a_h:.3g} times the contact "
+                f"radius {problem.a_h:.3g} m; both methods are made for 1e-3 to 1e3"
+            )
+    stiffest = max([E for E, _, _ in problem.coatings] + [problem.substrate[0]])
+    softest = min([E for E, _, _ in problem.coatings] + [problem.substrate[0]])
+    if stiffest > 1e4 * softest:
+        raise CaseError(
+            f"{path}: problem: moduli differ {stiffest / softest:.3g} times; at most 1e4 is supported"
+        )
+
+
+def _claims(path: Path, checked: _CaseFile, problem: CoatedContact) -> tuple[Claim, ...]:
+    if not checked.claim:
+        return standard_claims(problem)
+    known = {(c.quantity, c.line) for c in standard_claims(problem)}
+    sources = sources_of(problem)
+    claims = []
+    for i, claim in enumerate(checked.claim):
+        key = f"{path}: claim.{i}"
+        if claim.line != "contact":
+            try:
+                line_of(claim.line, problem)
+            except ValueError as error:
+                raise CaseError(f"{key}.{error}") from None
+        if (claim.quantity, claim.line) not in known:
+            fit = sorted(q for q, line in known if line == claim.line)
+            raise CaseError(f"{key}.quantity = {claim.quantity!r}; on {claim.line} there is {', '.join(fit)}")
+        first, second = claim.between
+        if first == second or not {first, second} <= set(sources):
+            raise CaseError(f"{key}.between = {claim.between}; give two of {', '.join(sources)}")
+        edge = claim.edge if claim.edge is not None else (EDGE if claim.line == "surface" else 0.0)
+        claims.append(Claim(claim.quantity, claim.line, (first, second), claim.cap, claim.why, edge))
+    return tuple(claims)
+
+
+def shipped_cases() -> dict[str, Path]:
+    """The cases of the default run, by name, in the order of their file names."""
+    return {path.stem: path for path in sorted(CASES.glob("*.toml"))}

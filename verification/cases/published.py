@@ -1,0 +1,179 @@
+"""A published case: a problem with the tables printed about it, read from one TOML file and its CSV files.
+
+The problem stands in the units of the source and is converted here, at the border; so are the tables, which
+become Profiles with the reading uncertainty of the source, so that no comparison asks where they came from.
+"""
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+from verification.cases.columns import PublishedColumn, columns_of, si_of
+from verification.cases.schema import LayerEntry, ProblemEntry, PublishedFile
+from verification.cases.table import FOLDER, UNITS, PublishedError, read_table
+from verification.cases.toml import CaseError, load_toml, read_bounded, read_toml
+from verification.judging.verdict import Claim
+from verification.problem.contact import CoatedContact, PrescribedLoad
+from verification.problem.loading import CONTROLS, PUNCH, LoadingCurve, Problem
+from verification.problem.quantity import QUANTITIES
+from verification.sources.registry import METHODS, PUBLISHED, REFERENCE
+
+__all__ = ["PublishedCase", "is_published", "parse_published", "published_cases", "read_published"]
+
+# Largest admissible uncertainty of a method, as on the lines of every other case; what the source itself
+# leaves unknown comes on top.
+CAP = 5e-3
+
+
+@dataclass(frozen=True)
+class PublishedCase:
+    """``problem`` with the ``columns`` published about it.
+
+    path : of its file.   text : all it was read from, tables included.
+    citation : year, how it was read, whether the primary source was seen, and remarks.
+    """
+
+    name: str
+    title: str
+    problem: Problem
+    claims: tuple[Claim, ...]
+    columns: tuple[PublishedColumn, ...]
+    citation: dict[str, Any]
+    source: str
+    path: Path
+    text: str
+
+
+def published_cases() -> dict[str, Path]:
+    """The published cases that are shipped, by name, in the order of their file names."""
+    return {path.stem: path for path in sorted(FOLDER.glob("*.toml"))}
+
+
+def is_published(path: Path) -> bool:
+    """True where a case file has tables, which only a published case has."""
+    try:
+        return "table" in load_toml(read_bounded(path, "case", "one problem"))[1]
+    except ValueError:
+        return False
+
+
+def read_published(path: Path) -> PublishedCase:
+    """Read one published case. Raises CaseError: one sentence with file and key, or file, row and column."""
+    return parse_published(read_bounded(path, "case", "one problem"), path)
+
+
+def parse_published(raw: bytes, path: Path) -> PublishedCase:
+    """Check the text of a published case; its tables lie beside ``path``. Raises CaseError."""
+    text, checked = read_toml(raw, path, PublishedFile)
+    try:
+        problem = _problem(checked.problem)
+        units = _units(problem)
+        notes, columns, texts = [], [], [text]
+        for i, table in enumerate(checked.table):
+            content = read_table(path.parent / table.file)
+            notes.append(content.notes)
+            texts.append(f"# {table.file}\n{content.raw}")
+            columns += columns_of(table, content, units, problem, f"table.{i}")
+        problem = _with_points(problem, columns)
+    except PublishedError as error:
+        raise CaseError(str(error)) from None
+    except (ValueError, OverflowError, ZeroDivisionError) as error:
+        raise CaseError(f"{path}: {error}") from None
+    return PublishedCase(
+        name=path.stem,
+        title=checked.title,
+        problem=problem,
+        claims=tuple(
+            _claim(item, source)
+            for item in columns
+            if item.counted.any()
+            for source in (*METHODS, REFERENCE)
+            if source in METHODS or _speaks(problem, item.profile.quantity)
+        ),
+        columns=tuple(columns),
+        citation={
+            "year": checked.year,
+            "primary_read": checked.primary_read,
+            "read": checked.read,
+            "remark": checked.remark,
+            "notes": "\n".join(dict.fromkeys(notes)),
+        },
+        source=checked.source,
+        path=path,
+        # The tables belong to the input as much as the file that names them.
+        text="\n".join(dict.fromkeys(texts)),
+    )
+
+
+def _speaks(problem: Problem, quantity: str) -> bool:
+    """True where the exact reference answers: no displacement under a contact, no sliding disc."""
+    if isinstance(problem, PrescribedLoad):
+        return not problem.friction
+    return QUANTITIES[quantity] != "displacement"
+
+
+def _with_points(problem: Problem, columns: list[PublishedColumn]) -> Problem:
+    """A loading curve with the points that its tables ask for."""
+    if not isinstance(problem, LoadingCurve):
+        return problem
+    controls = {item.at.control for item in columns}
+    if len(controls) > 1 or "" in controls:
+        raise ValueError(
+            f"at: one of {', '.join(CONTROLS)} has to say where every value of a loading curve is"
+        )
+    at = sorted({float(x) for item in columns for x in item.at.along})
+    punch = any(item.profile.quantity in PUNCH for item in columns)
+    return replace(problem, control=controls.pop(), at=tuple(at), punch=punch)
+
+
+def _problem(p: ProblemEntry) -> Problem:
+    length, stress, force = (
+        si_of(value, UNITS, f"problem.{key}")
+        for key, value in (
+            ("length_unit", p.length_unit),
+            ("stress_unit", p.stress_unit),
+            ("load_unit", p.load_unit),
+        )
+    )
+    substrate = (p.substrate.E * stress, p.substrate.nu)
+    if p.radius is not None and p.load is not None:
+        bare = CoatedContact(p.radius * length, p.load * force, (), substrate, p.friction)
+        coatings = tuple((c.E * stress, c.nu, _thickness(c, length, bare.a_h)) for c in p.coatings)
+        return CoatedContact(bare.radius, bare.load, coatings, substrate, p.friction)
+    if p.radius is not None:
+        coatings = tuple((c.E * stress, c.nu, _thickness(c, length, None)) for c in p.coatings)
+        return LoadingCurve(p.radius * length, CONTROLS[0], (1.0,), coatings, substrate)
+    assert p.pressure is not None
+    assert p.load_radius is not None
+    coatings = tuple((c.E * stress, c.nu, _thickness(c, length, None)) for c in p.coatings)
+    return PrescribedLoad(p.pressure * stress, p.load_radius * length, coatings, substrate, p.friction)
+
+
+def _thickness(c: LayerEntry, length: float, a_h: float | None) -> float:
+    if c.thickness is not None:
+        return c.thickness * length
+    if c.thickness_over_a_h is None or a_h is None:
+        raise ValueError("problem.coatings: every coating needs its thickness")
+    return c.thickness_over_a_h * a_h
+
+
+def _units(problem: Problem) -> dict[str, float]:
+    """The units a table of this problem may be printed in: those of UNITS and its own scales."""
+    if isinstance(problem, LoadingCurve):
+        R = problem.radius
+        layer: dict[str, float] = {}
+        if problem.coatings:
+            h = problem.coatings[0][2]
+            layer = {"h": h, "h^2/R": h**2 / R, "E* h^3/R": problem.E_star * h**3 / R}
+        return UNITS | {"R": R} | layer
+    if isinstance(problem, PrescribedLoad):
+        return UNITS | {"q": problem.pressure, "a": problem.load_radius}
+    return UNITS | {"a_h": problem.a_h, "p_h": problem.p_h, "delta_h": problem.delta_h}
+
+
+def _claim(item: PublishedColumn, source: str) -> Claim:
+    spread = item.profile.uncertainty
+    assert spread is not None
+    cap = CAP + float(spread[item.counted].max()) / item.scale if item.scale else CAP
+    why = f"published in column {item.column} of {item.file}"
+    return Claim(item.profile.quantity, item.profile.line, (source, PUBLISHED), cap, why)

@@ -1,0 +1,128 @@
+"""What a file of a published case may say, key by key."""
+
+from typing import Annotated, Literal
+
+from pydantic import Field, model_validator
+
+from verification.cases.toml import Strict, Text
+
+__all__ = ["ColumnEntry", "LayerEntry", "PositionEntry", "ProblemEntry", "PublishedFile", "TableEntry"]
+
+Positive = Annotated[float, Field(gt=0)]
+# Of incompressible layers the finite element method speaks by extrapolation only, so 1/2 is allowed here.
+Poisson = Annotated[float, Field(gt=-1, le=0.5)]
+Cells = Annotated[dict[str, str | float], Field(max_length=20)]
+
+
+class LayerEntry(Strict):
+    """A material; a coating with its thickness too."""
+
+    E: Positive
+    nu: Poisson
+    thickness: Positive | None = None
+    thickness_over_a_h: Positive | None = None
+
+
+class ProblemEntry(Strict):
+    """A uniform disc or a sphere on a layered solid, in the units of the source.
+
+    A sphere without a load is pressed deeper and deeper, to where the tables say.
+    """
+
+    length_unit: Text
+    stress_unit: Text
+    load_unit: Text = "N"
+    substrate: LayerEntry
+    coatings: Annotated[list[LayerEntry], Field(default_factory=list, max_length=50)]
+    friction: Annotated[float, Field(ge=0, le=2)] = 0.0
+    pressure: Positive | None = None
+    load_radius: Positive | None = None
+    radius: Positive | None = None
+    load: Positive | None = None
+
+    @model_validator(mode="after")
+    def _disc_or_sphere(self) -> "ProblemEntry":
+        disc = (self.pressure is not None) + (self.load_radius is not None)
+        sphere = (self.radius is not None) + (self.load is not None)
+        if (disc, sphere) not in ((2, 0), (0, 2)) and not (disc == 0 and self.load is None and self.radius):
+            raise ValueError(
+                "needs pressure and load_radius (a uniform disc), radius and load (a sphere), or radius "
+                "alone (a sphere pressed deeper and deeper)"
+            )
+        if self.load is None and self.friction and disc == 0:
+            raise ValueError("friction belongs to a disc, or to a sphere under a load")
+        return self
+
+
+class PositionEntry(Strict):
+    """Where values are: numbers or names of columns, in ``unit``; ``layer`` picks a side of an interface.
+
+    contact_radius, approach : of a sphere pressed deeper and deeper, one of them in place of x, y, z.
+    """
+
+    x: str | float = 0.0
+    y: str | float = 0.0
+    z: str | float = 0.0
+    contact_radius: str | float | None = None
+    approach: str | float | None = None
+    unit: Text
+    layer: Annotated[int, Field(ge=0)] | None = None
+
+
+class ColumnEntry(Strict):
+    """A column of a table: ``quantity`` = ``factor`` times what is printed, in ``unit``.
+
+    uncertainty : reading uncertainty in that unit, or "range" of the rows; otherwise half of the last digit,
+    of so many ``significant`` ones, with ``program_error`` on top.
+    relative : reading uncertainty as a fraction of each value, instead.
+    not_counted : why the column is shown but held against nobody.
+    series : coefficients c1, c2, .. of a power series whose ratio to the exact answer is printed.
+    """
+
+    name: Text
+    quantity: Text
+    unit: Text
+    factor: float = 1.0
+    at: PositionEntry | None = None
+    uncertainty: Positive | Literal["range"] | None = None
+    significant: Annotated[int, Field(ge=1, le=16)] | None = None
+    program_error: Annotated[float, Field(ge=0)] = 0.0
+    relative: Positive | None = None
+    not_counted: Text | None = None
+    series: Annotated[list[float], Field(default_factory=list, max_length=20)]
+
+
+class MisprintEntry(Strict):
+    """Cells known to be wrong, ``why`` in a few words: shown, never counted."""
+
+    row: Cells
+    column: Text
+    why: Text
+
+
+class TableEntry(Strict):
+    """One CSV file, the rows of it that are meant, its columns.
+
+    flag : a column that is empty but for misprints.   label : a column that names rows.
+    """
+
+    file: Annotated[str, Field(pattern=r"^[A-Za-z0-9_.-]+\.csv$")]
+    at: PositionEntry | None = None
+    rows: Cells = Field(default_factory=dict)
+    flag: Text | None = None
+    label: Text | None = None
+    column: Annotated[list[ColumnEntry], Field(min_length=1, max_length=100)]
+    misprint: list[MisprintEntry] = Field(default_factory=list)
+
+
+class PublishedFile(Strict):
+    """A published case as its TOML file says it."""
+
+    title: Text
+    source: Text
+    year: Annotated[int, Field(ge=1600, le=2100)]
+    primary_read: bool
+    read: Text
+    remark: Annotated[str, Field(max_length=2000)] = ""
+    problem: ProblemEntry
+    table: Annotated[list[TableEntry], Field(min_length=1, max_length=100)]

@@ -1,0 +1,156 @@
+"""Printed tables as they stand in the files of ``published/``: notes, columns, numbers with their digits.
+
+A table is a CSV file whose first lines, marked #, are notes on its source. It is kept as printed: units,
+signs, and rows known to be misprints are dealt with by whoever reads it.
+"""
+
+import csv
+import io
+from dataclasses import dataclass
+from math import floor, isfinite, log10
+from pathlib import Path
+
+__all__ = ["FOLDER", "MAX_BYTES", "UNITS", "PublishedError", "PublishedTable", "read_table"]
+
+FOLDER = Path(__file__).parent / "shipped" / "published"
+MAX_BYTES = 1_000_000
+
+INCH, PSI = 0.0254, 6894.757293168361
+# SI value of each unit a table may be printed in.
+UNITS = {
+    "Pa": 1.0,
+    "kPa": 1e3,
+    "MPa": 1e6,
+    "GPa": 1e9,
+    "psi": PSI,
+    "ksi": 1e3 * PSI,
+    "m": 1.0,
+    "mm": 1e-3,
+    "um": 1e-6,
+    "in": INCH,
+    "N": 1.0,
+    "1": 1.0,
+    "microstrain": 1e-6,
+}
+
+
+class PublishedError(ValueError):
+    """A table that cannot be used; the message names file, row and column."""
+
+
+@dataclass(frozen=True)
+class PublishedTable:
+    """The cells of a table as text, row by row, each with the line of the file it stands on.
+
+    raw : the whole file.
+    """
+
+    path: Path
+    raw: str
+    notes: str
+    columns: tuple[str, ...]
+    rows: tuple[tuple[str, ...], ...]
+    lines: tuple[int, ...]
+
+    def where(self, condition: dict[str, str | float]) -> "PublishedTable":
+        """The rows in which every column named has the value given; at least one."""
+        kept = [i for i, _ in enumerate(self.rows) if all(self._is(i, c, v) for c, v in condition.items())]
+        if not kept:
+            said = ", ".join(f"{column} = {value}" for column, value in condition.items())
+            raise PublishedError(f"{self.path.name}: no row has {said}")
+        return PublishedTable(
+            self.path,
+            self.raw,
+            self.notes,
+            self.columns,
+            tuple(self.rows[i] for i in kept),
+            tuple(self.lines[i] for i in kept),
+        )
+
+    def text(self, column: str) -> tuple[str, ...]:
+        """The cells of a column as printed. Raises PublishedError where there is no such column."""
+        if column not in self.columns:
+            raise PublishedError(
+                f"{self.path.name}: has no column {column!r}; it has {', '.join(self.columns)}"
+            )
+        number = self.columns.index(column)
+        return tuple(row[number] for row in self.rows)
+
+    def numbers(self, column: str) -> tuple[float, ...]:
+        """The cells of a column as numbers. Raises PublishedError at the first that is none."""
+        return tuple(self._number(i, column, cell) for i, cell in enumerate(self.text(column)))
+
+    def half_digits(self, column: str, significant: int | None = None) -> tuple[float, ...]:
+        """Half a unit of the last digit printed: what rounding alone leaves unknown.
+
+        That digit is the one of the cell with most decimals, for printers drop zeros at the end; or the one
+        of so many ``significant`` digits in each cell.
+        """
+        values = self.numbers(column)
+        if significant is None:
+            return (0.5 * min(_last_digit(cell) for cell in self.text(column)),) * len(values)
+        return tuple(0.5 * 10.0 ** (floor(log10(abs(v))) + 1 - significant) if v else 0.0 for v in values)
+
+    def _is(self, row: int, column: str, value: str | float) -> bool:
+        cell = self.text(column)[row]
+        return cell == value if isinstance(value, str) else self._number(row, column, cell) == value
+
+    def _number(self, row: int, column: str, cell: str) -> float:
+        try:
+            value = float(cell)
+        except ValueError:
+            value = float("nan")
+        if not isfinite(value):
+            shown = repr(cell if len(cell) <= 40 else cell[:37] + "...")
+            raise PublishedError(
+                f"{self.path.name}, line {self.lines[row]}, column {column}: {shown} is not a finite number"
+            )
+        return value
+
+
+def read_table(path: Path) -> PublishedTable:
+    """Read a CSV file: notes marked #, one line of column names, then rows of as many cells.
+
+    Raises PublishedError naming file and line where that is not what it holds.
+    """
+    try:
+        if not path.is_file():
+            raise PublishedError(f"{path.name}: cannot be read; a table is a file beside its case file")
+        with path.open("rb") as file:
+            raw = file.read(MAX_BYTES + 1)
+        text = raw.decode("utf-8")
+    except OSError as error:
+        raise PublishedError(f"{path.name}: cannot be read ({error.strerror})") from None
+    except UnicodeDecodeError:
+        raise PublishedError(f"{path.name}: not UTF-8 text; a table is a CSV file") from None
+    if len(raw) > MAX_BYTES:
+        raise PublishedError(f"{path.name}: larger than {MAX_BYTES} bytes; a table is what fits on a page")
+    notes, header, rows, lines = [], None, [], []
+    for number, line in enumerate(text.splitlines(), start=1):
+        if line.startswith("#") and header is None:
+            notes.append(line[1:].strip())
+            continue
+        if not line.strip():
+            continue
+        cells = tuple(cell.strip() for cell in next(csv.reader(io.StringIO(line))))
+        if header is None:
+            header = cells
+            continue
+        if len(cells) != len(header):
+            raise PublishedError(
+                f"{path.name}, line {number}: {len(cells)} cells under {len(header)} columns "
+                f"({', '.join(header)})"
+            )
+        rows.append(cells)
+        lines.append(number)
+    if header is None or not rows:
+        raise PublishedError(f"{path.name}: no {'columns' if header is None else 'rows'} in it")
+    if len(set(header)) < len(header) or "" in header:
+        raise PublishedError(f"{path.name}: column names must be there and differ: {', '.join(header)}")
+    return PublishedTable(path, text, "\n".join(notes), header, tuple(rows), tuple(lines))
+
+
+def _last_digit(cell: str) -> float:
+    mantissa, _, exponent = cell.lower().partition("e")
+    # Of a zero the exponent may be anything.
+    return 10.0 ** min(int(exponent or 0) - len(mantissa.partition(".")[2]), 308)

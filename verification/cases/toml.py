@@ -1,0 +1,138 @@
+"""TOML files from users: bounded reading, schema checks, one-line error messages."""
+
+import tomllib
+from pathlib import Path
+from typing import Annotated, Any, TypeVar
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
+
+__all__ = [
+    "MAX_BYTES",
+    "MAX_DOTS",
+    "MAX_NAME",
+    "CaseError",
+    "Checked",
+    "Length",
+    "Modulus",
+    "Poisson",
+    "Strict",
+    "Text",
+    "first_error",
+    "load_toml",
+    "read_bounded",
+    "read_toml",
+]
+
+Checked = TypeVar("Checked", bound=BaseModel)
+
+
+MAX_BYTES = 250_000
+
+
+# Python's TOML reader takes time and memory with the square of the parts of a dotted key: 100,000 of them, in
+# 200 kB, exhaust 20 GB. A line of a case file has a few dots.
+MAX_DOTS = 250
+
+
+MAX_NAME = 100
+RENAMED = {"laws": "resolve"}  # keys of earlier versions
+
+
+class CaseError(ValueError):
+    """A case file that cannot be used; the message names file and key."""
+
+
+class Strict(BaseModel):
+    """A part of a case file: no unknown keys, no text where a number belongs."""
+
+    model_config = ConfigDict(extra="forbid", strict=True, frozen=True, allow_inf_nan=False)
+
+
+Modulus = Annotated[float, Field(gt=0)]
+
+
+Poisson = Annotated[float, Field(gt=-1, lt=0.5)]
+
+
+Length = Annotated[float, Field(gt=0)]
+
+
+Text = Annotated[str, Field(min_length=1, max_length=500)]
+
+
+def read_bounded(path: Path, kind: str, holds: str) -> bytes:
+    """The content of a .toml file of a ``kind`` that ``holds`` little. Raises CaseError."""
+    # The name goes into file names, terminals and tables.
+    if len(path.stem) > MAX_NAME or not path.stem.isprintable():
+        raise CaseError(
+            f"{path.name[:MAX_NAME]!r}: give the file a name of at most {MAX_NAME} printable characters"
+        )
+    try:
+        if not path.is_file():
+            what = "is a directory" if path.is_dir() else "there is no such file"
+            raise CaseError(f"{path}: {what}; give the path of a .toml {kind} file")
+        with path.open("rb") as file:
+            raw = file.read(MAX_BYTES + 1)
+    except OSError as error:
+        raise CaseError(f"{path}: {error.strerror or error}; give the path of a .toml {kind} file") from None
+    if len(raw) > MAX_BYTES:
+        raise CaseError(f"{path}: larger than {MAX_BYTES} bytes; a {kind} file holds {holds}")
+    return raw
+
+
+def load_toml(raw: bytes) -> tuple[str, dict[str, Any]]:
+    """The text of a TOML file with its content. Raises ValueError, in one sentence, where it is none."""
+    try:
+        text = raw.decode("utf-8")
+    except UnicodeDecodeError:
+        raise ValueError("not UTF-8 text; a case file is TOML") from None
+    for number, line in enumerate(text.split("\n"), start=1):  # as TOML breaks lines
+        if line.count(".") > MAX_DOTS:
+            raise ValueError(f"line {number} has more than {MAX_DOTS} dots; break it into several")
+    try:
+        return text, tomllib.loads(text)
+    except RecursionError:
+        raise ValueError("not TOML: nested too deeply") from None
+    except ValueError as error:  # TOMLDecodeError, or a number of thousands of digits
+        raise ValueError(f"not TOML: {error}") from None
+
+
+def read_toml(raw: bytes, path: Path, model: type[Checked]) -> tuple[str, Checked]:
+    """The text of a TOML file with its content checked against ``model``. Raises CaseError."""
+    try:
+        text, content = load_toml(raw)
+        return text, model.model_validate(content)
+    except ValidationError as error:
+        raise CaseError(f"{path}: {first_error(error)}") from None
+    except ValueError as error:
+        raise CaseError(f"{path}: {error}") from None
+
+
+def first_error(error: ValidationError) -> str:
+    """The first thing wrong with a case file, with its key and what stands there, in one sentence."""
+    first = error.errors(include_url=False)[0]
+    key = ".".join(_shortened(str(part)) for part in first["loc"]) or "top level"
+    renamed = RENAMED.get(key, "")
+    message = first["msg"].removeprefix("Value error, ")
+    said = {
+        "missing": "is missing",
+        "extra_forbidden": f"is now called {renamed}" if renamed else "is an unknown key",
+        "finite_number": "must be a finite number",
+        "float_type": "must be a number",
+        "int_type": "must be a whole number",
+        "string_type": "must be text",
+    }.get(first["type"], message[0].lower() + message[1:])
+    if first["type"] not in ("missing", "extra_forbidden") and not isinstance(first["input"], dict | list):
+        said += f", not {_shown(first['input'])}"
+    more = error.error_count() - 1
+    return f"{key} {said}" + (f" (and {more} more)" if more else "")
+
+
+def _shown(value: object) -> str:
+    # An integer of thousands of digits is one that Python refuses to print.
+    whole = isinstance(value, int) and abs(value) >= 10**60
+    return "a whole number of more than 60 digits" if whole else _shortened(repr(value))
+
+
+def _shortened(text: str) -> str:
+    return text if len(text) <= 60 else text[:57] + "..."

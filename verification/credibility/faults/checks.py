@@ -1,0 +1,84 @@
+"""One check of the default run with what it came to."""
+
+from dataclasses import dataclass
+
+from verification.judging.invariants import Invariant
+from verification.judging.verdict import Claim, Outcome, Verdict
+from verification.regression.baseline import Drift
+from verification.running.self_tests import SelfTest
+
+__all__ = ["COLUMNS", "Check", "of_baseline", "of_claim", "of_invariant", "of_self_test"]
+
+CLOSED = ("hertz", "hamilton")
+# What a matrix of faults shows side by side: (title, what it holds against what).
+COLUMNS = {
+    "bare, closed form": "uncoated cases, Hertz or Hamilton on one side",
+    "bare, exact": "uncoated cases, the integral equation on one side, no closed form on the other",
+    "bare, methods": "uncoated cases, method against method",
+    "coated, exact": "coated cases, the integral equation on one side",
+    "coated, methods": "coated cases, method against method",
+    "invariants": "laws that one solution must obey by itself",
+    "printed": "tables that others printed (coatcheck run published)",
+    "self-tests": "known answers put to the harness itself",
+    "baseline": "numbers that are not what they were; this alone counts only where nothing else can know",
+}
+
+
+@dataclass(frozen=True)
+class Check:
+    """``name`` is the quantity, invariant, or self-test; ``detail`` says on which line, of which sources."""
+
+    column: str
+    name: str
+    case: str
+    detail: str
+    outcome: Outcome
+    reason: str
+
+    @property
+    def passed(self) -> bool:
+        return self.outcome is Outcome.AGREES
+
+    @property
+    def key(self) -> tuple[str, str, str, str]:
+        """What tells it from every other check."""
+        return self.column, self.name, self.case, self.detail
+
+    @property
+    def said(self) -> str:
+        """The check with its reason, in one sentence."""
+        return f"{self.name} ({', '.join(filter(None, (self.detail, self.case)))}): {self.reason}"[:400]
+
+
+def of_claim(claim: Claim, verdict: Verdict, case: str, coated: bool, kind: str = "") -> Check:
+    """A comparison; ``kind`` "printed" where one side is a printed table."""
+    if kind:
+        column = kind
+    else:
+        sides = set(claim.between)
+        other = (
+            "closed form" if sides & set(CLOSED) else "exact" if "integral_equation" in sides else "methods"
+        )
+        column = f"{'coated' if coated else 'bare'}, {other}"
+    detail = f"{claim.line}, {' against '.join(claim.between)}"
+    return Check(column, claim.quantity, case, detail, verdict.outcome, verdict.reason)
+
+
+def of_invariant(row: Invariant, case: str) -> Check:
+    """An invariant; its number at the end (interface 1, layer 0) belongs to the detail."""
+    name, _, place = row.name.partition(", ")
+    detail = ", ".join(filter(None, (place, row.source)))
+    return Check("invariants", name, case, detail, row.outcome, row.message)
+
+
+def of_baseline(row: Drift, case: str, same: bool) -> Check:
+    """A profile held against the baseline."""
+    outcome = Outcome.AGREES if same else Outcome.DISAGREES
+    detail = f"{row.quantity} on {row.line}, {row.source}"
+    return Check("baseline", "baseline", case, detail, outcome, row.said)
+
+
+def of_self_test(test: SelfTest) -> Check:
+    """A self-test of the harness: passed or not."""
+    outcome = Outcome.AGREES if test.passed else Outcome.DISAGREES
+    return Check("self-tests", test.name, "", test.sentence, outcome, test.found)

@@ -1,0 +1,244 @@
+"""Faults in the harness itself: what reads, samples, judges, stores."""
+
+from verification.credibility.faults.planting import Constant, Edit, Fault
+
+__all__ = ["FAULTS"]
+
+GROUP = "harness"
+BARE = ("01_uncoated_steel",)
+SOLID = ("01_uncoated_steel", "14_ratio_4_sliding")
+KENPAVE = ("kenpave_three_layer_axis",)
+METHODS = ("semianalytic", "fem_reference")
+JUDGE = "verification.judging.verdict:judge"
+
+
+def _fault(
+    name: str,
+    sentence: str,
+    expected: tuple[str, ...],
+    *changes: Edit | Constant,
+    cases: tuple[str, ...] = BARE,
+    solve: tuple[str, ...] = (),
+) -> Fault:
+    return Fault(name, GROUP, sentence, "harness", changes, expected, cases, solve)
+
+
+FAULTS = (
+    _fault(
+        "nan_agrees",
+        "NaN counts as agreement",
+        ("judging",),
+        Edit(JUDGE, "bad = ~np.isfinite(side.value[judged])", "bad = np.zeros(judged.sum(), dtype=bool)"),
+    ),
+    _fault(
+        "absolute_for_relative",
+        "an absolute uncertainty is read as one relative to the scale",
+        ("peak_pressure", "pressure", "judging"),
+        Edit(
+            "verification.judging.verdict:Comparison.uncertainty",
+            "return (self.a.uncertainty + self.b.uncertainty) / self.scale",
+            "return self.a.uncertainty + self.b.uncertainty",
+        ),
+    ),
+    _fault(
+        "relative_for_absolute",
+        "the uncertainties of p0, a and approach are multiplied by the value once more",
+        ("peak_pressure", "contact_radius", "approach", "sampling"),
+        Edit(
+            "verification.sampling.lines:sample_contact",
+            "np.array([getattr(stated, name)], dtype=float)",
+            "np.array([getattr(stated, name) * getattr(solution, name)], dtype=float)",
+        ),
+        solve=("semianalytic", "integral_equation"),
+    ),
+    _fault(
+        "u_inflated_in_the_judge",
+        "the judge inflates every uncertainty tenfold",
+        ("judging",),
+        Edit(
+            "verification.judging.verdict:Comparison.uncertainty",
+            "return (self.a.uncertainty + self.b.uncertainty) / self.scale",
+            "return 10 * (self.a.uncertainty + self.b.uncertainty) / self.scale",
+        ),
+    ),
+    _fault(
+        "u_inflated_semianalytic",
+        "the semi-analytical method states ten times the uncertainty of p0, a and approach",
+        ("baseline",),
+        Edit(
+            "semianalytic.uncertainty:Uncertainty._of",
+            "total = {name: sum(",
+            "total = {name: 10 * sum(",
+        ),
+        cases=SOLID,
+        solve=("semianalytic",),
+    ),
+    _fault(
+        "u_inflated_finite_elements",
+        "the finite element method states ten times its uncertainty",
+        ("baseline", "sigma_xx", "sigma_zz"),
+        Constant("fem_reference.estimate:SAFETY", 30.0),
+        cases=SOLID,
+        solve=("fem_reference",),
+    ),
+    _fault(
+        "u_deflated",
+        "the finite element method states a hundredth of its uncertainty",
+        ("peak_pressure", "approach", "sigma_xx", "sigma_zz", "pressure"),
+        Constant("fem_reference.estimate:SAFETY", 0.03),
+        solve=("fem_reference",),
+    ),
+    _fault(
+        "cap_ignored",
+        "an uncertainty beyond the cap passes",
+        ("judging", "whole runs"),
+        Edit(JUDGE, "if U.max() > cap:", "if False:"),
+    ),
+    _fault(
+        "sign_of_difference",
+        "only differences upwards count",
+        ("judging",),
+        Edit(
+            JUDGE,
+            "difference = np.abs(comparison.difference[judged])",
+            "difference = comparison.difference[judged]",
+        ),
+    ),
+    _fault(
+        "unstated_for_exact",
+        "an uncertainty that was not stated counts as zero",
+        ("judging",),
+        Edit(JUDGE, "uncertainty = comparison.uncertainty\n", "uncertainty = np.zeros(judged.size)\n"),
+    ),
+    _fault(
+        "mean_for_largest",
+        "the mean over the points decides in place of the worst of them",
+        ("judged points",),
+        Edit(JUDGE, "margin = U - difference\n", "margin = U - difference.mean()\n"),
+    ),
+    _fault(
+        "source_against_itself",
+        "a source is held against itself",
+        ("whole runs",),
+        Edit(
+            "verification.running.contact:decide",
+            "sides.append(profiles[claim.quantity, claim.line, source])",
+            "sides.append(profiles[claim.quantity, claim.line, claim.between[0]])",
+        ),
+    ),
+    _fault(
+        "failure_passes",
+        "a source that failed passes",
+        ("whole runs",),
+        Edit(
+            "verification.running.contact:decide",
+            "return Verdict(Outcome.NO_RESULT, f",
+            "return Verdict(Outcome.AGREES, f",
+        ),
+    ),
+    _fault(
+        "wide_edge_zone",
+        "a quarter of the contact is left unjudged at its edge",
+        ("whole runs",),
+        Edit(
+            "verification.running.contact:decide",
+            "np.abs(np.abs(a.position) - edge) < claim.edge * edge",
+            "np.abs(np.abs(a.position) - edge) < 5 * claim.edge * edge",
+        ),
+    ),
+    _fault(
+        "best_for_worst",
+        "a case is called by its best verdict",
+        ("whole runs",),
+        Edit(
+            "verification.running.result:CaseResult.outcome",
+            "for outcome in (Outcome.DISAGREES, Outcome.NO_RESULT, Outcome.INCONCLUSIVE):",
+            "for outcome in (Outcome.AGREES,):",
+        ),
+    ),
+    _fault(
+        "components_swapped",
+        "sigma_xx and sigma_yy of every source are sampled for each other",
+        ("sampling",),
+        Constant(
+            "verification.sampling.lines:STRESSES",
+            {"sigma_xx": (1, 1), "sigma_yy": (0, 0), "sigma_zz": (2, 2), "sigma_xz": (0, 2)},
+        ),
+        cases=(),
+    ),
+    _fault(
+        "sides_swapped",
+        "the upper side of an interface is sampled for the lower one, by every source",
+        ("sampling",),
+        Edit(
+            "verification.problem.profile:line_of",
+            'k - 1 if match[2] == "upper" else k',
+            'k if match[2] == "upper" else k - 1',
+        ),
+        cases=(),
+    ),
+    _fault(
+        "units_slipped_case",
+        "thicknesses of a case file are read in mm where they stand in m, for every source alike",
+        ("case file",),
+        Edit(
+            "verification.cases.contact:_Coating.in_metres",
+            "return self.thickness if",
+            "return 1e-3 * self.thickness if",
+        ),
+        cases=(),
+    ),
+    _fault(
+        "units_slipped_load",
+        "every method is handed the load in kgf for N",
+        ("load balance", "peak_pressure", "contact_radius", "approach"),
+        Edit("verification.sources.contact:solvers", "load=problem.load,", "load=problem.load * 9.80665,"),
+        cases=SOLID,
+        solve=(*METHODS, "integral_equation"),
+    ),
+    Fault(
+        "units_slipped_table",
+        GROUP,
+        "depths of a printed table are read in cm where they stand in inches",
+        "published",
+        (
+            Edit(
+                "verification.cases.columns:_points",
+                'unit = si_of(at.unit, units, "at")',
+                'unit = si_of(at.unit, units, "at") * 0.01 / 0.0254',
+            ),
+        ),
+        ("sigma_zz", "u_z", "printed table"),
+        published=KENPAVE,
+    ),
+    _fault(
+        "stale_cache",
+        "a stored result is used again though its case file has changed",
+        ("storing",),
+        Edit(
+            "verification.running.tasks:_of",
+            "if (result.name, result.text, result.problem) != "
+            "(case.name, case.text, plain(describe(case.problem))):",
+            "if False:",
+        ),
+        cases=(),
+    ),
+    _fault(
+        "stale_code",
+        "a stored result is used again though the code that made it has changed",
+        ("storing",),
+        Edit(
+            "verification.running.tasks:kept_result",
+            'if data.get("made_by") != fingerprint():',
+            "if False:",
+        ),
+        cases=(),
+    ),
+    _fault(
+        "checksum_ignored",
+        "a stored result is read though its checksum does not hold",
+        ("storing",),
+        Edit("verification.running.store:read_checked", "if _digest(body) != head[1]:", "if False:"),
+        cases=(),
+    ),
+)

@@ -1,0 +1,98 @@
+"""What the two methods and the references import, read from their source as it is installed."""
+
+import ast
+import sys
+from collections.abc import Iterator
+from dataclasses import dataclass
+from importlib.util import find_spec
+from pathlib import Path
+
+__all__ = ["PARTS", "Part", "imports_of", "parts", "shared"]
+
+# Each part with the packages it must not know.
+PARTS = {
+    "semianalytic": ("fem_reference", "verification"),
+    "fem_reference": ("semianalytic", "verification"),
+    "verification.sources.references": ("semianalytic", "fem_reference"),
+}
+
+
+@dataclass(frozen=True)
+class Part:
+    """Package ``name``: how many ``files`` with how many ``statements`` of import were read.
+
+    modules : every module outside the standard library that it imports, its own left out.
+    forbidden : sentences, one for each import of what it must not know.
+    hidden : sentences, one for each import that only running would resolve.
+    """
+
+    name: str
+    files: int
+    statements: int
+    modules: tuple[str, ...]
+    forbidden: tuple[str, ...]
+    hidden: tuple[str, ...]
+
+    @property
+    def packages(self) -> tuple[str, ...]:
+        """The top-level packages among ``modules``."""
+        return tuple(sorted({module.partition(".")[0] for module in self.modules}))
+
+
+def parts() -> tuple[Part, ...]:
+    """Both methods, then the references. Raises ValueError where one is not installed as source."""
+    return tuple(imports_of(name, strangers) for name, strangers in PARTS.items())
+
+
+def shared(first: Part, second: Part) -> tuple[str, ...]:
+    """Modules that both import, by the name in the source: scipy.special, numpy, ..."""
+    return tuple(sorted(set(first.modules) & set(second.modules)))
+
+
+def imports_of(name: str, strangers: tuple[str, ...] = ()) -> Part:
+    """Read every file of the package ``name``. Raises ValueError where there is no source to read."""
+    folder = _folder(name)
+    modules: set[str] = set()
+    forbidden, hidden = [], []
+    files = statements = 0
+    for path in sorted(folder.rglob("*.py")):
+        files += 1
+        nodes = list(ast.walk(ast.parse(path.read_text(encoding="utf-8"))))
+        place = path.relative_to(folder).as_posix()
+        for module in _imported(nodes):
+            statements += 1
+            for stranger in strangers:
+                if module == stranger or module.startswith(f"{stranger}."):
+                    forbidden.append(f"{name}/{place} imports {module}")
+            top = module.partition(".")[0]
+            if top not in sys.stdlib_module_names and not (module + ".").startswith(f"{name}."):
+                modules.add(module)
+        hidden += [f"{name}/{place} calls {called}" for called in _called_by_name(nodes)]
+    return Part(name, files, statements, tuple(sorted(modules)), tuple(forbidden), tuple(hidden))
+
+
+def _folder(name: str) -> Path:
+    spec = find_spec(name)
+    places = list(spec.submodule_search_locations or ()) if spec is not None else []
+    if not places or not list(Path(places[0]).glob("*.py")):
+        raise ValueError(f"{name}: its source is not here, so what it imports cannot be read")
+    return Path(places[0])
+
+
+def _imported(nodes: list[ast.AST]) -> Iterator[str]:
+    """The module of each import, ``from scipy import special`` being one of scipy.special."""
+    for node in nodes:
+        if isinstance(node, ast.Import):
+            yield from (alias.name for alias in node.names)
+        elif isinstance(node, ast.ImportFrom) and node.level == 0 and node.module:
+            for alias in node.names:
+                whole = f"{node.module}.{alias.name}"
+                yield whole if node.module == "scipy" else node.module
+
+
+def _called_by_name(nodes: list[ast.AST]) -> Iterator[str]:
+    for node in nodes:
+        if isinstance(node, ast.Call):
+            name = getattr(node.func, "id", None) or getattr(node.func, "attr", None)
+            if name in ("import_module", "__import__", "exec", "eval"):
+                yield ast.unparse(node.func)

@@ -1,0 +1,94 @@
+"""Error of the influence coefficients by each conversion, against quadrature of the response functions."""
+
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from verification.problem.arrays import FloatArray
+from verification.problem.contact import CoatedContact
+from verification.sources.references import integral_equation
+from verification.sources.references.patch import surface_coefficient
+
+__all__ = ["ConversionError", "conversion_errors"]
+
+
+@dataclass(frozen=True)
+class ConversionError:
+    """Error of influence coefficients of the surface displacement by one conversion.
+
+    enlarge : the domain over the grid's, 0 for a conversion that has none.   aliases : summed on either side.
+    distance : of the patches, in contact radii.   error : |K - K_exact| / |K_exact| of each.
+    largest : of |K - K_exact| over the largest K.
+    """
+
+    conversion: str
+    enlarge: int
+    seconds: float
+    distance: tuple[float, ...]
+    error: tuple[float, ...]
+    largest: float
+    aliases: int = 0
+
+
+def conversion_errors(
+    problem: CoatedContact, patches: int = 33, enlarge: Sequence[int] = (2, 4, 8, 16)
+) -> tuple[ConversionError, ...]:
+    """The influence coefficients of each conversion against direct quadrature.
+
+    plain, with no alias and with two on either side, and split-fft on each domain; split, which has none.
+    The grid fits the contact; the patches judged are the loaded one, some along a row, some along the
+    diagonal, out to the corner.
+    """
+    from semianalytic import frf, halfspace, influence
+
+    a = integral_equation.solve(
+        radius=problem.radius,
+        load=problem.load,
+        coatings=problem.coatings,
+        substrate=problem.substrate,
+        estimate_uncertainty=False,
+    ).contact_radius
+    n, d = patches, 2.24 * a / patches
+    E, nu = problem.coatings[0][:2] if problem.coatings else problem.substrate
+    scale = (1 - nu**2) / (np.pi * E)
+    thickness = [h for _, _, h in problem.coatings]
+    steps = np.unique(np.round(np.geomspace(1, n - 1, 9)).astype(int))
+    places = [(0, 0), *((int(i), 0) for i in steps), *((int(i), int(i)) for i in steps)]
+    places.sort(key=lambda place: np.hypot(*place))
+    exact = np.array(
+        [surface_coefficient(i * d, j * d, d, problem.coatings, problem.substrate) for i, j in places]
+    )
+    distance = tuple(float(np.hypot(i, j) * d / a) for i, j in places)
+
+    def excess(k: FloatArray) -> FloatArray:
+        return frf.compliance_excess(k, problem.coatings, problem.substrate)
+
+    def split(wide: int) -> FloatArray:
+        C = halfspace.surface_deflection(n, n, d, d)
+        if not problem.coatings:
+            return C
+        image = influence.split_image(excess, thickness)
+        C = C + image[0] * halfspace.surface_deflection(n, n, d, d, image[1])
+        return C + influence.remainder_coefficients(n, d, excess, thickness, image, enlarge=wide)
+
+    def plain(wide: int, aliases: int) -> FloatArray:
+        return influence.plain_coefficients(n, d, excess, enlarge=wide, aliases=aliases)
+
+    wanted: list[tuple[str, int, int, Callable[[], FloatArray]]] = [("split", 0, 0, lambda: split(0))]
+    for wide in enlarge:
+        wanted.append(("plain", wide, 0, lambda wide=wide: plain(wide, 0)))  # type: ignore[misc]
+        wanted.append(("plain", wide, 2, lambda wide=wide: plain(wide, 2)))  # type: ignore[misc]
+        if problem.coatings:
+            wanted.append(("split-fft", wide, 2, lambda wide=wide: split(wide)))  # type: ignore[misc]
+    found = []
+    for conversion, wide, aliases, convert in wanted:
+        begin = time.perf_counter()
+        K = scale * convert()
+        seconds = time.perf_counter() - begin
+        gap = np.abs(np.array([K[place] for place in places]) - exact)
+        error = tuple(float(e) for e in gap / exact)
+        largest = float(gap.max() / exact[0])
+        found.append(ConversionError(conversion, wide, seconds, distance, error, largest, aliases))
+    return tuple(found)

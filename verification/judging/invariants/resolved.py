@@ -1,0 +1,210 @@
+"""Invariants between solutions: one problem solved scaled, with equal moduli, thick, thin, pressed otherwise.
+
+They need further solves, so a case has to enable them (``resolve = true``), and both methods solve on coarse
+grids and meshes, whose uncertainty bounds each invariant and is capped like any other.
+"""
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import replace
+from functools import partial
+from typing import Any
+
+import numpy as np
+from numpy.polynomial import legendre
+
+from verification.judging.invariant import Invariant, absent, decide
+from verification.judging.invariants.bond import displacement_bound
+from verification.judging.invariants.limits import thick_shift, thin_shift
+from verification.problem.arrays import Array
+from verification.problem.contact import CoatedContact, PrescribedLoad, Solution
+from verification.sources.references.hamilton import Hamilton
+
+__all__ = ["COARSE", "resolved"]
+
+Solve = Callable[[CoatedContact], Solution]
+Law = Callable[[], Invariant]
+
+# Each as coarse as leaves the uncertainty below the caps; stresses and thin coatings want more of a mesh.
+Numerics = Mapping[str, Mapping[str, Any]]
+COARSE: Numerics = {"semianalytic": {"patches": 129}, "fem_reference": {"size": 0.25}}
+STRESSES: Numerics = {"semianalytic": {"patches": 129}, "fem_reference": {"size": 0.22}}
+THIN: Numerics = {"semianalytic": {"patches": 129}, "fem_reference": {"size": 0.22}}
+
+# Of a_h: far enough in the limit for what is left of the coating to be bounded below the caps.
+THICK_AT, THIN_AT = 20.0, 0.03
+# No powers of two, so that scaled numbers share no digits.
+RADIUS, LOAD, MODULUS = 2.7, 0.37, 1.9
+APPROACH_CAP = 1e-3
+PLACES = ((0.0, 0.45), (0.6, 0.3), (-0.6, 1.7), (1.3, 0.3))  # x, z over a_h
+
+
+def resolved(
+    problem: CoatedContact, available: Mapping[str, Callable[[CoatedContact, Mapping[str, Any]], Solution]]
+) -> tuple[Invariant, ...]:
+    """Scaling, equal moduli, thick and thin limit, reciprocity of each method that is available.
+
+    problem : with one coating at least.   available : solvers by name, as in ``run.solvers``.
+    A law that cannot be had is NO_RESULT with its sentence.
+    """
+    found = []
+    for source in COARSE:
+        if source not in available:
+            continue
+
+        def solve(
+            changed: CoatedContact,
+            numerics: Numerics = COARSE,
+            source: str = source,
+        ) -> Solution:
+            return available[source](changed, numerics[source])
+
+        for name, law in _laws(solve, source, problem):
+            try:
+                found.append(law())
+            except Exception as error:  # as in ``check``: a row of the report, whatever went wrong
+                said = f"{type(error).__name__}: {' '.join(str(error).split())[:300]}"
+                found.append(absent(name, source, said))
+    return tuple(found)
+
+
+def _laws(solve: Callable[..., Solution], source: str, problem: CoatedContact) -> Iterator[tuple[str, Law]]:
+    base: list[Solution] = []
+
+    def once(given: CoatedContact) -> Solution:
+        if not base:
+            base.append(solve(given, STRESSES))
+        return base[0]
+
+    yield "scaling", partial(_scaling, partial(solve, numerics=STRESSES), once, source, problem)
+    yield "reciprocity", partial(_reciprocity, once, source, problem)
+    yield "equal moduli", partial(_equal_moduli, solve, source, problem)
+    smooth = replace(problem, friction=0.0)
+    yield "thick coating", partial(_thick, solve, source, smooth)
+    yield "thin coating", partial(_thin, partial(solve, numerics=THIN), source, smooth)
+
+
+def _scaling(solve: Solve, base: Solve, source: str, problem: CoatedContact) -> Invariant:
+    """Another radius, load and modulus at the same h/a_h and E1/E2: the same dimensionless answer."""
+    scaled = replace(
+        problem,
+        radius=RADIUS * problem.radius,
+        load=LOAD * problem.load,
+        coatings=(),
+        substrate=(MODULUS * problem.substrate[0], problem.substrate[1]),
+    )
+    ratio = scaled.a_h / problem.a_h
+    scaled = replace(scaled, coatings=tuple((MODULUS * E, nu, ratio * h) for E, nu, h in problem.coatings))
+    (one, U_one), (other, U_other) = (
+        _dimensionless(base(problem), problem),
+        _dimensionless(solve(scaled), scaled),
+    )
+    law = (
+        f"R x {RADIUS}, W x {LOAD}, E x {MODULUS} leave a/a_h, p0/p_h, approach/delta_h, sigma/p_h unchanged"
+    )
+    return decide("scaling", source, law, one - other, U_one + U_other)
+
+
+def _equal_moduli(solve: Solve, source: str, problem: CoatedContact) -> Invariant:
+    """A coating of the substrate's own material is none: Hertz, with friction Hamilton."""
+    coatings = tuple((*problem.substrate, h) for _, _, h in problem.coatings)
+    same = replace(problem, coatings=coatings)
+    exact = Hamilton(problem.radius, problem.load, *problem.substrate, problem.friction)
+    found, U = _dimensionless(solve(same), same)
+    known, _ = _dimensionless(exact, same)
+    law = "coatings of the substrate's moduli give the closed form of the uncoated solid, over its scales"
+    return decide("equal moduli", source, law, found - known, U)
+
+
+def _thick(solve: Solve, source: str, problem: CoatedContact) -> Invariant:
+    """A very thick coating is a half-space of its own."""
+    E, nu, _ = problem.coatings[0]
+    alone = replace(problem, coatings=(), substrate=(E, nu))
+    thick = replace(problem, coatings=((E, nu, THICK_AT * alone.a_h),))
+    found = solve(thick)
+    sink, left = thick_shift(thick, alone)
+    scales = np.array([alone.a_h, alone.p_h, alone.delta_h])
+    values = np.array([found.contact_radius, found.peak_pressure, found.approach - sink]) / scales
+    U = found.uncertainty
+    # A gap bent by ``left`` of the approach changes the curvature by twice that; a and p0 go by powers 1/3
+    # and 2/3 of it.
+    bent = np.array([2 / 3, 4 / 3, 1.0]) * left
+    bound = np.array([U.contact_radius, U.peak_pressure, U.approach]) / scales + bent
+    law = f"h = {THICK_AT:g} a_h gives Hertz of the coating, and an approach less by the sinking of the base"
+    return decide("thick coating", source, law, values - 1, bound)
+
+
+def _thin(solve: Solve, source: str, problem: CoatedContact) -> Invariant:
+    """A very thin coating leaves Hertz of the substrate but for a first-order term.
+
+    The second order is minus the square of the first, over the approach, to a few per cent from h = 0.01 a_h
+    down; twice that is allowed.
+    """
+    E, nu, _ = problem.coatings[0]
+    thin = replace(problem, coatings=((E, nu, THIN_AT * problem.a_h),))
+    found = solve(thin)
+    first = thin_shift(thin) / thin.delta_h
+    gap = found.approach / thin.delta_h - 1 - first
+    law = f"h = {THIN_AT:g} a_h gives the approach of Hertz of the substrate but for its first-order change"
+    bound = found.uncertainty.approach / thin.delta_h + 2 * first**2
+    return decide("thin coating", source, law, gap, bound, cap=APPROACH_CAP)
+
+
+def _reciprocity(solve: Solve, source: str, problem: CoatedContact) -> Invariant:
+    """Betti: the contact pressure works on a disc's displacements what the disc's works on the contact's.
+
+    int p u_disc dA = int p_disc u dA, over W times the approach. Along x = 0, where friction lifts nothing.
+    """
+    import fem_reference
+    import semianalytic
+
+    method: Any = {"semianalytic": semianalytic, "fem_reference": fem_reference}[source]
+    contact = solve(problem)
+    disc = PrescribedLoad(
+        problem.p_h, 0.6 * contact.contact_radius, problem.coatings, problem.substrate, problem.friction
+    )
+    pressed: Solution = method.solve_prescribed(
+        pressure=disc.pressure,
+        load_radius=disc.load_radius,
+        coatings=disc.coatings,
+        substrate=disc.substrate,
+        friction=disc.friction,
+        **COARSE[source],
+    )
+    work = problem.load * contact.approach
+
+    def works(n: int) -> tuple[float, float]:
+        t, w = legendre.leggauss(n)
+        phi = np.pi / 4 * (t + 1)
+        r = contact.contact_radius * np.sin(phi)
+        area = 2 * np.pi * r * contact.contact_radius * np.pi / 4 * w * np.cos(phi) / work
+        s = disc.load_radius * (t + 1) / 2
+        patch = np.pi * s * disc.load_radius * w / work
+        p, U_p = contact.pressure(0 * r, r), contact.pressure_uncertainty(0 * r, r)
+        u_disc, u = _sink(pressed, r), _sink(contact, s)
+        spread = area @ (U_p * np.abs(u_disc) + p * displacement_bound(pressed, disc, 0 * r, r, 0 * r))
+        spread += disc.pressure * patch @ displacement_bound(contact, problem, 0 * s, s, 0 * s)
+        return float(area @ (p * u_disc) - disc.pressure * patch @ u), float(spread)
+
+    (gap, spread), (coarser, _) = works(32), works(24)
+    law = "int p u_disc dA = int p_disc u dA with a uniform disc, over W times the approach"
+    return decide("reciprocity", source, law, gap, spread + abs(gap - coarser))
+
+
+def _sink(solution: Solution, y: Array) -> Array:
+    return solution.displacement(np.zeros_like(y), y, np.zeros_like(y))[2]
+
+
+def _dimensionless(solution: Solution, problem: CoatedContact) -> tuple[Array, Array]:
+    """a/a_h, p0/p_h, approach/delta_h and the stresses over p_h at ``PLACES``, with their uncertainties."""
+    scales = (problem.a_h, problem.p_h, problem.delta_h)
+    names = ("contact_radius", "peak_pressure", "approach")
+    U = solution.uncertainty
+    x, z = problem.a_h * np.array(PLACES).T
+    y = 0.2 * np.abs(x)
+    values = [getattr(solution, name) / scale for name, scale in zip(names, scales, strict=True)]
+    spread = [getattr(U, name) / scale for name, scale in zip(names, scales, strict=True)]
+    sigma = solution.stress(x, y, z) / problem.p_h
+    return (
+        np.concatenate([values, sigma.ravel()]),
+        np.concatenate([spread, solution.stress_uncertainty(x, y, z).ravel() / problem.p_h]),
+    )

@@ -1,0 +1,130 @@
+"""Invariants of forces: load, tractions of the surface, equilibrium inside each layer."""
+
+import numpy as np
+from numpy.polynomial import legendre
+
+from verification.judging.invariant import Invariant, decide
+from verification.judging.invariants.refinement import INNER, followed
+from verification.judging.invariants.stencil import Stencil
+from verification.problem.arrays import Array
+from verification.problem.contact import CoatedContact, Solution
+
+__all__ = ["equilibrium", "load_balance", "places_in", "surface"]
+
+
+# Of the contact radius. As in the claims, no point lies within 5 % of the edge.
+SURFACE = np.array([-1.2, -0.9, -0.5, 0.0, 0.25, 0.5, 0.75, 0.9, 1.1, 1.3])
+# No mirror plane of a square grid.
+ANGLE = 0.35
+# The field varies over its distance from the contact edge; four steps stay within a quarter of that.
+PART_OF_REACH = 1 / 16
+
+
+def load_balance(solution: Solution, source: str, problem: CoatedContact) -> Invariant:
+    """The pressure carries the load: int p dA = W, out to 1.1 a.
+
+    Bounded by the integral of the pressure's uncertainty, near the edge by what coarser companions change
+    where that is less, and by what a coarser quadrature changes.
+    """
+    fine, coarse = (_load(solution, problem, n) for n in (40, 28))
+    bound = None
+    if solution.uncertainty is not None:
+        bound = fine[1]
+        change = followed(solution, lambda s: np.array(_load(s, problem, 40)[0]))
+        if change is not None:
+            bound = min(bound, _load(solution, problem, 40, INNER)[1] + float(change))
+        bound += abs(fine[0] - coarse[0])
+    return decide("load balance", source, "int p dA = W, over W", fine[0] - 1, bound)
+
+
+def _load(solution: Solution, problem: CoatedContact, n: int, reach: float = np.inf) -> tuple[float, float]:
+    """int p dA and, within ``reach`` of a, int U_p dA over W.
+
+    By Gauss points in phi of r = a sin(phi) and in an outer ring.
+    """
+    a = solution.contact_radius
+    s, w = legendre.leggauss(n)
+    phi = np.pi / 4 * (s + 1)
+    ring = a * (1 + 0.05 * (s + 1))
+    r = np.concatenate([a * np.sin(phi), ring])
+    weight = np.concatenate([np.pi / 4 * w * a**2 * np.sin(phi) * np.cos(phi), 0.05 * a * w * ring])
+    turn = 2 * np.pi * (np.arange(8) + 0.3) / 8
+    x, y = r[:, None] * np.cos(turn), r[:, None] * np.sin(turn)
+    weight = weight[:, None] * 2 * np.pi / 8 / problem.load
+    p = solution.pressure(x, y)
+    U = solution.pressure_uncertainty(x, y) if solution.uncertainty is not None else np.zeros_like(p)
+    within = np.where(r < reach * a, 1.0, 0.0)[:, None]
+    return float((weight * p).sum()), float((weight * within * U).sum())
+
+
+def surface(solution: Solution, source: str, problem: CoatedContact) -> tuple[Invariant, ...]:
+    """sigma_zz = -p, sigma_xz = -f p, sigma_yz = 0 in the contact; no traction outside it.
+
+    Bounded by the uncertainties of stress and pressure at the same points, which are nodes of the solution.
+    """
+    x = solution.contact_radius * SURFACE
+    nodes = solution.surface_nodes
+    x = nodes[np.abs(nodes[:, None] - x).argmin(axis=0)]
+    y = np.zeros_like(x)
+    inside = np.abs(x) < solution.contact_radius
+    f, p_h = problem.friction, problem.p_h
+    p = solution.pressure(x, y) / p_h
+    sigma = solution.stress(x, y, 0.0, layer=0)[:, 2] / p_h
+    normal, shear = sigma[2] + p, np.stack([sigma[0] + f * p, sigma[1]])
+    free = np.concatenate([sigma, p[None]])
+    laws: list[tuple[str, str, Array, Array | None]]
+    bounds: list[Array | None] = [None, None, None]
+    if solution.uncertainty is not None:
+        Up = solution.pressure_uncertainty(x, y) / p_h
+        U = solution.stress_uncertainty(x, y, 0.0, layer=0)[:, 2] / p_h
+        bounds = [
+            (U[2] + Up)[inside],
+            np.stack([U[0] + f * Up, U[1]])[:, inside],
+            np.concatenate([U, Up[None]])[:, ~inside],
+        ]
+    laws = [
+        ("surface pressure", "sigma_zz = -p at z = 0, over p_h", normal[inside], bounds[0]),
+        ("surface shear", "sigma_xz = -f p, sigma_yz = 0 at z = 0, over p_h", shear[:, inside], bounds[1]),
+        ("free surface", "no traction outside the contact, over p_h", free[:, ~inside], bounds[2]),
+    ]
+    return tuple(decide(name, source, law, residual, bound) for name, law, residual, bound in laws)
+
+
+def places_in(layer: int, solution: Solution, problem: CoatedContact) -> Stencil:
+    """Under the contact, in the substrate beside it too, with steps that stay inside ``layer``."""
+    a = solution.contact_radius
+    top = (0.0, *problem.interfaces)[layer]
+    coated = layer < len(problem.coatings)
+    thickness = problem.coatings[layer][2] if coated else 2 * a
+    r = a * (np.array([0.5]) if coated else np.array([0.5, 1.3]))
+    z = np.full(r.shape, top + 0.4 * thickness)
+    across = PART_OF_REACH * np.hypot(r - a, z)
+    # the same for both: every depth has a price of its own
+    down = np.full(r.shape, min(across.min(), 0.08 * thickness))
+    return Stencil(np.stack([r * np.cos(ANGLE), r * np.sin(ANGLE), z]), np.stack([across, across, down]))
+
+
+def equilibrium(
+    solution: Solution, source: str, problem: CoatedContact, layer: int, stencil: Stencil
+) -> Invariant:
+    """sigma_ij,j = 0 inside ``layer``, as the force on a slab of the vertical step's height.
+
+    Bounded by the differences' own error and by what uncertain stresses make of them, each as uncertain as
+    the worst of the places and of the farthest points at their depth.
+    """
+    x, y, z = stencil.points
+    height = stencil.step[2] / problem.p_h
+    gradient, error = stencil.gradient(solution.stress(x, y, z, layer=layer))
+    force = np.einsum("jijn->in", gradient) * height
+    bound = None
+    if solution.uncertainty is not None:
+        spread = np.empty((3, 3, x.size))
+        x, y, z = stencil.corners
+        spread[:] = solution.stress_uncertainty(x, y, z, layer).max(axis=-1, keepdims=True)
+        bound = np.einsum("jijn->in", stencil.spread(spread) + error) * height
+    law = f"div sigma = 0 in {_called(layer, problem)}, times the step over p_h"
+    return decide(f"equilibrium, {_called(layer, problem)}", source, law, force, bound)
+
+
+def _called(layer: int, problem: CoatedContact) -> str:
+    return f"coating {layer + 1}" if layer < len(problem.coatings) else "substrate"

@@ -1,0 +1,156 @@
+"""Verdicts on comparisons, decided by the numerical uncertainty of both sides.
+
+    |A - B| <= U_A + U_B   with   U_A + U_B <= cap
+
+The cap turns vague agreement into INCONCLUSIVE: without it a bad grid, having a large U, would pass.
+"""
+
+from dataclasses import dataclass
+from enum import StrEnum
+
+import numpy as np
+from numpy.typing import NDArray
+
+from verification.problem.profile import Profile
+
+__all__ = ["Claim", "Comparison", "Outcome", "Verdict", "compare", "judge"]
+
+
+class Outcome(StrEnum):
+    """What a comparison came to; only AGREES passes."""
+
+    AGREES = "AGREES"
+    DISAGREES = "DISAGREES"
+    INCONCLUSIVE = "INCONCLUSIVE"
+    NO_RESULT = "NO_RESULT"
+
+
+@dataclass(frozen=True)
+class Claim:
+    """``quantity`` on ``line`` is the same ``between`` two sources.
+
+    cap : largest admissible uncertainty, also the largest admissible difference, as a fraction of the
+          comparison's scale (p_h for stresses, the value itself for the scalars of the contact).
+    edge : half-width of the zone around the contact edge that is not judged, as a fraction of a.
+    """
+
+    quantity: str
+    line: str
+    between: tuple[str, str]
+    cap: float
+    why: str
+    edge: float = 0.0
+
+
+@dataclass(frozen=True, eq=False)
+class Comparison:
+    """Two profiles at the same positions; ``judged`` marks the points the claim speaks of."""
+
+    a: Profile
+    b: Profile
+    scale: float
+    judged: NDArray[np.bool_]
+
+    @property
+    def difference(self) -> NDArray[np.float64]:
+        """(A - B) / scale at every position."""
+        return (self.a.value - self.b.value) / self.scale
+
+    @property
+    def uncertainty(self) -> NDArray[np.float64] | None:
+        """(U_A + U_B) / scale at every position; None where either side states none."""
+        if self.a.uncertainty is None or self.b.uncertainty is None:
+            return None
+        return (self.a.uncertainty + self.b.uncertainty) / self.scale
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """The outcome of a claim with the figures behind it, as fractions of the comparison's scale.
+
+    difference, uncertainty : largest over the judged points; None where there is no such number.
+    margin : smallest of U - |A - B| over the judged points; negative means disagreement.
+    worst : position [m] of the point that decides.
+    """
+
+    outcome: Outcome
+    reason: str
+    difference: float | None = None
+    uncertainty: float | None = None
+    margin: float | None = None
+    worst: float | None = None
+
+
+def compare(a: Profile, b: Profile, *, scale: float, excluded: NDArray[np.bool_] | None = None) -> Comparison:
+    """Hold two profiles of the same quantity, line and positions against each other.
+
+    Raises ValueError when they are not of the same quantity, line and positions.
+    """
+    if (a.quantity, a.line) != (b.quantity, b.line) or not np.array_equal(a.position, b.position):
+        raise ValueError(
+            f"{a.quantity} on {a.line} of {a.source} cannot be compared with {b.quantity} on {b.line} "
+            f"of {b.source}; sample both at the same positions"
+        )
+    judged = np.ones(a.position.shape, dtype=bool) if excluded is None else ~excluded
+    return Comparison(a, b, scale, judged)
+
+
+def judge(comparison: Comparison, cap: float) -> Verdict:
+    """Decide a comparison; ``cap`` as in Claim.
+
+    NaN or infinity on either side is NO_RESULT, never agreement.
+    """
+    judged = comparison.judged
+    if not judged.any():
+        return Verdict(
+            Outcome.NO_RESULT, "no point lies outside the zone around the contact edge; refine the line"
+        )
+    position = comparison.a.position[judged]
+    for side in (comparison.a, comparison.b):
+        bad = ~np.isfinite(side.value[judged])
+        if side.uncertainty is not None:
+            bad |= ~np.isfinite(side.uncertainty[judged]) | (side.uncertainty[judged] < 0)
+        if bad.any():
+            return Verdict(
+                Outcome.NO_RESULT,
+                f"{side.source} gives no finite {side.quantity} at {bad.sum()} of {bad.size} points, "
+                f"first at {position[bad][0]:.4g} m",
+            )
+    if not (np.isfinite(comparison.scale) and comparison.scale > 0):
+        return Verdict(Outcome.NO_RESULT, f"the scale of the comparison is {comparison.scale:g}")
+
+    difference = np.abs(comparison.difference[judged])
+    largest = float(difference.max())
+    uncertainty = comparison.uncertainty
+    if uncertainty is None:
+        worst = int(np.argmax(difference))
+        silent = [side.source for side in (comparison.a, comparison.b) if side.uncertainty is None]
+        if largest > cap:
+            outcome = Outcome.DISAGREES
+            reason = f"difference {largest:.2e} exceeds the cap {cap:.1e}"
+        else:
+            outcome = Outcome.INCONCLUSIVE
+            reason = f"difference {largest:.2e} is below the cap {cap:.1e}"
+        reason += f"; {' and '.join(silent)} states no uncertainty"
+        return Verdict(outcome, reason, largest, None, None, float(position[worst]))
+
+    U = uncertainty[judged]
+    margin = U - difference
+    worst = int(np.argmin(margin))
+    figures = (largest, float(U.max()), float(margin[worst]), float(position[worst]))
+    if margin[worst] < 0:
+        return Verdict(
+            Outcome.DISAGREES,
+            f"difference {difference[worst]:.2e} exceeds the uncertainty {U[worst]:.2e}",
+            *figures,
+        )
+    if U.max() > cap:
+        return Verdict(
+            Outcome.INCONCLUSIVE,
+            f"uncertainty {U.max():.2e} exceeds the cap {cap:.1e}; refine the method that dominates it",
+            *figures[:3],
+            float(position[np.argmax(U)]),
+        )
+    return Verdict(
+        Outcome.AGREES, f"difference {largest:.2e} within the uncertainty, at most {U.max():.2e}", *figures
+    )

@@ -1,0 +1,59 @@
+"""A loading curve: a sphere pressed to given contact radii or approaches."""
+
+from dataclasses import dataclass
+
+from verification.problem.arrays import Coatings
+from verification.problem.contact import CoatedContact, PrescribedLoad
+
+__all__ = ["CONTROLS", "CURVES", "PUNCH", "LoadingCurve", "Problem"]
+
+CONTROLS = ("contact_radius", "approach")
+
+
+# What may be printed over the control: W, delta, a, kappa = dW/d delta / 2 a E1*, and the ratio of a power
+# series to W or to kappa (see ``Loading.quantity``).
+CURVES = ("load", "approach", "contact_radius", "kappa", "series_over_load", "series_over_kappa")
+
+
+PUNCH = ("kappa", "series_over_kappa")  # of these, what needs S
+
+
+@dataclass(frozen=True)
+class LoadingCurve:
+    """Rigid sphere of ``radius`` [m], pressed until ``control``, contact_radius or approach, is ``at`` [m].
+
+    coatings, substrate as in CoatedContact.   punch : its stiffness is asked for.
+    Raises ValueError with one sentence.
+    """
+
+    radius: float
+    control: str
+    at: tuple[float, ...]
+    coatings: Coatings
+    substrate: tuple[float, float]
+    punch: bool = True
+
+    def __post_init__(self) -> None:
+        if self.control not in CONTROLS or not self.at or not min(self.at) > 0:
+            raise ValueError(
+                f"{self.control} = {self.at}; a loading curve needs positive {' or '.join(CONTROLS)}"
+            )
+        self.contact(1.0)
+
+    @property
+    def top(self) -> tuple[float, float]:
+        """(E, nu) of the layer that is touched."""
+        return self.coatings[0][:2] if self.coatings else self.substrate
+
+    @property
+    def E_star(self) -> float:
+        """E1/(1 - nu1^2) [Pa] of the layer that is touched."""
+        E, nu = self.top
+        return E / (1 - nu**2)
+
+    def contact(self, load: float) -> CoatedContact:
+        """The problem at one load [N]."""
+        return CoatedContact(self.radius, load, self.coatings, self.substrate)
+
+
+Problem = CoatedContact | PrescribedLoad | LoadingCurve

@@ -1,0 +1,76 @@
+"""A profile: one quantity along one line of the plane y = 0, whatever its source.
+
+Profiles are the only currency of comparison: a method, a closed form or a printed table all become
+one, so that a comparison never asks where a number came from.
+"""
+
+import re
+from dataclasses import dataclass
+
+from verification.problem.arrays import Array
+from verification.problem.contact import CoatedContact
+
+__all__ = ["SCALARS", "STRESSES", "Line", "Profile", "line_of", "lines_of"]
+
+SCALARS = ("peak_pressure", "contact_radius", "approach")
+STRESSES = {"sigma_xx": (0, 0), "sigma_yy": (1, 1), "sigma_zz": (2, 2), "sigma_xz": (0, 2)}
+
+_INTERFACE = re.compile(r"interface ([1-9]\d*), (upper|lower) side")
+
+
+@dataclass(frozen=True, eq=False)
+class Profile:
+    """``value`` of ``quantity`` at ``position`` [m] along ``line``, in SI units.
+
+    uncertainty : absolute, shape of ``value``; None is "not stated", 0 is "exact".
+    ``line`` "contact" holds the scalars of the contact, at position 0.
+    """
+
+    quantity: str
+    line: str
+    position: Array
+    value: Array
+    source: str
+    uncertainty: Array | None = None
+
+
+@dataclass(frozen=True)
+class Line:
+    """A line in the plane y = 0: along x at ``depth`` [m] in ``layer``, or the axis (depth None)."""
+
+    name: str
+    depth: float | None
+    layer: int | None
+
+    @property
+    def coordinate(self) -> str:
+        """The coordinate that runs along the line."""
+        return "z" if self.depth is None else "x"
+
+
+def line_of(name: str, problem: CoatedContact) -> Line:
+    """The line called ``name``: "surface", "axis", or "interface k, upper|lower side" with k from 1.
+
+    Raises ValueError where the problem has no such line.
+    """
+    if name == "surface":
+        return Line(name, 0.0, 0)
+    if name == "axis":
+        return Line(name, None, None)
+    match = _INTERFACE.fullmatch(name)
+    count = len(problem.coatings)
+    if match is None or int(match[1]) > count:
+        raise ValueError(
+            f"line = {name!r}; this problem has surface, axis"
+            + "".join(f", interface {k}, upper side | lower side" for k in range(1, count + 1))
+        )
+    k = int(match[1])
+    return Line(name, problem.interfaces[k - 1], k - 1 if match[2] == "upper" else k)
+
+
+def lines_of(problem: CoatedContact) -> tuple[Line, ...]:
+    """Surface, axis, then both sides of each interface."""
+    names = ["surface", "axis"]
+    for k in range(1, len(problem.coatings) + 1):
+        names += [f"interface {k}, upper side", f"interface {k}, lower side"]
+    return tuple(line_of(name, problem) for name in names)

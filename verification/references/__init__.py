@@ -1,1 +1,0 @@
-"""Exact and published references, computed without either method."""

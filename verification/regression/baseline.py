@@ -1,0 +1,210 @@
+"""The stored baseline that every run is held against: which numbers, since when, why."""
+
+import hashlib
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass
+from typing import Any
+
+from verification.regression.drift import POINTS, Drift, Numbers, State, drift, measured
+from verification.running.result import CaseResult, RunInfo, plain
+
+__all__ = [
+    "Baseline",
+    "CaseDrift",
+    "Drift",
+    "Numbers",
+    "Regression",
+    "State",
+    "Update",
+    "against",
+    "case_drift",
+    "digest",
+    "regression",
+    "regression_json",
+    "updated",
+]
+
+
+@dataclass(frozen=True)
+class CaseDrift:
+    """What became of one case, profile by profile; ``said`` where it concerns the case as a whole."""
+
+    name: str
+    title: str
+    drifts: tuple[Drift, ...]
+    said: str = ""
+
+    @property
+    def state(self) -> State:
+        """The worst state of its profiles."""
+        found = {drift.state for drift in self.drifts}
+        return next((state for state in State if state in found), State.NEW)
+
+    @property
+    def change(self) -> float | None:
+        """The largest change of a value over its scale."""
+        return max((d.change for d in self.drifts if d.change is not None), default=None)
+
+    def count(self, state: State) -> int:
+        """How many numbers came to ``state``."""
+        return sum(
+            d.moved if state is State.DRIFTED else d.count - d.moved
+            for d in self.drifts
+            if d.state is state or (d.state is State.DRIFTED and state is State.SAME)
+        )
+
+
+@dataclass(frozen=True)
+class Update:
+    """One recorded change of the baseline: its reason in words, the run it was taken from.
+
+    changes : by case, how many numbers were not what they had been, with their largest change over scale.
+    """
+
+    why: str
+    when: str
+    commit: str | None
+    machine: str
+    versions: dict[str, str]
+    numbers: int
+    changes: dict[str, tuple[int, float | None]]
+
+
+@dataclass(frozen=True, eq=False)
+class Baseline:
+    """The numbers of every case, the digest of its file, every update from the first to the last."""
+
+    cases: Mapping[str, tuple[Numbers, ...]]
+    digests: Mapping[str, str]
+    history: tuple[Update, ...]
+
+    @property
+    def last(self) -> Update:
+        """The update that the present numbers come from."""
+        return self.history[-1]
+
+
+@dataclass(frozen=True)
+class Regression:
+    """A run held against the baseline in ``folder``; ``update`` is None where there was none to hold it to.
+
+    other_versions : (name, then, now) of what the digits may come from.
+    """
+
+    folder: str
+    update: Update | None
+    cases: tuple[CaseDrift, ...]
+    other_versions: tuple[tuple[str, str, str], ...] = ()
+
+    @property
+    def drifted(self) -> bool:
+        """True where a number of the baseline is not what it was, or not there."""
+        return any(case.state in (State.DRIFTED, State.GONE) for case in self.cases)
+
+    @property
+    def unexplained(self) -> bool:
+        """True where it drifted on the very machine and versions of the baseline: the code did it."""
+        return self.drifted and not self.other_versions
+
+    def of(self, name: str) -> CaseDrift | None:
+        """What became of the case ``name``."""
+        return next((case for case in self.cases if case.name == name), None)
+
+
+def against(
+    results: Sequence[CaseResult], baseline: Baseline, *, whole: bool, points: int = POINTS
+) -> tuple[CaseDrift, ...]:
+    """What became of every case; where the run is ``whole``, cases it lacks are gone.
+
+    points : as the baseline was ``measured`` with.
+    """
+    found = [case_drift(result, baseline, points) for result in results]
+    names = {result.name for result in results}
+    for name, numbers in baseline.cases.items():
+        if whole and name not in names:
+            gone = tuple(_gone(then) for then in numbers)
+            found.append(CaseDrift(name, name, gone, "this case was not run"))
+    return tuple(found)
+
+
+def case_drift(result: CaseResult, baseline: Baseline, points: int = POINTS) -> CaseDrift:
+    """What became of one case since ``baseline``."""
+    now = {numbers.key: numbers for numbers in measured(result, points)}
+    stored = baseline.cases.get(result.name)
+    if stored is None:
+        drifts = tuple(_new(numbers) for numbers in now.values())
+        return CaseDrift(result.name, result.title, drifts, "not in the baseline")
+    then = {numbers.key: numbers for numbers in stored}
+    drifts = tuple(drift(old, now[key]) if key in now else _gone(old) for key, old in then.items())
+    drifts += tuple(_new(numbers) for key, numbers in now.items() if key not in then)
+    changed = baseline.digests.get(result.name) != digest(result.text)
+    return CaseDrift(result.name, result.title, drifts, "its case file was changed" if changed else "")
+
+
+def regression(
+    results: Sequence[CaseResult], baseline: Baseline | None, folder: str, info: RunInfo, *, whole: bool
+) -> Regression:
+    """The run ``info`` with its ``results`` held against ``baseline``, which lies in ``folder``."""
+    if baseline is None:
+        return Regression(folder, None, ())
+    then = baseline.last
+    pairs = [("machine", then.machine, info.machine)]
+    names = dict.fromkeys([*then.versions, *info.versions])
+    pairs += [(n, then.versions.get(n, "none"), info.versions.get(n, "none")) for n in names]
+    other = tuple((name, old, new) for name, old, new in pairs if old != new)
+    return Regression(folder, then, against(results, baseline, whole=whole), other)
+
+
+def regression_json(found: Regression) -> dict[str, Any]:
+    """A run beside its baseline as strict JSON: counts by case, then each profile that is not the same."""
+    cases = [
+        {
+            "name": case.name,
+            "state": case.state,
+            "said": case.said,
+            "change": case.change,
+            **{state: case.count(state) for state in State},
+            "profiles": [asdict(drift) for drift in case.drifts if drift.state is not State.SAME],
+        }
+        for case in found.cases
+    ]
+    update = found.update
+    recorded = None if update is None else {"why": update.why, "when": update.when, "commit": update.commit}
+    return plain(
+        {
+            "folder": found.folder,
+            "recorded": recorded,
+            "drifted": found.drifted,
+            "other_versions": found.other_versions,
+            "cases": cases,
+        }
+    )
+
+
+def updated(
+    old: Baseline | None, results: Sequence[CaseResult], info: RunInfo, why: str, when: str
+) -> Baseline:
+    """The baseline of ``results`` of the run ``info``, with one line more of history than ``old``."""
+    cases = {result.name: measured(result) for result in results}
+    changes: dict[str, tuple[int, float | None]] = {}
+    for case in against(results, old, whole=True) if old is not None else ():
+        count = sum(case.count(state) for state in (State.DRIFTED, State.GONE, State.NEW))
+        if count:
+            changes[case.name] = (count, case.change)
+    numbers = sum(n.count for found in cases.values() for n in found)
+    update = Update(why, when, info.commit, info.machine, dict(info.versions), numbers, changes)
+    digests = {result.name: digest(result.text) for result in results}
+    return Baseline(cases, digests, (*(old.history if old is not None else ()), update))
+
+
+def _gone(then: Numbers) -> Drift:
+    return Drift(*then.key, State.GONE, then.count, 0, None, "is no longer there")
+
+
+def _new(now: Numbers) -> Drift:
+    return Drift(*now.key, State.NEW, now.count, 0, None, "was not there before")
+
+
+def digest(text: str) -> str:
+    """What a case file is known by."""
+    return hashlib.sha256(text.encode("utf-8", errors="replace")).hexdigest()[:16]

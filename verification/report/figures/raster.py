@@ -1,0 +1,223 @@
+"""A field of the x-z plane as a small inline picture with axes, contours and a bar of its colours.
+
+The raster is a compressed image of a few kilobytes; axes, interfaces, contact and level lines are drawn over
+it as vectors in the colours of the page, so that they follow light, dark and print.
+"""
+
+import base64
+import io
+import itertools
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import contourpy
+import matplotlib as mpl
+import numpy as np
+from markupsafe import Markup
+from numpy.typing import NDArray
+from PIL import Image
+from scipy.interpolate import PchipInterpolator
+
+from verification.problem.arrays import Array
+from verification.report.figures.plot import polyline, power_of_ten, round_ticks
+
+__all__ = ["Frame", "Scale", "coloured", "draw_field", "rasterised"]
+
+
+LEFT, TOP, RIGHT, BOTTOM = 34.0, 12.0, 52.0, 32.0  # margins around the raster, in units of the drawing
+WIDTH = 250.0  # of the raster
+PIXELS = 200  # along x
+COLOURS = 96
+NO_NUMBER = (128, 128, 128)
+
+
+@dataclass(frozen=True)
+class Scale:
+    """Colours for values from ``low`` to ``high``; ``name`` is a map of matplotlib safe for the colour-blind.
+
+    logarithmic : low and high are exponents of ten, so are the values.
+    """
+
+    low: float
+    high: float
+    name: str
+    logarithmic: bool = False
+
+    @property
+    def ticks(self) -> list[tuple[float, str]]:
+        """Values with their labels."""
+        if self.logarithmic:
+            values = [float(v) for v in range(round(self.low), round(self.high) + 1)]
+            return [(v, power_of_ten(v)) for v in values]
+        return round_ticks(self.low, self.high, 6)
+
+
+@dataclass(frozen=True, eq=False)
+class Frame:
+    """The part of the plane that is drawn, lengths over a_h.
+
+    half : it reaches from -half to half.  depth : from 0 to here.  interfaces : depths.  contact : radius.
+    """
+
+    half: float
+    depth: float
+    interfaces: tuple[float, ...]
+    contact: float
+
+    @property
+    def rows(self) -> int:
+        """Pixels along z, as wide as those along x."""
+        return max(8, round(PIXELS * self.depth / (2 * self.half)))
+
+    @property
+    def height(self) -> float:
+        """Of the raster, in units of the drawing."""
+        return WIDTH * self.depth / (2 * self.half)
+
+
+def rasterised(
+    x: Array, depths: Sequence[Array], values: Sequence[Array], frame: Frame, smooth: bool = True
+) -> Array:
+    """Values at the centres of the pixels, (rows, PIXELS), from those at ``x`` and the depths of each layer.
+
+    Linear along x, along z monotone cubics (``smooth``) or straight lines; never across an interface.
+    """
+    columns = frame.half * (2 * (np.arange(PIXELS) + 0.5) / PIXELS - 1)
+    rows = frame.depth * (np.arange(frame.rows) + 0.5) / frame.rows
+    owner = np.searchsorted(frame.interfaces, rows)
+    out = np.full((frame.rows, PIXELS), np.nan)
+    for k, (z, value) in enumerate(zip(depths, values, strict=True)):
+        mine = owner == k
+        if not mine.any() or not np.isfinite(value).all():
+            continue
+        at = np.clip(rows[mine], z[0], z[-1])
+        if smooth:
+            down = PchipInterpolator(z, value, axis=0)(at)
+        else:
+            down = np.stack([np.interp(at, z, column) for column in value.T], axis=1)
+        out[mine] = np.stack([np.interp(columns, x, row) for row in down])
+    return out
+
+
+def draw_field(raster: Array, frame: Frame, scale: Scale, *, label: str, lines: bool = True) -> Markup:
+    """One field as inline SVG; lengths over a_h.
+
+    raster : as from ``rasterised``, NaN is drawn grey.   lines : draw level lines at the ticks of the scale.
+    """
+    width, height = LEFT + WIDTH + RIGHT, TOP + frame.height + BOTTOM
+    parts = [
+        Markup(
+            '<image x="{}" y="{}" width="{}" height="{:.1f}" preserveAspectRatio="none" href="{}"/>'
+        ).format(LEFT, TOP, WIDTH, frame.height, _address(coloured(raster, scale), ragged=not lines))
+    ]
+    if lines:
+        parts.append(_level_lines(raster, frame, scale))
+    parts += [_solid(frame), _axes(frame), _bar(frame, scale)]
+    return Markup(
+        '<svg class="figure field" viewBox="0 0 {:.0f} {:.1f}" role="img" aria-label="{}">{}</svg>'
+    ).format(width, height, label, Markup("").join(parts))
+
+
+def coloured(raster: Array, scale: Scale) -> NDArray[np.uint8]:
+    """Colours of ``raster``, shape of it + (3,); NaN is grey."""
+    span = scale.high - scale.low or 1.0
+    known = np.isfinite(raster)
+    share = np.where(known, (np.where(known, raster, 0.0) - scale.low) / span, 0.0)
+    index = np.clip((share * COLOURS).astype(int), 0, COLOURS - 1)
+    return np.where(known[..., None], _palette(scale)[index], np.array(NO_NUMBER, dtype=np.uint8))
+
+
+def _palette(scale: Scale) -> NDArray[np.uint8]:
+    colours = mpl.colormaps[scale.name]((np.arange(COLOURS) + 0.5) / COLOURS)
+    return np.round(255 * colours[:, :3]).astype(np.uint8)
+
+
+def _address(pixels: NDArray[np.uint8], ragged: bool = False) -> str:
+    """``pixels`` as an image that carries itself; a ``ragged`` one nearly so, at a quarter of the size."""
+    written = io.BytesIO()
+    options: dict[str, Any] = {"quality": 90} if ragged else {"lossless": True, "quality": 100}
+    picture = Image.fromarray(np.ascontiguousarray(pixels, dtype=np.uint8))
+    picture.save(written, "WEBP", method=4, **options)
+    return f"data:image/webp;base64,{base64.b64encode(written.getvalue()).decode()}"
+
+
+def _level_lines(raster: Array, frame: Frame, scale: Scale) -> Markup:
+    """Lines of equal value at the ticks, broken at interfaces where the value jumps."""
+    rows, columns = raster.shape
+    x = LEFT + WIDTH * (np.arange(columns) + 0.5) / columns
+    z = TOP + frame.height * (np.arange(rows) + 0.5) / rows
+    bounds = [0, *(round(rows * d / frame.depth) for d in frame.interfaces if d < frame.depth), rows]
+    path = []
+    for low, high in itertools.pairwise(bounds):
+        if high - low < 3 or not np.isfinite(raster[low:high]).all():
+            continue
+        lines = contourpy.contour_generator(x, z[low:high], raster[low:high])
+        for value, _ in scale.ticks:
+            path += [polyline(np.asarray(line)) for line in lines.lines(value)]
+    return Markup('<path d="{}" class="level"/>').format("".join(path))
+
+
+def _solid(frame: Frame) -> Markup:
+    """Interfaces across the raster, the contact above it."""
+    unit = WIDTH / (2 * frame.half)
+    depths = [TOP + d * unit for d in frame.interfaces if d < frame.depth]
+    across = "".join(f"M{LEFT} {z:.1f}h{WIDTH:g}" for z in depths)
+    half = min(frame.contact, frame.half) * unit
+    return Markup(
+        '<path d="{0}" class="edge casing"/><path d="{0}" class="edge"/>'
+        '<path d="M{1:.1f} {2}h{3:.1f}" class="s-cap" stroke-width="4"/>'
+    ).format(across, LEFT + WIDTH / 2 - half, TOP - 3.5, 2 * half)
+
+
+def _axes(frame: Frame) -> Markup:
+    unit = WIDTH / (2 * frame.half)
+    bottom = TOP + frame.height
+    parts = [
+        Markup('<path d="M{} {}h{}v{:.1f}h-{}z" class="s-muted"/>').format(
+            LEFT, TOP, WIDTH, frame.height, WIDTH
+        )
+    ]
+    for value, text in round_ticks(-frame.half, frame.half, 5):
+        at = LEFT + WIDTH / 2 + value * unit
+        parts.append(Markup('<path d="M{0:.1f} {1:.1f}v3" class="s-muted"/>').format(at, bottom))
+        parts.append(
+            Markup('<text x="{:.1f}" y="{:.1f}" class="f-ink" text-anchor="middle">{}</text>').format(
+                at, bottom + 14, text
+            )
+        )
+    for value, text in round_ticks(0.0, frame.depth, 5):
+        at = TOP + value * unit
+        parts.append(Markup('<path d="M{} {:.1f}h-3" class="s-muted"/>').format(LEFT, at))
+        parts.append(
+            Markup('<text x="{}" y="{:.1f}" class="f-ink" text-anchor="end">{}</text>').format(
+                LEFT - 5, at + 3.5, text
+            )
+        )
+    parts.append(
+        Markup(
+            '<text x="{:.1f}" y="{:.1f}" class="f-muted" text-anchor="middle">x / a_h</text>'
+            '<text x="10" y="{:.1f}" class="f-muted" text-anchor="middle" '
+            'transform="rotate(-90 10 {:.1f})">z / a_h</text>'
+        ).format(LEFT + WIDTH / 2, bottom + 28, TOP + frame.height / 2, TOP + frame.height / 2)
+    )
+    return Markup("").join(parts)
+
+
+def _bar(frame: Frame, scale: Scale) -> Markup:
+    left, width = LEFT + WIDTH + 8, 10.0
+    parts = [
+        Markup(
+            '<image x="{}" y="{}" width="{}" height="{:.1f}" preserveAspectRatio="none" href="{}"/>'
+        ).format(left, TOP, width, frame.height, _address(_palette(scale)[::-1, None, :]))
+    ]
+    for value, text in scale.ticks:
+        share = (value - scale.low) / (scale.high - scale.low or 1.0)
+        if -1e-9 <= share <= 1 + 1e-9:
+            at = TOP + (1 - share) * frame.height
+            parts.append(
+                Markup(
+                    '<path d="M{} {:.1f}h3" class="s-muted"/><text x="{}" y="{:.1f}" class="f-ink">{}</text>'
+                ).format(left + width, at, left + width + 5, at + 3.5, text)
+            )
+    return Markup("").join(parts)

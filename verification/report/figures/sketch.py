@@ -1,0 +1,130 @@
+"""A drawing of the layered solid under its sphere, to scale but for the sphere."""
+
+from math import isfinite, log, sqrt
+
+from markupsafe import Markup, escape
+
+from verification.report.tables.lookup import contact_radius, layers, scale
+from verification.report.tables.numbers import engineering, plain
+from verification.running.result import CaseResult
+
+__all__ = ["sketch"]
+
+WIDTH, HEIGHT = 400, 250
+BLOCK = 216
+SURFACE = 92
+THINNEST = 4.0
+SHALLOWEST, DEEPEST = 1.6, 4.0
+
+
+def sketch(result: CaseResult) -> Markup:
+    """The layers with depth and contact width on one scale; a layer too thin to see is drawn 4 units thick.
+
+    The darker a layer, the stiffer. The sphere's radius is not to scale.
+    """
+    a_h = scale(result, "a_h")
+    found = [(E, nu, thickness / a_h) for E, nu, thickness in layers(result)]
+    total = sum(thickness for _, _, thickness in found[:-1])
+    if not found or not isfinite(total) or not a_h > 0:
+        return Markup("")
+    depth = min(max(1.35 * total + 0.6, SHALLOWEST), DEEPEST)
+    unit = (HEIGHT - 12 - SURFACE) / depth
+    parts = [_sphere(unit)]
+    labels = []
+    top = float(SURFACE)
+    stretched = False
+    moduli = [E for E, _, _ in found]
+    for number, (E, nu, thickness) in enumerate(found):
+        below = number == len(found) - 1
+        height = HEIGHT - top if below else max(thickness * unit, THINNEST)
+        stretched = stretched or (not below and float(thickness * unit) < THINNEST)
+        height = max(min(height, HEIGHT - top), 0.0)
+        if height > 0:
+            parts.append(_layer(top, height, _shade(E, moduli)))
+        name = "substrate" if below else f"coating {number + 1}" if len(found) > 2 else "coating"
+        what = f"E {engineering(E, 'Pa', 3)}, nu {plain(nu, 3)}"
+        size = "" if below else f"h {engineering(thickness * a_h, 'm', 3)} = {plain(thickness, 3)} a_h"
+        labels.append((min(top + min(height / 2, 24.0), HEIGHT - 6.0), name, what, size))
+        top += height
+    parts += [_contact(result, a_h, unit), *_labels(labels)]
+    note = "thin layers drawn thicker" if stretched else "depth and width to one scale"
+    text = f"Sphere on {len(found) - 1} coating(s) on a substrate, {note}."
+    inner = Markup("").join(parts)
+    return Markup(
+        '<svg class="figure sketch" viewBox="0 0 {} {}" role="img" aria-label="{}"><title>{}</title>{}</svg>'
+    ).format(WIDTH, HEIGHT, text, text, inner)
+
+
+def _shade(E: float, moduli: list[float]) -> float:
+    low, high = log(min(moduli)), log(max(moduli))
+    return 0.18 if high == low else 0.12 + 0.5 * (log(E) - low) / (high - low)
+
+
+def _layer(top: float, height: float, shade: float) -> Markup:
+    return Markup(
+        '<rect x="0" y="{:.1f}" width="{}" height="{:.1f}" class="layer" fill-opacity="{:.2f}"/>'
+        '<path d="M0 {:.1f}h{}" class="s-ink" stroke-width="{}"/>'
+    ).format(top, BLOCK, height, shade, top, BLOCK, 1.4 if top == SURFACE else 0.8)
+
+
+def _sphere(unit: float) -> Markup:
+    # A radius of a few contact radii keeps the arc readable at any real ratio a_h/R.
+    radius = 3.2 * unit
+    half = min(sqrt(max(radius**2 - (radius - SURFACE + 4) ** 2, 0.0)), BLOCK / 2)
+    rise = radius - sqrt(radius**2 - half**2)
+    middle, left, right = BLOCK / 2, BLOCK / 2 - half, BLOCK / 2 + half
+    return Markup(
+        '<path d="M{:.1f} 4V{:.1f}A{:.1f} {:.1f} 0 0 0 {:.1f} {:.1f}V4" class="sphere"/>'
+        '<path d="M{:.1f} 10v36m-5-9l5 9 5-9" class="s-ink arrow"/>'
+        '<text x="{:.1f}" y="30" class="f-ink">W</text>'
+        '<text x="{}" y="22" class="f-muted small">rigid sphere, its</text>'
+        '<text x="{}" y="35" class="f-muted small">radius not to scale</text>'
+    ).format(
+        left,
+        SURFACE - rise,
+        radius,
+        radius,
+        right,
+        SURFACE - rise,
+        middle,
+        middle + 10,
+        BLOCK + 26,
+        BLOCK + 26,
+    )
+
+
+def _contact(result: CaseResult, a_h: float, unit: float) -> Markup:
+    a = contact_radius(result)
+    if a is None or not isfinite(a_h):
+        return Markup("")
+    half = min(a / a_h * unit, BLOCK / 2)
+    middle = BLOCK / 2
+    return Markup(
+        '<path d="M{:.1f} {}h{:.1f}" class="s-cap" stroke-width="3.5"/>'
+        '<text x="{:.1f}" y="{}" class="f-ink small" text-anchor="middle">2a</text>'
+    ).format(middle - half, SURFACE, 2 * half, middle, SURFACE - 6)
+
+
+def _labels(labels: list[tuple[float, str, str, str]]) -> list[Markup]:
+    """Labels to the right of the block, pushed apart where layers are thin, each with a leader."""
+    step = 44.0
+    written = []
+    at = 0.0
+    spare = HEIGHT - step * len(labels)
+    for number, (depth, name, what, size) in enumerate(labels):
+        latest = spare + step * number + 6
+        at = max(min(depth - 12, latest), at, 42.0)
+        lines = [
+            f'<tspan x="{BLOCK + 26}" dy="{0 if i == 0 else 13}" class="{"strong" if i == 0 else ""}">'
+            f"{escape(line)}</tspan>"
+            for i, line in enumerate((name, what, size))
+            if line
+        ]
+        written.append(
+            Markup('<path d="M{} {:.1f}l22 {:.1f}" class="s-muted" stroke-width=".8"/>').format(
+                BLOCK, depth, at + 8 - depth
+            )
+            + Markup(f'<text x="{BLOCK + 26}" y="{at + 12:.1f}" class="f-ink small">{"".join(lines)}</text>')
+        )
+        at += step
+    return written

@@ -1,0 +1,219 @@
+"""The error of each method against the exact reference beside the uncertainty it states itself."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from verification.judging.verdict import Claim
+from verification.problem.profile import SCALARS
+from verification.report.tables.cells import Cell, Row, Table
+from verification.report.tables.labels import EXACT, METHODS, source_label
+from verification.report.tables.lookup import (
+    GROUPS,
+    baseline,
+    difference,
+    group_of,
+    judged,
+    sources_with_profiles,
+)
+from verification.report.tables.numbers import plain, scientific
+from verification.running.result import CaseResult
+
+__all__ = [
+    "Accuracy",
+    "accuracies",
+    "accuracy_overview",
+    "accuracy_sentence",
+    "accuracy_table",
+    "coverage_table",
+]
+
+# An estimate below half the true error is no estimate.
+TOO_SMALL = 0.5
+# Share of quantities whose true error an uncertainty must hold, the level at which it is usually stated.
+COVERED = 0.95
+
+
+@dataclass(frozen=True)
+class Accuracy:
+    """One quantity on one line: the largest ``error``, the ``estimate`` at that point, as fractions.
+
+    ratio : smallest (U_method + U_reference) / |error| over the judged points; 1 or more brackets the
+            error everywhere.   None where the method states no uncertainty.
+    """
+
+    source: str
+    quantity: str
+    line: str
+    error: float
+    estimate: float | None
+    ratio: float | None
+
+    @property
+    def brackets(self) -> bool:
+        """True where the stated uncertainty holds the error at every judged point."""
+        return self.ratio is not None and self.ratio >= 1
+
+    @property
+    def css(self) -> str:
+        """How a cell is coloured: by whether the estimate can be believed."""
+        if self.ratio is None or self.ratio < TOO_SMALL:
+            return "disagrees"
+        return "agrees" if self.ratio >= 1 else "inconclusive"
+
+
+def accuracies(result: CaseResult) -> tuple[Accuracy, ...]:
+    """Every quantity of every method with an exact counterpart; () where the case has no exact reference."""
+    exact = baseline(result)
+    if exact not in EXACT:
+        return ()
+    edges = {(c.quantity, c.line): c for c, _ in result.verdicts}
+    found = []
+    for source in sources_with_profiles(result):
+        if source not in METHODS:
+            continue
+        for profile in result.profiles:
+            claim = edges.get((profile.quantity, profile.line))
+            if profile.source == source and claim is not None:
+                found.append(_accuracy(result, claim, source, exact))
+    return tuple(item for item in found if item is not None)
+
+
+def _accuracy(result: CaseResult, claim: Claim, source: str, exact: str) -> Accuracy | None:
+    mine = result.profile(claim.quantity, claim.line, source)
+    theirs = result.profile(claim.quantity, claim.line, exact)
+    found = difference(result, mine, theirs)
+    if found is None or mine is None:
+        return None
+    error, spread = found
+    here = judged(result, claim, mine.position) & np.isfinite(error)
+    if not here.any():
+        return None
+    worst = int(np.argmax(np.where(here, error, -1.0)))
+    if spread is None:
+        return Accuracy(source, claim.quantity, claim.line, float(error[worst]), None, None)
+    ratio = np.where(error > 0, spread / np.where(error > 0, error, 1.0), np.inf)
+    smallest = float(np.min(np.where(np.isfinite(spread), ratio, 0.0)[here]))
+    estimate = float(spread[worst])
+    return Accuracy(source, claim.quantity, claim.line, float(error[worst]), estimate, smallest)
+
+
+def accuracy_table(result: CaseResult) -> Table | None:
+    """True error beside own estimate for each quantity of one case; None without an exact reference."""
+    found = accuracies(result)
+    if not found:
+        return None
+    sources = [s for s in METHODS if any(item.source == s for item in found)]
+    places = list(dict.fromkeys((item.quantity, item.line) for item in found))
+    rows = []
+    for quantity, line in places:
+        cells = [Cell(line)]
+        for source in sources:
+            match = [i for i in found if (i.source, i.quantity, i.line) == (source, quantity, line)]
+            cells += _three_cells(match[0]) if match else [Cell("–")] * 3
+        rows.append(Row(Cell(quantity), cells))
+    return Table(
+        "Largest error against the exact reference, the uncertainty stated at that point, and the smallest "
+        "ratio of stated to true over all judged points: 1 or more brackets the error everywhere.",
+        ["quantity", "line", *["error", "stated", "ratio"] * len(sources)],
+        rows,
+        [("", 2), *((source_label(source), 3) for source in sources)],
+    )
+
+
+def _three_cells(item: Accuracy) -> list[Cell]:
+    ratio = "not stated" if item.ratio is None else plain(item.ratio, 2) if item.ratio < 1e4 else "> 1e4"
+    return [
+        Cell(scientific(item.error), item.error),
+        Cell(scientific(item.estimate), item.estimate),
+        Cell(ratio, item.ratio if item.ratio is not None else -1.0, f"flag {item.css}"),
+    ]
+
+
+def accuracy_overview(results: Sequence[CaseResult], anchors: Mapping[int, str], source: str) -> Table | None:
+    """The errors of one method over all cases, the worst quantity of each group; None where there is none."""
+    columns = [*SCALARS, *GROUPS[1:]]
+    rows = []
+    for number, result in enumerate(results):
+        found = [item for item in accuracies(result) if item.source == source]
+        if not found:
+            continue
+        cells = [
+            _overview_cell([i for i in found if name in (i.quantity, group_of(i.line))]) for name in columns
+        ]
+        note = f"{result.title} ({result.name})"
+        rows.append(Row(Cell(result.title, note=note, href=f"#{anchors[number]}-accuracy"), cells))
+    if not rows:
+        return None
+    return Table(
+        f"Error of {source_label(source)} against the exact reference, then the uncertainty it states for "
+        "the same point. Marked where the estimate is below the error (▼) or below half of it (▼▼).",
+        ["case", *(name.replace("_", " ") for name in columns)],
+        rows,
+        css="overview",
+    )
+
+
+def _overview_cell(found: Sequence[Accuracy]) -> Cell:
+    if not found:
+        return Cell("", css="nothing")
+    worst = max(found, key=lambda item: item.error)
+    weakest = min(found, key=lambda item: -1.0 if item.ratio is None else item.ratio)
+    mark = {"agrees": "", "inconclusive": " ▼", "disagrees": " ▼▼"}[weakest.css]
+    note = f"largest error: {worst.quantity} on {worst.line}"
+    if weakest.ratio is not None:
+        note += f"; smallest ratio {plain(weakest.ratio, 2)}: {weakest.quantity} on {weakest.line}"
+    text = f"{scientific(worst.error)} | {scientific(worst.estimate)}{mark}"
+    return Cell(text, worst.error, f"flag {weakest.css}", note)
+
+
+def coverage_table(results: Sequence[CaseResult]) -> Table | None:
+    """How often the uncertainty a method states holds its true error; None without an exact reference."""
+    rows = []
+    for source in METHODS:
+        found = [(result, item) for result in results for item in accuracies(result) if item.source == source]
+        if not found:
+            continue
+        held = sum(item.brackets for _, item in found)
+        case, worst = min(found, key=lambda pair: -1.0 if pair[1].ratio is None else pair[1].ratio)
+        stated = [item.ratio for _, item in found if item.ratio is not None and np.isfinite(item.ratio)]
+        reach = "not stated" if not worst.ratio else plain(1 / worst.ratio, 2)
+        cells = [
+            Cell(f"{held} of {len(found)}", held),
+            Cell(f"{100 * held / len(found):.1f} %", held / len(found), _covered_css(held / len(found))),
+            Cell(reach, 1 / worst.ratio if worst.ratio else None),
+            Cell(f"{worst.quantity.replace('_', ' ')} on {worst.line}, {case.title}"),
+            Cell(plain(float(np.median(stated)), 2) if stated else "–"),
+        ]
+        rows.append(Row(Cell(source_label(source)), cells))
+    if not rows:
+        return None
+    return Table(
+        "Quantities on all lines of all cases whose true error, known from the exact reference, lies within "
+        f"the stated uncertainty at every judged point; at least {100 * COVERED:.0f} % are asked for. The "
+        "largest error over its uncertainty, and the median of the smallest ratios of uncertainty to error.",
+        ["method", "held", "share", "largest error / U", "there", "median U / error"],
+        rows,
+        css="overview",
+    )
+
+
+def _covered_css(share: float) -> str:
+    return f"flag {'agrees' if share >= COVERED else 'disagrees'}"
+
+
+def accuracy_sentence(results: Sequence[CaseResult], source: str) -> str:
+    """How often the uncertainty stated by a method holds the true error."""
+    found = [item for result in results for item in accuracies(result) if item.source == source]
+    if not found:
+        return f"{source_label(source).capitalize()}: no case with an exact reference."
+    good = sum(item.brackets for item in found)
+    low = sum(item.ratio is not None and item.ratio < TOO_SMALL for item in found)
+    silent = sum(item.ratio is None for item in found)
+    unstated = f"; in {silent} none is stated" if silent else ""
+    share = f"{good} of {len(found)} quantities ({100 * good / len(found):.1f} %)"
+    return (
+        f"{source_label(source).capitalize()}: the stated uncertainty holds the true error in {share}; "
+        f"in {low} it is below half of it{unstated}."
+    )

@@ -1,0 +1,119 @@
+"""The section on the baseline: what became of each number since it was recorded."""
+
+from collections.abc import Mapping, Sequence
+from math import isfinite
+
+from verification.regression.baseline import CaseDrift, Regression
+from verification.regression.drift import FACTOR, RELATIVE, Drift, State
+from verification.report.tables.cells import Cell, Part, Row, Section, Table
+from verification.report.tables.labels import source_label
+from verification.report.tables.numbers import scientific
+
+__all__ = ["ANCHOR", "baseline_section", "baseline_sentence", "drift_table", "state_cell"]
+
+ANCHOR = "baseline"
+MOST = 40
+# How a state is shown without relying on colour: mark, class, rank in a column.
+_STATES = {
+    State.DRIFTED: ("≠", "inconclusive", 0),
+    State.GONE: ("−", "no-result", 1),
+    State.NEW: ("+", "", 2),
+    State.SAME: ("=", "agrees", 3),
+}
+_RULE = (
+    f"A number is the same where it differs by at most {scientific(RELATIVE, 1)} of the largest magnitude of "
+    "its profile. Each profile is held by points over its whole length, by its root mean square, and by its "
+    f"largest stated uncertainty, which may change {FACTOR:g}-fold before it counts as drifted."
+)
+
+
+def state_cell(case: CaseDrift, *, short: bool = False) -> Cell:
+    """What became of a case, as mark and word, or as mark alone; it sorts by how bad it is."""
+    mark, css, rank = _STATES[case.state]
+    note = f"{case.state}: {case.said or f'largest change {_change(case.change)} of the scale'}"
+    return Cell(mark if short else f"{mark} {case.state}", float(rank), f"verdict {css}".strip(), note)
+
+
+def baseline_sentence(found: Regression) -> str:
+    """What the run came to beside its baseline, in one sentence."""
+    if found.update is None:
+        return f"There is no baseline in {found.folder}, so this run was held against none."
+    counts = {state: sum(case.count(state) for case in found.cases) for state in State}
+    told = [f"{counts[state]} {state}" for state in (State.SAME, State.DRIFTED, State.GONE, State.NEW)]
+    largest = max((c.change for c in found.cases if c.change is not None), default=None)
+    by = f"; the largest change is {_change(largest)} of its scale" if largest is not None else ""
+    return f"{', '.join(told)}, of {sum(counts.values())} numbers{by}."
+
+
+def baseline_section(found: Regression, anchors: Mapping[str, str]) -> Section:
+    """The run beside its baseline; ``anchors`` leads to cases by name."""
+    if found.update is None:
+        text = (
+            f"{baseline_sentence(found)} A run that is whole, agreeing throughout, becomes one by: "
+            'coatcheck baseline update --why "..."'
+        )
+        return Section(ANCHOR, "Baseline", [Part(text)])
+    update = found.update
+    made = f"recorded {update.when.replace('T', ' ').replace('+00:00', ' UTC')}"
+    made += f" at commit {update.commit}" if update.commit else ""
+    parts = [
+        Part(f"{baseline_sentence(found)} The baseline in {found.folder} was {made}: “{update.why}”. {_RULE}")
+    ]
+    if found.other_versions:
+        said = "; ".join(f"{name} {then} then, {now} now" for name, then, now in found.other_versions)
+        parts.append(Part(f"The digits may differ because this run stands on something else: {said}."))
+    # A case that is gone as a whole has its row above.
+    here = [c for c in found.cases if any(d.state is not State.GONE for d in c.drifts)]
+    moved = [(c, d) for c in here for d in c.drifts if d.state in (State.DRIFTED, State.GONE)]
+    parts.append(Part("", [_case_table(found.cases, anchors), *([drift_table(moved)] if moved else [])]))
+    return Section(ANCHOR, "Baseline", parts)
+
+
+def drift_table(moved: Sequence[tuple[CaseDrift, Drift]]) -> Table:
+    """The profiles that are not what they were, the largest change first."""
+    order = sorted(moved, key=lambda item: -(float("inf") if item[1].change is None else item[1].change))
+    rows = []
+    for case, drift in order[:MOST]:
+        mark, css, rank = _STATES[drift.state]
+        cells = [
+            Cell(f"{mark} {drift.state}", float(rank), f"verdict {css}"),
+            Cell(source_label(drift.source)),
+            Cell(drift.quantity),
+            Cell(drift.line),
+            Cell(_change(drift.change), drift.change if _finite(drift.change) else None),
+            Cell(drift.said),
+        ]
+        rows.append(Row(Cell(case.name, note=case.title), cells))
+    more = f" The {MOST} of {len(order)} with the largest change." if len(order) > MOST else ""
+    return Table(
+        f"What is not as it was; changes over the largest magnitude of the profile.{more}",
+        ["case", "state", "source", "quantity", "line", "largest change", "what happened"],
+        rows,
+    )
+
+
+def _case_table(cases: Sequence[CaseDrift], anchors: Mapping[str, str]) -> Table:
+    rows = []
+    for case in cases:
+        counts = [case.count(state) for state in (State.SAME, State.DRIFTED, State.GONE, State.NEW)]
+        cells = [
+            state_cell(case),
+            *(Cell(str(count), float(count)) for count in counts),
+            Cell(_change(case.change), case.change if _finite(case.change) else None),
+            Cell(case.said),
+        ]
+        place = anchors.get(case.name)
+        rows.append(Row(Cell(case.title, note=case.name, href=f"#{place}" if place else ""), cells))
+    return Table(
+        "Numbers of each case since the baseline was recorded.",
+        ["case", "state", "same", "drifted", "gone", "new", "largest change", ""],
+        rows,
+    )
+
+
+def _finite(change: float | None) -> bool:
+    return change is not None and isfinite(change)
+
+
+def _change(change: float | None) -> str:
+    return scientific(change)

@@ -1,0 +1,168 @@
+"""What each conversion makes of the influence coefficients: the section's part with its figure."""
+
+from collections.abc import Callable, Sequence
+from itertools import groupby
+
+import numpy as np
+
+from verification.judging.invariants.influence import ConversionError
+from verification.report.figures.loglog import Trail, decades, draw_loglog
+from verification.report.figures.panels import swatch
+from verification.report.tables.cells import Cell, Gallery, Panel, Part, Row, Table
+from verification.report.tables.labels import Style
+from verification.report.tables.numbers import factor, plain, scientific
+
+__all__ = ["conversion_part"]
+
+_DOTS, _DASHES, _MIXED = (1.0, 1.4), (3.6, 3.0), (4.5, 1.4, 1.0, 1.4)
+_CONVERSIONS = {
+    ("split", 0): ("split, no domain", Style("semi")),
+    ("split-fft", 2): ("split, by FFT", Style("hertz", _DASHES)),
+    ("plain", 0): ("plain, no aliases", Style("other", _DOTS)),
+    ("plain", 2): ("plain, 2 aliases a side", Style("pair", _MIXED)),
+}
+_UNKNOWN = Style("ink", (5.0, 1.5, 1.0, 1.5))
+_DOMAIN_SHOWN = 4  # of the curves over distance; the default of the solver
+
+
+def conversion_part(found: Sequence[ConversionError]) -> Part:
+    """Every conversion against direct quadrature, side by side."""
+    groups = {
+        name: list(some)
+        for name, some in groupby(sorted(found, key=_kind), key=_kind)  # by conversion and aliases
+    }
+    return Part(
+        _conversion_sentence(found),
+        [_conversion_table(found)],
+        Gallery(
+            [(swatch(_look(kind)[1]), _look(kind)[0]) for kind in sorted(groups, key=_rank)],
+            _conversion_panels(groups),
+            "First the error of the influence coefficients of the displacement by the distance of the "
+            f"patch; conversions that need a domain have one {_DOMAIN_SHOWN} times the grid. Then the error "
+            "at three patches over the size of the domain; the split conversion needs none and is drawn "
+            "level. The judge is direct quadrature around the edge of the patch.",
+        ),
+    )
+
+
+def _kind(one: ConversionError) -> tuple[str, int]:
+    return one.conversion, one.aliases
+
+
+def _look(kind: tuple[str, int]) -> tuple[str, Style]:
+    return _CONVERSIONS.get(kind, (f"{kind[0]}, {kind[1]} aliases", _UNKNOWN))
+
+
+def _rank(kind: tuple[str, int]) -> int:
+    return list(_CONVERSIONS).index(kind) if kind in _CONVERSIONS else len(_CONVERSIONS)
+
+
+def _conversion_panels(groups: dict[tuple[str, int], list[ConversionError]]) -> list[Panel]:
+    widths = sorted({one.enlarge for some in groups.values() for one in some} - {0})
+    any_one = next(iter(groups.values()))[0]
+    # the loaded patch, the patch beside it, the corner of the grid
+    places = {"at the loaded patch": 0, "at the next patch": 1, "at the far corner": len(any_one.error) - 1}
+
+    def over_distance(name: tuple[str, int]) -> Trail:
+        some = groups[name]
+        one = next((o for o in some if o.enlarge == _DOMAIN_SHOWN), some[0])
+        pairs = [(d, e) for d, e in zip(one.distance, one.error, strict=True) if d > 0]
+        return Trail(tuple(d for d, _ in pairs), tuple(e for _, e in pairs), _look(name)[1])
+
+    def over_domain(name: tuple[str, int], place: int) -> Trail:
+        errors = {one.enlarge: one.error[place] for one in groups[name]}
+        level = {float(w): errors[0] for w in widths} if 0 in errors else errors
+        return Trail(tuple(float(w) for w in level), tuple(level.values()), _look(name)[1])
+
+    drawn: list[tuple[str, str, str, Sequence[float], Callable[[tuple[str, int]], Trail]]] = [
+        ("over distance", "distance / a", "distance", (0.1, 0.2, 0.5, 1, 2), over_distance)
+    ]
+    for title, place in places.items():
+        wide = (1, 2, 4, 8, 16, 32)
+        drawn.append((title, "domain / grid", f"{place}", wide, lambda n, place=place: over_domain(n, place)))  # type: ignore[misc]
+    known = sorted(groups, key=_rank)
+    sets = [[trail(name) for name in known] for *_, trail in drawn]
+    height = decades([one for some in sets for one in some])
+    return [
+        Panel(
+            title,
+            draw_loglog(
+                some,
+                label=f"error of influence coefficients {title}, logarithmic",
+                coordinate=coordinate,
+                height=height,
+                ticks=ticks,
+            ),
+            "error over the coefficient itself",
+            "",
+        )
+        for (title, coordinate, key, ticks, _), some in zip(drawn, sets, strict=True)
+    ]
+
+
+def _conversion_sentence(found: Sequence[ConversionError]) -> str:
+    split = next((one for one in found if one.conversion == "split"), None)
+    paper = [one for one in found if _kind(one) == ("plain", 2)]
+    bare = [one for one in found if _kind(one) == ("plain", 0)]
+    text = []
+    if paper:
+        text.append(
+            "The paper's plain conversion with two aliases a side, on domains "
+            f"{paper[0].enlarge} to {paper[-1].enlarge} times the grid, is off by "
+            f"{_range([one.error[0] for one in paper])} at the loaded patch and by as much as "
+            f"{_range([max(one.error) for one in paper])} at the worst one."
+        )
+    if bare:
+        text.append(f"Without aliases it is off by {_range([one.error[0] for one in bare])} where it loads.")
+    if split:
+        sentence = (
+            f"The split conversion is off by {scientific(split.largest)} of the largest coefficient and by "
+            f"at most {scientific(max(split.error))} of any coefficient itself"
+        )
+        if paper:
+            best = min(paper, key=lambda one: max(one.error))
+            times = factor(max(best.error), max(split.error))
+            sentence += f"; the plain one on its best domain is {times} times as far off"
+        text.append(sentence + ".")
+    return " ".join(text)
+
+
+def _conversion_table(found: Sequence[ConversionError]) -> Table:
+    rows = []
+    for one in sorted(found, key=lambda one: (_rank(_kind(one)), one.enlarge)):
+        numbers = (one.error[0], one.error[1], max(one.error), one.largest)
+        rows.append(
+            Row(
+                Cell(_look(_kind(one))[0]),
+                [
+                    Cell("–" if not one.enlarge else f"{one.enlarge}", float(one.enlarge)),
+                    *(Cell(scientific(e), e) for e in numbers),
+                    Cell(_milli(one.seconds), one.seconds),
+                ],
+            )
+        )
+    return Table(
+        "Errors of the influence coefficients of the surface displacement, over the coefficient itself and, "
+        "for the largest of all, over the largest coefficient.",
+        [
+            "conversion",
+            "domain / grid",
+            "loaded patch",
+            "next patch",
+            "worst patch",
+            "of the largest",
+            "time",
+        ],
+        rows,
+    )
+
+
+def _range(values: Sequence[float]) -> str:
+    low, high = 100 * float(np.min(values)), 100 * float(np.max(values))
+    return (
+        f"{plain(low, 2)} %" if plain(low, 2) == plain(high, 2) else f"{plain(low, 2)} to {plain(high, 2)} %"
+    )
+
+
+def _milli(value: float) -> str:
+    return f"{1000 * value:.1f} ms" if value < 0.1 else f"{1000 * value:.0f} ms"

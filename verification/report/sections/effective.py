@@ -1,0 +1,242 @@
+"""The sections on what formulas are worth: effective moduli, limits, and moduli side by side."""
+
+from collections.abc import Sequence
+from itertools import pairwise
+from math import ceil, floor, log10
+
+import numpy as np
+from markupsafe import Markup
+
+from verification.problem.arrays import Array
+from verification.report.figures.panels import swatch
+from verification.report.figures.plot import Axes, drawing, power_of_ten
+from verification.report.sections.family import family_section
+from verification.report.tables.cells import Cell, Gallery, Panel, Part, Row, Section, Table
+from verification.report.tables.labels import Style
+from verification.report.tables.numbers import plain, scientific
+from verification.sources.references.effective_modulus import PERRIOT_BARTHEL_N
+from verification.study.formulas import EffectiveStudy, Limit
+
+__all__ = ["effective_sections"]
+
+
+WIDTH, HEIGHT = 320, 250
+BOX = (48.0, 5.0, 266.0, 207.5)  # left, top, width, height
+LEVELS = (0.01, 0.05, 0.1, 0.2, 0.5)
+# One shade more for each level passed; two colours for too stiff and too compliant.
+SHADES = (0.12, 0.26, 0.42, 0.6, 0.85)
+STIFF, SOFT = "fem", "semi"
+_CURVES = (
+    Style("semi"),
+    Style("fem", (3.6, 3.0), 1.9),
+    Style("hertz", (1.0, 1.4), 1.9),
+    Style("pair", (4.5, 1.4, 1.0, 1.4)),
+)
+
+
+def effective_sections(study: EffectiveStudy) -> list[Section]:
+    """Moduli side by side, then the maps of the formulas with the limits; what failed is said there."""
+    if study.failure:
+        return [Section("effective-modulus", "Effective-modulus formulas", [], [study.failure])]
+    family = family_section(study.family)
+    sections = [] if family is None else [family]
+    parts = [_map_part(study), _confirmation(study), *_limit_parts(study.limits)]
+    return [*sections, Section("effective-modulus", "Effective-modulus formulas and simple limits", parts)]
+
+
+def _map_part(study: EffectiveStudy) -> Part:
+    exact = np.array(study.exact)
+    panels, rows = [], []
+    for name, table in study.formulas:
+        error = np.array(table) / exact - 1
+        high, low = float(error.max()), float(error.min())
+        note = f"from {_percent(low)} to {_percent(high)}"
+        figure = _draw_map(study, error, name)
+        panels.append(Panel(name, figure, note, ""))
+        rows.append(_formula_row(study, name, error))
+    text = (
+        "The formulas by which nanoindentation takes the substrate out of a contact stiffness, each held "
+        "against the exact answer over E1/E2 and h/a: S = 2 a E_eff at contact radius a, which of a "
+        "sphere is that of a flat punch, from the integral equation. nu = 0.3 in film and substrate. "
+        "Perriot and Barthel's exponent is fitted to each ratio of moduli, between "
+        f"{PERRIOT_BARTHEL_N[0]:g} and {PERRIOT_BARTHEL_N[1]:g}; drawn is the one that does best. Formulas "
+        "with a coefficient that each experiment fits anew (Doerner and Nix, King, Saha and Nix, Hu and "
+        "Lawn, Jung) predict nothing by themselves and have no map."
+    )
+    legend = [
+        (_tint(colour, shade), f"{word} {_percent(level)[1:]}")
+        for colour, word in ((STIFF, "too stiff by more than"), (SOFT, "too compliant by more than"))
+        for level, shade in zip(LEVELS, SHADES, strict=True)
+    ]
+    caption = (
+        "E_eff by the formula over the exact one, less 1. White: within 1 %. To the right thick films, "
+        "upwards stiff ones."
+    )
+    numbers = Table(
+        "Departure from the exact answer over the whole map, E1/E2 from 0.01 to 100 and h/a from 0.05 to "
+        "20, and over its middle, E1/E2 from 0.1 to 10; the share of either that is within 10 %.",
+        ["formula", *["most compliant", "stiffest", "median", "within 10 %"] * 2],
+        rows,
+        [("", 1), ("whole map", 4), ("E1/E2 from 0.1 to 10", 4)],
+    )
+    return Part(text, [numbers], Gallery(legend, panels, caption, _map_csv(study)))
+
+
+def _formula_row(study: EffectiveStudy, name: str, error: Array) -> Row:
+    middle = np.abs(np.log10(study.ratio)) <= 1 + 1e-9
+    cells = []
+    for part in (error, error[middle]):
+        share = float((np.abs(part) <= 0.1).mean())
+        for value in (float(part.min()), float(part.max()), float(np.median(np.abs(part)))):
+            cells.append(Cell(_percent(value, sign=value is not None), value))
+        cells.append(Cell(f"{100 * share:.0f} %", share))
+    return Row(Cell(name), cells)
+
+
+def _confirmation(study: EffectiveStudy) -> Part:
+    first, second = study.weights
+    apart = max(abs(log10(theirs / fitted)) for _, theirs, fitted, _ in study.refitted)
+    n = [row[3] for row in study.refitted]
+    text = (
+        "No primary source was at hand. Gao's weights are confirmed by computation: I0 and I1 are within "
+        f"{scientific(first, 1)} and {scientific(second, 1)} of the exact first derivatives of the "
+        "stiffness with the film's shear modulus and Poisson's ratio. Perriot and Barthel's x0 is within "
+        f"{plain(apart, 2)} in its logarithm of what a least-squares fit to the exact answer gives, with n "
+        f"from {plain(min(n), 3)} to {plain(max(n), 3)}."
+    )
+    rows = [
+        Row(
+            Cell(plain(ratio, 3), ratio),
+            [Cell(plain(v, 3), v) for v in (theirs, fitted, exponent)],
+        )
+        for ratio, theirs, fitted, exponent in study.refitted
+    ]
+    table = Table(
+        "x0 of Perriot and Barthel, and x0 with n fitted to the exact answer at nu = 0.3.",
+        ["E1/E2", "x0, theirs", "x0, fitted", "n, fitted"],
+        rows,
+    )
+    return Part(text, [table])
+
+
+def _limit_parts(limits: Sequence[Limit]) -> list[Part]:
+    thin = [limit for limit in limits if "thin" in limit.panel]
+    thick = [limit for limit in limits if "thick" in limit.panel]
+    return [
+        _limit_part(
+            thin,
+            "Thin layer on a rigid base: a bed of springs where it is compressible, S = pi M a^2/h and W "
+            "= pi M a^4/(4 R h) with the oedometric modulus M; a film squeezed out sideways where nu = "
+            "1/2, S = 3 pi G a^4/(8 h^3) and W = pi G a^6/(32 R h^3). Johnson (1985, section 5.8), Jaffar "
+            "(1989), Barber (2018). Near nu = 1/2 neither holds before a is many times h.",
+        ),
+        _limit_part(
+            thick,
+            "Thick coating, nu = 0.3: Hertz of the coating, kappa = 1, and with its first correction, "
+            "kappa = 1/(1 + (2/pi) a int (M - 1) dk), M the compliance of the layers: what the interface "
+            "adds when the contact is small.",
+        ),
+    ]
+
+
+def _limit_part(limits: Sequence[Limit], text: str) -> Part:
+    panels = list(dict.fromkeys(limit.panel for limit in limits))
+    names = list(dict.fromkeys(limit.name for limit in limits))
+    styles = dict(zip(names, _CURVES, strict=False))
+    drawn = [
+        Panel(
+            panel,
+            _draw_limit([one for one in limits if one.panel == panel], styles, panel),
+            "|exact over limit − 1|",
+            "",
+        )
+        for panel in panels
+    ]
+    legend = [(swatch(styles[name]), name) for name in names]
+    rows = [
+        Row(
+            Cell(f"{one.panel}, {one.name}"),
+            [Cell(_percent(one.excess[i]), one.excess[i]) for i in (0, len(one.excess) // 2, -1)],
+        )
+        for one in limits
+    ]
+    a = limits[0].a_over_h
+    heads = [f"a/h = {plain(a[i], 2)}" for i in (0, len(a) // 2, -1)]
+    table = Table("Exact over limit, less 1, at three contact radii.", ["limit", *heads], rows)
+    caption = "Over a/h, both logarithmic: a straight line is a power of the thickness left out."
+    return Part(text, [table], Gallery(legend, drawn, caption, _limit_csv(limits)))
+
+
+def _draw_map(study: EffectiveStudy, error: Array, name: str) -> Markup:
+    x, y = np.log10(study.thickness), np.log10(study.ratio)
+    axes = Axes(BOX, (x[0], x[-1]), (y[0], y[-1]))
+    for sign, colour in ((1, STIFF), (-1, SOFT)):
+        for (level, above), shade in zip(pairwise([*LEVELS, 1e9]), SHADES, strict=True):
+            if (sign * error > level).any():
+                axes.filled(x, y, sign * error, level, above, colour, shade)
+    for level in (0.1, -0.1):
+        if error.min() < level < error.max():
+            axes.contour(x, y, error, level, _percent(level))
+    axes.ticks(_decades(x[0], x[-1]), _decades(y[0], y[-1]), "h / a")
+    axes.text(x[0], y[-1], "E1/E2", by=(4, 13))
+    label = f"{name}: departure from the exact effective modulus over h/a and E1/E2"
+    return drawing(WIDTH, HEIGHT, label, axes)
+
+
+def _draw_limit(limits: Sequence[Limit], styles: dict[str, Style], label: str) -> Markup:
+    x = [np.log10(limit.a_over_h) for limit in limits]
+    y = [np.log10(np.maximum(np.abs(limit.excess), 1e-12)) for limit in limits]
+    (left, right), (low, high) = (_widened(np.concatenate(some), by) for some, by in ((x, 0.02), (y, 0.06)))
+    axes = Axes(BOX, (left, right), (low, high))
+    axes.ticks(_decades(left, right), _decades(low, high), "a / h")
+    for limit, along, excess in zip(limits, x, y, strict=True):
+        axes.line(along, excess, styles[limit.name])
+    return drawing(WIDTH, HEIGHT, f"{label}: departure of the limit from the exact answer", axes)
+
+
+def _widened(values: Array, share: float) -> tuple[float, float]:
+    margin = share * max(float(np.ptp(values)), 1e-9)
+    return float(values.min()) - margin, float(values.max()) + margin
+
+
+def _decades(low: float, high: float) -> list[tuple[float, str]]:
+    """Ticks at whole powers of ten between two exponents, seven of them at most."""
+    step = max(1, ceil((high - low) / 6))
+    exponents = range(ceil(low), floor(high) + 1, step)
+    return [(m, f"{10.0**m:g}" if -3 < m < 4 else power_of_ten(m)) for m in exponents]
+
+
+def _tint(colour: str, shade: float) -> Markup:
+    return Markup(
+        '<svg class="swatch" viewBox="0 0 36 10" aria-hidden="true"><rect x="1" y="0" width="34" height="10" '
+        'class="f-{}" fill-opacity="{}"/></svg>'
+    ).format(colour, shade)
+
+
+def _percent(value: float, sign: bool = True) -> str:
+    if abs(value) < 5e-6:
+        return "0 %"
+    text = f"{100 * value:+.2g} %" if sign else f"{100 * value:.2g} %"
+    if abs(value) >= 1:
+        text = f"{100 * value:+.0f} %"
+    return text.replace("-", "−")
+
+
+def _map_csv(study: EffectiveStudy) -> str:
+    names = ["exact", *(name for name, _ in study.formulas)]
+    tables = [study.exact, *(table for _, table in study.formulas)]
+    lines = ["E1/E2,h/a," + ",".join(f"E_eff/E2* {name}" for name in names)]
+    for i, ratio in enumerate(study.ratio):
+        for j, thickness in enumerate(study.thickness):
+            lines.append(",".join(f"{v:.9g}" for v in (ratio, thickness, *(table[i][j] for table in tables))))
+    return "\n".join(lines) + "\n"
+
+
+def _limit_csv(limits: Sequence[Limit]) -> str:
+    lines = ["limit,solid,a/h,exact over limit less 1"]
+    for one in limits:
+        lines += [
+            f'"{one.panel}",{one.name},{a:.9g},{excess:.9g}'
+            for a, excess in zip(one.a_over_h, one.excess, strict=True)
+        ]
+    return "\n".join(lines) + "\n"

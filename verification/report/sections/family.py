@@ -1,0 +1,181 @@
+"""Pressures and stresses of coatings that differ in their modulus alone, all in one plot each.
+
+The plots of O'Sullivan and King, J. Tribol. 110 (1988) 235-240: lengths over a_h, stresses over p_h, a curve
+for each E1/E2 at one thickness, without friction or with one coefficient.
+"""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from itertools import zip_longest
+from typing import NamedTuple
+
+import numpy as np
+from markupsafe import Markup
+
+from verification.report.figures.panels import swatch
+from verification.report.figures.plot import HUGE, Axes, drawing, round_ticks
+from verification.report.tables.cells import Cell, Gallery, Panel, Part, Row, Section, Table
+from verification.report.tables.csv import written
+from verification.report.tables.labels import source_label, source_style
+from verification.report.tables.lookup import coordinate, layers, scalar, scale, sources_with_profiles
+from verification.report.tables.numbers import plain
+from verification.running.result import CaseResult
+
+__all__ = ["family_section"]
+
+WIDTH, HEIGHT = 320, 260
+BOX = (48.0, 6.5, 265.6, 215.8)  # left, top, width, height
+CLOSED = ("hertz", "hamilton")  # of the uncoated member only
+SMALLEST = 3  # fewer than this many moduli are no family
+PANELS = (
+    ("pressure", "surface"),
+    ("sigma_xx", "surface"),
+    ("sigma_xx", "axis"),
+    ("sigma_xx", "interface 1, upper side"),
+    ("sigma_xx", "interface 1, lower side"),
+    ("sigma_xz", "interface 1, upper side"),
+)
+
+
+class Member(NamedTuple):
+    """A case with its E1/E2."""
+
+    ratio: float
+    result: CaseResult
+
+
+def family_section(results: Sequence[CaseResult]) -> Section | None:
+    """A gallery for every family among the cases; None where there is none.
+
+    A family: one coating, one thickness over a_h, one nu throughout, one friction, and three or more E1/E2,
+    the uncoated solid standing for E1/E2 = 1.
+    """
+    parts = []
+    for (thickness, friction, nu), members in sorted(_families(results).items()):
+        if len(members) < SMALLEST:
+            continue
+        ratios = ", ".join(plain(member.ratio, 3) for member in members)
+        sliding = f"sliding with f = {friction:g}" if friction else "frictionless"
+        text = (
+            f"One coating of h = {thickness:g} a_h, nu = {nu:g}, {sliding}, for E1/E2 = {ratios}: the "
+            "configuration of O'Sullivan and King (1988), lengths over a_h, stresses over p_h."
+        )
+        parts.append(Part(text, [_numbers(members)], _gallery(members)))
+    return Section("family", "Pressure and stress against the coating's modulus", parts) if parts else None
+
+
+def _families(results: Sequence[CaseResult]) -> dict[tuple[float, float, float], list[Member]]:
+    """Members by thickness over a_h, friction and nu, in the order of their moduli."""
+    coated: dict[tuple[float, float, float], dict[float, Member]] = {}
+    bare: dict[tuple[float, float], Member] = {}
+    for result in results:
+        solid, a_h = layers(result), float(scale(result, "a_h"))
+        friction = result.problem.get("friction")
+        if not solid or len({nu for _, nu, _ in solid}) > 1 or not a_h > 0 or not isinstance(friction, float):
+            continue
+        nu = solid[0][1]
+        if len(solid) == 1:
+            bare.setdefault((friction, nu), Member(1.0, result))
+        elif len(solid) == 2:
+            ratio = solid[0][0] / solid[1][0]
+            key = (round(solid[0][2] / a_h, 6), friction, nu)
+            coated.setdefault(key, {}).setdefault(ratio, Member(ratio, result))
+    for (_, friction, nu), members in coated.items():
+        if (friction, nu) in bare:
+            members.setdefault(1.0, bare[friction, nu])
+    return {key: [members[ratio] for ratio in sorted(members)] for key, members in coated.items()}
+
+
+def _gallery(members: Sequence[Member]) -> Gallery:
+    shown = [
+        (quantity, line)
+        for quantity, line in PANELS
+        if any(p.quantity == quantity and p.line == line for m in members for p in m.result.profiles)
+    ]
+    panels = [
+        Panel("p / p_h" if quantity == "pressure" else f"{quantity} / p_h", figure, f"on {line}", "")
+        for quantity, line in shown
+        if (figure := _draw(members, quantity, line))
+    ]
+    sources = dict.fromkeys(s for m in members for s in sources_with_profiles(m.result))
+    legend = [(swatch(source_style(source)), source_label(source)) for source in sources]
+    caption = "At each curve its E1/E2, the sources over each other; each case says by how much they differ."
+    return Gallery(legend, panels, caption, _curves_csv(members, shown))
+
+
+def _curves_csv(members: Sequence[Member], shown: Sequence[tuple[str, str]]) -> str:
+    """Every curve drawn, lengths over a_h, stresses over p_h."""
+    columns = []
+    for member in members:
+        a_h, p_h = scale(member.result, "a_h"), scale(member.result, "p_h")
+        for profile in member.result.profiles:
+            if (profile.quantity, profile.line) in shown:
+                what = f"E1/E2 = {plain(member.ratio, 3)}, {profile.source}, {profile.line}"
+                along = [f"{x:.6g}" for x in profile.position / a_h]
+                columns.append([f"{coordinate(profile.line)} / a_h, {what}", *along])
+                name = "p" if profile.quantity == "pressure" else profile.quantity
+                columns.append([f"{name} / p_h, {what}", *(f"{v:.6g}" for v in profile.value / p_h)])
+    return written(list(zip_longest(*columns, fillvalue="")))
+
+
+def _numbers(members: Sequence[Member]) -> Table:
+    """The contact's scalars over their Hertz scales, by every source."""
+    scalars = (
+        ("contact_radius", "a_h", "a"),
+        ("peak_pressure", "p_h", "p0"),
+        ("approach", "delta_h", "delta"),
+    )
+    sources = [
+        s
+        for s in dict.fromkeys(s for m in members for s in sources_with_profiles(m.result))
+        if s not in CLOSED
+    ]
+    rows = []
+    for member in members:
+        cells = []
+        for source in sources:
+            for quantity, unit, _ in scalars:
+                found = scalar(member.result, quantity, source)
+                value = None if found is None else float(found[0] / scale(member.result, unit))
+                cells.append(Cell("–" if value is None else f"{value:.6f}", value))
+        rows.append(Row(Cell(plain(member.ratio, 3), member.ratio, note=member.result.title), cells))
+    return Table(
+        "Contact radius, peak pressure and approach over the Hertz scales of the bare substrate.",
+        ["E1/E2", *(f"{symbol} / {unit}" for _ in sources for _, unit, symbol in scalars)],
+        rows,
+        [("", 1), *((source_label(source), len(scalars)) for source in sources)],
+    )
+
+
+def _draw(members: Sequence[Member], quantity: str, line: str) -> Markup:
+    """Every curve of ``quantity`` on ``line``, at its largest magnitude its E1/E2."""
+    alone = len({p.source for m in members for p in m.result.profiles}) == 1
+    curves, texts = [], []
+    for member in members:
+        a_h, p_h = scale(member.result, "a_h"), scale(member.result, "p_h")
+        found = [p for p in member.result.profiles if (p.quantity, p.line) == (quantity, line)]
+        for profile in sorted(found, key=lambda p: -source_style(p.source).width):
+            style = source_style(profile.source)
+            if alone:
+                # The broad pale line of the exact curve lies below others; alone it is an ordinary line.
+                style = replace(style, width=1.6, opacity=1.0)
+            x, y = profile.position / a_h, profile.value / p_h
+            curves.append((x, np.where(np.abs(y) < HUGE, y, np.nan), style))
+        if found and np.isfinite(curves[-1][1]).any():
+            x, y, _ = curves[-1]
+            at = int(np.nanargmax(np.abs(y)))
+            texts.append((x[at], y[at], plain(member.ratio, 3)))
+    values = np.concatenate([y[np.isfinite(y)] for _, y, _ in curves] or [np.zeros(0)])
+    places = np.concatenate([x[np.abs(x) < HUGE] for x, _, _ in curves] or [np.zeros(0)])
+    low, high = (
+        (float(values.min()), float(values.max())) if values.size and np.ptp(values) > 0 else (-1.0, 1.0)
+    )
+    span = (float(places.min()), float(places.max())) if places.size and np.ptp(places) > 0 else (0.0, 1.0)
+    margin = 0.09 * (high - low)
+    axes = Axes(BOX, span, (low - margin, high + margin))
+    axes.ticks(round_ticks(*span, 6), round_ticks(low, high, 6), f"{coordinate(line)} / a_h")
+    for x, y, style in curves:
+        axes.line(x, y, style)
+    for x, y, text in texts:
+        axes.text(x, y, text)
+    return drawing(WIDTH, HEIGHT, f"{quantity} on {line} for every E1/E2", axes)

@@ -1,0 +1,250 @@
+"""Published sources in the report: their citation, every table as printed beside what the methods give."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from verification.judging.verdict import Outcome
+from verification.problem.profile import Profile
+from verification.report.tables.case import budget_table, diagnostics_table, layer_table, verdict_table
+from verification.report.tables.cells import Cell, Row, Table
+from verification.report.tables.labels import EXACT, METHODS, OUTCOMES, OutcomeStyle, source_label
+from verification.report.tables.matrix import outcome_cell
+from verification.report.tables.numbers import engineering, plain, scientific
+from verification.running.result import CaseResult
+
+__all__ = ["PublishedView", "published_overview", "published_view"]
+
+PUBLISHED = "published"
+_SAID = {
+    "peak_pressure": "p0",
+    "contact_radius": "a",
+    "approach": "delta",
+    "load": "W",
+    "kappa": "stiffness of the flat punch over 2 a E1*",
+    "series_over_load": "load by the formula over W",
+    "series_over_kappa": "stiffness by the formula over that of the flat punch",
+    "tau_max": "largest shear on the axis",
+    "von_mises_max": "largest von Mises stress on the axis",
+}
+
+
+@dataclass(frozen=True)
+class PublishedView:
+    """All that the page says of one published source."""
+
+    anchor: str
+    result: CaseResult
+    outcome: OutcomeStyle
+    sentence: str
+    command: str
+    facts: Sequence[tuple[str, str]]
+    failures: Sequence[tuple[str, str]]
+    layers: Table
+    tables: Sequence[tuple[str, Table]]
+    verdicts: Table
+    budget: Table | None
+    diagnostics: Table | None
+
+
+def _sources(result: CaseResult) -> tuple[str, ...]:
+    """Both methods, and the exact reference where it was asked."""
+    claimed = {source for claim, _ in result.verdicts for source in claim.between}
+    return METHODS + tuple(source for source in EXACT if source in claimed)
+
+
+def published_overview(results: Sequence[CaseResult], anchors: Mapping[int, str]) -> Table:
+    """Every source at a glance: year, how it was read, values that count, verdict of each method."""
+    rows = []
+    shown = [result for result in results if result.published]
+    sources = tuple(dict.fromkeys(source for result in shown for source in _sources(result)))
+    for number, result in enumerate(results):
+        if not result.published:
+            continue
+        printed = result.published["columns"]
+        counted = sum(sum(item["counted"]) for item in printed)
+        total = sum(len(item["counted"]) for item in printed)
+        cells = [
+            outcome_cell(result.outcome),
+            Cell(str(result.published["year"]), result.published["year"]),
+            Cell(
+                "primary" if result.published["primary_read"] else "second-hand",
+                note=result.published["read"],
+            ),
+            Cell(str(counted), counted),
+            Cell(str(total - counted), total - counted),
+        ]
+        for source in sources:
+            cells += _method_cells(result, source) if source in _sources(result) else [Cell("–"), Cell("–")]
+        head = Cell(result.title, note=result.source, href=f"#{anchors[number]}")
+        rows.append(
+            Row(head, cells, "" if result.outcome is Outcome.AGREES else OUTCOMES[result.outcome].css)
+        )
+    return Table(
+        "A method meets a value when the difference is within the reading uncertainty of the source and the "
+        "method's own uncertainty together. Values known to be misprints, or second-hand where better ones "
+        "stand beside, are shown below and never counted. Differences are over the pressure for stresses, "
+        "over the largest value printed for displacements, strains and loading curves, over the value for "
+        "scalars of a contact.",
+        ["source", "verdict", "year", "read", "values", "not counted"]
+        + ["met", "largest gap"] * len(sources),
+        rows,
+        [("", 6), *((source_label(source), 2) for source in sources)],
+    )
+
+
+def _method_cells(result: CaseResult, method: str) -> list[Cell]:
+    met = total = 0
+    for item in result.published["columns"]:
+        counted = np.array(item["counted"], dtype=bool)
+        if not any(method in c.between and c.line == item["line"] for c, _ in result.verdicts):
+            continue
+        gap, allowed = _gap(result, item, method)
+        total += int(counted.sum())
+        if gap is not None and allowed is not None:
+            met += int((np.abs(gap) <= allowed)[counted].sum())
+    numbers = [v.difference for c, v in result.verdicts if method in c.between and v.difference is not None]
+    largest = max(numbers, default=None)
+    return [
+        Cell(f"{met} of {total}", met, "verdict agrees" if met == total else "verdict disagrees"),
+        Cell(scientific(largest), largest),
+    ]
+
+
+def published_view(result: CaseResult, anchor: str, command: str) -> PublishedView:
+    """Citation, problem, tables and verdicts of one published source; ``command`` solves it again."""
+    bad = sum(verdict.outcome is not Outcome.AGREES for _, verdict in result.verdicts)
+    total = len(result.verdicts)
+    return PublishedView(
+        anchor=anchor,
+        result=result,
+        outcome=OUTCOMES[result.outcome],
+        sentence=f"{bad} of {total} comparisons do not agree." if bad else f"All {total} comparisons agree.",
+        command=command,
+        facts=_facts(result),
+        failures=[(source_label(s.source), s.failure) for s in result.sources if s.failure is not None],
+        layers=layer_table(result),
+        tables=_tables(result),
+        verdicts=verdict_table(result.verdicts, 0.0),
+        budget=budget_table(result),
+        diagnostics=diagnostics_table(result),
+    )
+
+
+def _facts(result: CaseResult) -> list[tuple[str, str]]:
+    names = {
+        "pressure": ("uniform pressure q", "Pa"),
+        "load_radius": ("radius of the disc a", "m"),
+        "radius": ("sphere radius R", "m"),
+        "load": ("load W", "N"),
+        "a_h": ("a_h, Hertz contact radius", "m"),
+        "p_h": ("p_h, Hertz peak pressure", "Pa"),
+        "delta_h": ("delta_h, Hertz approach", "m"),
+    }
+    found = [
+        (said, engineering(result.problem[name], unit))
+        for name, (said, unit) in names.items()
+        if name in result.problem
+    ]
+    return [*found, ("friction f", plain(result.problem.get("friction", 0.0)))]
+
+
+def _tables(result: CaseResult) -> list[tuple[str, Table]]:
+    """One table for each column that was printed, its lines one below the other."""
+    columns: dict[tuple[str, str, str], list[dict[str, Any]]] = {}
+    for item in result.published["columns"]:
+        columns.setdefault((item["file"], item["column"], item["quantity"]), []).append(item)
+    return [
+        (f"{column} of {file}", _table(result, column, quantity, items))
+        for (file, column, quantity), items in columns.items()
+    ]
+
+
+def _table(result: CaseResult, column: str, quantity: str, items: Sequence[Mapping[str, Any]]) -> Table:
+    first, sources = items[0], _sources(result)
+    rows = []
+    for item in items:
+        place = item["line"].split(f", {item['file'].removesuffix('.csv')}")[0]
+        methods = {
+            method: (_profile(result, item, method), *_gap(result, item, method)) for method in sources
+        }
+        reading = _profile(result, item, PUBLISHED)
+        for n, text in enumerate(item["text"]):
+            counted = item["counted"][n]
+            spread = (
+                reading.uncertainty[n] if reading is not None and reading.uncertainty is not None else None
+            )
+            cells = [
+                Cell(plain(item["position"][n], 6), item["position"][n]),
+                Cell(text.replace("-", "−"), float(text)),
+                Cell(_in(spread, item), spread),
+            ]
+            met = []
+            for method in sources:
+                profile, gap, allowed = methods[method]
+                if method not in METHODS and profile is None:
+                    cells += [Cell("–")] * 3
+                    continue
+                if profile is None or gap is None:
+                    cells += [Cell("no result", css="no-result"), Cell("–"), Cell("–")]
+                    met.append(False)
+                    continue
+                value = float(profile.value[n]) / item["to_si"]
+                cells.append(Cell(plain(value, 7), value))
+                cells.append(Cell(_in(float(gap[n]), item, signed=True), abs(float(gap[n]))))
+                cells.append(Cell(_in(None if allowed is None else float(allowed[n]), item)))
+                met.append(allowed is not None and bool(abs(gap[n]) <= allowed[n]))
+            if not counted:
+                why = item.get("why_not", ("misprint",) * len(item["text"]))[n]
+                cells.append(Cell(f"{why}, not counted", css="verdict inconclusive"))
+            else:
+                cells.append(
+                    Cell("✓", css="verdict agrees") if all(met) else Cell("✗", css="verdict disagrees")
+                )
+            head = Cell(
+                ", ".join(filter(None, (place, item["labels"][n]))),
+                note=f"{item['file']}, line {item['rows'][n]}",
+            )
+            rows.append(Row(head, cells, "" if counted else "inconclusive"))
+    unit = f" in {first['unit']}" if first["unit"] != "1" else ""
+    said = _SAID.get(quantity, quantity) + (" here, of the other sign" if first["to_si"] < 0 else " here")
+    return Table(
+        f"{column}{unit}, as printed ({said}): "
+        "the difference of each method from it, and the uncertainty of both together that allows for it.",
+        [
+            "where",
+            f"{first['coordinate']} in {first['position_unit']}",
+            "printed",
+            "reading U",
+            *["value", "difference", "U of both"] * len(sources),
+            "met",
+        ],
+        rows,
+        [("", 4), *((source_label(source), 3) for source in sources), ("", 1)],
+        "verdicts",
+    )
+
+
+def _in(value: float | None, item: Mapping[str, Any], signed: bool = False) -> str:
+    """A difference [SI] in the unit it was printed in; a signed one in its sign convention."""
+    if value is None:
+        return "–"
+    return scientific(value / item["to_si"] if signed else value / abs(item["to_si"]), sign=signed)
+
+
+def _gap(
+    result: CaseResult, item: Mapping[str, Any], method: str
+) -> tuple[np.ndarray | None, np.ndarray | None]:
+    """Method less print, and the uncertainty of both [SI]; None where either is missing."""
+    mine, printed = _profile(result, item, method), _profile(result, item, PUBLISHED)
+    if mine is None or printed is None:
+        return None, None
+    if mine.uncertainty is None or printed.uncertainty is None:
+        return mine.value - printed.value, None
+    return mine.value - printed.value, mine.uncertainty + printed.uncertainty
+
+
+def _profile(result: CaseResult, item: Mapping[str, Any], source: str) -> Profile | None:
+    return result.profile(item["quantity"], item["line"], source)

@@ -1,0 +1,221 @@
+"""The sections on how the errors of both methods fall with resolution."""
+
+from collections.abc import Sequence
+
+from verification.credibility.accuracy import CORRECTED, PLAIN, PROBLEM, STAIRCASE, AccuracyStudy
+from verification.credibility.refinement import QUANTITIES, Ladder, settled
+from verification.report.figures.loglog import Trail, decades, draw_loglog
+from verification.report.figures.panels import swatch
+from verification.report.sections.conversion import conversion_part
+from verification.report.sections.parameters import knob_section
+from verification.report.tables.cells import Cell, Gallery, Panel, Part, Row, Section, Table
+from verification.report.tables.labels import Style
+from verification.report.tables.numbers import factor, plain, scientific, seconds
+
+__all__ = ["convergence_sections"]
+
+_TITLES = {
+    "p0": "p0",
+    "a": "contact radius a",
+    "approach": "approach",
+    "pressure": "pressure, L2 over the contact",
+    "stress": "stress, axis and interfaces",
+}
+_SCALES = {
+    "p0": "relative",
+    "a": "relative",
+    "approach": "relative",
+    "pressure": "over p0",
+    "stress": "largest, over p_h",
+}
+_DOTS, _DASHES, _MIXED = (1.0, 1.4), (3.6, 3.0), (4.5, 1.4, 1.0, 1.4)
+_SETTINGS = {
+    (CORRECTED, True): Style("semi"),
+    (CORRECTED, False): Style("semi", _DOTS),
+    (STAIRCASE, True): Style("other", _DASHES),
+    (STAIRCASE, False): Style("other", _DOTS),
+    (PLAIN, True): Style("pair", _MIXED),
+    ("order 2", True): Style("fem", _DOTS, 1.9),
+    ("order 3", True): Style("fem", _DASHES, 1.9),
+    ("order 4", True): Style("fem"),
+}
+_UNKNOWN = Style("ink", (5.0, 1.5, 1.0, 1.5))
+
+
+def convergence_sections(study: AccuracyStudy) -> list[Section]:
+    """Semi-analytical, then finite element accuracy; what failed is said in its section."""
+    elements = [one for one in study.ladders if one.method == "fem_reference"]
+    grids = [one for one in study.ladders if one.method == "semianalytic"]
+    theirs = tuple(f for f in study.failures if f.startswith("fem_reference"))
+    ours = tuple(f for f in study.failures if f not in theirs)
+    parts: list[Part] = []
+    if any(one.levels for one in grids):
+        parts += _grid_parts(grids)
+    if study.conversions:
+        parts.append(conversion_part(study.conversions))
+    sections = [Section("semi-analytical-accuracy", "Semi-analytical accuracy", parts, ours)]
+    if elements:
+        parts = _element_parts(elements) if any(one.levels for one in elements) else []
+        sections.append(Section("finite-element-accuracy", "Finite element accuracy", parts, theirs))
+    if study.stated:
+        sections.append(knob_section(study.knobs, study.stated))
+    return sections
+
+
+def _grid_parts(ladders: Sequence[Ladder]) -> list[Part]:
+    caption = (
+        "Error against the integral equation over N, the patches along a side of the grid, which is 1.12 "
+        "times as wide as the contact. Beside each curve its observed slope, down to where the fall ends; a "
+        "dash where it falls less than threefold, or within less than a doubling of N."
+    )
+    first, *others = _grid_sentences([one for one in ladders if one.levels])
+    return [
+        Part(f"{PROBLEM[0].upper()}{PROBLEM[1:]}. {first}"),
+        *(Part(sentence) for sentence in others),
+        Part(
+            "",
+            [_ladder_table(ladders, "patches a side")],
+            _ladder_gallery(ladders, "semi", "N", (33, 49, 65, 97, 129, 257), caption),
+        ),
+    ]
+
+
+def _element_parts(ladders: Sequence[Ladder]) -> list[Part]:
+    caption = (
+        "Error against the integral equation over the square root of the number of degrees of freedom, which "
+        "grows as the elements shrink: its slope is the order in the size of the elements."
+    )
+    return [
+        Part(
+            _element_sentence([one for one in ladders if one.levels]),
+            [_ladder_table(ladders, "mesh")],
+            _ladder_gallery(ladders, "fem", "√(degrees of freedom)", (50, 70, 100, 150, 200, 300), caption),
+        )
+    ]
+
+
+def _grid_sentences(ladders: Sequence[Ladder]) -> list[str]:
+    found = [_fall_sentence(one) for one in ladders if one.setting == CORRECTED]
+    by_setting = {one.setting: one for one in ladders if one.solid == ladders[0].solid}
+    best, stairs, paper = (by_setting.get(setting) for setting in (CORRECTED, STAIRCASE, PLAIN))
+    if best and stairs:
+        here, there = best.levels[-1].errors["pressure"], stairs.levels[-1].errors["pressure"]
+        order = stairs.order("pressure")
+        speed = "converges" if stairs.falls("pressure") else "does not converge"
+        speed += "" if order is None else f" at order {order:.1f}"
+        found.append(
+            "With the edge of the contact left the staircase that patches make of it, the pressure on the "
+            f"{stairs.solid} solid {speed}, to {scientific(there)} at {stairs.levels[-1].name}; the "
+            f"corrected edge comes to {scientific(here)} at {best.levels[-1].name}, a factor of "
+            f"{factor(there, here)}."
+        )
+    if paper and stairs:
+        first, last = paper.levels[0], paper.levels[-1]
+        stuck = [q for q in QUANTITIES if stairs.falls(q) and not paper.falls(q)]
+        text = (
+            f"With the plain conversion of the source paper, from {first.name} to {last.name}, the "
+            f"approach is off by {scientific(first.errors['approach'])} → "
+            f"{scientific(last.errors['approach'])} and p0 by "
+            f"{scientific(first.errors['p0'])} → {scientific(last.errors['p0'])}"
+        )
+        if stuck:
+            text += f"; a finer grid does not bring down {_listed(stuck)}, for there the conversion rules"
+        found.append(text + ".")
+    return found or ["No more than single levels could be solved."]
+
+
+def _fall_sentence(one: Ladder) -> str:
+    first, last = one.levels[0], one.levels[-1]
+    numbers = ", ".join(
+        f"{q} {scientific(first.errors[q])} → {scientific(last.errors[q])}" for q in QUANTITIES
+    )
+    solid = one.solid[:1].upper() + one.solid[1:]
+    text = f"{solid}, {one.setting}, the default: from {first.name} to {last.name} the errors go {numbers}."
+    ended: dict[str, list[str]] = {}
+    for q in QUANTITIES:
+        at = settled([level.errors[q] for level in one.levels])
+        if at is not None and at < len(one.levels) - 1:
+            ended.setdefault(one.levels[at].name, []).append(q)
+    if ended:
+        where = "; ".join(f"{_listed(qs)} from {name} on" for name, qs in ended.items())
+        text += f" A finer grid no longer brings down {where}: there another knob rules."
+    return text
+
+
+def _element_sentence(ladders: Sequence[Ladder]) -> str:
+    found = []
+    for one in ladders:
+        last = one.levels[-1]
+        found.append(
+            f"{one.setting} comes to p0 {scientific(last.errors['p0'])}, pressure "
+            f"{scientific(last.errors['pressure'])}, stress {scientific(last.errors['stress'])} with "
+            f"{plain(last.resolution * last.resolution, 6)} degrees of freedom in {seconds(last.seconds)}"
+        )
+    text = f"On the {ladders[0].solid} solid and the {ladders[0].levels[-1].name} mesh {'; '.join(found)}."
+    if len(ladders) > 1:
+        low, high = ladders[0], ladders[-1]
+        worse, better = low.levels[-1].errors, high.levels[-1].errors
+        gains = [f"{factor(worse[q], better[q])} in {q}" for q in ("p0", "pressure", "stress")]
+        text += f" {high.setting.capitalize()} gains over {low.setting} factors of {_listed(gains)}."
+    return text
+
+
+def _ladder_gallery(
+    ladders: Sequence[Ladder], key: str, coordinate: str, ticks: Sequence[float], caption: str
+) -> Gallery:
+    first = ladders[0].solid
+
+    def trail(one: Ladder, quantity: str) -> Trail:
+        order = one.order(quantity)
+        return Trail(
+            tuple(level.resolution for level in one.levels),
+            tuple(level.errors[quantity] for level in one.levels),
+            _SETTINGS.get((one.setting, one.solid == first), _UNKNOWN),
+            "–" if order is None else f"−{order:.1f}",
+        )
+
+    trails = {q: [trail(one, q) for one in ladders if one.levels] for q in QUANTITIES}
+    height = decades([one for some in trails.values() for one in some])
+    panels = [
+        Panel(
+            f"{_TITLES[q]}",
+            draw_loglog(
+                some,
+                label=f"error of {_TITLES[q]} over {coordinate}, logarithmic",
+                coordinate=coordinate,
+                height=height,
+                ticks=ticks,
+            ),
+            f"error, {_SCALES[q]}",
+            "",
+        )
+        for q, some in trails.items()
+    ]
+    legend = [
+        (swatch(_SETTINGS.get((one.setting, one.solid == first), _UNKNOWN)), f"{one.solid}: {one.setting}")
+        for one in ladders
+    ]
+    return Gallery(legend, panels, caption)
+
+
+def _ladder_table(ladders: Sequence[Ladder], level_name: str) -> Table:
+    rows = []
+    for one in ladders:
+        name = f"{one.solid}: {one.setting}"
+        for level in one.levels:
+            cells = [Cell(level.name)]
+            cells += [Cell(scientific(level.errors[q]), level.errors[q]) for q in QUANTITIES]
+            rows.append(Row(Cell(name), [*cells, Cell(seconds(level.seconds), level.seconds)]))
+        orders = [one.order(q) for q in QUANTITIES]
+        cells = [Cell("–" if o is None else f"{o:.1f}", -1.0 if o is None else o) for o in orders]
+        rows.append(Row(Cell(name), [Cell("observed order"), *cells, Cell("")], "order"))
+    return Table(
+        "Errors against the integral equation: p0, a and approach relative, pressure in L2 over the contact "
+        "over p0, stress the largest on the axis and on both sides of each interface over p_h.",
+        ["solid and setting", level_name, *QUANTITIES, "time"],
+        rows,
+    )
+
+
+def _listed(names: Sequence[str]) -> str:
+    return names[0] if len(names) == 1 else f"{', '.join(names[:-1])} and {names[-1]}"

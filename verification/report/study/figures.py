@@ -1,0 +1,422 @@
+"""Figures of a study fit for a paper: each as vector PDF, as PNG, its numbers as CSV.
+
+Lengths over a_h, stresses over p_h, both of the bare substrate; a second axis gives MPa.
+"""
+
+import io
+import warnings
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import matplotlib as mpl
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.backends.backend_pdf import FigureCanvasPdf
+from matplotlib.colors import ListedColormap
+from matplotlib.contour import QuadContourSet
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+from matplotlib.ticker import NullFormatter, ScalarFormatter
+from scipy.interpolate import PchipInterpolator
+
+from verification.problem.arrays import Array
+from verification.report.tables.csv import written
+from verification.running.store import write_atomically
+from verification.study.criteria import MODES, Judged
+from verification.study.curves import Curve
+from verification.study.quantities import QUANTITIES
+
+__all__ = [
+    "Drawn",
+    "contact_figure",
+    "governing_figure",
+    "sheet",
+    "stress_figures",
+    "use_figures",
+    "write_drawn",
+]
+
+
+# Okabe and Ito's colours, told apart by the colour-blind; friction is told by the dash besides.
+COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00", "#000000")
+DASHES: tuple[Any, ...] = ("-", (0, (5, 2)), (0, (1.2, 1.4)), (0, (5, 1.5, 1, 1.5)))
+MARKS = {"fem_reference": ("o", "finite elements"), "integral_equation": ("+", "exact reference")}
+DPI = 200
+LEAST = 1e-7  # smaller differences are drawn here
+NAMES = {
+    "sigma_xx_surface": r"largest $\sigma_{xx}$, surface",
+    "sigma_xx_base": r"largest $\sigma_{xx}$, base of the coating",
+    "sigma_xx_substrate": r"largest $\sigma_{xx}$, top of the substrate",
+    "sigma_xz_interface": r"largest $|\sigma_{xz}|$, interface",
+    "sigma_zz_interface": r"largest $\sigma_{zz}$, interface",
+    "von_mises_coating": "largest von Mises stress, coating",
+    "von_mises_substrate": "largest von Mises stress, substrate",
+}
+_SETTINGS: Any = {
+    "font.size": 8,
+    "font.family": "DejaVu Sans",
+    "axes.linewidth": 0.6,
+    "lines.linewidth": 1.3,
+    "xtick.direction": "in",
+    "ytick.direction": "in",
+    "pdf.fonttype": 42,
+    "savefig.facecolor": "white",
+}
+
+
+@dataclass(frozen=True)
+class Drawn:
+    """One figure under its ``name``, the bytes of its ``pdf`` and ``png``, its numbers as ``csv``."""
+
+    name: str
+    title: str
+    caption: str
+    pdf: bytes
+    png: bytes
+    csv: str
+
+
+@contextmanager
+def sheet(width: float, height: float) -> Iterator[Figure]:
+    """An empty figure of ``width`` by ``height`` [mm] in the settings of a paper."""
+    with mpl.rc_context(_SETTINGS), warnings.catch_warnings():
+        # Curves without one finite number leave an empty frame, no complaint.
+        warnings.simplefilter("ignore")
+        yield Figure(figsize=(width / 25.4, height / 25.4), layout="constrained")
+
+
+def drawn(figure: Figure, name: str, title: str, caption: str, rows: Sequence[Sequence[str]]) -> Drawn:
+    """``figure`` written both ways; the same figure always gives the same bytes."""
+    pdf, png = io.BytesIO(), io.BytesIO()
+    FigureCanvasAgg(figure)
+    figure.draw_without_rendering()
+    # Laid out once, not again for each format.
+    figure.set_layout_engine("none")
+    FigureCanvasPdf(figure).print_figure(pdf, format="pdf", metadata={"CreationDate": None})
+    FigureCanvasAgg(figure).print_figure(png, format="png", dpi=DPI, metadata={"Software": None})
+    return Drawn(name, title, caption, pdf.getvalue(), png.getvalue(), written(rows))
+
+
+def write_drawn(figure: Drawn, folder: Path) -> None:
+    """NAME.pdf, NAME.png, NAME.csv under ``folder``. Raises StoreError where it cannot be written."""
+    write_atomically(folder / f"{figure.name}.pdf", figure.pdf)
+    write_atomically(folder / f"{figure.name}.png", figure.png)
+    write_atomically(folder / f"{figure.name}.csv", figure.csv)
+
+
+def stress_figures(curves: Sequence[Curve]) -> list[Drawn]:
+    """For each failure mode its stress against thickness, compliant beside stiff coatings."""
+    return [
+        _against_thickness(
+            curves,
+            quantity,
+            f"stress_{quantity}",
+            f"{quantity}: {MODES[quantity]}",
+            NAMES[quantity] + r" / $p_h$",
+            lambda curve, q=quantity: curve.stress[q],  # type: ignore[misc]
+            in_pascal=True,
+        )
+        for quantity in QUANTITIES
+    ]
+
+
+def contact_figure(curves: Sequence[Curve]) -> list[Drawn]:
+    """Peak pressure, contact radius and approach against thickness; they do not depend on friction."""
+    smallest = min(curve.friction for curve in curves)
+    chosen = [curve for curve in curves if curve.friction == smallest]
+    names = {
+        "peak_pressure": r"$p_0 / p_h$",
+        "contact_radius": r"$a / a_h$",
+        "approach": r"$\delta / \delta_h$",
+    }
+    return [
+        _against_thickness(
+            chosen,
+            quantity,
+            f"contact_{quantity}",
+            quantity.replace("_", " "),
+            label,
+            lambda curve, q=quantity: curve.scalar[q],  # type: ignore[misc]
+            in_pascal=False,
+        )
+        for quantity, label in names.items()
+    ]
+
+
+def _against_thickness(
+    curves: Sequence[Curve],
+    quantity: str,
+    name: str,
+    title: str,
+    label: str,
+    values: Callable[[Curve], Array],
+    *,
+    in_pascal: bool,
+) -> Drawn:
+    sides = [
+        ("compliant coating, $E_1 < E_2$", [c for c in curves if c.ratio < 1]),
+        ("stiff coating, $E_1 \\geq E_2$", [c for c in curves if c.ratio >= 1]),
+    ]
+    sides = [(said, members) for said, members in sides if members]
+    frictions = sorted({c.friction for c in curves})
+    ratios = sorted({c.ratio for c in curves})
+    colours = {ratio: COLOURS[i % len(COLOURS)] for i, ratio in enumerate(ratios)}
+    rows = [["E1/E2", "f", "h / a_h", f"{quantity} over its scale", "source"]]
+    checked = any(curve.marks for curve in curves)
+    with sheet(170 if len(sides) == 2 else 130, 92 if checked else 68) as figure:
+        grid = figure.subplots(
+            1 + checked,
+            len(sides),
+            sharey="row",
+            sharex="col",
+            squeeze=False,
+            height_ratios=(3, 1)[: 1 + checked],
+        )
+        panels = grid[0]
+        for axes, (said, members) in zip(panels, sides, strict=True):
+            for curve in members:
+                colour = colours[curve.ratio]
+                dash = DASHES[frictions.index(curve.friction) % len(DASHES)]
+                axes.plot(curve.h, values(curve), color=colour, linestyle=dash)
+                for source, marks in curve.marks.items():
+                    _mark(axes, *marks[quantity], source, colour)
+                for source, (h, value) in {
+                    "semianalytic": (curve.h, values(curve)),
+                    **{s: m[quantity] for s, m in curve.marks.items()},
+                }.items():
+                    rows += [
+                        [f"{curve.ratio:g}", f"{curve.friction:g}", f"{x:.9g}", f"{y:.9g}", source]
+                        for x, y in zip(h, value, strict=True)
+                    ]
+            _thickness_axis(axes, said)
+        panels[0].set_ylabel(label)
+        if checked:
+            for axes in panels:
+                axes.set_xlabel("")
+            _differences(grid[1], sides, quantity, lambda curve: colours[curve.ratio], values)
+        if in_pascal:
+            p_h = curves[0].p_h / 1e6
+            second = panels[-1].secondary_yaxis("right", functions=(lambda y: y * p_h, lambda y: y / p_h))
+            second.set_ylabel("MPa")
+        _legend(figure, ratios, frictions, {s for c in curves for s in c.marks})
+        caption = (
+            "Lines: semi-analytical method; circles: finite elements; crosses: the exact reference, at the "
+            "cross-checked points; below, how far these are from the lines, over the same scale; dashes 0.5 "
+            "percent, dots 0.1."
+            if checked
+            else "Lines: semi-analytical method; no point was cross-checked."
+        )
+        return drawn(figure, name, title, caption, rows)
+
+
+def _differences(
+    panels: Sequence[Axes],
+    sides: Sequence[tuple[str, Sequence[Curve]]],
+    quantity: str,
+    colour: Callable[[Curve], str],
+    values: Callable[[Curve], Array],
+) -> None:
+    """|mark - curve| at every cross-checked thickness, on a logarithmic scale that ends at ``LEAST``."""
+    for axes, (_, members) in zip(panels, sides, strict=True):
+        for curve in members:
+            for source, marks in curve.marks.items():
+                at, value = marks[quantity]
+                known = np.isin(at, curve.h)
+                here = values(curve)[np.searchsorted(curve.h, at[known])]
+                _mark(axes, at[known], np.maximum(np.abs(value[known] - here), LEAST), source, colour(curve))
+        axes.set_yscale("log")
+        axes.set_ylim(0.6 * LEAST, 1e-2)
+        axes.set_yticks([1e-7, 1e-5, 1e-3])
+        axes.axhline(5e-3, color="#666666", linewidth=0.7, linestyle=(0, (4, 2)))
+        axes.axhline(1e-3, color="#666666", linewidth=0.7, linestyle=(0, (1, 1.5)))
+        _thickness_axis(axes, "")
+    panels[0].set_ylabel("difference")
+
+
+def _mark(axes: Axes, h: Array, value: Array, source: str, colour: str) -> None:
+    marker = MARKS[source][0]
+    axes.plot(h, value, marker, color=colour, markerfacecolor="none", markersize=4.5, markeredgewidth=0.8)
+
+
+def _thickness_axis(axes: Axes, title: str) -> None:
+    axes.set_xscale("log")
+    axes.xaxis.set_major_formatter(ScalarFormatter())
+    axes.xaxis.set_minor_formatter(NullFormatter())
+    axes.set_xticks(
+        [t for t in (0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100) if _shown(axes, t)]
+    )
+    axes.set_xlabel(r"coating thickness, $h / a_h$")
+    axes.set_title(title, fontsize=8)
+    axes.grid(True, linewidth=0.3, color="#cccccc")
+
+
+def _shown(axes: Axes, tick: float) -> bool:
+    low, high = axes.get_xlim()
+    return low <= tick <= high
+
+
+def _legend(figure: Figure, ratios: Sequence[float], frictions: Sequence[float], sources: set[str]) -> None:
+    handles = [
+        Line2D([], [], color=COLOURS[i % len(COLOURS)], label=f"$E_1/E_2$ = {ratio:.4g}")
+        for i, ratio in enumerate(ratios)
+    ]
+    if len(frictions) > 1:
+        handles += [
+            Line2D([], [], color="#444444", linestyle=DASHES[i % len(DASHES)], label=f"f = {f:g}")
+            for i, f in enumerate(frictions)
+        ]
+    handles += [
+        Line2D([], [], color="#444444", marker=mark, linestyle="none", markerfacecolor="none", label=said)
+        for source, (mark, said) in MARKS.items()
+        if source in sources
+    ]
+    figure.legend(handles=handles, loc="outside lower center", ncols=min(len(handles), 5), frameon=False)
+
+
+def use_figures(judgements: Sequence[Judged]) -> list[Drawn]:
+    """Stress over strength against thickness, admissible ranges shaded; [] where no strengths are given."""
+    chosen = [j for j in judgements if j.limited]
+    if not chosen:
+        return []
+    found = []
+    for ratio in sorted({j.curve.ratio for j in chosen}):
+        members = [j for j in chosen if j.curve.ratio == ratio]
+        rows = [["E1/E2", "f", "h / a_h", "h [m]", *members[0].modes]]
+        with sheet(62 * len(members) + 12, 75) as figure:
+            panels = figure.subplots(1, len(members), sharey=True, squeeze=False)[0]
+            for axes, judgement in zip(panels, members, strict=True):
+                curve = judgement.curve
+                for low, high in judgement.admissible:
+                    axes.axvspan(low, high, color="#d5efe1", linewidth=0)
+                for mode, use in zip(judgement.modes, judgement.utilisation, strict=True):
+                    at = list(MODES).index(mode)
+                    axes.plot(curve.h, use, color=COLOURS[at], label=mode, marker=".", markersize=3)
+                axes.axhline(1.0, color="#c02a2a", linewidth=0.9, linestyle=(0, (4, 2)))
+                axes.plot(*judgement.preferable[:2], "v", color="black", markersize=4)
+                axes.set_yscale("log")
+                axes.set_ylim(0.02, 1.5 * max(1.0, *(float(j.utilisation.max()) for j in members)))
+                _thickness_axis(axes, f"$E_1/E_2$ = {ratio:.4g}, f = {curve.friction:g}")
+                rows += [
+                    [f"{ratio:g}", f"{curve.friction:g}", f"{h:.9g}", f"{h * curve.a_h:.6g}"]
+                    + [f"{u:.6g}" for u in judgement.utilisation[:, i]]
+                    for i, h in enumerate(curve.h)
+                ]
+            panels[0].set_ylabel("stress over strength")
+            handles = panels[0].get_legend_handles_labels()
+            figure.legend(*handles, loc="outside lower center", ncols=3, frameon=False)
+            found.append(
+                drawn(
+                    figure,
+                    f"use_{ratio:.4g}".replace(".", "_"),
+                    f"Stress over strength, E1/E2 = {ratio:.4g}",
+                    "Green: admissible thicknesses, where every stress stays below its strength. "
+                    "Triangle: the preferable thickness.",
+                    rows,
+                )
+            )
+    return found
+
+
+def governing_figure(judgements: Sequence[Judged]) -> list[Drawn]:
+    """The mode that governs over (h/a_h, E1/E2), a panel for each friction; [] for a single modulus.
+
+    Between the solved points, which are dots, each use of strength is read by monotone cubics in log h,
+    then by straight lines in log E1/E2.
+    """
+    frictions = sorted({j.curve.friction for j in judgements})
+    grids = [_map([j for j in judgements if j.curve.friction == f]) for f in frictions]
+    if any(grid is None for grid in grids):
+        return []
+    modes = judgements[0].modes
+    rows = [["f", "E1/E2", "h / a_h", "largest use", "governing"]]
+    with sheet(62 * len(frictions) + 8, 78) as figure:
+        panels = figure.subplots(1, len(frictions), sharey=True, squeeze=False)[0]
+        for axes, friction, grid in zip(panels, frictions, grids, strict=True):
+            assert grid is not None
+            h, ratio, use = grid
+            governing, largest = use.argmax(axis=0), use.max(axis=0)
+            colours = ListedColormap([_pale(COLOURS[list(MODES).index(mode)]) for mode in modes])
+            axes.pcolormesh(
+                h, ratio, governing, cmap=colours, vmin=-0.5, vmax=len(modes) - 0.5, shading="nearest",
+                rasterized=True,
+            )  # fmt: skip
+            lines = axes.contour(h, ratio, largest, levels=6, colors="#555555", linewidths=0.6)
+            axes.clabel(lines, fontsize=6, fmt="%.3g", manual=_places(lines, h, ratio))
+            if judgements[0].limited:
+                axes.contour(h, ratio, largest, levels=[1.0], colors="#c02a2a", linewidths=1.6)
+            for judgement in judgements:
+                if judgement.curve.friction == friction:
+                    solved = judgement.curve.h
+                    axes.plot(
+                        solved, np.full_like(solved, judgement.curve.ratio), ".", color="#222222", ms=1.6
+                    )
+            axes.set_yscale("log")
+            axes.yaxis.set_minor_formatter(NullFormatter())
+            axes.set_yticks(sorted({j.curve.ratio for j in judgements}))
+            axes.yaxis.set_major_formatter(lambda y, _: f"{y:.3g}")
+            _thickness_axis(axes, f"f = {friction:g}")
+            rows += [
+                [
+                    f"{friction:g}",
+                    f"{ratio[i]:.6g}",
+                    f"{h[j]:.6g}",
+                    f"{largest[i, j]:.6g}",
+                    modes[governing[i, j]],
+                ]
+                for i in range(0, ratio.size, 4)
+                for j in range(0, h.size, 8)
+            ]
+        panels[0].set_ylabel("$E_1/E_2$")
+        handles = [Patch(color=_pale(COLOURS[list(MODES).index(m)]), label=f"{m}: {MODES[m]}") for m in modes]
+        figure.legend(handles=handles, loc="outside lower center", ncols=2, frameon=False)
+        said = "stress over strength, red where it is 1" if judgements[0].limited else "stress over p_h"
+        return [
+            drawn(
+                figure,
+                "governing_mode",
+                "Governing failure mode",
+                "Colour: the mode whose stress is largest against its strength. Lines: the largest "
+                f"{said}. Dots: solved points.",
+                rows,
+            )
+        ]
+
+
+def _places(lines: QuadContourSet, h: Array, ratio: Array) -> list[tuple[float, float]]:
+    """A point of each contour line for its number: off the frame, off the numbers of the lines beside it."""
+    low, high = np.log(ratio[[0, -1]]) + 0.06 * np.log(ratio[-1] / ratio[0]) * np.array([1, -1])
+    found = []
+    for i, path in enumerate(lines.get_paths()):
+        x, y = np.log(np.asarray(path.vertices).reshape(-1, 2)).T
+        inside = np.flatnonzero((y > low) & (y < high))
+        if inside.size:
+            wanted = np.log(h[0]) + (0.3, 0.5, 0.7)[i % 3] * np.log(h[-1] / h[0])
+            at = inside[np.abs(x[inside] - wanted).argmin()]
+            found.append((float(np.exp(x[at])), float(np.exp(y[at]))))
+    return found
+
+
+def _pale(colour: str) -> tuple[float, float, float]:
+    r, g, b = mpl.colors.to_rgb(colour)
+    return (0.45 * r + 0.55, 0.45 * g + 0.55, 0.45 * b + 0.55)
+
+
+def _map(judgements: Sequence[Judged]) -> tuple[Array, Array, Array] | None:
+    """h/a_h, E1/E2, uses of strength (modes, ratios, thicknesses) on a dense grid; None for one modulus."""
+    members = sorted(judgements, key=lambda j: j.curve.ratio)
+    if len(members) < 2:
+        return None
+    h = np.geomspace(max(j.curve.h[0] for j in members), min(j.curve.h[-1] for j in members), 240)
+    ratio = np.geomspace(members[0].curve.ratio, members[-1].curve.ratio, 120)
+    rows = np.stack(
+        [PchipInterpolator(np.log(j.curve.h), j.utilisation, axis=1)(np.log(h)) for j in members], axis=1
+    )
+    known = np.log([j.curve.ratio for j in members])
+    at = np.clip(np.searchsorted(known, np.log(ratio)) - 1, 0, known.size - 2)
+    share = ((np.log(ratio) - known[at]) / np.diff(known)[at])[:, None]
+    return h, ratio, (1 - share) * rows[:, at] + share * rows[:, at + 1]

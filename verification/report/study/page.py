@@ -1,0 +1,284 @@
+"""The report of a study: figures for a paper beside one page that says what they show."""
+
+import base64
+from collections.abc import Sequence
+from pathlib import Path
+
+from markupsafe import Markup
+
+from verification.report.study.contours import contour_figure, nearest
+from verification.report.study.figures import (
+    Drawn,
+    contact_figure,
+    governing_figure,
+    stress_figures,
+    use_figures,
+    write_drawn,
+)
+from verification.report.study.recommendation import near, recommendation_sentences
+from verification.report.study.summary import (
+    agreement_sentences,
+    curve_sentences,
+    main_sentences,
+    preference_sentences,
+)
+from verification.report.tables.cells import Cell, Gallery, Panel, Part, Row, Section, Table
+from verification.report.tables.csv import embedded
+from verification.report.tables.labels import source_label
+from verification.report.tables.numbers import scientific
+from verification.report.templates import render_sections
+from verification.running.store import write_atomically
+from verification.study.criteria import MODES, Judged, judged
+from verification.study.curves import Curve, Difference, curves, differences
+from verification.study.plan import Study
+from verification.study.quantities import QUANTITIES
+from verification.study.table import SCALARS, SOURCES, read_columns
+
+__all__ = ["write_study_report"]
+
+CONTOURS = (0.1, 0.5, 2.0)  # h/a_h; the solved ones nearest to these
+
+
+def write_study_report(
+    table: Path, study: Study, folder: Path, facts: Sequence[tuple[str, str]] = (), *, maps: bool = True
+) -> Path:
+    """Draw the ``table`` of ``study``: NAME.html, figures/NAME/*.pdf, .png, .csv under ``folder``.
+
+    facts : more (name, value) pairs for the head of the page.   maps : solve for contour maps too.
+    Returns the page. Raises StoreError where the table cannot be read or the folder not written.
+    """
+    columns = read_columns(table)
+    every = curves(columns)
+    found = [c for c in every if c.h.size >= 2]
+    judgements = [judged(c, study.criteria) for c in found]
+    checks = differences(columns)
+    groups: list[tuple[str, str, list[Drawn]]] = []
+    failures: list[str] = []
+    if found:
+        groups = [
+            ("stress", "Stress against thickness", stress_figures(found)),
+            ("use", "Stress over strength", use_figures(judgements)),
+            ("governing", "Governing failure mode", governing_figure(judgements)),
+            ("contact", "The contact against thickness", contact_figure(found)),
+        ]
+        if maps:
+            drawn, failures = _maps(study, found)
+            groups.insert(3, ("contours", "In the x-z plane", drawn))
+    for _, _, drawings in groups:
+        for drawing in drawings:
+            write_drawn(drawing, folder / "figures" / study.name)
+    sections = [
+        _preference(study, judgements),
+        _summary(found, checks),
+        *(_drawn_section(*group) for group in groups if group[2]),
+        *_checks(checks),
+        Section("extremes", "Extremes of every curve", [_extremes(found)]),
+        *_failed(every, failures),
+    ]
+    p_h, a_h = (found[0].p_h, found[0].a_h) if found else (float("nan"), float("nan"))
+    head = [
+        ("study", study.title),
+        ("sphere", f"R = {study.radius * 1e3:g} mm, W = {study.load:g} N"),
+        ("substrate", f"E = {study.substrate[0] / 1e9:g} GPa, nu = {study.substrate[1]:g}"),
+        ("coating", f"nu = {study.coating_nu:g}"),
+        ("scales", f"a_h = {a_h * 1e6:.4g} µm, p_h = {p_h / 1e6:.4g} MPa"),
+        *facts,
+    ]
+    solved = sum(c.h.size for c in every)
+    lost = sum(len(c.failures) for c in every)
+    text = f"{solved} points solved" + (f", {lost} could not be" if lost else "") + f": {study.title}"
+    page = folder / f"{study.name}.html"
+    footer = (
+        f"Written by coatcheck from {table.name} beside this file; figures/{study.name} holds PDF, PNG, CSV."
+    )
+    write_atomically(page, render_sections("coatcheck study", text, head, sections, footer))
+    return page
+
+
+def _summary(found: Sequence[Curve], checks: Sequence[Difference]) -> Section:
+    if not found:
+        return Section("summary", "What the curves say", [], ["No curve has two solved points."])
+    parts = [Part(sentence) for sentence in main_sentences(found)]
+    parts += [Part(sentence) for sentence in agreement_sentences(checks)]
+    if not checks:
+        parts.append(Part("No point was cross-checked."))
+    parts += [
+        Part(sentence, folded=f"Every curve of {quantity}")
+        for quantity, sentence in zip(MODES, curve_sentences(found), strict=True)
+    ]
+    return Section("summary", "What the curves say", parts)
+
+
+def _extremes(found: Sequence[Curve]) -> Part:
+    rows = []
+    for curve in found:
+        for quantity in (*QUANTITIES, *SCALARS):
+            (h_low, low), (h_high, high) = curve.extremes(quantity)
+            scale = SCALARS.get(quantity, "p_h")
+            cells = [Cell(f"{curve.ratio:.4g}", curve.ratio), Cell(f"{curve.friction:g}", curve.friction)]
+            cells += [Cell(scale)]
+            for value, h in ((low, h_low), (high, h_high)):
+                cells += [Cell(f"{value:.5f}", value), Cell(f"{h:.3g}", h)]
+            places = "–"
+            if quantity in QUANTITIES:
+                i = int(curve.stress[quantity].argmax())
+                places = f"{curve.x[quantity][i]:.3f}, {curve.z[quantity][i]:.3f}".replace("nan", "–")
+            cells.append(Cell(places))
+            rows.append(Row(Cell(quantity), cells))
+    table = Table(
+        "Extremes of every curve among its solved points, and where in the solid the largest lies.",
+        [
+            "quantity",
+            "E1/E2",
+            "f",
+            "over",
+            "smallest",
+            "at h / a_h",
+            "largest",
+            "at h / a_h",
+            "x, z over a_h",
+        ],
+        rows,
+    )
+    return Part("", [table], folded=f"{len(rows)} rows")
+
+
+def _preference(study: Study, judgements: Sequence[Judged]) -> Section:
+    rows = []
+    limited = any(j.limited for j in judgements)
+    for j in judgements:
+        h, use, mode = j.preferable
+        ranges = "; ".join(
+            f"{low * j.curve.a_h * 1e6:.3g} – {high * j.curve.a_h * 1e6:.3g}" for low, high in j.admissible
+        )
+        rows.append(
+            Row(
+                Cell(f"{j.curve.ratio:.4g}", j.curve.ratio),
+                [
+                    Cell(f"{j.curve.friction:g}", j.curve.friction),
+                    Cell(f"{h:.3g}", h),
+                    Cell(f"{h * j.curve.a_h * 1e6:.3g}", h * j.curve.a_h),
+                    Cell(f"{use:.4f}", use),
+                    Cell(mode, note=MODES[mode]),
+                    *([Cell(ranges or "none")] if limited else []),
+                    Cell(scientific(j.reading), j.reading),
+                    *_near_cells(j, h, mode),
+                ],
+                "" if j.admissible or not j.limited else "disagrees",
+            )
+        )
+    table = Table(
+        "The preferable thickness of every curve. Reading error: the largest change at a point read from the "
+        "others, over the largest use; the curve itself, with twice the points, is read more closely. "
+        "Last: the differences of the governing stress, over p_h, at the checked thickness nearest to the "
+        "preferable one.",
+        [
+            "E1/E2",
+            "f",
+            "h / a_h",
+            "h [µm]",
+            "stress / strength" if limited else "stress / p_h",
+            "governing mode",
+            *(["admissible h [µm]"] if limited else []),
+            "reading error",
+            "checked at",
+            "off finite elements",
+            "off exact",
+        ],
+        rows,
+    )
+    parts = [Part(study.criteria.sentence()), *(Part(s) for s in recommendation_sentences(judgements))]
+    every = Part(" ".join(preference_sentences(judgements)), folded="Every curve in words")
+    return Section("preferable", "Which thickness", [*parts, Part("", [table]), every])
+
+
+def _near_cells(judgement: Judged, h: float, mode: str) -> list[Cell]:
+    """The thickness checked next to ``h``, what each other source differs by there; dashes for none."""
+    by_source = {one.source: one for one in near(judgement, h, mode)}
+    cells = [Cell("–")]
+    for source in SOURCES[1:]:
+        one = by_source.get(source)
+        if one is not None:
+            cells[0] = Cell(f"{one.h:.3g}", one.h)
+        cells.append(Cell("–") if one is None else Cell(scientific(one.difference), one.difference))
+    return cells
+
+
+def _drawn_section(anchor: str, title: str, drawings: Sequence[Drawn]) -> Section:
+    panels = [
+        Panel(
+            d.title,
+            Markup('<img class="print" src="data:image/png;base64,{}" alt="{}" loading="lazy">{}').format(
+                base64.b64encode(d.png).decode(), f"{d.title}. {d.caption}", _download(d)
+            ),
+            d.caption,
+            "wide",
+        )
+        for d in drawings
+    ]
+    text = "For print, in the folder of figures: " + ", ".join(f"{d.name}.pdf" for d in drawings) + "."
+    return Section(anchor, title, [Part("", gallery=Gallery([], panels, text))])
+
+
+def _download(d: Drawn) -> Markup:
+    return Markup(
+        '<a class="csv" href="{0}" download="{1}.csv.gz" data-csv="{1}.csv">Numbers as CSV</a>'
+    ).format(embedded(d.csv), d.name)
+
+
+def _maps(study: Study, found: Sequence[Curve]) -> tuple[list[Drawn], list[str]]:
+    """Contours of the most compliant and the stiffest coating at the middle friction."""
+    frictions = sorted({c.friction for c in found})
+    middle = [c for c in found if c.friction == frictions[len(frictions) // 2]]
+    chosen = {min(c.ratio for c in middle), max(c.ratio for c in middle)}
+    drawings, failures = [], []
+    for curve in (c for c in middle if c.ratio in chosen):
+        try:
+            drawings.append(contour_figure(study, curve, nearest(curve, CONTOURS)))
+        except Exception as error:  # a map that fails is a sentence of the page
+            failures.append(f"contour map of {curve.label}: {' '.join(str(error).split())[:300]}")
+    return drawings, failures
+
+
+def _checks(checks: Sequence[Difference]) -> list[Section]:
+    if not checks:
+        return []
+    rows = [
+        Row(
+            Cell(source_label(d.source)),
+            [
+                Cell(d.quantity),
+                Cell(str(d.points), d.points),
+                Cell(scientific(d.largest), d.largest),
+                Cell(scientific(d.stated), d.stated),
+                Cell(f"{d.ratio:.4g}", d.ratio),
+                Cell(f"{d.h:.3g}", d.h),
+                Cell(f"{d.friction:g}", d.friction),
+            ],
+            "" if d.largest <= d.stated or d.stated != d.stated else "disagrees",
+        )
+        for d in checks
+    ]
+    columns = [
+        "source",
+        "quantity",
+        "points",
+        "largest difference",
+        "uncertainty of both",
+        "E1/E2",
+        "h / a_h",
+        "f",
+    ]
+    table = Table(
+        "The largest difference from the semi-analytical method, over p_h, a_h or delta_h, where it occurs, "
+        "the uncertainty both state there.",
+        columns,
+        rows,
+    )
+    return [Section("checks", "Cross-check", [Part("", [table])])]
+
+
+def _failed(every: Sequence[Curve], more: Sequence[str]) -> list[Section]:
+    said = [f"{c.label}, h = {h:.4g} a_h: {sentence}" for c in every for h, sentence in c.failures]
+    said += more
+    return [Section("failed", "What could not be solved", [], said[:200])] if said else []

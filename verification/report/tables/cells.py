@@ -1,0 +1,117 @@
+"""The few shapes a report page is made of: cells, rows, tables, figures, sections."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from markupsafe import Markup
+
+from verification.report.tables.csv import embedded, written
+
+__all__ = ["Cell", "Gallery", "Panel", "Part", "Row", "Section", "Table"]
+
+
+@dataclass(frozen=True)
+class Cell:
+    """``text`` of a table cell; ``sort`` orders a column where the text would not.
+
+    css : class names.   note : what a pointer or a screen reader adds.   href : where the cell leads.
+    """
+
+    text: str
+    sort: float | None = None
+    css: str = ""
+    note: str = ""
+    href: str = ""
+
+
+@dataclass(frozen=True)
+class Row:
+    """One row: its ``head`` names it, ``css`` colours it."""
+
+    head: Cell
+    cells: Sequence[Cell]
+    css: str = ""
+
+
+@dataclass(frozen=True)
+class Table:
+    """``columns`` head the cells, ``groups`` span them: (title, number of columns), "" for none.
+
+    The first column is that of the row heads.
+    """
+
+    caption: str
+    columns: Sequence[str]
+    rows: Sequence[Row]
+    groups: Sequence[tuple[str, int]] = ()
+    css: str = ""
+
+
+@dataclass(frozen=True)
+class Panel:
+    """One drawn quantity: ``title`` with its scale, the figure, what a reader should look at."""
+
+    title: str
+    figure: Markup
+    note: str
+    css: str
+
+
+@dataclass(frozen=True)
+class Gallery:
+    """Figures side by side under one ``legend`` of (swatch, words), over one ``caption``.
+
+    csv : the numbers behind, where they are not those of the tables beside the figures.
+    """
+
+    legend: Sequence[tuple[Markup, str]]
+    panels: Sequence[Panel]
+    caption: str
+    csv: str = ""
+
+
+@dataclass(frozen=True)
+class Part:
+    """A paragraph of a section with the figures and the tables it introduces, under a ``title`` or none.
+
+    folded : what the reader clicks to unfold all of it; "" where it lies open.
+    """
+
+    text: str
+    tables: Sequence[Table] = ()
+    gallery: Gallery | None = None
+    title: str = ""
+    folded: str = ""
+
+    @property
+    def download(self) -> str:
+        """The numbers behind the gallery as an address that carries them; "" without a gallery."""
+        if self.gallery is None:
+            return ""
+        return embedded(self.gallery.csv or written([row for item in self.tables for row in _cells_of(item)]))
+
+
+@dataclass(frozen=True)
+class Section:
+    """A part of the page about the run as a whole; ``failures`` are sentences said before all else."""
+
+    anchor: str
+    title: str
+    parts: Sequence[Part]
+    failures: Sequence[str] = ()
+
+
+def _cells_of(table: Table) -> list[list[str]]:
+    """Heads, then rows: the number behind a cell where it has one, else what it says."""
+    heads = list(table.columns)
+    if table.groups:
+        over = [title for title, count in table.groups for _ in range(count)]
+        heads = [f"{group}: {head}" if group else head for group, head in zip(over, heads, strict=True)]
+    rows = [
+        [
+            cell.text if cell.sort is None or cell.text in ("", "–") else f"{cell.sort:.9g}"
+            for cell in row.cells
+        ]
+        for row in table.rows
+    ]
+    return [heads, *([row.head.text, *cells] for row, cells in zip(table.rows, rows, strict=True)), []]

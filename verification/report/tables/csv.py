@@ -1,0 +1,63 @@
+"""The numbers behind the figures as CSV that travels inside the page."""
+
+import base64
+import csv
+import gzip
+from collections.abc import Sequence
+from io import StringIO
+from itertools import zip_longest
+
+from verification.problem.profile import SCALARS, Profile
+from verification.report.tables.lookup import coordinate
+from verification.running.result import CaseResult
+
+__all__ = ["embedded", "line_csv", "written"]
+
+
+def line_csv(result: CaseResult, line: str) -> str:
+    """Every quantity of every source on ``line`` as CSV, SI units in the column heads.
+
+    Sources at the same positions share one position column; another one follows where they differ.
+    """
+    groups: list[list[Profile]] = []
+    for profile in result.profiles:
+        if profile.line != line:
+            continue
+        same = [g for g in groups if g[0].position.tobytes() == profile.position.tobytes()]
+        if same:
+            same[0].append(profile)
+        else:
+            groups.append([profile])
+    columns: list[list[str]] = []
+    for group in groups:
+        if line != "contact":
+            columns.append([f"{coordinate(line)} [m]", *(f"{x:.9g}" for x in group[0].position.tolist())])
+        for profile in group:
+            head = f"{profile.quantity} [{_unit(profile)}] {profile.source}"
+            columns.append([_safe(head), *(f"{v:.8g}" for v in profile.value.tolist())])
+            if profile.uncertainty is not None:
+                spread = [f"{v:.3g}" for v in profile.uncertainty.tolist()]
+                columns.append([_safe(f"uncertainty of {head}"), *spread])
+    return written(list(zip_longest(*columns, fillvalue="")))
+
+
+def embedded(text: str) -> str:
+    """``text`` compressed as a data address; the same text always gives the same address."""
+    packed = gzip.compress(text.encode(), compresslevel=9, mtime=0)
+    return f"data:application/gzip;base64,{base64.b64encode(packed).decode()}"
+
+
+def _unit(profile: Profile) -> str:
+    return "m" if profile.quantity in SCALARS[1:] else "Pa"
+
+
+def written(rows: Sequence[Sequence[str]]) -> str:
+    """``rows`` as CSV."""
+    out = StringIO()
+    csv.writer(out, lineterminator="\n").writerows(rows)
+    return out.getvalue()
+
+
+def _safe(text: str) -> str:
+    # A name from a stranger must not run as a formula when the file is opened in a spreadsheet.
+    return f"'{text}" if text[:1] in ("=", "+", "-", "@", "\t", "\r") else text

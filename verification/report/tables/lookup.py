@@ -1,0 +1,147 @@
+"""Reading a case result: its scales, its references, the points its verdicts speak of."""
+
+import re
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from verification.judging.verdict import Claim
+from verification.problem.profile import SCALARS, Profile
+from verification.report.tables.labels import EXACT, METHODS
+from verification.running.result import CaseResult
+
+__all__ = [
+    "GROUPS",
+    "baseline",
+    "claimed_quantities",
+    "contact_radius",
+    "coordinate",
+    "difference",
+    "group_of",
+    "judged",
+    "layers",
+    "lines",
+    "scalar",
+    "scale",
+    "slug",
+    "sources_with_profiles",
+]
+
+GROUPS = ("p0, a, approach", "surface", "axis", "interfaces")
+_SCALAR_SCALES = {"peak_pressure": "p_h", "contact_radius": "a_h", "approach": "delta_h"}
+
+
+def group_of(line: str) -> str:
+    """The column of the verdict matrix that a line belongs to."""
+    if line == "contact":
+        return GROUPS[0]
+    return GROUPS[3] if line.startswith("interface") else line
+
+
+def lines(result: CaseResult) -> tuple[str, ...]:
+    """The lines with profiles, in the order in which they were sampled; without the scalars."""
+    return tuple(dict.fromkeys(p.line for p in result.profiles if p.line != "contact"))
+
+
+def sources_with_profiles(result: CaseResult) -> tuple[str, ...]:
+    """The sources that gave numbers, in the order of the case; a failed one gave none."""
+    found = {profile.source for profile in result.profiles}
+    order = [source.source for source in result.sources]
+    return tuple(s for s in order if s in found) + tuple(sorted(found - set(order)))
+
+
+def baseline(result: CaseResult) -> str | None:
+    """What the others are held against: the last exact reference, else the finite elements."""
+    found = sources_with_profiles(result)
+    exact = [source for source in found if source in EXACT]
+    references = [source for source in found if source not in METHODS]
+    for choice in (exact, references, [s for s in found if s == "fem_reference"]):
+        if choice:
+            return choice[-1]
+    return None
+
+
+def scale(result: CaseResult, name: str) -> np.float64:
+    """A Hertz scale of the case by name, "a_h", "p_h" or "delta_h"; NaN where it is not stated."""
+    try:
+        return np.float64(result.problem[name])
+    except (KeyError, TypeError, ValueError):
+        return np.float64("nan")
+
+
+def layers(result: CaseResult) -> list[tuple[float, float, float]]:
+    """(E [Pa], nu, thickness [m]) from the surface down, the substrate last with thickness infinity.
+
+    [] where the problem states anything else than finite numbers.
+    """
+    try:
+        coatings = [(float(E), float(nu), float(h)) for E, nu, h in result.problem["coatings"]]
+        E, nu = (float(value) for value in result.problem["substrate"])
+    except (KeyError, TypeError, ValueError):
+        return []
+    numbers = [number for layer in coatings for number in layer] + [E, nu]
+    if not np.isfinite(numbers).all() or min(E for E, _, _ in [*coatings, (E, nu, 0.0)]) <= 0:
+        return []
+    return [*coatings, (E, nu, float("inf"))]
+
+
+def scalar(result: CaseResult, quantity: str, source: str) -> tuple[np.float64, float | None] | None:
+    """Value [SI] with uncertainty of a scalar of the contact; None where the source gave none."""
+    profile = result.profile(quantity, "contact", source)
+    if profile is None or profile.value.size == 0:
+        return None
+    spread = None if profile.uncertainty is None else float(profile.uncertainty[0])
+    return profile.value[0], spread
+
+
+def contact_radius(result: CaseResult) -> float | None:
+    """The contact radius [m] by the best source that gave a finite one."""
+    for source in (baseline(result), *sources_with_profiles(result)):
+        found = scalar(result, "contact_radius", source) if source else None
+        if found is not None and np.isfinite(found[0]):
+            return found[0]
+    return None
+
+
+def coordinate(line: str) -> str:
+    """The coordinate that runs along ``line``."""
+    return "z" if line == "axis" else "x"
+
+
+def claimed_quantities(result: CaseResult, line: str) -> tuple[str, ...]:
+    """Quantities on ``line`` that a claim speaks of; where there is none, all that were sampled."""
+    sampled = tuple(dict.fromkeys(p.quantity for p in result.profiles if p.line == line))
+    claimed = {claim.quantity for claim, _ in result.verdicts if claim.line == line}
+    return tuple(q for q in sampled if q in claimed) or sampled
+
+
+def judged(result: CaseResult, claim: Claim, position: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """Marks the points of ``position`` that ``claim`` speaks of: those outside its zone around the edge."""
+    a = contact_radius(result)
+    if not claim.edge or a is None or coordinate(claim.line) == "z":
+        return np.ones(position.shape, dtype=bool)
+    return np.abs(np.abs(position) - a) >= claim.edge * a
+
+
+def difference(
+    result: CaseResult, first: Profile | None, second: Profile | None
+) -> tuple[NDArray[np.float64], NDArray[np.float64] | None] | None:
+    """|A - B| with U_A + U_B, both over p_h, or over the value of B for the scalars of the contact.
+
+    None where the two are not at the same positions, so that nothing may be subtracted.
+    """
+    if first is None or second is None or not np.array_equal(first.position, second.position):
+        return None
+    reach: Any = scale(result, "p_h")
+    if first.quantity in SCALARS:
+        reach = np.abs(second.value)
+    gap = np.abs(first.value - second.value) / reach
+    if first.uncertainty is None or second.uncertainty is None:
+        return gap, None
+    return gap, (first.uncertainty + second.uncertainty) / reach
+
+
+def slug(text: str) -> str:
+    """``text`` as part of an anchor or a file name: letters, digits and hyphens only."""
+    return re.sub(r"[^a-z0-9]+", "-", text.lower()).strip("-")[:60] or "case"

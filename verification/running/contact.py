@@ -1,0 +1,166 @@
+"""One case from its problem to its verdicts."""
+
+import time
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from verification.cases.contact import Case
+from verification.judging.invariants import Invariant, check, resolved
+from verification.judging.verdict import Claim, Outcome, Verdict, compare, judge
+from verification.problem.arrays import Array
+from verification.problem.contact import CoatedContact, Solution
+from verification.problem.profile import Line, Profile
+from verification.running.result import CaseResult, SourceResult, describe, diagnostics_of, sentence
+from verification.sampling.lines import sample, sample_contact
+from verification.sources.contact import Solver, solvers
+
+__all__ = ["Solved", "decide", "failed", "judge_case", "run", "solve_case"]
+
+
+def run(case: Case, available: Mapping[str, Solver] | None = None) -> CaseResult:
+    """Solve a case by every source its claims name, sample all at the same points, judge the claims.
+
+    A source that fails leaves its sentence and NO_RESULT on each of its claims; the others go on.
+    ``available`` replaces the solvers, as tests and planted faults do.
+    """
+    return judge_case(case, solve_case(case, available))
+
+
+@dataclass(frozen=True, eq=False)
+class Solved:
+    """What each source of a case came to, by name: its Solution where it has one, its SourceResult always.
+
+    resolved : invariants between solutions of the problem and of others, where the case has ``resolve``.
+    """
+
+    solutions: Mapping[str, Solution]
+    outcomes: Mapping[str, SourceResult]
+    resolved: tuple[Invariant, ...] = ()
+
+
+def solve_case(case: Case, available: Mapping[str, Solver] | None = None) -> Solved:
+    """Solve a case by every source its claims name; ``available`` as in ``run``."""
+    available = solvers() if available is None else available
+    wanted = {source for claim in case.claims for source in claim.between}
+    outcomes: dict[str, SourceResult] = {}
+    solutions: dict[str, Solution] = {}
+    for source in (name for name in available if name in wanted):
+        begin = time.perf_counter()
+        try:
+            solution = available[source](case.problem, case.numerics.get(source, {}))
+            for name in ("contact_radius", "approach", "peak_pressure"):
+                if not np.isfinite(getattr(solution, name)):
+                    raise ValueError(f"{name} = {getattr(solution, name)}; the solution is not finite")
+        except Exception as error:  # a failed solve is a row of the report, whatever went wrong
+            outcomes[source] = SourceResult(source, time.perf_counter() - begin, sentence(error))
+            continue
+        solutions[source] = solution
+        outcomes[source] = SourceResult(
+            source,
+            time.perf_counter() - begin,
+            diagnostics=diagnostics_of(solution.diagnostics),
+            budget=getattr(solution.uncertainty, "budget", ()),
+        )
+    return Solved(solutions, outcomes, resolved(case.problem, available) if case.resolve else ())
+
+
+def judge_case(case: Case, solved: Solved, *, invariants: bool = True) -> CaseResult:
+    """Sample what was solved at the same points of every line, then decide each claim of ``case``.
+
+    invariants : whether each solution is checked against its invariants too.
+    """
+    started = time.perf_counter()
+    solutions, outcomes = dict(solved.solutions), dict(solved.outcomes)
+    profiles: dict[tuple[str, str, str], Profile] = {}
+    places = _positions(case, solutions) if solutions else {}
+    for source, solution in solutions.items():
+        begin = time.perf_counter()
+        try:
+            found = list(sample_contact(solution, source))
+            for line in case.lines:
+                found += sample(solution, source, line, places[line])
+        except Exception as error:  # as above: stresses that cannot be had are a sentence, not a traceback
+            outcomes[source] = SourceResult(source, outcomes[source].seconds, sentence(error))
+            continue
+        old = outcomes[source]
+        seconds = old.seconds + time.perf_counter() - begin
+        outcomes[source] = SourceResult(source, seconds, None, old.diagnostics, old.budget)
+        profiles |= {(p.quantity, p.line, source): p for p in found}
+
+    edge = next(
+        (solutions[s].contact_radius for s in reversed(list(solutions)) if not outcomes[s].failure), 0.0
+    )
+    held: list[Invariant] = []
+    if invariants:
+        for source, solution in solutions.items():
+            held += check(solution, source, case.problem)
+        held += solved.resolved
+    verdicts = tuple((claim, decide(claim, profiles, outcomes, case.problem, edge)) for claim in case.claims)
+    return CaseResult(
+        name=case.name,
+        title=case.title,
+        source=case.source,
+        problem=describe(case.problem),
+        sources=tuple(outcomes.values()),
+        profiles=tuple(profiles.values()),
+        verdicts=verdicts,
+        seconds=sum(s.seconds for s in solved.outcomes.values()) + time.perf_counter() - started,
+        text=case.text,
+        invariants=tuple(held),
+    )
+
+
+def failed(case: Case, reason: str, seconds: float) -> CaseResult:
+    """The result of a case that could not be run at all: every claim NO_RESULT, for ``reason``."""
+    return CaseResult(
+        name=case.name,
+        title=case.title,
+        source=case.source,
+        problem=describe(case.problem),
+        sources=(SourceResult("case", seconds, reason),),
+        profiles=(),
+        verdicts=tuple((claim, Verdict(Outcome.NO_RESULT, reason)) for claim in case.claims),
+        seconds=seconds,
+        text=case.text,
+    )
+
+
+def decide(
+    claim: Claim,
+    profiles: Mapping[tuple[str, str, str], Profile],
+    outcomes: Mapping[str, SourceResult],
+    problem: CoatedContact,
+    edge: float,
+) -> Verdict:
+    """The verdict of ``claim``; ``profiles`` by (quantity, line, source), ``edge`` the contact radius [m]."""
+    sides = []
+    for source in claim.between:
+        outcome = outcomes.get(source)
+        if outcome is None or outcome.failure is not None:
+            reason = "was not asked" if outcome is None else outcome.failure
+            return Verdict(Outcome.NO_RESULT, f"{source}: {reason}")
+        sides.append(profiles[claim.quantity, claim.line, source])
+    a, b = sides
+    scale = problem.p_h if claim.line != "contact" else float(abs(b.value[0]))
+    excluded = np.abs(np.abs(a.position) - edge) < claim.edge * edge
+    return judge(compare(a, b, scale=scale, excluded=excluded), claim.cap)
+
+
+def _positions(case: Case, solutions: Mapping[str, Solution]) -> dict[Line, Array]:
+    """Where each line is sampled [m]: along x at nodes of the semi-analytical grid, so that neither it nor
+    the finite element model, which has shape functions, needs a third interpolation."""
+    problem = case.problem
+    a = max(solution.contact_radius for solution in solutions.values())
+    nodes = next(iter(solutions.values())).surface_nodes
+    wanted = 2.5 * a * np.linspace(0, 1, 101)
+    if problem.friction:
+        wanted = np.concatenate([-wanted[:0:-1], wanted])
+    wanted = wanted[np.abs(wanted) <= np.abs(nodes).max()]
+    x = nodes[np.unique(np.abs(nodes[None, :] - wanted[:, None]).argmin(axis=1))]
+    bounds = np.array([0.0, *problem.interfaces, max(4 * a, *(2 * z for z in problem.interfaces), 0.0)])
+    # Six points in each layer at least, and a run that thins out with depth. None lies on an interface.
+    inside = bounds[:-1, None] + np.diff(bounds)[:, None] * (np.arange(6) + 0.5) / 6
+    z = np.unique(np.concatenate([inside.ravel(), 4 * a * ((np.arange(40) + 0.5) / 40) ** 1.5]))
+    return {line: z if line.depth is None else x for line in case.lines}

@@ -1,0 +1,107 @@
+"""Fields of a case as files for ParaView: the finite element mesh, boxes of the semi-analytical method.
+
+Every file carries the case file it came from; their checksums stand in a file beside them that checks itself.
+"""
+
+import hashlib
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from verification.cases.contact import Case
+from verification.problem.contact import Solution
+from verification.running.store import MAX_BYTES, StoreError, read_checked, write_atomically, write_checked
+from verification.sampling.vtk import _box_files, _mesh_file
+
+__all__ = ["Fields", "fields_path", "read_fields", "write_fields"]
+
+
+SCHEMA = "coatcheck-fields/1"
+
+
+@dataclass(frozen=True)
+class Fields:
+    """What was written of a case: the finite element ``mesh``, the ``boxes`` layer by layer, their ``index``.
+
+    None and () where a method gave nothing; ``failures`` has by source the sentence why.
+    """
+
+    mesh: Path | None
+    index: Path | None
+    boxes: tuple[Path, ...]
+    failures: Mapping[str, str]
+
+
+def fields_path(folder: Path, name: str) -> Path:
+    """Where a run directory has the checksums of the fields of the case called ``name``."""
+    return folder / "fields" / f"{name}.json"
+
+
+def write_fields(case: Case, solutions: Mapping[str, Solution], folder: Path) -> Fields:
+    """Write the fields of ``solutions`` into ``folder``/fields, the file of checksums last.
+
+    NAME-fem.vtu : the plane y = 0, quadratic triangles.   NAME-semi.vtm : an index of NAME-semi-layer-K.vtr,
+    a box of a layer each, so that what jumps at an interface has both its values. All in metres, z into the
+    solid; fields "sigma_xx [Pa]" ..., "von_mises [Pa]", "displacement [m]", cells with their "layer".
+    A method whose fields cannot be had leaves a sentence. Raises StoreError where files cannot be written.
+    """
+    path = fields_path(folder, case.name)
+    written: dict[str, bytes] = {}
+    failures: dict[str, str] = {}
+    for source, make in (("fem_reference", _mesh_file), ("semianalytic", _box_files)):
+        if source in solutions:
+            try:
+                written |= make(case, solutions[source])
+            except Exception as error:  # fields are wanted besides; they cost no result
+                failures[source] = f"{type(error).__name__}: {' '.join(str(error).split())[:300]}"
+    for name, data in written.items():
+        write_atomically(path.parent / name, data)
+    content = {
+        "schema": SCHEMA,
+        "case_file": case.text,
+        "files": {name: hashlib.sha256(data).hexdigest() for name, data in written.items()},
+        "failures": failures,
+    }
+    write_checked(path, content)
+    return read_fields(folder, case.name, case.text)
+
+
+def read_fields(folder: Path, name: str, case_file: str | None = None) -> Fields:
+    """The fields of the case ``name`` in a run directory, every file's checksum confirmed.
+
+    case_file : that they have to come from.   Raises StoreError, naming the file.
+    """
+    path = fields_path(folder, name)
+    data = read_checked(path)
+    if data.get("schema") != SCHEMA or (case_file is not None and data.get("case_file") != case_file):
+        raise StoreError(f"{path}: of another case file or version of this program; run the case again")
+    try:
+        sums = {str(file): str(stated) for file, stated in data["files"].items()}
+        failures = {str(source): str(sentence) for source, sentence in data["failures"].items()}
+    except (KeyError, AttributeError):
+        raise StoreError(f"{path}: not a list of fields; run the case again with --fields") from None
+    for file, stated in sums.items():
+        if file != Path(file).name:
+            raise StoreError(f"{path}: names {file!r}, which is no file beside it")
+        if _digest(path.parent / file) != stated:
+            raise StoreError(
+                f"{path.parent / file}: its checksum does not hold; run the case again with --fields"
+            )
+    found = [path.parent / file for file in sums]
+    return Fields(
+        next((p for p in found if p.suffix == ".vtu"), None),
+        next((p for p in found if p.suffix == ".vtm"), None),
+        tuple(p for p in found if p.suffix == ".vtr"),
+        failures,
+    )
+
+
+def _digest(path: Path) -> str:
+    try:
+        if path.stat().st_size > MAX_BYTES:
+            raise StoreError(f"{path}: larger than {MAX_BYTES} bytes; not a file of this program")
+        return hashlib.sha256(path.read_bytes()).hexdigest()
+    except OSError as error:
+        raise StoreError(
+            f"{path}: cannot be read ({error.strerror}); run the case again with --fields"
+        ) from None

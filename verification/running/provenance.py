@@ -1,0 +1,105 @@
+"""What a run stands on: versions, commit, machine, system libraries."""
+
+import ctypes.util
+import hashlib
+import platform
+import subprocess
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+
+__all__ = ["commit", "fingerprint", "machine", "missing_libraries", "versions"]
+
+PACKAGES = (
+    "coatcheck",
+    "numpy",
+    "scipy",
+    "ducc0",
+    "scikit-fem",
+    "gmsh",
+    "meshio",
+    "pyvista",
+    "pydantic",
+    "matplotlib",
+)
+
+# Shared libraries that the gmsh wheel opens and pip cannot bring, with the Debian/Ubuntu package of each.
+GMSH_LIBRARIES = {
+    "GLU": "libglu1-mesa",
+    "GL": "libgl1",
+    "Xrender": "libxrender1",
+    "Xcursor": "libxcursor1",
+    "Xfixes": "libxfixes3",
+    "Xft": "libxft2",
+    "Xinerama": "libxinerama1",
+    "fontconfig": "libfontconfig1",
+    "gomp": "libgomp1",
+}
+
+
+def versions() -> dict[str, str]:
+    """Version of Python and of each package that puts digits into a result."""
+    found = {"python": platform.python_version()}
+    for name in PACKAGES:
+        try:
+            found[name] = version(name)
+        except PackageNotFoundError:
+            found[name] = "not installed"
+    return found
+
+
+def commit() -> str | None:
+    """Commit of this source tree, with "+" where it was changed since; None outside a checkout."""
+    here = Path(__file__).resolve().parents[2]
+    if not (here / ".git").exists():
+        return None
+
+    def git(*words: str) -> str:
+        return subprocess.run(
+            ["git", "-C", str(here), *words], capture_output=True, text=True, timeout=10, check=True
+        ).stdout.strip()
+
+    try:
+        return git("rev-parse", "--short=12", "HEAD") + ("+" if git("status", "--porcelain", "-uno") else "")
+    except (OSError, subprocess.SubprocessError):
+        return None
+
+
+def fingerprint() -> str:
+    """SHA-256 over versions and code of this program: equal where a result would come out the same again."""
+    house = Path(__file__).resolve().parents[2]
+    found = hashlib.sha256(repr(sorted(versions().items())).encode())
+    for package in ("semianalytic", "fem_reference", "verification"):
+        for path in sorted((house / package).rglob("*.py")):
+            found.update(path.relative_to(house).as_posix().encode() + b"\0" + path.read_bytes())
+    return found.hexdigest()
+
+
+def machine() -> str:
+    """System and processor, without a host name."""
+    return f"{platform.system()} {platform.machine()}{_processor()}"
+
+
+def _processor() -> str:
+    """Name, family, model of the processor where Linux tells: what last digits may depend on."""
+    try:
+        lines = Path("/proc/cpuinfo").read_text(encoding="utf-8", errors="replace").splitlines()
+    except OSError:
+        return ""
+    told: dict[str, str] = {}
+    for line in lines:
+        name, _, value = line.partition(":")
+        told.setdefault(name.strip(), value.strip())
+    found = [told[name] for name in ("model name", "cpu family", "model", "stepping") if name in told]
+    return f", {' '.join(found)}" if found else ""
+
+
+def missing_libraries() -> tuple[str, ...]:
+    """Debian packages of the system libraries that gmsh needs and this machine lacks; () where gmsh loads."""
+    try:
+        import gmsh  # noqa: F401
+    except OSError as error:
+        absent = {p for name, p in GMSH_LIBRARIES.items() if ctypes.util.find_library(name) is None}
+        # The loader names one library; the search above may overlook it where ldconfig is absent.
+        absent |= {p for name, p in GMSH_LIBRARIES.items() if f"lib{name}." in str(error)}
+        return tuple(sorted(absent or set(GMSH_LIBRARIES.values())))
+    return ()

@@ -1,0 +1,125 @@
+"""One published case from its problem to its verdicts: methods, exact reference and what was printed."""
+
+import time
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any
+
+from verification.cases.columns import PublishedColumn
+from verification.cases.published import PublishedCase
+from verification.judging.verdict import Outcome, Verdict, compare, judge
+from verification.problem.contact import Solution
+from verification.problem.profile import Profile
+from verification.problem.quantity import POINTWISE, QUANTITIES
+from verification.running.result import CaseResult, SourceResult, describe, diagnostics_of, sentence
+from verification.sampling.memo import tabulated
+from verification.sampling.points import values
+from verification.sources.loading import Loading
+from verification.sources.published import Solver, solvers
+from verification.sources.registry import METHODS, PUBLISHED
+
+__all__ = ["failed", "run"]
+
+
+def run(case: PublishedCase, available: Mapping[str, Solver] | None = None) -> CaseResult:
+    """Solve by every source, take what was printed at the very points, judge every column on every line.
+
+    available : solvers by source; both methods are called to account, the exact reference where it is there.
+    A source that fails leaves its sentence and NO_RESULT on each of its claims.
+    """
+    started = time.perf_counter()
+    available = solvers() if available is None else available
+    outcomes: dict[str, SourceResult] = {}
+    profiles = {(p.profile.quantity, p.profile.line, PUBLISHED): p.profile for p in case.columns}
+    for source, solve in available.items():
+        begin = time.perf_counter()
+        try:
+            solution = solve(case.problem)
+            if not isinstance(solution, Loading):
+                asked_of = [i.at for i in case.columns if QUANTITIES[i.profile.quantity] in POINTWISE]
+                solution = tabulated(solution, asked_of)
+            asked = {(c.quantity, c.line) for c in case.claims if source in c.between}
+            found = [
+                _profile(solution, source, item, case)
+                for item in case.columns
+                if source in METHODS or (item.profile.quantity, item.profile.line) in asked
+            ]
+        except Exception as error:  # a failed solve is a row of the report, whatever went wrong
+            outcomes[source] = SourceResult(source, time.perf_counter() - begin, sentence(error))
+            continue
+        seconds, budget = time.perf_counter() - begin, getattr(solution.uncertainty, "budget", ())
+        outcomes[source] = SourceResult(source, seconds, None, diagnostics_of(solution.diagnostics), budget)
+        profiles |= {(p.quantity, p.line, source): p for p in found}
+    columns = {(p.profile.quantity, p.profile.line): p for p in case.columns}
+    verdicts = []
+    for claim in case.claims:
+        source, item = claim.between[0], columns[claim.quantity, claim.line]
+        if source not in available and source not in METHODS:
+            continue
+        failure = outcomes[source].failure if source in outcomes else "was not asked"
+        if failure is not None:
+            verdicts.append((claim, Verdict(Outcome.NO_RESULT, f"{source}: {failure}")))
+            continue
+        mine = profiles[claim.quantity, claim.line, source]
+        comparison = compare(mine, item.profile, scale=item.scale, excluded=~item.counted)
+        verdicts.append((claim, judge(comparison, claim.cap)))
+    return replace(
+        _blank(case),
+        sources=tuple(outcomes.values()),
+        profiles=tuple(profiles.values()),
+        verdicts=tuple(verdicts),
+        seconds=time.perf_counter() - started,
+    )
+
+
+def failed(case: PublishedCase, reason: str, seconds: float) -> CaseResult:
+    """The result of a case that could not be run at all: every claim NO_RESULT, for ``reason``."""
+    return replace(
+        _blank(case),
+        sources=(SourceResult("case", seconds, reason),),
+        verdicts=tuple((claim, Verdict(Outcome.NO_RESULT, reason)) for claim in case.claims),
+        seconds=seconds,
+    )
+
+
+def _blank(case: PublishedCase) -> CaseResult:
+    return CaseResult(
+        name=case.name,
+        title=case.title,
+        source=case.source,
+        problem=describe(case.problem),
+        sources=(),
+        profiles=(),
+        verdicts=(),
+        seconds=0.0,
+        text=case.text,
+        published=case.citation | {"columns": [_record(item) for item in case.columns]},
+    )
+
+
+def _record(item: PublishedColumn) -> dict[str, Any]:
+    """What the report needs to show a column as it was printed."""
+    return {
+        "quantity": item.profile.quantity,
+        "line": item.profile.line,
+        "file": item.file,
+        "column": item.column,
+        "coordinate": item.at.coordinate,
+        "position": (item.at.along / item.at.in_si).tolist(),
+        "position_unit": item.at.unit,
+        "text": item.text,
+        "rows": item.rows,
+        "labels": item.labels,
+        "unit": item.unit,
+        "to_si": item.to_si,
+        "counted": item.counted.tolist(),
+        "why_not": item.why_not,
+        "scale": item.scale,
+    }
+
+
+def _profile(
+    solution: Solution | Loading, source: str, item: PublishedColumn, case: PublishedCase
+) -> Profile:
+    value, spread = values(solution, item.profile.quantity, item.at, case.problem, item.series)
+    return replace(item.profile, value=value, source=source, uncertainty=spread)

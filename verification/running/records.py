@@ -1,0 +1,55 @@
+"""Records as JSON: any frozen dataclass of the project as plain content, with the exact inverse."""
+
+from dataclasses import asdict
+from functools import cache
+from typing import Any, TypeVar
+
+import numpy as np
+from pydantic import TypeAdapter, ValidationError
+
+__all__ = ["decode", "encode", "plain"]
+
+T = TypeVar("T")
+
+
+def encode(record: Any) -> Any:
+    """``record`` as strict JSON holds it: arrays as nested lists, NaN and infinity as text."""
+    return plain(asdict(record))
+
+
+def decode(kind: type[T], content: Any) -> T:
+    """The inverse of ``encode``. Raises ValueError naming the first field that does not fit ``kind``.
+
+    The content may be untrusted: every part is converted to its type, nothing in it is looked up or called.
+    """
+    try:
+        adapter: TypeAdapter[T] = _adapter(kind)  # type: ignore[arg-type]
+        return adapter.validate_python(content)
+    except ValidationError as error:
+        first = error.errors(include_url=False)[0]
+        where = ".".join(map(str, first["loc"]))
+        raise ValueError(
+            f"not a {kind.__name__} of this program ({where}: {first['msg']}); compute it again"
+        ) from None
+
+
+@cache
+def _adapter(kind: Any) -> TypeAdapter[Any]:
+    return TypeAdapter(kind)
+
+
+def plain(value: Any) -> Any:
+    """``value`` as strict JSON holds it: containers and numbers of Python, NaN and infinity as text."""
+    if isinstance(value, dict):
+        return {str(key): plain(item) for key, item in value.items()}
+    if isinstance(value, np.ndarray):
+        return plain(value.tolist())
+    if isinstance(value, list | tuple):
+        return [plain(item) for item in value]
+    if isinstance(value, np.generic):
+        return plain(value.item())
+    if isinstance(value, float) and not np.isfinite(value):
+        return repr(value)
+    if value is None or isinstance(value, bool | int | float | str):
+        return value
+    return str(value)

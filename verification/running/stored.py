@@ -1,0 +1,62 @@
+"""A run read back from the report.json that it left."""
+
+import json
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from verification.running.result import CaseResult, RunInfo, from_json, to_json
+from verification.running.store import MAX_BYTES, StoreError, read_bounded, read_checked
+
+__all__ = ["StoredRun", "confirm", "read_run"]
+
+
+@dataclass(frozen=True, eq=False)
+class StoredRun:
+    """The ``results`` of a run with what it stood on; ``path`` is that of its report.json."""
+
+    path: Path
+    info: RunInfo
+    results: tuple[CaseResult, ...]
+
+    def result(self, name: str) -> CaseResult | None:
+        """The result of the case ``name``; None where the run has none."""
+        return next((result for result in self.results if result.name == name), None)
+
+
+def read_run(place: Path) -> StoredRun:
+    """The run in the directory ``place``, or in the report.json ``place`` itself.
+
+    Raises StoreError: one sentence that names the file.
+    """
+    path = place / "report.json" if place.is_dir() else place
+    try:
+        raw = read_bounded(path, MAX_BYTES)
+    except StoreError as error:
+        raise StoreError(f"{error}; give the directory of a run, or its report.json") from None
+    try:
+        data = json.loads(raw)
+        return StoredRun(path, _info(data["run"]), tuple(from_json(case) for case in data["cases"]))
+    except (ValueError, KeyError, TypeError, AttributeError, OverflowError, RecursionError) as error:
+        said = " ".join(str(error).split())[:120]
+        raise StoreError(f"{path}: not a report of this program ({said}); run the cases again") from None
+
+
+def _info(run: dict[str, Any]) -> RunInfo:
+    """Every part brought to its type: the report may be a stranger's."""
+    texts = {name: str(run[name]) for name in ("command", "started", "machine")}
+    return RunInfo(
+        **texts,
+        seconds=float(run["seconds"]),
+        jobs=int(run["jobs"]),
+        commit=None if run["commit"] is None else str(run["commit"]),
+        versions={str(name): str(version) for name, version in run["versions"].items()},
+    )
+
+
+def confirm(run: StoredRun) -> None:
+    """See to it that each case of the report is the one whose checksum holds beside it. Raises StoreError."""
+    for result in run.results:
+        path = run.path.parent / "cases" / f"{result.name}.json"
+        if to_json(from_json(read_checked(path))) != to_json(result):
+            raise StoreError(f"{path}: of another run than {run.path}; run the cases again")

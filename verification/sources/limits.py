@@ -1,0 +1,106 @@
+"""A solution in a limit that a method refuses, by extrapolation: nu = 1/2, or a base as good as rigid."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import cached_property
+from operator import attrgetter
+from typing import Any, TypeVar
+
+import numpy as np
+
+from verification.problem.arrays import Array
+from verification.problem.contact import CoatedContact, PrescribedLoad, Solution
+
+__all__ = ["eased", "towards_limits"]
+
+Problem = TypeVar("Problem", bound=CoatedContact | PrescribedLoad)
+Solver = Callable[[CoatedContact | PrescribedLoad], Solution]
+STEP = 1e-3  # of Poisson's ratio
+STIFFEST = 1e4  # base over softest coating
+
+
+def towards_limits(problem: CoatedContact | PrescribedLoad, solve: Solver) -> Solution:
+    """The solution as nu -> 1/2 and E of a stiff base is reached; that of ``solve`` where neither is asked.
+
+    Carried on along a straight line from t = 1 and 2 to t = 0, with nu = 1/2 - 1e-3 t in the incompressible
+    layers and, under a coating 1e4 times softer, a compliance of the base of 1/E + 1e-4 t / E1. What that
+    leaves out is the second difference over t = 1, 2, 3; it is part of the uncertainty.
+    """
+    if eased(problem, 1) == problem:
+        return solve(problem)
+    near, further, third = (solve(eased(problem, t)) for t in (1, 2, 3))
+    return _Extrapolated(near, further, third)
+
+
+def eased(problem: Problem, t: int) -> Problem:
+    """The problem at ``t`` steps from its limits; itself where it stands at none."""
+
+    def compressible(nu: float) -> float:
+        return nu - STEP * t if nu == 0.5 else nu
+
+    E, nu = problem.substrate
+    softest = min((E1 for E1, _, _ in problem.coatings), default=E)
+    if STIFFEST * softest < E:
+        E = 1 / (1 / E + t / (STIFFEST * softest))
+    coatings = tuple((E1, compressible(nu1), h) for E1, nu1, h in problem.coatings)
+    return replace(problem, coatings=coatings, substrate=(E, compressible(nu)))
+
+
+@dataclass(frozen=True)
+class _Scalars:
+    contact_radius: float
+    approach: float
+    peak_pressure: float
+    budget: tuple[tuple[str, str, float], ...]
+
+
+@dataclass(frozen=True, eq=False)
+class _Extrapolated:
+    """2 f(1) - f(2), with 2 U + U and the second difference for its uncertainty."""
+
+    near: Solution
+    further: Solution
+    third: Solution
+
+    def __getattr__(self, name: str) -> Any:
+        if name in ("contact_radius", "approach", "peak_pressure"):
+            return 2 * getattr(self.near, name) - getattr(self.further, name)
+        if name in ("diagnostics", "surface_nodes"):
+            return getattr(self.near, name)
+        raise AttributeError(name)
+
+    @cached_property
+    def uncertainty(self) -> _Scalars | None:
+        """Of the three scalars; None where the solutions state none."""
+        if self.near.uncertainty is None or self.further.uncertainty is None:
+            return None
+        names = ("contact_radius", "approach", "peak_pressure")
+        rows, total = [], {}
+        for name in names:
+            own = 2 * getattr(self.near.uncertainty, name) + getattr(self.further.uncertainty, name)
+            bend = abs(self._bend(attrgetter(name)))
+            rows += [(name, "both solutions", own), (name, "limit", bend)]
+            total[name] = own + bend
+        return _Scalars(**total, budget=tuple(rows))
+
+    def pressure(self, x: Any, y: Any = 0.0) -> Array:
+        return 2 * self.near.pressure(x, y) - self.further.pressure(x, y)
+
+    def stress(self, x: Any, y: Any, z: Any, layer: int | None = None) -> Array:
+        return 2 * self.near.stress(x, y, z, layer) - self.further.stress(x, y, z, layer)
+
+    def displacement(self, x: Any, y: Any, z: Any) -> Array:
+        return 2 * self.near.displacement(x, y, z) - self.further.displacement(x, y, z)
+
+    def pressure_uncertainty(self, x: Any, y: Any = 0.0) -> Array:
+        own = 2 * self.near.pressure_uncertainty(x, y) + self.further.pressure_uncertainty(x, y)
+        return own + np.abs(self._bend(lambda s: s.pressure(x, y)))
+
+    def stress_uncertainty(self, x: Any, y: Any, z: Any, layer: int | None = None) -> Array:
+        own = 2 * self.near.stress_uncertainty(x, y, z, layer) + self.further.stress_uncertainty(
+            x, y, z, layer
+        )
+        return own + np.abs(self._bend(lambda s: s.stress(x, y, z, layer)))
+
+    def _bend(self, of: Callable[[Solution], Any]) -> Any:
+        return of(self.near) - 2 * of(self.further) + of(self.third)

@@ -1,0 +1,145 @@
+"""An axisymmetric contact pressure given by its Abel potential phi on 0 <= t <= a.
+
+    p(r) = -int_r^a phi'(t) / sqrt(t^2 - r^2) dt,    phi(a) = 0
+    phat(k) = int_0^a p(r) J0(kr) r dr = int_0^a phi(t) cos(kt) dt,    W = 2 pi int_0^a phi dt
+
+phi is a sum of even Legendre polynomials, so that every integral below is exact to rounding.
+Hertz: phi = p0 (a^2 - t^2)/(2a). Sneddon, Int. J. Engng Sci. 3 (1965) 47-57.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.polynomial import legendre
+from numpy.typing import ArrayLike
+from scipy.optimize import minimize_scalar
+
+from verification.problem.arrays import Array
+from verification.sources.references.quadrature import gauss_legendre
+
+__all__ = ["AbelPressure"]
+
+
+@dataclass(frozen=True, eq=False)
+class AbelPressure:
+    """phi(t) = sum_n c[n] P_2n(t/a) [N/m]; ``a`` [m]."""
+
+    a: float
+    c: Array
+
+    @classmethod
+    def from_nodes(cls, a: float, s: Array, weight: Array, phi: Array) -> "AbelPressure":
+        """From values at Gauss-Legendre nodes ``s`` = t/a on [0, 1] with their ``weight``."""
+        n = np.arange(s.size)
+        P = legendre.legvander(s, 2 * s.size - 2)[:, ::2]
+        c = (4 * n + 1) * (P.T @ (weight * phi))
+        # Coefficients fall geometrically down to the rounding of phi; what is left there is noise.
+        noise = 8 * np.finfo(float).eps * (4 * n + 1) * np.abs(phi).max()
+        return cls(a, c[: 1 + np.flatnonzero(np.abs(c) > noise).max()])
+
+    @property
+    def load(self) -> float:
+        """W = 2 pi int_0^a phi dt [N]: only P_0 has a mean."""
+        return float(2 * np.pi * self.a * self.c[0])
+
+    @cached_property
+    def peak(self) -> float:
+        """Largest p [Pa]: at r = 0, but on a ring where a stiff film on a soft solid bends like a plate."""
+        r = np.linspace(0, self.a, 401)
+        p = self.pressure(r)
+        best = int(p.argmax())
+        if best == 0:
+            return float(p[0])
+        found = minimize_scalar(
+            lambda radius: -float(self.pressure(radius)), bounds=(r[best - 1], r[best + 1]), method="bounded"
+        )
+        return float(max(-found.fun, p[best]))
+
+    def pressure(self, r: ArrayLike) -> Array:
+        """p(r) [Pa], 0 outside; shape of ``r``."""
+        return self._over_ring(np.asarray(r, dtype=float), power=0)
+
+    def resultant(self, r: ArrayLike) -> Array:
+        """int_0^r p(s) s ds [N/rad], the load inside ``r`` over 2 pi; shape of ``r``."""
+        return self.load / (2 * np.pi) - self._over_ring(np.asarray(r, dtype=float), power=2)
+
+    def transform(self, k: Array) -> Array:
+        """phat(k) [N]: int_0^1 P_2n(s) cos(ks) ds = (-1)^n j_2n(k)."""
+        signed = self.c * (-1.0) ** np.arange(self.c.size)
+        return self.a * (signed @ _even_spherical_bessel(self.c.size, k * self.a))
+
+    def sink(self, r: Array) -> Array:
+        """No claim is made on the displacement under a contact; raises ValueError."""
+        raise ValueError("the integral equation claims no displacement field; ask one of the methods")
+
+    def bessel_integral(self, order: int, r: Array) -> Array:
+        """int_0^inf phat(k) J_order(kr) k dk [Pa] for odd ``order``; shape of ``r``.
+
+        = -int_0^min(r,a) phi'(t) sin(order asin(t/r)) / sqrt(r^2 - t^2) dt, with t = r sin(psi).
+        """
+        psi_max = np.arcsin(np.minimum(self.a / np.maximum(r, 1e-300), 1.0))
+        x, weight = gauss_legendre(max(64, 2 * self.c.size))
+        psi = 0.5 * psi_max[..., None] * (1 + x)
+        slope = self._slope_over_t(r[..., None] * np.sin(psi)) * r[..., None] * np.sin(psi)
+        return -0.5 * psi_max * (slope * np.sin(order * psi) @ weight)
+
+    def _over_ring(self, r: Array, power: int) -> Array:
+        """-int_r^a phi'(t) (t^2 - r^2)^((power-1)/2) dt, with s^2 = t^2 - r^2."""
+        reach = np.sqrt(np.maximum(self.a**2 - r**2, 0.0))
+        x, weight = gauss_legendre(max(64, 2 * self.c.size))
+        s = 0.5 * reach[..., None] * (1 + x)
+        t = np.minimum(np.hypot(r[..., None], s), self.a)
+        return -0.5 * reach * ((self._slope_over_t(t) * s**power) @ weight)
+
+    def _slope_over_t(self, t: Array) -> Array:
+        """phi'(t)/t, an even polynomial."""
+        coefficients = np.zeros(2 * self.c.size - 1)
+        coefficients[::2] = self.c
+        slope = legendre.legder(coefficients)
+        s = t / self.a
+        # At t = 0 the quotient is phi''(0).
+        small = s < 1e-6
+        safe = np.where(small, 1.0, s)
+        curvature = legendre.legval(0.0, legendre.legder(slope)) if slope.size > 1 else 0.0
+        return np.where(small, curvature, legendre.legval(safe, slope) / safe) / self.a**2
+
+
+def _even_spherical_bessel(count: int, x: Array) -> Array:
+    """j_0, j_2, ... j_2(count-1) of ``x`` > 0, shape (count,) + x.shape; all orders from one recurrence.
+
+    j_{n+1} = (2n+1)/x j_n - j_{n-1}, upwards where x exceeds every order, downwards (Miller) elsewhere.
+    """
+    top = 2 * count
+    found = np.empty((count, *x.shape))
+    up = x > top
+    far = x[up]
+    below, here = np.sin(far) / far, np.sin(far) / far**2 - np.cos(far) / far
+    for n in range(top):
+        if n % 2 == 0:
+            found[n // 2][up] = below
+        below, here = here, (2 * n + 3) / far * here - below
+    near = np.maximum(x[~up], 1e-8)
+    above, here = np.zeros_like(near), np.full_like(near, 1e-280)
+    scratch = np.zeros((count, near.size))
+    # 40 orders above the largest argument the start is forgotten to rounding.
+    for n in range(top + 40, -1, -1):
+        if n % 2 == 0 and n < top:
+            scratch[n // 2] = here
+        if n:
+            above, here = here, (2 * n + 1) / near * here - above
+            large = np.abs(here) > 1e200
+            above[large], here[large] = above[large] * 1e-250, here[large] * 1e-250
+            scratch[:, large] *= 1e-250
+    # j_0 vanishes at multiples of pi, where j_1 does not: normalise by whichever is larger.
+    j0, j1 = (
+        np.sin(near) / near,
+        np.where(near > 1e-3, np.sin(near) / near**2 - np.cos(near) / near, near / 3),
+    )
+    ratio = np.where(np.abs(j0) >= np.abs(j1), j0 / _or_one(here), j1 / _or_one(above))
+    found[:, ~up] = scratch * ratio
+    return found
+
+
+def _or_one(values: Array) -> Array:
+    return np.where(values == 0, 1.0, values)

@@ -1,0 +1,157 @@
+"""Sliding contact of a rigid sphere on a homogeneous elastic half-space, all six stresses in closed form.
+
+Friction q = f p in +x under Hertz's pressure, which it leaves as it is (Goodman's assumption). With lengths
+over a, zeta = z - i, R = sqrt(r^2 + zeta^2), tau = r / (R + zeta) the integrals over wavenumbers
+
+    L_m^n = int_0^inf k^n J_m(kr) e^(-k zeta) dk:   L_m^0 = tau^m / R,   L_m^-1 = tau^m / m,
+    L_m^-2 = r (L_(m-1)^-1 + L_(m+1)^-1) / 2m,      L_0^-1 = -ln(zeta + R),   L_0^-2 = zeta ln(zeta + R) - R
+
+give, from phat(k) = p0 (sin k - k cos k) / k^3,
+
+    A_m = int phat J_m e^(-kz) k dk   = p0 (Im L_m^-2 - Re L_m^-1)
+    B_m = int phat J_m e^(-kz) z k^2 dk = p0 z (Im L_m^-1 - Re L_m^0)
+
+and from these every stress, without a division by r. The field is that of Hamilton, Proc. Inst. Mech. Engrs
+197C (1983) 53-59, and Sackfield and Hills, J. Strain Anal. 18 (1983) 107-110, who write it in real terms.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from verification.problem.arrays import Array
+from verification.problem.contact import NotClaimed
+from verification.sources.references.hertz import Hertz, HertzUncertainty
+
+__all__ = ["Hamilton"]
+
+Complex = NDArray[np.complex128]
+
+
+@dataclass(frozen=True)
+class Hamilton:
+    """Sphere of ``radius`` [m] under ``load`` [N] on a solid of ``E`` [Pa], ``nu``; q = ``friction`` p."""
+
+    radius: float
+    load: float
+    E: float
+    nu: float
+    friction: float
+
+    def __post_init__(self) -> None:
+        if not (np.isfinite(self.friction) and self.friction >= 0):
+            raise ValueError(f"friction = {self.friction:g}; Coulomb's coefficient is zero or positive")
+        Hertz(self.radius, self.load, self.E, self.nu)  # refuses the rest in its own words
+
+    @property
+    def normal(self) -> Hertz:
+        """The same contact without friction."""
+        return Hertz(self.radius, self.load, self.E, self.nu)
+
+    @property
+    def contact_radius(self) -> float:
+        """a [m], as without friction. Johnson (4.22)."""
+        return self.normal.contact_radius
+
+    @property
+    def approach(self) -> float:
+        """delta [m], as without friction. Johnson (4.23)."""
+        return self.normal.approach
+
+    @property
+    def peak_pressure(self) -> float:
+        """p0 [Pa], as without friction. Johnson (4.24)."""
+        return self.normal.peak_pressure
+
+    @property
+    def uncertainty(self) -> HertzUncertainty:
+        """Zero: exact."""
+        return HertzUncertainty()
+
+    @property
+    def diagnostics(self) -> HertzUncertainty:
+        """Nothing to report of a closed form."""
+        return HertzUncertainty()
+
+    @property
+    def surface_nodes(self) -> Array:
+        """The pressure is known everywhere; 401 points on [-2a, 2a]."""
+        return self.normal.surface_nodes
+
+    def pressure(self, x: ArrayLike, y: ArrayLike = 0.0) -> Array:
+        """p = p0 sqrt(1 - r^2/a^2) inside the contact, 0 outside [Pa]. Johnson (3.39)."""
+        return self.normal.pressure(x, y)
+
+    def stress(self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None) -> Array:
+        """sigma[i, j, ...] [Pa], shape (3, 3) + points: Hertz and Huber's field and that of the friction.
+
+        One material: ``layer`` is accepted and has no meaning here. Raises ValueError where z < 0.
+        """
+        return self.normal.stress(x, y, z) + self.friction * self.stress_of_traction(x, y, z)
+
+    def stress_of_traction(self, x: ArrayLike, y: ArrayLike, z: ArrayLike) -> Array:
+        """Stress under q = p in +x alone, without the pressure [Pa], shape (3, 3) + points.
+
+            sigma_xx = -[(2 + nu/2) A1 - 3/4 B1] cos theta - [nu/2 A3 + 1/4 B3] cos 3 theta
+            sigma_yy = -[(3 nu/2) A1 - 1/4 B1] cos theta   + [nu/2 A3 + 1/4 B3] cos 3 theta
+            sigma_xy = -[(1 - nu/2) A1 - 1/4 B1] sin theta - [nu/2 A3 + 1/4 B3] sin 3 theta
+            sigma_zz = -B1 cos theta
+            sigma_xz = -[A0 - 1/2 B0] - 1/2 B2 cos 2 theta,   sigma_yz = -1/2 B2 sin 2 theta
+
+        Worked out from the response of the half-space to each wave of q. Raises ValueError where z < 0.
+        """
+        x, y, z = np.broadcast_arrays(*(np.asarray(v, dtype=float) for v in (x, y, z)))
+        if np.any(z < 0):
+            raise ValueError(f"z = {np.min(z):g} m is above the surface; depth counts down from 0")
+        a, nu = self.contact_radius, self.nu
+        theta = np.arctan2(y, x)
+        (A0, A1, _, A3), (B0, B1, B2, B3) = _integrals(np.hypot(x, y) / a, z / a)
+        third = nu / 2 * A3 + B3 / 4
+        sigma = np.zeros((3, 3, *x.shape))
+        sigma[0, 0] = -((2 + nu / 2) * A1 - 0.75 * B1) * np.cos(theta) - third * np.cos(3 * theta)
+        sigma[1, 1] = -(1.5 * nu * A1 - 0.25 * B1) * np.cos(theta) + third * np.cos(3 * theta)
+        sigma[0, 1] = -((1 - nu / 2) * A1 - 0.25 * B1) * np.sin(theta) - third * np.sin(3 * theta)
+        sigma[2, 2] = -B1 * np.cos(theta)
+        sigma[0, 2] = -(A0 - 0.5 * B0) - 0.5 * B2 * np.cos(2 * theta)
+        sigma[1, 2] = -0.5 * B2 * np.sin(2 * theta)
+        for i, j in ((1, 0), (2, 0), (2, 1)):
+            sigma[i, j] = sigma[j, i]
+        return self.peak_pressure * sigma
+
+    def displacement(self, x: ArrayLike, y: ArrayLike, z: ArrayLike) -> Array:
+        """No claim is made on displacements; raises NotClaimed."""
+        raise NotClaimed("the closed form claims no displacement field; ask one of the methods")
+
+    def pressure_uncertainty(self, x: ArrayLike, y: ArrayLike = 0.0) -> Array:
+        """Zero [Pa]: exact."""
+        return self.normal.pressure_uncertainty(x, y)
+
+    def stress_uncertainty(self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None) -> Array:
+        """Zero [Pa]: exact."""
+        return self.normal.stress_uncertainty(x, y, z)
+
+
+def _integrals(r: Array, z: Array) -> tuple[list[Array], list[Array]]:
+    """A_m / p0 and B_m / p0 for m = 0 .. 3 at ``r``, ``z`` over a."""
+    zeta = z - 1j
+    R = _root(r, z)
+    log = np.log(zeta + R)
+    tau = r / (zeta + R)
+    powers: list[Complex] = [-log] + [tau**m / m for m in range(1, 5)]
+    second = [zeta * log - R] + [r / (2 * m) * (powers[m - 1] + powers[m + 1]) for m in range(1, 4)]
+    # z/R vanishes towards the edge, where z and R are both zero.
+    z_over_R = np.where(R == 0, 0.0, z / np.where(R == 0, 1.0, R))
+    A = [second[m].imag - powers[m].real for m in range(4)]
+    B = [z * powers[m].imag - (tau**m * z_over_R).real for m in range(4)]
+    return A, B
+
+
+def _root(r: Array, z: Array) -> Complex:
+    """R = sqrt(r^2 + (z - i)^2) with Re R >= 0 >= Im R, which on the surface is the limit from below it."""
+    d = (r - 1) * (r + 1) + z**2
+    size = np.hypot(d, 2 * z)
+    # The larger part first, without a difference; the product of both is z.
+    larger = np.sqrt((size + np.abs(d)) / 2)
+    smaller = z / np.where(larger == 0, 1.0, larger)
+    return np.where(d >= 0, larger - 1j * smaller, smaller - 1j * larger)

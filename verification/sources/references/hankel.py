@@ -1,0 +1,213 @@
+"""Stress of a layered half-space under an axisymmetric pressure, by Hankel quadrature.
+
+Normal load, then friction q = f p in +x (the first, second and third harmonics around the axis):
+
+    sigma_rz = -int T phat J1 k dk,   sigma_zz = int S phat J0 k dk
+    sigma_xx, sigma_yy = int (ll+tt)/2 phat J0 k dk -+ cos 2theta int (ll-tt)/2 phat J2 k dk
+    u_r = -int U phat J1 k dk,         u_z = int w phat J0 k dk
+
+Amplitudes per wavenumber come from ``layered``; on the surface the homogeneous part, which decays too
+slowly for quadrature, is taken in closed form from the Abel potential of the pressure.
+Sneddon, Fourier Transforms (1951); sliding worked out from the rotation of the wave vector's frame.
+"""
+
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import ArrayLike
+from scipy.special import j0, j1, jv
+
+from verification.problem.arrays import Array, Coatings
+from verification.problem.geometry import layer_at
+from verification.sources.references.layered import Amplitudes, LayeredHalfSpace, bending_length
+from verification.sources.references.quadrature import wavenumber_panels
+
+__all__ = ["AxisymmetricPressure", "HankelField"]
+
+
+CHUNK = 2_000_000  # products of wavenumbers with radii held in memory at once
+
+
+class AxisymmetricPressure(Protocol):
+    """A pressure on r <= a with its transforms; see ``axisymmetric_pressure`` and ``uniform_disc``."""
+
+    @property
+    def a(self) -> float: ...
+    def pressure(self, r: ArrayLike) -> Array: ...
+    def resultant(self, r: ArrayLike) -> Array: ...
+    def transform(self, k: Array) -> Array: ...
+    def bessel_integral(self, order: int, r: Array) -> Array: ...
+    def sink(self, r: Array) -> Array: ...
+
+
+@dataclass(frozen=True, eq=False)
+class HankelField:
+    """Stress below ``pressure``, with friction q = f p, in ``coatings`` on ``substrate``.
+
+    nodes : Gauss points a panel; tail : exponent at which the decaying integrands are cut.
+    """
+
+    pressure: AxisymmetricPressure
+    coatings: Coatings
+    substrate: tuple[float, float]
+    friction: float = 0.0
+    nodes: int = 16
+    tail: float = 36.0
+
+    def stress(self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None) -> Array:
+        """sigma[i, j, ...] [Pa], shape (3, 3) + points; ``layer`` as in ``layer_at``."""
+        x, y, z = np.broadcast_arrays(*(np.asarray(v, dtype=float) for v in (x, y, z)))
+        layers = layer_at(z, self.coatings, layer)
+        sigma = np.zeros((3, 3, *x.shape))
+        r, theta = np.hypot(x, y), np.arctan2(y, x)
+        for depth, number in sorted(set(zip(z.ravel().tolist(), layers.ravel().tolist(), strict=True))):
+            here = (z == depth) & (layers == number)
+            sigma[:, :, here] = self._plane(r[here], theta[here], depth, number)
+        return sigma
+
+    def displacement(self, x: ArrayLike, y: ArrayLike, z: ArrayLike) -> Array:
+        """u[i, ...] [m] towards infinity, shape (3,) + points. Raises ValueError where there is friction."""
+        if self.friction:
+            raise ValueError(f"friction = {self.friction:g}; displacements are claimed without friction only")
+        x, y, z = np.broadcast_arrays(*(np.asarray(v, dtype=float) for v in (x, y, z)))
+        layers = layer_at(z, self.coatings, None)
+        u_r, u_z = np.zeros(x.shape), np.zeros(x.shape)
+        r = np.hypot(x, y)
+        for depth, number in sorted(set(zip(z.ravel().tolist(), layers.ravel().tolist(), strict=True))):
+            here = (z == depth) & (layers == number)
+            u_r[here], u_z[here] = self._displaced(r[here], depth, number)
+        theta = np.arctan2(y, x)
+        return np.stack([u_r * np.cos(theta), u_r * np.sin(theta), u_z])
+
+    def _displaced(self, r: Array, z: float, layer: int) -> tuple[Array, Array]:
+        u_r, u_z = np.zeros(r.size), np.zeros(r.size)
+        if z == 0:
+            E, nu = self.coatings[0][:2] if self.coatings else self.substrate
+            # Johnson (3.20a, b): the load inside r draws the surface in.
+            inside = np.where(r > 0, self.pressure.resultant(r) / np.where(r > 0, r, 1.0), 0.0)
+            u_r, u_z = -(1 - 2 * nu) * (1 + nu) / E * inside, (1 - nu**2) / E * self.pressure.sink(r)
+            if not self.coatings:
+                return u_r, u_z
+        k, weight = self._wavenumbers(z or 2 * self.coatings[0][2], float(r.max(initial=0.0)))
+        solid = LayeredHalfSpace(self.coatings, self.substrate, k)
+        bare = LayeredHalfSpace((), (float(solid.E[0]), float(solid.nu[0])), k) if z == 0 else None
+        A = _difference(solid, bare, z, layer, "normal")
+        weighted = weight * k * self.pressure.transform(k)
+        J = _bessel(k, r, highest=1)
+        return u_r - (weighted * A.U) @ J[1], u_z + (weighted * A.w) @ J[0]
+
+    def _plane(self, r: Array, theta: Array, z: float, layer: int) -> Array:
+        total = np.zeros((3, 3, r.size))
+        if z == 0:
+            total += self._homogeneous_surface(r, theta)
+            if not self.coatings:
+                return total
+            reach = 2 * self.coatings[0][2]
+        else:
+            reach = z
+        k, weight = self._wavenumbers(reach, float(r.max(initial=0.0)))
+        solid = LayeredHalfSpace(self.coatings, self.substrate, k)
+        bare = LayeredHalfSpace((), (float(solid.E[0]), float(solid.nu[0])), k) if z == 0 else None
+        weighted = weight * k * self.pressure.transform(k)
+        loads = {"normal": 1.0} | (
+            {"shear": self.friction, "antiplane": self.friction} if self.friction else {}
+        )
+        amplitudes = {load: _difference(solid, bare, z, layer, load) for load in loads}
+        step = max(1, CHUNK // k.size)
+        for start in range(0, r.size, step):
+            part = slice(start, start + step)
+            J = _bessel(k, r[part], highest=3 if self.friction else 2)
+            total[:, :, part] += _normal(amplitudes["normal"], weighted, J, theta[part])
+            if self.friction:
+                total[:, :, part] += self.friction * _sliding(
+                    amplitudes["shear"], amplitudes["antiplane"], weighted, J, theta[part]
+                )
+        return total
+
+    def _wavenumbers(self, reach: float, r: float) -> tuple[Array, Array]:
+        """Gauss panels up to tail/reach, no wider than the oscillation of J(kr) cos(ka), finer near 0."""
+        end = (self.tail + 2 * np.log(self.tail)) / reach
+        bent = bending_length(self.coatings, self.substrate) if self.coatings else 0.0
+        deepest = max(bent, reach, self.pressure.a)
+        return wavenumber_panels(end, 1 / deepest, 8 / (self.pressure.a + r), self.nodes)
+
+    def _homogeneous_surface(self, r: Array, theta: Array) -> Array:
+        """Surface stress of the homogeneous solid of the top layer's material. Johnson (3.21), (3.75)."""
+        nu = self.coatings[0][1] if self.coatings else self.substrate[1]
+        p = self.pressure.pressure(r)
+        centre = r < 1e-7 * self.pressure.a
+        safe = np.where(centre, 1.0, r)
+        mean = np.where(centre, p / 2, self.pressure.resultant(r) / safe**2)
+        radial, hoop = -p + (1 - 2 * nu) * mean, -2 * nu * p - (1 - 2 * nu) * mean
+        sigma = _rotate((radial + hoop) / 2, (radial - hoop) / 2, theta)
+        sigma[2, 2] = -p
+        if self.friction:
+            q1 = self.friction * self.pressure.bessel_integral(1, r)
+            q3 = self.friction * self.pressure.bessel_integral(3, r)
+            sigma[0, 0] -= (4 + nu) / 2 * q1 * np.cos(theta) + nu / 2 * q3 * np.cos(3 * theta)
+            sigma[1, 1] += -3 * nu / 2 * q1 * np.cos(theta) + nu / 2 * q3 * np.cos(3 * theta)
+            sigma[0, 1] -= (1 - nu / 2) * q1 * np.sin(theta) + nu / 2 * q3 * np.sin(3 * theta)
+            sigma[1, 0] = sigma[0, 1]
+            sigma[0, 2] = sigma[2, 0] = -self.friction * p
+        return sigma
+
+
+def _difference(
+    solid: LayeredHalfSpace, bare: LayeredHalfSpace | None, z: float, layer: int, load: str
+) -> Amplitudes:
+    full = solid.amplitudes(z, layer, load)
+    if bare is None:
+        return full
+    known = bare.amplitudes(z, 0, load)
+    return Amplitudes(**{name: getattr(full, name) - getattr(known, name) for name in vars(full)})
+
+
+def _bessel(k: Array, r: Array, highest: int) -> list[Array]:
+    """J_0 .. J_highest of k r, each of shape (k, r)."""
+    kr = k[:, None] * r[None, :]
+    J = [j0(kr), j1(kr)]
+    small = kr < 2.0
+    safe = np.where(small, 1.0, kr)
+    for n in range(2, highest + 1):
+        # Upward recurrence loses digits where kr is below the order.
+        J.append(2 * (n - 1) / safe * J[-1] - J[-2])
+        J[-1][small] = jv(n, kr[small])
+    return J
+
+
+def _rotate(mean: Array, deviator: Array, theta: Array) -> Array:
+    """In-plane tensor with radial and hoop components mean +- deviator, in x and y."""
+    sigma = np.zeros((3, 3, theta.size))
+    sigma[0, 0] = mean + deviator * np.cos(2 * theta)
+    sigma[1, 1] = mean - deviator * np.cos(2 * theta)
+    sigma[0, 1] = sigma[1, 0] = deviator * np.sin(2 * theta)
+    return sigma
+
+
+def _normal(A: Amplitudes, weighted: Array, J: list[Array], theta: Array) -> Array:
+    mean = (weighted * (A.ll + A.tt) / 2) @ J[0]
+    deviator = -(weighted * (A.ll - A.tt) / 2) @ J[2]
+    sigma = _rotate(mean, deviator, theta)
+    sigma[2, 2] = (weighted * A.S) @ J[0]
+    sigma_rz = -(weighted * A.T) @ J[1]
+    sigma[0, 2] = sigma[2, 0] = sigma_rz * np.cos(theta)
+    sigma[1, 2] = sigma[2, 1] = sigma_rz * np.sin(theta)
+    return sigma
+
+
+def _sliding(A: Amplitudes, B: Amplitudes, weighted: Array, J: list[Array], theta: Array) -> Array:
+    """Response to unit q_x: A in-plane, times i cos(alpha), with B anti-plane, times sin(alpha)."""
+    c1, s1, c2, s2, c3, s3 = (f(n * theta) for n in (1, 2, 3) for f in (np.cos, np.sin))
+    sigma = np.zeros((3, 3, theta.size))
+    third = (weighted * (A.ll - A.tt + 2 * B.lt)) @ J[3] / 4
+    sigma[0, 0] = -c1 * ((weighted * (3 * A.ll + A.tt - 2 * B.lt)) @ J[1]) / 4 + c3 * third
+    sigma[1, 1] = -c1 * ((weighted * (A.ll + 3 * A.tt + 2 * B.lt)) @ J[1]) / 4 - c3 * third
+    sigma[0, 1] = -s1 * ((weighted * (A.ll - A.tt - 2 * B.lt)) @ J[1]) / 4 + s3 * third
+    sigma[2, 2] = -c1 * ((weighted * A.S) @ J[1])
+    difference = (weighted * (A.T - B.t)) @ J[2] / 2
+    sigma[0, 2] = -((weighted * (A.T + B.t)) @ J[0]) / 2 + c2 * difference
+    sigma[1, 2] = s2 * difference
+    for i, j in ((1, 0), (2, 0), (2, 1)):
+        sigma[i, j] = sigma[j, i]
+    return sigma

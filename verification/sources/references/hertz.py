@@ -1,0 +1,170 @@
+"""Hertz contact of a rigid sphere on a homogeneous elastic half-space.
+
+The reference that every uncoated case is held against: closed form, no mesh, no iteration.
+
+Axes: origin at first contact, ``z`` into the solid. Stress is positive in tension, pressure positive in
+compression, hence sigma_zz = -p at z = 0. SI units.
+
+H. Hertz, J. reine angew. Math. 92 (1882) 156-171; M. T. Huber, Ann. Phys. 319 (1904) 153-163, for the field
+off the axis; K. L. Johnson, Contact Mechanics, Cambridge University Press, 1985.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from verification.problem.arrays import Array
+from verification.problem.contact import NotClaimed
+
+__all__ = ["Hertz", "HertzUncertainty"]
+
+
+@dataclass(frozen=True)
+class HertzUncertainty:
+    """A closed form is exact."""
+
+    contact_radius: float = 0.0
+    approach: float = 0.0
+    peak_pressure: float = 0.0
+    budget: tuple[tuple[str, str, float], ...] = ()
+
+
+@dataclass(frozen=True)
+class Hertz:
+    """Sphere of ``radius`` [m] under ``load`` [N] on a solid of ``E`` [Pa], ``nu``."""
+
+    radius: float
+    load: float
+    E: float
+    nu: float
+
+    def __post_init__(self) -> None:
+        for name in ("radius", "load", "E"):
+            if not getattr(self, name) > 0:
+                raise ValueError(f"{name} = {getattr(self, name):g}; Hertz needs it positive")
+        if not -1 < self.nu <= 0.5:
+            raise ValueError(f"nu = {self.nu:g}; an isotropic solid has -1 < nu <= 0.5")
+
+    @property
+    def E_star(self) -> float:
+        """Contact modulus E / (1 - nu^2) [Pa]; the sphere is rigid."""
+        return self.E / (1 - self.nu**2)
+
+    @property
+    def contact_radius(self) -> float:
+        """a = (3 W R / 4 E*)^(1/3) [m]. Johnson (4.22)."""
+        return (3 * self.load * self.radius / (4 * self.E_star)) ** (1 / 3)
+
+    @property
+    def approach(self) -> float:
+        """delta = a^2 / R [m]. Johnson (4.23)."""
+        return self.contact_radius**2 / self.radius
+
+    @property
+    def peak_pressure(self) -> float:
+        """p0 = 3 W / (2 pi a^2) [Pa]. Johnson (4.24)."""
+        return 3 * self.load / (2 * np.pi * self.contact_radius**2)
+
+    @property
+    def uncertainty(self) -> HertzUncertainty:
+        """Zero: exact."""
+        return HertzUncertainty()
+
+    @property
+    def diagnostics(self) -> HertzUncertainty:
+        """Nothing to report of a closed form."""
+        return HertzUncertainty()
+
+    @property
+    def surface_nodes(self) -> Array:
+        """The pressure is known everywhere; 401 points on [-2a, 2a]."""
+        return 2 * self.contact_radius * np.linspace(-1, 1, 401)
+
+    def pressure(self, x: ArrayLike, y: ArrayLike = 0.0) -> Array:
+        """p = p0 sqrt(1 - r^2/a^2) inside the contact, 0 outside [Pa]. Johnson (3.39)."""
+        r = np.hypot(x, y)
+        return self.peak_pressure * np.sqrt(np.maximum(1 - (r / self.contact_radius) ** 2, 0))
+
+    def surface_displacement(self, r: ArrayLike) -> Array:
+        """u_z at z = 0 [m], positive into the solid. Johnson (3.41a), (3.42a)."""
+        a, p0 = self.contact_radius, self.peak_pressure
+        rho = np.abs(np.asarray(r, dtype=float))
+        s = np.minimum(a / np.maximum(rho, a), 1.0)
+        inside = np.pi / 4 * (2 * a**2 - rho**2) / a
+        outside = ((2 * a**2 - rho**2) * np.arcsin(s) + rho * a * np.sqrt(1 - s**2)) / (2 * a)
+        return p0 / self.E_star * np.where(rho <= a, inside, outside)
+
+    def stress(self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None) -> Array:
+        """sigma[i, j, ...] [Pa], shape (3, 3) + points. Huber (1904); on the surface Johnson (3.43).
+
+            w^2 = [r^2+z^2-a^2 + sqrt((r^2+z^2-a^2)^2 + 4 a^2 z^2)] / 2,   s = z/w
+            sigma_zz = -p0 s^3 a^2 w^2 / (w^4 + a^2 z^2)
+            sigma_rz = -p0 r z^2 a^2 w / ((w^4 + a^2 z^2) (a^2 + w^2))
+
+        One material: ``layer`` is accepted and has no meaning here. Raises ValueError where z < 0.
+        """
+        x, y, z = np.broadcast_arrays(*(np.asarray(v, dtype=float) for v in (x, y, z)))
+        if np.any(z < 0):
+            raise ValueError(f"z = {np.min(z):g} m is above the surface; depth counts down from 0")
+        a, p0, nu = self.contact_radius, self.peak_pressure, self.nu
+        r, theta = np.hypot(x, y) / a, np.arctan2(y, x)
+        z = z / a
+        # With lengths over a. The root is taken so that nothing cancels inside the contact.
+        d = r**2 + z**2 - 1
+        root = np.hypot(d, 2 * z)
+        w2 = np.where(d >= 0, (d + root) / 2, 2 * z**2 / np.where(d >= 0, 1.0, root - d))
+        w = np.sqrt(w2)
+        # On the surface inside the contact z and w vanish together, where s^2 = z^2/w^2 = (root - d)/2.
+        s = np.sqrt(np.where(d >= 0, 2 * z**2 / np.where(root + d > 0, root + d, 1.0), (root - d) / 2))
+        arc = np.arctan2(1.0, w)
+        # (1 - s^3)/r^2 is 0/0 on the axis, where its limit is 3 / (2 (1 + z^2)) for s -> 1.
+        near = r < 1e-4
+        ring = np.where(near, 1.5 / (1 + z**2), (1 - s**3) / np.where(near, 1.0, r**2))
+        lens = w2 * s / _or_one(w2 * w2 + z**2) * s**2
+        lens = np.where(w2 == 0, np.sqrt(np.maximum(-d, 0.0)), lens)
+        radial = (1 - 2 * nu) / 3 * ring + lens + s * (w2 * (1 - nu) / (1 + w2) + (1 + nu) * w * arc - 2)
+        hoop = -(1 - 2 * nu) / 3 * ring - s * (2 * nu + w2 * (1 - nu) / (1 + w2) - (1 + nu) * w * arc)
+        shear = -r * z**2 * w / _or_one(w2 * w2 + z**2) / (1 + w2)
+        sigma = np.zeros((3, 3, *x.shape))
+        mean, deviator = p0 * (radial + hoop) / 2, p0 * (radial - hoop) / 2
+        sigma[0, 0] = mean + deviator * np.cos(2 * theta)
+        sigma[1, 1] = mean - deviator * np.cos(2 * theta)
+        sigma[0, 1] = sigma[1, 0] = deviator * np.sin(2 * theta)
+        sigma[2, 2] = -p0 * lens
+        sigma[0, 2] = sigma[2, 0] = p0 * shear * np.cos(theta)
+        sigma[1, 2] = sigma[2, 1] = p0 * shear * np.sin(theta)
+        return sigma
+
+    def stress_on_axis(self, z: ArrayLike) -> Array:
+        """Stress on the axis r = 0 at depth ``z`` >= 0, written out by itself. Johnson (3.45a, b).
+
+            sigma_xx / p0 = -(1 + nu) [1 - s arctan(1/s)] + 1 / (2 (1 + s^2)),   s = z/a
+            sigma_zz / p0 = -1 / (1 + s^2)
+
+        Returns sigma[i, j, ...] [Pa], shape (3, 3) + shape of ``z``.
+        """
+        s = np.asarray(z, dtype=float) / self.contact_radius
+        if np.any(s < 0):
+            raise ValueError(f"z = {np.min(z):g} m is above the surface; depth counts down from 0")
+        sigma = np.zeros((3, 3, *s.shape))
+        lateral = -(1 + self.nu) * (1 - s * np.arctan2(1, s)) + 0.5 / (1 + s**2)
+        sigma[0, 0] = sigma[1, 1] = self.peak_pressure * lateral
+        sigma[2, 2] = -self.peak_pressure / (1 + s**2)
+        return sigma
+
+    def displacement(self, x: ArrayLike, y: ArrayLike, z: ArrayLike) -> Array:
+        """No claim is made below the surface; raises NotClaimed."""
+        raise NotClaimed("the closed form claims no displacement field; see surface_displacement")
+
+    def pressure_uncertainty(self, x: ArrayLike, y: ArrayLike = 0.0) -> Array:
+        """Zero [Pa]: exact."""
+        return np.zeros(np.broadcast_shapes(np.shape(x), np.shape(y)))
+
+    def stress_uncertainty(self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None) -> Array:
+        """Zero [Pa]: exact."""
+        return np.zeros((3, 3, *np.broadcast_shapes(np.shape(x), np.shape(y), np.shape(z))))
+
+
+def _or_one(values: Array) -> Array:
+    return np.where(values == 0, 1.0, values)

@@ -1,0 +1,233 @@
+"""Rigid sphere on a coated half-space, frictionless contact: the Fredholm equation of the second kind.
+
+    phi(x) + (2/pi) int_0^a K(x,t) phi(t) dt = (E1*/pi) (delta - x^2/R),   phi(a) = 0
+    W = 2 pi int_0^a phi dt,   K(x,t) = int_0^inf (M(k) - 1) cos(kx) cos(kt) dk
+
+K is smooth, so Gauss-Legendre converges geometrically: no grid in the plane, no elements. Any number of
+coatings. With friction q = f p the pressure is unchanged (Goodman's assumption).
+Lebedev and Ufliand, PMM 22 (1958) 320-326; Dhaliwal and Rau, Int. J. Engng Sci. 8 (1970) 843-856;
+Yu, Sanday and Rath, J. Mech. Phys. Solids 38 (1990) 745-764.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.polynomial import legendre
+from numpy.typing import ArrayLike
+from scipy.optimize import brentq
+
+from verification.problem.arrays import Array, Coatings
+from verification.problem.contact import NotClaimed
+from verification.sources.references.axisymmetric_pressure import AbelPressure
+from verification.sources.references.hankel import HankelField
+from verification.sources.references.layered import LayeredHalfSpace, bending_length
+from verification.sources.references.quadrature import wavenumber_panels
+
+__all__ = ["ExactSolution", "ExactUncertainty", "solve"]
+
+
+@dataclass(frozen=True)
+class ExactUncertainty:
+    """Absolute, SI: what changes when every quadrature is made coarser by a quarter."""
+
+    contact_radius: float
+    approach: float
+    peak_pressure: float
+    budget: tuple[tuple[str, str, float], ...]
+
+
+@dataclass(frozen=True)
+class ExactDiagnostics:
+    """Quadrature nodes in the contact and along the wavenumber; load balance of the result."""
+
+    contact_nodes: int
+    wavenumbers: int
+    load_residual: float
+
+
+@dataclass(frozen=True, eq=False)
+class ExactSolution:
+    """Contact and stresses; ``coarser`` is the companion its uncertainty is read from."""
+
+    abel: AbelPressure
+    approach: float
+    field: HankelField
+    diagnostics: ExactDiagnostics
+    coarser: "ExactSolution | None" = None
+
+    @property
+    def contact_radius(self) -> float:
+        """a [m]."""
+        return self.abel.a
+
+    @property
+    def peak_pressure(self) -> float:
+        """Largest pressure [Pa], on the axis unless a stiff film bends."""
+        return self.abel.peak
+
+    @property
+    def surface_nodes(self) -> Array:
+        """The pressure is known everywhere; 401 points on [-2a, 2a]."""
+        return 2 * self.abel.a * np.linspace(-1, 1, 401)
+
+    @cached_property
+    def uncertainty(self) -> ExactUncertainty | None:
+        """Twice the difference from the coarser companion, with the rounding of the last digits."""
+        if self.coarser is None:
+            return None
+        names = ("contact_radius", "approach", "peak_pressure")
+        spread = {
+            n: 2 * abs(getattr(self, n) - getattr(self.coarser, n)) + 1e-12 * getattr(self, n) for n in names
+        }
+        return ExactUncertainty(**spread, budget=tuple((n, "quadrature", u) for n, u in spread.items()))
+
+    @property
+    def _rounding(self) -> float:
+        # A quadrature sums some 4096 terms; differentiating a series of m terms amplifies rounding by m^3.
+        return float(np.finfo(float).eps * max(4096.0, (2.0 * self.abel.c.size) ** 3))
+
+    def pressure(self, x: ArrayLike, y: ArrayLike = 0.0) -> Array:
+        """p [Pa], 0 outside the contact."""
+        return self.abel.pressure(np.hypot(x, y))
+
+    def stress(self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None) -> Array:
+        """sigma[i, j, ...] [Pa]; ``layer`` picks the side of an interface, the upper one unless given."""
+        return self.field.stress(x, y, z, layer)
+
+    def displacement(self, x: ArrayLike, y: ArrayLike, z: ArrayLike) -> Array:
+        """No claim is made on displacements; raises NotClaimed."""
+        raise NotClaimed("the integral equation claims no displacement field; ask one of the methods")
+
+    def pressure_uncertainty(self, x: ArrayLike, y: ArrayLike = 0.0) -> Array:
+        """Absolute [Pa]; raises ValueError where no companion was solved."""
+        a, coarser = self.abel.a, self._companion()
+        spread = (
+            2 * np.abs(self.pressure(x, y) - coarser.pressure(x, y)) + self._rounding * self.peak_pressure
+        )
+        # The vertical tangent at the edge turns an uncertain radius into an uncertain pressure.
+        edge = np.abs(np.hypot(x, y) - a) <= 2 * abs(a - coarser.abel.a)
+        return np.where(
+            edge, np.maximum(spread, np.sqrt(abs(1 - coarser.abel.a / a)) * self.peak_pressure), spread
+        )
+
+    def stress_uncertainty(self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None) -> Array:
+        """Absolute [Pa], shape (3, 3) + points; raises ValueError where no companion was solved."""
+        coarser = self._companion().stress(x, y, z, layer)
+        return 2 * np.abs(self.stress(x, y, z, layer) - coarser) + self._rounding * self.peak_pressure
+
+    def _companion(self) -> "ExactSolution":
+        if self.coarser is None:
+            raise ValueError("uncertainty was not estimated; solve with estimate_uncertainty=True")
+        return self.coarser
+
+
+def solve(
+    *,
+    radius: float,
+    load: float,
+    coatings: Coatings,
+    substrate: tuple[float, float],
+    friction: float = 0.0,
+    nodes: int = 80,
+    estimate_uncertainty: bool = True,
+) -> ExactSolution:
+    """Contact of a rigid sphere of ``radius`` [m] under ``load`` [N]; arguments as in CoatedContact.
+
+    nodes : Gauss-Legendre points in the contact; more are taken where a coating is thin.
+    Raises ValueError when no contact radius between 1e-3 and 1e3 of the Hertz radius carries the load.
+    """
+    fine = _solve(radius, load, coatings, substrate, friction, nodes, 16, 36.0)
+    if not estimate_uncertainty:
+        return fine
+    coarse = _solve(radius, load, coatings, substrate, friction, 3 * nodes // 4, 12, 27.0)
+    return ExactSolution(fine.abel, fine.approach, fine.field, fine.diagnostics, coarse)
+
+
+def _solve(
+    radius: float,
+    load: float,
+    coatings: Coatings,
+    substrate: tuple[float, float],
+    friction: float,
+    nodes: int,
+    panel: int,
+    tail: float,
+) -> ExactSolution:
+    E1, nu1 = coatings[0][:2] if coatings else substrate
+    E_star = E1 / (1 - nu1**2)
+    guess = _radius_guess(radius, load, E_star, coatings, substrate)
+    s, weight = _gauss(_contact_nodes(nodes, guess, coatings))
+    k, k_weight = _kernel_wavenumbers(coatings, substrate, guess, panel, tail)
+    M = LayeredHalfSpace(coatings, substrate, k).compliance if coatings else np.ones_like(k)
+    kernel = k_weight * (M - 1)
+
+    def contact(a: float) -> tuple[Array, float]:
+        x = a * s
+        cosine = np.cos(k[:, None] * np.append(x, a))
+        K = (2 / np.pi) * (cosine.T * kernel) @ cosine
+        A = np.eye(x.size) + K[:-1, :-1] * (a * weight)
+        right = (E_star / np.pi) * np.stack([np.ones_like(x), x**2 / radius], axis=1)
+        phi = np.linalg.solve(A, right)
+        # Nystrom's interpolation gives phi at the edge, where it must vanish.
+        edge = (E_star / np.pi) * np.array([1.0, a**2 / radius]) - (K[-1, :-1] * a * weight) @ phi
+        delta = edge[1] / edge[0]
+        return phi @ np.array([delta, -1.0]), float(delta)
+
+    def excess(log_a: float) -> float:
+        a = float(np.exp(log_a))
+        return float(np.log(2 * np.pi * a * (weight @ contact(a)[0]) / load))
+
+    span = np.log(1.5)
+    low = high = np.log(guess)
+    while excess(low) > 0 and low > np.log(guess) - 7:
+        low -= span
+    while excess(high) < 0 and high < np.log(guess) + 7:
+        high += span
+    if not excess(low) <= 0 <= excess(high):
+        raise ValueError(
+            f"load = {load:g} N is carried by no contact radius near {guess:g} m; check the moduli"
+        )
+    a = float(np.exp(brentq(excess, low, high, xtol=1e-15, rtol=1e-14)))
+    phi, delta = contact(a)
+    abel = AbelPressure.from_nodes(a, s, weight, phi)
+    return ExactSolution(
+        abel,
+        delta,
+        HankelField(abel, coatings, substrate, friction, panel, tail),
+        ExactDiagnostics(s.size, k.size, abs(abel.load / load - 1)),
+    )
+
+
+def _radius_guess(
+    radius: float, load: float, E_star: float, coatings: Coatings, substrate: tuple[float, float]
+) -> float:
+    """Hertz radius with the contact modulus seen by waves of that very length."""
+    a = float((3 * load * radius / (4 * E_star)) ** (1 / 3))
+    for _ in range(40):
+        k = np.array([2.0 / a])
+        M = float(LayeredHalfSpace(coatings, substrate, k).compliance[0]) if coatings else 1.0
+        a = 0.5 * (a + float((3 * load * radius * M / (4 * E_star)) ** (1 / 3)))
+    return a
+
+
+def _contact_nodes(nodes: int, a: float, coatings: Coatings) -> int:
+    """The kernel varies over the first coating's thickness, so thin ones need nodes in proportion to a/h."""
+    thinnest = min((h for _, _, h in coatings), default=a)
+    return int(nodes + 3 * a / thinnest * nodes / 80)
+
+
+def _kernel_wavenumbers(
+    coatings: Coatings, substrate: tuple[float, float], a: float, panel: int, tail: float
+) -> tuple[Array, Array]:
+    """Gauss panels up to where M - 1 ~ (k h)^2 exp(-2 k h) has died; finer near 0."""
+    if not coatings:
+        return np.ones(1), np.zeros(1)
+    end = (tail + 2 * np.log(tail)) / (2 * coatings[0][2])
+    return wavenumber_panels(end, 0.5 / bending_length(coatings, substrate), 3.0 / a, panel)
+
+
+def _gauss(n: int) -> tuple[Array, Array]:
+    """Gauss-Legendre on [0, 1]."""
+    x, w = legendre.leggauss(n)
+    return 0.5 * (1 + x), 0.5 * w

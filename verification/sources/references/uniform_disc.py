@@ -1,0 +1,162 @@
+"""Layered half-space under a uniform pressure on a disc, frictionless, by Hankel quadrature.
+
+    phat(k) = int_0^a q J0(kr) r dr = q a J1(ka)/k
+
+Stress and displacement as in ``hankel``; the surface of the homogeneous solid in closed form, Johnson,
+Contact Mechanics (1985), (3.29): no grid, no elements, no edge to resolve.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+from scipy.special import ellipe, ellipkm1, j1
+
+from verification.problem.arrays import Array
+from verification.sources.references.hankel import HankelField
+
+__all__ = ["DiscSolution", "UniformDisc", "solve_prescribed"]
+
+
+@dataclass(frozen=True)
+class UniformDisc:
+    """Pressure ``q`` [Pa] on r <= ``a`` [m]."""
+
+    a: float
+    q: float
+
+    def pressure(self, r: ArrayLike) -> Array:
+        """q inside, 0 outside [Pa]; half of it on the rim itself, as every Fourier sum has it there."""
+        r = np.asarray(r, dtype=float)
+        return self.q * np.where(r == self.a, 0.5, 1.0 * (r < self.a))
+
+    def resultant(self, r: ArrayLike) -> Array:
+        """int_0^r p(s) s ds [N/rad]; shape of ``r``."""
+        return 0.5 * self.q * np.minimum(np.asarray(r, dtype=float), self.a) ** 2
+
+    def transform(self, k: Array) -> Array:
+        """phat(k) [N]."""
+        return self.q * self.a * j1(k * self.a) / k
+
+    def sink(self, r: Array) -> Array:
+        """E* u_z [N/m] on the surface of the homogeneous solid. Johnson (3.29a, c)."""
+        s = r / self.a
+        inner = ellipe(np.minimum(s, 1.0) ** 2)
+        t = 1 / np.maximum(s, 1.0) ** 2
+        # (1 - t) K(t) vanishes at the rim, where K alone does not stay finite.
+        outer = (ellipe(t) - np.where(t < 1, (1 - t) * ellipkm1(np.where(t < 1, 1 - t, 1.0)), 0.0)) * s
+        return 4 * self.q * self.a / np.pi * np.where(s <= 1, inner, outer)
+
+    def bessel_integral(self, order: int, r: Array) -> Array:
+        """No claim is made on sliding discs; raises ValueError."""
+        raise ValueError("a sliding disc has infinite stress at its rim; no claim is made on it")
+
+
+@dataclass(frozen=True)
+class DiscUncertainty:
+    """Absolute, SI: of u_z at the origin; the others are given."""
+
+    approach: float
+    contact_radius: float = 0.0
+    peak_pressure: float = 0.0
+
+    @property
+    def budget(self) -> tuple[tuple[str, str, float], ...]:
+        return (("approach", "quadrature", self.approach),)
+
+
+@dataclass(frozen=True)
+class DiscDiagnostics:
+    """Gauss points a panel of wavenumbers, and the exponent at which the integrands are cut."""
+
+    nodes: int
+    tail: float
+
+
+@dataclass(frozen=True, eq=False)
+class DiscSolution:
+    """Stresses and displacements; ``coarser`` is the field its uncertainty is read from."""
+
+    disc: UniformDisc
+    field: HankelField
+    coarser: HankelField
+
+    @property
+    def contact_radius(self) -> float:
+        """Radius of the disc [m]."""
+        return self.disc.a
+
+    @property
+    def peak_pressure(self) -> float:
+        """q [Pa]."""
+        return self.disc.q
+
+    @property
+    def approach(self) -> float:
+        """u_z at the origin [m]."""
+        return float(self.field.displacement(0.0, 0.0, 0.0)[2])
+
+    @property
+    def uncertainty(self) -> DiscUncertainty:
+        """What changes when every quadrature is made coarser by a quarter, twice."""
+        return DiscUncertainty(float(self.displacement_uncertainty(0.0, 0.0, 0.0)[2]))
+
+    @property
+    def diagnostics(self) -> DiscDiagnostics:
+        """The quadrature."""
+        return DiscDiagnostics(self.field.nodes, self.field.tail)
+
+    @property
+    def surface_nodes(self) -> Array:
+        """The pressure is known everywhere; 401 points on [-2a, 2a]."""
+        return 2 * self.disc.a * np.linspace(-1, 1, 401)
+
+    def pressure(self, x: ArrayLike, y: ArrayLike = 0.0) -> Array:
+        """p [Pa]."""
+        return self.disc.pressure(np.hypot(x, y))
+
+    def stress(self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None) -> Array:
+        """sigma[i, j, ...] [Pa]; ``layer`` picks the side of an interface, the upper one unless given."""
+        return self.field.stress(x, y, z, layer)
+
+    def displacement(self, x: ArrayLike, y: ArrayLike, z: ArrayLike) -> Array:
+        """u[i, ...] [m] towards infinity."""
+        return self.field.displacement(x, y, z)
+
+    def pressure_uncertainty(self, x: ArrayLike, y: ArrayLike = 0.0) -> Array:
+        """0: the pressure is given."""
+        return np.zeros(np.broadcast(x, y).shape)
+
+    def stress_uncertainty(self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None) -> Array:
+        """Absolute [Pa], shape (3, 3) + points."""
+        change = np.abs(self.stress(x, y, z, layer) - self.coarser.stress(x, y, z, layer))
+        return 2 * change + 1e-12 * self.disc.q
+
+    def displacement_uncertainty(self, x: ArrayLike, y: ArrayLike, z: ArrayLike) -> Array:
+        """Absolute [m], shape (3,) + points."""
+        u = self.displacement(x, y, z)
+        return 2 * np.abs(u - self.coarser.displacement(x, y, z)) + 1e-12 * np.abs(u).max(initial=0.0)
+
+
+def solve_prescribed(
+    *,
+    pressure: float,
+    load_radius: float,
+    coatings: tuple[tuple[float, float, float], ...],
+    substrate: tuple[float, float],
+    friction: float = 0.0,
+    nodes: int = 16,
+    tail: float = 36.0,
+) -> DiscSolution:
+    """A layered half-space under ``pressure`` [Pa] on a disc of ``load_radius`` [m]; others as elsewhere.
+
+    Raises ValueError where there is friction.
+    """
+    if friction:
+        raise ValueError(f"friction = {friction:g}; a sliding disc has infinite stress at its rim")
+    disc = UniformDisc(load_radius, pressure)
+    fine, coarse = (
+        HankelField(disc, coatings, substrate, 0.0, n, t)
+        for n, t in ((nodes, tail), (3 * nodes // 4, 0.75 * tail))
+    )
+    return DiscSolution(disc, fine, coarse)

@@ -1,0 +1,282 @@
+"""How far formulas are from the exact answer: effective moduli, thin and thick limits, moduli side by side.
+
+python -m verification.study.formulas RESULT.json
+"""
+
+import sys
+import time
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from scipy.optimize import least_squares, minimize_scalar
+
+from verification.problem.arrays import Array
+from verification.problem.contact import CoatedContact
+from verification.problem.profile import lines_of
+from verification.running.pool import Task
+from verification.running.result import CaseResult, SourceResult, describe
+from verification.running.result import from_json as case_from_json
+from verification.running.result import to_json as case_to_json
+from verification.running.store import write_checked
+from verification.sampling.lines import sample, sample_contact
+from verification.sources.references import integral_equation
+from verification.sources.references.effective_modulus import (
+    FORMULAS,
+    I0,
+    I1,
+    PERRIOT_BARTHEL_N,
+    perriot_barthel,
+    perriot_barthel_x0,
+)
+from verification.sources.references.flat_punch import pressed
+from verification.sources.references.layer_limits import spring_bed, squeezed_film, thick
+
+__all__ = ["EffectiveStudy", "Limit", "from_json", "measure", "task", "to_json"]
+
+Rows = tuple[tuple[float, ...], ...]
+
+SCHEMA = "coatcheck-effective/1"
+NU = 0.3  # of film and substrate on the map
+RIGID = (1e9, 0.3)  # under a layer of 1 Pa
+# Fewer nodes than usual: 1e-8 of kappa on the map.
+NODES, TAIL = 24, 14.0
+OSULLIVAN_KING = (0.25, 0.5, 1.0, 2.0, 4.0)
+FRICTION = (0.0, 0.25)
+
+
+@dataclass(frozen=True)
+class Limit:
+    """One curve of a limit: exact over limit, less 1, over a/h.
+
+    panel : the law held against the exact answer.   name : the solid.
+    """
+
+    panel: str
+    name: str
+    a_over_h: tuple[float, ...]
+    excess: tuple[float, ...]
+
+
+@dataclass(frozen=True)
+class EffectiveStudy:
+    """E_eff/E2* over ``ratio`` = E1/E2 (rows) and ``thickness`` = h/a, exact and by each of ``formulas``.
+
+    weights : largest departure of Gao's I0 and I1 from the exact first derivatives.
+    refitted : E1/E2, x0 of Perriot and Barthel, x0 and n fitted to the exact answer, a row for each ratio.
+    family : contacts of O'Sullivan and King's configuration by the exact reference.
+    """
+
+    ratio: tuple[float, ...] = ()
+    thickness: tuple[float, ...] = ()
+    exact: Rows = ()
+    formulas: tuple[tuple[str, Rows], ...] = ()
+    limits: tuple[Limit, ...] = ()
+    weights: tuple[float, float] = (float("nan"), float("nan"))
+    refitted: tuple[tuple[float, ...], ...] = ()
+    family: tuple[CaseResult, ...] = ()
+    seconds: float = 0.0
+    failure: str = ""
+
+
+def measure(points: int = 21) -> EffectiveStudy:
+    """The whole study, on a map of ``points`` x ``points``."""
+    started = time.perf_counter()
+    ratio, thickness = np.logspace(-2, 2, points), np.logspace(np.log10(0.05), np.log10(20), points)
+    exact = np.array([[_effective(r, NU, h) for h in thickness] for r in ratio])
+    scale = 1 / (1 - NU**2)
+    maps = [
+        (f.name, _rows(np.array([f.modulus((r, NU), (1.0, NU), thickness) for r in ratio]) / scale))
+        for f in FORMULAS
+    ]
+    theirs, refitted = _perriot_barthel(ratio, thickness, exact)
+    maps.insert(1, ("Perriot and Barthel 2004", _rows(theirs / scale)))
+    return EffectiveStudy(
+        ratio=tuple(ratio.tolist()),
+        thickness=tuple(thickness.tolist()),
+        exact=_rows(exact / scale),
+        formulas=tuple(maps),
+        limits=(*_thin(), *_thick()),
+        weights=_weights(),
+        refitted=refitted,
+        family=tuple(_member(r, f) for f in FRICTION for r in OSULLIVAN_KING),
+        seconds=time.perf_counter() - started,
+    )
+
+
+def _effective(ratio: float, nu: float, h: float, base: float = NU) -> float:
+    """E_eff = S/2a at a = 1 of a film of modulus ``ratio`` on a substrate of 1."""
+    return ratio / (1 - nu**2) * pressed(1.0, ((ratio, nu, h),), (1.0, base), NODES, TAIL).kappa
+
+
+def _weights() -> tuple[float, float]:
+    """Gao's I0 and I1 against differences of the exact stiffness around the homogeneous solid."""
+    step, first, second = 1e-4, [], []
+    for nu in (0.0, NU):
+        for h in (0.2, 1.0, 4.0):
+            up, down = (np.log(_effective(1 + s, nu, h, nu)) for s in (step, -step))
+            first.append(abs((up - down) / np.log((1 + step) / (1 - step)) - I0(np.array(h), nu)))
+            # A change of nu at constant shear modulus, of the film alone and of the whole solid.
+            at = nu + 2 * step
+            film = [np.log(_stiffness(at + s, at, h)) for s in (step, -step)]
+            whole = [np.log(_stiffness(at + s, at + s, h)) for s in (step, -step)]
+            second.append(abs((film[0] - film[1]) / (whole[0] - whole[1]) - I1(np.array(h))))
+    return float(max(first)), float(max(second))
+
+
+def _stiffness(nu1: float, nu2: float, h: float) -> float:
+    """E_eff of two materials of one shear modulus."""
+    E1, E2 = 2 * (1 + nu1), 2 * (1 + nu2)
+    return E1 / (1 - nu1**2) * pressed(1.0, ((E1, nu1, h),), (E2, nu2)).kappa
+
+
+def _perriot_barthel(ratio: Array, thickness: Array, exact: Array) -> tuple[Array, Rows]:
+    """Their map with the n between their bounds that leaves the smallest departure for each ratio; and, for
+    each ratio, E1/E2, their x0, then x0 and n fitted to the exact answer by least squares."""
+    table, fits = np.empty_like(exact), []
+    for i, r in enumerate(ratio.tolist()):
+        film, base = (r, NU), (1.0, NU)
+
+        def largest(n: float, film: Any = film, row: Array = exact[i]) -> float:
+            return float(np.abs(perriot_barthel(film, (1.0, NU), thickness, n) / row - 1).max())
+
+        best = minimize_scalar(largest, bounds=PERRIOT_BARTHEL_N, method="bounded").x
+        table[i] = perriot_barthel(film, base, thickness, float(best))
+        if abs(np.log(r)) < 1e-9:
+            continue
+        share = (exact[i] * (1 - NU**2) - r) / (1 - r)
+
+        def misfit(c: Array, share: Array = share) -> Array:
+            return np.asarray(1 / (1 + (10 ** c[0] * thickness) ** c[1]) - share)
+
+        theirs = perriot_barthel_x0(1 / r)
+        fit = least_squares(misfit, (np.log10(theirs), 1.2))
+        fits.append((r, theirs, float(10 ** fit.x[0]), float(fit.x[1])))
+    return table, tuple(fits)
+
+
+def _thin() -> list[Limit]:
+    a = np.geomspace(0.5, 50, 15)
+    found = []
+    for nu in (0.0, 0.3, 0.45, 0.5):
+        exact = [pressed(r, ((1.0, nu, 1.0),), RIGID) for r in a]
+        law = [squeezed_film(r, 1.0, 1.0) if nu == 0.5 else spring_bed(r, 1.0, nu, 1.0) for r in a]
+        for panel, n in (("stiffness, thin layer", 0), ("load of the sphere, thin layer", 1)):
+            over = [
+                ((2 * r * one.kappa / (1 - nu**2)) if n == 0 else one.load) / limit[n] - 1
+                for r, one, limit in zip(a, exact, law, strict=True)
+            ]
+            found.append(Limit(panel, f"nu = {nu:g}", tuple(a.tolist()), tuple(map(float, over))))
+    return found
+
+
+def _thick() -> list[Limit]:
+    a = np.geomspace(0.02, 2, 15)
+    found = []
+    for ratio in (0.25, 0.5, 2.0, 4.0):
+        layer, base = ((ratio, NU, 1.0),), (1.0, NU)
+        exact = [pressed(r, layer, base, NODES, TAIL).kappa for r in a]
+        laws = [thick(r, layer, base) for r in a]
+        for n, law in enumerate(("Hertz", "first correction")):
+            over = [one / by_law[n] - 1 for one, by_law in zip(exact, laws, strict=True)]
+            panel = f"stiffness, thick coating: {law}"
+            found.append(Limit(panel, f"E1/E2 = {ratio:g}", tuple(a.tolist()), tuple(map(float, over))))
+    return found
+
+
+def _member(ratio: float, friction: float) -> CaseResult:
+    """The configuration of O'Sullivan and King by the exact reference: h = a_h, nu = 0.3."""
+    started = time.perf_counter()
+    bare = CoatedContact(10e-3, 20.0, (), (210e9, 0.3), friction)
+    problem = CoatedContact(10e-3, 20.0, ((ratio * 210e9, 0.3, bare.a_h),), (210e9, 0.3), friction)
+    found = integral_equation.solve(
+        radius=problem.radius,
+        load=problem.load,
+        coatings=problem.coatings,
+        substrate=problem.substrate,
+        friction=friction,
+        estimate_uncertainty=False,
+    )
+    x, z = (
+        2.5 * bare.a_h * np.linspace(-1 if friction else 0, 1, 101),
+        4 * bare.a_h * np.linspace(0.005, 1, 60) ** 1.5,
+    )
+    profiles = list(sample_contact(found, "integral_equation"))
+    for line in lines_of(problem):
+        profiles += sample(found, "integral_equation", line, z if line.depth is None else x)
+    seconds = time.perf_counter() - started
+    return CaseResult(
+        name=f"exact-{ratio:g}-{friction:g}",
+        title=f"E1/E2 = {ratio:g}, h = a_h, f = {friction:g}",
+        source="configuration of E. J. O'Sullivan and R. B. King, J. Tribol. 110 (1988) 235-240",
+        problem=describe(problem),
+        sources=(SourceResult("integral_equation", seconds, None),),
+        profiles=tuple(profiles),
+        verdicts=(),
+        seconds=seconds,
+        text="",
+    )
+
+
+def _rows(table: Array) -> Rows:
+    return tuple(tuple(row) for row in table.tolist())
+
+
+def task(folder: Path) -> Task[EffectiveStudy]:
+    """The study as a task beside the cases of a run."""
+    path = folder / "effective-modulus.json"
+    command = ("verification.study.formulas", str(path))
+    return Task(
+        "effective moduli",
+        command,
+        path,
+        from_json,
+        lambda reason, s: EffectiveStudy(failure=reason, seconds=s),
+    )
+
+
+def to_json(study: EffectiveStudy) -> dict[str, Any]:
+    """Plain dictionaries, lists, numbers and text."""
+    data = {name: value for name, value in vars(study).items() if name not in ("family", "limits")}
+    limits = [asdict(limit) for limit in study.limits]
+    return {"schema": SCHEMA, **data, "limits": limits, "family": [case_to_json(one) for one in study.family]}
+
+
+def from_json(data: dict[str, Any]) -> EffectiveStudy:
+    """The inverse of ``to_json``. Raises ValueError where the schema is another one."""
+    if data.get("schema") != SCHEMA:
+        raise ValueError(f"schema = {data.get('schema')!r}; this version reads {SCHEMA!r}, run it again")
+
+    def rows(table: Any) -> Rows:
+        return tuple(tuple(float(v) for v in row) for row in table)
+
+    return EffectiveStudy(
+        ratio=tuple(map(float, data["ratio"])),
+        thickness=tuple(map(float, data["thickness"])),
+        exact=rows(data["exact"]),
+        formulas=tuple((str(name), rows(table)) for name, table in data["formulas"]),
+        limits=tuple(
+            Limit(
+                one["panel"],
+                one["name"],
+                tuple(map(float, one["a_over_h"])),
+                tuple(map(float, one["excess"])),
+            )
+            for one in data["limits"]
+        ),
+        weights=(float(data["weights"][0]), float(data["weights"][1])),
+        refitted=rows(data["refitted"]),
+        family=tuple(case_from_json(one) for one in data["family"]),
+        seconds=float(data["seconds"]),
+        failure=str(data["failure"]),
+    )
+
+
+def main(path: str) -> None:
+    """Measure and store at ``path``."""
+    write_checked(Path(path), to_json(measure()))
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])
