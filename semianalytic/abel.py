@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 from scipy.special import j0, spherical_jn
 
-__all__ = ["LayerTable", "deflection", "layer_table"]
+__all__ = ["LayerTable", "cosine_transform", "deflection", "layer_table", "potential"]
 
 Array = NDArray[np.floating]
 
@@ -73,8 +73,8 @@ def deflection(
     radius : a [m].  coefficients : b_m [Pa].  E_star : E1/(1 - nu1^2) [Pa] of the first material.
     table : of the layers, None for the homogeneous solid.  r [m], any shape.
     """
-    a, terms = radius, len(coefficients)
-    phi = np.linalg.solve(_abel(terms), coefficients) * a  # phi = x' sum phi_m P_m(2x' - 1), x' = 1 - (x/a)^2
+    a = radius
+    phi = a * potential(coefficients)
     reach = float(np.max(r))
     inner = a * np.sin(np.linspace(0, np.pi / 2, 400))
     outer = a + np.linspace(0, np.sqrt(max(reach - a, 1e-2 * a)), 300) ** 2
@@ -85,8 +85,13 @@ def deflection(
         CubicSpline(np.sqrt(outer - a), _over_circle(phi, outer / a))(np.sqrt(np.maximum(r - a, 0))),
     )
     if table is not None:
-        u = u + CubicSpline(table.r, table.matrix @ (a * _cosine_transform(phi, table.k * a)))(r)
+        u = u + CubicSpline(table.r, table.matrix @ (a * cosine_transform(phi, table.k * a)))(r)
     return 2 / E_star * u
+
+
+def potential(coefficients: Array) -> Array:
+    """phi_m [Pa] of phi = a x' sum phi_m P_m(2x' - 1), x' = 1 - (x/a)^2, from b_m [Pa]."""
+    return np.linalg.solve(_abel(len(coefficients)), coefficients)
 
 
 def _abel(terms: int) -> Array:
@@ -114,8 +119,8 @@ def _over_circle(phi: Array, rho: Array) -> Array:
     return (y * legendre.legval(2 * y - 1, phi)) @ w * end / 2
 
 
-def _cosine_transform(phi: Array, k: Array) -> Array:
-    """int_0^1 phi(x) cos(kx) dx from the even Legendre polynomials of phi: int P_2i cos = (-1)^i j_2i(k)."""
+def cosine_transform(phi: Array, k: Array) -> Array:
+    """int_0^1 phi(x) cos(kx) dx of phi = x' sum phi_m P_m(2x' - 1), from the even Legendre polynomials of phi: int P_2i cos = (-1)^i j_2i(k)."""
     n = len(phi) + 1
     s, w = legendre.leggauss(2 * n + 2)
     y = 1 - s**2

@@ -15,17 +15,27 @@ Signs: stress positive in tension, sigma_zz = -p, sigma_Lz = i T0, sigma_Tz = t 
 ``coatings`` ((E, nu, thickness), ...) from the surface down, ``substrate`` (E, nu); Pa, m.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-__all__ = ["compliance", "compliance_excess", "displacement_frf", "stress_frf"]
+__all__ = [
+    "Load",
+    "compliance",
+    "compliance_excess",
+    "displacement_frf",
+    "homogeneous_displacement",
+    "homogeneous_stress",
+    "stress_frf",
+]
 
 Array = NDArray[Any]
 Coatings = Sequence[tuple[float, float, float]]
 Load = Literal["normal", "in-plane", "anti-plane"]
+
+_TRACTION: dict[Load, list[float]] = {"normal": [-1.0, 0.0], "in-plane": [0.0, 1.0], "anti-plane": [1.0]}
 
 
 def compliance(k: ArrayLike, coatings: Coatings, substrate: tuple[float, float]) -> Array:
@@ -124,6 +134,27 @@ def displacement_frf(
     return scale * _fields(k, z, layer, coatings, substrate, load, rows, excess)
 
 
+def homogeneous_stress(nu: float, load: Load) -> Array:
+    """c, c' of the stress amplitudes (c + c' k z) e^{-kz} of a homogeneous half-space, (4 or 2, 2)."""
+    return _homogeneous(nu, load, _rows_shear_stress if load == "anti-plane" else _rows_stress)
+
+
+def homogeneous_displacement(E: float, nu: float, load: Load) -> Array:
+    """c, c' [1/Pa] likewise of k u_z, k u_L / i in plane, k u_T anti-plane, (2 or 1, 2)."""
+    G = E / (2 * (1 + nu))
+    if load == "anti-plane":
+        return _homogeneous(nu, load, _rows_shear_displacement) / G
+    return _homogeneous(nu, load, _rows_displacement) / (2 * G)
+
+
+def _homogeneous(nu: float, load: Load, rows: Callable[[float], tuple[Array, Array]]) -> Array:
+    traction = _TRACTION[load]
+    d = np.linalg.solve(_surface_rows(nu, len(traction))[0], traction)
+    down = rows(nu)[0]
+    linear = down[:, 0] * d[1] if d.size == 2 else np.zeros(len(down))
+    return np.stack([down @ d, linear], axis=1)
+
+
 # ---------------------------------------------------- the fields as rows acting on (d1, d2) and (g1, g2)
 def _rows_stress(nu: float) -> tuple[Array, Array]:
     """s_zz, s_Lz / i, s_LL, s_TT from (d1, d2) and from (g1, g2)."""
@@ -207,9 +238,8 @@ def _amplitudes(k, layer, coatings, substrate, load, excess) -> tuple[Array, Arr
         below = _product(_propagator(x, n, -1), _product(reflect[0], _propagator(x, n, +1)))
 
     surface_down, surface_up = _surface_rows(layers[0][1], n)
-    traction = {"normal": [-1.0, 0.0], "in-plane": [0.0, 1.0], "anti-plane": [1.0]}[load]
     response = surface_down[:, :, None] + np.einsum("ab,bc...->ac...", surface_up, below)
-    d = np.einsum("ab...,b->a...", _inverse(response), np.array(traction))
+    d = np.einsum("ab...,b->a...", _inverse(response), np.array(_TRACTION[load]))
     for j in range(layer):
         d = np.einsum("ab...,b...->a...", transmit[j], _propagate(d, k * layers[j][2], +1))
     if layer == len(coatings):

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import RectBivariateSpline
 
-__all__ = ["Grid", "Window", "deconvolve", "odd", "prolong", "refine", "touches_rim", "window_around"]
+__all__ = ["Grid", "Window", "deconvolve", "odd", "prolong", "touches_rim", "window_around"]
 
 Array = NDArray[np.floating]
 
@@ -118,11 +118,6 @@ def touches_rim(pressure: Array) -> bool:
     """Whether a patch of the outermost ring is loaded."""
     rim = (pressure[0], pressure[-1], pressure[:, 0], pressure[:, -1])
     return any(bool(np.any(side > 0)) for side in rim)
-
-
-def refine(values: Array, source: Grid, target: Grid) -> Array:
-    """Bilinear interpolation from the patch centres of the source to those of the target; 0 beyond."""
-    return _linear(_linear(values, source, target.x).T, source, target.x).T
 
 
 def deconvolve(mean: Array) -> Array:

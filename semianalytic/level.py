@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from semianalytic import abel, contact, convolution, edge_profile, influence
-from semianalytic.grid import Grid, Window, prolong, refine
+from semianalytic.grid import Grid, Window, prolong
 from semianalytic.inputs import Body, Numerics
 
 __all__ = ["Indenter", "Level", "LevelProblem"]
@@ -63,18 +63,25 @@ class Level:
 
     @cached_property
     def finer(self) -> tuple[Grid, Array]:
-        """A grid of half the patch size, and the pressure averaged over its patches."""
+        """A grid of half the patch size, and a prescribed pressure averaged over its patches."""
         grid = Grid(2 * self.grid.n - 1, self.grid.d / 2)
         return grid, self._mean_on(grid)
 
+    @cached_property
+    def rest(self) -> Array:
+        """Pressure at the patch centres less its edge profile [Pa].
+
+        Zero within a patch of the edge: there the profile is the better of the two.
+        """
+        assert isinstance(self.shape, edge_profile.Profile)
+        r = self.grid.radius
+        rest = self.found.pressure - self.shape.pressure(r)
+        return np.where(r < self.shape.radius - self.grid.d, rest, 0.0)
+
     def _mean_on(self, grid: Grid) -> Array:
-        p, f = self.found.pressure, self.shape
-        if f is None:
-            return p
-        rest = p - f.pressure(self.grid.radius)
-        if grid.n != self.grid.n:
-            rest = np.where(grid.radius < f.radius, refine(rest, self.grid, grid), 0.0)
-        return rest + edge_profile.patch_mean(f, grid.x, grid.d)
+        if isinstance(self.shape, edge_profile.Prescribed):
+            return edge_profile.patch_mean(self.shape, grid.x, grid.d)
+        return self.found.pressure
 
 
 class LevelProblem:

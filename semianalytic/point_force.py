@@ -34,14 +34,19 @@ from .inputs import Body
 
 __all__ = [
     "PointForce",
+    "combine_displacement",
+    "combine_stress",
     "displacement_below",
+    "displacement_columns",
     "displacement_from_lines",
     "stress_below",
+    "stress_columns",
     "stress_from_lines",
 ]
 
 Array = NDArray[Any]
 Field = Callable[[Array, Array], Array]
+Response = Callable[[Load], Array]
 
 _INNER = np.linspace(0, NEAR, 60, endpoint=False)  # r / L of the table, as dense as beyond
 
@@ -78,17 +83,8 @@ def stress_below(z: Array, layer: int, scale: float, body: Body, *, excess: bool
     def response(load: Load) -> Array:
         return stress_frf(k, z, layer, **body.layers, load=load, excess=excess)
 
-    zz, Lz, LL, TT = response("normal")
-    columns = [
-        _radial(F, m, scale, grid) for F, m in ((zz, 0), ((LL + TT) / 2, 0), (Lz, 1), ((LL - TT) / 2, 2))
-    ]
-    if body.friction:
-        zz, Lz, LL, TT = response("in-plane")
-        A, B = response("anti-plane")
-        D = (LL - TT) / 2
-        pairs = ((zz, 1), ((LL + TT) / 2, 1), (Lz + A, 0), (Lz - A, 2), (D - B, 1), (D + B, 3))
-        columns += [_radial(F, m, scale, grid) for F, m in pairs]
-    return _tabulate(columns, grid, scale, body.friction, _combine_stress)
+    columns = [_radial(F, m, scale, grid) for F, m in stress_columns(response, body.friction)]
+    return _tabulate(columns, grid, scale, body.friction, combine_stress)
 
 
 def displacement_below(
@@ -101,13 +97,36 @@ def displacement_below(
     def response(load: Load) -> Array:
         return displacement_frf(k, z, layer, **body.layers, load=load, excess=excess)
 
+    columns = [
+        _radial(F, m, scale, grid, over_k=True) for F, m in displacement_columns(response, body.friction)
+    ]
+    return _tabulate(columns, grid, scale, body.friction, combine_displacement)
+
+
+def stress_columns(response: Response, friction: float) -> list[tuple[Array, int]]:
+    """Responses F to transform, with the order m: those to p = 1, then with friction to T0 = 1, t = 1.
+
+    response(load) : the amplitudes of `frf.stress_frf`, stacked along the first index.
+    """
+    zz, Lz, LL, TT = response("normal")
+    columns = [(zz, 0), ((LL + TT) / 2, 0), (Lz, 1), ((LL - TT) / 2, 2)]
+    if friction:
+        zz, Lz, LL, TT = response("in-plane")
+        A, B = response("anti-plane")
+        D = (LL - TT) / 2
+        columns += [(zz, 1), ((LL + TT) / 2, 1), (Lz + A, 0), (Lz - A, 2), (D - B, 1), (D + B, 3)]
+    return columns
+
+
+def displacement_columns(response: Response, friction: float) -> list[tuple[Array, int]]:
+    """As `stress_columns`, of `frf.displacement_frf`."""
     uz, U = response("normal")
-    columns = [_radial(F, m, scale, grid, over_k=True) for F, m in ((uz, 0), (U, 1))]
-    if body.friction:
+    columns = [(uz, 0), (U, 1)]
+    if friction:
         uz, U = response("in-plane")
         (V,) = response("anti-plane")
-        columns += [_radial(F, m, scale, grid, over_k=True) for F, m in ((uz, 1), (U + V, 0), (U - V, 2))]
-    return _tabulate(columns, grid, scale, body.friction, _combine_displacement)
+        columns += [(uz, 1), (U + V, 0), (U - V, 2)]
+    return columns
 
 
 def stress_from_lines(field: Field, reach: Array, friction: float) -> PointForce:
@@ -124,7 +143,7 @@ def stress_from_lines(field: Field, reach: Array, friction: float) -> PointForce
         E_less_G, E_plus_G = yy_t - xx_t, -2 * xy_90
         columns += [-zz_t, -(xx_t + yy_t) / 2, -xz_t - xz_90, xz_t - xz_90]
         columns += [(E_plus_G + E_less_G) / 2, (E_plus_G - E_less_G) / 2]
-    return _outer(columns, reach, friction, _combine_stress)
+    return _outer(columns, reach, friction, combine_stress)
 
 
 def displacement_from_lines(field: Field, reach: Array, friction: float) -> PointForce:
@@ -135,7 +154,7 @@ def displacement_from_lines(field: Field, reach: Array, friction: float) -> Poin
     columns = [uz, -ux]
     if friction:
         columns += [-uz_t, -ux_t - ux_90, ux_t - ux_90]
-    return _outer(columns, reach, friction, _combine_displacement)
+    return _outer(columns, reach, friction, combine_displacement)
 
 
 def _outer(columns: list[Array], reach: Array, friction: float, combine: Callable) -> PointForce:
@@ -165,7 +184,7 @@ def _radial(F: Array, order: int, scale: float, grid: LogGrid, *, over_k: bool =
     return np.concatenate([inner, outer], axis=1)
 
 
-def _combine_stress(table: Array, c: Array, s: Array, f: float) -> Array:
+def combine_stress(table: Array, c: Array, s: Array, f: float) -> Array:
     """xx, yy, zz, xy, xz, yz from the radial functions and the direction (c, s)."""
     Z, S, T, D = table[:4]
     cos2, sin2 = c * c - s * s, 2 * c * s
@@ -181,7 +200,7 @@ def _combine_stress(table: Array, c: Array, s: Array, f: float) -> Array:
     return np.stack([mean + half, mean - half, zz, xy, xz, yz])
 
 
-def _combine_displacement(table: Array, c: Array, s: Array, f: float) -> Array:
+def combine_displacement(table: Array, c: Array, s: Array, f: float) -> Array:
     """x, y, z from the radial functions and the direction (c, s)."""
     W, U = table[:2]
     ux, uy, uz = -c * U, -s * U, W

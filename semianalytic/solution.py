@@ -15,9 +15,9 @@ from scipy.interpolate import RectBivariateSpline
 from scipy.ndimage import maximum_filter
 
 from semianalytic import fields
+from semianalytic.edge_profile import Profile
 from semianalytic.inputs import Body
 from semianalytic.level import Level
-from semianalytic.subsurface import Tables
 from semianalytic.uncertainty import Uncertainty, safety
 
 __all__ = ["Diagnostics", "Solution"]
@@ -26,6 +26,7 @@ Array = NDArray[np.floating]
 
 # error of the stress of a given pressure, over its peak, against Hankel quadrature: above 4 patches, below
 EVALUATION = (5e-6, 5e-7)
+EXACT = 1e-9  # that of an edge profile, and of the small rest by patches
 # likewise of a pressure: its response to the gap the iteration leaves, in proportion to the patches
 RESOLUTION = 1e-7
 
@@ -146,7 +147,7 @@ class Solution:
         picks the side of an interface, None the upper one.
         Raises ValueError for z < 0, and for a layer that z does not lie in.
         """
-        return fields.stress(self._level, self._body, x, y, z, layer)
+        return fields.stress([self._level], self._body, x, y, z, layer)[0]
 
     def stress_plane(self, z: float, layer: int | None = None) -> Array:
         """Stress tensor [Pa] below every patch centre at one depth, shape (3, 3, n, n), by seven FFTs.
@@ -215,19 +216,35 @@ class Solution:
         Raises ValueError where no uncertainty was estimated.
         """
         coarser, floor = self._companion()
-        kept: Tables = {}  # a point force does not depend on the grid
-
-        def stress(level: Level) -> Array:
-            return fields.stress(level, self._body, x, y, z, layer, kept)
-
-        sigma, second = stress(self._level), stress(coarser._level)
-        change = safety(len(self.nodes) / len(coarser.nodes)) * np.abs(sigma - second).max(axis=(0, 1))
+        levels = [self._level, coarser._level]
         if coarser.coarser is not None:
-            third = stress(coarser.coarser._level)
-            change = np.maximum(change, np.abs(second - third).max(axis=(0, 1)) / 3)
-        shallow = np.asarray(z) < 4 * self.diagnostics.patch_size
-        total = change + (floor + np.where(shallow, *EVALUATION)) * self.peak_pressure
+            levels.append(coarser.coarser._level)
+        sigma, second, *third = fields.stress(levels, self._body, x, y, z, layer)
+        change = safety(len(self.nodes) / len(coarser.nodes)) * np.abs(sigma - second).max(axis=(0, 1))
+        for other in third:
+            change = np.maximum(change, np.abs(second - other).max(axis=(0, 1)) / 3)
+        total = change + floor * self.peak_pressure
+        if isinstance(self._level.shape, Profile):
+            total += EXACT * self.peak_pressure + self._uncertain_edge(x, y, z, layer)
+        else:
+            shallow = np.asarray(z) < 4 * self.diagnostics.patch_size
+            total += np.where(shallow, *EVALUATION) * self.peak_pressure
         return sigma, np.broadcast_to(total, (3, 3, *change.shape)).copy()
+
+    def _uncertain_edge(self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None) -> Array:
+        """Change of the stress [Pa] by the uncertain radius, within three patches of the coarser of the edge."""
+        coarser, _ = self._companion()
+        assert self.uncertainty is not None
+        shift = self.uncertainty.contact_radius
+        x, y, z = np.broadcast_arrays(*(np.asarray(v, dtype=float) for v in (x, y, z)))
+        distance = np.hypot(np.hypot(x, y) - self.contact_radius, z)
+        near = distance < 3 * coarser.diagnostics.patch_size + shift
+        change = np.zeros(z.shape)
+        if near.any():
+            change[near] = fields.stress_of_uncertain_edge(
+                self._level, self._body, shift, x[near], y[near], z[near], layer
+            )
+        return change
 
     def _companion(self) -> tuple["Solution", float]:
         if self.uncertainty is None or self.coarser is None:
