@@ -13,8 +13,8 @@ R = sqrt(r^2 + zeta^2), s = R + zeta, int_0^inf e^{-k zeta} J_m(kr) dk = (r/s)^m
 from any point of the imaginary axis of t to t = a, because dt / R = i d(ln s). In ln s the integrands are
 entire, at the contact edge as well: Gauss points along a straight line serve every point z >= 0.
 
-The rest of the response decays like exp(-k L), L = 2 h - z in the first coating, and likewise the whole response
-in a deeper layer, L = z: Gauss panels in k. Sneddon, Fourier Transforms (1951), chapter 10.
+The rest of the response decays like exp(-k L), L = 2 h - z in the first coating, and so does the whole
+response in a deeper layer, L = z: Gauss panels in k. Sneddon, Fourier Transforms (1951), chapter 10.
 """
 
 from collections.abc import Callable, Iterator, Sequence

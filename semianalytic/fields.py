@@ -30,12 +30,19 @@ def stress(
     result = np.zeros((len(levels), 3, 3, *z.shape))
     kept: subsurface.Tables = {}  # a point force does not depend on the grid
     for out, level in zip(result, levels, strict=True):
+        small = isinstance(level.shape, Profile)
         fine = (z < FINE * level.grid.d) & isinstance(level.shape, Prescribed)
         for part, (patches, p) in ((fine, level.finer), (~fine, (level.grid, _on_patches(level)))):
             if part.any():
                 points = x[part], y[part], z[part], where[part]
                 out[..., part] = subsurface.stress(
-                    *points, grid_x=patches.x, grid_y=patches.x, pressure=p, kept=kept, body=body
+                    *points,
+                    grid_x=patches.x,
+                    grid_y=patches.x,
+                    pressure=p,
+                    kept=kept,
+                    body=body,
+                    few_depths=small,
                 )
     profiles = {i: level.shape for i, level in enumerate(levels) if isinstance(level.shape, Profile)}
     if profiles:
@@ -49,7 +56,7 @@ def stress(
 def stress_of_uncertain_edge(
     level: Level, body: Body, shift: float, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None
 ) -> Array:
-    """Largest change of a stress [Pa] when the edge profile widens or narrows by ``shift`` [m]; points' shape.
+    """Largest change of a stress [Pa] when the edge profile widens or narrows by ``shift`` [m].
 
     The layers' part, which is smooth, is left out: only the change at the edge itself is a square root.
     """

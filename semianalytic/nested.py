@@ -28,7 +28,7 @@ def levels(
     """Contacts on .., N/4, N/2 and N patches a side.
 
     Where the edge is corrected the error falls fast: half the patches would overestimate it, so that N is
-    compared with N/sqrt(2) patches, the terms of their edge profile reduced in proportion.
+    compared with N/sqrt(2) patches, the terms of their edge profile reduced as the square root.
     """
     sizes = [numerics.patches]
     while sizes[0] > 2 * COARSEST or len(sizes) < 3:
@@ -39,7 +39,8 @@ def levels(
     starter = replace(numerics, tolerance=max(1e-5, numerics.tolerance), edge_rounds=0)
     found, level = [], first
     for k, n in enumerate(sizes):
-        used = replace(numerics, edge_terms=n / numerics.patches) if k >= len(sizes) - kept else starter
+        terms = (n / numerics.patches) ** 0.5
+        used = replace(numerics, edge_terms=terms) if k >= len(sizes) - kept else starter
         level = solve_on(Grid(n, 2 * half_width / n), level, indenter, body, used)
         found.append(level)
     return found

@@ -232,7 +232,7 @@ class Solution:
         return sigma, np.broadcast_to(total, (3, 3, *change.shape)).copy()
 
     def _uncertain_edge(self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None) -> Array:
-        """Change of the stress [Pa] by the uncertain radius, within three patches of the coarser of the edge."""
+        """Change of the stress [Pa] by the uncertain radius, within three coarser patches of the edge."""
         coarser, _ = self._companion()
         assert self.uncertainty is not None
         shift = self.uncertainty.contact_radius

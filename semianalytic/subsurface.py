@@ -71,18 +71,20 @@ def stress(
     pressure: Array,
     body: Body,
     kept: Tables | None = None,
+    few_depths: bool = False,
 ) -> Array:
     """Stress at points (x, y, z) of the layers named, under pressure p with traction q = f p in +x.
 
     x, y, z : points [m], broadcast.  layer : integers, which pick the side of an interface, broadcast.
     pressure : mean of p over each patch [Pa], (nx, ny), centred at grid_x, grid_y [m], which are uniform.
     kept : point-force tables of other calls for the same solid; those of this call are added.
+    few_depths : interpolate between depths below three patches too, to 1e-3 of the largest stress.
     Returns sigma[i, j, ...] [Pa], shape (3, 3) + points.
     """
     response = _stress_response(body)
     if kept is not None:
         response = replace(response, below=partial(_kept, kept, response.below))
-    return tensor(_evaluate(x, y, z, layer, nodal_forces(grid_x, grid_y, pressure), response))
+    return tensor(_evaluate(x, y, z, layer, nodal_forces(grid_x, grid_y, pressure), response, few_depths))
 
 
 def tensor(components: Array) -> Array:
@@ -222,7 +224,7 @@ def _closed(rectangle, friction, moduli, components, X, Y, z: float, dx: float, 
     return np.array(fields if friction else [*fields, np.zeros_like(fields[0])])
 
 
-def _evaluate(x, y, z, layer, fine: Lattice, response: _Response) -> Array:
+def _evaluate(x, y, z, layer, fine: Lattice, response: _Response, few_depths: bool = False) -> Array:
     """Field components (n,) + points, layer by layer and depth by depth."""
     x, y, z, layer = np.broadcast_arrays(*(np.asarray(v) for v in (x, y, z, layer)))
     shape = z.shape
@@ -238,10 +240,13 @@ def _evaluate(x, y, z, layer, fine: Lattice, response: _Response) -> Array:
             np.flatnonzero((layer == number) & ~shallow),
         ):
             depths, which = np.unique(z[here], return_inverse=True)
-            if shallow[here].any() and depths.size > CHEBYSHEV:
-                depths, weights = _between_depths(z[here])
+            near = bool(shallow[here].any())
+            if (near or few_depths) and depths.size > CHEBYSHEV:
+                depths, weights = _between_depths(z[here] if near else np.log(z[here]))
+                depths = depths if near else np.exp(depths)
+                points, at = np.unique(np.stack([x[here], y[here]]), axis=1, return_inverse=True)
                 for i, field in enumerate(_fields(depths, int(number), lattices, response)):
-                    out[:, here] += weights[:, i] * field(x[here], y[here])
+                    out[:, here] += weights[:, i] * field(*points)[:, at.ravel()]
             else:
                 for i, field in enumerate(_fields(depths, int(number), lattices, response)):
                     at = here[which == i]

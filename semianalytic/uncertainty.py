@@ -69,7 +69,7 @@ def of_contact(levels: list[Level], indenter: Indenter, body: Body, numerics: Nu
     """Refinement study of the last three levels; the other parameters on the coarsest of them."""
     fine, middle, coarse = (level.scalars for level in levels[:-4:-1])
     grid, start = levels[-3].grid, levels[-4] if len(levels) > 3 else None
-    numerics = replace(numerics, edge_terms=grid.n / numerics.patches)
+    numerics = replace(numerics, edge_terms=(grid.n / numerics.patches) ** 0.5)
     looser = replace(numerics, tolerance=min(100 * numerics.tolerance, 1e-2))
     wider = Grid(odd(WIDER * grid.n), grid.d)
     poorer = replace(indenter, table=indenter.coarse_table)
