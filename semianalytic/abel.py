@@ -120,7 +120,10 @@ def _over_circle(phi: Array, rho: Array) -> Array:
 
 
 def cosine_transform(phi: Array, k: Array) -> Array:
-    """int_0^1 phi(x) cos(kx) dx of phi = x' sum phi_m P_m(2x' - 1), from the even Legendre polynomials of phi: int P_2i cos = (-1)^i j_2i(k)."""
+    """int_0^1 phi(x) cos(kx) dx of phi = x' sum phi_m P_m(2x' - 1), x' = 1 - x^2.
+
+    From the even Legendre polynomials of phi: int_0^1 P_2i(x) cos(kx) dx = (-1)^i j_2i(k).
+    """
     n = len(phi) + 1
     s, w = legendre.leggauss(2 * n + 2)
     y = 1 - s**2

@@ -1,7 +1,7 @@
 """Stress and displacement of the layered half-space under an edge profile, without patches.
 
-With phi of `abel` the Hankel transform of the pressure is phat(k) = int_0^a phi cos(kt) dt, and every field is
-a sum of integrals int F(k) phat(k) J_m(kr) k dk over the responses F to unit traction.
+With phi of `abel` the Hankel transform of the pressure is phat(k) = int_0^a phi cos(kt) dt, and every field
+is a sum of integrals int F(k) phat(k) J_m(kr) k dk over the responses F to unit traction.
 
 The homogeneous half-space of the first material has F = (c + c' k z) e^{-kz}. With zeta = z - it,
 R = sqrt(r^2 + zeta^2), s = R + zeta, int_0^inf e^{-k zeta} J_m(kr) dk = (r/s)^m / R (Watson 1944, 13.2) and

@@ -16,6 +16,7 @@ Signs: stress positive in tension, sigma_zz = -p, sigma_Lz = i T0, sigma_Tz = t 
 """
 
 from collections.abc import Callable, Sequence
+from math import factorial
 from typing import Any, Literal
 
 import numpy as np
@@ -67,16 +68,27 @@ def compliance_excess(k: ArrayLike, coatings: Coatings, substrate: tuple[float, 
 def _one_coating_excess(
     k: Array, coating: tuple[float, float, float], substrate: tuple[float, float]
 ) -> Array:
-    """M - 1 of a single coating in closed form: lam and kap are its two reflection coefficients."""
+    """M - 1 of a single coating in closed form: lam and kap are its two reflection coefficients.
+
+    With L = 1 - lam, Q = 1 - kap, th = exp(-2x), x = k h the theory sheet's denominator is
+
+        1 - (lam + kap + 4 kap x^2) th + lam kap th^2
+            = (1 - th) (L th + Q) + L Q th^2 + 4 kap th (sinh^2 x - x^2),
+
+    a sum of positive terms for a stiff coating, where L and Q are of the order E2/E1.
+    """
     E1, nu1, h = coating
     E2, nu2 = substrate
     m = E1 * (1 + nu2) / (E2 * (1 + nu1))
-    lam = 1 - 4 * (1 - nu1) / (1 + m * (3 - 4 * nu2))
-    kap = (m - 1) / (m + 3 - 4 * nu1)
+    L, Q = 4 * (1 - nu1) / (1 + m * (3 - 4 * nu2)), 4 * (1 - nu1) / (m + 3 - 4 * nu1)
+    lam, kap = 1 - L, (m - 1) / (m + 3 - 4 * nu1)
     x = np.minimum(k * h, 400.0)  # beyond, th underflows; x^2 th must not become inf * 0
-    th = np.exp(-2 * x)
-    denominator = 1 - (lam + kap + 4 * kap * x**2) * th + lam * kap * th**2
-    return th * (lam + kap + 4 * kap * x * (1 + x) - 2 * lam * kap * th) / denominator
+    th, u = np.exp(-2 * x), -np.expm1(-2 * x)
+    small = np.minimum(x, 1.0) ** 2
+    series = sum(2.0 ** (2 * n - 1) / factorial(2 * n) * small**n for n in range(2, 13))
+    bending = np.where(x < 1, th * series, u**2 / 4 - x**2 * th)  # th (sinh^2 x - x^2)
+    denominator = u * (L * th + Q) + L * Q * th**2 + 4 * kap * bending
+    return th * (lam * (u + Q * th) + kap * (u + L * th) + 4 * kap * x * (1 + x)) / denominator
 
 
 def _layered_excess(k: Array, coatings: Coatings, substrate: tuple[float, float]) -> Array:

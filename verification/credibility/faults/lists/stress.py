@@ -8,8 +8,8 @@ GROUP = "stress"
 SOLID = ("01_uncoated_steel", "14_ratio_4_sliding")
 SLIDING = ("13_uncoated_sliding", "14_ratio_4_sliding")
 FILMS = ("01_uncoated_steel", "15_dlc_chromium_sliding")
-COMBINE = "semianalytic.point_force:_combine_stress"
-BELOW = "semianalytic.point_force:stress_below"
+COMBINE = "semianalytic.point_force:combine_stress"
+COLUMNS = "semianalytic.point_force:stress_columns"
 
 
 def _fault(
@@ -42,13 +42,13 @@ FAULTS = (
         "bessel_order",
         "the difference of the in-plane stresses is transformed with J1 where J2 belongs",
         ("sigma_xx", "sigma_yy"),
-        Edit(BELOW, "((LL - TT) / 2, 2)", "((LL - TT) / 2, 1)"),
+        Edit(COLUMNS, "((LL - TT) / 2, 2)", "((LL - TT) / 2, 1)"),
     ),
     _fault(
         "bessel_order_friction",
         "the shear of friction is transformed with J1 where J2 belongs",
         ("sigma_xz",),
-        Edit(BELOW, "(Lz - A, 2)", "(Lz - A, 1)"),
+        Edit(COLUMNS, "(Lz - A, 2)", "(Lz - A, 1)"),
         cases=SLIDING,
     ),
     _fault(
@@ -58,7 +58,7 @@ FAULTS = (
         Edit(
             "semianalytic.fields:stress",
             "np.broadcast_arrays(x, y, z, body.layer_of(z, layer))",
-            "np.broadcast_arrays(x, y, np.asarray(z) + grid.d, body.layer_of(z, layer))",
+            "np.broadcast_arrays(x, y, np.asarray(z) + levels[0].grid.d, body.layer_of(z, layer))",
         ),
     ),
     _fault(
@@ -81,9 +81,9 @@ FAULTS = (
         "stresses near the surface take nu of the substrate for that of the coating",
         ("sigma_xx", "sigma_yy"),
         Edit(
-            "semianalytic.subsurface:_stress_response",
-            "body.materials[0][1:2]",
-            "body.materials[-1][-1:]",
+            "semianalytic.axisymmetric:stress",
+            "frf.homogeneous_stress(body.materials[0][1], load)",
+            "frf.homogeneous_stress(body.materials[-1][1], load)",
         ),
         cases=FILMS,
     ),
