@@ -81,7 +81,8 @@ def _one_coating_excess(
     E2, nu2 = substrate
     m = E1 * (1 + nu2) / (E2 * (1 + nu1))
     L, Q = 4 * (1 - nu1) / (1 + m * (3 - 4 * nu2)), 4 * (1 - nu1) / (m + 3 - 4 * nu1)
-    lam, kap = 1 - L, (m - 1) / (m + 3 - 4 * nu1)
+    lam = 1 - L
+    kap = (m - 1) / (m + 3 - 4 * nu1)
     x = np.minimum(k * h, 400.0)  # beyond, th underflows; x^2 th must not become inf * 0
     th, u = np.exp(-2 * x), -np.expm1(-2 * x)
     small = np.minimum(x, 1.0) ** 2
