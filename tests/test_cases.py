@@ -41,4 +41,4 @@ def test_case_agrees(name, index):
 def test_invariants_of_every_solution_hold(name):
     found = solved(name).invariants
     assert len(found) >= 30
-    assert [row.sentence for row in found if row.outcome is not Outcome.AGREES] == []
+    assert [row.message for row in found if row.outcome is not Outcome.AGREES] == []

@@ -12,7 +12,7 @@ from typing import Literal, NamedTuple
 
 from cyclopts import App, CycloptsError
 
-from verification.commands.common import STOPPED, complain
+from verification.commands.common import STOPPED, print_error
 
 __all__ = ["app", "main"]
 
@@ -203,7 +203,7 @@ def main() -> None:
     try:
         code = app(exit_on_error=False, print_error=False, result_action="return_value")
     except CycloptsError as error:
-        code = complain(" ".join(str(error).split()) + " Try: coatcheck --help")
+        code = print_error(" ".join(str(error).split()) + " Try: coatcheck --help")
     except KeyboardInterrupt:
         sys.stderr.write("\ncoatcheck: stopped; finished cases are kept, go on with --resume\n")
         code = STOPPED

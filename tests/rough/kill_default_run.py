@@ -161,7 +161,7 @@ def largest_difference(one: Path, other: Path) -> tuple[float, int]:
             if value == b[path]:
                 continue
             # A verdict says its figures in words too; those are compared as numbers.
-            if path[-1] in ("reason", "sentence"):
+            if path[-1] in ("reason", "message"):
                 continue
             if not (isinstance(value, float) and isinstance(b[path], float)):
                 return float("inf"), count

@@ -93,8 +93,8 @@ def names(sentence: str, path: Path, keys: tuple[str, ...]) -> bool:
         return True
     # What concerns two keys at once is told of the part that holds both: "problem: moduli differ".
     first = re.split(r"[ .:=]", said)[0]
-    # A claim speaks of a line that only a coating makes, and laws need one.
-    needy = ("claim", "laws")
+    # A claim names a line that only a coating has, and resolve requires one.
+    needy = ("claim", "resolve")
     return any(first == key.split(".")[0] or (first in needy and key.startswith("problem")) for key in keys)
 
 
@@ -334,7 +334,7 @@ def test_zero_with_a_monstrous_exponent_is_a_number(tmp_path):
         text = (path.parent / name).read_text()
         (tmp_path / name).write_text(re.sub(r"(?m)^([\d.]+,)[^,]+", r"\g<1>0e999999999", text, count=1))
     shutil.copy(path, tmp_path)
-    assert read_published(tmp_path / path.name).printed
+    assert read_published(tmp_path / path.name).columns
 
 
 def test_name_that_no_file_should_have_is_refused(tmp_path, monkeypatch):

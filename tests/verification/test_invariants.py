@@ -188,7 +188,7 @@ def test_law_that_cannot_be_evaluated_is_no_result_with_its_sentence_and_the_oth
     assert found["load balance"].outcome is Outcome.AGREES
     lost = [row for row in found.values() if row.outcome is Outcome.NO_RESULT]
     assert lost
-    assert all("no such plane" in row.sentence for row in lost)
+    assert all("no such plane" in row.message for row in lost)
 
 
 def test_without_a_stated_uncertainty_no_law_is_held():
@@ -257,10 +257,10 @@ def test_thin_coating_changes_the_approach_by_the_first_order_of_perturbation():
 
 
 @pytest.mark.slow
-def test_laws_between_solutions_hold_for_both_methods():
-    from verification.judging.invariants import laws
+def test_invariants_between_solutions_hold_for_both_methods():
+    from verification.judging.invariants import resolved
     from verification.sources.registry import solvers
 
-    found = laws(SLIDING, solvers())
+    found = resolved(SLIDING, solvers())
     assert len(found) == 10
     assert {row.outcome for row in found} == {Outcome.AGREES}

@@ -59,7 +59,7 @@ def test_a_sphere_without_a_load_is_a_loading_curve(files):
     assert case.problem == LoadingCurve(
         10e-3, "contact_radius", (1e-4, 5e-4), ((2e6, 0.3, 0.5e-3),), (1e15, 0.3), punch=True
     )
-    kappa, old, approach, series = case.printed
+    kappa, old, approach, series = case.columns
     assert kappa.at.coordinate == "a"
     assert approach.profile.value == pytest.approx(np.array([0.03, 0.6]) * 0.25e-6 / 10e-3)
     assert approach.profile.uncertainty == pytest.approx(0.1 * approach.profile.value)
@@ -138,7 +138,7 @@ def test_exact_reference_meets_every_shipped_curve(name):
 
 def test_the_second_hand_table_of_hayes_is_shown_and_short():
     case = read_published(SHIPPED["hayes_1972_nu_05"])
-    exact, quoted = case.printed
+    exact, quoted = case.columns
     assert exact.counted.all()
     assert not quoted.counted.any()
     assert (1 - quoted.profile.value / exact.profile.value).max() == pytest.approx(0.009, abs=5e-4)

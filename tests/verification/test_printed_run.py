@@ -36,7 +36,7 @@ def test_published_tables_are_met(name, method):
     claims = tuple(claim for claim in case.claims if method in claim.between)
     result = run(replace(case, claims=claims), {method: solvers()[method]})
     assert [v.reason for _, v in result.verdicts if v.outcome is not Outcome.AGREES] == []
-    assert len(result.verdicts) == len(case.printed)
+    assert len(result.verdicts) == len(case.columns)
 
 
 @pytest.mark.cases
@@ -64,15 +64,15 @@ def test_sums_of_stresses_are_sums_of_stresses(disc):
 
 def tampered(case, column, change):
     """The case with one printed value changed by ``change`` times what it can bear."""
-    printed = []
-    for item in case.printed:
+    columns = []
+    for item in case.columns:
         p = item.profile
         if item.column == column:
             moved = p.value.copy()
             moved[3] += change * (p.uncertainty[3] + 1e-4 * item.scale)
             p = replace(p, value=moved)
-        printed.append(replace(item, profile=p))
-    return replace(case, printed=tuple(printed))
+        columns.append(replace(item, profile=p))
+    return replace(case, columns=tuple(columns))
 
 
 @pytest.mark.parametrize("column", ["sig_x", "sig_xz", "u_z"])
@@ -89,9 +89,9 @@ def test_a_misprint_that_is_not_marked_disagrees():
     solver = {"semianalytic": solvers()["semianalytic"]}
     marked = run(case, solver)
     unmarked = run(
-        replace(case, printed=tuple(replace(p, why_not=("",) * len(p.why_not)) for p in case.printed)), solver
+        replace(case, columns=tuple(replace(p, why_not=("",) * len(p.why_not)) for p in case.columns)), solver
     )
-    lines = {item.profile.line for item in case.printed if not item.counted.all()}
+    lines = {item.profile.line for item in case.columns if not item.counted.all()}
     assert lines
     for (claim, good), (_, bad) in zip(marked.verdicts, unmarked.verdicts, strict=True):
         if claim.between[0] == "semianalytic":
@@ -118,8 +118,8 @@ def test_result_survives_json(disc):
     result = run(case, {"semianalytic": lambda problem: solvers()["semianalytic"](problem)})
     back = from_json(to_json(result))
     assert to_json(back) == to_json(result)
-    assert back.published["printed"][0]["text"][0] == "0.9349"
-    assert back.profile("sigma_xx", case.printed[0].profile.line, PUBLISHED) is not None
+    assert back.published["columns"][0]["text"][0] == "0.9349"
+    assert back.profile("sigma_xx", case.columns[0].profile.line, PUBLISHED) is not None
 
 
 def test_incompressible_solid_is_reached_by_extrapolation():

@@ -57,7 +57,7 @@ def test_units_and_signs_are_converted_at_the_border(files):
     assert (case.problem.pressure, case.problem.load_radius) == pytest.approx((100 * psi, 6 * inch))
     assert case.problem.coatings[0] == pytest.approx((40e3 * psi, 0.4, 10 * inch))
     assert case.problem.substrate == pytest.approx((10e3 * psi, 0.45))
-    stress, sink = case.printed
+    stress, sink = case.columns
     assert stress.profile.value == pytest.approx(-np.array([100, 90.25, 60.5]) * psi)
     assert stress.profile.position == pytest.approx(np.array([0, 2.5, 10]) * inch)
     # The deepest point lies on the interface and belongs to the upper layer.
@@ -66,34 +66,34 @@ def test_units_and_signs_are_converted_at_the_border(files):
 
 
 def test_reading_uncertainty_is_half_the_last_digit_of_the_column_unless_stated(files):
-    stress, sink = files().printed
+    stress, sink = files().columns
     assert stress.profile.uncertainty == pytest.approx(np.full(3, 0.005 * 6894.757293168361))
     assert sink.profile.uncertainty == pytest.approx(np.full(3, 0.003 * 0.0254))
 
 
 def test_error_of_the_program_comes_on_top_of_the_rounding(files):
     toml = TOML.replace('"psi", factor = -1.0', '"psi", factor = -1.0, program_error = 0.02')
-    assert files(toml).printed[0].profile.uncertainty == pytest.approx(np.full(3, 0.025 * 6894.757293168361))
+    assert files(toml).columns[0].profile.uncertainty == pytest.approx(np.full(3, 0.025 * 6894.757293168361))
 
 
 def test_significant_digits_give_each_row_its_own_rounding(files):
     toml = TOML.replace('"psi", factor = -1.0', '"psi", factor = -1.0, significant = 3')
-    found = files(toml).printed[0].profile.uncertainty / 6894.757293168361
+    found = files(toml).columns[0].profile.uncertainty / 6894.757293168361
     assert found == pytest.approx([0.5, 0.05, 0.05])
 
 
 def test_spread_of_several_programs_is_their_uncertainty(files):
-    toml = TOML.replace("uncertainty = 0.003", 'uncertainty = "spread"')
+    toml = TOML.replace("uncertainty = 0.003", 'uncertainty = "range"')
     # 0.05 to 0.0400, without the flagged row, and half of the fourth decimal.
-    assert files(toml).printed[1].profile.uncertainty == pytest.approx(np.full(3, 0.01005 * 0.0254))
+    assert files(toml).columns[1].profile.uncertainty == pytest.approx(np.full(3, 0.01005 * 0.0254))
 
 
 def test_rows_marked_as_misprints_stay_but_do_not_count(files):
-    stress, _ = files().printed
+    stress, _ = files().columns
     assert stress.counted.tolist() == [True, True, False]
     assert stress.text == ("100", "90.25", "60.5")
     misprint = '[[table.misprint]]\nrow = { depth = 2.5 }\ncolumn = "w"\nwhy = "digits swapped"\n'
-    stress, sink = files(TOML + misprint).printed
+    stress, sink = files(TOML + misprint).columns
     assert stress.counted.tolist() == [True, True, False]
     assert sink.counted.tolist() == [True, False, False]
 
@@ -145,7 +145,7 @@ def test_whole_numbers_are_numbers(files):
         "load_radius = 6.0", "load_radius = 6"
     )
     toml = toml.replace('file = "t.csv"', 'file = "t.csv"\nrows = { depth = 0 }')
-    stress, sink = files(toml).printed
+    stress, sink = files(toml).columns
     assert sink.profile.uncertainty == pytest.approx([0.0254])
     assert stress.text == ("100",)
 
@@ -168,9 +168,9 @@ def test_row_that_is_not_there_is_named(files):
 
 def test_lines_are_named_by_where_they_run(files):
     toml = TOML.replace('at = { z = "depth"', 'at = { x = "depth", z = 1.0')
-    assert {item.profile.line.split(",")[0] for item in files(toml).printed} == {"z = 1 in"}
+    assert {item.profile.line.split(",")[0] for item in files(toml).columns} == {"z = 1 in"}
     toml = TOML.replace('at = { z = "depth"', 'at = { x = 3.0, y = -2.0, z = "depth"')
-    item = files(toml).printed[0]
+    item = files(toml).columns[0]
     assert item.profile.line.startswith("x = 3 in, y = -2 in, ")
     assert item.profile.position.tolist() == item.at.z.tolist()
 
@@ -186,18 +186,18 @@ def test_shipped_case_states_its_source_and_how_it_was_read(name):
     assert str(case.citation["year"]) in case.source
     assert case.citation["notes"]
     # Whatever is printed has an uncertainty, and more than nothing.
-    assert all((item.profile.uncertainty > 0).all() for item in case.printed)
+    assert all((item.profile.uncertainty > 0).all() for item in case.columns)
 
 
 def test_six_misprints_of_ahlvin_and_ulery_are_marked():
     case = read_published(SHIPPED["ahlvin_ulery_1962"])
-    assert sum((~item.counted).sum() for item in case.printed) == 6
+    assert sum((~item.counted).sum() for item in case.columns) == 6
 
 
 def test_contact_units_are_the_hertz_scales_of_the_case():
     case = read_published(SHIPPED["coated_sphere_ratio_2"])
     assert isinstance(case.problem, CoatedContact)
-    radius = next(item for item in case.printed if item.profile.quantity == "contact_radius")
+    radius = next(item for item in case.columns if item.profile.quantity == "contact_radius")
     assert radius.profile.value == pytest.approx([0.818478 * case.problem.a_h])
     assert radius.profile.uncertainty == pytest.approx([0.5e-6 * case.problem.a_h])
 

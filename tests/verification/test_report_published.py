@@ -51,7 +51,7 @@ def test_citation_and_how_it_was_read_are_said_in_full(page):
 
 def test_every_printed_value_stands_beside_both_methods(page, results):
     rows = rows_of(page, "ahlvin-ulery-1962")
-    printed = [text for item in results[0].published["printed"] for text in item["text"]]
+    printed = [text for item in results[0].published["columns"] for text in item["text"]]
     assert len(printed) == 139
     beside = [row.split("|") for row in rows if row.endswith(("✓", "✗", "not counted"))]
     assert [cells[2] for cells in beside] == printed
@@ -109,7 +109,7 @@ def test_command_line_runs_a_table_of_ones_own(tmp_path):
     assert done.returncode == 1, done.stderr
     assert json.loads(done.stdout)["cases"]["mine"]["outcome"] == "DISAGREES"
     result = from_json(read_checked(tmp_path / "out" / "cases" / "mine.json"))
-    assert result.published["printed"][0]["text"] == ["0.5"]
+    assert result.published["columns"][0]["text"] == ["0.5"]
     (tmp_path / "jones_1962_three_layer.csv").write_text(table.replace("1.0", "one"))
     done = subprocess.run(words, cwd=tmp_path, capture_output=True, text=True, timeout=60, check=False)
     assert done.returncode == 2

@@ -6,7 +6,7 @@ from math import isfinite
 import numpy as np
 from numpy.typing import NDArray
 
-from verification.cases.schema import PrintedAt, PrintedColumn, PrintedTable
+from verification.cases.schema import ColumnEntry, PositionEntry, TableEntry
 from verification.cases.table import PublishedError, PublishedTable
 from verification.problem.arrays import Array
 from verification.problem.contact import PrescribedLoad
@@ -16,11 +16,11 @@ from verification.problem.profile import Profile
 from verification.problem.quantity import CURVES, EXTREMES, QUANTITIES, SCALARS
 from verification.sources.registry import PUBLISHED
 
-__all__ = ["Printed", "columns_of", "si_of"]
+__all__ = ["PublishedColumn", "columns_of", "si_of"]
 
 
 @dataclass(frozen=True, eq=False)
-class Printed:
+class PublishedColumn:
     """One column of a table on one line: where, what, and which rows count.
 
     profile : in SI, tension positive, with the reading uncertainty.   at : the points of its values.
@@ -58,12 +58,12 @@ def si_of(name: str, units: dict[str, float], where: str) -> float:
 
 
 def columns_of(
-    table: PrintedTable,
+    table: TableEntry,
     content: PublishedTable,
     units: dict[str, float],
     problem: Problem,
     key: str,
-) -> list[Printed]:
+) -> list[PublishedColumn]:
     content = content.where(table.rows) if table.rows else content
     labels = content.text(table.label) if table.label else ("",) * len(content.rows)
     found = []
@@ -98,7 +98,7 @@ def columns_of(
             part = points.part(rows)
             profile = Profile(column.quantity, line, part.along, value[rows], PUBLISHED, spread[rows])
             found.append(
-                Printed(
+                PublishedColumn(
                     profile,
                     part,
                     table.file,
@@ -117,7 +117,7 @@ def columns_of(
 
 
 def _points(
-    at: PrintedAt | None,
+    at: PositionEntry | None,
     content: PublishedTable,
     units: dict[str, float],
     problem: Problem,
@@ -147,7 +147,7 @@ def _points(
         raise PublishedError(f"{where}: {error}") from None
 
 
-def _why_not(table: PrintedTable, content: PublishedTable, column: str) -> list[str]:
+def _why_not(table: TableEntry, content: PublishedTable, column: str) -> list[str]:
     """Why a row does not count: it is flagged, or the cell named, as a misprint; "" for one that counts."""
     why = [""] * len(content.rows)
     if table.flag is not None:
@@ -160,7 +160,7 @@ def _why_not(table: PrintedTable, content: PublishedTable, column: str) -> list[
     return why
 
 
-def _uncertainty(column: PrintedColumn, content: PublishedTable, counted: NDArray[np.bool_]) -> Array:
+def _uncertainty(column: ColumnEntry, content: PublishedTable, counted: NDArray[np.bool_]) -> Array:
     """Reading uncertainty of every row, in the unit of the column.
 
     Stated by the file; or half the last digit with the error of the program that printed it; or, where
@@ -171,14 +171,14 @@ def _uncertainty(column: PrintedColumn, content: PublishedTable, counted: NDArra
     if isinstance(column.uncertainty, float):
         return np.full(len(content.rows), column.uncertainty)
     rounding = np.array(content.half_digits(column.name, column.significant))
-    if column.uncertainty == "spread":
+    if column.uncertainty == "range":
         return rounding + (np.ptp(np.array(content.numbers(column.name))[counted]) if counted.any() else 0.0)
     return rounding + column.program_error
 
 
 def _scale(
-    column: PrintedColumn,
-    table: PrintedTable,
+    column: ColumnEntry,
+    table: TableEntry,
     content: PublishedTable,
     units: dict[str, float],
     problem: Problem,

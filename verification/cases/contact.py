@@ -24,7 +24,7 @@ class Case:
     """``problem`` with the ``claims`` about it; ``numerics`` holds each method's own keywords.
 
     text : the file it was read from, kept with the results so that they carry their full input.
-    laws : whether the problem is solved again scaled, with equal moduli, thick and thin, see ``invariants``.
+    resolve : whether it is also solved scaled, with equal moduli, thick and thin (``invariants.resolved``).
     """
 
     name: str
@@ -34,7 +34,7 @@ class Case:
     source: str = ""
     numerics: dict[str, dict[str, Any]] = field(default_factory=dict)
     text: str = ""
-    laws: bool = False
+    resolve: bool = False
 
     @property
     def lines(self) -> tuple[Line, ...]:
@@ -102,7 +102,7 @@ class _CaseFile(Strict):
     semianalytic: _SemianalyticNumerics = _SemianalyticNumerics()
     fem_reference: _FemNumerics = _FemNumerics()
     claim: Annotated[list[_Claim], Field(default_factory=list, max_length=1000)]
-    laws: bool = False
+    resolve: bool = False
 
 
 def read_case(path: Path) -> Case:
@@ -120,8 +120,8 @@ def parse_case(raw: bytes, path: Path) -> Case:
     except (ValueError, OverflowError, ZeroDivisionError) as error:
         raise CaseError(f"{path}: problem: {error}") from None
     refuse_unfit_scales(path, problem)
-    if checked.laws and not problem.coatings:
-        raise CaseError(f"{path}: laws: needs a coating to make thick and thin; add one, or leave laws out")
+    if checked.resolve and not problem.coatings:
+        raise CaseError(f"{path}: resolve: requires a coating; add one, or leave resolve out")
     return Case(
         name=path.stem,
         title=checked.title,
@@ -134,7 +134,7 @@ def parse_case(raw: bytes, path: Path) -> Case:
             if method in _CaseFile.model_fields
         },
         text=text,
-        laws=checked.laws,
+        resolve=checked.resolve,
     )
 
 

@@ -8,8 +8,8 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from verification.cases.columns import Printed, columns_of, si_of
-from verification.cases.schema import PrintedFile, PrintedLayer, PrintedProblem
+from verification.cases.columns import PublishedColumn, columns_of, si_of
+from verification.cases.schema import LayerEntry, ProblemEntry, PublishedFile
 from verification.cases.table import FOLDER, UNITS, PublishedError, read_table
 from verification.cases.toml import CaseError, load_toml, read_bounded, read_toml
 from verification.judging.verdict import Claim
@@ -27,7 +27,7 @@ CAP = 5e-3
 
 @dataclass(frozen=True)
 class PublishedCase:
-    """``problem`` with what was ``printed`` about it.
+    """``problem`` with the ``columns`` published about it.
 
     path : of its file.   text : all it was read from, tables included.
     citation : year, how it was read, whether the primary source was seen, and remarks.
@@ -37,7 +37,7 @@ class PublishedCase:
     title: str
     problem: Problem
     claims: tuple[Claim, ...]
-    printed: tuple[Printed, ...]
+    columns: tuple[PublishedColumn, ...]
     citation: dict[str, Any]
     source: str
     path: Path
@@ -64,17 +64,17 @@ def read_published(path: Path) -> PublishedCase:
 
 def parse_published(raw: bytes, path: Path) -> PublishedCase:
     """Check the text of a published case; its tables lie beside ``path``. Raises CaseError."""
-    text, checked = read_toml(raw, path, PrintedFile)
+    text, checked = read_toml(raw, path, PublishedFile)
     try:
         problem = _problem(checked.problem)
         units = _units(problem)
-        notes, printed, texts = [], [], [text]
+        notes, columns, texts = [], [], [text]
         for i, table in enumerate(checked.table):
             content = read_table(path.parent / table.file)
             notes.append(content.notes)
             texts.append(f"# {table.file}\n{content.raw}")
-            printed += columns_of(table, content, units, problem, f"table.{i}")
-        problem = _with_points(problem, printed)
+            columns += columns_of(table, content, units, problem, f"table.{i}")
+        problem = _with_points(problem, columns)
     except PublishedError as error:
         raise CaseError(str(error)) from None
     except (ValueError, OverflowError, ZeroDivisionError) as error:
@@ -85,12 +85,12 @@ def parse_published(raw: bytes, path: Path) -> PublishedCase:
         problem=problem,
         claims=tuple(
             _claim(item, source)
-            for item in printed
+            for item in columns
             if item.counted.any()
             for source in (*METHODS, *EXACT)
             if SOURCES[source].supports(problem, QUANTITIES[item.profile.quantity].kind)
         ),
-        printed=tuple(printed),
+        columns=tuple(columns),
         citation={
             "year": checked.year,
             "primary_read": checked.primary_read,
@@ -105,21 +105,21 @@ def parse_published(raw: bytes, path: Path) -> PublishedCase:
     )
 
 
-def _with_points(problem: Problem, printed: list[Printed]) -> Problem:
+def _with_points(problem: Problem, columns: list[PublishedColumn]) -> Problem:
     """A loading curve with the points that its tables ask for."""
     if not isinstance(problem, LoadingCurve):
         return problem
-    controls = {item.at.control for item in printed}
+    controls = {item.at.control for item in columns}
     if len(controls) > 1 or "" in controls:
         raise ValueError(
             f"at: one of {', '.join(CONTROLS)} has to say where every value of a loading curve is"
         )
-    at = sorted({float(x) for item in printed for x in item.at.along})
-    punch = any(item.profile.quantity in PUNCH for item in printed)
+    at = sorted({float(x) for item in columns for x in item.at.along})
+    punch = any(item.profile.quantity in PUNCH for item in columns)
     return replace(problem, control=controls.pop(), at=tuple(at), punch=punch)
 
 
-def _problem(p: PrintedProblem) -> Problem:
+def _problem(p: ProblemEntry) -> Problem:
     length, stress, force = (
         si_of(value, UNITS, f"problem.{key}")
         for key, value in (
@@ -142,7 +142,7 @@ def _problem(p: PrintedProblem) -> Problem:
     return PrescribedLoad(p.pressure * stress, p.load_radius * length, coatings, substrate, p.friction)
 
 
-def _thickness(c: PrintedLayer, length: float, a_h: float | None) -> float:
+def _thickness(c: LayerEntry, length: float, a_h: float | None) -> float:
     if c.thickness is not None:
         return c.thickness * length
     if c.thickness_over_a_h is None or a_h is None:
@@ -164,9 +164,9 @@ def _units(problem: Problem) -> dict[str, float]:
     return UNITS | {"a_h": problem.a_h, "p_h": problem.p_h, "delta_h": problem.delta_h}
 
 
-def _claim(item: Printed, source: str) -> Claim:
+def _claim(item: PublishedColumn, source: str) -> Claim:
     spread = item.profile.uncertainty
     assert spread is not None
     cap = CAP + float(spread[item.counted].max()) / item.scale if item.scale else CAP
-    why = f"printed in column {item.column} of {item.file}"
+    why = f"published in column {item.column} of {item.file}"
     return Claim(item.profile.quantity, item.profile.line, (source, PUBLISHED), cap, why)

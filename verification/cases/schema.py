@@ -6,7 +6,7 @@ from pydantic import Field, model_validator
 
 from verification.cases.toml import Strict, Text
 
-__all__ = ["PrintedAt", "PrintedColumn", "PrintedFile", "PrintedLayer", "PrintedProblem", "PrintedTable"]
+__all__ = ["ColumnEntry", "LayerEntry", "PositionEntry", "ProblemEntry", "PublishedFile", "TableEntry"]
 
 Positive = Annotated[float, Field(gt=0)]
 # Of incompressible layers the finite element method speaks by extrapolation only, so 1/2 is allowed here.
@@ -14,7 +14,7 @@ Poisson = Annotated[float, Field(gt=-1, le=0.5)]
 Cells = Annotated[dict[str, str | float], Field(max_length=20)]
 
 
-class PrintedLayer(Strict):
+class LayerEntry(Strict):
     """A material; a coating with its thickness too."""
 
     E: Positive
@@ -23,7 +23,7 @@ class PrintedLayer(Strict):
     thickness_over_a_h: Positive | None = None
 
 
-class PrintedProblem(Strict):
+class ProblemEntry(Strict):
     """A uniform disc or a sphere on a layered solid, in the units of the source.
 
     A sphere without a load is pressed deeper and deeper, to where the tables say.
@@ -32,8 +32,8 @@ class PrintedProblem(Strict):
     length_unit: Text
     stress_unit: Text
     load_unit: Text = "N"
-    substrate: PrintedLayer
-    coatings: Annotated[list[PrintedLayer], Field(default_factory=list, max_length=50)]
+    substrate: LayerEntry
+    coatings: Annotated[list[LayerEntry], Field(default_factory=list, max_length=50)]
     friction: Annotated[float, Field(ge=0, le=2)] = 0.0
     pressure: Positive | None = None
     load_radius: Positive | None = None
@@ -41,7 +41,7 @@ class PrintedProblem(Strict):
     load: Positive | None = None
 
     @model_validator(mode="after")
-    def _disc_or_sphere(self) -> "PrintedProblem":
+    def _disc_or_sphere(self) -> "ProblemEntry":
         disc = (self.pressure is not None) + (self.load_radius is not None)
         sphere = (self.radius is not None) + (self.load is not None)
         if (disc, sphere) not in ((2, 0), (0, 2)) and not (disc == 0 and self.load is None and self.radius):
@@ -54,7 +54,7 @@ class PrintedProblem(Strict):
         return self
 
 
-class PrintedAt(Strict):
+class PositionEntry(Strict):
     """Where values are: numbers or names of columns, in ``unit``; ``layer`` picks a side of an interface.
 
     contact_radius, approach : of a sphere pressed deeper and deeper, one of them in place of x, y, z.
@@ -69,10 +69,10 @@ class PrintedAt(Strict):
     layer: Annotated[int, Field(ge=0)] | None = None
 
 
-class PrintedColumn(Strict):
+class ColumnEntry(Strict):
     """A column of a table: ``quantity`` = ``factor`` times what is printed, in ``unit``.
 
-    uncertainty : reading uncertainty in that unit, or "spread" of the rows; otherwise half of the last digit,
+    uncertainty : reading uncertainty in that unit, or "range" of the rows; otherwise half of the last digit,
     of so many ``significant`` ones, with ``program_error`` on top.
     relative : reading uncertainty as a fraction of each value, instead.
     not_counted : why the column is shown but held against nobody.
@@ -83,8 +83,8 @@ class PrintedColumn(Strict):
     quantity: Text
     unit: Text
     factor: float = 1.0
-    at: PrintedAt | None = None
-    uncertainty: Positive | Literal["spread"] | None = None
+    at: PositionEntry | None = None
+    uncertainty: Positive | Literal["range"] | None = None
     significant: Annotated[int, Field(ge=1, le=16)] | None = None
     program_error: Annotated[float, Field(ge=0)] = 0.0
     relative: Positive | None = None
@@ -92,7 +92,7 @@ class PrintedColumn(Strict):
     series: Annotated[list[float], Field(default_factory=list, max_length=20)]
 
 
-class PrintedMisprint(Strict):
+class MisprintEntry(Strict):
     """Cells known to be wrong, ``why`` in a few words: shown, never counted."""
 
     row: Cells
@@ -100,22 +100,22 @@ class PrintedMisprint(Strict):
     why: Text
 
 
-class PrintedTable(Strict):
+class TableEntry(Strict):
     """One CSV file, the rows of it that are meant, its columns.
 
     flag : a column that is empty but for misprints.   label : a column that names rows.
     """
 
     file: Annotated[str, Field(pattern=r"^[A-Za-z0-9_.-]+\.csv$")]
-    at: PrintedAt | None = None
+    at: PositionEntry | None = None
     rows: Cells = Field(default_factory=dict)
     flag: Text | None = None
     label: Text | None = None
-    column: Annotated[list[PrintedColumn], Field(min_length=1, max_length=100)]
-    misprint: list[PrintedMisprint] = Field(default_factory=list)
+    column: Annotated[list[ColumnEntry], Field(min_length=1, max_length=100)]
+    misprint: list[MisprintEntry] = Field(default_factory=list)
 
 
-class PrintedFile(Strict):
+class PublishedFile(Strict):
     """A published case as its TOML file says it."""
 
     title: Text
@@ -124,5 +124,5 @@ class PrintedFile(Strict):
     primary_read: bool
     read: Text
     remark: Annotated[str, Field(max_length=2000)] = ""
-    problem: PrintedProblem
-    table: Annotated[list[PrintedTable], Field(min_length=1, max_length=100)]
+    problem: ProblemEntry
+    table: Annotated[list[TableEntry], Field(min_length=1, max_length=100)]

@@ -17,7 +17,7 @@ __all__ = [
     "Poisson",
     "Strict",
     "Text",
-    "first_complaint",
+    "first_error",
     "load_toml",
     "read_bounded",
     "read_toml",
@@ -35,6 +35,7 @@ MAX_DOTS = 250
 
 
 MAX_NAME = 100
+RENAMED = {"laws": "resolve"}  # keys of earlier versions
 
 
 class CaseError(ValueError):
@@ -102,19 +103,20 @@ def read_toml(raw: bytes, path: Path, model: type[Checked]) -> tuple[str, Checke
         text, content = load_toml(raw)
         return text, model.model_validate(content)
     except ValidationError as error:
-        raise CaseError(f"{path}: {first_complaint(error)}") from None
+        raise CaseError(f"{path}: {first_error(error)}") from None
     except ValueError as error:
         raise CaseError(f"{path}: {error}") from None
 
 
-def first_complaint(error: ValidationError) -> str:
+def first_error(error: ValidationError) -> str:
     """The first thing wrong with a case file, with its key and what stands there, in one sentence."""
     first = error.errors(include_url=False)[0]
     key = ".".join(_shortened(str(part)) for part in first["loc"]) or "top level"
+    renamed = RENAMED.get(key, "")
     message = first["msg"].removeprefix("Value error, ")
     said = {
         "missing": "is missing",
-        "extra_forbidden": "is an unknown key",
+        "extra_forbidden": f"is now called {renamed}" if renamed else "is an unknown key",
         "finite_number": "must be a finite number",
         "float_type": "must be a number",
         "int_type": "must be a whole number",

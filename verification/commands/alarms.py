@@ -14,7 +14,7 @@ from rich.table import Table
 
 from verification.cases.contact import Case, parse_case
 from verification.cases.random_problems import draw
-from verification.commands.common import RECORDS, STYLE, complain, exit_code, no_gmsh, one_line, run_info
+from verification.commands.common import RECORDS, STYLE, exit_code, no_gmsh, one_line, print_error, run_info
 from verification.commands.solving import kept_results, solve
 from verification.credibility.alarms import AlarmRecord, counted, write_record
 from verification.running.pool import cores
@@ -70,13 +70,13 @@ def alarms(
     resume
         Keep the whole results already in the output directory.
     quiet
-        Print nothing but complaints.
+        Print nothing but errors.
     as_json
         Print the record as JSON.
     """
     jobs = cores() if jobs is None else jobs
     if jobs < 1 or not time_limit > 0 or count < 1 or seed < 0:
-        return complain(
+        return print_error(
             f"--count = {count}, --seed = {seed}, --jobs = {jobs}, --time-limit = {time_limit:g}; only the "
             "seed may be zero, none negative"
         )
@@ -98,7 +98,7 @@ def alarms(
             found = counted(results, seed, info)
             stored = write_record(records, found) if record else None
     except (StoreError, OSError) as error:
-        return complain(str(error))
+        return print_error(str(error))
     if as_json:
         sys.stdout.write(json.dumps(plain(asdict(found)), indent=2) + "\n")
     elif not quiet:

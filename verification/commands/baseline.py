@@ -13,7 +13,7 @@ from rich.markup import escape
 from rich.table import Table
 
 from verification.cases.contact import shipped_cases
-from verification.commands.common import BASELINE, complain
+from verification.commands.common import BASELINE, print_error
 from verification.judging.verdict import Outcome
 from verification.regression.baseline import Baseline, Update, updated
 from verification.regression.record import path_in, read_baseline, write_baseline
@@ -47,21 +47,21 @@ def update(
     baseline
         Directory of the baseline.
     quiet
-        Print nothing but complaints.
+        Print nothing but errors.
     """
     if not why.strip():
-        return complain('--why is empty; say why the numbers change: coatcheck baseline update --why "..."')
+        return print_error('--why is empty; give the reason: coatcheck baseline update --why "..."')
     try:
         found = read_run(run)
         unfit = _unfit(found)
         if unfit:
-            return complain(unfit)
+            return print_error(unfit)
         confirm(found)
         with locked(baseline):
             made = updated(read_baseline(baseline), found.results, found.info, " ".join(why.split()), _now())
             path = write_baseline(baseline, made)
     except StoreError as error:
-        return complain(str(error))
+        return print_error(str(error))
     if not quiet:
         console = Console()
         changed = made.last.changes
@@ -93,9 +93,9 @@ def show(
     try:
         stored = read_baseline(baseline)
     except StoreError as error:
-        return complain(str(error))
+        return print_error(str(error))
     if stored is None:
-        return complain(
+        return print_error(
             f'{path_in(baseline)}: there is no baseline; make one with: coatcheck baseline update --why "..."'
         )
     if as_json:

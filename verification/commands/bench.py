@@ -9,7 +9,7 @@ from cyclopts import Parameter
 from rich.console import Console
 from rich.table import Table
 
-from verification.commands.common import EXIT, complain
+from verification.commands.common import EXIT, print_error
 from verification.judging.verdict import Outcome
 
 __all__ = ["bench"]
@@ -52,7 +52,7 @@ def bench(
         Print everything measured as JSON.
     """
     if min(sizes) < 16 or max(sizes) > 4096 or min(threads) < 1 or repeats < 1:
-        return complain("--sizes from 16 to 4096, --threads and --repeats from 1")
+        return print_error("--sizes from 16 to 4096, --threads and --repeats from 1")
     from verification.bench.contact import coated_ratios, ratios, run_bench, run_coated, run_plane
 
     console = Console(stderr=True)

@@ -32,10 +32,10 @@ __all__ = [
     "RECORDS",
     "STOPPED",
     "STYLE",
-    "complain",
     "exit_code",
     "no_gmsh",
     "one_line",
+    "print_error",
     "progress_bar",
     "run_info",
 ]
@@ -64,7 +64,7 @@ def exit_code(results: Sequence[CaseResult]) -> int:
     return EXIT[Outcome.AGREES] if found else EXIT[Outcome.NO_RESULT]
 
 
-def complain(sentence: str) -> int:
+def print_error(sentence: str) -> int:
     """Say on standard error, in one line, what is wrong; the exit code of bad input."""
     sys.stderr.write(f"coatcheck: {one_line(sentence)}\n")
     return BAD_INPUT
@@ -80,7 +80,7 @@ def no_gmsh() -> int | None:
     """The exit code where gmsh cannot be loaded here, having said what to install; None where it can."""
     if not (lacking := missing_libraries()):
         return None
-    complain(f"gmsh lacks system libraries here; install them with: apt-get install {' '.join(lacking)}")
+    print_error(f"gmsh lacks system libraries here; install them with: apt-get install {' '.join(lacking)}")
     return EXIT[Outcome.NO_RESULT]
 
 

@@ -11,7 +11,7 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
-from verification.commands.common import DRIFTED, EXIT, STYLE, complain, one_line
+from verification.commands.common import DRIFTED, EXIT, STYLE, one_line, print_error
 from verification.judging.verdict import Outcome
 from verification.regression.comparison import RunComparison, compare_runs
 from verification.regression.drift import State
@@ -47,7 +47,7 @@ def compare(
     output
         Also write all of it to this HTML file.
     quiet
-        Print nothing but complaints.
+        Print nothing but errors.
     as_json
         Print everything as JSON.
     """
@@ -58,7 +58,7 @@ def compare(
 
             write_atomically(output, comparison_page(found).encode("utf-8", errors="replace"))
     except StoreError as error:
-        return complain(str(error))
+        return print_error(str(error))
     if as_json:
         content = {**plain(asdict(found)), "drifted": found.drifted, "worse": found.worse}
         sys.stdout.write(json.dumps(content, indent=2) + "\n")

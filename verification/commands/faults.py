@@ -14,7 +14,7 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
-from verification.commands.common import EXIT, complain, no_gmsh
+from verification.commands.common import EXIT, no_gmsh, print_error
 from verification.commands.solving import kept_results, solve
 from verification.judging.verdict import Outcome
 from verification.running.pool import cores
@@ -77,27 +77,27 @@ def faults(
     resume
         Keep the trials already in the output directory that belong to the same faults, the same code.
     quiet
-        Print nothing but complaints.
+        Print nothing but errors.
     as_json
         Print the matrix as JSON.
     """
     jobs = cores() if jobs is None else jobs
     if jobs < 1 or not time_limit > 0:
-        return complain(f"--jobs = {jobs}, --time-limit = {time_limit:g}; both must be positive")
+        return print_error(f"--jobs = {jobs}, --time-limit = {time_limit:g}; both must be positive")
     from verification.credibility.faults.catalogue import GROUPS, chosen
 
     if group is not None and (group not in GROUPS or names):
         said = "give a group or names, not both" if names else f"choose one of {', '.join(GROUPS)}"
-        return complain(f"--group = {group}: {said}")
+        return print_error(f"--group = {group}: {said}")
     try:
         wanted = chosen(names, group)
     except KeyError as error:
-        return complain(f"{error.args[0]}: no fault has this name; see coatcheck faults --list")
+        return print_error(f"{error.args[0]}: no fault has this name; see coatcheck faults --list")
     if listed:
         _list(wanted, as_json)
         return 0
     if record and (names or group):
-        return complain("--record stores the matrix of all faults; leave names and --group out")
+        return print_error("--record stores the matrix of all faults; leave names and --group out")
     if (code := no_gmsh()) is not None:
         return code
 
@@ -112,7 +112,7 @@ def faults(
             stood = kept_results(cases, campaign.clean_folder(output)) if resume else {}
             tasks = [case_task(c, campaign.clean_folder(output)) for c in cases if c.name not in stood]
             if said := campaign.unfit([*stood.values(), *solve(tasks, jobs, time_limit, quiet or as_json)]):
-                complain(said)
+                print_error(said)
                 return EXIT[Outcome.NO_RESULT]
             kept = {f.name: t for f in wanted if resume and (t := campaign.kept_trial(f, output))}
             # the long ones first, so that no core waits at the end
@@ -133,7 +133,7 @@ def faults(
             if record:
                 campaign.write_record(records / campaign.RECORD, found)
     except StoreError as error:
-        return complain(str(error))
+        return print_error(str(error))
     if as_json:
         sys.stdout.write(json.dumps(to_json(found), indent=2) + "\n")
     elif not quiet:

@@ -37,7 +37,7 @@ def list_cases(*, as_json: Annotated[bool, Parameter(name="--json", negative="")
         table.add_row(case.name, case.title, str(len(case.claims)), case.source)
     printed = Table("published", "title", "values", "year", "source", box=None, header_style="bold")
     for result in published:
-        values = sum(int(item.counted.sum()) for item in result.printed)
+        values = sum(int(item.counted.sum()) for item in result.columns)
         printed.add_row(result.name, result.title, str(values), str(result.citation["year"]), result.source)
     Console().print(table)
     Console().print()

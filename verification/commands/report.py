@@ -8,7 +8,7 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
-from verification.commands.common import BASELINE, EXIT, RECORDS, complain, exit_code
+from verification.commands.common import BASELINE, EXIT, RECORDS, exit_code, print_error
 from verification.judging.verdict import Outcome
 from verification.regression.baseline import regression
 from verification.regression.record import read_baseline
@@ -47,7 +47,7 @@ def report(
     time_limit
         Seconds that printing may take.
     quiet
-        Print nothing but complaints.
+        Print nothing but errors.
     as_json
         Print one JSON object that names the files.
     """
@@ -57,7 +57,7 @@ def report(
     from verification.report.pdf import NoBrowser, printed
 
     if not (folder / "cases").is_dir():
-        return complain(f"{folder}: holds no run; write one with: coatcheck run --output {folder}")
+        return print_error(f"{folder}: holds no run; write one with: coatcheck run --output {folder}")
     try:
         known = read_baseline(baseline)
         with locked(folder):
@@ -72,10 +72,10 @@ def report(
             if pdf:
                 files.append(printed(page, folder / "report.pdf", time_limit))
     except NoBrowser as error:
-        complain(str(error))
+        print_error(str(error))
         return EXIT[Outcome.NO_RESULT]
     except (StoreError, ValueError) as error:
-        return complain(str(error))
+        return print_error(str(error))
     if as_json:
         sys.stdout.write(json.dumps({"files": [str(file) for file in files]}, indent=2) + "\n")
     elif not quiet:

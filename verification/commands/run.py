@@ -29,10 +29,10 @@ from verification.commands.common import (
     RECORDS,
     STOPPED,
     STYLE,
-    complain,
     exit_code,
     no_gmsh,
     one_line,
+    print_error,
     run_info,
 )
 from verification.commands.solving import kept_results, kept_study, solve
@@ -95,17 +95,17 @@ def run(
     verbose
         Say the seconds and iterations of every source as the cases finish.
     quiet
-        Print nothing but complaints.
+        Print nothing but errors.
     as_json
         Print one JSON object with the outcome of each case instead of a table.
     """
     jobs = cores() if jobs is None else jobs
     if jobs < 1 or not time_limit > 0:
-        return complain(f"--jobs = {jobs}, --time-limit = {time_limit:g}; both must be positive")
+        return print_error(f"--jobs = {jobs}, --time-limit = {time_limit:g}; both must be positive")
     try:
         chosen = _choose(cases)
     except CaseError as error:
-        return complain(str(error))
+        return print_error(str(error))
     if (code := no_gmsh()) is not None:
         return code
 
@@ -118,7 +118,7 @@ def run(
     tests = self_tests()
     for test in tests:
         if not test.passed:
-            complain(f"self-test of the {test.name}: {test.found}; the verdicts of this run mean nothing")
+            print_error(f"self-test of the {test.name}: {test.found}; the verdicts of this run mean nothing")
     begin, started = time.perf_counter(), datetime.datetime.now(datetime.UTC)
     try:
         known = read_baseline(baseline)
@@ -140,7 +140,7 @@ def run(
             beside = regression(ordered, known, str(baseline), info, whole=not cases)
             page = write(ordered, output, info, study, beside, records, tests, formulas)
     except StoreError as error:
-        return complain(str(error))
+        return print_error(str(error))
     except KeyboardInterrupt:
         return _stopped(chosen, output)
     if as_json:
@@ -193,7 +193,7 @@ def _stopped(chosen: Sequence[Case | PublishedCase], output: Path) -> int:
     for case in chosen:
         with suppress(StoreError):
             finished += kept_result(output, case) is not None
-    complain(
+    print_error(
         f"stopped; {finished} of {len(chosen)} cases are finished and kept in {output}: go on with --resume, "
         f"or see what is there with coatcheck report {output}"
     )
@@ -258,7 +258,7 @@ def _print_table(results: Sequence[CaseResult], page: Path, seconds: float, besi
             if law.outcome is not Outcome.AGREES:
                 say(
                     f"[{STYLE[law.outcome]}]{escape(result.name)}, {law.source}, {escape(law.name)}:[/] "
-                    f"{escape(one_line(law.sentence))}"
+                    f"{escape(one_line(law.message))}"
                 )
     laws = [law for result in results for law in result.invariants]
     if laws:

@@ -9,7 +9,7 @@ from rich.markup import escape
 
 from verification.cases.contact import Case
 from verification.cases.published import PublishedCase
-from verification.commands.common import STYLE, complain, one_line, progress_bar
+from verification.commands.common import STYLE, one_line, print_error, progress_bar
 from verification.credibility import accuracy as accuracy_study
 from verification.credibility.accuracy import AccuracyStudy
 from verification.running.pool import Task, run_tasks
@@ -31,7 +31,7 @@ def kept_results(
         try:
             result = kept_result(output, case, fields=fields)
         except StoreError as error:
-            complain(f"{error}; computed again")
+            print_error(f"{error}; computed again")
             continue
         if result is not None:
             kept[case.name] = result
@@ -43,7 +43,7 @@ def kept_study(output: Path) -> AccuracyStudy | None:
     try:
         return accuracy_study.stored(output)
     except StoreError as error:
-        complain(f"{error}; measured again")
+        print_error(f"{error}; measured again")
         return None
 
 

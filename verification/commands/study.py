@@ -16,7 +16,7 @@ from rich.progress import ProgressColumn, Task, TaskID, TextColumn
 from rich.text import Text
 
 from verification.cases.toml import CaseError
-from verification.commands.common import EXIT, STOPPED, complain, no_gmsh, progress_bar
+from verification.commands.common import EXIT, STOPPED, no_gmsh, print_error, progress_bar
 from verification.judging.verdict import Outcome
 from verification.running.pool import cores
 from verification.running.provenance import commit, machine
@@ -72,16 +72,16 @@ def thickness(
     figures
         Draw the table: PLAN.html, and figures/PLAN for print.
     quiet
-        Print nothing but complaints.
+        Print nothing but errors.
     as_json
         Print one JSON object with what came of the study instead of a sentence.
     """
     if (jobs is not None and jobs < 1) or (limit is not None and limit < 1):
-        return complain(f"--jobs = {jobs}, --limit = {limit}; both must be positive")
+        return print_error(f"--jobs = {jobs}, --limit = {limit}; both must be positive")
     try:
         chosen = _choose(plan)
     except CaseError as error:
-        return complain(str(error))
+        return print_error(str(error))
     if not cross_check:
         chosen = replace(chosen, cross_check=0)
     if chosen.cross_check and (code := no_gmsh()) is not None:
@@ -96,7 +96,7 @@ def thickness(
             came = run_study(chosen, output, partial(connected, scheduler, jobs), limit=limit, report=report)
         page = _page(chosen, came, time.perf_counter() - begin) if figures else None
     except (StoreError, SchedulerError) as error:
-        return complain(str(error))
+        return print_error(str(error))
     except KeyboardInterrupt:
         sys.stderr.write(
             f"\ncoatcheck: stopped; what was solved is in {table_path(output, chosen)}, "
@@ -104,7 +104,7 @@ def thickness(
         )
         return STOPPED
     for sentence in came.damaged:
-        complain(f"{sentence.split(';')[0]}; solved again")
+        print_error(f"{sentence.split(';')[0]}; solved again")
     if as_json:
         content = asdict(came) | {"table": str(came.table), "lost": len(came.lost)}
         content["page"] = None if page is None else str(page)

@@ -9,7 +9,7 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
-from verification.commands.common import EXIT, complain
+from verification.commands.common import EXIT, print_error
 from verification.judging.verdict import Outcome
 from verification.problem.quantity import STRESSES
 from verification.running.fields import read_fields
@@ -45,15 +45,15 @@ def view(
         Seconds that the picture may take.
     """
     if quantity not in QUANTITIES:
-        return complain(f"--quantity = {quantity}; there are {', '.join(QUANTITIES)}")
+        return print_error(f"--quantity = {quantity}; there are {', '.join(QUANTITIES)}")
     if Path(case).name != case:
-        return complain(f"{case}: not the name of a case; see coatcheck list")
+        return print_error(f"{case}: not the name of a case; see coatcheck list")
     if screenshot is not None and screenshot.suffix.lower() != ".png":
-        return complain(f"--screenshot = {screenshot}; the name has to end in .png")
+        return print_error(f"--screenshot = {screenshot}; the name has to end in .png")
     try:
         read_fields(output, case)
     except StoreError as error:
-        return complain(f"{error}; fields are written by: coatcheck run {case} --fields")
+        return print_error(f"{error}; fields are written by: coatcheck run {case} --fields")
     words = [
         sys.executable,
         "-m",
@@ -88,12 +88,12 @@ def _picture(words: list[str], path: Path, time_limit: float) -> int:
         try:
             write_atomically(path, drawn.read_bytes())
         except StoreError as error:
-            return complain(str(error))
+            return print_error(str(error))
     return 0
 
 
 def _none(sentence: str) -> int:
-    complain(sentence)
+    print_error(sentence)
     return EXIT[Outcome.NO_RESULT]
 
 

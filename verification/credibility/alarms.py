@@ -62,7 +62,7 @@ def counted(results: Sequence[CaseResult], seed: int, info: RunInfo) -> AlarmRec
         if v.outcome is not Outcome.AGREES
     ]
     alarms += [
-        Alarm(r.name, r.title, law.name, "", (law.source,), law.outcome, law.sentence, r.text)
+        Alarm(r.name, r.title, law.name, "", (law.source,), law.outcome, law.message, r.text)
         for r in results
         for law in r.invariants
         if law.outcome is not Outcome.AGREES

@@ -21,7 +21,7 @@ class Invariant:
     """``name`` holds for ``source`` where ``value`` does not exceed ``bound``, both dimensionless.
 
     value, bound : at the point that decides; None where there is no such number.
-    sentence : the law, what was found, what was allowed.
+    message : the law, the residual, the bound.
     """
 
     name: str
@@ -29,7 +29,7 @@ class Invariant:
     value: float | None
     bound: float | None
     outcome: Outcome
-    sentence: str
+    message: str
 
     @property
     def share(self) -> float | None:

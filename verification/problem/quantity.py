@@ -34,7 +34,7 @@ class Quantity:
     unit : SI, "1" for none.   scale : property of CoatedContact that values are divided by.
     cap : largest admissible uncertainty, over the value of a scalar, over p_h of any other.
     component : of a stress or strain tensor.
-    derived : of a scalar that follows from the other scalars of the contact, (solution, problem) -> value [SI].
+    derived : (solution, problem) -> value [SI], of a scalar that follows from the others of the contact.
     """
 
     name: str
@@ -123,7 +123,7 @@ def unit_of(name: str) -> str:
 
 
 def von_mises(sigma: Array | Sequence[Array]) -> Array:
-    """Von Mises stress [Pa] from stresses [Pa] in the order of ``STRESSES``, (6, ...), or ``IN_PLANE``, (4, ...).
+    """Von Mises stress from stresses in the order of ``STRESSES``, (6, ...), or ``IN_PLANE``, (4, ...); [Pa].
 
     sigma_vM^2 = ((xx - yy)^2 + (yy - zz)^2 + (zz - xx)^2) / 2 + 3 (xz^2 + xy^2 + yz^2)
     """

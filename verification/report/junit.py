@@ -52,8 +52,8 @@ def _suite(root: Element, result: CaseResult, info: RunInfo) -> None:
     for one in result.invariants:
         name = f"{one.name} of {one.source}"
         item = SubElement(suite, "testcase", classname=_text(result.name), name=_text(name), time="0")
-        text = f"{one.sentence}\nresidual {scientific(one.value)}, bound {scientific(one.bound)}"
-        _mark(item, one.outcome, one.sentence, text)
+        text = f"{one.message}\nresidual {scientific(one.value)}, bound {scientific(one.bound)}"
+        _mark(item, one.outcome, one.message, text)
     if not result.verdicts:
         # A case that came to nothing must not vanish from the count.
         item = SubElement(suite, "testcase", classname=_text(result.name), name="case", time="0")

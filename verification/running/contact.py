@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from verification.cases.contact import Case
-from verification.judging.invariants import Invariant, check, laws
+from verification.judging.invariants import Invariant, check, resolved
 from verification.judging.verdict import Claim, Outcome, Verdict, compare, judge
 from verification.problem.arrays import Array
 from verification.problem.contact import CoatedContact, Solution
@@ -34,12 +34,12 @@ def run(case: Case, available: Mapping[str, Solver] | None = None) -> CaseResult
 class Solved:
     """What each source of a case came to, by name: its Solution where it has one, its SourceResult always.
 
-    laws : what the methods were held against by solving the problem otherwise, where the case asks for it.
+    resolved : invariants between solutions of the problem and of others, where the case has ``resolve``.
     """
 
     solutions: Mapping[str, Solution]
     outcomes: Mapping[str, SourceResult]
-    laws: tuple[Invariant, ...] = ()
+    resolved: tuple[Invariant, ...] = ()
 
 
 def solve_case(case: Case, available: Mapping[str, Solver] | None = None) -> Solved:
@@ -65,13 +65,13 @@ def solve_case(case: Case, available: Mapping[str, Solver] | None = None) -> Sol
             diagnostics=diagnostics_of(solution.diagnostics),
             budget=getattr(solution.uncertainty, "budget", ()),
         )
-    return Solved(solutions, outcomes, laws(case.problem, available) if case.laws else ())
+    return Solved(solutions, outcomes, resolved(case.problem, available) if case.resolve else ())
 
 
 def judge_case(case: Case, solved: Solved, *, invariants: bool = True) -> CaseResult:
     """Sample what was solved at the same points of every line, then decide each claim of ``case``.
 
-    invariants : whether each solution is held against its own laws besides.
+    invariants : whether each solution is checked against its invariants too.
     """
     started = time.perf_counter()
     solutions, outcomes = dict(solved.solutions), dict(solved.outcomes)
@@ -98,7 +98,7 @@ def judge_case(case: Case, solved: Solved, *, invariants: bool = True) -> CaseRe
     if invariants:
         for source, solution in solutions.items():
             held += check(solution, source, case.problem)
-        held += solved.laws
+        held += solved.resolved
     verdicts = tuple((claim, decide(claim, profiles, outcomes, case.problem, edge)) for claim in case.claims)
     return CaseResult(
         name=case.name,

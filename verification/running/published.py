@@ -5,7 +5,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
-from verification.cases.columns import Printed
+from verification.cases.columns import PublishedColumn
 from verification.cases.published import PublishedCase
 from verification.judging.verdict import Outcome, Verdict, compare, judge
 from verification.problem.contact import Solution
@@ -36,18 +36,18 @@ def run(case: PublishedCase, available: Mapping[str, Solver] | None = None) -> C
     started = time.perf_counter()
     available = published_solvers(case.problem) if available is None else available
     outcomes: dict[str, SourceResult] = {}
-    profiles = {(p.profile.quantity, p.profile.line, PUBLISHED): p.profile for p in case.printed}
+    profiles = {(p.profile.quantity, p.profile.line, PUBLISHED): p.profile for p in case.columns}
     for source, solve in available.items():
         begin = time.perf_counter()
         try:
             solution = solve(case.problem)
             if not isinstance(solution, Loading):
-                asked_of = [i.at for i in case.printed if QUANTITIES[i.profile.quantity].kind in POINTWISE]
+                asked_of = [i.at for i in case.columns if QUANTITIES[i.profile.quantity].kind in POINTWISE]
                 solution = tabulated(solution, asked_of)
             asked = {(c.quantity, c.line) for c in case.claims if source in c.between}
             found = [
                 _profile(solution, source, item, case)
-                for item in case.printed
+                for item in case.columns
                 if source in METHODS or (item.profile.quantity, item.profile.line) in asked
             ]
         except Exception as error:  # a failed solve is a row of the report, whatever went wrong
@@ -56,10 +56,10 @@ def run(case: PublishedCase, available: Mapping[str, Solver] | None = None) -> C
         seconds, budget = time.perf_counter() - begin, getattr(solution.uncertainty, "budget", ())
         outcomes[source] = SourceResult(source, seconds, None, diagnostics_of(solution.diagnostics), budget)
         profiles |= {(p.quantity, p.line, source): p for p in found}
-    printed = {(p.profile.quantity, p.profile.line): p for p in case.printed}
+    columns = {(p.profile.quantity, p.profile.line): p for p in case.columns}
     verdicts = []
     for claim in case.claims:
-        source, item = claim.between[0], printed[claim.quantity, claim.line]
+        source, item = claim.between[0], columns[claim.quantity, claim.line]
         if source not in available and source not in METHODS:
             continue
         failure = outcomes[source].failure if source in outcomes else "was not asked"
@@ -99,11 +99,11 @@ def _blank(case: PublishedCase) -> CaseResult:
         verdicts=(),
         seconds=0.0,
         text=case.text,
-        published=case.citation | {"printed": [_record(item) for item in case.printed]},
+        published=case.citation | {"columns": [_record(item) for item in case.columns]},
     )
 
 
-def _record(item: Printed) -> dict[str, Any]:
+def _record(item: PublishedColumn) -> dict[str, Any]:
     """What the report needs to show a column as it was printed."""
     return {
         "quantity": item.profile.quantity,
@@ -124,6 +124,8 @@ def _record(item: Printed) -> dict[str, Any]:
     }
 
 
-def _profile(solution: Solution | Loading, source: str, item: Printed, case: PublishedCase) -> Profile:
+def _profile(
+    solution: Solution | Loading, source: str, item: PublishedColumn, case: PublishedCase
+) -> Profile:
     value, spread = values(solution, item.profile.quantity, item.at, case.problem, item.series)
     return replace(item.profile, value=value, source=source, uncertainty=spread)

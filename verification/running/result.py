@@ -173,7 +173,7 @@ def _verdict(v: dict[str, Any]) -> Verdict:
 
 
 def _invariant(row: dict[str, Any]) -> Invariant:
-    name, source, said = (str(row[key]) for key in ("name", "source", "sentence"))
+    name, source, said = (str(row[key]) for key in ("name", "source", "message"))
     value, bound = (None if row[key] is None else float(row[key]) for key in ("value", "bound"))
     return Invariant(name, source, value, bound, Outcome(row["outcome"]), said)
 

@@ -95,7 +95,7 @@ def _of_printed_table() -> Answers:
     case = read_published(FOLDER / "kenpave_three_layer_axis.toml")
     inch, psi = 0.0254, 4.4482216152605 / 0.0254**2
     first = {
-        (p.profile.quantity, p.column): (p.profile.value[0], p.profile.position[0]) for p in case.printed
+        (p.profile.quantity, p.column): (p.profile.value[0], p.profile.position[0]) for p in case.columns
     }
     stress, depth = first["sigma_zz", "Vertical_Stress"]
     yield "a compression of 84.247 psi", float(stress), -84.247 * psi

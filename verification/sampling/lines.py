@@ -11,7 +11,7 @@ __all__ = ["sample", "sample_contact"]
 
 
 def sample_contact(solution: Solution, source: str, problem: CoatedContact) -> tuple[Profile, ...]:
-    """Peak pressure [Pa], contact radius [m] and every other scalar of the contact as profiles of one point."""
+    """Every scalar of the contact as a profile of one point [SI]."""
     found = []
     for name in SCALARS:
         value = np.array([QUANTITIES[name].value(solution, problem)])

@@ -35,7 +35,7 @@ EDGE = 0.06  # of a: so close to the contact edge no node is left out
 class Plane:
     """Stresses at x [m], (nx,), and the depths z [m] of each layer, (nz,), both sides of its interfaces.
 
-    stress : by source, for each layer the ``IN_PLANE`` stresses [Pa], (4, nz, nx); sigma_xy = sigma_yz = 0 there.
+    stress : by source, for each layer the stresses ``IN_PLANE`` [Pa], (4, nz, nx); the others are 0.
     failures : by source the sentence of one whose stresses could not be had.   radius : contact radius [m].
     """
 

@@ -94,7 +94,7 @@ ELEMENTS = (
         tuple((f"{t:.0e}", {"load_tolerance": t, "size": 0.36}, t) for t in (1e-3, 1e-4, 1e-5, 1e-6)),
     ),
 )
-# The coarse numerics leave the uncertainty just below the caps; stresses and thin coatings need more elements.
+# Coarse numerics whose uncertainty is below the caps; stresses and thin coatings need smaller elements.
 METHOD_SOURCES = (
     Source(
         "semianalytic",

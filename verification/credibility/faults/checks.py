@@ -66,7 +66,7 @@ def of_invariant(row: Invariant, case: str) -> Check:
     """An invariant; its number at the end (interface 1, layer 0) belongs to the detail."""
     name, _, place = row.name.partition(", ")
     detail = ", ".join(filter(None, (place, row.source)))
-    return Check("invariants", name, case, detail, row.outcome, row.sentence)
+    return Check("invariants", name, case, detail, row.outcome, row.message)
 
 
 def of_baseline(row: Drift, case: str, same: bool) -> Check:

@@ -186,7 +186,7 @@ class _AsRead:
 
 def _as_read(case: PublishedCase) -> list[_AsRead]:
     return [
-        _AsRead(f"{p.column} of {p.file}", p.profile.value, p.at.z, p.counted, p.scale) for p in case.printed
+        _AsRead(f"{p.column} of {p.file}", p.profile.value, p.at.z, p.counted, p.scale) for p in case.columns
     ]
 
 

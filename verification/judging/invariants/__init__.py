@@ -2,6 +2,6 @@
 
 from verification.judging.invariant import Invariant
 from verification.judging.invariants.check import check
-from verification.judging.invariants.laws import laws
+from verification.judging.invariants.resolved import resolved
 
-__all__ = ["Invariant", "check", "laws"]
+__all__ = ["Invariant", "check", "resolved"]

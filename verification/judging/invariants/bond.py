@@ -10,7 +10,14 @@ from verification.judging.invariants.stencil import Stencil
 from verification.problem.arrays import Array
 from verification.problem.contact import CoatedContact, PrescribedLoad, Solution
 
-__all__ = ["bonded_displacement", "bonded_traction", "crossed", "hooke", "sphere", "uncertain_displacement"]
+__all__ = [
+    "bonded_displacement",
+    "bonded_traction",
+    "displacement_bound",
+    "hooke",
+    "reciprocity",
+    "sphere",
+]
 
 
 RADII = np.array([0.0, 0.5, 0.9, 1.4])
@@ -47,7 +54,7 @@ def bonded_displacement(solution: Solution, source: str, problem: CoatedContact,
         error = error + np.abs(parabola - line)
     bound = None
     if solution.uncertainty is not None:
-        spread = uncertain_displacement(solution, problem, x, y, z, given_pressure=True)
+        spread = displacement_bound(solution, problem, x, y, z, given_pressure=True)
         bound = (error + 2 * spread) / solution.approach
     law = f"u passes interface {k} unchanged, over the approach"
     return decide(
@@ -94,14 +101,12 @@ def sphere(solution: Solution, source: str, problem: CoatedContact) -> Invariant
     residual = np.where(y <= solution.contact_radius, gap, np.minimum(gap, 0.0))
     stated, bound = solution.uncertainty, None
     if stated is not None:
-        bound = (
-            stated.approach + uncertain_displacement(solution, problem, zero, y, zero)
-        ) / solution.approach
+        bound = (stated.approach + displacement_bound(solution, problem, zero, y, zero)) / solution.approach
     law = "u_z + r^2/2R = approach in the contact, no less outside, over the approach"
     return decide("sphere", source, law, residual, bound)
 
 
-def crossed(solution: Solution, source: str, problem: CoatedContact) -> Invariant:
+def reciprocity(solution: Solution, source: str, problem: CoatedContact) -> Invariant:
     """Betti's reciprocity: what sliding lifts, the load draws in by as much.
 
     On the surface u_z is odd in x by the tangential load alone, u_x by the normal load alone, and
@@ -114,14 +119,14 @@ def crossed(solution: Solution, source: str, problem: CoatedContact) -> Invarian
     odd = (ahead - behind) / 2
     bound = None
     if solution.uncertainty is not None:
-        spread = uncertain_displacement(solution, problem, x, y, zero, given_pressure=True)
+        spread = displacement_bound(solution, problem, x, y, zero, given_pressure=True)
         bound = (1 + problem.friction) * spread / solution.approach
     law = "u_z odd in x, by sliding, is -f times u_x odd in x, by the load; over the approach"
     residual = (odd[2] + problem.friction * odd[0]) / solution.approach
     return decide("reciprocity of load and sliding", source, law, residual, bound)
 
 
-def uncertain_displacement(
+def displacement_bound(
     solution: Solution,
     problem: CoatedContact | PrescribedLoad,
     x: Array,

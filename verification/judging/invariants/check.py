@@ -43,7 +43,7 @@ def _laws(solution: Solution, source: str, problem: CoatedContact) -> Iterator[t
         yield f"equilibrium, layer {layer}", partial(statics.equilibrium, *subject, layer, stencil)
         yield f"Hooke's law, layer {layer}", partial(bond.hooke, *subject, layer, stencil)
     if problem.friction:
-        yield "reciprocity of load and sliding", partial(bond.crossed, *subject)
+        yield "reciprocity of load and sliding", partial(bond.reciprocity, *subject)
     yield "symmetry", partial(symmetry.symmetry, *subject)
     if source == "semianalytic":
         yield "influence coefficients", partial(coefficients.influence_coefficients, *subject)

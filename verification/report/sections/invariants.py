@@ -26,7 +26,7 @@ def invariant_table(found: Sequence[Invariant]) -> Table | None:
             [
                 Cell(one.name),
                 Cell(source_label(one.source)),
-                Cell(one.sentence, css="reason"),
+                Cell(one.message, css="reason"),
                 Cell(scientific(one.value), one.value),
                 Cell(scientific(one.bound), one.bound),
                 Cell(scientific(one.margin, sign=True), one.margin),
@@ -54,7 +54,7 @@ def invariant_cell(result: CaseResult, href: str) -> Cell:
     worst = min(found, key=_badness)
     style = OUTCOMES[worst.outcome]
     held = sum(one.outcome is Outcome.AGREES for one in found)
-    note = f"{held} of {len(found)} hold; {worst.name} of {source_label(worst.source)}: {worst.sentence}"
+    note = f"{held} of {len(found)} hold; {worst.name} of {source_label(worst.source)}: {worst.message}"
     text = f"{style.letter} {held}" if held == len(found) else f"{style.letter} {held}/{len(found)}"
     return Cell(text, held / len(found), f"verdict {style.css}", note, href)
 
@@ -99,7 +99,7 @@ def _family_cells(found: Sequence[tuple[int, Invariant]], anchors: Mapping[int, 
     css = f"flag {OUTCOMES[worst.outcome].css}"
     href = f"#{anchors[case]}-invariants"
     return [
-        Cell(f"{held} of {len(found)}", held / len(found), css, worst.sentence, href),
+        Cell(f"{held} of {len(found)}", held / len(found), css, worst.message, href),
         Cell(scientific(largest), largest),
         Cell(_percent(worst.share), worst.share),
     ]

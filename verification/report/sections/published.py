@@ -52,7 +52,7 @@ def published_overview(results: Sequence[CaseResult], anchors: Mapping[int, str]
     for number, result in enumerate(results):
         if not result.published:
             continue
-        printed = result.published["printed"]
+        printed = result.published["columns"]
         counted = sum(sum(item["counted"]) for item in printed)
         total = sum(len(item["counted"]) for item in printed)
         cells = [
@@ -86,7 +86,7 @@ def published_overview(results: Sequence[CaseResult], anchors: Mapping[int, str]
 
 def _method_cells(result: CaseResult, method: str) -> list[Cell]:
     met = total = 0
-    for item in result.published["printed"]:
+    for item in result.published["columns"]:
         counted = np.array(item["counted"], dtype=bool)
         if not any(method in c.between and c.line == item["line"] for c, _ in result.verdicts):
             continue
@@ -143,7 +143,7 @@ def _facts(result: CaseResult) -> list[tuple[str, str]]:
 def _tables(result: CaseResult) -> list[tuple[str, Table]]:
     """One table for each column that was printed, its lines one below the other."""
     columns: dict[tuple[str, str, str], list[dict[str, Any]]] = {}
-    for item in result.published["printed"]:
+    for item in result.published["columns"]:
         columns.setdefault((item["file"], item["column"], item["quantity"]), []).append(item)
     return [
         (f"{column} of {file}", _table(result, column, quantity, items))

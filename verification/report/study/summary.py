@@ -57,7 +57,8 @@ def _contact(curves: Sequence[Curve]) -> str:
         high = max(curves, key=lambda c: c.extremes(name)[1][1])
         (h_low, least), (h_high, most) = low.extremes(name)[0], high.extremes(name)[1]
         found.append(
-            f"{QUANTITIES[name].symbol} is between {least:.3g} {scale} (E1/E2 = {low.ratio:.3g}, h = {h_low:.2g} a_h) "
+            f"{QUANTITIES[name].symbol} is between {least:.3g} {scale} (E1/E2 = {low.ratio:.3g}, "
+            f"h = {h_low:.2g} a_h) "
             f"and {most:.3g} {scale} (E1/E2 = {high.ratio:.3g}, h = {h_high:.2g} a_h)"
         )
     return f"Of the contact, {'; '.join(found)}."
@@ -167,8 +168,8 @@ def agreement_sentences(differences: Sequence[Difference]) -> list[str]:
         scalar = max((d for d in mine if d.quantity in SCALARS), key=lambda d: d.largest)
         where = f"E1/E2 = {stress.ratio:.3g}, h = {stress.h:.3g} a_h, f = {stress.friction:g}"
         found.append(
-            f"{stress.points} points were also solved by the {source_label(source)}: no stress differs by more than "
-            f"{stress.largest:.1e} p_h ({stress.quantity} at {where}), "
+            f"{stress.points} points were also solved by the {source_label(source)}: no stress differs "
+            f"by more than {stress.largest:.1e} p_h ({stress.quantity} at {where}), "
             f"no scalar of the contact by more than {scalar.largest:.1e} of its scale "
             f"({scalar.quantity.replace('_', ' ')})."
         )

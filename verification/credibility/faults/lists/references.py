@@ -171,7 +171,7 @@ FAULTS = (
         "published",
         (
             Edit(
-                "verification.cases.columns:Printed.counted",
+                "verification.cases.columns:PublishedColumn.counted",
                 "np.array([not why for why in self.why_not])",
                 "np.ones(len(self.why_not), dtype=bool)",
             ),

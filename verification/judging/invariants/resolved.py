@@ -1,7 +1,7 @@
 """Invariants between solutions: one problem solved scaled, with equal moduli, thick, thin, pressed otherwise.
 
-They cost solves of their own, so a case asks for them (``laws = true``), and both methods are taken at coarse
-numerics: the uncertainty that bounds each law is the coarse one's, and is capped like any.
+They need further solves, so a case has to enable them (``resolve = true``), and both methods solve on coarse
+grids and meshes, whose uncertainty bounds each invariant and is capped like any other.
 """
 
 from collections.abc import Callable, Iterator, Mapping
@@ -13,7 +13,7 @@ import numpy as np
 from numpy.polynomial import legendre
 
 from verification.judging.invariant import Invariant, absent, decide
-from verification.judging.invariants.bond import uncertain_displacement
+from verification.judging.invariants.bond import displacement_bound
 from verification.judging.invariants.limits import thick_shift, thin_shift
 from verification.problem.arrays import Array
 from verification.problem.contact import CoatedContact, PrescribedLoad, Solution
@@ -21,7 +21,7 @@ from verification.problem.quantity import QUANTITIES, SCALARS
 from verification.sources.references.hamilton import Hamilton
 from verification.sources.registry import METHODS, SOURCES
 
-__all__ = ["laws"]
+__all__ = ["resolved"]
 
 Solve = Callable[[CoatedContact | PrescribedLoad], Solution]
 Law = Callable[[], Invariant]
@@ -34,7 +34,9 @@ APPROACH_CAP = 1e-3
 PLACES = ((0.0, 0.45), (0.6, 0.3), (-0.6, 1.7), (1.3, 0.3))  # x, z over a_h
 
 
-def laws(problem: CoatedContact, available: Mapping[str, Callable[..., Solution]]) -> tuple[Invariant, ...]:
+def resolved(
+    problem: CoatedContact, available: Mapping[str, Callable[..., Solution]]
+) -> tuple[Invariant, ...]:
     """Scaling, equal moduli, thick and thin limit, reciprocity of each method that is available.
 
     problem : with one coating at least.   available : solvers by name, as in ``run.solvers``.
@@ -162,8 +164,8 @@ def _reciprocity(base: Solve, solve: Solve, source: str, problem: CoatedContact)
         patch = np.pi * s * disc.load_radius * w / work
         p, U_p = contact.pressure(0 * r, r), contact.pressure_uncertainty(0 * r, r)
         u_disc, u = _sink(pressed, r), _sink(contact, s)
-        spread = area @ (U_p * np.abs(u_disc) + p * uncertain_displacement(pressed, disc, 0 * r, r, 0 * r))
-        spread += disc.pressure * patch @ uncertain_displacement(contact, problem, 0 * s, s, 0 * s)
+        spread = area @ (U_p * np.abs(u_disc) + p * displacement_bound(pressed, disc, 0 * r, r, 0 * r))
+        spread += disc.pressure * patch @ displacement_bound(contact, problem, 0 * s, s, 0 * s)
         return float(area @ (p * u_disc) - disc.pressure * patch @ u), float(spread)
 
     (gap, spread), (coarser, _) = works(32), works(24)
