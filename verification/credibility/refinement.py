@@ -13,8 +13,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from verification.problem.arrays import FloatArray
-from verification.problem.contact import CoatedContact, Solution
+from verification.problem.contact import CoatedContact, Solution, keywords
 from verification.problem.profile import lines_of
+from verification.problem.quantity import QUANTITIES as ALL
+from verification.problem.quantity import SCALARS
 from verification.sources.references import integral_equation
 
 __all__ = [
@@ -29,7 +31,7 @@ __all__ = [
     "settled",
 ]
 
-QUANTITIES = ("p0", "a", "approach", "pressure", "stress")
+QUANTITIES = (*(ALL[name].symbol for name in SCALARS), "pressure", "stress")
 # An error within this factor of the smallest of all levels has stopped falling.
 SETTLED = 3.0
 # Between two levels much closer than a doubling, noise looks like an order.
@@ -151,10 +153,11 @@ class Reference:
         angle = np.pi / 4 * (np.arange(8) + 0.5) / 8
         error = found.pressure(r[:, None] * np.cos(angle), r[:, None] * np.sin(angle)) - p[:, None]
         worst = [np.abs(found.stress(x, 0.0, z, layer) - s).max() for x, z, layer, s in self._stresses]
-        return {
-            "p0": abs(found.peak_pressure / p0 - 1),
-            "a": abs(found.contact_radius / exact.contact_radius - 1),
-            "approach": abs(found.approach / exact.approach - 1),
+        scalars = {
+            ALL[q].symbol: abs(ALL[q].value(found, self.problem) / ALL[q].value(exact, self.problem) - 1)
+            for q in SCALARS
+        }
+        return scalars | {
             "pressure": float(np.sqrt(weight @ np.mean(error**2, axis=1))) / p0,
             "stress": float(np.max(worst)) / self.problem.p_h,
         }
@@ -204,13 +207,12 @@ def _refined(
     steps: Sequence[tuple[str, dict[str, Any], float | None]],
 ) -> Refinement:
     levels: list[Level] = []
-    keywords = {field.name: getattr(problem, field.name) for field in fields(problem)}
-    keywords["estimate_uncertainty"] = False
     try:
-        reference = Reference(problem, integral_equation.solve(**keywords))
+        given = keywords(problem) | {"estimate_uncertainty": False}
+        reference = Reference(problem, integral_equation.solve(**given))
         for name, numerics, resolution in steps:
             begin = time.perf_counter()
-            found = solve(**keywords, **numerics)
+            found = solve(**given, **numerics)
             seconds = time.perf_counter() - begin
             if resolution is None:
                 resolution = float(np.sqrt(found.diagnostics.dofs))

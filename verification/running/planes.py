@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from verification.problem.quantity import COMPONENTS
+from verification.problem.quantity import IN_PLANE
 from verification.running.result import CaseResult, plain
 from verification.running.store import StoreError, read_checked, write_checked
 from verification.sampling.plane import Plane
@@ -32,7 +32,7 @@ def write_plane(path: Path, plane: Plane, case_file: str) -> None:
         "x": plane.x.tolist(),
         "depths": [z.tolist() for z in plane.depths],
         "radius": plane.radius,
-        "components": list(COMPONENTS),
+        "components": list(IN_PLANE),
         # NaN and infinity become text: what a method gave is kept, and the JSON stays strict.
         "stress": {name: [plain(np.round(s, digits)) for s in some] for name, some in plane.stress.items()},
         "failures": dict(plane.failures),

@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
 from verification.report.figures.canvas import HEX, canvas, inline, look
-from verification.report.tables.labels import Style
+from verification.sources.source import Style
 
 __all__ = ["FLOOR", "Curve", "Difference", "draw"]
 

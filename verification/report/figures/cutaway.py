@@ -24,6 +24,7 @@ from verification.report.tables.lookup import layers
 from verification.report.tables.lookup import scale as scale_of
 from verification.running.result import CaseResult
 from verification.sampling.plane import Plane
+from verification.sources.registry import METHODS
 
 __all__ = ["COMMAND", "Cutaway", "cutaways"]
 
@@ -31,7 +32,7 @@ COMMAND = (sys.executable, "-m", "verification.report.figures.scene")
 TIME_LIMIT = 60.0  # s, for all pictures of a report
 WIDEST = 620  # pixels
 # The finite element model is drawn where there is one: its stresses reach wherever its mesh does.
-PREFERRED = ("fem_reference", "semianalytic")
+PREFERRED = METHODS[::-1]
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,7 @@ import numpy as np
 from markupsafe import Markup
 
 from verification.report.figures.canvas import HEX, canvas, inline, look
-from verification.report.tables.labels import Style
+from verification.sources.source import Style
 
 __all__ = ["Trail", "decades", "draw_loglog"]
 

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from verification.credibility.parameters import KnobLadder, Stated
+from verification.credibility.parameters import Sweep, Stated
 from verification.report.tables.cells import Cell, Part, Row, Section, Table
 from verification.report.tables.labels import source_label
 from verification.report.tables.numbers import plain, scientific
@@ -10,7 +10,7 @@ from verification.report.tables.numbers import plain, scientific
 __all__ = ["knob_section"]
 
 
-def knob_section(ladders: Sequence[KnobLadder], stated: Sequence[Stated]) -> Section:
+def knob_section(ladders: Sequence[Sweep], stated: Sequence[Stated]) -> Section:
     """For each method what it states, what the fits give, the true error; then every knob by itself."""
     parts = []
     for one in stated:
@@ -19,7 +19,7 @@ def knob_section(ladders: Sequence[KnobLadder], stated: Sequence[Stated]) -> Sec
     return Section("knobs", "Uncertainty by knob", parts)
 
 
-def _sentence(one: Stated, ladders: Sequence[KnobLadder]) -> str:
+def _sentence(one: Stated, ladders: Sequence[Sweep]) -> str:
     names = list(one.uncertainty)
     held = sum(one.uncertainty[name] >= one.error[name] for name in names)
     fitted = [_sum(ladders, name) for name in names]
@@ -31,7 +31,7 @@ def _sentence(one: Stated, ladders: Sequence[KnobLadder]) -> str:
     )
 
 
-def _totals(one: Stated, ladders: Sequence[KnobLadder]) -> Table:
+def _totals(one: Stated, ladders: Sequence[Sweep]) -> Table:
     rows = []
     for name, U in one.uncertainty.items():
         cells = [
@@ -50,30 +50,30 @@ def _totals(one: Stated, ladders: Sequence[KnobLadder]) -> Table:
         "the knobs, then knob by knob, by least squares over four levels or more (Eca and Hoekstra 2014), by "
         "the grid convergence index where there are three. All over the scales of the bare substrate. The "
         "order of the elements is another way to lower the error of their size: it is shown and not added.",
-        ["quantity", "true error", "stated U", "fitted U", *(ladder.knob for ladder in ladders)],
+        ["quantity", "true error", "stated U", "fitted U", *(sweep.parameter for ladder in ladders)],
         rows,
         css="overview",
     )
 
 
-def _orders(ladders: Sequence[KnobLadder]) -> Table:
+def _orders(ladders: Sequence[Sweep]) -> Table:
     names = list(dict.fromkeys(name for ladder in ladders for name in ladder.values))
     rows = []
     for name in names:
         found = [ladder.estimate(name) for ladder in ladders]
         orders = [None if one is None else one.order for one in found]
         rows.append(Row(Cell(name), [Cell("–" if p is None else plain(p, 2), p) for p in orders]))
-    levels = "; ".join(f"{ladder.knob}: {', '.join(ladder.levels)}" for ladder in ladders)
+    levels = "; ".join(f"{sweep.parameter}: {', '.join(ladder.levels)}" for ladder in ladders)
     return Table(
         "Observed order in the step of each ladder; a dash where the values follow no power of the step that "
         f"can be believed, being at rest, noise or falling too fast. The levels, {levels}.",
-        ["quantity", *(ladder.knob for ladder in ladders)],
+        ["quantity", *(sweep.parameter for ladder in ladders)],
         rows,
     )
 
 
-def _sum(ladders: Sequence[KnobLadder], name: str) -> float | None:
-    found = [ladder.estimate(name) for ladder in ladders if ladder.knob != "element order"]
+def _sum(ladders: Sequence[Sweep], name: str) -> float | None:
+    found = [ladder.estimate(name) for ladder in ladders if sweep.parameter != "element order"]
     values = [one.uncertainty for one in found if one is not None]
     return sum(values) if values else None
 
