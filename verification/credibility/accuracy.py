@@ -91,10 +91,11 @@ def measure() -> AccuracyStudy:
         *(refined_mesh(COATED, order, solid="coated") for order in (2, 3, 4)),
     )
     failures += [f"{r.method}, {r.solid}, {r.setting}, {r.failure}" for r in refinements if r.failure]
-    conversions = attempt(
+    conversions: tuple[ConversionError, ...] = attempt(
         "conversions of the influence coefficients", lambda: conversion_errors(COATED), ()
     )
-    sweeps, stated = attempt("uncertainty by parameter", lambda: study(COATED, "coated"), ((), ()))
+    nothing: tuple[tuple[Sweep, ...], tuple[Stated, ...]] = ((), ())
+    sweeps, stated = attempt("uncertainty by parameter", lambda: study(COATED, "coated"), nothing)
     failures += [f"{sweep.method}, {sweep.parameter}, {sweep.failure}" for sweep in sweeps if sweep.failure]
     seconds = time.perf_counter() - begin
     return AccuracyStudy(

@@ -61,7 +61,7 @@ class Stated:
 
 
 def places(problem: CoatedContact, a: float) -> dict[str, tuple[tuple[int, int], float, float, int]]:
-    """Points of comparison of the stress: (component), x [m], z [m], layer; on the first interface or at a/2."""
+    """Points of comparison of the stress, (component), x [m], z [m], layer, on an interface or at a/2."""
     depth, lower = (problem.interfaces[0], 1) if problem.coatings else (0.5 * a, 0)
     where = "interface" if problem.coatings else "z = a/2"
     return {

@@ -5,7 +5,7 @@ A study that fails at some level keeps the coarser levels with the message of th
 
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
@@ -191,7 +191,7 @@ def refined_mesh(
     solid: str = "",
     solve: Callable[..., Solution] | None = None,
 ) -> Refinement:
-    """``problem`` by elements of ``order`` on meshes of each ``quality``; ``solve`` as in ``refined_grid``."""
+    """``problem`` by elements of ``order`` on a mesh of each ``quality``; ``solve`` as in ``refined_grid``."""
     import fem_reference
 
     steps = [(name, {"order": order, "quality": name}, None) for name in quality]

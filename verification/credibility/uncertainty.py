@@ -116,9 +116,7 @@ def _checked(h: Sequence[float], phi: Sequence[float], least: int) -> tuple[Arra
     """Steps and values, finest first."""
     steps, values = np.asarray(h, dtype=float), np.asarray(phi, dtype=float)
     if steps.ndim != 1 or steps.shape != values.shape:
-        raise ValueError(
-            f"{steps.shape} steps and {values.shape} values; give one value for each step"
-        )
+        raise ValueError(f"{steps.shape} steps and {values.shape} values; give one value for each step")
     if np.unique(steps).size < max(least, steps.size):
         raise ValueError(f"{np.unique(steps).size} different steps; give at least {least}, each once")
     if not (np.isfinite(steps).all() and (steps > 0).all() and np.isfinite(values).all()):

@@ -104,7 +104,7 @@ class Regression:
 
     @property
     def unexplained(self) -> bool:
-        """True where it drifted on the machine with the versions of the baseline, so that the code changed it."""
+        """True where it drifted on the machine with the versions of the baseline: the code has changed."""
         return self.drifted and not self.other_versions
 
     def of(self, name: str) -> CaseDrift | None:

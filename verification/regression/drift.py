@@ -167,4 +167,8 @@ def _uncertainty_change(then: Numbers, now: Numbers, scale: float) -> str:
         return "" if same else "only one of the two states an uncertainty"
     before, after = (max(u, RELATIVE * scale) for u in (then.uncertainty, now.uncertainty))
     ratio = after / before
-    return "" if 1 / FACTOR <= ratio <= FACTOR else f"its stated uncertainty is {ratio:.2g} times that of the baseline"
+    return (
+        ""
+        if 1 / FACTOR <= ratio <= FACTOR
+        else f"its stated uncertainty is {ratio:.2g} times that of the baseline"
+    )

@@ -83,9 +83,7 @@ def read_baseline(folder: Path) -> Baseline | None:
 def _stored(n: Numbers) -> _Profile:
     uncertainty = None if n.uncertainty is None else float(f"{n.uncertainty:.3g}")
     scale, rms = _rounded(np.array([n.scale, n.rms]), n.scale).tolist()
-    return _Profile(
-        n.source, n.quantity, n.line, n.size, scale, rms, uncertainty, _rounded(n.value, n.scale)
-    )
+    return _Profile(n.source, n.quantity, n.line, n.size, scale, rms, uncertainty, _rounded(n.value, n.scale))
 
 
 def _numbers(p: _Profile, case: _Case) -> Numbers:

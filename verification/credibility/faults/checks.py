@@ -73,7 +73,7 @@ def of_baseline(row: Drift, case: str, same: bool) -> Check:
     """A profile held against the baseline."""
     outcome = Outcome.AGREES if same else Outcome.DISAGREES
     detail = f"{row.quantity} on {row.line}, {row.source}"
-    return Check("baseline", "baseline", case, detail, outcome, row.said)
+    return Check("baseline", "baseline", case, detail, outcome, row.message)
 
 
 def of_self_test(test: SelfTest) -> Check:

@@ -127,7 +127,9 @@ def _overview(
     agreeing, total = _agreeing(results)
     design = f"{len(good)} of {len(evidence.orders)} manufactured solutions at their design order"
     ladders = (
-        "not measured in this run" if study is None else f"{len(study.ladders)} ladders on exact solutions"
+        "not measured in this run"
+        if study is None
+        else f"{len(study.refinements)} refinement studies on exact solutions"
     )
     laws = f"{holding} of {len(invariants)} laws hold" if invariants else "not measured"
     rows = [
@@ -257,6 +259,6 @@ def _short_alarms(evidence: Evidence) -> str:
     if record is None:
         return "not measured"
     return (
-        f"{len(record.alarms)} false alarms in {record.comparisons} comparisons and {record.laws} laws of "
-        f"{record.problems} clean random problems; {record.agreeing} of the problems agree throughout."
+        f"{len(record.alarms)} false alarms in {record.comparisons} comparisons and {record.invariants} "
+        f"invariants of {record.problems} clean random problems; {record.agreeing} of the problems agree throughout."
     )

@@ -92,10 +92,10 @@ def design_table(orders: Sequence[DesignOrder]) -> Table | None:
 
 def order_table(study: AccuracyStudy | None) -> Table | None:
     """Observed order of each quantity on each ladder of exact solutions."""
-    if study is None or not study.ladders:
+    if study is None or not study.refinements:
         return None
     rows = []
-    for one in study.ladders:
+    for one in study.refinements:
         if not one.levels:
             continue
         cells = [Cell(one.solid), Cell(one.setting)]

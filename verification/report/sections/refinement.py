@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 
 from verification.credibility.accuracy import CORRECTED, PLAIN, PROBLEM, STAIRCASE, AccuracyStudy
-from verification.credibility.refinement import QUANTITIES, Ladder, settled
+from verification.credibility.refinement import QUANTITIES, Refinement, settled
 from verification.problem.quantity import QUANTITIES as QUANTITY
 from verification.problem.quantity import SCALARS
 from verification.report.figures.loglog import Trail, decades, draw_loglog
@@ -41,8 +41,8 @@ _UNKNOWN = Style("ink", (5.0, 1.5, 1.0, 1.5))
 
 def convergence_sections(study: AccuracyStudy) -> list[Section]:
     """Semi-analytical, then finite element accuracy; what failed is said in its section."""
-    elements = [one for one in study.ladders if one.method == "fem_reference"]
-    grids = [one for one in study.ladders if one.method == "semianalytic"]
+    elements = [one for one in study.refinements if one.method == "fem_reference"]
+    grids = [one for one in study.refinements if one.method == "semianalytic"]
     theirs = tuple(f for f in study.failures if f.startswith("fem_reference"))
     ours = tuple(f for f in study.failures if f not in theirs)
     parts: list[Part] = []
@@ -55,11 +55,11 @@ def convergence_sections(study: AccuracyStudy) -> list[Section]:
         parts = _element_parts(elements) if any(one.levels for one in elements) else []
         sections.append(Section("finite-element-accuracy", "Finite element accuracy", parts, theirs))
     if study.stated:
-        sections.append(knob_section(study.knobs, study.stated))
+        sections.append(knob_section(study.sweeps, study.stated))
     return sections
 
 
-def _grid_parts(ladders: Sequence[Ladder]) -> list[Part]:
+def _grid_parts(ladders: Sequence[Refinement]) -> list[Part]:
     caption = (
         "Error against the integral equation over N, the patches along a side of the grid, which is 1.12 "
         "times as wide as the contact. Beside each curve its observed slope, down to where the fall ends; a "
@@ -77,7 +77,7 @@ def _grid_parts(ladders: Sequence[Ladder]) -> list[Part]:
     ]
 
 
-def _element_parts(ladders: Sequence[Ladder]) -> list[Part]:
+def _element_parts(ladders: Sequence[Refinement]) -> list[Part]:
     caption = (
         "Error against the integral equation over the square root of the number of degrees of freedom, which "
         "grows as the elements shrink: its slope is the order in the size of the elements."
@@ -91,7 +91,7 @@ def _element_parts(ladders: Sequence[Ladder]) -> list[Part]:
     ]
 
 
-def _grid_sentences(ladders: Sequence[Ladder]) -> list[str]:
+def _grid_sentences(ladders: Sequence[Refinement]) -> list[str]:
     found = [_fall_sentence(one) for one in ladders if one.setting == CORRECTED]
     by_setting = {one.setting: one for one in ladders if one.solid == ladders[0].solid}
     best, stairs, paper = (by_setting.get(setting) for setting in (CORRECTED, STAIRCASE, PLAIN))
@@ -121,7 +121,7 @@ def _grid_sentences(ladders: Sequence[Ladder]) -> list[str]:
     return found or ["No more than single levels could be solved."]
 
 
-def _fall_sentence(one: Ladder) -> str:
+def _fall_sentence(one: Refinement) -> str:
     first, last = one.levels[0], one.levels[-1]
     numbers = ", ".join(
         f"{q} {scientific(first.errors[q])} → {scientific(last.errors[q])}" for q in QUANTITIES
@@ -139,7 +139,7 @@ def _fall_sentence(one: Ladder) -> str:
     return text
 
 
-def _element_sentence(ladders: Sequence[Ladder]) -> str:
+def _element_sentence(ladders: Sequence[Refinement]) -> str:
     found = []
     for one in ladders:
         last = one.levels[-1]
@@ -158,11 +158,11 @@ def _element_sentence(ladders: Sequence[Ladder]) -> str:
 
 
 def _ladder_gallery(
-    ladders: Sequence[Ladder], key: str, coordinate: str, ticks: Sequence[float], caption: str
+    ladders: Sequence[Refinement], key: str, coordinate: str, ticks: Sequence[float], caption: str
 ) -> Gallery:
     first = ladders[0].solid
 
-    def trail(one: Ladder, quantity: str) -> Trail:
+    def trail(one: Refinement, quantity: str) -> Trail:
         order = one.order(quantity)
         return Trail(
             tuple(level.resolution for level in one.levels),
@@ -196,7 +196,7 @@ def _ladder_gallery(
     return Gallery(legend, panels, caption)
 
 
-def _ladder_table(ladders: Sequence[Ladder], level_name: str) -> Table:
+def _ladder_table(ladders: Sequence[Refinement], level_name: str) -> Table:
     rows = []
     for one in ladders:
         name = f"{one.solid}: {one.setting}"
