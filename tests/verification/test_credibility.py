@@ -6,9 +6,9 @@ import pytest
 from synthetic_results import INFO, STEEL, contact, result_of
 from synthetic_study import study
 
-from verification.credibility.alarms import counted, write_record
+from verification.credibility.alarms import counted
 from verification.credibility.faults import campaign
-from verification.credibility.faults.record import Catch, Record, Row
+from verification.credibility.faults.record import Catch, Record, Row, write_record
 from verification.credibility.independence import PARTS, imports_of, parts, shared
 from verification.regression.baseline import regression
 from verification.report.credibility.evidence import Evidence, gather
@@ -103,11 +103,11 @@ def test_the_fault_score_and_its_survivors_come_from_the_record(tmp_path):
         )
 
     rows = [row(f"fault_{n}", Catch.DISAGREES) for n in range(19)]
-    rows.append(row("shy", Catch.SURVIVED, reason="no case sees it", cure="a thicker film would"))
+    rows.append(row("shy", Catch.SURVIVED, reason="no case sees it", remedy="a thicker film would"))
     record = Record(
         tuple(rows), (), "2026-10-09T08:00:00+00:00", 60.0, 90.0, "c0ffee123456", "m", dict(INFO.versions)
     )
-    campaign.write_record(tmp_path / campaign.RECORD, record)
+    write_record(tmp_path / campaign.RECORD, record)
     found = gather(tmp_path)
     assert found.failures == ()
     text = said(part(section(found), STEPS[5]))

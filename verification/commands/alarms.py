@@ -138,7 +138,8 @@ def _print(found: AlarmRecord, page: Path, stored: Path | None) -> None:
             console.print(f"... with {more} more in the report", highlight=False)
     console.print(
         f"{len(found.alarms)} false alarms in {found.comparisons} comparisons and {found.invariants} "
-        f"invariants of {found.problems} clean problems, seed {found.seed}; {found.agreeing} problems agree throughout",
+        f"invariants of {found.problems} clean problems, seed {found.seed}; "
+        f"{found.agreeing} problems agree throughout",
         highlight=False,
     )
     console.print(escape(f"{found.seconds:.0f} s; report: {page}"), highlight=False)

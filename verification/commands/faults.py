@@ -102,7 +102,7 @@ def faults(
         return code
 
     from verification.credibility.faults import campaign
-    from verification.credibility.faults.record import to_json
+    from verification.credibility.faults.record import to_json, write_record
     from verification.report.credibility.faults import faults_page
 
     begin, started = time.perf_counter(), datetime.datetime.now(datetime.UTC)
@@ -111,7 +111,9 @@ def faults(
             cases = campaign.clean_cases(wanted)
             stood = kept_results(cases, campaign.clean_folder(output)) if resume else {}
             tasks = [case_task(c, campaign.clean_folder(output)) for c in cases if c.name not in stood]
-            if said := campaign.unfit([*stood.values(), *solve(tasks, jobs, time_limit, quiet or as_json)]):
+            if said := campaign.failed_source(
+                [*stood.values(), *solve(tasks, jobs, time_limit, quiet or as_json)]
+            ):
                 print_error(said)
                 return EXIT[Outcome.NO_RESULT]
             kept = {f.name: t for f in wanted if resume and (t := campaign.kept_trial(f, output))}
@@ -127,11 +129,11 @@ def faults(
                 machine=f"{machine()}, {cores()} cores, {jobs} jobs",
                 versions=versions(),
             )
-            campaign.write_record(output / campaign.RECORD, found)
+            write_record(output / campaign.RECORD, found)
             page = output / "faults.html"
             write_atomically(page, faults_page(found))
             if record:
-                campaign.write_record(records / campaign.RECORD, found)
+                write_record(records / campaign.RECORD, found)
     except StoreError as error:
         return print_error(str(error))
     if as_json:
@@ -143,12 +145,14 @@ def faults(
 
 def _list(wanted: Sequence["Fault"], as_json: bool) -> None:
     if as_json:
-        rows = [{"name": f.name, "group": f.group, "where": f.where, "sentence": f.sentence} for f in wanted]
+        rows = [
+            {"name": f.name, "group": f.group, "where": f.where, "description": f.description} for f in wanted
+        ]
         sys.stdout.write(json.dumps(rows, indent=2) + "\n")
         return
     table = Table("fault", "group", "what is wrong", box=None, header_style="bold")
     for fault in wanted:
-        table.add_row(fault.name, fault.group, escape(fault.sentence))
+        table.add_row(fault.name, fault.group, escape(fault.description))
     Console().print(table)
 
 
@@ -157,31 +161,33 @@ def _print(found: "Record", page: Path) -> None:
     from verification.credibility.faults.record import Catch
 
     shown = [catch for catch in Catch if any(row.catch is catch for row in found.rows)]
-    table = Table("group", "faults", *shown, "as foretold", box=None, header_style="bold")
+    table = Table("group", "faults", *shown, "predicted check", box=None, header_style="bold")
     for group, title in GROUPS.items():
         rows = [row for row in found.rows if row.group == group]
         if rows:
             count = Counter(row.catch for row in rows)
             cells = [str(count[catch]) if count[catch] else "." for catch in shown]
-            table.add_row(title, str(len(rows)), *cells, str(sum(row.as_expected for row in rows)))
+            table.add_row(title, str(len(rows)), *cells, str(sum(row.as_predicted for row in rows)))
     console = Console()
     if found.rows:
         console.print(table)
     for row in found.survivors:
         why = (
-            f"{row.reason}; {row.cure} would catch it" if row.reason else row.failure or "nobody has said why"
+            f"{row.reason}; {row.remedy} would catch it"
+            if row.reason
+            else row.failure or "no reason recorded"
         )
         console.print(
-            f"[bold red]{row.catch}[/] {row.name}: {escape(row.sentence)}. {escape(why)}", highlight=False
+            f"[bold red]{row.catch}[/] {row.name}: {escape(row.description)}. {escape(why)}", highlight=False
         )
     for row in found.idle:
         console.print(f"[bold red]changes nothing[/] {row.name}", highlight=False)
     for row in found.alarms:
         console.print(f"[bold red]alarm[/] {row.name}, nothing planted: {escape(row.by)}", highlight=False)
-    for said in found.already:
+    for said in found.failing_clean:
         console.print(f"[bold red]fails without a fault[/] {escape(said)}", highlight=False)
     said = f"{found.caught} of {len(found.rows)} faults caught ({100 * found.share:.0f} %), "
-    said += f"{found.as_expected} by a check named for it beforehand"
-    if found.blanks:
-        said += f"; {len(found.alarms)} alarms in {len(found.blanks)} trials with nothing planted"
+    said += f"{found.as_predicted} by a check named for it beforehand"
+    if found.controls:
+        said += f"; {len(found.alarms)} alarms in {len(found.controls)} trials with nothing planted"
     console.print(f"{said}; {found.seconds:.0f} s; matrix: {escape(str(page))}", highlight=False)

@@ -191,7 +191,7 @@ def refined_mesh(
     solid: str = "",
     solve: Callable[..., Solution] | None = None,
 ) -> Refinement:
-    """``problem`` by elements of ``order`` on a mesh of each ``quality``; ``solve`` as in ``refined_grid``."""
+    """``problem`` by elements of ``order`` on meshes of each ``quality``; else as ``refined_grid``."""
     import fem_reference
 
     steps = [(name, {"order": order, "quality": name}, None) for name in quality]

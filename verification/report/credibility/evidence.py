@@ -7,8 +7,8 @@ from typing import TypeVar
 
 from verification.credibility import alarms
 from verification.credibility.alarms import AlarmRecord
-from verification.credibility.faults import campaign
-from verification.credibility.faults.record import Record
+from verification.credibility.faults.campaign import RECORD
+from verification.credibility.faults.record import Record, read_record
 from verification.credibility.independence import Part, parts
 from verification.credibility.manufactured import DesignOrder, design_orders
 from verification.running.store import StoreError
@@ -44,7 +44,7 @@ def gather(records: Path) -> Evidence:
     return Evidence(
         had("manufactured solutions", design_orders, ()),
         had("imports", parts, ()),
-        had("planted faults", lambda: campaign.read_record(records / campaign.RECORD), None),
+        had("planted faults", lambda: read_record(records / RECORD), None),
         had("false alarms", lambda: alarms.read_record(records), None),
         tuple(failures),
     )

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 
 from verification.credibility.faults.catalogue import GROUPS
 from verification.credibility.faults.checks import COLUMNS
-from verification.credibility.faults.record import Catch, Record, Seen
+from verification.credibility.faults.record import Catch, Record, Tally
 from verification.credibility.faults.record import Row as FaultRow
 from verification.report.tables.cells import Cell, Part, Row, Section, Table
 from verification.report.tables.labels import source_label
@@ -34,10 +34,10 @@ def faults_sentence(record: Record) -> str:
     said = (
         f"{record.caught} of {len(record.rows)} planted faults are caught "
         f"({plain(100 * record.share, 3)} %), "
-        f"{record.as_expected} of them by a check that was named for it before it was tried"
+        f"{record.as_predicted} of them by a check that was named for it before it was tried"
     )
-    if record.blanks:
-        number = len(record.blanks)
+    if record.controls:
+        number = len(record.controls)
         said += f"; of {number} trials with nothing planted {len(record.alarms) or 'none'} raised an alarm"
     return said + "."
 
@@ -49,13 +49,15 @@ def faults_section(record: Record) -> Section:
         parts.append(Part("What was not caught, why, what would catch it.", [_survivors(record)]))
     groups = [(title, [row for row in record.rows if row.group == key]) for key, title in GROUPS.items()]
     parts.append(Part(_reading(record), [_matrix(rows, title) for title, rows in groups if rows]))
-    if record.blanks:
+    if record.controls:
         said = "The same trials with nothing planted: whatever is caught here is a false alarm."
-        parts.append(Part(said, [_matrix(record.blanks, "Nothing planted")]))
+        parts.append(Part(said, [_matrix(record.controls, "Nothing planted")]))
     failures = [f"{row.name} changes no number; it is not a fault." for row in record.idle]
     failures += [f"{row.name}, in which nothing is planted, is caught: {row.by}" for row in record.alarms]
     failures += [f"{row.name}: {row.failure}" for row in record.rows if row.failure]
-    failures += [f"Without any fault already, so that it is no evidence: {said}" for said in record.already]
+    failures += [
+        f"Without any fault already, so that it is no evidence: {said}" for said in record.failing_clean
+    ]
     return Section("faults", "Planted faults", parts, failures)
 
 
@@ -120,14 +122,14 @@ def _score(record: Record) -> Table:
         count = Counter(row.catch for row in members)
         cells = [Cell(str(len(members)), len(members))]
         cells += [Cell(str(count[catch] or "–"), count[catch]) for catch in shown]
-        caught, named = sum(row.caught for row in members), sum(row.as_expected for row in members)
+        caught, named = sum(row.caught for row in members), sum(row.as_predicted for row in members)
         cells.append(Cell(f"{plain(100 * caught / len(members), 3)} %", caught / len(members)))
         cells.append(Cell(str(named), named))
         rows.append(Row(Cell(title), cells))
     return Table(
-        "How the faults of each group were noticed. As foretold: by a check that was named for the fault "
-        "before it was tried.",
-        ["group", "faults", *(str(catch) for catch in shown), "caught in all", "as foretold"],
+        "How the faults of each group were noticed. Predicted check: by one that was "
+        "named for the fault before the first trial.",
+        ["group", "faults", *(str(catch) for catch in shown), "caught in all", "predicted check"],
         rows,
     )
 
@@ -135,12 +137,12 @@ def _score(record: Record) -> Table:
 def _survivors(record: Record) -> Table:
     rows = [
         Row(
-            Cell(row.name, note=row.sentence),
+            Cell(row.name, note=row.description),
             [
                 _catch_cell(row),
-                Cell(row.sentence, css="words"),
-                Cell(row.reason or row.failure or "nobody has said why", css="words"),
-                Cell(row.cure or "–", css="words"),
+                Cell(row.description, css="words"),
+                Cell(row.reason or row.failure or "no reason recorded", css="words"),
+                Cell(row.remedy or "–", css="words"),
             ],
         )
         for row in record.survivors
@@ -153,15 +155,15 @@ def _matrix(rows: Sequence[FaultRow], caption: str) -> Table:
     made = []
     for row in rows:
         cells = [
-            Cell(row.sentence, css="words"),
+            Cell(row.description, css="words"),
             Cell(source_label(row.where)),
             _catch_cell(row),
-            Cell("✓" if row.as_expected else "–", note=row.by),
+            Cell("✓" if row.as_predicted else "–", note=row.by),
             *(_seen_cell(row.columns.get(column)) for column in COLUMNS),
             Cell(scientific(row.change), row.change, note=f"{row.changed}; {seconds(row.seconds)}"),
         ]
         made.append(Row(Cell(row.name, note=row.by), cells))
-    columns = ["fault", "what is wrong", "in", "outcome", "as foretold", *COLUMNS, "change"]
+    columns = ["fault", "what is wrong", "in", "outcome", "predicted check", *COLUMNS, "change"]
     spans = [("", 5), ("checks that do not pass", len(COLUMNS)), ("", 1)]
     return Table(caption, columns, made, spans, "faults")
 
@@ -171,7 +173,7 @@ def _catch_cell(row: FaultRow) -> Cell:
     return Cell(text, float(list(Catch).index(row.catch)), css, row.by or said)
 
 
-def _seen_cell(seen: Seen | None) -> Cell:
+def _seen_cell(seen: Tally | None) -> Cell:
     if seen is None:
         return Cell("", None, "nothing", "not made")
     parts = [("✓", seen.disagree), ("?", seen.inconclusive), ("∅", seen.no_result)]
@@ -179,4 +181,4 @@ def _seen_cell(seen: Seen | None) -> Cell:
     if not text:
         return Cell(f"0/{seen.made}", 0.0, note=f"all {seen.made} pass")
     css = "agrees" if seen.disagree else "inconclusive" if seen.inconclusive else "no-result"
-    return Cell(f"{text}/{seen.made}", seen.disagree + seen.inconclusive, f"verdict {css}", seen.said)
+    return Cell(f"{text}/{seen.made}", seen.disagree + seen.inconclusive, f"verdict {css}", seen.message)

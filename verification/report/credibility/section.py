@@ -240,7 +240,7 @@ def _short_faults(evidence: Evidence) -> str:
         return "not measured"
     return (
         f"{record.caught} of {len(record.rows)} planted faults are caught, "
-        f"{plain(100 * record.share, 3)} %; {record.as_expected} of them by the comparison named beforehand."
+        f"{plain(100 * record.share, 3)} %; {record.as_predicted} of them by the comparison named beforehand."
     )
 
 
@@ -260,5 +260,6 @@ def _short_alarms(evidence: Evidence) -> str:
         return "not measured"
     return (
         f"{len(record.alarms)} false alarms in {record.comparisons} comparisons and {record.invariants} "
-        f"invariants of {record.problems} clean random problems; {record.agreeing} of the problems agree throughout."
+        f"invariants of {record.problems} clean random problems; {record.agreeing} of the "
+        "problems agree throughout."
     )

@@ -219,7 +219,7 @@ def survivor_table(record: Record | None) -> Table | None:
     rows = [
         Row(
             Cell(row.name),
-            [Cell(text, css="words") for text in (row.sentence, row.catch, row.reason, row.cure)],
+            [Cell(text, css="words") for text in (row.description, row.catch, row.reason, row.remedy)],
         )
         for row in record.survivors
     ]
