@@ -80,7 +80,7 @@ def test_figures_of_a_record_carry_date_and_commit(evidence, tmp_path):
     vague = result_of(contact((E / 2, NU, 1.0)), name="vague", points=33, errors={"semianalytic": 4e-3})
     info = replace(INFO, started="2026-10-09T08:00:00+00:00", commit="c0ffee123456")
     record = counted([RESULTS[0], vague], 1, info)
-    write_record(tmp_path, record)
+    alarms.write_record(tmp_path, record)
     known = gather(tmp_path)
     assert known.alarms == record
     text = said(part(section(known), STEPS[6]))
@@ -186,7 +186,7 @@ def test_an_import_across_the_border_is_found(tmp_path, monkeypatch):
 
 def test_the_page_takes_the_section_and_escapes_it(evidence, tmp_path):
     bad = result_of(contact((E / 2, NU, 1.0)), name="vague", points=9, errors={"semianalytic": 4e-3})
-    write_record(tmp_path, counted([replace(bad, title="<script>alert(1)</script>")], 1, INFO))
+    alarms.write_record(tmp_path, counted([replace(bad, title="<script>alert(1)</script>")], 1, INFO))
     text = render(RESULTS[:1], INFO, extra=[section(gather(tmp_path))])
     assert '<section class="run" id="credibility">' in text
     for title in STEPS:

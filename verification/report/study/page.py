@@ -161,7 +161,7 @@ def _preference(study: Study, judgements: Sequence[Judged]) -> Section:
                     Cell(f"{use:.4f}", use),
                     Cell(mode, note=MODES[mode]),
                     *([Cell(ranges or "none")] if limited else []),
-                    Cell(scientific(j.reading), j.reading),
+                    Cell(scientific(j.interpolation_error), j.interpolation_error),
                     *_near_cells(j, h, mode),
                 ],
                 "" if j.admissible or not j.limited else "disagrees",
@@ -187,7 +187,7 @@ def _preference(study: Study, judgements: Sequence[Judged]) -> Section:
         ],
         rows,
     )
-    parts = [Part(study.criteria.sentence()), *(Part(s) for s in recommendation_sentences(judgements))]
+    parts = [Part(study.criteria.description()), *(Part(s) for s in recommendation_sentences(judgements))]
     every = Part(" ".join(preference_sentences(judgements)), folded="Every curve in words")
     return Section("preferable", "Which thickness", [*parts, Part("", [table]), every])
 
