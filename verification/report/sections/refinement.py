@@ -17,7 +17,7 @@ from verification.sources.source import Style
 __all__ = ["convergence_sections"]
 
 _SCALARS = [QUANTITY[name] for name in SCALARS]
-_TITLES = {q.symbol: q.name.replace("_", " ") for q in _SCALARS} | {
+_TITLES = {q.symbol: q.symbol for q in _SCALARS} | {
     "pressure": "pressure, L2 over the contact",
     "stress": "stress, axis and interfaces",
 }
