@@ -61,7 +61,7 @@ def unfit(clean: Sequence[CaseResult]) -> str:
 def trial_task(fault: Fault, output: Path) -> Task[Trial]:
     """The trial of ``fault`` in a process of its own."""
     path = _path(fault, output)
-    words = ("verification.credibility.faults.worker", fault.name, str(clean_folder(output)), str(path))
+    words = ("verification.credibility.faults.worker:main", fault.name, str(clean_folder(output)), str(path))
     return Task(fault.name, words, path, _trial, partial(_failed, fault))
 
 
