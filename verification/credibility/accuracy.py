@@ -19,7 +19,7 @@ from verification.judging.invariants.influence import ConversionError, conversio
 from verification.problem.contact import CoatedContact
 from verification.running.pool import Task
 from verification.running.provenance import commit, versions
-from verification.running.result import plain
+from verification.running.records import plain
 from verification.running.store import StoreError, read_checked, write_checked
 
 __all__ = [
@@ -133,7 +133,14 @@ def stored(
 def task(folder: Path) -> Task[AccuracyStudy]:
     """The study as a task beside the cases of a run."""
     path = path_in(folder)
-    return Task("accuracy study", ("verification.credibility.accuracy:main", str(path)), path, from_json, failed, cost=COST)
+    return Task(
+        "accuracy study",
+        ("verification.credibility.accuracy:main", str(path)),
+        path,
+        from_json,
+        failed,
+        cost=COST,
+    )
 
 
 def to_json(study: AccuracyStudy) -> dict[str, Any]:

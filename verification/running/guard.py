@@ -1,9 +1,12 @@
 """A process that imports what tasks need once, then forks a child for each task.
 
-python -m verification.running.guard reads a request a line on standard input, {"command": ["MODULE:FUNCTION",
-WORDS...], "more": BOOL}, and calls ``FUNCTION(*WORDS)`` in a child. On standard output the child answers "taken PID"
-and, where more is to come, "done PID" before it reads the next request; the parent of the child answers
-"ended PID CODE" when it is gone, with a negative CODE for a signal.
+python -m verification.running.guard reads a request a line on standard input,
+
+    {"command": ["MODULE:FUNCTION", WORDS...], "more": BOOL}
+
+and calls ``FUNCTION(*WORDS)`` in a child. On standard output the child answers "taken PID" and, where more is
+to come, "done PID" before it reads the next request. When the child is gone, "ended PID CODE" is answered,
+with a negative CODE for a signal.
 
 A child that crashes, hangs or runs out of memory takes nothing else with it. All end with the parent, and
 before it where memory ends.

@@ -35,7 +35,7 @@ def cores() -> int:
 
 @dataclass(frozen=True)
 class Task(Generic[T_co]):
-    """Work for another process: ``command``, ("MODULE:FUNCTION", WORDS...), leaves a checked file at ``path``.
+    """Work for another process: ("MODULE:FUNCTION", WORDS...) leaves a checked file at ``path``.
 
     read : from what the file holds to the result.
     failed : the result of a process that left none, from the reason and its seconds.
@@ -177,8 +177,9 @@ class _Slot(Generic[T]):
     def _code(self) -> int | None:
         """Exit code of the task at work, negative for a signal; None while it runs."""
         assert self.process is not None
-        ready = select.select([self.replies], [], [], 0)[0]
-        more = _pipe(self.process.stdout).read(4096) if ready else b""
+        replies = _pipe(self.process.stdout)
+        ready = bool(select.select([replies], [], [], 0)[0])
+        more = replies.read(4096) if ready else b""
         *lines, self.unread = (self.unread + more).split(b"\n")
         code = None
         for line in lines:

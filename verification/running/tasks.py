@@ -12,11 +12,11 @@ from verification.cases.published import PublishedCase
 from verification.judging.verdict import Outcome
 from verification.running import published
 from verification.running.contact import failed
-from verification.running.fields import read_fields
-from verification.running.planes import plane_path, read_plane
+from verification.running.fields import plane_path, read_fields, read_plane
 from verification.running.pool import Task, run_tasks
 from verification.running.provenance import fingerprint
-from verification.running.result import CaseResult, describe, from_json, plain
+from verification.running.records import plain
+from verification.running.result import CaseResult, describe, from_json
 from verification.running.store import StoreError, read_checked
 
 __all__ = ["case_task", "kept_result", "published_task", "result_path", "run_cases"]

@@ -13,7 +13,8 @@ from verification.credibility.faults.record import SCHEMA, Record, from_json, ro
 from verification.credibility.faults.trial import Trial, trial_from_json
 from verification.running.pool import Task
 from verification.running.provenance import fingerprint
-from verification.running.result import CaseResult, plain
+from verification.running.records import plain
+from verification.running.result import CaseResult
 from verification.running.store import StoreError, read_checked, write_checked
 
 __all__ = [
