@@ -1,6 +1,6 @@
 """NaN and infinity planted in both methods, one function at a time, and what each comes to.
 
-python tests/rough/not_finite.py [PART OF A NAME ...] prints the table; it ends with 1 where a case agrees.
+python tests/robustness/not_finite.py [PART OF A NAME ...] prints the table; exit code 1 where a case agrees.
 """
 
 import importlib
@@ -72,18 +72,18 @@ PLACES = (
     Place("semianalytic.influence", "remainder_coefficients"),
     Place("semianalytic.convolution", "even_convolution"),
     Place("semianalytic.convolution", "circulant_inverse"),
-    Place("semianalytic.contact", "press", "pressure"),
-    Place("semianalytic.contact", "press", "approach"),
-    Place("semianalytic.profile", "patch_mean"),
+    Place("semianalytic.contact", "solve", "pressure"),
+    Place("semianalytic.contact", "solve", "approach"),
+    Place("semianalytic.edge_profile", "patch_mean"),
     Place("semianalytic.hankel", "hankel"),
-    Place("semianalytic.lattice", "nodal_forces"),
+    Place("semianalytic.nodal_convolution", "nodal_forces"),
     Place("semianalytic.subsurface", "stress"),
     Place("semianalytic.solution", "Solution.pressure"),
     Place("semianalytic.solution", "Solution.stress_with_uncertainty", 0),
     Place("semianalytic.solution", "Solution.stress_with_uncertainty", 1),
     Place("semianalytic.solution", "Solution.pressure_uncertainty"),
-    Place("semianalytic.solver", "_uncertainty", "approach"),
-    Place("semianalytic.solver", "_uncertainty", "peak_pressure"),
+    Place("semianalytic.uncertainty", "of_contact", "approach"),
+    Place("semianalytic.uncertainty", "of_contact", "peak_pressure"),
     Place("fem_reference.mesh", "meridian_mesh", "points"),
     Place("fem_reference.axisymmetric", "strain_operator", 0),
     Place("fem_reference.axisymmetric", "elasticity"),
@@ -93,16 +93,16 @@ PLACES = (
     Place("fem_reference.axisymmetric", "constrained_solve"),
     Place("fem_reference.far_field", "boussinesq"),
     Place("fem_reference.far_field", "cerruti"),
-    Place("fem_reference.contact", "touch", "fields"),
-    Place("fem_reference.contact", "touch", "approach"),
-    Place("fem_reference.contact", "touch", "load"),
-    Place("fem_reference.contact", "touch", "stiffness"),
+    Place("fem_reference.contact", "solve_at_radius", "fields"),
+    Place("fem_reference.contact", "solve_at_radius", "approach"),
+    Place("fem_reference.contact", "solve_at_radius", "load"),
+    Place("fem_reference.contact", "solve_at_radius", "stiffness"),
     Place("fem_reference.contact", "complementarity", 0),
     Place("fem_reference.contact", "Multiplier.__call__"),
-    Place("fem_reference.loading", "loaded"),
+    Place("fem_reference.loading", "solve_traction"),
     Place("fem_reference.recovery", "HarmonicField.__call__", 1),
-    Place("fem_reference.estimate", "PressureBound.__call__"),
-    Place("fem_reference.estimate", "StressBound.__call__"),
+    Place("fem_reference.estimate", "PressureEstimate.__call__"),
+    Place("fem_reference.estimate", "StressEstimate.__call__"),
     Place("fem_reference.solution", "Solution.stress"),
 )
 

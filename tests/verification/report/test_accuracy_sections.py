@@ -5,9 +5,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from html_document import Document
 from synthetic_results import INFO, contact, result_of
 from synthetic_study import conversion, elements, falling, study
-from test_report_page import Document
 
 from verification.credibility.accuracy import CORRECTED, PLAIN, STAIRCASE, failed
 from verification.credibility.refinement import QUANTITIES
