@@ -14,11 +14,21 @@ from rich.table import Table
 
 from verification.cases.contact import Case, parse_case
 from verification.cases.random_problems import draw
-from verification.commands.common import RECORDS, STYLE, exit_code, no_gmsh, one_line, print_error, run_info
+from verification.commands.common import (
+    RECORDS,
+    STYLE,
+    RecordsFolder,
+    exit_code,
+    no_gmsh,
+    one_line,
+    print_error,
+    refuse_installed,
+    run_info,
+)
 from verification.commands.solving import kept_results, solve
 from verification.credibility.alarms import AlarmRecord, counted, write_record
 from verification.running.pool import cores
-from verification.running.result import plain
+from verification.running.records import plain
 from verification.running.store import StoreError, locked, write_atomically
 from verification.running.tasks import case_task
 
@@ -33,7 +43,7 @@ def alarms(
     seed: int = 1,
     output: Annotated[Path, Parameter(name=["--output", "-o"])] = Path("reports/alarms"),
     record: Annotated[bool, Parameter(negative="")] = False,
-    records: Path = RECORDS,
+    records: RecordsFolder = RECORDS,
     jobs: Annotated[int | None, Parameter(name=["--jobs", "-j"])] = None,
     time_limit: float = 600.0,
     resume: Annotated[bool, Parameter(negative="")] = False,
@@ -62,7 +72,7 @@ def alarms(
     record
         Store what was found as RECORDS/alarms.json, which the credibility page of every report reads.
     records
-        Directory of the records.
+        Directory of the records; in a source checkout that of the package unless given.
     jobs
         Problems solved side by side; all cores unless given.
     time_limit
@@ -80,6 +90,8 @@ def alarms(
             f"--count = {count}, --seed = {seed}, --jobs = {jobs}, --time-limit = {time_limit:g}; only the "
             "seed may be zero, none negative"
         )
+    if record and (code := refuse_installed(records, "--records")) is not None:
+        return code
     if (code := no_gmsh()) is not None:
         return code
 

@@ -13,7 +13,7 @@ from rich.markup import escape
 from rich.table import Table
 
 from verification.cases.contact import shipped_cases
-from verification.commands.common import BASELINE, print_error
+from verification.commands.common import BASELINE, BaselineFolder, print_error, refuse_installed
 from verification.judging.verdict import Outcome
 from verification.regression.baseline import Baseline, Update, updated
 from verification.regression.record import path_in, read_baseline, write_baseline
@@ -22,14 +22,12 @@ from verification.running.stored import StoredRun, confirm, read_run
 
 __all__ = ["show", "update"]
 
-Folder = Annotated[Path, Parameter(name=["--baseline", "-b"])]
-
 
 def update(
     run: Path = Path("reports"),
     *,
     why: str = "",
-    baseline: Folder = BASELINE,
+    baseline: BaselineFolder = BASELINE,
     quiet: Annotated[bool, Parameter(name=["--quiet", "-q"], negative="")] = False,
 ) -> int:
     """Make a stored default run the baseline; nothing else ever changes it.
@@ -45,12 +43,14 @@ def update(
     why
         The reason, kept with date, commit and versions in the baseline's history. There is no update without.
     baseline
-        Directory of the baseline.
+        Directory of the baseline; in a source checkout that of the package unless given.
     quiet
         Print nothing but errors.
     """
     if not why.strip():
         return print_error('--why is empty; give the reason: coatcheck baseline update --why "..."')
+    if (code := refuse_installed(baseline, "--baseline")) is not None:
+        return code
     try:
         found = read_run(run)
         unfit = _unfit(found)
@@ -78,7 +78,7 @@ def update(
 
 def show(
     *,
-    baseline: Folder = BASELINE,
+    baseline: BaselineFolder = BASELINE,
     as_json: Annotated[bool, Parameter(name="--json", negative="")] = False,
 ) -> int:
     """Show what the baseline holds and every update it has seen, with its reason.
@@ -86,7 +86,7 @@ def show(
     Parameters
     ----------
     baseline
-        Directory of the baseline.
+        Directory of the baseline; that of the package unless given.
     as_json
         Print one JSON object instead of tables.
     """

@@ -4,7 +4,9 @@ import datetime
 import sys
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Annotated
 
+from cyclopts import Parameter
 from rich.console import Console
 from rich.progress import (
     BarColumn,
@@ -19,6 +21,7 @@ from rich.progress import Task as RichTask
 from rich.table import Column
 from rich.text import Text
 
+import verification
 from verification.judging.verdict import Outcome
 from verification.running.pool import cores
 from verification.running.provenance import commit, machine, missing_libraries, versions
@@ -32,17 +35,24 @@ __all__ = [
     "RECORDS",
     "STOPPED",
     "STYLE",
+    "BaselineFolder",
+    "RecordsFolder",
     "exit_code",
     "no_gmsh",
     "one_line",
     "print_error",
     "progress_bar",
+    "refuse_installed",
     "run_info",
+    "within_package",
 ]
 
 NARROW = 60  # columns
-BASELINE = Path("reports/baseline")
-RECORDS = Path("reports/credibility")
+PACKAGE = Path(verification.__file__).parent
+BASELINE = PACKAGE / "regression" / "shipped"
+RECORDS = PACKAGE / "credibility" / "shipped"
+BaselineFolder = Annotated[Path, Parameter(name=["--baseline", "-b"], show_default=False)]
+RecordsFolder = Annotated[Path, Parameter(show_default=False)]
 BAD_INPUT = 2
 STOPPED = 130  # as a shell has it of SIGINT
 DRIFTED = 5  # all agree, but not with the digits of the baseline
@@ -82,6 +92,18 @@ def no_gmsh() -> int | None:
         return None
     print_error(f"gmsh lacks system libraries here; install them with: apt-get install {' '.join(lacking)}")
     return EXIT[Outcome.NO_RESULT]
+
+
+def refuse_installed(folder: Path, option: str) -> int | None:
+    """The exit code where ``folder`` is the package's own and not of a source checkout, after a message."""
+    if folder not in (BASELINE, RECORDS) or commit() is not None:
+        return None
+    return print_error(f"this coatcheck is installed, not a source checkout; name a directory with {option}")
+
+
+def within_package(folder: Path) -> str:
+    """``folder`` as a report names it: the package's own without the place where it is installed."""
+    return str(folder.relative_to(PACKAGE.parent) if folder.is_relative_to(PACKAGE) else folder)
 
 
 def run_info(command: str, started: datetime.datetime, jobs: int) -> RunInfo:

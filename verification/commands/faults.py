@@ -14,7 +14,7 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
-from verification.commands.common import EXIT, no_gmsh, print_error
+from verification.commands.common import EXIT, RECORDS, RecordsFolder, no_gmsh, print_error, refuse_installed
 from verification.commands.solving import kept_results, solve
 from verification.judging.verdict import Outcome
 from verification.running.pool import cores
@@ -28,8 +28,6 @@ if TYPE_CHECKING:
 
 __all__ = ["faults"]
 
-RECORDS = Path("reports/credibility")
-
 
 def faults(
     *names: str,
@@ -37,7 +35,7 @@ def faults(
     listed: Annotated[bool, Parameter(name="--list", negative="")] = False,
     output: Annotated[Path, Parameter(name=["--output", "-o"])] = Path("reports/faults"),
     record: Annotated[bool, Parameter(negative="")] = False,
-    records: Path = RECORDS,
+    records: RecordsFolder = RECORDS,
     jobs: Annotated[int | None, Parameter(name=["--jobs", "-j"])] = None,
     time_limit: float = 300.0,
     resume: Annotated[bool, Parameter(negative="")] = False,
@@ -69,7 +67,7 @@ def faults(
     record
         Store the matrix of all faults as RECORDS/faults.json, which the credibility page of a report reads.
     records
-        Directory of the records.
+        Directory of the records; in a source checkout that of the package unless given.
     jobs
         Faults tried side by side; all cores unless given.
     time_limit
@@ -98,6 +96,8 @@ def faults(
         return 0
     if record and (names or group):
         return print_error("--record stores the matrix of all faults; leave names and --group out")
+    if record and (code := refuse_installed(records, "--records")) is not None:
+        return code
     if (code := no_gmsh()) is not None:
         return code
 

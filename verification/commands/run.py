@@ -29,11 +29,14 @@ from verification.commands.common import (
     RECORDS,
     STOPPED,
     STYLE,
+    BaselineFolder,
+    RecordsFolder,
     exit_code,
     no_gmsh,
     one_line,
     print_error,
     run_info,
+    within_package,
 )
 from verification.commands.solving import kept_results, kept_study, solve
 from verification.judging.verdict import Outcome
@@ -55,8 +58,8 @@ def run(
     output: Annotated[Path, Parameter(name=["--output", "-o"])] = Path("reports"),
     jobs: Annotated[int | None, Parameter(name=["--jobs", "-j"])] = None,
     time_limit: float = 600.0,
-    baseline: Annotated[Path, Parameter(name=["--baseline", "-b"])] = BASELINE,
-    records: Path = RECORDS,
+    baseline: BaselineFolder = BASELINE,
+    records: RecordsFolder = RECORDS,
     resume: Annotated[bool, Parameter(negative="")] = False,
     fields: Annotated[bool, Parameter(negative="")] = False,
     verbose: Annotated[bool, Parameter(name=["--verbose", "-v"], negative="")] = False,
@@ -85,9 +88,10 @@ def run(
     time_limit
         Seconds one case may take before it is stopped and reported as having no result.
     baseline
-        Directory of the baseline; where it holds one, every number is held against it.
+        Directory of the baseline that every number is held against; that of the package unless given.
     records
-        Directory of what coatcheck faults and coatcheck alarms recorded, for the credibility page.
+        Directory of the records of coatcheck faults and coatcheck alarms, which the credibility page shows;
+        that of the package unless given.
     resume
         Keep the whole results already in the output directory that belong to the same case files.
     fields
@@ -137,7 +141,7 @@ def run(
             formulas = next((r for r in solved if isinstance(r, EffectiveStudy)), None)
             ordered = [kept.get(case.name) or results[case.name] for case in chosen]
             info = run_info(shlex.join(["coatcheck", "run", *cases]), started, jobs)
-            beside = regression(ordered, known, str(baseline), info, whole=not cases)
+            beside = regression(ordered, known, within_package(baseline), info, whole=not cases)
             page = write(ordered, output, info, study, beside, records, tests, formulas)
     except StoreError as error:
         return print_error(str(error))
@@ -263,10 +267,10 @@ def _print_table(results: Sequence[CaseResult], page: Path, seconds: float, besi
     laws = [law for result in results for law in result.invariants]
     if laws:
         say(f"{sum(law.outcome is Outcome.AGREES for law in laws)} of {len(laws)} invariants hold")
-    if beside.update is not None:
-        from verification.report.sections.baseline import baseline_sentence
+    from verification.report.sections.baseline import baseline_sentence
 
-        say(escape(f"baseline of {beside.update.when[:10]}: {baseline_sentence(beside)}"))
+    known = f"baseline of {beside.update.when[:10]} in {beside.folder}: " if beside.update is not None else ""
+    say(escape(f"{known}{baseline_sentence(beside)}"))
     number = "1 case" if len(results) == 1 else f"{len(results)} cases"
     say(f"{number} in {seconds:.0f} s; report: {escape(str(page))}")
 

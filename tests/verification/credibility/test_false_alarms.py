@@ -1,0 +1,161 @@
+"""Random problems: the same everywhere, valid, as wide as they are said to be; what counts as an alarm."""
+
+import json
+import subprocess
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from synthetic_results import INFO, STEEL, contact, crashed, result_of
+
+from verification.cases.contact import Case, parse_case
+from verification.cases.random_problems import (
+    FRICTION,
+    MOST_COATINGS,
+    POISSON,
+    RATIO,
+    THICKNESS,
+    THINNEST,
+    draw,
+)
+from verification.credibility.alarms import counted, path_in, read_record, write_record
+from verification.judging.claims import standard_claims
+from verification.judging.verdict import Outcome
+from verification.running.store import StoreError
+
+E, NU = STEEL
+COMMAND = [sys.executable, "-m", "verification.cli"]
+
+
+def drawn(seed: int, number: int) -> Case:
+    return parse_case(draw(seed, number).text.encode(), Path("draw.toml"))
+
+
+def test_the_same_seed_draws_the_same_problem_everywhere():
+    # written down once; another numpy, another machine has to draw it again
+    assert draw(1, 15).text.splitlines()[2:] == [
+        "[problem]",
+        "radius = 0.0002377",
+        "load = 0.01816",
+        "friction = 0.279",
+        "substrate = { E = 50890000000.0, nu = 0.3888 }",
+        "[[problem.coatings]]",
+        "E = 140800000000.0",
+        "nu = 0.4782",
+        "thickness_over_a_h = 0.7807",
+    ]
+    assert draw(1, 15) == draw(1, 15)
+    assert len({draw(seed, number).text for seed in range(5) for number in range(5)}) == 25
+
+
+def test_every_draw_is_a_valid_case_within_the_ranges_with_every_claim():
+    problems = []
+    for number in range(300):
+        case = drawn(7, number)
+        assert case.claims == standard_claims(case.problem)
+        problems.append(case.problem)
+    layers = [(E / p.substrate[0], nu, h / p.a_h) for p in problems for E, nu, h in p.coatings]
+    # four digits are drawn: a number at the very edge may be rounded over it
+    slack = 1 + 1e-3
+    for ratio, nu, h in layers:
+        assert RATIO[0] / slack <= ratio <= RATIO[1] * slack
+        assert POISSON[0] <= nu <= POISSON[1]
+        assert THINNEST / slack <= h <= THICKNESS[1] * slack
+    for p in problems:
+        assert 1 <= len(p.coatings) <= MOST_COATINGS
+        assert FRICTION[0] <= p.friction <= FRICTION[1]
+
+
+def test_draws_fill_their_ranges():
+    problems = [drawn(7, number).problem for number in range(300)]
+    layers = [(E / p.substrate[0], nu, h / p.a_h) for p in problems for E, nu, h in p.coatings]
+    ratios, poisson, depths = (sorted(column) for column in zip(*layers, strict=True))
+    assert (ratios[0] < 0.12, ratios[-1] > 8) == (True, True)
+    assert (poisson[0] < 0.02, poisson[-1] > 0.47) == (True, True)
+    assert (depths[0] == pytest.approx(THINNEST, rel=1e-3), depths[-1] > 4) == (True, True)
+    assert {len(p.coatings) for p in problems} == {1, 2, 3}
+    still = sum(p.friction == 0 for p in problems)
+    assert 70 < still < 130  # a third
+    assert max(p.friction for p in problems) > 0.48
+
+
+def test_whatever_is_not_agreement_is_an_alarm():
+    good = result_of(contact((2 * E, NU, 1.0)), name="good", text="title = 'good'\n")
+    wrong = result_of(
+        contact((4 * E, NU, 1.0)), name="wrong", errors={"semianalytic": 2e-3}, stated={"semianalytic": 0.7}
+    )
+    vague = result_of(contact((E / 2, NU, 1.0)), name="vague", errors={"semianalytic": 4e-3})
+    dead = crashed(contact((2 * E, NU, 1.0)), "dead", "killed")
+    clean = counted([good], 1, INFO)
+    assert (clean.alarms, clean.agreeing, clean.problems) == ((), 1, 1)
+    assert clean.comparisons == len(good.verdicts)
+    assert clean.smallest_margin is not None
+    assert 0 < clean.smallest_margin < 1
+    found = counted([good, wrong, vague, dead], 1, INFO)
+    assert found.agreeing == 1
+    outcomes = {alarm.case: set() for alarm in found.alarms}
+    for alarm in found.alarms:
+        outcomes[alarm.case].add(alarm.outcome)
+    assert outcomes["dead"] == {Outcome.NO_RESULT}
+    assert Outcome.INCONCLUSIVE in outcomes["vague"]
+    assert Outcome.DISAGREES in outcomes["wrong"]
+    assert "good" not in outcomes
+    assert found.comparisons == sum(len(r.verdicts) for r in (good, wrong, vague, dead))
+
+
+def test_a_result_without_any_comparison_is_an_alarm():
+    empty = replace(result_of(contact(), name="empty"), verdicts=())
+    found = counted([empty], 1, INFO)
+    assert [a.outcome for a in found.alarms] == [Outcome.NO_RESULT]
+    assert found.agreeing == 0
+
+
+def test_a_record_comes_back_whole_or_not_at_all(tmp_path):
+    assert read_record(tmp_path) is None
+    vague = result_of(contact((E / 2, NU, 1.0)), name="vague", errors={"semianalytic": 4e-3}, text="x = 1\n")
+    record = counted([vague], 3, INFO)
+    write_record(tmp_path, record)
+    assert read_record(tmp_path) == record
+    assert record.alarms[0].toml == "x = 1\n"
+    path = path_in(tmp_path)
+    path.write_bytes(path.read_bytes()[:-40])
+    with pytest.raises(StoreError, match=r"alarms\.json"):
+        read_record(tmp_path)
+
+
+@pytest.mark.parametrize(
+    "words", [["--count", "0"], ["--seed", "-1"], ["--jobs", "0"], ["--time-limit", "0"]]
+)
+def test_bad_options_are_one_sentence_and_nothing_written(tmp_path, words):
+    done = subprocess.run(
+        [*COMMAND, "alarms", *words], cwd=tmp_path, capture_output=True, text=True, timeout=120
+    )
+    assert done.returncode == 2
+    assert words[0] in done.stderr
+    assert len(done.stderr.strip().splitlines()) == 1
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.slow
+def test_the_command_records_what_it_found(tmp_path):
+    def alarms(*words: str) -> subprocess.CompletedProcess[str]:
+        return subprocess.run(
+            [*COMMAND, "alarms", "--count", "2", "--seed", "1", *words],
+            cwd=tmp_path,
+            capture_output=True,
+            text=True,
+            timeout=600,
+        )
+
+    done = alarms("--record", "--records", "records", "--json")
+    assert done.returncode == 0, done.stdout
+    record = read_record(tmp_path / "records")
+    assert record is not None
+    assert (record.problems, record.agreeing, record.alarms) == (2, 2, ())
+    assert json.loads(done.stdout)["comparisons"] == record.comparisons > 100
+    assert (tmp_path / "reports" / "alarms" / "problems" / "draw_1_001.toml").read_text() == draw(1, 1).text
+    stored = tmp_path / "reports" / "alarms" / "cases" / "draw_1_001.json"
+    first = stored.stat().st_mtime_ns
+    assert alarms("--resume", "--quiet").returncode == 0
+    assert stored.stat().st_mtime_ns == first

@@ -1,0 +1,298 @@
+"""The baseline: what counts as the same number, what an update keeps, what the command line says."""
+
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from quick_case import QUICK, coatcheck
+from synthetic_results import INFO, STEEL, contact, result_of
+
+from verification.cases.contact import shipped_cases
+from verification.commands.common import BASELINE
+from verification.regression.baseline import (
+    Baseline,
+    against,
+    case_drift,
+    regression,
+    regression_json,
+    updated,
+)
+from verification.regression.drift import State, measured
+from verification.regression.record import path_in, read_baseline, write_baseline
+from verification.report.write import report_json
+from verification.running.result import CaseResult, to_json
+from verification.running.store import StoreError, write_checked
+
+E, NU = STEEL
+RESULT = result_of(contact((2 * E, NU, 1.0)), text="title = 'stiff'\n")
+
+
+def baseline_of(*results: CaseResult) -> Baseline:
+    return updated(None, results, INFO, "the first", "2026-11-21T10:00:00+00:00")
+
+
+def changed(result: CaseResult, index: int, by: float, quantity="sigma_xx", line="axis") -> CaseResult:
+    """One value of the finite elements moved by ``by`` of the largest magnitude of its profile."""
+    profiles = []
+    for profile in result.profiles:
+        if (profile.quantity, profile.line, profile.source) == (quantity, line, "fem_reference"):
+            value = profile.value.copy()
+            value[index] += by * np.abs(value).max()
+            profile = replace(profile, value=value)
+        profiles.append(profile)
+    return replace(result, profiles=tuple(profiles))
+
+
+def drifted(now: CaseResult, then: CaseResult = RESULT) -> list[tuple[str, str, str]]:
+    found = case_drift(now, baseline_of(then))
+    return [(d.source, d.quantity, d.line) for d in found.drifts if d.state is not State.SAME]
+
+
+def test_a_run_is_the_same_as_itself_through_the_file(tmp_path):
+    write_baseline(tmp_path, baseline_of(RESULT))
+    stored = read_baseline(tmp_path)
+    assert stored is not None
+    found = case_drift(RESULT, stored)
+    assert found.state is State.SAME
+    # twelve digits are stored
+    assert found.change is not None
+    assert 0 < found.change < 1e-11
+    assert found.count(State.SAME) == stored.last.numbers > 500
+
+
+@pytest.mark.parametrize(("by", "state"), [(2e-8, State.DRIFTED), (0.5e-8, State.SAME)])
+def test_a_number_drifts_beyond_1e_8_of_the_largest_of_its_profile(by, state):
+    # Position 0 is the largest of this profile, the last one is near zero: both are measured by the largest.
+    for index in (0, -1):
+        found = case_drift(changed(RESULT, index, by), baseline_of(RESULT))
+        assert found.state is state
+    assert drifted(changed(RESULT, 0, 2e-8)) == [("fem_reference", "sigma_xx", "axis")]
+
+
+def test_a_change_between_the_kept_points_shows_in_the_root_mean_square():
+    kept = measured(RESULT)[0]
+    index = 3  # of 129 points every eighth is kept
+    profile = RESULT.profile("sigma_xx", "axis", "fem_reference")
+    assert profile is not None
+    assert profile.value.size == 129
+    assert kept.value.size <= 17
+    found = case_drift(changed(RESULT, index, 1e-5), baseline_of(RESULT))
+    bad = [d for d in found.drifts if d.state is State.DRIFTED]
+    assert [(d.quantity, d.moved) for d in bad] == [("sigma_xx", 1)]
+
+
+def test_a_profile_that_is_all_but_zero_is_measured_by_its_fellows():
+    # sigma_xz on the axis vanishes by symmetry; what is there is noise of 1.2e-5 p_h times a random number.
+    profile = RESULT.profile("sigma_xz", "axis", "fem_reference")
+    assert profile is not None
+    numbers = next(n for n in measured(RESULT) if n.key == ("fem_reference", "sigma_xz", "axis"))
+    assert np.abs(profile.value).max() < 2e-5 * RESULT.problem["p_h"]
+    assert numbers.scale == pytest.approx(1e-3 * RESULT.problem["p_h"], rel=0.2)
+    assert drifted(changed(RESULT, 0, 1e-7, "sigma_xz")) == []
+    assert drifted(changed(RESULT, 0, 1e-4, "sigma_xz")) == [("fem_reference", "sigma_xz", "axis")]
+
+
+def test_what_is_not_finite_has_drifted():
+    assert drifted(changed(RESULT, 0, np.nan)) == [("fem_reference", "sigma_xx", "axis")]
+    found = case_drift(changed(RESULT, 0, np.inf), baseline_of(RESULT))
+    assert found.state is State.DRIFTED
+    json.dumps(
+        regression_json(regression([RESULT], baseline_of(RESULT), "b", INFO, whole=True)), allow_nan=False
+    )
+    # a number that never was one has not changed
+    assert drifted(changed(RESULT, 0, np.nan), changed(RESULT, 0, np.nan)) == []
+
+
+@pytest.mark.parametrize(("times", "state"), [(10.0, State.DRIFTED), (0.1, State.DRIFTED), (2.0, State.SAME)])
+def test_an_uncertainty_drifts_when_its_size_is_another(times, state):
+    profiles = tuple(
+        replace(p, uncertainty=times * p.uncertainty) if p.source == "fem_reference" else p
+        for p in RESULT.profiles
+        if p.uncertainty is not None
+    )
+    found = case_drift(replace(RESULT, profiles=profiles), baseline_of(RESULT))
+    assert found.state is state
+    if state is State.DRIFTED:
+        assert {d.source for d in found.drifts if d.state is State.DRIFTED} == {"fem_reference"}
+
+
+def test_points_that_moved_are_said_to_have_moved():
+    profiles = tuple(
+        replace(p, position=p.position * (1 + 1e-4)) if p.line == "surface" else p for p in RESULT.profiles
+    )
+    found = case_drift(replace(RESULT, profiles=profiles), baseline_of(RESULT))
+    bad = [d for d in found.drifts if d.state is State.DRIFTED]
+    assert {d.line for d in bad} == {"surface"}
+    assert all("points moved by 1.0e-04" in d.said and d.change is None for d in bad)
+    coarser = result_of(contact((2 * E, NU, 1.0)), points=65)
+    said = {d.said for d in case_drift(coarser, baseline_of(RESULT)).drifts if d.line != "contact"}
+    assert said == {"sampled at 65 points instead of 129"}
+
+
+def test_cases_and_sources_come_and_go():
+    other = replace(RESULT, name="other")
+    base = baseline_of(RESULT, other)
+    new = replace(RESULT, name="brand_new")
+    whole = {c.name: c.state for c in against([RESULT, new], base, whole=True)}
+    assert whole == {RESULT.name: State.SAME, "brand_new": State.NEW, "other": State.GONE}
+    chosen = {c.name: c.state for c in against([RESULT, new], base, whole=False)}
+    assert chosen == {RESULT.name: State.SAME, "brand_new": State.NEW}
+    dead = result_of(contact((2 * E, NU, 1.0)), failures={"semianalytic": "no"})
+    found = case_drift(dead, base)
+    assert found.state is State.GONE
+    assert {d.source for d in found.drifts if d.state is State.GONE} == {"semianalytic"}
+    assert regression([dead], base, "b", INFO, whole=False).drifted
+    assert not regression([RESULT, new], base, "b", INFO, whole=False).drifted
+    assert not regression([dead], None, "b", INFO, whole=True).drifted
+
+
+def test_drift_elsewhere_is_told_but_is_no_fault_of_the_code():
+    base = baseline_of(RESULT)
+    moved = changed(RESULT, 0, 1e-6)
+    assert regression([moved], base, "b", INFO, whole=False).unexplained
+    for other in (replace(INFO, machine="another processor"), replace(INFO, versions={"numpy": "0"})):
+        found = regression([moved], base, "b", other, whole=False)
+        assert found.drifted
+        assert not found.unexplained
+
+
+def test_another_case_file_and_other_versions_are_said():
+    found = regression(
+        [replace(RESULT, text="title = 'other'\n")],
+        baseline_of(RESULT),
+        "b",
+        replace(INFO, versions=INFO.versions | {"numpy": "9.9"}, machine="abacus"),
+        whole=True,
+    )
+    assert found.cases[0].said == "its case file was changed"
+    assert found.other_versions == (("machine", INFO.machine, "abacus"), ("numpy", "2.4.0", "9.9"))
+
+
+def test_an_update_keeps_every_reason_with_what_changed(tmp_path):
+    write_baseline(tmp_path, baseline_of(RESULT, replace(RESULT, name="other")))
+    old = read_baseline(tmp_path)
+    now = changed(RESULT, 0, 3e-6)
+    write_baseline(tmp_path, updated(old, [now], INFO, "finer", "2026-11-22T10:00:00+00:00"))
+    stored = read_baseline(tmp_path)
+    assert stored is not None
+    assert [u.why for u in stored.history] == ["the first", "finer"]
+    changes = stored.last.changes
+    assert changes[RESULT.name][0] == 2  # the value and the root mean square
+    assert changes[RESULT.name][1] == pytest.approx(3e-6, rel=1e-3)
+    assert changes["other"] == (stored.history[0].numbers // 2, None)
+    assert case_drift(now, stored).state is State.SAME
+    assert case_drift(RESULT, stored).state is State.DRIFTED
+
+
+def test_a_damaged_baseline_is_one_sentence_that_names_it(tmp_path):
+    assert read_baseline(tmp_path) is None
+    path = write_baseline(tmp_path, baseline_of(RESULT))
+    raw = path.read_bytes()
+    path.write_bytes(raw.replace(b'"surface"', b'"surfaze"', 1))
+    with pytest.raises(StoreError, match="checksum does not hold"):
+        read_baseline(tmp_path)
+    write_checked(path, {"schema": "coatcheck-baseline/1", "cases": {"x": {}}, "history": []})
+    with pytest.raises(StoreError, match="not a baseline"):
+        read_baseline(tmp_path)
+    write_checked(path, {"schema": "other"})
+    with pytest.raises(StoreError, match="schema = 'other'"):
+        read_baseline(tmp_path)
+
+
+def run_directory(folder: Path, results: list[CaseResult]) -> None:
+    """What a run leaves: the report with a checked file beside it for each case."""
+    folder.mkdir()
+    (folder / "report.json").write_text(report_json(results, INFO))
+    for result in results:
+        write_checked(folder / "cases" / f"{result.name}.json", to_json(result))
+
+
+def test_the_command_refuses_in_one_sentence_and_writes_nothing(tmp_path):
+    partial = [result_of(contact(), name="01_uncoated_steel", points=9)]
+    run_directory(tmp_path / "partial", partial)
+    bad = [
+        result_of(contact(), name=name, points=9, failures={"hertz": "no"} if name == "05_ratio_4" else {})
+        for name in shipped_cases()
+    ]
+    run_directory(tmp_path / "bad", bad)
+    before = sorted(tmp_path.rglob("*"))
+    for words, said in (
+        (["update"], "--why is empty"),
+        (["update", "--why", "  "], "--why is empty"),
+        (["update", "none", "--why", "x"], "none: cannot be read"),
+        (["update", "partial", "--why", "x"], "lacks 15 of the shipped cases, first 02_ratio_quarter"),
+        (["update", "bad", "--why", "x"], "05_ratio_4 NO_RESULT"),
+        (["show", "--baseline", "none"], "there is no baseline"),
+    ):
+        done = coatcheck("baseline", *words, cwd=tmp_path)
+        assert done.returncode == 2
+        assert said in done.stderr
+        assert len(done.stderr.strip().splitlines()) == 1
+    assert sorted(tmp_path.rglob("*")) == before
+
+
+def test_the_command_updates_from_a_whole_run_and_shows_its_history(tmp_path):
+    results = [result_of(contact(), name=name, points=9) for name in shipped_cases()]
+    run_directory(tmp_path / "reports", results)
+    done = coatcheck("baseline", "update", "--why", "the [bold]first[/]", "-b", "base", cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    shown = json.loads(coatcheck("baseline", "show", "--json", "-b", "base", cwd=tmp_path).stdout)
+    assert list(shown["cases"]) == sorted(shipped_cases())
+    assert [u["why"] for u in shown["history"]] == ["the [bold]first[/]"]
+    assert shown["history"][0]["commit"] == INFO.commit
+    assert "the [bold]first[/]" in coatcheck("baseline", "show", "-b", "base", cwd=tmp_path).stdout
+    # A stored case of another run must not slip in.
+    other = replace(results[0], seconds=9.9)
+    write_checked(tmp_path / "reports" / "cases" / f"{other.name}.json", to_json(other))
+    done = coatcheck("baseline", "update", "--why", "again", "-b", "base", cwd=tmp_path)
+    assert done.returncode == 2
+    assert "of another run" in done.stderr
+
+
+def test_a_run_that_agrees_but_drifted_ends_with_code_5(tmp_path):
+    (tmp_path / "quick.toml").write_text(QUICK)
+    done = coatcheck("run", "quick.toml", "--json", "--baseline", "base", cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert json.loads(done.stdout)["baseline"]["recorded"] is None
+    from verification.running.stored import confirm, read_run
+
+    run = read_run(tmp_path / "reports")
+    confirm(run)
+    write_baseline(tmp_path / "base", updated(None, run.results, run.info, "first", "2026-11-21"))
+    words = ("run", "quick.toml", "--resume", "--baseline", "base", "--json")
+    done = coatcheck(*words, cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert json.loads(done.stdout)["cases"]["quick"]["baseline"] == "same"
+    moved = changed_by(run.results[0], 1e-6)
+    write_baseline(tmp_path / "base", updated(None, [moved], run.info, "off", "2026-11-21"))
+    done = coatcheck(*words, cwd=tmp_path)
+    assert done.returncode == 5
+    summary = json.loads(done.stdout)
+    assert (summary["exit_code"], summary["cases"]["quick"]["outcome"]) == (5, "AGREES")
+    assert summary["cases"]["quick"]["baseline"] == "drifted"
+    report = json.loads((tmp_path / "reports" / "report.json").read_text())
+    assert report["baseline"]["cases"][0]["drifted"] == 1
+    page = (tmp_path / "reports" / "report.html").read_text()
+    assert "≠ drifted" in page
+    said = coatcheck("run", "quick.toml", "--resume", "--baseline", "base", cwd=tmp_path).stdout
+    assert "drifted" in next(line for line in said.splitlines() if line.split()[:1] == ["quick"])
+    assert "largest change is 1.0e-6" in " ".join(said.split())
+    path_in(tmp_path / "base").write_text("{}")
+    done = coatcheck(*words, cwd=tmp_path)
+    assert done.returncode == 2
+    assert "base/baseline.json" in done.stderr
+
+
+def changed_by(result: CaseResult, share: float) -> CaseResult:
+    first, *others = result.profiles
+    return replace(result, profiles=(replace(first, value=first.value * (1 + share)), *others))
+
+
+def test_the_shipped_baseline_is_whole_small_and_has_its_reasons():
+    stored = read_baseline(BASELINE)
+    assert stored is not None
+    assert sorted(stored.cases) == sorted(shipped_cases())
+    assert path_in(BASELINE).stat().st_size < 500_000
+    assert all(update.why and update.when and update.versions for update in stored.history)
