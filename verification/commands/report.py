@@ -8,7 +8,7 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
-from verification.commands.common import BASELINE, EXIT, RECORDS, exit_code, print_error
+from verification.commands.common import BASELINE, EXIT, RECORDS, exit_code, nearest_run, print_error
 from verification.judging.verdict import Outcome
 from verification.regression.baseline import regression
 from verification.regression.record import read_baseline
@@ -57,7 +57,9 @@ def report(
     from verification.report.pdf import NoBrowser, printed
 
     if not (folder / "cases").is_dir():
-        return print_error(f"{folder}: holds no run; write one with: coatcheck run --output {folder}")
+        return print_error(
+            f"{folder}: holds no run; write one with: coatcheck run --output {folder}{nearest_run(folder)}"
+        )
     try:
         known = read_baseline(baseline)
         with locked(folder):
