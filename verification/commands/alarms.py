@@ -25,6 +25,7 @@ from verification.commands.common import (
     print_error,
     print_json,
     print_out,
+    refuse_installed,
     run_info,
 )
 from verification.commands.solving import kept_results, solve
@@ -82,6 +83,8 @@ def alarms(
             f"--count = {count}, --seed = {seed}, --jobs = {jobs}, --time-limit = {time_limit:g}; only the "
             "seed may be zero, none negative"
         )
+    if record and (code := refuse_installed(records, "--records")) is not None:
+        return code
     if (code := no_gmsh()) is not None:
         return code
 

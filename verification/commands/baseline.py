@@ -16,6 +16,7 @@ from verification.commands.common import (
     print_error,
     print_json,
     print_out,
+    refuse_installed,
 )
 from verification.judging.verdict import Outcome
 from verification.regression.baseline import Baseline, Update, updated
@@ -48,6 +49,8 @@ def update(
     """
     if not why.strip():
         return print_error('--why is empty; give the reason: coatcheck baseline update --why "..."')
+    if (code := refuse_installed(baseline, "--baseline")) is not None:
+        return code
     try:
         found = read_run(run)
         unfit = _unfit(found)

@@ -23,6 +23,7 @@ from rich.progress import Task as RichTask
 from rich.table import Column, Table
 from rich.text import Text
 
+import verification
 from verification.judging.verdict import Outcome
 from verification.running.pool import cores
 from verification.running.provenance import commit, machine, missing_libraries, versions
@@ -54,13 +55,16 @@ __all__ = [
     "print_json",
     "print_out",
     "progress_bar",
+    "refuse_installed",
     "run_info",
+    "within_package",
 ]
 
 NARROW = 60  # columns
 UNBROKEN = 100_000  # columns of a file or pipe
-BASELINE = Path("reports/baseline")
-RECORDS = Path("reports/credibility")
+PACKAGE = Path(verification.__file__).parent
+BASELINE = PACKAGE / "regression" / "shipped"
+RECORDS = PACKAGE / "credibility" / "shipped"
 BAD_INPUT = 2
 STOPPED = 130  # as a shell has it of SIGINT
 DRIFTED = 5  # all agree, but not with the digits of the baseline
@@ -74,8 +78,20 @@ STYLE = {
 
 Flag = Annotated[bool, Parameter(negative="")]
 Output = Annotated[Path, Parameter(name=["--output", "-o"])]
-BaselineFolder = Annotated[Path, Parameter(name=["--baseline", "-b"], help="Directory of the baseline.")]
-RecordsFolder = Annotated[Path, Parameter(help="Directory of the credibility records.")]
+BaselineFolder = Annotated[
+    Path,
+    Parameter(
+        name=["--baseline", "-b"],
+        help="Directory of the baseline; that of the package unless given.",
+        show_default=False,
+    ),
+]
+RecordsFolder = Annotated[
+    Path,
+    Parameter(
+        help="Directory of the credibility records; that of the package unless given.", show_default=False
+    ),
+]
 Jobs = Annotated[
     int | None, Parameter(name=["--jobs", "-j"], help="Processes side by side; all cores unless given.")
 ]
@@ -148,6 +164,18 @@ def no_gmsh() -> int | None:
         return None
     print_error(f"gmsh lacks system libraries here; install them with: apt-get install {' '.join(lacking)}")
     return EXIT[Outcome.NO_RESULT]
+
+
+def refuse_installed(folder: Path, option: str) -> int | None:
+    """The exit code where ``folder`` is the package's own and not of a source checkout, after a message."""
+    if folder not in (BASELINE, RECORDS) or commit() is not None:
+        return None
+    return print_error(f"this coatcheck is installed, not a source checkout; name a directory with {option}")
+
+
+def within_package(folder: Path) -> str:
+    """``folder`` as a report names it: the package's own without the place where it is installed."""
+    return str(folder.relative_to(PACKAGE.parent) if folder.is_relative_to(PACKAGE) else folder)
 
 
 def run_info(command: str, started: datetime.datetime, jobs: int) -> RunInfo:

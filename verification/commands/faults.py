@@ -25,6 +25,7 @@ from verification.commands.common import (
     print_error,
     print_json,
     print_out,
+    refuse_installed,
     run_info,
 )
 from verification.commands.solving import kept_results, solve
@@ -99,6 +100,8 @@ def faults(
         return 0
     if record and (names or group):
         return print_error("--record stores the matrix of all faults; leave names and --group out")
+    if record and (code := refuse_installed(records, "--records")) is not None:
+        return code
     if (code := no_gmsh()) is not None:
         return code
 

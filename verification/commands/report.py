@@ -8,7 +8,17 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
-from verification.commands.common import BASELINE, EXIT, RECORDS, exit_code, nearest_run, print_error
+from verification.commands.common import (
+    BASELINE,
+    EXIT,
+    RECORDS,
+    BaselineFolder,
+    RecordsFolder,
+    exit_code,
+    nearest_run,
+    print_error,
+    within_package,
+)
 from verification.judging.verdict import Outcome
 from verification.regression.baseline import regression
 from verification.regression.record import read_baseline
@@ -26,8 +36,8 @@ def report(
     /,
     *,
     pdf: Annotated[bool, Parameter(negative="")] = False,
-    baseline: Annotated[Path, Parameter(name=["--baseline", "-b"])] = BASELINE,
-    records: Path = RECORDS,
+    baseline: BaselineFolder = BASELINE,
+    records: RecordsFolder = RECORDS,
     time_limit: float = 300.0,
     quiet: Annotated[bool, Parameter(name=["--quiet", "-q"], negative="")] = False,
     as_json: Annotated[bool, Parameter(name="--json", negative="")] = False,
@@ -41,9 +51,9 @@ def report(
     pdf
         Also print the page to report.pdf there, through an installed Chromium or Chrome.
     baseline
-        Directory of the baseline; where it holds one, every number is held against it.
+        Directory of the baseline that every number is held against; that of the package unless given.
     records
-        Directory of the records of credibility.
+        Directory of the records of credibility; that of the package unless given.
     time_limit
         Seconds that printing may take.
     quiet
@@ -68,7 +78,7 @@ def report(
             study = None
             if path_in(folder).exists():
                 study = study_from_json(read_checked(path_in(folder)))
-            beside = regression(results, known, str(baseline), info, whole=False)
+            beside = regression(results, known, within_package(baseline), info, whole=False)
             page = write(results, folder, info, study, beside, records, self_tests())
             files = [page]
             if pdf:

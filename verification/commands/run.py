@@ -42,6 +42,7 @@ from verification.commands.common import (
     print_error,
     print_json,
     run_info,
+    within_package,
 )
 from verification.commands.solving import kept_results, kept_study, solve
 from verification.judging.verdict import Outcome
@@ -133,7 +134,7 @@ def run(
             formulas = next((r for r in solved if isinstance(r, EffectiveStudy)), None)
             ordered = [kept.get(case.name) or results[case.name] for case in chosen]
             info = run_info(shlex.join(["coatcheck", "run", *cases]), started, jobs)
-            beside = regression(ordered, known, str(baseline), info, whole=not cases)
+            beside = regression(ordered, known, within_package(baseline), info, whole=not cases)
             page = write(ordered, output, info, study, beside, records, tests, formulas)
     except StoreError as error:
         return print_error(str(error))
@@ -260,10 +261,10 @@ def _print_table(results: Sequence[CaseResult], page: Path, seconds: float, besi
     laws = [law for result in results for law in result.invariants]
     if laws:
         say(f"{sum(law.outcome is Outcome.AGREES for law in laws)} of {len(laws)} invariants hold")
-    if beside.update is not None:
-        from verification.report.sections.baseline import baseline_sentence
+    from verification.report.sections.baseline import baseline_sentence
 
-        say(escape(f"baseline of {beside.update.when[:10]}: {baseline_sentence(beside)}"))
+    known = f"baseline of {beside.update.when[:10]} in {beside.folder}: " if beside.update is not None else ""
+    say(escape(f"{known}{baseline_sentence(beside)}"))
     number = "1 case" if len(results) == 1 else f"{len(results)} cases"
     say(f"{number} in {seconds:.0f} s; report: {escape(str(page))}")
 

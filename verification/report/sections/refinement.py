@@ -181,7 +181,6 @@ def _ladder_gallery(
             f"{_TITLES[q]}",
             draw_loglog(
                 some,
-                key=f"convergence-{key}-{q}",
                 label=f"error of {_TITLES[q]} over {coordinate}, logarithmic",
                 coordinate=coordinate,
                 height=height,

@@ -1,6 +1,6 @@
 """Kill a run with kill -9 at random moments, resume it each time, hold what it ends with against a calm run.
 
-python tests/rough/kill_default_run.py [CASE ...] --kills 50 --output FOLDER
+python tests/robustness/kill_default_run.py [CASE ...] --kills 50 --output FOLDER
 
 Without cases it is the default run that is killed. Every second kill takes the run alone, the others its
 workers too; every third is aimed at a file being written. Ends with 1 where a finished case was lost, a

@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 from hypothesis import HealthCheck, Phase, given, settings
 from hypothesis import strategies as st
-from mangled import dump, garbled, mangled
+from malformed import dump, garbled, malformed
 
 from verification.cases.contact import shipped_cases
 from verification.cases.published import published_cases, read_published
@@ -104,7 +104,7 @@ def bad_files(tmp_path, monkeypatch, wanted):
 
     # Some changes leave a file good; a quarter more than wanted makes up for them.
     @generated(wanted * 5 // 4)
-    @given(mangled(CASES))
+    @given(malformed(CASES))
     def each(made):
         raw, keys = made
         path.write_bytes(raw)
@@ -159,7 +159,7 @@ def test_generated_published_cases_and_tables_are_refused_in_one_sentence(tmp_pa
         assert sentence is None or re.match(named, sentence), sentence
 
     @generated(600)
-    @given(mangled(trees))
+    @given(malformed(trees))
     def each_case(made):
         read(made[0], "case", rf"{tmp_path}/mine\.toml: |\w+\.csv[:,] ")
 
@@ -187,7 +187,7 @@ def test_generated_study_files_are_refused_in_one_sentence(tmp_path):
     path = tmp_path / "mine.toml"
 
     @generated(300)
-    @given(mangled(trees))
+    @given(malformed(trees))
     def each(made):
         path.write_bytes(made[0])
         counts["files"] += 1

@@ -134,7 +134,12 @@ def orphans_of(folder: Path) -> float:
     """Kill a run with kill -9 while two of its workers hang; seconds until they, and theirs, are gone."""
     folder.mkdir()
     parent = subprocess.Popen(
-        [sys.executable, "-c", "import sys, test_workers as t; t.hang_in(t.Path(sys.argv[1]))", str(folder)]
+        [
+            sys.executable,
+            "-c",
+            "import sys, test_failing_workers as t; t.hang_in(sys.argv[1])",
+            str(folder),
+        ]
     )
     said = [folder / f"hang-{n}.json.pids" for n in range(2)]
     begin = time.monotonic()
@@ -150,8 +155,8 @@ def orphans_of(folder: Path) -> float:
     return gone(pids, within=10)
 
 
-def hang_in(folder: Path) -> None:
-    run_tasks([task("hang", folder, n) for n in range(2)], jobs=2, time_limit=600)
+def hang_in(folder: str) -> None:
+    run_tasks([task("hang", Path(folder), n) for n in range(2)], jobs=2, time_limit=600)
 
 
 def test_workers_of_a_killed_run_end_with_it(tmp_path):

@@ -10,6 +10,7 @@ from quick_case import QUICK, coatcheck
 from synthetic_results import INFO, STEEL, contact, result_of
 
 from verification.cases.contact import shipped_cases
+from verification.commands.common import BASELINE
 from verification.regression.baseline import (
     Baseline,
     against,
@@ -223,7 +224,7 @@ def test_the_command_refuses_in_one_sentence_and_writes_nothing(tmp_path):
         (["update", "none", "--why", "x"], "none: cannot be read"),
         (["update", "partial", "--why", "x"], "lacks 15 of the shipped cases, first 02_ratio_quarter"),
         (["update", "bad", "--why", "x"], "05_ratio_4 NO_RESULT"),
-        (["show"], "there is no baseline"),
+        (["show", "--baseline", "none"], "there is no baseline"),
     ):
         done = coatcheck("baseline", *words, cwd=tmp_path)
         assert done.returncode == 2
@@ -235,24 +236,24 @@ def test_the_command_refuses_in_one_sentence_and_writes_nothing(tmp_path):
 def test_the_command_updates_from_a_whole_run_and_shows_its_history(tmp_path):
     results = [result_of(contact(), name=name, points=9) for name in shipped_cases()]
     run_directory(tmp_path / "reports", results)
-    done = coatcheck("baseline", "update", "--why", "the [bold]first[/]", cwd=tmp_path)
+    done = coatcheck("baseline", "update", "--why", "the [bold]first[/]", "-b", "base", cwd=tmp_path)
     assert done.returncode == 0, done.stderr
-    shown = json.loads(coatcheck("baseline", "show", "--json", cwd=tmp_path).stdout)
+    shown = json.loads(coatcheck("baseline", "show", "--json", "-b", "base", cwd=tmp_path).stdout)
     assert list(shown["cases"]) == sorted(shipped_cases())
     assert [u["why"] for u in shown["history"]] == ["the [bold]first[/]"]
     assert shown["history"][0]["commit"] == INFO.commit
-    assert "the [bold]first[/]" in coatcheck("baseline", "show", cwd=tmp_path).stdout
+    assert "the [bold]first[/]" in coatcheck("baseline", "show", "-b", "base", cwd=tmp_path).stdout
     # A stored case of another run must not slip in.
     other = replace(results[0], seconds=9.9)
     write_checked(tmp_path / "reports" / "cases" / f"{other.name}.json", to_json(other))
-    done = coatcheck("baseline", "update", "--why", "again", cwd=tmp_path)
+    done = coatcheck("baseline", "update", "--why", "again", "-b", "base", cwd=tmp_path)
     assert done.returncode == 2
     assert "of another run" in done.stderr
 
 
 def test_a_run_that_agrees_but_drifted_ends_with_code_5(tmp_path):
     (tmp_path / "quick.toml").write_text(QUICK)
-    done = coatcheck("run", "quick.toml", "--json", cwd=tmp_path)
+    done = coatcheck("run", "quick.toml", "--json", "--baseline", "base", cwd=tmp_path)
     assert done.returncode == 0, done.stderr
     assert json.loads(done.stdout)["baseline"]["recorded"] is None
     from verification.running.stored import confirm, read_run
@@ -289,14 +290,9 @@ def changed_by(result: CaseResult, share: float) -> CaseResult:
     return replace(result, profiles=(replace(first, value=first.value * (1 + share)), *others))
 
 
-ROOT = Path(__file__).resolve().parents[2]
-
-
-@pytest.mark.skipif(not path_in(ROOT / "reports" / "baseline").exists(), reason="no baseline is recorded")
-def test_the_recorded_baseline_is_whole_small_and_has_its_reasons():
-    folder = ROOT / "reports" / "baseline"
-    stored = read_baseline(folder)
+def test_the_shipped_baseline_is_whole_small_and_has_its_reasons():
+    stored = read_baseline(BASELINE)
     assert stored is not None
     assert sorted(stored.cases) == sorted(shipped_cases())
-    assert path_in(folder).stat().st_size < 500_000
+    assert path_in(BASELINE).stat().st_size < 500_000
     assert all(update.why and update.when and update.versions for update in stored.history)

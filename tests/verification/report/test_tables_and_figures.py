@@ -14,7 +14,7 @@ from verification.judging.verdict import Outcome
 from verification.report.figures import panels
 from verification.report.figures.curves import FLOOR, Curve, Difference, draw
 from verification.report.figures.panels import line_figures
-from verification.report.figures.svg import compact
+from verification.report.figures.plot import Axes, drawing, polyline
 from verification.report.sections.accuracy import accuracies, accuracy_sentence
 from verification.report.tables.case import budget_table, contact_table, verdict_table
 from verification.report.tables.csv import embedded, line_csv
@@ -185,7 +185,7 @@ def figure(value, uncertainty=None, **more):
     x = np.linspace(-2, 2, np.size(value))
     curve = Curve(x, value, source_style("semianalytic"))
     gap = Difference(x, np.abs(value), uncertainty, pair_style(("semianalytic", "fem_reference")))
-    return str(draw([curve], [gap], key="f", label="p", coordinate="x / a_h", **more))
+    return str(draw([curve], [gap], label="p", coordinate="x / a_h", **more))
 
 
 @pytest.mark.parametrize("bad", [nan, inf])
@@ -215,19 +215,33 @@ def test_differences_below_the_floor_are_drawn_on_it():
     assert FLOOR == 1e-9
 
 
-def test_two_figures_share_no_identifier():
-    one = figure(np.linspace(0, 1, 60))
-    two = one.replace("f-", "g-")
-    x = np.linspace(-2, 2, 60)
-    other = draw([Curve(x, x, source_style("hertz"))], [], key="g", label="p", coordinate="x")
-    assert 'id="f-0"' in one
-    assert 'id="g-0"' in str(other)
-    assert 'id="f-' not in two
+def test_a_figure_has_no_identifier_and_its_curves_end_at_the_frame():
+    text = figure(np.linspace(0, 1, 60))
+    assert "id=" not in text
+    assert text.count('<svg x="48.0"') == 2
 
 
 def test_labels_are_text_not_markup():
-    text = compact("<svg viewBox='0 0 1 1'><g/></svg>", key="k", colours={}, label='"><script>')
+    axes = Axes((0, 0, 1, 1), (0, 1), (0, 1))
+    axes.text(0.5, 0.5, "<b>")
+    text = drawing(1, 1, '"><script>', axes)
     assert "<script>" not in text
+    assert "<b>" not in text
+
+
+def test_a_simplified_curve_stays_within_a_tenth_of_a_unit_and_breaks_at_gaps():
+    x = np.linspace(0, 300, 400)
+    y = 100 * np.sin(x / 30)
+    y[200] = np.nan
+    first, second = polyline(np.stack([x, y], axis=1)).split("M")[1:]
+    assert len(first) < 700
+    for part, known in ((first, x < x[200]), (second, x > x[200])):
+        start, steps = (
+            [float(n) for n in re.findall(r"-?[0-9]*\.?[0-9]+", some)] for some in part.split("l")
+        )
+        points = np.cumsum([start, *np.reshape(steps, (-1, 2))], axis=0)
+        np.testing.assert_allclose(np.interp(x[known], *points.T), y[known], atol=0.4)
+        assert np.abs(points[:, 1] - 100 * np.sin(points[:, 0] / 30)).max() < 0.4
 
 
 def test_figures_are_drawn_in_the_scales_of_the_bare_substrate(monkeypatch):
@@ -239,7 +253,7 @@ def test_figures_are_drawn_in_the_scales_of_the_bare_substrate(monkeypatch):
 
     monkeypatch.setattr(panels, "draw", record)
     result = result_of(COATED, errors={"semianalytic": 2e-3}, stated={"semianalytic": 0.7}, points=201)
-    line_figures(result, "surface", "k")
+    line_figures(result, "surface")
     curves, differences, more = drawn[0]
     assert len(curves) == len(differences) == 3
     for curve in curves:
@@ -260,9 +274,9 @@ def test_figures_are_drawn_in_the_scales_of_the_bare_substrate(monkeypatch):
 
 def test_a_claimless_line_shows_what_was_sampled():
     result = result_of(COATED, points=31)
-    assert [panel.title for panel in line_figures(result, "axis", "k").panels] == [
+    assert [panel.title for panel in line_figures(result, "axis").panels] == [
         "sigma_xx / p_h",
         "sigma_zz / p_h",
     ]
     bare = type(result)(**{**vars(result), "verdicts": ()})
-    assert len(line_figures(bare, "axis", "k").panels) == 4
+    assert len(line_figures(bare, "axis").panels) == 4

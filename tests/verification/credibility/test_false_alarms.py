@@ -148,9 +148,9 @@ def test_the_command_records_what_it_found(tmp_path):
             timeout=600,
         )
 
-    done = alarms("--record", "--json")
+    done = alarms("--record", "--records", "records", "--json")
     assert done.returncode == 0, done.stdout
-    record = read_record(tmp_path / "reports" / "credibility")
+    record = read_record(tmp_path / "records")
     assert record is not None
     assert (record.problems, record.agreeing, record.alarms) == (2, 2, ())
     assert json.loads(done.stdout)["comparisons"] == record.comparisons > 100

@@ -8,7 +8,7 @@ from typing import Any
 
 from hypothesis import strategies as st
 
-__all__ = ["dump", "garbled", "keys_of", "mangled"]
+__all__ = ["dump", "garbled", "keys_of", "malformed"]
 
 LARGEST = 1.7976931348623157e308
 STRANGE = [
@@ -87,7 +87,7 @@ def keys_of(node: Any, here: tuple[str | int, ...] = ()) -> list[tuple[str | int
 
 
 @st.composite
-def mangled(draw: st.DrawFn, trees: list[Tree]) -> tuple[bytes, tuple[str, ...]]:
+def malformed(draw: st.DrawFn, trees: list[Tree]) -> tuple[bytes, tuple[str, ...]]:
     """A file with one thing changed, and the keys a complaint may name: () where its text was garbled."""
     tree = copy.deepcopy(draw(st.sampled_from(trees)))
     changes = ["replace"] * 6 + ["garble"] * 3 + ["lose", "add", "rename", "repeat", "wrap"]

@@ -218,7 +218,7 @@ def test_memory_stays_flat_over_ten_thousand_points(tmp_path):
     script = tmp_path / "many.py"
     script.write_text(
         "import sys, functools\n"
-        f"sys.path.insert(0, {str(Path(__file__).parent)!r})\n"
+        f"sys.path.insert(0, {str(Path(__file__).parents[1])!r})\n"
         "from pathlib import Path\n"
         "from synthetic_solves import made_up\n"
         "from verification.study.engine import connected, run_study\n"
@@ -229,7 +229,7 @@ def test_memory_stays_flat_over_ten_thousand_points(tmp_path):
         "    came = run_study(study, Path(sys.argv[1]), cluster, solve=made_up)\n"
         "    assert (came.rows, came.failed) == (10_000, 0), came\n"
     )
-    path = os.pathsep.join([str(Path(__file__).parent), os.environ.get("PYTHONPATH", "")])
+    path = os.pathsep.join([str(Path(__file__).parents[1]), os.environ.get("PYTHONPATH", "")])
     subprocess.run(
         [sys.executable, str(script), str(tmp_path)],
         check=True,

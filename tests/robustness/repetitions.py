@@ -1,6 +1,6 @@
 """The same cases over and over: verdicts have to be identical, numbers within 1e-12.
 
-python tests/rough/repetitions.py [CASE ...] --times 10 --output FOLDER
+python tests/robustness/repetitions.py [CASE ...] --times 10 --output FOLDER
 
 The differences are printed for each; it ends with 1 where one exceeds 1e-12. With --jobs 1 2 3 the number of
 cases side by side is turned too, with it the threads of each, and the order in which sums are taken.

@@ -1,6 +1,6 @@
 """NaN and infinity planted in both methods, one function at a time, and what each comes to.
 
-python tests/rough/not_finite.py [PART OF A NAME ...] prints the table; it ends with 1 where a case agrees.
+python tests/robustness/not_finite.py [PART OF A NAME ...] prints the table; exit code 1 where a case agrees.
 """
 
 import importlib
