@@ -31,7 +31,7 @@ from verification.commands.common import (
 from verification.commands.solving import kept_results, solve
 from verification.credibility.alarms import AlarmRecord, counted, write_record
 from verification.running.pool import cores
-from verification.running.result import plain
+from verification.running.records import plain
 from verification.running.store import StoreError, locked, write_atomically
 from verification.running.tasks import case_task
 

@@ -22,7 +22,7 @@ from verification.commands.common import (
 from verification.judging.verdict import Outcome
 from verification.regression.comparison import RunComparison, compare_runs
 from verification.regression.drift import State
-from verification.running.result import plain
+from verification.running.records import plain
 from verification.running.store import StoreError, write_atomically
 from verification.running.stored import read_run
 
