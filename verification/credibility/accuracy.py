@@ -1,12 +1,6 @@
-"""The accuracy study of a default run: convergence of both methods on two solids of known solution.
-
-It runs in a process of its own beside the cases:
-
-python -m verification.credibility.accuracy accuracy.json
-"""
+"""The accuracy study of a default run: convergence of both methods on two solids of known solution."""
 
 import os
-import sys
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -47,6 +41,7 @@ FINE = (41, 49, 65, 97, 129, 257)
 STEEL = (210e9, 0.3)
 BARE = CoatedContact(10e-3, 20.0, (), STEEL)
 COATED = CoatedContact(10e-3, 20.0, ((4 * STEEL[0], 0.3, BARE.a_h),), STEEL)
+COST = 5.0  # of the whole study, over that of an uncoated contact
 PROBLEM = "a sphere of 10 mm under 20 N on steel, bare or with a coating of E1/E2 = 4, h = a_h"
 
 T = TypeVar("T")
@@ -137,7 +132,8 @@ def stored(
 def task(folder: Path) -> Task[AccuracyStudy]:
     """The study as a task beside the cases of a run."""
     path = path_in(folder)
-    return Task("accuracy study", ("verification.credibility.accuracy", str(path)), path, from_json, failed)
+    command = ("verification.credibility.accuracy:main", str(path))
+    return Task("accuracy study", command, path, from_json, failed, cost=COST)
 
 
 def to_json(study: AccuracyStudy) -> dict[str, Any]:
@@ -155,7 +151,3 @@ def from_json(data: dict[str, Any]) -> AccuracyStudy:
 def main(path: str) -> None:
     """Measure and store at ``path``."""
     write_checked(Path(path), to_json(measure()))
-
-
-if __name__ == "__main__":
-    main(*sys.argv[1:])

@@ -1,6 +1,5 @@
 """The report page: from case results to one HTML text that needs nothing else."""
 
-import hashlib
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -12,7 +11,6 @@ from markupsafe import Markup
 from verification.credibility.accuracy import AccuracyStudy
 from verification.judging.verdict import Outcome
 from verification.regression.baseline import Regression
-from verification.report.figures.cutaway import Cutaway
 from verification.report.figures.fields import Pictures, pictures
 from verification.report.figures.panels import LineFigures, line_figures
 from verification.report.figures.sketch import sketch
@@ -76,7 +74,6 @@ class CaseView:
     command: str
     facts: tuple[tuple[str, str], ...]
     sketch: Markup
-    cutaway: Cutaway | None
     failures: tuple[tuple[str, str], ...]
     layers: Table
     contact: Table
@@ -101,17 +98,15 @@ def render(
     extra: Sequence[Section] = (),
     planes: Mapping[str, Plane] | None = None,
     baseline: Regression | None = None,
-    cutaways: Mapping[str, Cutaway] | None = None,
 ) -> str:
     """The whole page as text. Every string of a result is escaped: a title "<script>" stays text.
 
-    planes : what to draw of the plane below the contact.   cutaways : pictures of the problem. Both by
-    name of the case.
+    planes : what to draw of the plane below the contact, by name of the case.
     baseline : what became of each number since the baseline.
     """
     # A report tells of numbers that overflow or are not finite; it must not stumble over them.
     with np.errstate(all="ignore"):
-        return _render(results, info, study, extra, planes or {}, baseline, cutaways or {})
+        return _render(results, info, study, extra, planes or {}, baseline)
 
 
 def _render(
@@ -121,7 +116,6 @@ def _render(
     extra: Sequence[Section],
     planes: Mapping[str, Plane],
     baseline: Regression | None,
-    cutaways: Mapping[str, Cutaway],
 ) -> str:
     anchors = _anchors(results)
     sections = _sections(results, anchors, study)
@@ -152,7 +146,7 @@ def _render(
         outcomes=OUTCOMES.values(),
         sections=[*sections, *extra],
         cases=[
-            _case(result, anchor, info, planes.get(result.name), cutaways.get(result.name))
+            _case(result, anchor, info, planes.get(result.name))
             for result, anchor in zip(contacts, contact_anchors.values(), strict=True)
         ],
         seconds=seconds,
@@ -234,9 +228,7 @@ def _summary(results: Sequence[CaseResult]) -> str:
     return text + "."
 
 
-def _case(
-    result: CaseResult, anchor: str, info: RunInfo, plane: Plane | None, cutaway: Cutaway | None
-) -> CaseView:
+def _case(result: CaseResult, anchor: str, info: RunInfo, plane: Plane | None) -> CaseView:
     style = OUTCOMES[result.outcome]
     bad = [item for item in result.verdicts if item[1].outcome is not Outcome.AGREES]
     broken = [one for one in result.invariants if one.outcome is not Outcome.AGREES]
@@ -250,7 +242,6 @@ def _case(
         command=again(result.name, info.command),
         facts=_facts(result),
         sketch=sketch(result),
-        cutaway=cutaway,
         failures=tuple((source_label(s.source), s.failure) for s in result.sources if s.failure is not None),
         layers=layer_table(result),
         contact=contact_table(result),
@@ -270,12 +261,10 @@ def _case(
 
 
 def _line(result: CaseResult, line: str, anchor: str, file: str) -> LineView:
-    key = f"{anchor}-{slug(line)}"
     return LineView(
-        anchor=key,
+        anchor=f"{anchor}-{slug(line)}",
         title=f"Along the {line}" if line in ("surface", "axis") else line.capitalize(),
-        # Named in every figure many times over: short names for the identifiers within.
-        figures=line_figures(result, line, f"f{hashlib.blake2s(key.encode(), digest_size=5).hexdigest()}"),
+        figures=line_figures(result, line),
         csv=embedded(line_csv(result, line)),
         file=f"{file}-{slug(line)}.csv",
     )

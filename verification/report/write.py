@@ -9,7 +9,6 @@ from pathlib import Path
 from verification.credibility import accuracy as accuracy_study
 from verification.credibility.accuracy import AccuracyStudy
 from verification.regression.baseline import Regression, regression_json
-from verification.report.figures.cutaway import cutaways
 from verification.report.junit import junit_xml
 from verification.report.page import render
 from verification.report.tables.cells import Section
@@ -43,7 +42,7 @@ def write_report(
     texts = {
         "report.json": report_json(results, info, study, baseline),
         "junit.xml": junit_xml(results, info),
-        "report.html": render(results, info, study, extra, planes, baseline, cutaways(results, planes or {})),
+        "report.html": render(results, info, study, extra, planes, baseline),
     }
     folder.mkdir(parents=True, exist_ok=True)
     ready: dict[Path, Path] = {}

@@ -1,14 +1,15 @@
 """Records of the two numerical methods; each method is imported when it first solves."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 from functools import partial
 from typing import Any
 
 from verification.problem.contact import CoatedContact, PrescribedLoad, keywords
 from verification.problem.loading import LoadingCurve, Problem
-from verification.sources.source import Kind, NumericalParameter, Source, Style
+from verification.sources.source import Kind, NumericalParameter, Solver, Source, Style
 
-__all__ = ["METHOD_SOURCES"]
+__all__ = ["METHOD_SOURCES", "sharing_pressure"]
 
 # Element size on a loading curve, which needs many solves; it leaves 1e-7 of the approach.
 CURVE_SIZE = 0.28
@@ -42,6 +43,25 @@ def _elements(numerics: Mapping[str, Any], problem: CoatedContact | PrescribedLo
 
     solve = fem_reference.solve_prescribed if isinstance(problem, PrescribedLoad) else fem_reference.solve
     return solve(**keywords(problem), **numerics)
+
+
+def sharing_pressure(solve: Solver) -> Solver:
+    """``solve`` that does not solve anew a problem that differs from the last one in friction alone.
+
+    The pressure does not depend on friction (Goodman): ``with_friction`` of the last solution adds to its
+    fields those of the tangential traction. Solutions that lack it are solved each time.
+    """
+    last: list[tuple[CoatedContact, dict[str, Any], Any]] = []
+
+    def shared(problem: CoatedContact, numerics: Mapping[str, Any]) -> Any:
+        for known, given, solution in last:
+            same = replace(known, friction=problem.friction) == problem and given == numerics
+            if same and hasattr(type(solution), "with_friction"):
+                return solution.with_friction(problem.friction)
+        last[:] = [(problem, dict(numerics), solve(problem, numerics))]
+        return last[0][2]
+
+    return shared
 
 
 def _wider(times: float, patches: int = 129) -> tuple[str, Mapping[str, Any], float]:

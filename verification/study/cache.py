@@ -26,6 +26,8 @@ _SEARCH = (
     "verification.study.planes",
     "verification.study.point",
     "verification.problem",
+    "verification.sources.registry",
+    "verification.sources.source",
     "verification.sources.methods",
     "verification.sources.exact",
     "verification.sources.limits",

@@ -1,9 +1,5 @@
-"""Error of formulas against the exact solution: effective moduli, thin and thick limits, a family of moduli.
+"""Error of formulas against the exact solution: effective moduli, limits of thickness, a family of moduli."""
 
-python -m verification.study.formulas RESULT.json
-"""
-
-import sys
 import time
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -218,7 +214,7 @@ def _rows(table: Array) -> Rows:
 def task(folder: Path) -> Task[EffectiveStudy]:
     """The study as a task beside the cases of a run."""
     path = folder / "effective-modulus.json"
-    command = ("verification.study.formulas", str(path))
+    command = ("verification.study.formulas:main", str(path))
     return Task("effective moduli", command, path, from_json, _failed)
 
 
@@ -241,7 +237,3 @@ def from_json(data: dict[str, Any]) -> EffectiveStudy:
 def main(path: str) -> None:
     """Measure and store at ``path``."""
     write_checked(Path(path), to_json(measure()))
-
-
-if __name__ == "__main__":
-    main(*sys.argv[1:])

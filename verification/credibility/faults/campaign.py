@@ -1,9 +1,5 @@
-"""All trials of a run of ``coatcheck faults``: the clean cases they need, then one process for each fault.
+"""All trials of a run of ``coatcheck faults``: the clean cases they need, then one process for each fault."""
 
-python -m verification.credibility.faults.campaign FAULT CLEAN_FOLDER TRIAL.json
-"""
-
-import sys
 import time
 from collections.abc import Sequence
 from dataclasses import replace
@@ -65,7 +61,12 @@ def failed_source(clean: Sequence[CaseResult]) -> str:
 def trial_task(fault: Fault, output: Path) -> Task[Trial]:
     """The trial of ``fault`` in a process of its own."""
     path = _path(fault, output)
-    words = ("verification.credibility.faults.campaign", fault.name, str(clean_folder(output)), str(path))
+    words = (
+        "verification.credibility.faults.campaign:main",
+        fault.name,
+        str(clean_folder(output)),
+        str(path),
+    )
     return Task(fault.name, words, path, _trial, partial(_failed, fault))
 
 
@@ -120,9 +121,5 @@ def main(name: str, clean: str, path: str) -> None:
     made_by = fingerprint()  # before anything is planted
     fault = (FAULTS | CONTROLS)[name]
     trial = try_fault(fault, Path(clean))
-    trial = replace(trial, seconds=time.process_time())  # with the imports
+    trial = replace(trial, seconds=time.process_time())  # of this process
     write_checked(Path(path), {"made_by": made_by, "fault": encode(fault), "trial": encode(trial)})
-
-
-if __name__ == "__main__":
-    main(*sys.argv[1:])

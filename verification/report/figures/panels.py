@@ -37,10 +37,10 @@ class LineFigures:
     caption: str
 
 
-def line_figures(result: CaseResult, line: str, key: str) -> LineFigures:
-    """Everything drawn about ``line``; ``key`` makes identifiers unique on the page."""
+def line_figures(result: CaseResult, line: str) -> LineFigures:
+    """Everything drawn about ``line``."""
     quantities = claimed_quantities(result, line)
-    panels = tuple(_panel(result, line, q, f"{key}-{number}") for number, q in enumerate(quantities))
+    panels = tuple(_panel(result, line, q) for q in quantities)
     sources = [s for s in sources_with_profiles(result) if any(p.source == s for p in _on(result, line))]
     pairs = list(dict.fromkeys(pair for q in quantities for pair in _pairs(result, line, q)))
     return LineFigures(
@@ -75,7 +75,7 @@ def _pairs(result: CaseResult, line: str, quantity: str) -> list[tuple[str, str]
     ]
 
 
-def _panel(result: CaseResult, line: str, quantity: str, key: str) -> Panel:
+def _panel(result: CaseResult, line: str, quantity: str) -> Panel:
     a_h, p_h = scale(result, "a_h"), scale(result, "p_h")
     curves = [
         Curve(profile.position / a_h, profile.value / p_h, source_style(profile.source))
@@ -100,7 +100,6 @@ def _panel(result: CaseResult, line: str, quantity: str, key: str) -> Panel:
     figure = draw(
         curves,
         differences,
-        key=key,
         label=f"{quantity} on {line} by every source, with differences",
         coordinate=f"{coordinate(line)} / a_h",
         cap=cap,

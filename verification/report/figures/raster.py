@@ -15,12 +15,12 @@ import contourpy
 import matplotlib as mpl
 import numpy as np
 from markupsafe import Markup
-from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 from PIL import Image
 from scipy.interpolate import PchipInterpolator
 
 from verification.problem.arrays import Array
+from verification.report.figures.plot import polyline, power_of_ten, round_ticks
 
 __all__ = ["Frame", "Scale", "coloured", "draw_field", "rasterised"]
 
@@ -30,7 +30,6 @@ WIDTH = 250.0  # of the raster
 PIXELS = 200  # along x
 COLOURS = 96
 NO_NUMBER = (128, 128, 128)
-CLOSE = 2.4  # units; points of a level line closer than this say nothing
 
 
 @dataclass(frozen=True)
@@ -50,8 +49,8 @@ class Scale:
         """Values with their labels."""
         if self.logarithmic:
             values = [float(v) for v in range(round(self.low), round(self.high) + 1)]
-            return [(v, f"1e{v:.0f}".replace("-", "−")) for v in values]
-        return [(v, _short(v)) for v in _round_values(self.low, self.high, 6)]
+            return [(v, power_of_ten(v)) for v in values]
+        return round_ticks(self.low, self.high, 6)
 
 
 @dataclass(frozen=True, eq=False)
@@ -155,20 +154,8 @@ def _level_lines(raster: Array, frame: Frame, scale: Scale) -> Markup:
             continue
         lines = contourpy.contour_generator(x, z[low:high], raster[low:high])
         for value, _ in scale.ticks:
-            path += [_path(np.asarray(line)) for line in lines.lines(value)]
+            path += [polyline(np.asarray(line)) for line in lines.lines(value)]
     return Markup('<path d="{}" class="level"/>').format("".join(path))
-
-
-def _path(points: Array) -> str:
-    kept = [points[0]]
-    for point in points[1:]:
-        if np.hypot(*(point - kept[-1])) >= CLOSE:
-            kept.append(point)
-    if len(kept) < 2:
-        return ""
-    whole = np.round(np.array(kept), 1)
-    steps = np.diff(whole, axis=0)
-    return f"M{whole[0, 0]:g} {whole[0, 1]:g}l" + " ".join(f"{dx:.1f} {dz:.1f}" for dx, dz in steps)
 
 
 def _solid(frame: Frame) -> Markup:
@@ -191,20 +178,20 @@ def _axes(frame: Frame) -> Markup:
             LEFT, TOP, WIDTH, frame.height, WIDTH
         )
     ]
-    for value in _round_values(-frame.half, frame.half, 5):
+    for value, text in round_ticks(-frame.half, frame.half, 5):
         at = LEFT + WIDTH / 2 + value * unit
         parts.append(Markup('<path d="M{0:.1f} {1:.1f}v3" class="s-muted"/>').format(at, bottom))
         parts.append(
             Markup('<text x="{:.1f}" y="{:.1f}" class="f-ink" text-anchor="middle">{}</text>').format(
-                at, bottom + 14, _short(value)
+                at, bottom + 14, text
             )
         )
-    for value in _round_values(0.0, frame.depth, 5):
+    for value, text in round_ticks(0.0, frame.depth, 5):
         at = TOP + value * unit
         parts.append(Markup('<path d="M{} {:.1f}h-3" class="s-muted"/>').format(LEFT, at))
         parts.append(
             Markup('<text x="{}" y="{:.1f}" class="f-ink" text-anchor="end">{}</text>').format(
-                LEFT - 5, at + 3.5, _short(value)
+                LEFT - 5, at + 3.5, text
             )
         )
     parts.append(
@@ -234,14 +221,3 @@ def _bar(frame: Frame, scale: Scale) -> Markup:
                 ).format(left + width, at, left + width + 5, at + 3.5, text)
             )
     return Markup("").join(parts)
-
-
-def _round_values(low: float, high: float, count: int) -> list[float]:
-    """At most about ``count`` round numbers from ``low`` to ``high``."""
-    values = MaxNLocator(nbins=count, steps=[1, 2, 5, 10]).tick_values(low, high)
-    reach = 1e-9 * (high - low)
-    return [float(v) for v in values if low - reach <= v <= high + reach]
-
-
-def _short(value: float) -> str:
-    return f"{0.0 if abs(value) < 1e-12 else value:.4g}".replace("-", "−")

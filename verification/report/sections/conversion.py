@@ -88,7 +88,6 @@ def _conversion_panels(groups: dict[tuple[str, int], list[ConversionError]]) -> 
             title,
             draw_loglog(
                 some,
-                key=f"conversion-{key}",
                 label=f"error of influence coefficients {title}, logarithmic",
                 coordinate=coordinate,
                 height=height,

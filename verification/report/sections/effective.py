@@ -1,14 +1,15 @@
 """The sections on what formulas are worth: effective moduli, limits, and moduli side by side."""
 
 from collections.abc import Sequence
-from math import log10
+from itertools import pairwise
+from math import ceil, floor, log10
 
 import numpy as np
 from markupsafe import Markup
 
 from verification.problem.arrays import Array
-from verification.report.figures.canvas import HEX, canvas, inline, look
 from verification.report.figures.panels import swatch
+from verification.report.figures.plot import Axes, drawing, power_of_ten
 from verification.report.sections.family import family_section
 from verification.report.tables.cells import Cell, Gallery, Panel, Part, Row, Section, Table
 from verification.report.tables.numbers import plain, scientific
@@ -20,6 +21,7 @@ __all__ = ["effective_sections"]
 
 
 WIDTH, HEIGHT = 320, 250
+BOX = (48.0, 5.0, 266.0, 207.5)  # left, top, width, height
 LEVELS = (0.01, 0.05, 0.1, 0.2, 0.5)
 # One shade more for each level passed; two colours for too stiff and too compliant.
 SHADES = (0.12, 0.26, 0.42, 0.6, 0.85)
@@ -45,11 +47,11 @@ def effective_sections(study: EffectiveStudy) -> list[Section]:
 def _map_part(study: EffectiveStudy) -> Part:
     exact = np.array(study.exact)
     panels, rows = [], []
-    for number, (name, table) in enumerate(study.formulas):
+    for name, table in study.formulas:
         error = np.array(table) / exact - 1
         high, low = float(error.max()), float(error.min())
         note = f"from {_percent(low)} to {_percent(high)}"
-        figure = _draw_map(study, error, f"effective-{number}", name)
+        figure = _draw_map(study, error, name)
         panels.append(Panel(name, figure, note, ""))
         rows.append(_formula_row(study, name, error))
     text = (
@@ -127,30 +129,28 @@ def _limit_parts(limits: Sequence[Limit]) -> list[Part]:
             "= pi M a^4/(4 R h) with the oedometric modulus M; a film squeezed out sideways where nu = "
             "1/2, S = 3 pi G a^4/(8 h^3) and W = pi G a^6/(32 R h^3). Johnson (1985, section 5.8), Jaffar "
             "(1989), Barber (2018). Near nu = 1/2 neither holds before a is many times h.",
-            "limit-thin",
         ),
         _limit_part(
             thick,
             "Thick coating, nu = 0.3: Hertz of the coating, kappa = 1, and with its first correction, "
             "kappa = 1/(1 + (2/pi) a int (M - 1) dk), M the compliance of the layers: what the interface "
             "adds when the contact is small.",
-            "limit-thick",
         ),
     ]
 
 
-def _limit_part(limits: Sequence[Limit], text: str, key: str) -> Part:
+def _limit_part(limits: Sequence[Limit], text: str) -> Part:
     panels = list(dict.fromkeys(limit.panel for limit in limits))
     names = list(dict.fromkeys(limit.name for limit in limits))
     styles = dict(zip(names, _CURVES, strict=False))
     drawn = [
         Panel(
             panel,
-            _draw_limit([one for one in limits if one.panel == panel], styles, f"{key}-{n}", panel),
+            _draw_limit([one for one in limits if one.panel == panel], styles, panel),
             "|exact over limit − 1|",
             "",
         )
-        for n, panel in enumerate(panels)
+        for panel in panels
     ]
     legend = [(swatch(styles[name]), name) for name in names]
     rows = [
@@ -167,60 +167,43 @@ def _limit_part(limits: Sequence[Limit], text: str, key: str) -> Part:
     return Part(text, [table], Gallery(legend, drawn, caption, _limit_csv(limits)))
 
 
-def _draw_map(study: EffectiveStudy, error: Array, key: str, name: str) -> Markup:
+def _draw_map(study: EffectiveStudy, error: Array, name: str) -> Markup:
     x, y = np.log10(study.thickness), np.log10(study.ratio)
-    with canvas(WIDTH, HEIGHT) as figure:
-        axes = figure.add_axes((0.13, 0.15, 0.85, 0.83))
-        for sign, colour in ((1, STIFF), (-1, SOFT)):
-            bounds = [*LEVELS, 1e9]
-            for level, above, shade in zip(bounds[:-1], bounds[1:], SHADES, strict=True):
-                if (sign * error > level).any():
-                    axes.contourf(
-                        x, y, sign * error, levels=[level, above], colors=[HEX[colour]], alpha=shade
-                    )
-        for level, style in ((0.1, "solid"), (-0.1, "solid")):
-            if error.min() < level < error.max():
-                lines = axes.contour(
-                    x, y, error, levels=[level], colors=[HEX["ink"]], linewidths=0.9, linestyles=style
-                )
-                axes.clabel(
-                    lines, fmt={level: _percent(level)}, fontsize=9, inline=False, colors=[HEX["ink"]]
-                )
-        look(axes)
-        axes.set_xticks([log10(v) for v in (0.1, 1, 10)], ["0.1", "1", "10"])
-        axes.set_yticks([-2, -1, 0, 1, 2], ["0.01", "0.1", "1", "10", "100"])
-        axes.set_xlim(x[0], x[-1])
-        axes.set_ylim(y[0], y[-1])
-        axes.set_xlabel("h / a", labelpad=1, color=HEX["ink"])
-        axes.text(0.015, 0.955, "E1/E2", transform=axes.transAxes, color=HEX["ink"], fontsize=10)
-        return inline(
-            figure, key=key, label=f"{name}: departure from the exact effective modulus over h/a and E1/E2"
-        )
+    axes = Axes(BOX, (x[0], x[-1]), (y[0], y[-1]))
+    for sign, colour in ((1, STIFF), (-1, SOFT)):
+        for (level, above), shade in zip(pairwise([*LEVELS, 1e9]), SHADES, strict=True):
+            if (sign * error > level).any():
+                axes.filled(x, y, sign * error, level, above, colour, shade)
+    for level in (0.1, -0.1):
+        if error.min() < level < error.max():
+            axes.contour(x, y, error, level, _percent(level))
+    axes.ticks(_decades(x[0], x[-1]), _decades(y[0], y[-1]), "h / a")
+    axes.text(x[0], y[-1], "E1/E2", by=(4, 13))
+    label = f"{name}: departure from the exact effective modulus over h/a and E1/E2"
+    return drawing(WIDTH, HEIGHT, label, axes)
 
 
-def _draw_limit(limits: Sequence[Limit], styles: dict[str, Style], key: str, label: str) -> Markup:
-    with canvas(WIDTH, HEIGHT) as figure:
-        axes = figure.add_axes((0.15, 0.15, 0.83, 0.83))
-        for limit in limits:
-            style = styles[limit.name]
-            options = {"dashes": style.dash} if style.dash else {}
-            axes.plot(
-                np.log10(limit.a_over_h),
-                np.log10(np.maximum(np.abs(limit.excess), 1e-12)),
-                color=HEX[style.colour],
-                linewidth=style.width,
-                **options,  # type: ignore[arg-type]
-            )
-        look(axes)
-        axes.margins(x=0.02, y=0.06)
-        for axis in (axes.xaxis, axes.yaxis):
-            low, high = axis.get_view_interval()
-            step = max(1, int(np.ceil((high - low) / 6)))
-            marks = np.arange(np.ceil(low), np.floor(high) + 1, step)
-            said = [f"{10.0**m:g}" if -3 < m < 4 else f"1e{m:.0f}".replace("-", "−") for m in marks]
-            axis.set_ticks(marks, said)
-        axes.set_xlabel("a / h", labelpad=1, color=HEX["ink"])
-        return inline(figure, key=key, label=f"{label}: departure of the limit from the exact answer")
+def _draw_limit(limits: Sequence[Limit], styles: dict[str, Style], label: str) -> Markup:
+    x = [np.log10(limit.a_over_h) for limit in limits]
+    y = [np.log10(np.maximum(np.abs(limit.excess), 1e-12)) for limit in limits]
+    (left, right), (low, high) = (_widened(np.concatenate(some), by) for some, by in ((x, 0.02), (y, 0.06)))
+    axes = Axes(BOX, (left, right), (low, high))
+    axes.ticks(_decades(left, right), _decades(low, high), "a / h")
+    for limit, along, excess in zip(limits, x, y, strict=True):
+        axes.line(along, excess, styles[limit.name])
+    return drawing(WIDTH, HEIGHT, f"{label}: departure of the limit from the exact answer", axes)
+
+
+def _widened(values: Array, share: float) -> tuple[float, float]:
+    margin = share * max(float(np.ptp(values)), 1e-9)
+    return float(values.min()) - margin, float(values.max()) + margin
+
+
+def _decades(low: float, high: float) -> list[tuple[float, str]]:
+    """Ticks at whole powers of ten between two exponents, seven of them at most."""
+    step = max(1, ceil((high - low) / 6))
+    exponents = range(ceil(low), floor(high) + 1, step)
+    return [(m, f"{10.0**m:g}" if -3 < m < 4 else power_of_ten(m)) for m in exponents]
 
 
 def _tint(colour: str, shade: float) -> Markup:

@@ -13,9 +13,8 @@ import numpy as np
 from markupsafe import Markup
 
 from verification.problem.quantity import QUANTITIES, SCALARS
-from verification.report.figures.canvas import HEX, canvas, inline, look
-from verification.report.figures.curves import HUGE
 from verification.report.figures.panels import swatch
+from verification.report.figures.plot import HUGE, Axes, drawing, round_ticks
 from verification.report.tables.cells import Cell, Gallery, Panel, Part, Row, Section, Table
 from verification.report.tables.csv import written
 from verification.report.tables.labels import source_label, source_style
@@ -27,6 +26,7 @@ from verification.sources.registry import CLOSED
 __all__ = ["family_section"]
 
 WIDTH, HEIGHT = 320, 260
+BOX = (48.0, 6.5, 265.6, 215.8)  # left, top, width, height
 SMALLEST = 3  # fewer than this many moduli are no family
 PANELS = (
     ("pressure", "surface"),
@@ -52,7 +52,7 @@ def family_section(results: Sequence[CaseResult]) -> Section | None:
     the uncoated solid standing for E1/E2 = 1.
     """
     parts = []
-    for number, ((thickness, friction, nu), members) in enumerate(sorted(_families(results).items())):
+    for (thickness, friction, nu), members in sorted(_families(results).items()):
         if len(members) < SMALLEST:
             continue
         ratios = ", ".join(plain(member.ratio, 3) for member in members)
@@ -61,7 +61,7 @@ def family_section(results: Sequence[CaseResult]) -> Section | None:
             f"One coating of h = {thickness:g} a_h, nu = {nu:g}, {sliding}, for E1/E2 = {ratios}: the "
             "configuration of O'Sullivan and King (1988), lengths over a_h, stresses over p_h."
         )
-        parts.append(Part(text, [_numbers(members)], _gallery(members, f"family-{number}")))
+        parts.append(Part(text, [_numbers(members)], _gallery(members)))
     return Section("family", "Pressure and stress against the coating's modulus", parts) if parts else None
 
 
@@ -87,7 +87,7 @@ def _families(results: Sequence[CaseResult]) -> dict[tuple[float, float, float],
     return {key: [members[ratio] for ratio in sorted(members)] for key, members in coated.items()}
 
 
-def _gallery(members: Sequence[Member], key: str) -> Gallery:
+def _gallery(members: Sequence[Member]) -> Gallery:
     shown = [
         (quantity, line)
         for quantity, line in PANELS
@@ -95,8 +95,8 @@ def _gallery(members: Sequence[Member], key: str) -> Gallery:
     ]
     panels = [
         Panel(f"{QUANTITIES[quantity].symbol} / p_h", figure, f"on {line}", "")
-        for n, (quantity, line) in enumerate(shown)
-        if (figure := _draw(members, quantity, line, f"{key}-{n}"))
+        for quantity, line in shown
+        if (figure := _draw(members, quantity, line))
     ]
     sources = dict.fromkeys(s for m in members for s in sources_with_profiles(m.result))
     legend = [(swatch(source_style(source)), source_label(source)) for source in sources]
@@ -144,40 +144,35 @@ def _numbers(members: Sequence[Member]) -> Table:
     )
 
 
-def _draw(members: Sequence[Member], quantity: str, line: str, key: str) -> Markup:
-    with canvas(WIDTH, HEIGHT) as figure:
-        axes = figure.add_axes((0.15, 0.145, 0.83, 0.83))
-        alone = len({p.source for m in members for p in m.result.profiles}) == 1
-        for member in members:
-            a_h, p_h = scale(member.result, "a_h"), scale(member.result, "p_h")
-            found = [p for p in member.result.profiles if (p.quantity, p.line) == (quantity, line)]
-            for profile in sorted(found, key=lambda p: -source_style(p.source).width):
-                style = source_style(profile.source)
-                if alone:
-                    # The broad road of the exact curve is for others to drive on.
-                    style = replace(style, width=1.6, opacity=1.0)
-                x, y = profile.position / a_h, profile.value / p_h
-                drawn = np.where(np.abs(y) < HUGE, y, np.nan)
-                options = {"dashes": style.dash} if style.dash else {}
-                axes.plot(
-                    x,
-                    drawn,
-                    color=HEX[style.colour],
-                    linewidth=style.width,
-                    alpha=style.opacity,
-                    **options,  # type: ignore[arg-type]
-                )
-            if found and np.isfinite(drawn).any():
-                at = int(np.nanargmax(np.abs(drawn)))
-                axes.annotate(
-                    plain(member.ratio, 3),
-                    (x[at], drawn[at]),
-                    xytext=(4, 3),
-                    textcoords="offset points",
-                    color=HEX["ink"],
-                    fontsize=10,
-                )
-        axes.margins(x=0.0, y=0.09)
-        look(axes)
-        axes.set_xlabel(f"{coordinate(line)} / a_h", labelpad=1, color=HEX["ink"])
-        return inline(figure, key=key, label=f"{quantity} on {line} for every E1/E2")
+def _draw(members: Sequence[Member], quantity: str, line: str) -> Markup:
+    """Every curve of ``quantity`` on ``line``, at its largest magnitude its E1/E2."""
+    alone = len({p.source for m in members for p in m.result.profiles}) == 1
+    curves, texts = [], []
+    for member in members:
+        a_h, p_h = scale(member.result, "a_h"), scale(member.result, "p_h")
+        found = [p for p in member.result.profiles if (p.quantity, p.line) == (quantity, line)]
+        for profile in sorted(found, key=lambda p: -source_style(p.source).width):
+            style = source_style(profile.source)
+            if alone:
+                # The broad pale line of the exact curve lies below others; alone it is an ordinary line.
+                style = replace(style, width=1.6, opacity=1.0)
+            x, y = profile.position / a_h, profile.value / p_h
+            curves.append((x, np.where(np.abs(y) < HUGE, y, np.nan), style))
+        if found and np.isfinite(curves[-1][1]).any():
+            x, y, _ = curves[-1]
+            at = int(np.nanargmax(np.abs(y)))
+            texts.append((x[at], y[at], plain(member.ratio, 3)))
+    values = np.concatenate([y[np.isfinite(y)] for _, y, _ in curves] or [np.zeros(0)])
+    places = np.concatenate([x[np.abs(x) < HUGE] for x, _, _ in curves] or [np.zeros(0)])
+    low, high = (
+        (float(values.min()), float(values.max())) if values.size and np.ptp(values) > 0 else (-1.0, 1.0)
+    )
+    span = (float(places.min()), float(places.max())) if places.size and np.ptp(places) > 0 else (0.0, 1.0)
+    margin = 0.09 * (high - low)
+    axes = Axes(BOX, span, (low - margin, high + margin))
+    axes.ticks(round_ticks(*span, 6), round_ticks(low, high, 6), f"{coordinate(line)} / a_h")
+    for x, y, style in curves:
+        axes.line(x, y, style)
+    for x, y, text in texts:
+        axes.text(x, y, text)
+    return drawing(WIDTH, HEIGHT, f"{quantity} on {line} for every E1/E2", axes)

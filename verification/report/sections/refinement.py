@@ -17,7 +17,7 @@ from verification.sources.source import Style
 __all__ = ["convergence_sections"]
 
 _SCALARS = [QUANTITY[name] for name in SCALARS]
-_TITLES = {q.symbol: q.name.replace("_", " ") for q in _SCALARS} | {
+_TITLES = {q.symbol: q.symbol for q in _SCALARS} | {
     "pressure": "pressure, L2 over the contact",
     "stress": "stress, axis and interfaces",
 }
@@ -178,7 +178,6 @@ def _ladder_gallery(
             f"{_TITLES[q]}",
             draw_loglog(
                 some,
-                key=f"convergence-{key}-{q}",
                 label=f"error of {_TITLES[q]} over {coordinate}, logarithmic",
                 coordinate=coordinate,
                 height=height,

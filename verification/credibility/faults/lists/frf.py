@@ -70,7 +70,9 @@ FAULTS = (
         "anti_plane_dropped",
         "friction leaves the anti-plane part out",
         ("sigma_xz", "sigma_yy", "sigma_xx"),
-        Edit("semianalytic.pointload:stress_below", 'A, B = response("anti-plane")', "A, B = 0 * Lz, 0 * Lz"),
+        Edit(
+            "semianalytic.point_force:stress_below", 'A, B = response("anti-plane")', "A, B = 0 * Lz, 0 * Lz"
+        ),
     ),
     fault(
         "upward_shift_sign",

@@ -7,6 +7,7 @@ __all__ = ["FAULTS"]
 SOLID = ("01_uncoated_steel", "14_ratio_4_sliding")
 FILMS = ("15_dlc_chromium_sliding",)
 fault = faults_of("material", "semianalytic", SOLID)
+fault = faults_of("material", "semianalytic", SOLID)
 
 FAULTS = (
     fault(

@@ -1,0 +1,196 @@
+"""The credibility page: every figure computed or from a record, what is missing said, imports really read."""
+
+from dataclasses import replace
+
+import pytest
+from synthetic_results import INFO, STEEL, contact, result_of
+from synthetic_study import study
+
+from verification.credibility import alarms
+from verification.credibility.alarms import counted
+from verification.credibility.faults import campaign
+from verification.credibility.faults.record import Catch, Record, Row, write_record
+from verification.credibility.independence import PARTS, imports_of, parts, shared
+from verification.regression.baseline import regression
+from verification.report.credibility.evidence import Evidence, gather
+from verification.report.credibility.section import credibility_section, figures
+from verification.report.page import render
+from verification.report.tables.cells import Part, Section
+from verification.running.result import CaseResult
+
+E, NU = STEEL
+RESULTS = [
+    result_of(contact(), name="bare", points=33),
+    result_of(contact((2 * E, NU, 1.0), (4 * E, 0.2, 0.5)), name="two", points=33),
+]
+STEPS = (
+    "1. Intended use and limits",
+    "2. Code verification",
+    "3. Solution verification",
+    "4. Comparison with references and between methods",
+    "5. Independence of the two methods",
+    "6. Fault detection",
+    "7. False alarms",
+    "8. What is not claimed",
+)
+
+
+@pytest.fixture(scope="module")
+def evidence(tmp_path_factory) -> Evidence:
+    return gather(tmp_path_factory.mktemp("no_records"))
+
+
+def section(evidence: Evidence, results: list[CaseResult] = RESULTS, **more) -> Section:
+    return credibility_section(results, INFO, more.get("study"), evidence, more.get("baseline"))
+
+
+def part(found: Section, title: str) -> Part:
+    return next(p for p in found.parts if p.title == title)
+
+
+def said(found: Part) -> str:
+    cells = [c.text for t in found.tables for r in t.rows for c in (r.head, *r.cells)]
+    return " | ".join([found.text, *cells])
+
+
+def test_the_steps_stand_in_order(evidence):
+    found = section(evidence)
+    assert tuple(p.title for p in found.parts if p.title) == STEPS
+    assert found.failures == ()
+
+
+def test_what_was_never_measured_is_said_and_not_invented(evidence):
+    found = section(evidence)
+    assert part(found, STEPS[5]).text.startswith("Not measured")
+    assert part(found, STEPS[6]).text.startswith("Not measured")
+    glance = {row.head.text: [c.text for c in row.cells] for row in found.parts[0].tables[0].rows}
+    assert glance["Fault detection"] == ["not measured", "never"]
+    assert glance["False alarms"] == ["not measured", "never"]
+    assert glance["Regression"][0] == "not measured"
+    assert glance["Code verification"][0].endswith("not measured in this run")
+    empty = section(Evidence(failures=("the source is not here",)), [])
+    assert empty.failures == ("the source is not here",)
+    told = {row.head.text: row.cells[0].text for row in empty.parts[0].tables[0].rows}
+    assert told["Independence"] == "not measured"
+    assert told["Code verification"].startswith("not measured")
+    assert told["Solution verification"].startswith("not measured")
+    assert part(empty, STEPS[3]).text == "Nothing was compared in this run."
+
+
+def test_figures_of_a_record_carry_date_and_commit(evidence, tmp_path):
+    vague = result_of(contact((E / 2, NU, 1.0)), name="vague", points=33, errors={"semianalytic": 4e-3})
+    info = replace(INFO, started="2026-10-09T08:00:00+00:00", commit="c0ffee123456")
+    record = counted([RESULTS[0], vague], 1, info)
+    alarms.write_record(tmp_path, record)
+    known = gather(tmp_path)
+    assert known.alarms == record
+    text = said(part(section(known), STEPS[6]))
+    count = len(record.alarms)
+    assert count > 0
+    assert f"{count} false alarms in {record.comparisons} comparisons" in text
+    assert "1 of the problems agree throughout" in text
+    assert "Measured 2026-10-09, c0ffee123456" in text
+    assert record.alarms[0].reason in text
+    assert figures(known)[1] in text
+    glance = {row.head.text: [c.text for c in row.cells] for row in section(known).parts[0].tables[0].rows}
+    assert glance["False alarms"][1] == "2026-10-09, c0ffee123456"
+
+
+def test_the_fault_score_and_its_survivors_come_from_the_record(tmp_path):
+    def row(name: str, catch: Catch, **more: str) -> Row:
+        named = catch is Catch.DISAGREES
+        return Row(
+            name, "frf", f"{name} is wrong", "semianalytic", catch, named, "", {}, 1.0, "", 2.0, (), **more
+        )
+
+    rows = [row(f"fault_{n}", Catch.DISAGREES) for n in range(19)]
+    rows.append(row("shy", Catch.SURVIVED, reason="no case sees it", remedy="a thicker film would"))
+    record = Record(
+        tuple(rows), (), "2026-10-09T08:00:00+00:00", 60.0, 90.0, "c0ffee123456", "m", dict(INFO.versions)
+    )
+    write_record(tmp_path / campaign.RECORD, record)
+    found = gather(tmp_path)
+    assert found.failures == ()
+    text = said(part(section(found), STEPS[5]))
+    assert "19 of 20 planted faults are caught, 95 %; 19 of them by the comparison named beforehand" in text
+    assert "Measured 2026-10-09, c0ffee123456" in text
+    for words in ("shy is wrong", "no case sees it", "a thicker film would"):
+        assert words in text
+
+
+def test_a_damaged_record_is_named_and_its_figure_is_not_measured(tmp_path):
+    (tmp_path / "alarms.json").write_text("{")
+    found = section(gather(tmp_path))
+    assert any("alarms.json" in sentence for sentence in found.failures)
+    assert part(found, STEPS[6]).text.startswith("Not measured")
+
+
+def test_figures_of_this_run_follow_its_results(evidence):
+    good = section(evidence, study=study())
+    total = sum(len(r.verdicts) for r in RESULTS)
+    assert f"{total} of {total} comparisons of this run agree" in part(good, STEPS[3]).text
+    assert "100 %" in part(good, STEPS[2]).text
+    bold = result_of(
+        contact((4 * E, NU, 1.0)), points=33, errors={"semianalytic": 2e-3}, stated={"semianalytic": 0.7}
+    )
+    bad = section(evidence, [*RESULTS, bold])
+    assert f"{total} of {total + len(bold.verdicts)}" not in part(bad, STEPS[3]).text
+    assert "100 %" not in part(bad, STEPS[2]).text
+    ranges = said(part(good, STEPS[0]))
+    assert "2 to 4" in ranges  # E1/E2
+    assert "0.5 to 1" in ranges  # h/a_h
+    ladders = said(part(good, STEPS[1]))
+    assert "finite elements" in ladders
+    assert "order 4" in ladders
+
+
+def test_regression_has_its_row(evidence):
+    none = section(evidence, baseline=regression(RESULTS, None, "somewhere", INFO, whole=True))
+    glance = {row.head.text: row.cells[0].text for row in none.parts[0].tables[0].rows}
+    assert glance["Regression"] == "There is no baseline in somewhere, so this run was held against none."
+
+
+def test_the_methods_share_numpy_and_none_of_scipy():
+    found = {one.name: one for one in parts()}
+    assert tuple(found) == tuple(PARTS)
+    for one in found.values():
+        assert (one.forbidden, one.hidden) == ((), ())
+        assert one.statements > one.files > 5
+    first, second = found["semianalytic"], found["fem_reference"]
+    assert "numpy" in shared(first, second)
+    assert set(first.packages) & set(second.packages) == {"numpy", "scipy"}
+    assert "skfem" in second.packages
+    assert "skfem" not in first.packages
+
+
+def test_an_import_across_the_border_is_found(tmp_path, monkeypatch):
+    package = tmp_path / "borderless"
+    (package / "deep").mkdir(parents=True)
+    (package / "__init__.py").write_text("import os\nimport numpy as np\nfrom scipy import special, linalg\n")
+    (package / "deep" / "__init__.py").write_text("")
+    (package / "deep" / "a.py").write_text(
+        "def f():\n    from fem_reference.mesh import build\n    import borderless.deep\n"
+        "    import importlib\n    return importlib.import_module('semi' + 'analytic'), build\n"
+    )
+    monkeypatch.syspath_prepend(str(tmp_path))
+    found = imports_of("borderless", ("fem_reference",))
+    assert found.files == 3
+    assert found.modules == ("fem_reference.mesh", "numpy", "scipy.linalg", "scipy.special")
+    assert found.forbidden == ("borderless/deep/a.py imports fem_reference.mesh",)
+    assert found.hidden == ("borderless/deep/a.py calls importlib.import_module",)
+    with pytest.raises(ValueError, match="no_such_package"):
+        imports_of("no_such_package")
+    broken = section(Evidence(parts=(found, found)))
+    assert "2 imports break the contract" not in said(part(broken, STEPS[4]))
+    assert "4 imports break the contract" in said(part(broken, STEPS[4]))
+
+
+def test_the_page_takes_the_section_and_escapes_it(evidence, tmp_path):
+    bad = result_of(contact((E / 2, NU, 1.0)), name="vague", points=9, errors={"semianalytic": 4e-3})
+    alarms.write_record(tmp_path, counted([replace(bad, title="<script>alert(1)</script>")], 1, INFO))
+    text = render(RESULTS[:1], INFO, extra=[section(gather(tmp_path))])
+    assert '<section class="run" id="credibility">' in text
+    for title in STEPS:
+        assert f"<h3>{title}</h3>" in text
+    assert "&lt;script&gt;alert(1)" in text
+    assert "<script>alert(1)" not in text

@@ -1,0 +1,103 @@
+"""Pictures of the stresses below the contact: true to the plane, drawn whatever its numbers."""
+
+import base64
+import gzip
+
+import matplotlib as mpl
+import numpy as np
+import pytest
+from synthetic_results import INFO, STEEL, contact, result_of
+
+from verification.report.figures.fields import pictures
+from verification.report.figures.raster import Frame, Scale, coloured, rasterised
+from verification.report.page import render
+from verification.sampling.plane import Plane, sample_plane
+from verification.sources.references.hertz import Hertz
+
+HERTZ = Hertz(10e-3, 20.0, *STEEL)
+RESULT = result_of(contact(), name="bare", points=31)
+
+
+@pytest.fixture(scope="module")
+def plane() -> Plane:
+    found = sample_plane((), {"fem_reference": HERTZ})
+    sigma = found.stress["fem_reference"][0]
+    both = {"semianalytic": (sigma + 1e-5 * HERTZ.peak_pressure,), "fem_reference": (sigma,)}
+    return Plane(found.x, found.depths, found.radius, both, {})
+
+
+def test_a_raster_keeps_the_values_and_the_jump():
+    x, depths = np.linspace(-1, 1, 41), (np.linspace(0, 0.5, 6), np.linspace(0.5, 1, 6))
+    frame = Frame(1.0, 1.0, (0.5,), 0.7)
+    raster = rasterised(x, depths, [np.add.outer(depths[0], x), 10 + np.add.outer(depths[1], x)], frame)
+    rows = (np.arange(frame.rows) + 0.5) / frame.rows
+    columns = 2 * (np.arange(raster.shape[1]) + 0.5) / raster.shape[1] - 1
+    expected = np.add.outer(rows, columns) + np.where(rows > 0.5, 10.0, 0.0)[:, None]
+    np.testing.assert_allclose(raster, expected, atol=1e-9)
+
+
+def test_colours_are_those_of_the_scale_and_nan_is_grey():
+    scale = Scale(-1.0, 1.0, "RdBu_r")
+    pixels = coloured(np.array([[-1.0, 1.0, np.nan, 5.0]]), scale)
+    ends = [np.round(255 * np.array(mpl.colormaps["RdBu_r"](v)[:3])) for v in (0.005, 0.995)]
+    assert np.abs(pixels[0, 0] - ends[0]).max() <= 2
+    assert np.abs(pixels[0, 1] - ends[1]).max() <= 2
+    assert pixels[0, 2].tolist() == [128, 128, 128]
+    assert pixels[0, 3].tolist() == pixels[0, 1].tolist()
+
+
+def test_both_methods_stand_side_by_side_with_their_difference(plane):
+    found = pictures(RESULT, plane)
+    assert found is not None
+    assert found.across == 3
+    titles = [panel.title for panel in found.panels]
+    assert titles[:3] == [
+        "von Mises / p_h, semi-analytical",
+        "von Mises / p_h, finite elements",
+        "|difference| of von Mises / p_h",
+    ]
+    assert [t.split(" /")[0] for t in titles[3::3]] == ["sigma_xx", "sigma_xz"]
+    # One scale for both methods: their labels at the bar are the same.
+    ticks = [str(panel.figure).rsplit("<image", 1)[1] for panel in found.panels[3:5]]
+    assert ticks[0] == ticks[1]
+    assert "largest 1.0e-5" in found.panels[5].note
+    assert 'class="s-cap"' in found.panels[0].figure
+
+
+def test_the_numbers_behind_are_those_of_the_plane(plane):
+    found = pictures(RESULT, plane)
+    rows = gzip.decompress(base64.b64decode(found.csv.partition(",")[2])).decode().splitlines()
+    heads = rows[0].split(",")
+    assert heads[:3] == ["layer", "x [m]", "z [m]"]
+    table = np.array([[float(v) for v in row.split(",")] for row in rows[1:]])
+    column = heads.index("sigma_xx [Pa] fem_reference")
+    sigma_xx = plane.stress["fem_reference"][0][0]
+    row = np.searchsorted(plane.depths[0], table[:, 2] * (1 - 1e-4))
+    place = np.abs(plane.x - table[:, 1, None]).argmin(axis=1)
+    np.testing.assert_allclose(table[:, column], sigma_xx[row, place], rtol=1e-5)
+    assert len(table) > 300
+
+
+@pytest.mark.parametrize("bad", [np.nan, np.inf])
+def test_a_field_that_is_not_finite_still_gives_a_page(plane, bad):
+    sigma = plane.stress["fem_reference"][0].copy()
+    sigma[:, 3, 3] = bad
+    spoiled = Plane(plane.x, plane.depths, plane.radius, {**plane.stress, "fem_reference": (sigma,)}, {})
+    text = render([RESULT], INFO, planes={"bare": spoiled})
+    assert 'class="figure field"' in text
+
+
+def test_a_method_without_a_picture_is_said_and_no_plane_is_no_picture(plane):
+    alone = Plane(
+        plane.x,
+        plane.depths,
+        plane.radius,
+        {"fem_reference": plane.stress["fem_reference"]},
+        {"semianalytic": "no <b>"},
+    )
+    found = pictures(RESULT, alone)
+    assert found.across == 1
+    text = render([RESULT], INFO, planes={"bare": alone})
+    assert "No picture by semi-analytical:</strong> no &lt;b&gt;" in text
+    assert pictures(RESULT, None) is None
+    assert pictures(RESULT, Plane(np.zeros(0), (), 0.0, {}, {})) is None

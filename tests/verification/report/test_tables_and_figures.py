@@ -1,0 +1,282 @@
+"""Numbers, tables and figures of the report show what the results hold."""
+
+import csv
+import io
+import re
+from math import inf, nan
+
+import numpy as np
+import pytest
+from markupsafe import Markup
+from synthetic_results import STEEL, contact, result_of
+
+from verification.judging.verdict import Outcome
+from verification.report.figures import panels
+from verification.report.figures.curves import FLOOR, Curve, Difference, draw
+from verification.report.figures.panels import line_figures
+from verification.report.figures.plot import Axes, drawing, polyline
+from verification.report.sections.accuracy import accuracies, accuracy_sentence
+from verification.report.tables.case import budget_table, contact_table, verdict_table
+from verification.report.tables.csv import embedded, line_csv
+from verification.report.tables.labels import OUTCOMES, pair_style, source_style
+from verification.report.tables.lookup import baseline, contact_radius, difference, judged
+from verification.report.tables.matrix import verdict_matrix
+from verification.report.tables.numbers import engineering, scientific, seconds, with_uncertainty
+
+COATED = contact((2 * STEEL[0], 0.3, 1.0))
+
+
+@pytest.mark.parametrize(
+    ("value", "unit", "shown"),
+    [
+        (4.2e11, "Pa", "420 GPa"),
+        (1e-3, "m", "1 mm"),
+        (86.6239e-6, "m", "86.62 µm"),
+        (999.96e-9, "m", "1000 nm"),
+        (-2.5e6, "Pa", "−2.5 MPa"),
+        (0.0, "N", "0 N"),
+        (nan, "Pa", "nan Pa"),
+        (5e-20, "m", "5e-05 fm"),
+    ],
+)
+def test_engineering_prefix(value, unit, shown):
+    assert engineering(value, unit) == shown
+
+
+@pytest.mark.parametrize(
+    ("value", "spread", "shown"),
+    [
+        (1.2726114e9, 4.8e5, "1.27261 ± 0.00048 GPa"),
+        (1.2726114e9, 1.234e8, "1.27 ± 0.12 GPa"),
+        (1.2726114e9, 2e10, "1 ± 20 GPa"),
+        (1.2726114e9, None, "1.27261 GPa"),
+        (1.2726114e9, 0.0, "1.2726114 GPa"),
+        (1.2726114e9, 3.2e-1, "1.27261140 ± 3.2e-10 GPa"),
+        (1.2726114e9, nan, "1.27261 GPa ± nan Pa"),
+        (1.2726114e9, -2.0, "1.27261 GPa ± -2 Pa"),
+        (1.2726114e9, 1e300, "1.27261 GPa ± 1e+300 Pa"),
+        (inf, 1.0, "not finite"),
+    ],
+)
+def test_a_value_ends_where_its_uncertainty_ends(value, spread, shown):
+    assert with_uncertainty(value, spread, "Pa") == shown
+
+
+def test_fractions_and_times_are_short():
+    assert scientific(3.14e-5) == "3.1e-5"
+    assert scientific(-3.14e-5, sign=True) == "−3.1e-5"
+    assert scientific(3.14e-5, sign=True) == "+3.1e-5"
+    assert [scientific(x) for x in (None, nan, 0.0)] == ["–", "not finite", "0"]
+    assert [seconds(x) for x in (0.4321, 12.34, 125.0, None)] == ["0.43 s", "12.3 s", "2 min 05 s", "–"]
+
+
+def test_the_best_reference_is_the_last_exact_one_that_gave_a_result():
+    assert baseline(result_of(contact(), points=11)) == "hertz"
+    assert baseline(result_of(COATED, points=11)) == "integral_equation"
+    assert baseline(result_of(COATED, failures={"integral_equation": "no"}, points=11)) == "fem_reference"
+    everything = dict.fromkeys(("semianalytic", "fem_reference", "integral_equation"), "no")
+    assert baseline(result_of(COATED, failures=everything, points=11)) is None
+
+
+def test_the_worst_verdict_of_a_group_decides_its_cell():
+    result = result_of(COATED, spoil={("sigma_yy", "surface", "fem_reference"): 9 * COATED.p_h}, points=31)
+    (row,) = verdict_matrix([result], {0: "case-x"}).rows
+    cells = {(cell.css.split()[1], cell.text[0], cell.href) for cell in row.cells if "verdict" in cell.css}
+    assert ("disagrees", "D", "#case-x-surface") in cells
+    assert row.cells[0].text.startswith("D")
+    wrong = [cell for cell in row.cells[1:] if cell.text[0] == "D"]
+    assert len(wrong) == 2  # against the other method, against the reference
+    assert all(cell.sort == pytest.approx(9, abs=1) and "sigma_yy on surface" in cell.note for cell in wrong)
+
+
+def test_every_outcome_differs_without_colour():
+    assert len({style.letter for style in OUTCOMES.values()}) == len({s.mark for s in OUTCOMES.values()}) == 4
+    sources = ("semianalytic", "fem_reference", "integral_equation", "hertz", "another")
+    assert len({(source_style(s).dash, source_style(s).width) for s in sources}) == len(sources)
+    pairs = [("semianalytic", "fem_reference"), ("semianalytic", "hertz"), ("fem_reference", "hertz")]
+    assert len({pair_style(pair).dash for pair in pairs}) == len(pairs)
+
+
+def test_contact_table_states_the_true_difference():
+    result = result_of(COATED, points=11)
+    table = contact_table(result)
+    row = next(row for row in table.rows if row.head.text == "semi-analytical")
+    theirs = result.profile("peak_pressure", "contact", "integral_equation").value[0]
+    ours = result.profile("peak_pressure", "contact", "semianalytic").value[0]
+    assert row.cells[0].sort == ours
+    assert row.cells[2].sort == pytest.approx(abs(ours / theirs - 1), rel=1e-12)
+    assert "±" in row.cells[0].text
+
+
+def test_failing_verdicts_lead_their_table():
+    result = result_of(COATED, errors={"semianalytic": 2e-3}, stated={"semianalytic": 0.7}, points=31)
+    table = verdict_table(result.verdicts, result.problem["a_h"])
+    ranks = [row.head.sort for row in table.rows]
+    assert ranks == sorted(ranks)
+    assert ranks[0] == OUTCOMES[Outcome.DISAGREES].rank < ranks[-1]
+    assert len(table.rows) == len(result.verdicts)
+
+
+def test_the_budget_names_the_knob_that_dominates():
+    table = budget_table(result_of(COATED, points=11))
+    dominating = [row.cells[1].text for row in table.rows if row.cells[4].text]
+    assert len(dominating) == 6
+    assert set(dominating) == {"patch or element size"}
+
+
+def test_accuracy_tells_an_honest_estimate_from_a_vain_one():
+    honest = result_of(COATED, points=31)
+    # A method that states a fifth of its error cannot be honest about the largest one.
+    vain = result_of(COATED, stated={"fem_reference": 0.2}, points=31)
+    silent = result_of(COATED, stated={"fem_reference": None}, points=31)
+    assert all(item.brackets for item in accuracies(honest))
+    fem = [item for item in accuracies(vain) if item.source == "fem_reference" and item.line != "contact"]
+    assert fem
+    assert not any(item.brackets for item in fem)
+    assert all(item.css == "disagrees" for item in fem)
+    assert "(100.0 %)" in accuracy_sentence([honest], "fem_reference")
+    assert "none is stated" in accuracy_sentence([silent], "fem_reference")
+
+
+def test_accuracy_is_the_largest_error_outside_the_zone_around_the_edge():
+    a = COATED.a_h
+    result = result_of(COATED, points=201)
+    claim = next(c for c, _ in result.verdicts if c.line == "surface")
+    x = np.array([-1.051, -1.049, -0.951, -0.949, 0, 0.949, 0.951, 1.049, 1.051]) * a
+    here = judged(result, claim, x)
+    assert contact_radius(result) == pytest.approx(a, rel=1e-9)
+    assert here.tolist() == [True, False, False, True, True, True, False, False, True]
+    item = next(i for i in accuracies(result) if (i.source, i.quantity) == ("semianalytic", "pressure"))
+    mine, exact = (result.profile("pressure", "surface", s) for s in ("semianalytic", "integral_equation"))
+    error = np.abs(mine.value - exact.value) / COATED.p_h
+    assert item.error == error[judged(result, claim, mine.position)].max()
+
+
+def test_nothing_is_subtracted_at_different_positions():
+    few, many = result_of(COATED, points=11), result_of(COATED, points=21)
+    first = few.profile("pressure", "surface", "semianalytic")
+    assert difference(few, first, many.profile("pressure", "surface", "hertz")) is None
+    assert difference(few, first, many.profile("pressure", "surface", "semianalytic")) is None
+    gap, spread = difference(few, first, first)
+    assert gap.max() == 0 < spread.min()
+
+
+def test_csv_holds_every_number_behind_a_figure():
+    result = result_of(COATED, points=31)
+    rows = list(csv.reader(io.StringIO(line_csv(result, "interface 1, upper side"))))
+    head, body = rows[0], rows[1:]
+    assert len(body) == 31
+    assert head[0] == "x [m]"
+    assert len(head) == 1 + 2 * 4 * 3
+    for profile in result.profiles:
+        if profile.line == "interface 1, upper side":
+            column = head.index(f"{profile.quantity} [Pa] {profile.source}")
+            values = np.array([float(row[column]) for row in body])
+            assert values == pytest.approx(profile.value, rel=1e-7)
+            spread = np.array([float(row[column + 1]) for row in body])
+            assert spread == pytest.approx(profile.uncertainty, rel=1e-2)
+
+
+def test_embedded_numbers_do_not_change_from_run_to_run():
+    assert embedded("a,b\n1,2\n") == embedded("a,b\n1,2\n")
+
+
+def figure(value, uncertainty=None, **more):
+    x = np.linspace(-2, 2, np.size(value))
+    curve = Curve(x, value, source_style("semianalytic"))
+    gap = Difference(x, np.abs(value), uncertainty, pair_style(("semianalytic", "fem_reference")))
+    return str(draw([curve], [gap], label="p", coordinate="x / a_h", **more))
+
+
+@pytest.mark.parametrize("bad", [nan, inf])
+def test_a_figure_of_bad_numbers_is_still_a_figure(bad):
+    values = np.full(60, bad)
+    for value in (values, np.where(np.arange(60) == 30, bad, 0.5), np.zeros(60), np.empty(0)):
+        assert figure(value).startswith('<svg class="figure"')
+
+
+def test_a_figure_tells_its_curve_to_a_tenth_of_a_unit():
+    text = figure(np.linspace(0, 1, 60))
+    line = next(part for part in text.split("<path")[1:] if "s-semi" in part)
+    (path,) = re.findall(r'd="M([^"l]*)l([^"]*)"', line)
+    start, steps = ([float(n) for n in re.findall(r"-?[0-9]*\.?[0-9]+", part)] for part in path)
+    # The frame is 0.835 of 320 units wide and 0.495 of 300 high, six percent of the range above and below.
+    margin = 0.06 / 1.12 * 0.495 * 300
+    assert start == pytest.approx([48, 300 * (1 - 0.485) - margin], abs=0.1)
+    assert sum(steps[0::2]) == pytest.approx(0.835 * 320, abs=0.15)
+    assert sum(steps[1::2]) == pytest.approx(-0.495 * 300 / 1.12, abs=0.15)
+
+
+def test_differences_below_the_floor_are_drawn_on_it():
+    text = figure(np.full(60, 1e-12))
+    pair = [part for part in text.split("<path")[1:] if "s-pair" in part]
+    height = float(pair[-1].split('d="M')[1].split("l")[0].split()[1])
+    assert height == pytest.approx(300 * (1 - 0.135), abs=0.1)
+    assert FLOOR == 1e-9
+
+
+def test_a_figure_has_no_identifier_and_its_curves_end_at_the_frame():
+    text = figure(np.linspace(0, 1, 60))
+    assert "id=" not in text
+    assert text.count('<svg x="48.0"') == 2
+
+
+def test_labels_are_text_not_markup():
+    axes = Axes((0, 0, 1, 1), (0, 1), (0, 1))
+    axes.text(0.5, 0.5, "<b>")
+    text = drawing(1, 1, '"><script>', axes)
+    assert "<script>" not in text
+    assert "<b>" not in text
+
+
+def test_a_simplified_curve_stays_within_a_tenth_of_a_unit_and_breaks_at_gaps():
+    x = np.linspace(0, 300, 400)
+    y = 100 * np.sin(x / 30)
+    y[200] = np.nan
+    first, second = polyline(np.stack([x, y], axis=1)).split("M")[1:]
+    assert len(first) < 700
+    for part, known in ((first, x < x[200]), (second, x > x[200])):
+        start, steps = (
+            [float(n) for n in re.findall(r"-?[0-9]*\.?[0-9]+", some)] for some in part.split("l")
+        )
+        points = np.cumsum([start, *np.reshape(steps, (-1, 2))], axis=0)
+        np.testing.assert_allclose(np.interp(x[known], *points.T), y[known], atol=0.4)
+        assert np.abs(points[:, 1] - 100 * np.sin(points[:, 0] / 30)).max() < 0.4
+
+
+def test_figures_are_drawn_in_the_scales_of_the_bare_substrate(monkeypatch):
+    drawn = []
+
+    def record(curves, differences, **more):
+        drawn.append((curves, differences, more))
+        return Markup("")
+
+    monkeypatch.setattr(panels, "draw", record)
+    result = result_of(COATED, errors={"semianalytic": 2e-3}, stated={"semianalytic": 0.7}, points=201)
+    line_figures(result, "surface")
+    curves, differences, more = drawn[0]
+    assert len(curves) == len(differences) == 3
+    for curve in curves:
+        assert (curve.position.min(), curve.position.max()) == pytest.approx((-2, 2), rel=1e-12)
+        assert curve.value.max() == pytest.approx(1, abs=5e-3)
+    ours, theirs = (result.profile("pressure", "surface", s) for s in ("semianalytic", "integral_equation"))
+    error = next(d for d in differences if d.style == pair_style(("semianalytic", "integral_equation")))
+    assert error.value == pytest.approx(np.abs(ours.value - theirs.value) / COATED.p_h, rel=1e-12)
+    assert error.uncertainty == pytest.approx(0.7 * 2e-3, rel=1e-3)
+    verdict = next(
+        v for c, v in result.verdicts if (c.quantity, c.between[1]) == ("pressure", "integral_equation")
+    )
+    assert error.worst == verdict.worst / COATED.a_h
+    assert more["cap"] == 5e-3
+    assert more["coordinate"] == "x / a_h"
+    assert np.array(more["unjudged"]) == pytest.approx(np.array([(-1.05, -0.95), (0.95, 1.05)]), rel=1e-6)
+
+
+def test_a_claimless_line_shows_what_was_sampled():
+    result = result_of(COATED, points=31)
+    assert [panel.title for panel in line_figures(result, "axis").panels] == [
+        "sigma_xx / p_h",
+        "sigma_zz / p_h",
+    ]
+    bare = type(result)(**{**vars(result), "verdicts": ()})
+    assert len(line_figures(bare, "axis").panels) == 4

@@ -1,0 +1,194 @@
+"""Meshes and boxes for ParaView: the stresses of the Solutions with names, units, case file and checksum."""
+
+import sys
+from pathlib import Path
+
+import meshio
+import numpy as np
+import pytest
+
+import fem_reference
+import semianalytic
+from verification.cases.contact import parse_case
+from verification.commands.view import _picture, view
+from verification.problem.quantity import STRESSES
+from verification.running.fields import read_fields, write_fields
+from verification.running.store import StoreError
+
+pv = pytest.importorskip("pyvista")
+
+CASE = b"""
+title = "One coating"
+[problem]
+radius = 10e-3
+load = 20
+friction = 0.3
+substrate = { E = 210e9, nu = 0.3 }
+[[problem.coatings]]
+E = 420e9
+nu = 0.25
+thickness = 40e-6
+"""
+FIELDS = {"displacement [m]", "von_mises [Pa]", *(f"{name} [Pa]" for name in STRESSES)}
+
+
+@pytest.fixture(scope="module")
+def case(tmp_path_factory):
+    return parse_case(CASE, tmp_path_factory.mktemp("case") / "one.toml")
+
+
+@pytest.fixture(scope="module")
+def solutions(case):
+    problem = {
+        name: getattr(case.problem, name) for name in ("radius", "load", "coatings", "substrate", "friction")
+    }
+    return {
+        "semianalytic": semianalytic.solve(**problem, patches=65, estimate_uncertainty=False),
+        "fem_reference": fem_reference.solve(**problem, quality="fast", estimate_uncertainty=False),
+    }
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory, case, solutions):
+    folder = tmp_path_factory.mktemp("run")
+    found = write_fields(case, solutions, folder)
+    assert not found.failures
+    return folder
+
+
+def test_the_mesh_carries_the_stresses_of_its_own_side(case, folder, solutions):
+    grid = pv.read(read_fields(folder, "one", case.text).mesh)
+    assert set(grid.point_data) == FIELDS
+    x, y, z = grid.points.T
+    assert not y.any()
+    near = np.hypot(x, z) < 3 * solutions["fem_reference"].contact_radius
+    for layer in (0, 1):
+        cells = grid.extract_cells(np.flatnonzero(grid.cell_data["layer"] == layer))
+        mine = np.isin(np.arange(grid.n_points), cells.point_data["vtkOriginalPointIds"]) & near
+        sigma = solutions["fem_reference"].stress(x[mine], 0.0, z[mine], layer=layer)
+        for name, component in STRESSES.items():
+            np.testing.assert_allclose(grid.point_data[f"{name} [Pa]"][mine], sigma[component], atol=1e-3)
+        u = solutions["fem_reference"].displacement(x[mine], 0.0, z[mine])
+        np.testing.assert_allclose(grid.point_data["displacement [m]"][mine], u.T, atol=1e-18)
+
+
+def test_the_boxes_carry_stress_and_displacement_layer_by_layer(case, folder, solutions):
+    index = pv.read(read_fields(folder, "one", case.text).index)
+    assert [index.get_block_name(k) for k in range(index.n_blocks)] == ["layer 0", "layer 1"]
+    solution, p0 = solutions["semianalytic"], solutions["semianalytic"].peak_pressure
+    for layer, grid in enumerate(index):
+        assert set(grid.point_data) == FIELDS
+        assert set(grid.cell_data["layer"]) == {layer}
+        x, y, z = grid.points.T
+        # Below eight patches whole patches are as good as the halved ones that single points stand on.
+        deep = np.flatnonzero((z > 8 * solution.diagnostics.patch_size) | (z == 0))
+        some = np.random.default_rng(layer).choice(deep, 60, replace=False)
+        sigma = solution.stress(x[some], y[some], z[some], layer=layer)
+        u = solution.displacement(x[some], y[some], z[some])
+        for name, component in STRESSES.items():
+            given = grid.point_data[f"{name} [Pa]"][some]
+            np.testing.assert_allclose(given, sigma[component], atol=2e-4 * p0)
+        given = grid.point_data["displacement [m]"][some]
+        np.testing.assert_allclose(given, u.T, atol=1e-9 * solution.approach)
+    upper, lower = (grid.points[:, 2] for grid in index)
+    assert upper.max() == lower.min() == pytest.approx(40e-6)
+
+
+def test_von_mises_is_that_of_the_six_stresses(case, folder):
+    found = read_fields(folder, "one", case.text)
+    for path in (found.mesh, *found.boxes):
+        data = pv.read(path).point_data
+        xx, yy, zz, xy, yz, xz = (data[f"sigma_{name} [Pa]"] for name in ("xx", "yy", "zz", "xy", "yz", "xz"))
+        square = ((xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2) / 2 + 3 * (xy**2 + yz**2 + xz**2)
+        np.testing.assert_allclose(data["von_mises [Pa]"], np.sqrt(square), rtol=1e-6, atol=1.0)
+
+
+def test_meshio_reads_the_same_mesh_as_vtk(case, folder):
+    path = read_fields(folder, "one", case.text).mesh
+    one, other = meshio.read(path), pv.read(path)
+    np.testing.assert_array_equal(one.points, other.points)
+    assert [block.type for block in one.cells] == ["triangle6"]
+    assert set(one.point_data) == FIELDS
+    for name in FIELDS:
+        np.testing.assert_array_equal(one.point_data[name], other.point_data[name])
+    np.testing.assert_array_equal(one.cell_data["layer"][0], other.cell_data["layer"])
+
+
+def test_every_file_says_where_it_comes_from(case, folder):
+    found = read_fields(folder, "one", case.text)
+    for path in (found.mesh, *found.boxes):
+        grid = pv.read(path)
+        if path == found.mesh:
+            assert bytes(grid.field_data["case file [UTF-8]"]).decode() == case.text
+        else:
+            assert grid.field_data["case file"][0] == case.text
+        assert grid.field_data["contact radius [m]"][0] > 0
+
+
+def test_damage_and_other_case_files_are_noticed(tmp_path, case, solutions):
+    found = write_fields(case, {"fem_reference": solutions["fem_reference"]}, tmp_path)
+    assert (found.index, found.boxes) == (None, ())
+    with pytest.raises(StoreError, match="of another case file"):
+        read_fields(tmp_path, "one", "another")
+    data = bytearray(found.mesh.read_bytes())
+    data[len(data) // 2] ^= 4
+    found.mesh.write_bytes(data)
+    with pytest.raises(StoreError, match=r"one-fem\.vtu: its checksum does not hold"):
+        read_fields(tmp_path, "one", case.text)
+    found.mesh.unlink()
+    with pytest.raises(StoreError, match=r"one-fem\.vtu: cannot be read"):
+        read_fields(tmp_path, "one", case.text)
+
+
+def test_a_method_without_fields_leaves_a_sentence(tmp_path, case):
+    found = write_fields(case, {"semianalytic": object()}, tmp_path)
+    assert "AttributeError" in found.failures["semianalytic"]
+    assert (found.mesh, found.boxes) == (None, ())
+
+
+def test_a_picture_is_rendered_without_a_display(tmp_path, folder):
+    picture = tmp_path / "pictures" / "one.png"
+    code = view("one", output=folder, quantity="sigma_xz", screenshot=picture)
+    if code == 3:
+        pytest.skip("VTK cannot render off screen on this machine")
+    assert code == 0
+    assert picture.read_bytes().startswith(b"\x89PNG")
+
+
+@pytest.mark.parametrize(
+    ("program", "said"),
+    [
+        ("import os; os.abort()", "could not render off screen here (signal 6)"),
+        ("import time; time.sleep(60)", "no picture after 0.5 s"),
+        ("raise SystemExit(0)", "could not render off screen here (code 0)"),
+    ],
+)
+def test_rendering_that_crashes_or_hangs_is_one_sentence(tmp_path, capsys, program, said):
+    assert _picture([sys.executable, "-c", program], tmp_path / "x.png", 0.5) == 3
+    complaint = capsys.readouterr().err
+    assert said in complaint
+    assert len(complaint.splitlines()) == 1
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize(
+    ("words", "code", "said"),
+    [
+        ({"case": "two"}, 2, "coatcheck run two --fields"),
+        ({"case": "../one"}, 2, "not the name of a case"),
+        ({"case": "one", "quantity": "sigma_zy"}, 2, "--quantity = sigma_zy"),
+        ({"case": "one", "screenshot": "x.jpg"}, 2, ".png"),
+        ({"case": "one"}, 3, "no display here"),
+    ],
+)
+def test_what_cannot_be_viewed_is_one_sentence(folder, capsys, monkeypatch, words, code, said):
+    for name in ("DISPLAY", "WAYLAND_DISPLAY"):
+        monkeypatch.delenv(name, raising=False)
+    monkeypatch.setattr("sys.platform", "linux")
+    options = {name: value for name, value in words.items() if name != "case"}
+    if "screenshot" in options:
+        options["screenshot"] = Path(options["screenshot"])
+    assert view(words["case"], output=folder, **options) == code
+    complaint = capsys.readouterr().err
+    assert said in complaint
+    assert len(complaint.splitlines()) == 1
