@@ -140,14 +140,14 @@ def test_knob_section_marks_a_stated_uncertainty_below_the_true_error():
     assert [cell.css for cell in a.cells[1:3]] == ["flag agrees", "flag agrees"]
     assert p0.cells[2].sort == pytest.approx(1.25e-3, rel=1e-3)
     assert [row.cells[0].text for row in orders.rows] == ["2", "1"]
-    assert "holds the true error in 1 of 2 quantities, the sum of the fitted ladders in 2" in (
+    assert "holds the true error in 1 of 2 quantities, the sum of the fitted sweeps in 2" in (
         section.parts[0].text
     )
 
 
 def test_knobs_survive_the_file_of_the_accuracy_study():
     ladders, stated = knobs()
-    whole = replace(study(), knobs=ladders, stated=stated)
+    whole = replace(study(), sweeps=ladders, stated=stated)
     back = study_from_json(json.loads(json.dumps(study_to_json(whole), allow_nan=False)))
     assert back == whole
     assert np.isclose(back.sweeps[0].estimate("a").uncertainty, 1.25e-5)
