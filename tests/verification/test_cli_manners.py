@@ -12,6 +12,7 @@ import pytest
 from quick_case import COMMAND, QUICK, coatcheck
 from synthetic_results import INFO, contact, result_of
 
+from verification.report.material import Material
 from verification.report.pdf import NoBrowser, browser, printed
 from verification.report.write import report_json
 from verification.running.result import to_json
@@ -53,7 +54,7 @@ def stored(tmp_path):
     ]
     for result in results:
         write_checked(tmp_path / "run" / "cases" / f"{result.name}.json", to_json(result))
-    (tmp_path / "run" / "report.json").write_text(report_json(results, INFO))
+    (tmp_path / "run" / "report.json").write_text(report_json(Material(results, INFO)))
     return tmp_path / "run"
 
 

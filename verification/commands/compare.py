@@ -54,7 +54,7 @@ def compare(
     try:
         found = compare_runs(read_run(first), read_run(second))
         if output is not None:
-            from verification.report.sections.comparison import comparison_page
+            from verification.report.comparison import comparison_page
 
             write_atomically(output, comparison_page(found).encode("utf-8", errors="replace"))
     except StoreError as error:
@@ -93,6 +93,6 @@ def _print(found: RunComparison) -> None:
         console.print(f"... with {more} more, which --output or --json shows", highlight=False)
     for name, then, now in found.versions:
         console.print(escape(f"{name}: {one_line(then)} to {one_line(now)}"), highlight=False)
-    from verification.report.sections.comparison import comparison_sentence
+    from verification.report.comparison import comparison_sentence
 
     console.print(comparison_sentence(found), highlight=False)
