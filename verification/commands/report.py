@@ -13,6 +13,7 @@ from verification.commands.common import (
     EXIT,
     RECORDS,
     exit_code,
+    nearest_run,
     print_error,
     within_package,
 )
@@ -62,7 +63,9 @@ def report(
     from verification.report.write import write_report
 
     if not (folder / "cases").is_dir():
-        return print_error(f"{folder}: holds no run; write one with: coatcheck run --output {folder}")
+        return print_error(
+            f"{folder}: holds no run; write one with: coatcheck run --output {folder}{nearest_run(folder)}"
+        )
     try:
         with locked(folder):
             material, whole = stored_material(folder)

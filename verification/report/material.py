@@ -21,7 +21,7 @@ from verification.credibility.independence import Part, parts
 from verification.credibility.manufactured import DesignOrder, design_orders
 from verification.regression.baseline import Regression
 from verification.report.tables.lookup import slug
-from verification.running.planes import read_planes
+from verification.running.fields import read_planes
 from verification.running.provenance import machine
 from verification.running.records import decode
 from verification.running.result import CaseResult, RunInfo, from_json, to_json

@@ -1,0 +1,173 @@
+"""Discrete convolution of forces on a lattice, at lattice sites or at any point between them.
+
+    field(x_i, y_j) = sum_kl K(i - k, j - l) F_kl
+
+K has several components; some are odd in y, all others even, so that the table of K is computed for
+j >= l and mirrored. Far from the forces they may first be gathered on a coarser lattice, with the weights
+of the interpolation that K, smooth over it, would allow (its adjoint: moments up to nine are kept).
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.fft import irfft2, next_fast_len, rfft2
+
+__all__ = [
+    "Influence",
+    "Lattice",
+    "at_points",
+    "between_sites",
+    "influence_table",
+    "nodal_forces",
+    "samples",
+]
+
+Array = NDArray[Any]
+Influence = Callable[[Array, Array], Array]  # of integer offsets (m, n), each (k,) -> (components, k)
+
+PAIRS = 200_000  # points times forces, or offsets, held at a time
+FEW = 32  # sites for which direct summation is faster than Fourier transforms
+
+
+@dataclass(frozen=True, eq=False)
+class Lattice:
+    """Forces [N], (nx, ny), at x = x0 + i dx, y = y0 + j dy [m]."""
+
+    x0: float
+    y0: float
+    dx: float
+    dy: float
+    force: Array
+
+    def coarser(self) -> "Lattice":
+        """The same forces on twice the spacing, by the adjoint of interpolation through ten sites."""
+        force = _gather(_gather(self.force).T).T
+        return Lattice(self.x0 - 10 * self.dx, self.y0 - 10 * self.dy, 2 * self.dx, 2 * self.dy, force)
+
+
+def nodal_forces(grid_x: Array, grid_y: Array, pressure: Array) -> Lattice:
+    """Forces of the loaded box of the grid."""
+    grid_x, grid_y = np.asarray(grid_x, dtype=float), np.asarray(grid_y, dtype=float)
+    dx = float(grid_x[-1] - grid_x[0]) / (grid_x.size - 1)
+    dy = float(grid_y[-1] - grid_y[0]) / (grid_y.size - 1)
+    rows, columns = np.flatnonzero(pressure.any(axis=1)), np.flatnonzero(pressure.any(axis=0))
+    if not rows.size:
+        rows = columns = np.array([0])
+    box = pressure[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1]
+    return Lattice(grid_x[rows[0]] - dx, grid_y[columns[0]] - dy, dx, dy, samples(box) * (dx * dy))
+
+
+def samples(mean: Array) -> Array:
+    """Values of p at the centres from its means over patches, mean = p + (d^2/24) lap p; one patch wider.
+
+    Written as a difference the correction keeps the load.
+    """
+    padded = np.pad(mean, 2)
+    middle = padded[1:-1, 1:-1]
+    across = padded[2:, 1:-1] + padded[:-2, 1:-1] + padded[1:-1, 2:] + padded[1:-1, :-2]
+    return middle - (across - 4 * middle) / 24
+
+
+def _gather(force: Array) -> Array:
+    """Forces of all rows on every second row, starting ten rows before the first."""
+    n = force.shape[0]
+    padded = np.zeros((n + 40, force.shape[1]))
+    padded[19 : 19 + n] = force
+    count = (n + 1) // 2 + 10
+    out = padded[9 : 9 + 2 * count : 2].copy()
+    # Lagrange's weights half-way between ten sites
+    for offset, weight in ((1, 39690), (3, -8820), (5, 2268), (7, -405), (9, 35)):
+        for begin in (9 - offset, 9 + offset):
+            out += weight / 65536 * padded[begin : begin + 2 * count : 2]
+    return out
+
+
+def at_points(
+    x: Array,
+    y: Array,
+    lattice: Lattice,
+    kernel: Callable[[Array, Array], Array],
+    odd_in_y: Sequence[int],
+    *,
+    order: int,
+) -> Array:
+    """Sum over all forces at points (x, y), (k,) each, of a kernel smooth over the lattice; (components, k).
+
+    Term by term for a few points; for many on the lattice, then between its sites with ``order`` of them.
+    """
+    if x.size > 2 * FEW:
+        dx, dy = lattice.dx, lattice.dy
+        return between_sites(x, y, lattice, lambda m, n: kernel(m * dx, n * dy), odd_in_y, order=order)
+    i, j = np.nonzero(lattice.force)
+    X, Y, force = lattice.x0 + i * lattice.dx, lattice.y0 + j * lattice.dy, lattice.force[i, j]
+    step = max(1, PAIRS // max(force.size, 1))
+    parts = []
+    for begin in range(0, x.size, step):
+        xs, ys = x[begin : begin + step, None], y[begin : begin + step, None]
+        parts.append(kernel(xs - X, ys - Y) @ force)
+    return np.concatenate(parts, axis=1)
+
+
+def between_sites(
+    x: Array, y: Array, lattice: Lattice, influence: Influence, odd_in_y: Sequence[int], *, order: int
+) -> Array:
+    """The convolution at the sites around each point, interpolated by polynomials through ``order`` sites."""
+    i, wx = _stencil((x - lattice.x0) / lattice.dx, order)
+    j, wy = _stencil((y - lattice.y0) / lattice.dy, order)
+    weight = wx[:, :, None] * wy[:, None, :]
+    point, a, b = np.nonzero(weight)
+    sites, inverse = np.unique(np.stack([i[point, a], j[point, b]]), axis=1, return_inverse=True)
+    field = _at_sites(sites, lattice, influence, odd_in_y)
+    contribution = field[:, inverse.ravel()] * weight[point, a, b]
+    return np.array([np.bincount(point, part, minlength=x.size) for part in contribution])
+
+
+def _stencil(s: Array, order: int) -> tuple[Array, Array]:
+    """Sites (k, order) around positions ``s``, and Lagrange weights; one site alone when ``s`` is on it."""
+    nearest = np.round(s)
+    s = np.where(np.abs(s - nearest) < 1e-7, nearest, s)
+    first = np.floor(s).astype(int) - (order // 2 - 1)
+    t = s - first
+    weights = np.ones((s.size, order))
+    for a in range(order):
+        for b in range(order):
+            if a != b:
+                weights[:, a] *= (t - b) / (a - b)
+    return first[:, None] + np.arange(order), weights
+
+
+def _at_sites(sites: Array, lattice: Lattice, influence: Influence, odd_in_y: Sequence[int]) -> Array:
+    """The convolution at lattice sites (2, k): term by term for a few, by FFT for many."""
+    force = lattice.force
+    low, high = sites.min(axis=1), sites.max(axis=1)
+    m = np.arange(low[0] - (force.shape[0] - 1), high[0] + 1)
+    n = np.arange(low[1] - (force.shape[1] - 1), high[1] + 1)
+    table = influence_table(influence, m, n, odd_in_y)
+    if sites.shape[1] <= FEW:
+        out = np.empty((len(table), sites.shape[1]))
+        flipped = force[::-1, ::-1]
+        for c, (i, j) in enumerate((sites - low[:, None]).T):
+            out[:, c] = np.tensordot(table[:, i : i + force.shape[0], j : j + force.shape[1]], flipped, 2)
+        return out
+    size = (next_fast_len(m.size, real=True), next_fast_len(n.size, real=True))
+    spectrum = rfft2(force, size)
+    i, j = sites - low[:, None] + np.array(force.shape)[:, None] - 1
+    return np.array([irfft2(rfft2(part, size) * spectrum, size)[i, j] for part in table])
+
+
+def influence_table(influence: Influence, m: Array, n: Array, odd_in_y: Sequence[int]) -> Array:
+    """Influence at the offsets m x n, computed for n >= 0 and mirrored; (components, len(m), len(n))."""
+    distinct, where = np.unique(np.abs(n), return_inverse=True)
+    mm, nn = np.meshgrid(m, distinct, indexing="ij")
+    rows = max(1, PAIRS // distinct.size)
+    blocks = [
+        influence(a.ravel(), b.ravel()).reshape(-1, *a.shape)
+        for a, b in ((mm[i : i + rows], nn[i : i + rows]) for i in range(0, m.size, rows))
+    ]
+    table = np.concatenate(blocks, axis=1)[:, :, where]
+    for component in odd_in_y:
+        table[component] *= np.where(n < 0, -1.0, 1.0)
+    return table

@@ -1,0 +1,230 @@
+"""NaN and infinity planted in both methods, one function at a time, and what each comes to.
+
+python tests/robustness/not_finite.py [PART OF A NAME ...] prints the table; exit code 1 where a case agrees.
+"""
+
+import importlib
+import sys
+import warnings
+from collections import Counter
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, fields, is_dataclass, replace
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import scipy.sparse as sp
+
+from verification.cases.contact import Case, parse_case
+from verification.judging.claims import standard_claims
+from verification.judging.verdict import Outcome
+from verification.running.contact import run
+from verification.running.result import CaseResult
+from verification.sources.contact import solvers
+
+__all__ = ["BAD", "PLACES", "Place", "clean", "outcome_of", "planted"]
+
+BAD = {"nan": np.nan, "inf": np.inf, "-inf": -np.inf}
+TEXT = """title = "Stiff coating, sliding"
+[problem]
+radius = 10e-3
+load = 20.0
+friction = 0.25
+substrate = { E = 210e9, nu = 0.3 }
+[[problem.coatings]]
+E = 420e9
+nu = 0.25
+thickness_over_a_h = 0.8
+[semianalytic]
+patches = 65
+[fem_reference]
+quality = "fast"
+"""
+
+
+@dataclass(frozen=True)
+class Place:
+    """What ``name`` (a function, or Class.method) of ``module`` gives, or ``part`` of it.
+
+    part : field of a dataclass, or place in a tuple. Of a function that is given, what that one gives.
+    """
+
+    module: str
+    name: str
+    part: str | int | None = None
+
+    @property
+    def method(self) -> str:
+        return self.module.partition(".")[0]
+
+    def __str__(self) -> str:
+        return f"{self.module}.{self.name}" + (f" [{self.part}]" if self.part is not None else "")
+
+
+PLACES = (
+    Place("semianalytic.frf", "compliance_excess"),
+    Place("semianalytic.frf", "stress_frf"),
+    Place("semianalytic.halfspace", "surface_deflection"),
+    Place("semianalytic.halfspace", "normal_stress"),
+    Place("semianalytic.halfspace", "tangential_stress"),
+    Place("semianalytic.influence", "remainder_coefficients"),
+    Place("semianalytic.convolution", "even_convolution"),
+    Place("semianalytic.convolution", "circulant_inverse"),
+    Place("semianalytic.contact", "solve", "pressure"),
+    Place("semianalytic.contact", "solve", "approach"),
+    Place("semianalytic.edge_profile", "patch_mean"),
+    Place("semianalytic.hankel", "hankel"),
+    Place("semianalytic.nodal_convolution", "nodal_forces"),
+    Place("semianalytic.subsurface", "stress"),
+    Place("semianalytic.solution", "Solution.pressure"),
+    Place("semianalytic.solution", "Solution.stress_with_uncertainty", 0),
+    Place("semianalytic.solution", "Solution.stress_with_uncertainty", 1),
+    Place("semianalytic.solution", "Solution.pressure_uncertainty"),
+    Place("semianalytic.uncertainty", "of_contact", "approach"),
+    Place("semianalytic.uncertainty", "of_contact", "peak_pressure"),
+    Place("fem_reference.mesh", "meridian_mesh", "points"),
+    Place("fem_reference.axisymmetric", "strain_operator", 0),
+    Place("fem_reference.axisymmetric", "elasticity"),
+    Place("fem_reference.axisymmetric", "Discretisation.stiffness"),
+    Place("fem_reference.axisymmetric", "Discretisation.surface_mass"),
+    Place("fem_reference.axisymmetric", "Discretisation.surface_load"),
+    Place("fem_reference.axisymmetric", "constrained_solve"),
+    Place("fem_reference.far_field", "boussinesq"),
+    Place("fem_reference.far_field", "cerruti"),
+    Place("fem_reference.contact", "solve_at_radius", "fields"),
+    Place("fem_reference.contact", "solve_at_radius", "approach"),
+    Place("fem_reference.contact", "solve_at_radius", "load"),
+    Place("fem_reference.contact", "solve_at_radius", "stiffness"),
+    Place("fem_reference.contact", "complementarity", 0),
+    Place("fem_reference.contact", "Multiplier.__call__"),
+    Place("fem_reference.loading", "solve_traction"),
+    Place("fem_reference.recovery", "HarmonicField.__call__", 1),
+    Place("fem_reference.estimate", "PressureEstimate.__call__"),
+    Place("fem_reference.estimate", "StressEstimate.__call__"),
+    Place("fem_reference.solution", "Solution.stress"),
+)
+
+
+def spoilt(value: Any, bad: float, part: str | int | None, *, whole: bool) -> Any:
+    """``value`` with ``bad`` in the middle of it, or all over."""
+    if part is not None and isinstance(value, tuple):
+        assert isinstance(part, int)
+        inner = spoilt(value[part], bad, None, whole=whole)
+        return tuple(inner if n == part else item for n, item in enumerate(value))
+    if part is not None:
+        assert isinstance(part, str)
+        return replace(value, **{part: spoilt(getattr(value, part), bad, None, whole=whole)})
+    if sp.issparse(value):
+        value = value.copy()
+        value.data = spoilt(value.data, bad, None, whole=whole)
+        return value
+    if is_dataclass(value) and not isinstance(value, type):
+        first = next(f.name for f in fields(value) if isinstance(getattr(value, f.name), np.ndarray))
+        return replace(value, **{first: spoilt(getattr(value, first), bad, None, whole=whole)})
+    if callable(value):
+        return lambda *words, **named: spoilt(value(*words, **named), bad, None, whole=whole)
+    if np.ndim(value) == 0:
+        return bad
+    array = np.array(value, dtype=np.result_type(value, float))
+    if whole:
+        array[...] = bad
+    else:
+        array.flat[array.size // 2] = bad
+    return array
+
+
+@contextmanager
+def planted(place: Place, bad: float, *, whole: bool) -> Iterator[Counter[str]]:
+    """``bad`` in what ``place`` gives for as long as this lasts; yields how often it was asked."""
+    asked: Counter[str] = Counter()
+    owner: Any = importlib.import_module(place.module)
+    *path, name = place.name.split(".")
+    for step in path:
+        owner = getattr(owner, step)
+    original: Callable[..., Any] = vars(owner)[name]
+
+    def wrapped(*words: Any, **named: Any) -> Any:
+        asked["times"] += 1
+        return spoilt(original(*words, **named), bad, place.part, whole=whole)
+
+    # A function imported by name lives in several modules.
+    holders = [owner] if path else [m for n, m in sys.modules.items() if n.split(".")[0] == place.method]
+    found = [(h, key) for h in holders for key, value in list(vars(h).items()) if value is original]
+    for holder, key in found:
+        setattr(holder, key, wrapped)
+    try:
+        yield asked
+    finally:
+        for holder, key in found:
+            setattr(holder, key, original)
+
+
+@cache
+def clean() -> tuple[Case, CaseResult, dict[str, Any]]:
+    """A case in which every part of both methods takes part, its result, and the solution of each source.
+
+    It is solved on coarse grids, and makes those claims that agree on them.
+    """
+    kept: dict[str, Any] = {}
+
+    def keeping(name: str, solve: Any) -> Any:
+        def solved(problem: Any, numerics: Any) -> Any:
+            kept[name] = solve(problem, numerics)
+            return kept[name]
+
+        return solved
+
+    found = parse_case(TEXT.encode(), Path("spoilt.toml"))
+    whole = replace(found, claims=tuple(replace(c, cap=1.0) for c in standard_claims(found.problem)))
+    result = run(whole, {name: keeping(name, solve) for name, solve in solvers().items()})
+    agreed = tuple(claim for claim, verdict in result.verdicts if verdict.outcome is Outcome.AGREES)
+    case = replace(whole, claims=agreed)
+    result = run(case, {name: lambda *_, name=name: kept[name] for name in kept})
+    return case, replace(result, invariants=()), kept
+
+
+def outcome_of(place: Place, bad: float, *, whole: bool = False) -> tuple[CaseResult, int]:
+    """The case with one method spoilt, the other sources as they were; how often the place was asked."""
+    case, _, kept = clean()
+    available = solvers()
+    for name in kept:
+        if name != place.method:
+            available[name] = lambda problem, numerics, name=name: kept[name]
+    with planted(place, bad, whole=whole) as asked, warnings.catch_warnings(), np.errstate(all="ignore"):
+        warnings.simplefilter("ignore")
+        # By its claims alone: what the invariants notice comes on top.
+        return replace(run(case, available), invariants=()), asked["times"]
+
+
+def row(place: Place, bad: str, whole: bool) -> tuple[Outcome, str]:
+    """The outcome of the case, and a line of the table."""
+    result, asked = outcome_of(place, BAD[bad], whole=whole)
+    verdicts = [v for c, v in result.verdicts if place.method in c.between]
+    counted = Counter(v.outcome for v in verdicts)
+    tally = " ".join(f"{counted[o]:3d} {o}" for o in Outcome if counted[o])
+    reason = next((v.reason for v in verdicts if v.outcome is not Outcome.AGREES), "")
+    what = f"{bad}{' all over' if whole else ''}"
+    line = f"{place!s:62} {what:14} asked {asked:5d}  {result.outcome:12} {tally}: {reason[:110]}"
+    return (result.outcome if asked else Outcome.AGREES), line
+
+
+def main(*wanted: str, what: tuple[str, ...] = tuple(BAD)) -> int:
+    """Print the table; the number of rows in which the case agrees."""
+    _, result, _ = clean()
+    sys.stdout.write(f"as it is: {result.outcome}, {len(result.verdicts)} comparisons\n")
+    bad = 0
+    for place in (p for p in PLACES if not wanted or any(w in str(p) for w in wanted)):
+        for value in what:
+            for whole in (False, True):
+                outcome, line = row(place, value, whole)
+                bad += outcome is Outcome.AGREES
+                sys.stdout.write(line + "\n")
+                sys.stdout.flush()
+    sys.stdout.write(f"{bad} of them agree\n")
+    return bad
+
+
+if __name__ == "__main__":
+    sys.exit(bool(main(*sys.argv[1:])))

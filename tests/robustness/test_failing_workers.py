@@ -1,0 +1,208 @@
+"""Workers that crash, hang or run out of memory: no result of their own, nobody else's lost, none left."""
+
+import json
+import os
+import re
+import signal
+import subprocess
+import sys
+import time
+from collections import Counter
+from pathlib import Path
+
+import pytest
+from quick_case import QUICK
+
+from verification.commands import run as command
+from verification.running import pool
+from verification.running.pool import Task, run_tasks
+from verification.running.store import StoreError, read_checked, write_checked
+
+HERE = Path(__file__).parent
+# What a process dies of, and how the reason must read.
+REASONS = {
+    "segmentation fault": r"its process crashed with signal 11; run the case alone.*",
+    "exit": r"its process ended with code 7: no message",
+    "exception": r"its process ended with code 1: RuntimeError: the matrix is singular at row 7",
+    "abort": r"its process crashed with signal 6; run the case alone.*",
+    "memory": r"its process ended with code 1: out of memory \(.*\); run fewer --jobs or coarsen the case",
+    "kernel": r"its process was killed \(signal 9\), most likely for want of memory; run fewer --jobs",
+    "nothing": r"its process left no result; run the case alone.*",
+    "hang": r"not finished after \d+ s; raise --time-limit or coarsen the case",
+}
+
+
+@pytest.fixture(autouse=True)
+def _planted(monkeypatch):
+    monkeypatch.setenv("PYTHONPATH", os.pathsep.join([str(HERE), str(HERE.parent / "verification")]))
+
+
+def task(how: str, folder: Path, number: int = 0) -> Task[str]:
+    path = folder / f"{how}-{number}.json"
+    return Task(
+        path.stem,
+        ("planted_worker:main", how, str(path)),
+        path,
+        lambda data: data["said"],
+        lambda reason, _: reason,
+    )
+
+
+def alive(pid: int) -> bool:
+    try:
+        return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0] != "Z"
+    except OSError:
+        return False
+
+
+def gone(pids: list[int], within: float) -> float:
+    """Seconds until none of ``pids`` runs."""
+    begin = time.monotonic()
+    while any(alive(pid) for pid in pids) and time.monotonic() - begin < within:
+        time.sleep(0.02)
+    assert not any(alive(pid) for pid in pids)
+    return time.monotonic() - begin
+
+
+def test_each_death_has_its_reason_and_the_others_finish(tmp_path):
+    deaths = [how for how in REASONS if how != "hang"]
+    tasks = [task(how, tmp_path) for how in (*deaths, "good")]
+    *reasons, good = run_tasks(tasks, jobs=4, time_limit=300)
+    assert good == "good"
+    for how, reason in zip(deaths, reasons, strict=True):
+        assert re.fullmatch(REASONS[how], reason), (how, reason)
+
+
+def test_hanging_worker_is_stopped_with_what_it_started(tmp_path):
+    # The good one ends long before; only what hangs meets the limit.
+    reason, good = run_tasks([task("hang", tmp_path), task("good", tmp_path)], jobs=2, time_limit=6)
+    assert good == "good"
+    assert re.fullmatch(REASONS["hang"], reason)
+    pids = [int(pid) for pid in (tmp_path / "hang-0.json.pids").read_text().split()]
+    assert len(pids) == 2
+    gone(pids, within=10)
+
+
+@pytest.mark.slow
+def test_worker_that_the_kernel_stops_for_want_of_memory_is_one_sentence(tmp_path, monkeypatch):
+    group = Path("/sys/fs/cgroup/memory/coatcheck-greed")
+    try:
+        group.mkdir()
+        (group / "memory.limit_in_bytes").write_text("150000000")
+    except OSError as error:
+        pytest.skip(f"no memory control group can be made here ({error})")
+    monkeypatch.setenv("PLANTED_GROUP", str(group))
+    try:
+        tasks = [task("greed", tmp_path, n) for n in range(10)]
+        *reasons, good = run_tasks([*tasks, task("good", tmp_path)], jobs=2, time_limit=300)
+    finally:
+        time.sleep(0.5)
+        group.rmdir()
+    assert good == "good"
+    assert all(re.fullmatch(REASONS["kernel"], reason) for reason in reasons), reasons
+    sys.stdout.write(f"{len(reasons)} workers stopped by the kernel for want of memory\n")
+
+
+def test_worker_that_cannot_write_ends_the_run_with_one_sentence(tmp_path):
+    write_checked(tmp_path / "good-0.json", {"said": "earlier"})
+    (tmp_path / "file").write_text("in the way")
+    blocked = Task(
+        "x", ("planted_worker:main", "good", str(tmp_path / "file" / "x.json")), tmp_path / "x", str, str
+    )
+    with pytest.raises(StoreError, match=r"file/x\.json: cannot be written"):
+        run_tasks([blocked], jobs=1, time_limit=300)
+    assert read_checked(tmp_path / "good-0.json") == {"said": "earlier"}
+
+
+def test_failing_worker_leaves_the_earlier_file_and_does_not_pass_it_off_as_its_own(tmp_path):
+    nothing = task("nothing", tmp_path)
+    write_checked(nothing.path, {"said": "earlier"})
+    assert re.fullmatch(REASONS["nothing"], run_tasks([nothing], jobs=1, time_limit=300)[0])
+    assert read_checked(nothing.path) == {"said": "earlier"}
+
+
+def test_process_that_cannot_be_started_is_a_reason(tmp_path, monkeypatch):
+    def refuse(*_, **__):
+        raise OSError(12, "Cannot allocate memory")
+
+    monkeypatch.setattr(pool.subprocess, "Popen", refuse)
+    (reason,) = run_tasks([task("good", tmp_path)], jobs=1, time_limit=300)
+    assert reason.startswith("its process could not be started (Cannot allocate memory)")
+
+
+def orphans_of(folder: Path) -> float:
+    """Kill a run with kill -9 while two of its workers hang; seconds until they, and theirs, are gone."""
+    folder.mkdir()
+    parent = subprocess.Popen(
+        [
+            sys.executable,
+            "-c",
+            "import sys, test_failing_workers as t; t.hang_in(sys.argv[1])",
+            str(folder),
+        ]
+    )
+    said = [folder / f"hang-{n}.json.pids" for n in range(2)]
+    begin = time.monotonic()
+    while not all(path.exists() and path.read_text().endswith("\n") for path in said):
+        assert parent.poll() is None, "the run ended before its workers had begun"
+        assert time.monotonic() - begin < 60
+        time.sleep(0.02)
+    pids = [int(pid) for path in said for pid in path.read_text().split()]
+    assert len(pids) == 4
+    assert all(alive(pid) for pid in pids)
+    parent.send_signal(signal.SIGKILL)
+    parent.wait()
+    return gone(pids, within=10)
+
+
+def hang_in(folder: str) -> None:
+    run_tasks([task("hang", Path(folder), n) for n in range(2)], jobs=2, time_limit=600)
+
+
+def test_workers_of_a_killed_run_end_with_it(tmp_path):
+    assert orphans_of(tmp_path / "run") < 5
+
+
+@pytest.mark.slow
+def test_workers_of_ten_killed_runs_end_with_them(tmp_path):
+    waits = [orphans_of(tmp_path / f"run-{n}") for n in range(10)]
+    sys.stdout.write(f"10 runs killed, 40 processes gone after {max(waits):.2f} s at most\n")
+
+
+@pytest.mark.slow
+def test_every_death_ten_times_in_a_run_that_still_writes_its_report(tmp_path, monkeypatch, capsys):
+    names = {f"{how.replace(' ', '_')}-{n}": how for how in REASONS for n in range(10)}
+    (tmp_path / "quick.toml").write_text(QUICK)
+    for name in names:
+        (tmp_path / f"{name}.toml").write_text(QUICK)
+    popen = subprocess.Popen
+
+    def planted(words, **keywords):
+        for name, how in names.items():
+            if name in words:
+                place = words.index("verification.running.worker")
+                words = [*words[:place], "planted_worker", how, words[place + 2]]
+        return popen(words, **keywords)
+
+    monkeypatch.setattr(pool.subprocess, "Popen", planted)
+    files = [str(tmp_path / f"{name}.toml") for name in ("quick", *names)]
+    output = tmp_path / "out"
+    code = command.run(*files, output=output, jobs=10, time_limit=40, as_json=True)
+    capsys.readouterr()
+    report = json.loads((output / "report.json").read_text())
+    assert (output / "report.html").stat().st_size > 10_000
+    assert code == 3
+    found = Counter()
+    for case in report["cases"]:
+        if case["name"] == "quick":
+            assert case["outcome"] == "AGREES"
+            continue
+        how = names[case["name"]]
+        assert case["outcome"] == "NO_RESULT"
+        reasons = {verdict["verdict"]["reason"] for verdict in case["verdicts"]}
+        assert len(reasons) == 1
+        assert re.fullmatch(REASONS[how], reasons.pop()), how
+        found[how] += 1
+    assert found == dict.fromkeys(REASONS, 10)
+    with capsys.disabled():
+        sys.stdout.write(f"{found.total()} planted deaths, ten of each kind, all NO_RESULT with the reason\n")

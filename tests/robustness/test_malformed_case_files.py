@@ -1,0 +1,346 @@
+"""Bad case files by the thousand: one sentence with file and key, exit code 2, nothing written."""
+
+import io
+import re
+import shutil
+import sys
+import tomllib
+from collections.abc import Callable
+from contextlib import redirect_stderr, redirect_stdout
+from pathlib import Path
+
+import pytest
+from hypothesis import HealthCheck, Phase, given, settings
+from hypothesis import strategies as st
+from malformed import dump, garbled, malformed
+
+from verification.cases.contact import shipped_cases
+from verification.cases.published import published_cases, read_published
+from verification.cases.toml import CaseError
+from verification.commands import run as command
+from verification.running import pool
+from verification.study.plan import read_study_file, shipped_studies
+
+CLAIM = {
+    "quantity": "sigma_xx",
+    "line": "interface 1, upper side",
+    "between": ["semianalytic", "fem_reference"],
+    "cap": 0.005,
+    "why": "the peak",
+    "edge": 0.05,
+}
+KNOBS = {
+    "semianalytic": {"patches": 129, "conversion": "split", "max_iterations": 300},
+    "fem_reference": {"order": 3, "quality": "fast"},
+}
+CASES = [tomllib.loads(path.read_text(encoding="utf-8")) for path in shipped_cases().values()]
+CASES += [tree | KNOBS | {"claim": [CLAIM, CLAIM]} for tree in CASES if tree["problem"].get("coatings")][:4]
+PUBLISHED = [published_cases()[name] for name in ("jones_1962", "hermanowicz_2021", "ellea1_halfspace_axis")]
+REFUSED, QUICK = 2000, 200
+
+
+def generated(number: int) -> settings:
+    """So many examples, the same every time, none of them hunted down or remembered."""
+    return settings(
+        max_examples=number,
+        derandomize=True,
+        database=None,
+        deadline=None,
+        phases=[Phase.generate],
+        suppress_health_check=list(HealthCheck),
+    )
+
+
+class Accepted(Exception):
+    """Raised where solving would begin."""
+
+
+def complaint_of(path: Path, monkeypatch: pytest.MonkeyPatch) -> str | None:
+    """What ``coatcheck run PATH`` says of a bad file, checked to be as promised; None where it is good."""
+    folder = path.parent
+
+    def accept(*_: object, **__: object) -> None:
+        raise Accepted
+
+    monkeypatch.setattr(pool, "_Job", accept)
+    said, printed = io.StringIO(), io.StringIO()
+    try:
+        with redirect_stderr(said), redirect_stdout(printed):
+            code = command.run(str(path), output=folder / "out", quiet=True)
+    except Accepted:
+        shutil.rmtree(folder / "out")
+        return None
+    sentence = said.getvalue()
+    assert code == 2
+    assert sentence.endswith("\n")
+    assert sentence.count("\n") == 1
+    assert sentence[:-1].isprintable()
+    assert len(sentence) < 1100
+    assert printed.getvalue() == ""
+    assert not (folder / "out").exists()
+    return sentence.removeprefix("coatcheck: ").strip()
+
+
+def names(sentence: str, path: Path, keys: tuple[str, ...]) -> bool:
+    """True where the file is named, and one of ``keys``, or the part of the file around it, or a line."""
+    if not sentence.startswith(f"{path}: "):
+        return False
+    said = sentence.removeprefix(f"{path}: ")
+    if not keys or said.startswith(("not TOML", "not UTF-8", "line ", "larger than")):
+        return bool(re.search(r"line \d+|column|document|bytes|nested|digits|[a-z_]+", said))
+    shown = [re.sub(r"[^ -~]", "", key)[:30] for key in keys]
+    if any(re.sub(r"\\x1b|[^ -~]", "", said).startswith(key) for key in shown):
+        return True
+    # What concerns two keys at once is told of the part that holds both: "problem: moduli differ".
+    first = re.split(r"[ .:=]", said)[0]
+    # A claim names a line that only a coating has, and resolve requires one.
+    needy = ("claim", "resolve")
+    return any(first == key.split(".")[0] or (first in needy and key.startswith("problem")) for key in keys)
+
+
+def bad_files(tmp_path, monkeypatch, wanted):
+    counts = {"files": 0, "refused": 0}
+    path = tmp_path / "mine.toml"
+
+    # Some changes leave a file good; a quarter more than wanted makes up for them.
+    @generated(wanted * 5 // 4)
+    @given(malformed(CASES))
+    def each(made):
+        raw, keys = made
+        path.write_bytes(raw)
+        sentence = complaint_of(path, monkeypatch)
+        counts["files"] += 1
+        counts["refused"] += sentence is not None
+        assert sentence is None or names(sentence, path, keys), (sentence, keys)
+        assert [entry.name for entry in tmp_path.iterdir()] == ["mine.toml"]
+
+    each()
+    sys.stdout.write(f"{counts['files']} generated case files: {counts['refused']} refused, the rest good\n")
+    return counts
+
+
+def test_two_hundred_generated_case_files(tmp_path, monkeypatch):
+    assert bad_files(tmp_path, monkeypatch, QUICK)["refused"] >= QUICK
+
+
+@pytest.mark.slow
+def test_two_thousand_generated_case_files(tmp_path, monkeypatch):
+    assert bad_files(tmp_path, monkeypatch, REFUSED)["refused"] >= REFUSED
+
+
+def test_files_that_were_not_changed_are_accepted(tmp_path, monkeypatch):
+    for tree in CASES:
+        (tmp_path / "mine.toml").write_text(dump(tree), encoding="utf-8")
+        assert complaint_of(tmp_path / "mine.toml", monkeypatch) is None
+
+
+def refusal(read: Callable[[Path], object], path: Path) -> str | None:
+    """The sentence ``read`` refuses a file with; None where it is good."""
+    try:
+        read(path)
+    except CaseError as error:
+        return str(error)
+    return None
+
+
+def test_generated_published_cases_and_tables_are_refused_in_one_sentence(tmp_path):
+    counts = {"case": 0, "table": 0, "refused": 0}
+    trees = [tomllib.loads(path.read_text(encoding="utf-8")) for path in PUBLISHED]
+    tables = {}
+    for path in sorted(PUBLISHED[0].parent.glob("*.csv")):
+        shutil.copy(path, tmp_path)
+        tables[path.name] = path.read_bytes()
+
+    def read(raw, kind, named):
+        (tmp_path / "mine.toml").write_bytes(raw)
+        counts[kind] += 1
+        sentence = refusal(read_published, tmp_path / "mine.toml")
+        counts["refused"] += sentence is not None
+        assert sentence is None or re.match(named, sentence), sentence
+
+    @generated(600)
+    @given(malformed(trees))
+    def each_case(made):
+        read(made[0], "case", rf"{tmp_path}/mine\.toml: |\w+\.csv[:,] ")
+
+    @generated(300)
+    @given(st.sampled_from(trees), st.data())
+    def each_table(tree, data):
+        name = tree["table"][0]["file"]
+        (tmp_path / name).write_bytes(data.draw(garbled(tables[name])))
+        read(dump(tree).encode(), "table", rf"{tmp_path}/mine\.toml: |{re.escape(name)}[:,] ")
+        (tmp_path / name).write_bytes(tables[name])
+
+    each_case()
+    each_table()
+    sys.stdout.write(
+        f"{counts['case']} published cases, {counts['table']} tables: {counts['refused']} refused\n"
+    )
+    assert counts["case"] >= 600
+    assert counts["table"] >= 300
+    assert counts["refused"] >= 300
+
+
+def test_generated_study_files_are_refused_in_one_sentence(tmp_path):
+    counts = {"files": 0, "refused": 0}
+    trees = [tomllib.loads(path.read_text(encoding="utf-8")) for path in shipped_studies().values()]
+    path = tmp_path / "mine.toml"
+
+    @generated(300)
+    @given(malformed(trees))
+    def each(made):
+        path.write_bytes(made[0])
+        counts["files"] += 1
+        sentence = refusal(read_study_file, path)
+        counts["refused"] += sentence is not None
+        assert sentence is None or sentence.startswith(f"{path}: "), sentence
+
+    each()
+    sys.stdout.write(f"{counts['files']} study files: {counts['refused']} refused\n")
+    assert counts["files"] >= 300
+    assert counts["refused"] >= 200
+
+
+GOOD = """title = "Stiff coating"
+[problem]
+radius = 10e-3
+load = 20
+substrate = { E = 210e9, nu = 0.3 }
+[[problem.coatings]]
+E = 420e9
+nu = 0.3
+thickness = 70e-6
+"""
+JUDGED = """[[claim]]
+quantity = "sigma_xx"
+line = "surface"
+between = ["semianalytic", "fem_reference"]
+cap = 0.005
+why = "peak"
+"""
+
+
+def changed(old: str, new: str) -> bytes:
+    assert old in GOOD + JUDGED
+    return (GOOD + JUDGED).replace(old, new, 1).encode()
+
+
+BAD = [
+    (b"", "title is missing"),
+    (b"# nothing but a remark\n", "title is missing"),
+    (b"\x00" * 100, "not TOML"),
+    (b"\xff\xfe\x00", "not UTF-8 text"),
+    ("\ufeff".encode() + GOOD.encode(), "not TOML"),
+    (b"title = ", "not TOML"),
+    (GOOD.encode()[:70], "not TOML"),
+    (GOOD.encode()[:-8], "not TOML"),
+    (GOOD.encode().rpartition(b"thickness")[0], "problem.coatings.0 needs exactly one of thickness"),
+    (b"[" * 5000, "not TOML"),
+    (b"a = " + b"[" * 3000, "nested too deeply"),
+    (b"a = " + b"{ a = " * 3000, "nested too deeply"),
+    (b"a." * 3000 + b"a = 1", "line 1 has more than 250 dots"),
+    (b"[" + b'"\xe2\x80\xa8".' * 3000 + b"a]", "line 1 has more than 250 dots"),
+    (b"x" * 300_000, "larger than 250000 bytes"),
+    (b"<?xml version='1.0'?><case/>", "not TOML"),
+    (b'{"title": "JSON"}', "not TOML"),
+    (b"\x80\x04\x95\x10\x00\x00\x00", "not UTF-8 text"),
+    (changed("load = 20", "load = " + "9" * 5000), "not TOML"),
+    (changed("load = 20", "load = 1" + "0" * 400), "problem.load"),
+    (changed("load = 20", "load = 1e400"), "problem.load must be a finite number"),
+    (changed("load = 20", "load = nan"), "problem.load must be a finite number"),
+    (changed("load = 20", "load = -inf"), "problem.load must be a finite number"),
+    (changed("load = 20", "load = -20"), "problem.load"),
+    (changed("load = 20", "load = 0"), "problem.load"),
+    (changed("load = 20", "load = true"), "problem.load must be a number"),
+    (changed("load = 20", 'load = "20 N"'), "problem.load must be a number"),
+    (changed("load = 20", "load = [20]"), "problem.load must be a number"),
+    (changed("load = 20", "load = { N = 20 }"), "problem.load must be a number"),
+    (changed("load = 20", "load = 1979-05-27"), "problem.load must be a number"),
+    (changed("load = 20", "load = 0x14g"), "not TOML"),
+    (changed("load = 20", "load = 20\nload = 20"), "not TOML"),
+    (changed("load = 20", "Load = 20"), "problem.load is missing"),
+    (changed("load = 20", "load = 20\nhardness = 7"), "problem.hardness is an unknown key"),
+    (changed("load = 20", 'load = 20\n"\\u001b[31m" = 7'), "is an unknown key"),
+    (changed("load = 20", "load = 1e12"), "problem.load: gives a contact radius"),
+    (changed("radius = 10e-3", "radius = 5e-324"), "problem"),
+    (changed("radius = 10e-3", "radius = 1e308"), "problem"),
+    (changed("radius = 10e-3", "radius = 10e-3 m"), "not TOML"),
+    (changed("radius = 10e-3", ""), "problem.radius is missing"),
+    (changed("substrate = { E = 210e9, nu = 0.3 }", ""), "problem.substrate is missing"),
+    (changed("substrate = { E = 210e9, nu = 0.3 }", "substrate = 210e9"), "problem.substrate"),
+    (changed("substrate = { E = 210e9, nu = 0.3 }", "substrate = [210e9, 0.3]"), "problem.substrate"),
+    (changed("nu = 0.3 }", "nu = 0.5 }"), "problem.substrate.nu"),
+    (changed("nu = 0.3 }", "nu = -1 }"), "problem.substrate.nu"),
+    (changed("nu = 0.3 }", "nu = 0.3, G = 80e9 }"), "problem.substrate.G is an unknown key"),
+    (changed("E = 210e9", "E = 210"), "problem"),
+    (changed("E = 420e9", "E = 420e17"), "moduli differ"),
+    (changed("E = 420e9", "E = -420e9"), "problem.coatings.0.E"),
+    (changed("[[problem.coatings]]", "[problem.coatings]"), "problem.coatings"),
+    (changed("[[problem.coatings]]", "[[coatings]]"), "coatings is an unknown key"),
+    (
+        changed("[[problem.coatings]]", "[[problem.coatings]]\nname = 'TiN'"),
+        "problem.coatings.0.name is an unknown",
+    ),
+    (changed("thickness = 70e-6", "thickness = 70e-6\nthickness_over_a_h = 1"), "problem.coatings.0"),
+    (changed("thickness = 70e-6", "thickness = 1e-30"), "problem.coatings.0.thickness"),
+    (changed("thickness = 70e-6", "thickness_over_a_h = 1e6"), "problem.coatings.0.thickness"),
+    (
+        changed(
+            "[[problem.coatings]]\n",
+            "[[problem.coatings]]\nE = 1e9\nnu = 0.3\nthickness = 1e-5\n" * 50 + "[[problem.coatings]]\n",
+        ),
+        "problem.coatings",
+    ),
+    (changed('title = "Stiff coating"', 'title = ""'), "title"),
+    (changed('title = "Stiff coating"', f'title = "{"x" * 600}"'), "title"),
+    (changed('title = "Stiff coating"', "title = ['a']"), "title must be text"),
+    (changed('title = "Stiff coating"', 'title = "Stiff coating'), "not TOML"),
+    (
+        changed("[problem]", "[semianalytic]\npatches = 1e3\n[problem]"),
+        "semianalytic.patches must be a whole number",
+    ),
+    (changed("[problem]", "[semianalytic]\npatches = 128\n[problem]"), "semianalytic.patches must be odd"),
+    (changed("[problem]", "[semianalytic]\npatches = 100001\n[problem]"), "semianalytic.patches"),
+    (changed("[problem]", "[semianalytic]\nconversion = 'magic'\n[problem]"), "semianalytic.conversion"),
+    (changed("[problem]", "[fem_reference]\norder = 9\n[problem]"), "fem_reference.order"),
+    (changed("[problem]", "[fem_reference]\nquality = 'best'\n[problem]"), "fem_reference.quality"),
+    (changed("[problem]", "[abaqus]\nlicence = 1\n[problem]"), "abaqus is an unknown key"),
+    (changed('"sigma_xx"', '"sigma_rr"'), "claim.0.quantity"),
+    (changed('"surface"', '"interface 2, upper side"'), "claim.0.line"),
+    (changed('"fem_reference"]', '"hertz"]'), "claim.0.between"),
+    (changed('"fem_reference"]', '"semianalytic"]'), "claim.0.between"),
+    (changed('"fem_reference"]', '"fem_reference", "hertz"]'), "claim.0.between"),
+    (changed("cap = 0.005", "cap = 2"), "claim.0.cap"),
+    (changed("cap = 0.005", "cap = 0.005\nedge = 1"), "claim.0.edge"),
+    (changed('why = "peak"', ""), "claim.0.why is missing"),
+    ((GOOD + JUDGED * 1001).encode(), "claim"),
+]
+assert len(BAD) >= 60
+
+
+@pytest.mark.parametrize(("raw", "said"), BAD, ids=range(len(BAD)))
+def test_bad_file_written_by_hand_names_file_and_key(tmp_path, monkeypatch, raw, said):
+    path = tmp_path / "mine.toml"
+    path.write_bytes(raw)
+    sentence = complaint_of(path, monkeypatch)
+    assert sentence is not None
+    assert sentence.startswith(f"{path}: ")
+    assert said in sentence
+
+
+def test_zero_with_a_monstrous_exponent_is_a_number(tmp_path):
+    path = PUBLISHED[1]
+    for name in {table["file"] for table in tomllib.loads(path.read_text())["table"]}:
+        text = (path.parent / name).read_text()
+        (tmp_path / name).write_text(re.sub(r"(?m)^([\d.]+,)[^,]+", r"\g<1>0e999999999", text, count=1))
+    shutil.copy(path, tmp_path)
+    assert read_published(tmp_path / path.name).columns
+
+
+def test_name_that_no_file_should_have_is_refused(tmp_path, monkeypatch):
+    for name in ("two\nlines", "\x1b[31mred", "x" * 120, "\udcff"):
+        path = tmp_path / f"{name}.toml"
+        path.write_text(GOOD)
+        sentence = complaint_of(path, monkeypatch)
+        assert sentence is not None, repr(name)
+        assert "printable characters" in sentence

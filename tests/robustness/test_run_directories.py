@@ -1,0 +1,339 @@
+"""Run directories under rough treatment: damaged files, full and read-only disks, eight runs at once."""
+
+import json
+import os
+import random
+import resource
+import shutil
+import subprocess
+import sys
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from quick_case import COMMAND, QUICK, coatcheck
+
+from verification.cases.contact import parse_case
+from verification.cases.published import published_cases, read_published
+from verification.commands.solving import kept_results
+from verification.running import pool
+from verification.running.contact import judge_case, solve_case
+from verification.running.fields import plane_path, write_plane
+from verification.running.pool import run_tasks
+from verification.running.provenance import fingerprint
+from verification.running.published import failed as printed_failed
+from verification.running.result import from_json, to_json
+from verification.running.store import (
+    PART,
+    StoreError,
+    locked,
+    read_bounded,
+    read_checked,
+    write_atomically,
+    write_checked,
+)
+from verification.running.tasks import case_task, kept_result, result_path
+from verification.sampling.plane import sample_plane
+
+
+def content(folder: Path) -> dict[str, bytes]:
+    return {str(p.relative_to(folder)): p.read_bytes() for p in sorted(folder.rglob("*")) if p.is_file()}
+
+
+@pytest.fixture(scope="module")
+def stored(tmp_path_factory):
+    """Twenty cases with their results as workers leave them, solved once."""
+    folder = tmp_path_factory.mktemp("stored")
+    cases = [parse_case(QUICK.encode(), Path(f"case-{n}.toml")) for n in range(20)]
+    solved = solve_case(cases[0])
+    result = judge_case(cases[0], solved)
+    for case in cases:
+        own = to_json(replace(result, name=case.name)) | {"made_by": fingerprint()}
+        write_checked(result_path(folder, case), own)
+        write_plane(plane_path(folder, case.name), sample_plane((), solved.solutions), case.text)
+    return folder, cases
+
+
+def damaged(whole: bytes, rng: random.Random, number: int) -> bytes:
+    if number % 2:
+        return whole[: rng.randrange(len(whole))]
+    flipped = bytearray(whole)
+    flipped[rng.randrange(len(whole))] ^= 1 << rng.randrange(8)
+    return bytes(flipped)
+
+
+def test_two_hundred_damaged_files_are_named_and_computed_again(tmp_path, stored, monkeypatch, capsys):
+    origin, cases = stored
+    folder = tmp_path / "run"
+    shutil.copytree(origin, folder)
+    assert len(kept_results(cases, folder)) == len(cases)
+    assert capsys.readouterr().err == ""
+    popen = subprocess.Popen
+    rng = random.Random(20261121)
+
+    def copied(words, **keywords):
+        # A worker that need not compute: what it would leave is known.
+        path = Path(next(word for word in words if word.endswith(".json")))
+        keywords.pop("pass_fds")
+        return popen(["cp", origin / "cases" / path.name, path], **keywords)
+
+    monkeypatch.setattr(pool.subprocess, "Popen", copied)
+    count = 0
+    for turn in range(10):
+        files = [
+            result_path(folder, c) if (n + turn) % 3 else plane_path(folder, c.name)
+            for n, c in enumerate(cases)
+        ]
+        for number, file in enumerate(files):
+            file.write_bytes(damaged(file.read_bytes(), rng, number))
+        kept = kept_results(cases, folder)
+        said = capsys.readouterr().err.splitlines()
+        assert kept == {}
+        assert len(said) == len(files)
+        for file, line in zip(files, said, strict=True):
+            assert line.startswith(f"coatcheck: {file}: ")
+            assert line.endswith("; computed again")
+        results = run_tasks([case_task(c, folder) for c in cases], jobs=4, time_limit=300)
+        assert {r.outcome for r in results} == {"AGREES"}
+        shutil.rmtree(folder / "planes")
+        shutil.copytree(origin / "planes", folder / "planes")
+        assert content(folder) == content(origin)
+        count += len(files)
+    assert count == 200
+    sys.stdout.write(f"{count} damaged files, all named and computed again\n")
+
+
+def test_result_of_another_file_version_or_case_is_not_kept(tmp_path, stored):
+    origin, (first, second, *_) = stored
+    folder = tmp_path / "run"
+    shutil.copytree(origin, folder)
+    assert kept_result(folder, first) is not None
+    shutil.copy(result_path(folder, second), result_path(folder, first))
+    with pytest.raises(StoreError, match=r"case-0\.json: holds the result of another case file"):
+        kept_result(folder, first)
+    with pytest.raises(StoreError, match=r"case-1\.json: holds the result of another case file"):
+        kept_result(folder, replace(second, text=second.text + "# changed\n"))
+    payload = read_checked(result_path(folder, second))
+    write_checked(result_path(folder, second), payload | {"made_by": "0" * 64})
+    with pytest.raises(StoreError, match=r"case-1\.json: made by another version"):
+        kept_result(folder, second)
+
+
+def test_every_stored_file_carries_its_checksum_and_its_input(stored):
+    folder, cases = stored
+    for case in cases:
+        for path in (result_path(folder, case), plane_path(folder, case.name)):
+            assert path.read_bytes().startswith(b'{"sha256": "')
+            assert read_checked(path)["case_file"] == case.text
+
+
+def parts(node: object, path: tuple = ()) -> Iterator[tuple]:
+    items = node.items() if isinstance(node, dict) else enumerate(node) if isinstance(node, list) else ()
+    for key, value in items:
+        yield (*path, key)
+        yield from parts(value, (*path, key))
+
+
+def test_result_of_a_stranger_is_read_or_refused_but_never_trips(stored):
+    folder, cases = stored
+    payload = read_checked(result_path(folder, cases[0]))
+    rng = random.Random(8)
+    places = [place for place in parts(payload) if len(place) < 6]
+    count = {"read": 0, "refused": 0}
+    for _ in range(300):
+        data = json.loads(json.dumps(payload))
+        *path, last = rng.choice(places)
+        node = data
+        for step in path:
+            node = node[step]
+        strange = ["text", 7, None, True, [], {}, [[1]], 1e308, "NaN", "__import__('os')", {"a": []}, -1]
+        node[last] = rng.choice(strange)
+        try:
+            to_json(from_json(data))
+        except ValueError:
+            count["refused"] += 1
+        else:
+            count["read"] += 1
+    assert count["refused"] > 100
+    sys.stdout.write(f"300 results of strangers: {count['read']} read, {count['refused']} refused\n")
+
+
+def test_what_was_cut_off_or_put_in_twice_is_refused(tmp_path):
+    path = tmp_path / "a.json"
+    write_checked(path, {"x": 1})
+    whole = path.read_text()
+    for text in (
+        "",
+        "{}",
+        "[]",
+        "[" * 100_000,
+        whole + whole,
+        whole.replace("}\n", ', "payload": {"x": 2}}\n'),
+        whole.replace('"sha256"', '"sha512"'),
+        whole.replace('{"x": 1}', "7"),
+        "null",
+    ):
+        path.write_text(text)
+        with pytest.raises(StoreError, match=r"a\.json: "):
+            read_checked(path)
+
+
+def test_pipe_device_or_directory_in_the_place_of_a_file_holds_nobody_up(tmp_path):
+    os.mkfifo(tmp_path / "pipe")
+    (tmp_path / "zero").symlink_to("/dev/zero")
+    for name in ("pipe", "zero", "."):
+        with pytest.raises(StoreError):
+            read_bounded(tmp_path / name, 1000)
+    (tmp_path / "big").write_text("x" * 11)
+    with pytest.raises(StoreError, match="larger than 10 bytes"):
+        read_bounded(tmp_path / "big", 10)
+    (tmp_path / "run").mkdir()
+    os.mkfifo(tmp_path / "run" / ".lock")
+    with locked(tmp_path / "run"):
+        pass
+
+
+def test_nothing_is_written_through_a_link(tmp_path):
+    outside, run = tmp_path / "outside", tmp_path / "run"
+    outside.mkdir()
+    run.mkdir()
+    (outside / "precious").write_text("precious")
+    (run / "a.json").symlink_to(outside / "precious")
+    write_atomically(run / "a.json", "new")
+    assert (run / "a.json").read_text() == "new"
+    (run / ".lock").symlink_to(outside / "lock")
+    with pytest.raises(StoreError, match="cannot be written"), locked(run):
+        pass
+    (run / ".lock").unlink()
+    (run / "cases").symlink_to(outside)
+    with pytest.raises(StoreError, match="cases: a link"), locked(run):
+        pass
+    assert content(outside) == {"precious": b"precious"}
+
+
+def test_half_written_files_of_a_killed_run_are_cleared_and_others_left(tmp_path):
+    (tmp_path / "cases").mkdir()
+    left = [tmp_path / f".report.html.x{PART}", tmp_path / "cases" / f".a.json.y{PART}"]
+    mine = [tmp_path / ".hidden", tmp_path / "cases" / "a.json", tmp_path / f"mine{PART}"]
+    for path in (*left, *mine):
+        path.write_text("x")
+    with locked(tmp_path):
+        pass
+    assert not any(path.exists() for path in left)
+    assert all(path.exists() for path in mine)
+
+
+@pytest.fixture
+def small_disk(tmp_path):
+    """A disk of 4 MB of its own; skipped where none may be mounted."""
+    place = tmp_path / "disk"
+    place.mkdir()
+    if subprocess.run(
+        ["mount", "-t", "tmpfs", "-o", "size=4m", "none", place], capture_output=True
+    ).returncode:
+        pytest.skip("no disk may be mounted here")
+    yield place
+    subprocess.run(["umount", "-l", place], check=True)
+
+
+def one_sentence(done: subprocess.CompletedProcess, said: str) -> None:
+    assert done.returncode == 2, done.stderr
+    assert done.stderr.startswith("coatcheck: ")
+    assert done.stderr.count("\n") == 1, done.stderr
+    assert said in done.stderr
+
+
+@pytest.mark.slow
+def test_full_disk_is_one_sentence_and_the_earlier_results_stay(tmp_path, small_disk):
+    (tmp_path / "quick.toml").write_text(QUICK)
+    out = small_disk / "out"
+    assert coatcheck("run", "quick.toml", "-q", "-o", str(out), cwd=tmp_path).returncode == 0
+    earlier = content(out)
+    count = 0
+    for left in (0, 4096, 12288, 40960, 81920, 163840, 327680, 655360):
+        ballast = small_disk / "ballast"
+        free = shutil.disk_usage(small_disk).free
+        ballast.write_bytes(b"\0" * max(free - left, 0))
+        done = coatcheck("run", "quick.toml", "-q", "-o", str(out), cwd=tmp_path)
+        ballast.unlink()
+        if done.returncode == 0:
+            break
+        one_sentence(done, "No space left on device")
+        assert content(out) == earlier or content(out).keys() == earlier.keys()
+        # What stands can still be read: nothing was cut short.
+        for file in (*out.glob("cases/*"), *out.glob("planes/*")):
+            read_checked(file)
+        assert content(out)["report.html"] == earlier["report.html"]
+        assert content(out)["report.json"] == earlier["report.json"]
+        count += 1
+    assert count >= 3
+    sys.stdout.write(f"disk full at {count} moments: one sentence each, earlier results intact\n")
+
+
+@pytest.mark.slow
+def test_read_only_disk_is_one_sentence(tmp_path, small_disk):
+    (tmp_path / "quick.toml").write_text(QUICK)
+    out = small_disk / "out"
+    assert coatcheck("run", "quick.toml", "-q", "-o", str(out), cwd=tmp_path).returncode == 0
+    earlier = content(out)
+    subprocess.run(["mount", "-o", "remount,ro", small_disk], check=True)
+    one_sentence(coatcheck("run", "quick.toml", "-o", str(out), cwd=tmp_path), "Read-only file system")
+    one_sentence(
+        coatcheck("run", "quick.toml", "-o", str(small_disk / "new"), cwd=tmp_path), "Read-only file system"
+    )
+    assert content(out) == earlier
+
+
+def test_limit_on_file_size_is_one_sentence_and_the_earlier_results_stay(tmp_path):
+    # What a full disk does, on any machine: no file may grow beyond 60 kB, which a result exceeds.
+    (tmp_path / "quick.toml").write_text(QUICK)
+    earlier = {name: b"earlier" for name in ("report.html", "report.json", "junit.xml")}
+    (tmp_path / "out").mkdir()
+    for name, text in earlier.items():
+        (tmp_path / "out" / name).write_bytes(text)
+
+    def small():
+        resource.setrlimit(resource.RLIMIT_FSIZE, (60_000, 60_000))
+
+    done = coatcheck("run", "quick.toml", "-q", "-o", "out", cwd=tmp_path, preexec_fn=small)
+    one_sentence(done, "cannot be written (File too large)")
+    found = content(tmp_path / "out")
+    assert {name: found[name] for name in earlier} == earlier
+    assert found.keys() - earlier <= {".lock", "cases/quick.json", "planes/quick.json"}
+
+
+@pytest.mark.slow
+def test_of_eight_runs_at_once_one_works_and_the_others_say_why_not(tmp_path):
+    (tmp_path / "quick.toml").write_text(QUICK.replace("hertz", "fem_reference").replace("1e-6", "1e-2"))
+    runs = [
+        subprocess.Popen(
+            [*COMMAND, "run", "quick.toml", "-q", "-o", "out"],
+            cwd=tmp_path,
+            stderr=subprocess.PIPE,
+            text=True,
+        )
+        for _ in range(8)
+    ]
+    ends = [(run.communicate(timeout=300)[1], run.returncode) for run in runs]
+    worked = [said for said, code in ends if code == 0]
+    refused = [said for said, code in ends if code == 2]
+    assert len(worked) + len(refused) == 8
+    assert len(worked) >= 1
+    assert set(worked) == {""}
+    assert set(refused) <= {
+        "coatcheck: out: another coatcheck run is writing here; wait for it or choose --output\n"
+    }
+    assert read_checked(tmp_path / "out" / "cases" / "quick.json")["outcome"] == "AGREES"
+    assert json.loads((tmp_path / "out" / "report.json").read_text())
+    sys.stdout.write(f"8 runs at once: {len(worked)} worked, {len(refused)} said why not\n")
+
+
+def test_result_of_every_published_case_is_known_as_its_own(tmp_path):
+    # Spheres, discs and loading curves: each kind of problem comes back from its file as it went in.
+    for path in published_cases().values():
+        case = read_published(path)
+        stored = to_json(printed_failed(case, "a process that died", 1.0)) | {"made_by": fingerprint()}
+        write_checked(result_path(tmp_path, case), stored)
+        # It is the case's own, but a result it is not, so it is computed again.
+        assert kept_result(tmp_path, case) is None

@@ -1,0 +1,243 @@
+"""What comes from a stranger is data: never run, never a way out of the output directory, never markup."""
+
+import ast
+import json
+import shutil
+import subprocess
+import sys
+import time
+from dataclasses import replace
+from html.parser import HTMLParser
+from pathlib import Path
+
+import pytest
+from quick_case import QUICK
+
+from verification.cases.contact import parse_case, read_case
+from verification.cases.published import is_published
+from verification.cases.toml import CaseError
+from verification.commands.common import one_line
+from verification.judging.verdict import Outcome, Verdict
+from verification.report.material import Material
+from verification.report.page import render
+from verification.running.contact import failed
+from verification.running.fields import fields_path, plane_path
+from verification.running.result import RunInfo, SourceResult
+from verification.running.store import StoreError
+from verification.running.stored import read_run
+from verification.running.tasks import result_path
+
+HOUSE = Path(__file__).parents[2]
+PACKAGES = ("semianalytic", "fem_reference", "verification")
+SOURCES = sorted(path for package in PACKAGES for path in (HOUSE / package).rglob("*.py"))
+# Modules that make objects out of bytes, and calls that make code out of text.
+UNSAFE = {"pickle", "cPickle", "dill", "cloudpickle", "joblib", "marshal", "shelve", "yaml", "xmlrpc"}
+CODE = {"eval", "exec", "compile", "__import__"}
+# A planted fault is made from this program's own source and catalogue; no file is read for it.
+PLANTED = "verification/credibility/faults/planting.py"
+SCRIPT = "<script>alert(1)</script><img src=x onerror=alert(1)>{{ 7 * 7 }}{% raw %}]]></style>"
+
+
+def called(node: ast.Call) -> str:
+    """The dotted name of what is called."""
+    names, function = [], node.func
+    while isinstance(function, ast.Attribute):
+        names.append(function.attr)
+        function = function.value
+    names.append(function.id if isinstance(function, ast.Name) else "")
+    return ".".join(reversed(names))
+
+
+def test_nothing_makes_code_or_objects_out_of_files():
+    found = []
+    for path in SOURCES:
+        name = path.relative_to(HOUSE).as_posix()
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            modules = []
+            if isinstance(node, ast.Import):
+                modules = [alias.name for alias in node.names]
+            elif isinstance(node, ast.ImportFrom):
+                modules = [node.module or ""]
+            found += [(name, m) for m in modules if m.split(".")[0] in UNSAFE]
+            if not isinstance(node, ast.Call):
+                continue
+            words = {w.arg: str(w.value.value) for w in node.keywords if isinstance(w.value, ast.Constant)}
+            if called(node) in CODE and name != PLANTED:
+                found.append((name, ast.unparse(node)))
+            if called(node).endswith((".load", ".loads", ".load_module")) and not called(node).startswith(
+                ("json.", "tomllib.", "MeshTri.", "Mesh.", "image.")
+            ):
+                found.append((name, ast.unparse(node)))
+            if words.get("allow_pickle") == "True" or words.get("shell") == "True":
+                found.append((name, ast.unparse(node)))
+            if called(node) in ("os.system", "os.popen", "subprocess.getoutput"):
+                found.append((name, ast.unparse(node)))
+            if called(node).endswith("Environment") and words.get("autoescape") != "True":
+                found.append((name, ast.unparse(node)))
+    assert len(SOURCES) > 80
+    assert found == []
+
+
+def test_toml_is_read_in_one_place_only():
+    readers = [path.name for path in SOURCES if "tomllib" in path.read_text(encoding="utf-8")]
+    assert readers == ["toml.py"]
+
+
+class Tags(HTMLParser):
+    def __init__(self):
+        super().__init__()
+        self.count, self.handlers = {}, []
+
+    def handle_starttag(self, tag, attrs):
+        self.count[tag] = self.count.get(tag, 0) + 1
+        self.handlers += [name for name, _ in attrs if name.startswith("on")]
+
+
+def tags_of(page: str) -> Tags:
+    tags = Tags()
+    tags.feed(page)
+    return tags
+
+
+def page_of(text: str) -> str:
+    """The page of a failed case in which every text is ``text``."""
+    case = parse_case(QUICK.encode(), Path("mine.toml"))
+    result = failed(case, text, 1.0)
+    claim = replace(result.verdicts[0][0], why=text, quantity=text, line=text, between=(text, text))
+    result = replace(
+        result,
+        name=text,
+        title=text,
+        source=text,
+        text=text,
+        sources=(SourceResult(text, 1.0, text, {text: text}, ((text, text, 1.0),)),),
+        verdicts=((claim, Verdict(Outcome.NO_RESULT, text)),),
+    )
+    return render(Material([result], RunInfo(text, text, 1.0, 1, text, text, {text: text})))
+
+
+def test_text_of_a_stranger_stays_text_in_the_page():
+    plain, strange = tags_of(page_of("plain")), tags_of(page_of(SCRIPT))
+    assert strange.count == plain.count
+    assert strange.handlers == plain.handlers
+    assert "{{ 7 * 7 }}" in page_of(SCRIPT)
+    assert "<script>alert" not in page_of(SCRIPT)
+
+
+NAMES = [
+    "..",
+    "...",
+    "-rf",
+    "--help",
+    "con",
+    "nul",
+    "a b",
+    "*",
+    "%2e%2e%2f",
+    "a\\b",
+    "~",
+    "$HOME",
+    "β-Si₃N₄",
+    "x" * 100,
+]
+
+
+def test_no_name_of_a_case_leads_out_of_the_output_directory(tmp_path):
+    for name in NAMES:
+        (tmp_path / f"{name}.toml").write_text(QUICK)
+        case = read_case(tmp_path / f"{name}.toml")
+        for path in (
+            result_path(tmp_path, case),
+            plane_path(tmp_path, case.name),
+            fields_path(tmp_path, case.name),
+        ):
+            assert path.resolve().parent.parent == tmp_path.resolve()
+            assert path.name == f"{case.name}.json"
+
+
+def test_run_with_strange_names_writes_into_its_output_directory_only(tmp_path):
+    for name in ("..", "../-rf"):
+        (tmp_path / "here").mkdir(exist_ok=True)
+        (tmp_path / "here" / f"{name}.toml").write_text(QUICK)
+    before = sorted(tmp_path.rglob("*"))
+    done = subprocess.run(
+        [
+            sys.executable,
+            "-m",
+            "verification.cli",
+            "run",
+            "...toml",
+            "../-rf.toml",
+            "-q",
+            "-o",
+            "out",
+        ],
+        cwd=tmp_path / "here",
+        capture_output=True,
+        text=True,
+        timeout=300,
+    )
+    assert done.returncode == 0, done.stderr
+    after = sorted(
+        path for path in tmp_path.rglob("*") if tmp_path / "here" / "out" not in (path, *path.parents)
+    )
+    assert after == before
+    assert sorted(path.stem for path in (tmp_path / "here" / "out" / "cases").iterdir()) == [
+        "-rf",
+        "..",
+    ]
+
+
+@pytest.mark.parametrize(
+    ("raw", "said"),
+    [
+        ("a = " + "[" * 100_000, "nested too deeply"),
+        ("a." * 100_000 + "a = 1", "dots"),
+        ("\n".join(f"k{i}." + "a." * 200 + "a = 1" for i in range(200)), r"mine\.toml: "),
+        ("[[problem.coatings]]\nE = 1.0\nnu = 0.3\nthickness = 1.0\n" * 1_000_000, "larger than"),
+        ("coatings = [" + "{E=1},\n" * 30_000 + "]", r"mine\.toml: "),
+        ("load = " + "9" * 200_000, "not TOML"),
+        ("a = '" + "x" * 240_000 + "'", r"mine\.toml: "),
+        ("a = [" + "1e308," * 40_000 + "]", r"mine\.toml: "),
+        ("[a]\n" * 60_000, "not TOML"),
+    ],
+    ids=range(9),
+)
+def test_file_made_to_exhaust_the_reader_is_refused_at_once(tmp_path, raw, said):
+    path = tmp_path / "mine.toml"
+    path.write_text(raw)
+    began = time.process_time()
+    assert not is_published(path)
+    with pytest.raises(CaseError, match=said) as complaint:
+        read_case(path)
+    assert time.process_time() - began < 3
+    assert len(one_line(str(complaint.value))) <= 1000
+
+
+def test_report_of_a_stranger_is_read_or_refused(tmp_path):
+    place = tmp_path / "report.json"
+    good = {"schema": "coatcheck-report/1", "cases": [], "run": {}}
+    info = RunInfo("c", "s", 1.0, 1, None, "m", {})
+    for text in (
+        "",
+        "[" * 200_000,
+        "7",
+        json.dumps(good),
+        json.dumps(good | {"run": vars(info) | {"seconds": "soon"}}),
+        json.dumps(good | {"run": vars(info) | {"versions": 7}}),
+        json.dumps(good | {"run": vars(info), "cases": [{"schema": "coatcheck-report/1", "name": []}]}),
+        json.dumps(good | {"run": vars(info), "cases": {"a": 1}}),
+    ):
+        place.write_text(text)
+        with pytest.raises(StoreError, match=r"report\.json: "):
+            read_run(tmp_path)
+    shutil.rmtree(tmp_path)
+    with pytest.raises(StoreError, match="cannot be read"):
+        read_run(tmp_path)
+
+
+def test_complaint_shows_no_control_characters():
+    said = one_line("a\x1b[2Jb\r\nc\u202ed\udcff" + "x" * 5000)
+    assert said.isprintable()
+    assert said.startswith("a\\x1b[2Jb\\r\\nc\\u202ed\\udcff")
+    assert len(said) == 1000

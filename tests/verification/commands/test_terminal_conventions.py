@@ -1,0 +1,323 @@
+"""The command line as people expect it: examples, exit codes, completion, plain pipes, a stop that keeps."""
+
+import io
+import json
+import os
+import re
+import shutil
+import signal
+import subprocess
+import time
+from dataclasses import replace
+from functools import partial
+
+import pytest
+from quick_case import COMMAND, QUICK, coatcheck
+from rich.console import Console
+from synthetic_results import INFO, contact, result_of
+
+from verification.cases.contact import shipped_cases
+from verification.cases.published import published_cases
+from verification.commands import common
+from verification.commands.compare import compare
+from verification.commands.list_cases import list_cases
+from verification.report.material import Material
+from verification.report.pdf import NoBrowser, browser, printed
+from verification.report.write import report_json
+from verification.running.result import to_json
+from verification.running.store import write_checked
+from verification.running.stored import read_run
+
+COMMANDS = (
+    "run",
+    "list",
+    "report",
+    "view",
+    "compare",
+    "faults",
+    "alarms",
+    "bench",
+    "completion",
+    "baseline",
+    "baseline update",
+    "baseline show",
+    "study",
+    "study thickness",
+)
+
+
+def asked(capsys, *words):
+    """Exit code, output and complaints of a command in this process."""
+    from verification.cli import app
+
+    code = app([str(word) for word in words], result_action="return_value")
+    said = capsys.readouterr()
+    return code, said.out, said.err
+
+
+@pytest.fixture
+def stored(tmp_path):
+    """A run directory with two made-up cases, without its page."""
+    results = [
+        result_of(contact(), name=name, title=f"Case <{name}>", points=5, text=f"title = '{name}'")
+        for name in ("second", "first")
+    ]
+    for result in results:
+        write_checked(tmp_path / "run" / "cases" / f"{result.name}.json", to_json(result))
+    (tmp_path / "run" / "report.json").write_text(report_json(Material(results, INFO)))
+    return tmp_path / "run"
+
+
+def test_every_command_has_examples_and_exit_codes(capsys):
+    from verification.cli import app
+
+    for words in COMMANDS:
+        app([*words.split(), "--help"], result_action="return_value")
+        said = capsys.readouterr().out
+        assert "Examples:\n\n    " in said, words
+        assert f"    coatcheck {words.split()[0]}" in said or "coatcheck completion" in said, words
+        assert "Exit codes: 0 all agree" in said, words
+        assert "130" in said, words
+
+
+@pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])
+def test_completion_knows_commands_and_options(capsys, shell):
+    from verification.cli import app
+
+    assert app(["completion", shell], result_action="return_value") == 0
+    script = capsys.readouterr().out
+    for word in ("coatcheck", "baseline", "screenshot", "resume"):
+        assert word in script
+
+
+@pytest.mark.parametrize(
+    ("shell", "words"),
+    [
+        # What each shell does on Tab: the word begun, then what it may become.
+        ("bash", 'COMP_WORDS=(coatcheck re) COMP_CWORD=1; _coatcheck; echo "${COMPREPLY[@]}"; complete -p'),
+        (
+            "zsh",
+            "whence -f $_comps[coatcheck] && [[ -n $_comps[coatcheck] ]] && echo default",
+        ),
+        ("fish", "complete -C 'coatcheck re'; echo default"),
+    ],
+)
+def test_completion_works_in_the_shell_itself(capsys, tmp_path, shell, words):
+    if shutil.which(shell) is None:
+        pytest.skip(f"no {shell} on this machine")
+    script = tmp_path / "completion"
+    script.write_text(asked(capsys, "completion", shell)[1])
+    begin = "autoload -Uz compinit; compinit -u -D; " if shell == "zsh" else ""
+    done = subprocess.run(
+        [shell, "-c", f"{begin}source {script}; {words}"], capture_output=True, text=True, timeout=60
+    )
+    assert "report" in done.stdout, done.stderr
+    # Where no command fits, the names of files.
+    assert "default" in done.stdout
+
+
+@pytest.mark.parametrize("width", [40, 80])
+def test_the_table_stands_in_a_narrow_terminal(stored, capsys, monkeypatch, width):
+    from verification.commands.run import _print_table
+    from verification.regression.baseline import Update, regression
+    from verification.running.stored import read_run
+
+    monkeypatch.setenv("COLUMNS", str(width))
+    monkeypatch.setenv("TERM", "dumb")
+    results = [replace(result, name="15_dlc_chromium_sliding") for result in read_run(stored).results[:1]]
+    beside = regression(results, None, "reports/baseline", INFO, whole=False)
+    _print_table(
+        results,
+        stored / "report.html",
+        1.0,
+        replace(beside, update=Update("why", "2026-11-21", None, "", {}, 0, {})),
+    )
+    lines = capsys.readouterr().out.splitlines()
+    table = lines[: next(n for n, line in enumerate(lines) if line.startswith("baseline of"))]
+    assert max(len(line.rstrip()) for line in table) <= width
+    assert not any("\N{HORIZONTAL ELLIPSIS}" in line for line in table)
+
+
+def test_names_are_whole_in_a_pipe(tmp_path):
+    names = [*shipped_cases(), *published_cases()]
+    listed = subprocess.run([*COMMAND, "list"], capture_output=True, text=True, cwd=tmp_path, timeout=60)
+    lines = listed.stdout.splitlines()
+    assert [line.split()[0] for line in lines if line.strip() and line.split()[0] in names] == names
+    # Two heads and a line between the tables: no row is folded.
+    assert len(lines) == len(names) + 3
+    assert "…" not in listed.stdout
+
+
+@pytest.fixture
+def screen(monkeypatch):
+    """A terminal of the given width, whose text a call returns without its colours."""
+    written = io.StringIO()
+
+    def of_width(width):
+        monkeypatch.setattr(
+            common, "Console", partial(Console, file=written, force_terminal=True, width=width)
+        )
+        return lambda: re.sub(r"\x1b\[[0-9;]*m", "", written.getvalue())
+
+    return of_width
+
+
+@pytest.mark.parametrize("width", [80, 120])
+def test_names_are_whole_in_a_terminal(stored, screen, width):
+    shown = screen(width)
+    name = "16_ratio_quarter_sliding_of_mine"
+    results = [replace(result, name=name) for result in read_run(stored).results[:1]]
+    (stored / "report.json").write_text(report_json(results, INFO))
+    assert list_cases() == 0
+    assert compare(stored, stored) == 0
+    assert [n for n in [name, *shipped_cases(), *published_cases()] if n not in shown()] == []
+    assert max(map(len, shown().splitlines())) <= width
+
+
+def test_a_name_wider_than_half_the_terminal_is_folded_not_cut(screen):
+    shown = screen(30)
+    table = common.named_table("case", "title")
+    table.add_row("16_ratio_quarter_sliding", "Compliant coating, sliding")
+    common.print_out(table)
+    letters = [line[1:16].split(" ")[0] for line in shown().splitlines()[1:]]
+    assert "16_ratio_quarter_sliding" in "".join(letters)
+
+
+@pytest.mark.parametrize(
+    ("words", "nearest"),
+    [
+        ("run 05_ratio4", "05_ratio_4"),
+        ("run Publishd", "published"),
+        ("run hertz", "hertz_1882"),
+        ("view 05_ratio_5", "05_ratio_4"),
+        ("faults kapsign", "kap_sign"),
+        ("faults --group stres", "stress"),
+        ("study thickness silver_on_stel", "silver_on_steel"),
+        ("report rum", "run"),
+        ("compare run rum", "run"),
+    ],
+)
+def test_a_mistyped_name_is_answered_with_the_nearest(stored, capsys, monkeypatch, words, nearest):
+    monkeypatch.chdir(stored.parent)
+    code, _, error = asked(capsys, *words.split())
+    assert code == 2
+    assert len(error.splitlines()) == 1
+    assert f"did you mean {nearest}" in error
+
+
+def test_a_name_like_no_other_gets_no_suggestion(capsys):
+    code, _, error = asked(capsys, "run", "zzz")
+    assert (code, "did you mean" in error) == (2, False)
+
+
+def test_what_is_piped_has_no_colours(tmp_path):
+    (tmp_path / "quick.toml").write_text(QUICK)
+    done = coatcheck("run", "quick.toml", "-v", cwd=tmp_path, env=os.environ | {"TERM": "xterm-256color"})
+    assert done.returncode == 0, done.stderr
+    assert "\x1b" not in done.stdout + done.stderr
+    # Verbose: every source with its seconds.
+    lines = [line.split() for line in done.stderr.splitlines()]
+    assert {words[0] for words in lines if words[-1:] == ["s"] or "iterations" in words} >= {"hertz"}
+
+
+def test_ctrl_c_keeps_what_was_done_and_says_so(tmp_path):
+    (tmp_path / "quick.toml").write_text(QUICK)
+    words = ["run", "quick.toml", "05_ratio_4", "--jobs", "1", "--output", "out"]
+    process = subprocess.Popen(
+        [*COMMAND, *words],
+        cwd=tmp_path,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),  # ignored below nohup and the like
+    )
+    kept = tmp_path / "out" / "cases" / "quick.json"
+    deadline = time.monotonic() + 120
+    while not kept.exists() and process.poll() is None and time.monotonic() < deadline:
+        time.sleep(0.05)
+    time.sleep(0.3)
+    process.send_signal(signal.SIGINT)
+    _, said = process.communicate(timeout=60)
+    assert process.returncode == 130, said
+    assert "stopped; 1 of 2 cases are finished and kept in out" in said
+    assert "--resume" in said
+    assert "Traceback" not in said
+    assert not (tmp_path / "out" / "cases" / "05_ratio_4.json").exists()
+    written = kept.stat().st_mtime_ns
+    again = coatcheck("run", "quick.toml", "--output", "out", "--resume", "--json", cwd=tmp_path)
+    assert again.returncode == 0, again.stderr
+    assert kept.stat().st_mtime_ns == written
+
+
+def test_the_report_of_a_stored_run_is_written_again(stored, capsys):
+    code, out, _ = asked(capsys, "report", stored, "--json")
+    assert code == 0
+    (page,) = json.loads(out)["files"]
+    first = (stored / "report.html").read_text(encoding="utf-8")
+    assert page == str(stored / "report.html")
+    # The order and the particulars of the run it was.
+    assert first.index("Case &lt;second&gt;") < first.index("Case &lt;first&gt;")
+    assert INFO.started.split("T")[0] in first
+    assert asked(capsys, "report", stored, "-q") == (0, "", "")
+    assert (stored / "report.html").read_text(encoding="utf-8") == first
+
+
+def test_a_stopped_run_has_a_report_of_what_there_is(stored, capsys):
+    (stored / "report.json").unlink()
+    assert asked(capsys, "report", stored)[0] == 0
+    text = (stored / "report.html").read_text(encoding="utf-8")
+    assert "stopped before its report" in text
+    assert text.count('<article class="case"') == 2
+
+
+@pytest.mark.parametrize("spoiled", ["flipped", "cut", "text"])
+def test_a_damaged_case_is_named_and_the_page_left_alone(stored, capsys, spoiled):
+    path = stored / "cases" / "first.json"
+    data = bytearray(path.read_bytes())
+    if spoiled == "flipped":
+        data[len(data) // 2] ^= 1
+    path.write_bytes({"flipped": bytes(data), "cut": bytes(data[:-50]), "text": b"{}"}[spoiled])
+    code, _, complaint = asked(capsys, "report", stored)
+    assert code == 2
+    assert "first.json" in complaint
+    assert len(complaint.splitlines()) == 1
+    assert not (stored / "report.html").exists()
+
+
+def test_no_run_is_one_sentence(tmp_path, capsys):
+    code, _, complaint = asked(capsys, "report", tmp_path / "nowhere")
+    assert (code, len(complaint.splitlines())) == (2, 1)
+    assert "nowhere: holds no run" in complaint
+    assert not list(tmp_path.iterdir())
+
+
+def test_printing_without_a_browser_is_one_sentence(stored, capsys, monkeypatch):
+    monkeypatch.setenv("PATH", "")
+    code, _, complaint = asked(capsys, "report", stored, "--pdf")
+    assert code == 3
+    assert "--pdf needs Chromium or Chrome" in complaint
+    assert len(complaint.splitlines()) == 1
+    assert (stored / "report.html").exists()
+
+
+@pytest.mark.parametrize(
+    ("script", "said"), [("exit 7", "ended with code 7"), ("exec sleep 60", "did not print")]
+)
+def test_a_browser_that_fails_is_one_sentence(tmp_path, monkeypatch, script, said):
+    program = tmp_path / "bin" / "chromium"
+    program.parent.mkdir()
+    program.write_text(f"#!/bin/sh\n{script}\n")
+    program.chmod(0o755)
+    monkeypatch.setenv("PATH", f"{program.parent}:/usr/bin:/bin")
+    with pytest.raises(NoBrowser, match=said):
+        printed(tmp_path / "page.html", tmp_path / "page.pdf", 1.0)
+    assert not (tmp_path / "page.pdf").exists()
+
+
+@pytest.mark.skipif(browser() is None, reason="no Chromium on this machine")
+def test_a_page_is_printed(tmp_path):
+    page = tmp_path / "page.html"
+    page.write_text("<!DOCTYPE html><title>x</title><p>Printed.")
+    data = printed(page, tmp_path / "page.pdf", 120.0).read_bytes()
+    assert data.startswith(b"%PDF-")
+    assert data.rstrip().endswith(b"%%EOF")

@@ -1,0 +1,181 @@
+"""The sections on accuracy: every curve drawn, every sentence from the numbers, nothing breaks the page."""
+
+import re
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from html_document import Document
+from synthetic_results import INFO, contact, result_of
+from synthetic_study import conversion, elements, falling, study
+
+from verification.credibility.accuracy import CORRECTED, PLAIN, STAIRCASE, failed
+from verification.credibility.refinement import QUANTITIES
+from verification.report.figures.loglog import Trail, decades, draw_loglog
+from verification.report.material import Evidence, Material
+from verification.report.page import render
+from verification.report.sections.refinement import finite_element_section, semianalytic_section
+from verification.report.tables.labels import Style
+from verification.report.tables.numbers import factor
+
+
+def material(found, results=()) -> Material:
+    return Material(list(results), INFO, Evidence(accuracy=found))
+
+
+def convergence_sections(found):
+    made = (make(material(found)) for make in (semianalytic_section, finite_element_section))
+    return [section for section in made if section is not None]
+
+
+@pytest.fixture(scope="module")
+def page():
+    return render(material(study(), [result_of(contact(), points=11)]))
+
+
+def text_of(sections) -> str:
+    return " ".join(part.text for section in sections for part in section.parts)
+
+
+def test_sections_stand_between_the_accuracy_and_the_times(page):
+    marks = ['id="verdicts"', 'id="semi-analytical-accuracy"', 'id="finite-element-accuracy"', 'id="times"']
+    order = [page.index(mark) for mark in marks]
+    assert order == sorted(order)
+
+
+def test_without_a_study_there_is_no_section():
+    assert 'id="semi-analytical-accuracy"' not in render(Material([result_of(contact(), points=11)], INFO))
+
+
+def test_every_quantity_has_a_figure_with_every_curve(page):
+    document = Document(page)
+    drawn = [a["aria-label"] for a in document.all("svg") if "logarithmic" in a.get("aria-label", "")]
+    # Five quantities of either method; the conversions over distance and at three patches.
+    assert len(drawn) == 2 * len(QUANTITIES) + 4
+    identifiers = [a["id"] for _, a in document.elements if "id" in a]
+    assert len(identifiers) == len(set(identifiers))
+    figures = re.findall(r'<svg class="figure"[^>]*logarithmic".*?</svg>', page, re.DOTALL)
+    assert [len(re.findall(r'class="s-(?!grid)', figure)) for figure in figures] == [5] * 5 + [4] * 4 + [
+        3
+    ] * 5
+
+
+def test_slopes_are_written_beside_the_curves(page):
+    figure = re.search(r'<svg[^>]*aria-label="error of p0 over N.*?</figure>', page, re.DOTALL)[0]
+    # N^-4 ends at its floor; the plain conversion falls by less than a factor of three.
+    for slope in ("−1.0", "−5.0", "–"):
+        assert f">{slope}</text>" in figure
+
+
+def test_words_come_from_the_numbers():
+    said = text_of(convergence_sections(study()))
+    assert f"pressure {33.0**-4:.1e} → 1.0e-7".replace("e-0", "e-") in said
+    assert "from N = 65 on: there another knob rules" in said
+    assert "converges at order 1.0, to 3.9e-3 at N = 257" in said
+    assert "a factor of 39000" in said
+    assert "does not bring down p0, a, approach, pressure and stress" in said
+    assert "off by 0.4 % at the loaded patch" in said
+    assert "2.0e-9 " not in said
+    assert "2.0e-12 of the largest coefficient" in said
+    assert "2.0e9 times as far off" in said
+    assert "Order 4 gains over order 2 factors of 40000 in p0" in said
+    other = replace(study(), ladders=(falling(CORRECTED, 2.0), falling(STAIRCASE, 0.1), falling(PLAIN, 3.0)))
+    said = text_of(convergence_sections(other))
+    assert "does not converge" in said
+    assert "knob" not in said
+    assert "does not bring down" not in said
+
+
+def test_numbers_stand_in_tables(page):
+    cells = Document(page).text("td")
+    for number in (f"{33.0**-4:.1e}", f"{200.0**-4:.1e}", "2.0e-12", "1.6e-1"):
+        assert number.replace("e-0", "e-") in cells
+
+
+def test_what_failed_is_said_in_its_section():
+    broken = study("fem_reference, coated, order 3, default: no mesh", "semianalytic: no grid fits")
+    grid, element = convergence_sections(broken)
+    assert grid.failures == ("semianalytic: no grid fits",)
+    assert element.failures == ("fem_reference, coated, order 3, default: no mesh",)
+    document = Document(render(material(broken)))
+    assert len([a for a in document.all("p") if a.get("class") == "failure"]) == 2
+
+
+def test_study_that_died_is_its_reason_alone():
+    (section,) = convergence_sections(failed("its process was killed", 3.0))
+    assert section.failures == ("its process was killed",)
+    assert section.parts == []
+    assert "its process was killed" in Document(render(material(failed("its process was killed", 3.0)))).text(
+        "p"
+    )
+
+
+def test_part_that_is_missing_leaves_the_others():
+    whole = study()
+    bare = replace(whole.ladders[0], levels=(), failure="N = 33: no grid fits")
+    for ladders in ((bare,), (bare, *whole.ladders[1:]), (bare, elements(3)), whole.ladders[1:2]):
+        Document(render(material(replace(whole, ladders=ladders))))
+    for conversions in ((), whole.conversions[:1], whole.conversions[1:2], (conversion("new", 4, 1, 1.0),)):
+        Document(render(material(replace(whole, conversions=conversions))))
+
+
+def test_no_number_whatever_keeps_a_report_from_being_written():
+    random = np.random.default_rng(3)
+    odd = [1e308, -1e308, 5e-324, float("nan"), float("inf"), -float("inf"), 0.0, -1.0, 1e-30]
+    whole = study()
+    for _ in range(3):
+        ladders = tuple(
+            replace(
+                one,
+                levels=tuple(
+                    replace(
+                        level,
+                        resolution=float(random.choice([level.resolution, *odd])),
+                        seconds=float(random.choice(odd)),
+                        errors={q: float(random.choice(odd)) for q in QUANTITIES},
+                    )
+                    for level in one.levels
+                ),
+            )
+            for one in whole.ladders
+        )
+        conversions = tuple(
+            replace(one, error=tuple(float(random.choice(odd)) for _ in one.error), largest=float("nan"))
+            for one in whole.conversions
+        )
+        Document(render(material(replace(whole, ladders=ladders, conversions=conversions))))
+
+
+def test_words_from_strangers_stay_words():
+    evil = "<script>alert(1)</script>{{7*7}}"
+    bad = replace(falling(evil, 2.0, solid=evil), failure=evil)
+    document = Document(render(material(replace(study(evil), ladders=(bad,)))))
+    assert len(document.all("script")) == 1
+    assert " ".join(text for _, text in document.texts).count(evil) >= 3
+
+
+def test_sections_cost_little(page):
+    assert len(page.encode()) - len(render(Material([result_of(contact(), points=11)], INFO)).encode()) < 2e5
+
+
+def test_scales_hold_every_point_off_the_frame():
+    style = Style("semi")
+    low, high = decades([Trail((1.0, 10.0), (1e-3, 1e-7), style)])
+    assert (low, high) == (-8.0, -2.0)
+    assert decades([]) == (-10.0, 0.0)
+    figure = draw_loglog(
+        [Trail((1.0, 10.0), (1e-3, float("nan")), style, "–")],
+        label="l",
+        coordinate="N",
+        height=(low, high),
+        ticks=(1, 10),
+    )
+    assert figure.count("h0") == 1
+
+
+@pytest.mark.parametrize(
+    ("worse", "better", "said"),
+    [(3.25, 1, "3.2"), (4567, 1, "4600"), (1, 1e-9, "1.0e9"), (1, 0, "untold"), (float("nan"), 1, "untold")],
+)
+def test_factor_has_two_digits(worse, better, said):
+    assert factor(worse, better) == said

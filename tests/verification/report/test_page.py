@@ -1,0 +1,237 @@
+"""The report page as text: whole, self-contained, safe with strangers' words, true to its results."""
+
+import base64
+import gzip
+import hashlib
+import re
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from html_document import Document
+from synthetic_results import INFO, STEEL, contact, crashed, result_of, showcase
+
+from verification.judging.verdict import Outcome
+from verification.report.material import Material
+from verification.report.page import render
+from verification.report.tables import labels as names
+from verification.running.result import CaseResult, RunInfo, from_json, to_json
+from verification.sources import registry
+
+
+@pytest.fixture(scope="module")
+def results() -> list[CaseResult]:
+    return showcase(points=101)
+
+
+@pytest.fixture(scope="module")
+def page(results) -> str:
+    return render(Material(results, INFO))
+
+
+@pytest.fixture(scope="module")
+def document(page) -> Document:
+    return Document(page)
+
+
+def rendered(*results: CaseResult) -> Document:
+    return Document(render(Material(results, INFO)))
+
+
+def test_the_page_needs_nothing_but_itself(page, document):
+    for tag, attributes in document.elements:
+        for name in ("src", "href", "xlink:href", "action", "srcset", "data", "poster"):
+            value = attributes.get(name, "#")
+            assert value.startswith(("#", "data:")), f"<{tag} {name}={value[:60]!r}>"
+    assert "@import" not in page
+    assert set(re.findall(r"url\(([^)]{0,20})", page)) <= {m for m in re.findall(r"url\((#[^)]{0,19})", page)}
+    policy = next(a["content"] for a in document.all("meta") if a.get("http-equiv"))
+    assert policy.startswith("default-src 'none'")
+
+
+def test_the_content_security_policy_admits_the_one_script(page, document):
+    policy = next(a["content"] for a in document.all("meta") if a.get("http-equiv"))
+    (script,) = re.findall(r"<script>(.*?)</script>", page, re.DOTALL)
+    digest = base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()
+    assert f"script-src 'sha256-{digest}'" in policy
+
+
+def test_twelve_cases_stay_far_below_8_mb(page):
+    # A real profile has about a hundred points; made-up noise compresses worse than it does.
+    assert len(page.encode()) < 5e6
+
+
+def test_every_link_leads_somewhere_and_no_identifier_is_taken_twice(document):
+    identifiers = [a["id"] for _, a in document.elements if "id" in a]
+    assert len(identifiers) == len(set(identifiers))
+    targets = {a["href"][1:] for _, a in document.elements if a.get("href", "").startswith("#")}
+    assert len(targets) > 20
+    assert targets <= set(identifiers)
+
+
+def test_the_verdicts_come_first(page):
+    order = [
+        page.index(mark) for mark in ('id="verdicts"', 'id="accuracy"', 'id="times"', '<article class="case"')
+    ]
+    assert order == sorted(order)
+
+
+def test_every_case_has_a_row_in_the_matrix_and_a_section_with_its_command(document, results):
+    sections = [a["id"] for a in document.all("article")]
+    assert len(sections) == len(results)
+    links = {a["href"] for a in document.all("a") if "href" in a}
+    assert {f"#{section}" for section in sections} <= links
+    commands = document.text("code")
+    for result in results:
+        assert f"coatcheck run {result.name}.toml" in commands  # no name of a shipped case
+
+
+def test_words_from_strangers_stay_words():
+    evil = "<script>alert(1)</script>\"'><img src=x onerror=alert(2)>${7*7}{{7*7}}$x^2$"
+    problem = contact((2 * STEEL[0], 0.3, 1.0))
+    result = result_of(
+        problem, name=evil, title=evil, failures={"fem_reference": evil}, text=evil + "\n</pre></article>"
+    )
+    info = RunInfo(evil, evil, 1.0, 1, evil, evil, {evil: evil})
+    document = Document(render(Material([result], info)))
+    assert len(document.all("script")) == 1
+    assert document.all("img") == []
+    assert not any(name.startswith("on") for _, attributes in document.elements for name in attributes)
+    said = " ".join(text for _, text in document.texts)
+    assert said.count(evil) >= 6
+
+
+def test_two_cases_of_one_name_do_not_share_an_anchor():
+    problem = contact()
+    document = rendered(
+        result_of(problem, name="a b"), result_of(problem, name="a-b"), result_of(problem, name="%%")
+    )
+    identifiers = [a["id"] for _, a in document.elements if "id" in a]
+    assert len(identifiers) == len(set(identifiers))
+
+
+def test_a_failed_source_is_said_in_red_with_its_sentence(document, results):
+    failed = [(r, s) for r in results for s in r.sources if s.failure]
+    assert len(failed) == 2
+    shown = [text for tag, text in document.texts if tag == "p"]
+    for _, source in failed:
+        assert source.failure in shown
+    assert len([a for a in document.all("p") if a.get("class") == "failure"]) == 2
+
+
+def test_every_verdict_has_a_row_in_the_table_of_its_case(document, results):
+    reasons = document.text("td")
+    for result in results:
+        for _, verdict in result.verdicts:
+            assert verdict.reason in reasons
+    rows = [a.get("class", "") for a in document.all("tr")]
+    for outcome in (Outcome.DISAGREES, Outcome.INCONCLUSIVE, Outcome.NO_RESULT):
+        count = sum(v.outcome is outcome for r in results for _, v in r.verdicts)
+        assert rows.count(names.OUTCOMES[outcome].css) >= count > 0
+
+
+def test_nan_never_looks_like_agreement():
+    problem = contact((2 * STEEL[0], 0.3, 1.0))
+    spoiled = {
+        ("sigma_xx", "surface", "semianalytic"): np.nan,
+        ("approach", "contact", "fem_reference"): np.inf,
+    }
+    document = rendered(result_of(problem, spoil=spoiled))
+    cells = [
+        (a, t)
+        for a, t in zip(document.all("td"), document.all("td"), strict=True)
+        if "verdict" in a.get("class", "")
+    ]
+    assert cells[0][0]["class"].startswith("verdict no-result")
+    matrix = [a["class"] for a, _ in cells[1:13]]
+    # Both methods and each against the reference: p0, a, approach | surface | axis | interfaces.
+    worst = ["no-result", "no-result", "agrees", "agrees"]
+    worst += ["agrees", "no-result", "agrees", "agrees"]
+    worst += ["no-result", "agrees", "agrees", "agrees"]
+    assert [name.split()[1] for name in matrix] == worst
+    assert "not finite" in document.text("td")
+
+
+def test_every_figure_says_what_it_shows_and_carries_its_numbers(document, results):
+    drawn = [a for a in document.all("svg") if a.get("class", "").startswith("figure")]
+    assert all(a.get("aria-label") and a.get("viewbox") for a in drawn)
+    lines = sum(len({p.line for p in r.profiles} - {"contact"}) for r in results)
+    panels = [a for a in document.all("figure") if a.get("class", "").startswith("panel")]
+    assert len(panels) == len(drawn) - len(results)
+    assert len([a for a in document.all("section") if a.get("class") == "line"]) == lines
+    tables = [a for a in document.all("a") if "data-csv" in a]
+    # One for each row of figures, those of the lines among them, and one for the scalars of each case.
+    galleries = [a for a in document.all("div") if a.get("class", "").startswith("panels")]
+    assert len(galleries) > lines
+    assert len(tables) == len(galleries) + sum(bool(r.profiles) for r in results)
+    for link in tables:
+        kind, _, packed = link["href"].partition(",")
+        assert kind == "data:application/gzip;base64"
+        assert link["download"] == link["data-csv"] + ".gz"
+        assert gzip.decompress(base64.b64decode(packed)).count(b"\n") > 1
+
+
+def test_the_report_of_stored_results_is_the_report_of_fresh_ones(results):
+    # One with NaN, one with uncertainties not stated, one that crashed.
+    fresh = results[-3:]
+    stored = [from_json(to_json(result)) for result in fresh]
+    assert render(Material(stored, INFO)) == render(Material(fresh, INFO))
+
+
+def test_no_case_at_all_still_gives_a_page():
+    document = rendered()
+    assert "No case was run." in document.text("h1")
+
+
+def test_a_case_that_crashed_still_has_its_problem_and_its_reason():
+    document = rendered(crashed(contact(), "x", "killed after 300 s"))
+    assert "killed after 300 s" in document.text("p")
+    assert "210 GPa" in document.text("td")
+
+
+def test_problem_is_told_in_real_units():
+    document = rendered(result_of(contact((2 * STEEL[0], 0.3, 1.0))))
+    said = document.text("dd") + document.text("td")
+    # Hertz on the bare steel: a = (3 W R / 4 E*)^(1/3), E* = 210e9/0.91.
+    for text in ("10 mm", "20 N", "86.62 µm", "1.273 GPa", "750.4 nm", "420 GPa"):
+        assert text in said
+
+
+def test_the_report_knows_the_methods_that_cases_know():
+    assert names.METHODS == registry.METHODS
+
+
+def test_no_number_whatever_keeps_a_report_from_being_written(results):
+    random = np.random.default_rng(7)
+    odd = np.array([1e308, -1e308, 5e-324, np.nan, np.inf, -np.inf, 0.0, -0.0, 1e30, 1e-30, -1.0])
+    base = result_of(contact((2 * STEEL[0], 0.3, 1.0)), points=7)
+
+    def spoiled(array, share):
+        return np.where(random.random(array.shape) < share, random.choice(odd, array.shape), array)
+
+    for share in (0.05, 0.3, 1.0):
+        profiles = tuple(
+            replace(
+                p,
+                position=spoiled(p.position, 0.2 * share),
+                value=spoiled(p.value, share),
+                uncertainty=spoiled(p.uncertainty, share),
+            )
+            for p in base.profiles
+        )
+        verdicts = tuple(
+            (claim, replace(verdict, **dict.fromkeys(("difference", "margin", "worst"), random.choice(odd))))
+            for claim, verdict in base.verdicts
+        )
+        problem = base.problem | {"a_h": random.choice(odd), "coatings": [["nan", 0.3, random.choice(odd)]]}
+        wrong = {0.05: base.problem, 0.3: problem, 1.0: {}}[share]
+        document = rendered(replace(base, profiles=profiles, verdicts=verdicts, problem=wrong))
+        assert len(document.all("article")) == 1
+
+
+@pytest.mark.parametrize("friction", [0.0, 0.3])
+@pytest.mark.parametrize("coatings", [(), ((420e9, 0.3, 1.0),), ((420e9, 0.3, 0.01), (100e9, 0.2, 8.0))])
+def test_any_problem_gets_a_page(coatings, friction):
+    document = rendered(result_of(contact(*coatings, friction=friction), points=31))
+    lines = 2 + 2 * len(coatings)
+    assert len([a for a in document.all("section") if a.get("class") == "line"]) == lines

@@ -1,0 +1,85 @@
+"""What is drawn below the contact: the very stresses of the Solutions, kept to nine digits and checked."""
+
+import numpy as np
+import pytest
+
+from verification.problem.quantity import COMPONENTS, von_mises
+from verification.running.fields import read_plane, write_plane
+from verification.running.store import StoreError
+from verification.sampling.plane import Plane, depths_of, sample_plane
+from verification.sources.references.hertz import Hertz
+
+STEEL = Hertz(10e-3, 20.0, 210e9, 0.3)
+
+
+class Failing:
+    """A solution whose stresses cannot be had."""
+
+    contact_radius, surface_nodes = STEEL.contact_radius, STEEL.surface_nodes
+
+    def stress(self, *_, **__):
+        raise ValueError("no stresses here")
+
+
+@pytest.fixture(scope="module")
+def plane():
+    return sample_plane((), {"fem_reference": STEEL, "hertz": STEEL})
+
+
+def test_stresses_are_those_of_the_solution(plane):
+    assert list(plane.stress) == ["fem_reference"]
+    (sigma,), (z,) = plane.stress["fem_reference"], plane.depths
+    expected = STEEL.stress(plane.x[None, :], 0.0, z[:, None])
+    for number, component in enumerate(COMPONENTS.values()):
+        np.testing.assert_array_equal(sigma[number], expected[component])
+    assert z[0] == 0
+    assert np.abs(plane.x).max() > STEEL.contact_radius
+
+
+def test_von_mises_is_three_halves_of_the_deviator_squared(plane):
+    sigma = plane.stress["fem_reference"][0]
+    xx, yy, zz, xz = sigma
+    tensor = np.array([[xx, 0 * xx, xz], [0 * xx, yy, 0 * xx], [xz, 0 * xx, zz]])
+    deviator = tensor - np.eye(3)[:, :, None, None] * np.einsum("ii...->...", tensor) / 3
+    np.testing.assert_allclose(von_mises(sigma) ** 2, 1.5 * (deviator**2).sum(axis=(0, 1)), rtol=1e-12)
+
+
+def test_each_layer_has_both_its_interfaces():
+    a, interfaces = 1.0, (0.1, 0.4)
+    ladders = depths_of(a, interfaces, 12)
+    assert len(ladders) == 3
+    assert [z[0] for z in ladders] == [0.0, 0.1, 0.4]
+    assert [z[-1] for z in ladders[:2]] == [0.1, 0.4]
+    assert all((np.diff(z) > 0).all() and z.size >= 4 for z in ladders)
+    # An interface below the drawing ends nothing.
+    assert len(depths_of(a, (50.0,), 12)) == 1
+
+
+def test_a_method_that_fails_leaves_its_sentence_and_the_other_its_stresses():
+    found = sample_plane((), {"semianalytic": Failing(), "fem_reference": STEEL})
+    assert "no stresses here" in found.failures["semianalytic"]
+    assert list(found.stress) == ["fem_reference"]
+    assert sample_plane((), {"hertz": STEEL}).stress == {}
+
+
+def test_a_plane_comes_back_as_it_was_written_nan_too(tmp_path, plane):
+    spoiled = plane.stress["fem_reference"][0].copy()
+    spoiled[0, 2, 3], spoiled[1, 0, 0] = np.nan, -np.inf
+    kept = Plane(plane.x, plane.depths, plane.radius, {"fem_reference": (spoiled,)}, {"semianalytic": "why"})
+    write_plane(tmp_path / "planes" / "x.json", kept, "the case")
+    back = read_plane(tmp_path / "planes" / "x.json", "the case")
+    np.testing.assert_array_equal(back.x, plane.x)
+    np.testing.assert_allclose(back.stress["fem_reference"][0], spoiled, atol=1e-9 * STEEL.peak_pressure)
+    assert (back.radius, back.failures) == (plane.radius, {"semianalytic": "why"})
+
+
+def test_another_case_file_or_a_flipped_bit_is_refused(tmp_path, plane):
+    path = tmp_path / "x.json"
+    write_plane(path, plane, "the case")
+    with pytest.raises(StoreError, match=r"x\.json: of another case file"):
+        read_plane(path, "another case")
+    data = bytearray(path.read_bytes())
+    data[len(data) // 2] ^= 1
+    path.write_bytes(data)
+    with pytest.raises(StoreError, match=r"x\.json"):
+        read_plane(path, "the case")
