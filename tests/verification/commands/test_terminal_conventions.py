@@ -167,7 +167,7 @@ def test_names_are_whole_in_a_terminal(stored, screen, width):
     shown = screen(width)
     name = "16_ratio_quarter_sliding_of_mine"
     results = [replace(result, name=name) for result in read_run(stored).results[:1]]
-    (stored / "report.json").write_text(report_json(results, INFO))
+    (stored / "report.json").write_text(report_json(Material(results, INFO)))
     assert list_cases() == 0
     assert compare(stored, stored) == 0
     assert [n for n in [name, *shipped_cases(), *published_cases()] if n not in shown()] == []

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
@@ -79,6 +80,7 @@ def section(material: Material) -> Section | None:
     return Section("accuracy", "Accuracy against the exact reference", parts) if parts else None
 
 
+@lru_cache(maxsize=256)
 def accuracies(result: CaseResult) -> tuple[Accuracy, ...]:
     """Every quantity of every method with an exact counterpart; () where the case has no exact reference."""
     exact = baseline(result)
