@@ -15,8 +15,8 @@ from verification.report.figures.loglog import Trail, decades, draw_loglog
 from verification.report.material import Evidence, Material
 from verification.report.page import render
 from verification.report.sections.refinement import finite_element_section, semianalytic_section
-from verification.report.tables.labels import Style
 from verification.report.tables.numbers import factor
+from verification.sources.source import Style
 
 
 def material(found, results=()) -> Material:

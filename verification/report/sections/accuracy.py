@@ -7,10 +7,10 @@ from functools import lru_cache
 import numpy as np
 
 from verification.judging.verdict import Claim
-from verification.problem.profile import SCALARS
+from verification.problem.quantity import SCALARS
 from verification.report.material import Material
 from verification.report.tables.cells import Cell, Part, Row, Section, Table
-from verification.report.tables.labels import EXACT, METHODS, source_label
+from verification.report.tables.labels import source_label
 from verification.report.tables.lookup import (
     GROUPS,
     baseline,
@@ -22,6 +22,7 @@ from verification.report.tables.lookup import (
 from verification.report.tables.matrix import case_cell
 from verification.report.tables.numbers import plain, scientific
 from verification.running.result import CaseResult
+from verification.sources.registry import METHODS, REFERENCES
 
 __all__ = [
     "Accuracy",
@@ -84,7 +85,7 @@ def section(material: Material) -> Section | None:
 def accuracies(result: CaseResult) -> tuple[Accuracy, ...]:
     """Every quantity of every method with an exact counterpart; () where the case has no exact reference."""
     exact = baseline(result)
-    if exact not in EXACT:
+    if exact not in REFERENCES:
         return ()
     edges = {(c.quantity, c.line): c for c, _ in result.verdicts}
     found = []
