@@ -13,9 +13,9 @@ import numpy as np
 
 from verification.credibility.refinement import failure_message
 from verification.credibility.uncertainty import Estimate, uncertainty
-from verification.problem.contact import CoatedContact, Solution, keywords
+from verification.problem.contact import CoatedContact, Solution
 from verification.problem.quantity import QUANTITIES, SCALARS
-from verification.sources.references import integral_equation
+from verification.sources.exact import solve_exactly
 from verification.sources.registry import METHODS, SOURCES, solvers
 from verification.sources.source import NumericalParameter
 
@@ -148,7 +148,7 @@ def study(
     problem: CoatedContact, solid: str, methods: Sequence[str] = METHODS
 ) -> tuple[tuple[Sweep, ...], tuple[Stated, ...]]:
     """Every parameter sweep and the uncertainty that each method states."""
-    exact = integral_equation.solve(**keywords(problem), estimate_uncertainty=False)
+    exact = solve_exactly(problem, {"estimate_uncertainty": False})
     available = solvers()
     chosen = [p for p in PARAMETERS if p.method in methods and (problem.coatings or not p.coated)]
     sweeps = tuple(sweep(problem, p, exact.contact_radius, available[p.method], solid) for p in chosen)

@@ -13,11 +13,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from verification.problem.arrays import FloatArray
-from verification.problem.contact import CoatedContact, Solution, keywords
+from verification.problem.contact import CoatedContact, Solution
 from verification.problem.profile import lines_of
 from verification.problem.quantity import QUANTITIES as ALL
 from verification.problem.quantity import SCALARS
-from verification.sources.references import integral_equation
+from verification.sources.exact import solve_exactly
+from verification.sources.methods import solve_elements, solve_semianalytic
 
 __all__ = [
     "QUANTITIES",
@@ -175,12 +176,10 @@ def refined_grid(
     """``problem`` by the semi-analytical method at each number of ``patches`` a side.
 
     The method's own estimate of its error is left out, since it needs further solutions.
-    numerics : any other keyword of semianalytic.solve.   solve : another solver of the same keywords.
+    numerics : any other keyword of semianalytic.solve.   solve : another solver, see ``Source``.
     """
-    import semianalytic
-
     steps = [(f"N = {n}", {"patches": n, **numerics}, float(n)) for n in patches]
-    return _refined(problem, "semianalytic", solid, setting, solve or semianalytic.solve, steps)
+    return _refined(problem, "semianalytic", solid, setting, solve or solve_semianalytic, steps)
 
 
 def refined_mesh(
@@ -192,10 +191,8 @@ def refined_mesh(
     solve: Callable[..., Solution] | None = None,
 ) -> Refinement:
     """``problem`` by elements of ``order`` on meshes of each ``quality``; else as ``refined_grid``."""
-    import fem_reference
-
     steps = [(name, {"order": order, "quality": name}, None) for name in quality]
-    return _refined(problem, "fem_reference", solid, f"order {order}", solve or fem_reference.solve, steps)
+    return _refined(problem, "fem_reference", solid, f"order {order}", solve or solve_elements, steps)
 
 
 def _refined(
@@ -208,11 +205,11 @@ def _refined(
 ) -> Refinement:
     levels: list[Level] = []
     try:
-        given = keywords(problem) | {"estimate_uncertainty": False}
-        reference = Reference(problem, integral_equation.solve(**given))
+        without = {"estimate_uncertainty": False}
+        reference = Reference(problem, solve_exactly(problem, without))
         for name, numerics, resolution in steps:
             begin = time.perf_counter()
-            found = solve(**given, **numerics)
+            found = solve(problem, numerics | without)
             seconds = time.perf_counter() - begin
             if resolution is None:
                 resolution = float(np.sqrt(found.diagnostics.dofs))

@@ -15,6 +15,7 @@ from verification.credibility.refinement import QUANTITIES, order_of, refined_gr
 from verification.judging.invariants.influence import conversion_errors
 from verification.running.pool import Task, run_tasks
 from verification.running.store import StoreError, write_checked
+from verification.sources.methods import solve_semianalytic
 from verification.sources.references.patch import over_square, surface_coefficient
 
 PLACES = [(0, 0), (1, 0), (1, 1), (3, 2), (20, 0), (64, 64)]
@@ -137,10 +138,10 @@ def test_elements_of_higher_order_are_closer_on_the_same_mesh():
 def test_level_that_fails_is_a_sentence_and_the_coarser_ones_stay():
     import semianalytic
 
-    def stops(*, patches, **others):
-        if patches > 33:
+    def stops(problem, numerics):
+        if numerics["patches"] > 33:
             raise semianalytic.NotConverged("not settled after 3 iterations;\n raise max_iterations")
-        return semianalytic.solve(patches=patches, **others)
+        return solve_semianalytic(problem, numerics)
 
     found = refined_grid(BARE, (33, 65, 129), solve=stops)
     assert [level.name for level in found.levels] == ["N = 33"]
@@ -171,12 +172,12 @@ def test_order_of_a_power_law_is_its_exponent():
 def test_a_refinement_study_keeps_the_friction_of_its_problem():
     given = []
 
-    def solver(**keywords):
-        given.append(keywords)
+    def solver(problem, numerics):
+        given.append(problem)
         raise ValueError("no more than the problem is needed")
 
     refined_grid(replace(COATED, friction=0.25), (33,), solve=solver)
-    assert given[0]["friction"] == 0.25
+    assert given[0].friction == 0.25
 
 
 def test_order_ends_where_another_knob_takes_over():
