@@ -1,4 +1,4 @@
-"""The physical problem: a rigid sphere pressed on a coated elastic half-space.
+"""The physical problem: a rigid sphere in contact with a coated elastic half-space.
 
 Origin at first contact, ``x`` along sliding, ``z`` into the solid, surface at z = 0. Tension positive,
 pressure and load positive in compression. SI units.
