@@ -12,7 +12,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from quick_case import COMMAND, QUICK, coatcheck
+from quick_case import COMMAND, QUICK, coatcheck, coatcheck_process
 
 from verification.cases.contact import parse_case
 from verification.cases.published import published_cases, read_published
@@ -296,7 +296,7 @@ def test_limit_on_file_size_is_one_sentence_and_the_earlier_results_stay(tmp_pat
     def small():
         resource.setrlimit(resource.RLIMIT_FSIZE, (60_000, 60_000))
 
-    done = coatcheck("run", "quick.toml", "-q", "-o", "out", cwd=tmp_path, preexec_fn=small)
+    done = coatcheck_process("run", "quick.toml", "-q", "-o", "out", cwd=tmp_path, preexec_fn=small)
     one_sentence(done, "cannot be written (File too large)")
     found = content(tmp_path / "out")
     assert {name: found[name] for name in earlier} == earlier

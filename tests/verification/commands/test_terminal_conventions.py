@@ -1,7 +1,6 @@
 """The command line as people expect it: examples, exit codes, completion, plain pipes, a stop that keeps."""
 
 import json
-import os
 import shutil
 import signal
 import subprocess
@@ -127,9 +126,10 @@ def test_the_table_stands_in_a_narrow_terminal(stored, capsys, monkeypatch, widt
     assert not any("\N{HORIZONTAL ELLIPSIS}" in line for line in table)
 
 
-def test_what_is_piped_has_no_colours(tmp_path):
+def test_what_is_piped_has_no_colours(tmp_path, monkeypatch):
+    monkeypatch.setenv("TERM", "xterm-256color")
     (tmp_path / "quick.toml").write_text(QUICK)
-    done = coatcheck("run", "quick.toml", "-v", cwd=tmp_path, env=os.environ | {"TERM": "xterm-256color"})
+    done = coatcheck("run", "quick.toml", "-v", cwd=tmp_path)
     assert done.returncode == 0, done.stderr
     assert "\x1b" not in done.stdout + done.stderr
     # Verbose: every source with its seconds.
