@@ -7,7 +7,9 @@
 True
 """
 
-from .solution import Diagnostics, NotConverged, Solution, Uncertainty
+from .estimate import Uncertainty
+from .levels import NotConverged
+from .solution import Diagnostics, Solution
 from .solver import solve, solve_prescribed
 from .vtu import PlaneMesh, plane_mesh, write_vtu
 

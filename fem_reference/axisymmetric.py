@@ -1,12 +1,12 @@
-"""Elasticity of a body of revolution under loads of Fourier harmonic 0 or 1.
+"""Linear elasticity of a body of revolution under loads of Fourier harmonic 0 or 1.
 
 Harmonic 0 has two fields on the meridian plane, harmonic 1 has three:
 
     0:  u_r = U,             u_theta = 0,             u_z = Z
     1:  u_r = U cos(theta),  u_theta = V sin(theta),  u_z = Z cos(theta),     with S = U + V
 
-Harmonic 1 is carried as (S, V, Z): regularity on the axis, u_theta = -u_r and u_z = 0, then reads S = Z = 0,
-and no strain divides anything by r that does not vanish there. Each strain is linear in the fields,
+Harmonic 1 is solved for (S, V, Z): regularity on the axis, u_theta = -u_r and u_z = 0, then reads S = Z = 0,
+and only fields that vanish there are divided by r. Each strain is linear in the fields,
 
     eps = A_r du/dr + A_z du/dz + A_0 u / r,
 
@@ -25,7 +25,6 @@ import scipy.sparse.linalg as sla
 from skfem import (
     Basis,
     BilinearForm,
-    ElementTriP1,
     ElementTriP2,
     ElementTriP3,
     ElementTriP4,
@@ -35,11 +34,12 @@ from skfem import (
     asm,
 )
 
+from .location import Locator
 from .mesh import MeridianMesh
 
 __all__ = ["ELEMENTS", "Discretisation", "constrained_solve", "elasticity", "strain_operator"]
 
-ELEMENTS = {1: ElementTriP1, 2: ElementTriP2, 3: ElementTriP3, 4: ElementTriP4}
+ELEMENTS = {2: ElementTriP2, 3: ElementTriP3, 4: ElementTriP4}
 
 
 def strain_operator(harmonic: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -86,7 +86,7 @@ class Discretisation:
     order: int
 
     def __getstate__(self) -> dict[str, object]:
-        # pickled without what can be computed again, which is a hundred times larger
+        # pickled without the cached properties, which are computed again on use: a hundred times smaller
         return {"mesh": self.mesh, "order": self.order}
 
     @cached_property
@@ -97,6 +97,10 @@ class Discretisation:
     @cached_property
     def basis(self) -> Basis:
         return Basis(self.triangulation, ELEMENTS[self.order](), intorder=2 * self.order)
+
+    @cached_property
+    def locator(self) -> Locator:
+        return Locator(self.mesh, self.triangulation.t)
 
     @property
     def N(self) -> int:
@@ -112,7 +116,7 @@ class Discretisation:
         """Boundary edges whose midpoint satisfies ``where``."""
         return np.asarray(self.triangulation.facets_satisfying(where, boundaries_only=True))
 
-    def on(self, facets: np.ndarray) -> np.ndarray:
+    def unknowns_on(self, facets: np.ndarray) -> np.ndarray:
         """Numbers of the unknowns (of one field) on the edges ``facets``."""
         return np.asarray(self.basis.get_dofs(facets).all())
 
@@ -125,24 +129,24 @@ class Discretisation:
     @cached_property
     def surface(self) -> np.ndarray:
         """Unknowns of one field on z = 0, by increasing radius."""
-        numbers = self.on(self.facets(lambda x: x[1] == 0))
+        numbers = self.unknowns_on(self.facets(lambda x: x[1] == 0))
         return numbers[np.argsort(self.locations[0, numbers])]
 
     @cached_property
     def axis(self) -> np.ndarray:
-        return self.on(self.facets(lambda x: x[0] == 0))
+        return self.unknowns_on(self.facets(lambda x: x[0] == 0))
 
     @cached_property
     def outer(self) -> np.ndarray:
         far = self.locations.max(axis=1)[:, None] * (1 - 1e-9)
-        return self.on(self.facets(lambda x: np.any(x >= far, axis=0)))
+        return self.unknowns_on(self.facets(lambda x: np.any(x >= far, axis=0)))
 
     def stiffness(self, materials: tuple[tuple[float, float], ...], harmonic: int) -> sp.csc_matrix:
-        """Stiffness matrix: virtual work per angle, divided by the angular factor common to all terms.
+        """Stiffness matrix: virtual work over the angular factor common to all terms.
 
             v^T K u = int eps(v) : D(layer) eps(u) r dr dz
 
-        Harmonic 0 carries the factor 2 pi, harmonic 1 the factor pi. ``materials`` = (E, nu) per layer.
+        That factor is 2 pi for harmonic 0, pi for harmonic 1. ``materials`` = (E, nu) per layer.
         """
         A_r, A_z, A_0 = strain_operator(harmonic)
         fields = A_r.shape[1]
@@ -164,8 +168,11 @@ class Discretisation:
         K = np.matmul(
             flat.reshape(triangles, rows, -1).transpose(0, 2, 1), stress.reshape(triangles, rows, -1)
         )
-        dofs = np.asarray(self.basis.element_dofs).T
-        numbers = (np.arange(fields)[:, None] * self.N + dofs[:, None, :]).reshape(triangles, -1)
+        # 32 bits as in the sparse matrix: it would copy others
+        dofs = np.asarray(self.basis.element_dofs, dtype=np.int32).T
+        numbers = (np.arange(fields, dtype=np.int32)[:, None] * self.N + dofs[:, None, :]).reshape(
+            triangles, -1
+        )
         i = np.repeat(numbers, numbers.shape[1], axis=1)
         j = np.tile(numbers, (1, numbers.shape[1]))
         shape = (fields * self.N, fields * self.N)
@@ -207,7 +214,7 @@ def constrained_solve(
     if load is not None:
         rhs = rhs + load[free]
     A = rows[:, free].tocsc()
-    # symmetric mode with a symmetric minimum degree ordering: K is positive definite, pivoting only costs
+    # symmetric mode with a symmetric minimum degree ordering: K is positive definite and needs no pivoting
     lu = sla.splu(A, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
     x = lu.solve(rhs)
     u[free] = x + lu.solve(rhs - A @ x)

@@ -1,16 +1,16 @@
-"""Frictionless contact of a rigid paraboloid with a meridian mesh whose vertex sits at the contact edge.
+"""Frictionless contact of a rigid paraboloid at a given contact radius.
 
-Lengths in a unit L of the caller, moduli in a unit E_0, sphere radius 1: displacements are then in L^2/R,
-pressure in E_0 L/R, load in E_0 L^3/R. For a given contact radius a the contact condition is linear, a
-saddle system for the displacement u and the pressure multiplier p with the approach delta and the load W as
-parameters:
+The mesh has a vertex at the contact edge. Lengths in a unit L of the caller, moduli in a unit E_0, sphere
+radius 1: displacements are then in L^2/R, pressure in E_0 L/R, load in E_0 L^3/R. For a given contact radius
+a the contact condition is linear, a saddle system for the displacement u and the pressure multiplier p with
+the approach delta and the load W as parameters:
 
     K u - B^T p = 0,     int q (u_z - delta + r^2/2) r dr = 0  for all q,     u = W u_far  on the outer
     boundary.
 
 The multiplier has the order of u_z itself. Then the second line says u_z = delta - r^2/2 at every node, the
 paraboloid being a polynomial, and the first gives p from the nodal reactions through the mass matrix of the
-contact: the saddle system falls apart into one positive definite solve and one small one. (Dividing
+contact: the saddle system separates into one positive definite solve and one small one. (Dividing
 reactions by nodal weights instead would fail on the axis, where the weight vanishes.) delta and W follow
 from p(a) = 0 and int p = W, so one factorisation with three right-hand sides, flat punch, paraboloid and far
 field, gives everything.
@@ -23,10 +23,12 @@ from functools import cached_property
 import numpy as np
 import scipy.sparse as sp
 import scipy.sparse.linalg as sla
+from scipy.optimize import minimize_scalar
 
 from .axisymmetric import Discretisation, constrained_solve
+from .scaling import LayeredSolid
 
-__all__ = ["Multiplier", "Touch", "complementarity", "touch"]
+__all__ = ["FixedRadiusContact", "Multiplier", "complementarity", "peak", "solve_at_radius"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,16 +66,17 @@ class Multiplier:
 
 
 @dataclass(frozen=True, eq=False)
-class Touch:
+class FixedRadiusContact:
     """Solution of the contact at one contact radius, in the units of the module.
 
     fields     : (2 N,) radial displacement, then axial displacement
     pressure   : contact pressure of r
-    approach, load, contact_radius : the scalars that belong together
+    approach, load : of the paraboloid with this contact_radius
     stiffness  : d load / d approach at fixed contact radius
     residual   : largest out-of-balance nodal force over the load
     """
 
+    discretisation: Discretisation
     fields: np.ndarray
     pressure: Multiplier
     approach: float
@@ -83,29 +86,20 @@ class Touch:
     residual: float
 
 
-def touch(
-    discretisation: Discretisation,
-    *,
-    materials: tuple[tuple[float, float], ...],
-    far_displacement: Callable[[np.ndarray, np.ndarray], np.ndarray],
-) -> Touch:
-    """Solve the contact whose edge is the mesh's contact radius.
-
-    materials : (E, nu) per layer, E in units of E_0
-    far_displacement : (r, z) -> (2, n), displacement of the outer boundary per unit load
-    """
+def solve_at_radius(solid: LayeredSolid, discretisation: Discretisation) -> FixedRadiusContact:
+    """Solve the contact whose edge is the mesh's contact radius; E_0 is the modulus of the substrate."""
     d, N = discretisation, discretisation.N
     a = d.mesh.contact_radius
     edges = d.facets(lambda x: (x[1] == 0) & (x[0] < a))
-    contact = d.on(edges)
+    contact = d.unknowns_on(edges)
     contact = contact[np.argsort(d.locations[0, contact])]
     nodes = d.locations[0, contact]
-    K = d.stiffness(materials, 0)
+    K = d.stiffness(solid.materials, 0)
 
     given = np.zeros((2 * N, 3))
     given[N + contact, 0] = 1.0
     given[N + contact, 1] = -(nodes**2) / 2
-    given[d.outer, 2], given[N + d.outer, 2] = far_displacement(*d.locations[:, d.outer])
+    given[d.outer, 2], given[N + d.outer, 2] = solid.far_displacement(*d.locations[:, d.outer])
     given[d.axis] = 0.0
     u = constrained_solve(K, given, np.concatenate([d.axis, d.outer, N + d.outer, N + contact]))
 
@@ -123,7 +117,8 @@ def touch(
     force[np.concatenate([d.axis, d.outer, N + d.outer, N + contact])] = 0.0
     values = p @ combine
     values[-1] = 0.0
-    return Touch(
+    return FixedRadiusContact(
+        discretisation=d,
         fields=fields,
         pressure=Multiplier(nodes, values, d.order),
         approach=float(delta),
@@ -134,22 +129,37 @@ def touch(
     )
 
 
-def complementarity(contact: Touch, discretisation: Discretisation) -> tuple[float, float]:
+def complementarity(contact: FixedRadiusContact) -> tuple[float, float]:
     """(deepest penetration outside over the approach, largest tension inside over the peak), both >= 0."""
-    d = discretisation
+    d = contact.discretisation
     r = d.locations[0, d.surface]
     gap = r**2 / 2 + contact.fields[d.N + d.surface] - contact.approach
-    # In this order NaN is handed on: max(0.0, nan) would be 0.
+    # in this order NaN is passed on: max(0.0, nan) would be 0
     penetration = max(-float(gap[r > contact.contact_radius].min()), 0.0)
     p = contact.pressure.values
     return penetration / contact.approach, max(-float(p.min()), 0.0) / float(p.max())
 
 
+def peak(pressure: Callable[[np.ndarray], np.ndarray], vertices: np.ndarray) -> tuple[float, float]:
+    """Radius and value of the largest pressure: the axis, or a ring where a stiff film bends like a plate."""
+    r = np.unique(np.linspace(vertices[:-1], vertices[1:], 9))
+    best = int(np.argmax(pressure(r)))
+    if best == 0:
+        return 0.0, float(pressure(r[:1])[0])
+    found = minimize_scalar(
+        lambda radius: -float(pressure(np.array([radius]))[0]),
+        bounds=(r[best - 1], r[min(best + 1, r.size - 1)]),
+        method="bounded",
+        options={"xatol": 1e-6 * r[-1]},
+    )
+    return float(found.x), -float(found.fun)
+
+
 def _even_at_the_axis(nodes: np.ndarray, order: int) -> sp.csr_matrix:
     """Interpolation from the multiplier's free values to all its nodes, p being even in r next to the axis.
 
-    In the first cell only 1, r^2, r^4, ... are kept. The weight r leaves the value on the axis all but free
-    otherwise: it was the worst point of the whole contact by a factor of ten.
+    In the first cell only 1, r^2, r^4, ... are kept. Otherwise the weight r leaves the value on the axis
+    nearly undetermined: its error was ten times the largest elsewhere in the contact.
     """
     kept = np.unique(np.linspace(0, order, order // 2 + 1).round().astype(int))
     s = nodes[: order + 1] / nodes[order]

@@ -1,8 +1,8 @@
-"""A private gmsh session that leaves no trace in the process.
+"""A private gmsh session that leaves the state of the process unchanged.
 
 gmsh is one global object per process: one list of models, one set of options, one log. Its Python
-module can be imported only where a handful of system libraries exist. Everything that touches it goes
-through ``session``, which takes turns between threads and puts back what it found.
+module can be imported only where certain system libraries exist. All use of it goes through ``session``,
+which admits one thread at a time and restores the models and options of the caller.
 """
 
 import threading
@@ -13,8 +13,8 @@ from typing import Any
 
 __all__ = ["session"]
 
-# gmsh offers no second instance, so threads of one process must take turns.
-_TURN = threading.Lock()
+# one instance of gmsh per process: one thread at a time
+_LOCK = threading.Lock()
 
 _MISSING = (
     "gmsh cannot be loaded ({reason}); on a bare Debian or Ubuntu run: "
@@ -43,7 +43,7 @@ _OPTIONS = {
 
 
 def _load() -> ModuleType:
-    """The gmsh module, or an ImportError whose text names the missing system packages."""
+    """The gmsh module, or an ImportError whose message names the missing system packages."""
     try:
         import gmsh
     except (ImportError, OSError) as error:
@@ -60,7 +60,7 @@ def session(name: str) -> Iterator[Any]:
     files, so that it may run in any thread, and is shut down again.
     Raises ImportError (naming the apt packages) when gmsh's system libraries are missing.
     """
-    with _TURN:
+    with _LOCK:
         gmsh = _load()
         running = bool(gmsh.isInitialized())
         if not running:

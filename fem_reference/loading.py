@@ -1,10 +1,10 @@
-"""Displacement of the solid under prescribed surface tractions, of harmonic 0 or 1.
+"""Displacement of the solid under prescribed surface tractions of harmonic 0 or 1.
 
 A pressure p(r) loads harmonic 0. A traction q(r) in +x loads harmonic 1,
 
     q_r = q cos(theta),   q_theta = -q sin(theta),   virtual work  int q (U - V) r dr = int q (S - 2 V) r dr,
 
-which is all that sliding friction q = f p needs: no third dimension.
+so sliding friction q = f p needs no third dimension.
 """
 
 from collections.abc import Callable
@@ -12,8 +12,9 @@ from collections.abc import Callable
 import numpy as np
 
 from .axisymmetric import Discretisation, constrained_solve
+from .scaling import LayeredSolid
 
-__all__ = ["loaded", "resultant"]
+__all__ = ["resultant", "solve_traction"]
 
 Traction = Callable[[np.ndarray], np.ndarray]
 
@@ -24,21 +25,16 @@ def resultant(discretisation: Discretisation, traction: Traction) -> float:
     return float(2 * np.pi * d.surface_load(_inside(d), traction).sum())
 
 
-def loaded(
-    discretisation: Discretisation,
-    *,
-    harmonic: int,
-    materials: tuple[tuple[float, float], ...],
-    traction: Traction,
-    far_displacement: Callable[[np.ndarray, np.ndarray], np.ndarray],
+def solve_traction(
+    discretisation: Discretisation, solid: LayeredSolid, harmonic: int, traction: Traction
 ) -> np.ndarray:
     """Field vector (see ``axisymmetric``) under ``traction`` within the mesh's contact radius.
 
     traction : r -> pressure (harmonic 0) or traction in +x (harmonic 1)
-    far_displacement : (r, z) -> amplitudes per unit force, (u_r, u_z) or (u_r, u_theta, u_z)
     """
     d, N = discretisation, discretisation.N
     force = d.surface_load(_inside(d), traction)
+    far_displacement = solid.far_displacement if harmonic == 0 else solid.far_sliding
     far = 2 * np.pi * force.sum() * far_displacement(*d.locations[:, d.outer])
     zero = np.zeros(N)
     if harmonic == 0:
@@ -55,7 +51,7 @@ def loaded(
     for field in on_axis:
         given[field * N + d.axis] = 0.0
     fixed = [field * N + d.outer for field, _ in fixed_fields] + [field * N + d.axis for field in on_axis]
-    K = d.stiffness(materials, harmonic)
+    K = d.stiffness(solid.materials, harmonic)
     return constrained_solve(K, given, np.unique(np.concatenate(fixed)), load)
 
 

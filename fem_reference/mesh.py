@@ -17,36 +17,33 @@ import numpy as np
 
 from .gmsh_session import session
 
-__all__ = ["Grading", "MeridianMesh", "meridian_mesh"]
+__all__ = ["EDGE_SIZE", "Grading", "MeridianMesh", "meridian_mesh"]
+
+EDGE_SIZE = 1e-6  # smallest triangle, at the contact edge, over the contact radius
 
 
 @dataclass(frozen=True)
 class Grading:
-    """How fine the mesh is.
+    """Sizes of the triangles.
 
     size      : size of a triangle over its distance from the edge, in the contact and the coatings
     edge_rate : the same ratio in the fan of triangles around the contact edge
     edge_size : smallest triangle, at the edge, over the contact radius
-    axis_size : size at the point of first touch, in units of the stretched plane
+    axis_size : size at the point of first contact, in units of the stretched plane
     far_size  : size at the outer boundary, where one unit is a factor e of distance
     """
 
     size: float = 0.4
     edge_rate: float = 0.5
-    edge_size: float = 1e-6
+    edge_size: float = EDGE_SIZE
     axis_size: float = 0.2
     far_size: float = 0.8
 
     @classmethod
-    def of(cls, size: float, edge_size: float = 1e-6) -> "Grading":
-        """All sizes from one: the fan at the edge and the far field forgive coarser triangles."""
-        return cls(
-            size=size,
-            edge_rate=min(1.4 * size, 0.6),
-            edge_size=edge_size,
-            axis_size=0.65 * size,
-            far_size=2 * size,
-        )
+    def of(cls, size: float, edge_size: float = EDGE_SIZE) -> "Grading":
+        """All sizes from one; the fan at the edge and the far field need less fine triangles."""
+        edge_rate = min(1.4 * size, 0.6)
+        return cls(size, edge_rate, edge_size, axis_size=0.65 * size, far_size=2 * size)
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,8 +54,8 @@ class MeridianMesh:
     triangles : (3, m) vertex numbers
     layer     : (m,) layer of each triangle, 0 at the surface, the last is the substrate
     depths    : (number of coatings,) depth of each interface
-    contact_radius, far : radius with a vertex at the surface; extent of the solid in r and z
-    length, stretch : l of the stretched plane; factor applied to all radii since
+    contact_radius, far : radius of a vertex on the surface; extent of the solid in r and z
+    length, stretch : l of the stretched plane; factor by which all radii were multiplied since
     """
 
     points: np.ndarray
@@ -72,21 +69,16 @@ class MeridianMesh:
 
     def stretched(self, factor: float) -> "MeridianMesh":
         """The mesh with all radii multiplied by ``factor``: the contact edge moves, no depth does."""
-        points = self.points * np.array([[factor], [1.0]])
-        return replace(
-            self,
-            points=points,
-            contact_radius=self.contact_radius * factor,
-            stretch=self.stretch * factor,
-        )
+        points, stretch = self.points * np.array([[factor], [1.0]]), self.stretch * factor
+        return replace(self, points=points, contact_radius=self.contact_radius * factor, stretch=stretch)
 
-    def drawn_in(self, factor: float) -> "MeridianMesh":
-        """The same triangles with the outer boundary ``factor`` times nearer and the near field untouched.
+    def with_nearer_boundary(self) -> "MeridianMesh":
+        """The same triangles with the outer boundary at half the distance, unchanged in the near field.
 
         r -> r0 (r/r0)^alpha beyond r0 = far/10, and z likewise.
         """
         r0 = self.far / 10
-        alpha = 1 - np.log(factor) / np.log(self.far / r0)
+        alpha = 1 - np.log(2.0) / np.log(self.far / r0)
         beyond = np.maximum(self.points / r0, 1.0)
         points = np.where(self.points > r0, r0 * beyond**alpha, self.points)
         return replace(self, points=points, far=float(points.max()))
@@ -109,12 +101,12 @@ def meridian_mesh(
     depths = np.cumsum(np.asarray(thicknesses, dtype=float))
     if depths.size and not depths[-1] < 0.5 * far:
         raise ValueError(
-            f"coatings reach {depths[-1]:g} deep in a half-space cut off at {far:g}; ask for a larger "
+            f"coatings reach {depths[-1]:g} deep in a half-space cut off at {far:g}; choose a larger "
             "far boundary"
         )
     if not a < 0.1 * far:
         raise ValueError(
-            f"contact radius {a:g} in a half-space cut off at {far:g}; ask for a larger far boundary"
+            f"contact radius {a:g} in a half-space cut off at {far:g}; choose a larger far boundary"
         )
     length = min(a, *thicknesses[:1]) if thicknesses else a
     xi = np.array([-np.arcsinh(a / length), 0.0, np.arcsinh((far - a) / length)])
@@ -133,8 +125,8 @@ def meridian_mesh(
     area = _twice_area(points, triangles)
     if np.any(area <= 0):
         raise ValueError(
-            f"{np.count_nonzero(area <= 0)} triangles turned over when mapped to the meridian plane; "
-            f"ask for a finer mesh than size = {grading.size:g}, far_size = {grading.far_size:g}"
+            f"{np.count_nonzero(area <= 0)} triangles are inverted when mapped to the meridian plane; "
+            f"choose a finer mesh than size = {grading.size:g}, far_size = {grading.far_size:g}"
         )
     return MeridianMesh(points, triangles, layer, depths, a, far, length)
 
@@ -148,7 +140,7 @@ def _twice_area(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:
 def _triangulate(
     xi: np.ndarray, zeta: np.ndarray, scale: float, grading: Grading
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Mesh the stretched plane; ``scale`` = a / l turns ``edge_size`` into units of l."""
+    """Mesh the stretched plane; ``scale`` = a / l converts ``edge_size`` to units of l."""
     with session("coated half-space") as gmsh:
         geo = gmsh.model.geo
         axis = [geo.addPoint(xi[0], level, 0) for level in zeta]
@@ -179,7 +171,7 @@ def _triangulate(
             f"{_literal(grading.size)}+{_literal(grading.far_size - grading.size)}*{rho}/{_literal(xi[2])}"
         )
         field.setString(2, "F", growth)
-        # p(0) has no neighbours on its other side: finer triangles at the first touch
+        # p(0) has no neighbours on its other side: finer triangles at the point of first contact
         field.add("MathEval", 3)
         origin = f"Sqrt((x-({_literal(xi[0])}))^2+y*y)"
         field.setString(3, "F", f"{_literal(grading.axis_size)}+0.3*{origin}")
@@ -207,7 +199,7 @@ def _triangulate(
 
 
 def _literal(value: float) -> str:
-    """A number as gmsh's expressions take it; on others, such as "np.float64(1.0)", they abort the process.
+    """A number as gmsh's expressions accept it; others, such as "np.float64(1.0)", abort the process.
 
     Raises ValueError where it is not finite.
     """

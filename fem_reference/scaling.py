@@ -1,4 +1,4 @@
-"""The problem in units of its own: one length, one pressure, the modulus of the substrate."""
+"""The problem in scaled units: one length, one pressure, the modulus of the substrate."""
 
 from dataclasses import dataclass
 
@@ -13,7 +13,7 @@ Coatings = tuple[tuple[float, float, float], ...]
 
 @dataclass(frozen=True)
 class Units:
-    """SI values of the units a problem is solved in."""
+    """SI values of the units in which a problem is solved."""
 
     length: float
     pressure: float
@@ -43,15 +43,15 @@ class LayeredSolid:
     ) -> "LayeredSolid":
         """The solid in units of ``length`` and E of the substrate, meshed to ``far`` times its own size.
 
-        A stiff coating spreads the load over a length that grows with its modulus, so it counts as
-        h sqrt(E_k/E) in that size.
+        A stiff coating distributes the load over a length that grows with its modulus, so it contributes
+        h sqrt(E_k/E) to that size.
         """
         E, nu = substrate
         thicknesses = tuple(h / length for _, _, h in coatings)
         moduli = [E_k / E for E_k, _, _ in coatings]
-        spread = sum(h * max(1.0, m) ** 0.5 for h, m in zip(thicknesses, moduli, strict=True))
+        extent = sum(h * max(1.0, m) ** 0.5 for h, m in zip(thicknesses, moduli, strict=True))
         poisson = [nu_k for _, nu_k, _ in coatings]
-        return cls((*zip(moduli, poisson, strict=True), (1.0, nu)), thicknesses, far * (1 + spread))
+        return cls((*zip(moduli, poisson, strict=True), (1.0, nu)), thicknesses, far * (1 + extent))
 
     def far_displacement(self, r: np.ndarray, z: np.ndarray) -> np.ndarray:
         """(u_r, u_z) far from a unit normal force: that of the substrate alone."""
@@ -65,7 +65,7 @@ class LayeredSolid:
 def first_radius(solid: LayeredSolid, load: float) -> float:
     """Contact radius if the layers above z gave the share (2/pi) atan(z/a) of the compliance.
 
-    A guess to start from; ``load`` in units with sphere radius 1.
+    Initial guess; ``load`` in units with sphere radius 1.
     """
     depths = np.cumsum([0.0, *solid.thicknesses])
     a = 1.0

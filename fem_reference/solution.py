@@ -1,35 +1,18 @@
 """A solved contact as functions of position in SI units."""
 
-from collections.abc import Callable
-from dataclasses import dataclass, field
+import time
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
 
-from .mesh import MeridianMesh
+from .estimate import Estimates, Uncertainty
+from .points import SolidPoints, solid_points
+from .scaling import Units
+from .state import ElasticState
+from .validation import check_friction
 
-__all__ = ["Diagnostics", "Meridian", "NotConverged", "Solution", "Uncertainty"]
-
-# (r, z, layer) of shape (n,) -> displacement (3, n), stress (6, n) amplitudes, see recovery.py
-AmplitudeFunction = Callable[[np.ndarray, np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]]
-BoundFunction = Callable[[np.ndarray, np.ndarray, np.ndarray], np.ndarray]
-
-
-_NOT_ESTIMATED = "this solution carries no uncertainty; solve with estimate_uncertainty=True"
-
-
-class NotConverged(Exception):
-    """The solver did not reach its tolerance; the text says what was reached and what to try."""
-
-
-@dataclass(frozen=True)
-class Uncertainty:
-    """Absolute numerical uncertainty in SI units; ``budget`` has rows (quantity, knob, value)."""
-
-    contact_radius: float
-    approach: float
-    peak_pressure: float
-    budget: tuple[tuple[str, str, float], ...]
+__all__ = ["Diagnostics", "Solution"]
 
 
 @dataclass(frozen=True)
@@ -40,7 +23,7 @@ class Diagnostics:
     dofs, triangles, order : size of the final level
     residual_gap : largest |gap| at the contact's nodes over the approach
     residual_pressure : most negative gap outside, or pressure inside, over approach or peak; 0 when none
-    residual_load : |load - asked| / asked
+    residual_load : relative error of the load
     residual_equilibrium : largest nodal out-of-balance force over the load
     seconds : wall time
     history : (level, contact radius [m], load [N]) of every contact solve
@@ -59,99 +42,15 @@ class Diagnostics:
 
 
 @dataclass(frozen=True, eq=False)
-class Meridian:
-    """The fields behind a solution as functions of position, both in units of their own.
-
-    normal, tangential : amplitudes of harmonic 0 and 1 (None without friction)
-    pressure : r -> p
-    normal_bound, tangential_bound, pressure_bound : their uncertainties, None when not estimated
-    mesh : the meridian mesh, for the .vtu writer
-    length, displacement, stress : SI values of the units
-    """
-
-    normal: AmplitudeFunction
-    tangential: AmplitudeFunction | None
-    pressure: Callable[[np.ndarray], np.ndarray]
-    normal_bound: BoundFunction | None
-    tangential_bound: BoundFunction | None
-    pressure_bound: Callable[[np.ndarray], np.ndarray] | None
-    mesh: MeridianMesh
-    length: float
-    displacement: float
-    stress: float
-
-    @property
-    def depths(self) -> np.ndarray:
-        """Depths of the interfaces [m]."""
-        return self.mesh.depths * self.length
-
-    @property
-    def far(self) -> float:
-        """Extent of the meshed solid [m]."""
-        return float(self.mesh.points.max()) * self.length
-
-    def radius(self, x: Any, y: Any) -> np.ndarray:
-        """r over the unit of length, broadcast from x and y [m]."""
-        return np.hypot(np.asarray(x, dtype=float), np.asarray(y, dtype=float)) / self.length
-
-    def points(self, x: Any, y: Any, z: Any, layer: int | None) -> "_Points":
-        """Broadcast and check the points, snap them to interfaces within rounding, find their layers."""
-        x, y, z = np.broadcast_arrays(*(np.asarray(c, dtype=float) for c in (x, y, z)))
-        shape = x.shape
-        x, y, z = x.ravel(), y.ravel(), z.ravel().copy()
-        r = np.hypot(x, y)
-        # the upper side of an interface belongs to the layer above it
-        levels = np.concatenate([[0.0], self.depths])
-        thickness = np.diff(levels, append=np.inf)
-        for k, level in enumerate(levels):
-            h = min(thickness[max(k - 1, 0)], thickness[k], self.mesh.contact_radius * self.length)
-            z[np.abs(z - level) <= 1e-9 * h] = level
-        if z.size and not (np.all(z >= 0) and np.all(np.isfinite(r)) and np.all(np.isfinite(z))):
-            worst = z[~(z >= 0)][0] if np.any(~(z >= 0)) else np.nan
-            raise ValueError(
-                f"z = {worst:g} m is not inside the solid; depth counts down from 0 at the surface"
-            )
-        if z.size and max(z.max(), r.max()) > self.far * (1 + 1e-9):
-            raise ValueError(
-                f"a point {max(z.max(), r.max()):g} m out is beyond the meshed solid ({self.far:g} m); "
-                f"ask for a larger far boundary"
-            )
-        found = np.searchsorted(self.depths, z, side="left")
-        if layer is not None:
-            if not 0 <= layer <= self.depths.size:
-                raise ValueError(f"layer = {layer}; the solid has layers 0 to {self.depths.size}")
-            lower = np.concatenate([[0.0], self.depths])[layer]
-            upper = np.concatenate([self.depths, [np.inf]])[layer]
-            if np.any((z < lower) | (z > upper)):
-                wrong = z[(z < lower) | (z > upper)][0]
-                raise ValueError(
-                    f"z = {wrong:g} m is not in layer {layer}, which reaches from {lower:g} to {upper:g} m"
-                )
-            found = np.full(z.shape, layer)
-        unit = np.where(r > 0, r, 1.0)
-        cos = np.where(r > 0, x / unit, 1.0)
-        return _Points(r / self.length, z / self.length, cos, y / unit, found, shape)
-
-
-@dataclass(frozen=True, eq=False)
-class _Points:
-    """Cylindrical coordinates, r and z over the unit of length, and layers; ``shape`` is what was asked."""
-
-    r: np.ndarray
-    z: np.ndarray
-    cos: np.ndarray
-    sin: np.ndarray
-    layer: np.ndarray
-    shape: tuple[int, ...]
-
-
-@dataclass(frozen=True, eq=False)
 class Solution:
     """Contact of a rigid sphere (or a prescribed pressure) on a coated half-space.
 
-    Origin at first contact, x along sliding, z into the solid; tension positive; SI units.
+    Origin at first contact, x along sliding, z into the solid; tension positive; SI units. A solution can be
+    pickled; under a prescribed pressure given as a callable, if that can be.
+
     surface_nodes : increasing x on y = 0, z = 0 at which pressure is a nodal value
     uncertainty   : of the three scalars, None when not estimated
+    state, units, estimates : fields and their estimated errors in scaled units, and these units
     stiffness     : d load / d approach [N/m] of the sphere, as of a flat punch of its contact radius
         (Pharr, Oliver and Brotzen, J. Mater. Res. 7 (1992) 613-617); None under a prescribed pressure
     stiffness_uncertainty : absolute, None when not estimated
@@ -163,65 +62,99 @@ class Solution:
     surface_nodes: np.ndarray
     uncertainty: Uncertainty | None
     diagnostics: Diagnostics
-    meridian: Meridian = field(repr=False)
+    state: ElasticState = field(repr=False)
+    units: Units = field(repr=False)
+    estimates: Estimates | None = field(repr=False)
     stiffness: float | None = None
     stiffness_uncertainty: float | None = None
 
+    def with_friction(self, friction: float) -> "Solution":
+        """The same contact, sliding with another coefficient ``friction`` of q = f p, or at rest with 0.
+
+        The pressure does not depend on friction (Goodman), so only harmonic 1 is solved, on the final mesh
+        and the companion. Every value equals that of a solution of the problem with this friction.
+        Raises ValueError when ``friction`` is not a finite number.
+        """
+        started = time.perf_counter()
+        check_friction(friction)
+        state, estimates = self.state.with_friction(friction), self.estimates
+        if estimates is not None:
+            estimates = estimates.with_friction(state, friction)
+        seconds = self.diagnostics.seconds + time.perf_counter() - started
+        diagnostics = replace(self.diagnostics, seconds=seconds)
+        return replace(self, state=state, estimates=estimates, diagnostics=diagnostics)
+
     def pressure(self, x: Any, y: Any = 0.0) -> np.ndarray:
         """Contact pressure [Pa] at the surface points (x, y), broadcast; zero outside the contact."""
-        m = self.meridian
-        return m.pressure(m.radius(x, y)) * m.stress
+        return self.state.pressure(self._radius(x, y)) * self.units.pressure
 
     def pressure_uncertainty(self, x: Any, y: Any = 0.0) -> np.ndarray:
         """Absolute numerical uncertainty of ``pressure`` [Pa], same shape.
 
         Raises ValueError when the solution was solved without an estimate.
         """
-        m = self.meridian
-        if m.pressure_bound is None:
-            raise ValueError(_NOT_ESTIMATED)
-        return m.pressure_bound(m.radius(x, y)) * m.stress
+        return self._estimated().pressure(self._radius(x, y)) * self.units.pressure
 
     def stress(self, x: Any, y: Any, z: Any, layer: int | None = None) -> np.ndarray:
         """Stress tensor sigma[i, j, ...] [Pa] in x, y, z; shape (3, 3) + broadcast shape of the points.
 
-        layer : 0 at the surface to the number of coatings in the substrate; picks the side of an interface,
-        None
-            means the upper one. Raises ValueError for a point outside the solid or outside its ``layer``.
+        layer : 0 at the surface to the number of coatings in the substrate; selects the side of an interface,
+            None the upper one
+        Raises ValueError for a point outside the solid or outside its ``layer``.
         """
-        at = self.meridian.points(x, y, z, layer)
-        _, sigma = self.meridian.normal(at.r, at.z, at.layer)
-        if self.meridian.tangential is not None:
-            _, sliding = self.meridian.tangential(at.r, at.z, at.layer)
-            sigma = sigma + sliding * np.stack([at.cos] * 4 + [at.sin] * 2)
-        return _tensor(sigma * self.meridian.stress, at.cos, at.sin).reshape(3, 3, *at.shape)
+        return self._stress(self._points(x, y, z, layer))
 
-    def stress_uncertainty(self, x: Any, y: Any, z: Any, layer: int | None = None) -> np.ndarray:
-        """Absolute numerical uncertainty of every component of ``stress`` [Pa], same shape.
+    def stress_with_uncertainty(
+        self, x: Any, y: Any, z: Any, layer: int | None = None
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """``stress`` and the absolute numerical uncertainty of each of its components [Pa], same shape.
 
         Raises ValueError like ``stress``, and when the solution was solved without an estimate.
         """
-        if self.meridian.normal_bound is None:
-            raise ValueError(_NOT_ESTIMATED)
-        at = self.meridian.points(x, y, z, layer)
-        cos, sin = np.abs(at.cos), np.abs(at.sin)
-        bound = self.meridian.normal_bound(at.r, at.z, at.layer)
-        if self.meridian.tangential_bound is not None:
-            bound = bound + self.meridian.tangential_bound(at.r, at.z, at.layer) * np.stack(
-                [cos] * 4 + [sin] * 2
-            )
-        # every product in the rotation counts with its modulus
-        return _tensor(bound * self.meridian.stress, cos, sin, sign=1.0).reshape(3, 3, *at.shape)
+        estimates, points = self._estimated(), self._points(x, y, z, layer)
+        return self._stress(points), self._stress_uncertainty(estimates, points)
+
+    def stress_uncertainty(self, x: Any, y: Any, z: Any, layer: int | None = None) -> np.ndarray:
+        """The second part of ``stress_with_uncertainty`` alone."""
+        return self._stress_uncertainty(self._estimated(), self._points(x, y, z, layer))
 
     def displacement(self, x: Any, y: Any, z: Any) -> np.ndarray:
         """Displacement (u_x, u_y, u_z) [m], u_z into the solid; shape (3,) + that of the points."""
-        at = self.meridian.points(x, y, z, None)
-        u, _ = self.meridian.normal(at.r, at.z, at.layer)
-        if self.meridian.tangential is not None:
-            sliding, _ = self.meridian.tangential(at.r, at.z, at.layer)
-            u = u + sliding * np.stack([at.cos, at.sin, at.cos])
-        xyz = np.stack([u[0] * at.cos - u[1] * at.sin, u[0] * at.sin + u[1] * at.cos, u[2]])
-        return xyz.reshape(3, *at.shape) * self.meridian.displacement
+        points = self._points(x, y, z, None)
+        cos, sin = points.cos, points.sin
+        u, _ = self.state.normal(points.located)
+        if self.state.tangential is not None:
+            sliding, _ = self.state.tangential(points.located)
+            u = u + sliding * np.stack([cos, sin, cos])
+        xyz = np.stack([u[0] * cos - u[1] * sin, u[0] * sin + u[1] * cos, u[2]])
+        return xyz.reshape(3, *points.shape) * self.units.displacement
+
+    def _estimated(self) -> Estimates:
+        if self.estimates is None:
+            raise ValueError("this solution has no uncertainty; solve with estimate_uncertainty=True")
+        return self.estimates
+
+    def _radius(self, x: Any, y: Any) -> np.ndarray:
+        return np.hypot(np.asarray(x, dtype=float), np.asarray(y, dtype=float)) / self.units.length
+
+    def _points(self, x: Any, y: Any, z: Any, layer: int | None) -> SolidPoints:
+        return solid_points(self.state.discretisation.locator, self.units.length, x, y, z, layer)
+
+    def _stress(self, points: SolidPoints) -> np.ndarray:
+        cos, sin = points.cos, points.sin
+        _, sigma = self.state.normal(points.located)
+        if self.state.tangential is not None:
+            _, sliding = self.state.tangential(points.located)
+            sigma = sigma + sliding * np.stack([cos] * 4 + [sin] * 2)
+        return _tensor(sigma * self.units.pressure, cos, sin).reshape(3, 3, *points.shape)
+
+    def _stress_uncertainty(self, estimates: Estimates, points: SolidPoints) -> np.ndarray:
+        cos, sin = np.abs(points.cos), np.abs(points.sin)
+        error = estimates.normal(points.located)
+        if estimates.tangential is not None:
+            error = error + estimates.tangential(points.located) * np.stack([cos] * 4 + [sin] * 2)
+        # absolute values of all products in the rotation add up
+        return _tensor(error * self.units.pressure, cos, sin, sign=1.0).reshape(3, 3, *points.shape)
 
 
 def _tensor(s: np.ndarray, cos: np.ndarray, sin: np.ndarray, sign: float = -1.0) -> np.ndarray:

@@ -1,31 +1,31 @@
 """Public entry of the finite element method: a physical problem in, a ``Solution`` out.
 
 Inside, every problem has one length, one pressure and the modulus of the substrate as units (``scaling``).
-For the sphere they are a_h = (3 W R / 4 E*)^(1/3) of the bare substrate and E a_h/R, as ``contact`` asks.
-
-Levels: a rough and a coarse mesh find the contact radius, a companion somewhat coarser than the final mesh
-finds it closely and is the yardstick of the error, the final one gives the result. A vertex stands at the
-contact radius of every level, and sliding friction is solved afterwards on the last two.
+For the sphere they are a_h = (3 W R / 4 E*)^(1/3) of the bare substrate and E a_h/R, as required by
+``contact``. Sliding friction is solved last, on the final mesh and its companion (``levels``).
 """
 
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
-from functools import partial
 
 import numpy as np
-from scipy.optimize import minimize_scalar
 
 from .axisymmetric import Discretisation
-from .contact import Touch, complementarity, touch
-from .estimate import SAFETY, PressureBound, StressBound
-from .load_control import carry_load
-from .loading import loaded, resultant
-from .mesh import Grading, MeridianMesh, meridian_mesh
-from .recovery import HarmonicField
-from .scaling import LayeredSolid, Units, first_radius
-from .solution import Diagnostics, Meridian, NotConverged, Solution, Uncertainty
-from .validation import check_choice, check_materials, check_positive, check_proportions, prescribed_pressure
+from .contact import FixedRadiusContact, complementarity, peak
+from .estimate import contact_estimates, estimates
+from .levels import NotConverged, companion_grading, mesh_at, solve_levels
+from .loading import resultant
+from .mesh import Grading, MeridianMesh
+from .scaling import LayeredSolid, Units
+from .solution import Diagnostics, Solution
+from .state import ElasticState
+from .validation import (
+    check_choice,
+    check_materials,
+    check_positive,
+    check_proportions,
+    prescribed_pressure,
+)
 
 __all__ = ["QUALITY", "solve", "solve_prescribed"]
 
@@ -33,17 +33,7 @@ Coatings = tuple[tuple[float, float, float], ...]
 
 # triangle size over its distance from the contact edge
 QUALITY = {"fast": 0.36, "default": 0.16, "fine": 0.12}
-_COARSE = 0.5
-_COMPANION = 1.4
-# Beyond this size the factor of safety grows with it: over 18 coated contacts the error came to 0.57 of the
-# difference from the companion, times SAFETY, at "default", to 1.08 of it at "fast".
-_SETTLED = 0.2
 LOAD_TOLERANCE = 2e-7
-_NEARER = 2.0
-_EDGE_SIZE = 1e-6
-# The last triangle misplaces the edge by this share of its size, whatever the solid: close to the edge all
-# contacts look alike. Measured on Hertz: 0.008 to 0.011 for edge sizes from 1e-2 to 1e-7 of the radius.
-_EDGE_SHARE = 0.03
 
 
 def solve(
@@ -64,18 +54,17 @@ def solve(
     """Rigid sphere pressed on, and with friction slid over, a coated half-space.
 
     radius [m], load [N], coatings ((E, nu, thickness), ...) [Pa, -, m] from the surface down, () for none,
-    substrate (E, nu), friction f in q = f p, the traction on the solid in +x, taken not to change p
+    substrate (E, nu), friction f in q = f p, the traction on the solid in +x, assumed not to change p
     (Goodman).
     order   : polynomial order of the displacement, 2 to 4
     quality : "fast" (about 1e-3), "default" (about 1e-5) or "fine"
-    size    : triangle size over its distance from the contact edge, 0.08 to 0.5; None takes that of
-    ``quality``
+    size    : triangle size over its distance from the contact edge, 0.08 to 0.5; None for that of ``quality``
     far     : distance of the outer boundary over (a_h + thickness of all coatings)
     max_iterations : contact solves allowed on each mesh level
-    load_tolerance : relative, at which the contact radius is settled on the last two levels
+    load_tolerance : relative error of the load allowed on the last two levels
     The approach is that of the sphere towards points at infinity.
     Poisson ratios up to 0.49 do not lock at order 4; above, digits are lost as 1/(1 - 2 nu), and 0.5 is
-    refused. Raises ValueError for bad input, NotConverged when no contact radius carries the load.
+    refused. Raises ValueError for bad input, NotConverged when no contact radius has the load.
     """
     started = time.perf_counter()
     check_positive(
@@ -91,107 +80,51 @@ def solve(
     check_proportions(solid.thicknesses, "a_h")
     target = load / unit.load
 
-    history: list[tuple[str, float, float]] = []
-    a, slope = first_radius(solid, target), 3.0
-
-    def touch_on(mesh: MeridianMesh, order: int) -> _Placed:
-        d = Discretisation(mesh, order)
-        return _Placed(touch(d, materials=solid.materials, far_displacement=solid.far_displacement), d)
-
-    def level(name: str, grading: Grading, order: int, tolerance: float) -> _Placed:
-        nonlocal a, slope
-        carried = carry_load(
-            target,
-            start=a,
-            slope=slope,
-            tolerance=tolerance,
-            max_iterations=max_iterations,
-            mesh_at=partial(_mesh, solid, grading),
-            solve_on=partial(touch_on, order=order),
-        )
-        history.extend((name, x * a_h, W * unit.load) for x, W in carried.history)
-        if not carried.converged:
-            raise NotConverged(
-                f"the contact radius did not settle on the {name} mesh: after {len(carried.history)} "
-                "solves, at "
-                f"{carried.contact_radius:.4g} a_h, the load is {carried.contact.load / target:.6g} of "
-                "the one "
-                f"asked for; raise max_iterations, or check the thicknesses and the ratio of the moduli"
-            )
-        slope = carried.slope
-        # the next level starts where this one would carry exactly the load
-        a = carried.contact_radius * (target / carried.contact.load) ** (1 / slope)
-        return carried.contact
-
-    level("rough", Grading.of(0.6), 2, 0.02)
-    level("coarse", Grading.of(_COARSE), order, 1e-3)
-    companion = level("companion", _companion(size), order, load_tolerance) if estimate_uncertainty else None
-    final = level("final", Grading.of(size, _EDGE_SIZE), order, load_tolerance)
-    found = final.touch
-    if found.contact_radius * a_h >= radius:
+    levels = solve_levels(
+        solid,
+        target,
+        order=order,
+        size=size,
+        max_iterations=max_iterations,
+        tolerance=load_tolerance,
+        with_companion=estimate_uncertainty,
+    )
+    final, d = levels.final, levels.final.discretisation
+    if final.contact_radius * a_h >= radius:
         raise ValueError(
-            f"load = {load:g} N presses the contact radius to {found.contact_radius * a_h:g} m, beyond the "
+            f"load = {load:g} N presses the contact radius to {final.contact_radius * a_h:g} m, beyond the "
             f"radius of the sphere, {radius:g} m; small strains need a far smaller load"
         )
-    penetration, tension = complementarity(found, final.discretisation)
-    if not (0 <= penetration <= 1e-3 and 0 <= tension <= 1e-3):  # so that NaN and -inf are refused too
-        raise NotConverged(
-            f"the contact is not one disc: penetration outside is {penetration:.2g} of the approach, tension "
-            f"inside {tension:.2g} of the peak pressure; use quality='fine', or check the Poisson ratios"
-        )
-
-    if not np.isfinite(found.stiffness):
-        raise NotConverged(f"the contact's stiffness dW/d delta is {found.stiffness}; use quality='fine'")
-
-    load_miss = abs(found.load / target - 1)
-    result = _state(solid, final.discretisation, found.fields, found.pressure, friction)
-    bounds, stiffness_bound = _NO_BOUNDS, None
-    if companion is not None:
-        coarser = companion.touch
-        other = _state(solid, companion.discretisation, coarser.fields, coarser.pressure, friction)
-        near = touch_on(companion.discretisation.mesh.drawn_in(_NEARER), order).touch
-        # change of the scalars at fixed load: the load is taken back along the contact's own stiffness
-        missing = coarser.load - near.load
-        far_share = (
-            abs(missing / target / slope * coarser.contact_radius),
-            abs(near.approach - coarser.approach + missing / coarser.stiffness),
-            abs(near.pressure.values[0] - coarser.pressure.values[0]),
-        )
-        size_share = (
-            abs(found.contact_radius - coarser.contact_radius),
-            abs(found.approach - coarser.approach),
-        )
-        caution = _caution(size)
-        bounds = _bounds(result, other, unit, size_share, far_share, load_miss, caution)
-        stiffness_bound = (
-            SAFETY * caution * abs(found.stiffness - coarser.stiffness)
-            + abs(near.stiffness - coarser.stiffness)
-            + load_miss * found.stiffness
-        )
-    return Solution(
-        contact_radius=found.contact_radius * unit.length,
-        approach=found.approach * unit.displacement,
-        peak_pressure=_peak(found.pressure, found.pressure.vertices)[1] * unit.pressure,
-        surface_nodes=_surface_nodes(final.discretisation) * unit.length,
-        uncertainty=bounds.scalars,
+    penetration, tension = _checked_complementarity(levels.final)
+    state = ElasticState.of_contact(solid, final)
+    found, stiffness_error = None, None
+    if estimate_uncertainty:
+        found, stiffness_error = contact_estimates(levels, state, unit, target, size)
+    frictionless = Solution(
+        contact_radius=final.contact_radius * unit.length,
+        approach=final.approach * unit.displacement,
+        peak_pressure=peak(final.pressure, final.pressure.vertices)[1] * unit.pressure,
+        surface_nodes=_surface_nodes(d) * unit.length,
+        uncertainty=None if found is None else found.scalars,
         diagnostics=Diagnostics(
-            iterations=len(history),
-            dofs=2 * final.discretisation.N,
-            triangles=int(final.discretisation.mesh.layer.size),
+            iterations=len(levels.history),
+            dofs=2 * d.N,
+            triangles=int(d.mesh.layer.size),
             order=order,
             residual_gap=penetration,
             residual_pressure=tension,
-            residual_load=load_miss,
-            residual_equilibrium=found.residual,
+            residual_load=abs(final.load / target - 1),
+            residual_equilibrium=final.residual,
             seconds=time.perf_counter() - started,
-            history=tuple(history),
+            history=tuple((name, a * a_h, W * unit.load) for name, a, W in levels.history),
         ),
-        meridian=_meridian(result, unit, bounds),
-        stiffness=found.stiffness * unit.load / unit.displacement,
-        stiffness_uncertainty=(
-            None if stiffness_bound is None else float(stiffness_bound * unit.load / unit.displacement)
-        ),
+        state=state,
+        units=unit,
+        estimates=found,
+        stiffness=final.stiffness * unit.load / unit.displacement,
+        stiffness_uncertainty=stiffness_error,
     )
+    return frictionless.with_friction(friction)
 
 
 def solve_prescribed(
@@ -209,7 +142,7 @@ def solve_prescribed(
 ) -> Solution:
     """A coated half-space under a given pressure on the disc r <= ``load_radius``, with q = f p.
 
-    pressure : a number (uniform) or a callable p(r) [Pa] taking an array of radii [m]
+    pressure : a number (uniform) or a callable p(r) [Pa] of an array of radii [m]
     The approach of the solution is u_z at the origin, its contact radius is ``load_radius``. Other arguments
     and errors as for ``solve``.
     """
@@ -223,34 +156,23 @@ def solve_prescribed(
     solid = LayeredSolid.scaled(coatings, substrate, load_radius, far)
     check_proportions(solid.thicknesses, "load_radius")
 
-    def state(mesh: MeridianMesh) -> _State:
-        d = Discretisation(mesh, order)
-        fields = loaded(
-            d,
-            harmonic=0,
-            materials=solid.materials,
-            traction=p,
-            far_displacement=solid.far_displacement,
-        )
-        return _state(solid, d, fields, p, friction)
+    def state_on(mesh: MeridianMesh) -> ElasticState:
+        return ElasticState.under_pressure(solid, Discretisation(mesh, order), p)
 
-    result = state(_mesh(solid, Grading.of(size, _EDGE_SIZE), 1.0))
-    d = result.discretisation
-    bounds = _NO_BOUNDS
+    state, found = state_on(mesh_at(solid, Grading.of(size), 1.0)), None
     if estimate_uncertainty:
-        mesh = _mesh(solid, _companion(size), 1.0)
-        other = state(mesh)
-        far_share = (0.0, abs(other.sink - state(mesh.drawn_in(_NEARER)).sink), 0.0)
-        bounds = _bounds(
-            result, other, unit, (0.0, abs(result.sink - other.sink)), far_share, 0.0, _caution(size)
-        )
+        mesh = mesh_at(solid, companion_grading(size), 1.0)
+        companion, near = state_on(mesh), state_on(mesh.with_nearer_boundary())
+        changes = 0.0, abs(companion.central_displacement - near.central_displacement), 0.0
+        found = estimates(state, companion, unit, changes, load_residual=0.0, size=size)
+    d = state.discretisation
     nodes = _surface_nodes(d)
-    return Solution(
+    frictionless = Solution(
         contact_radius=load_radius,
-        approach=result.sink * unit.displacement,
+        approach=state.central_displacement * unit.displacement,
         peak_pressure=float(np.max(p(np.abs(nodes)))) * unit.pressure,
         surface_nodes=nodes * unit.length,
-        uncertainty=bounds.scalars,
+        uncertainty=None if found is None else found.scalars,
         diagnostics=Diagnostics(
             iterations=1,
             dofs=2 * d.N,
@@ -263,51 +185,11 @@ def solve_prescribed(
             seconds=time.perf_counter() - started,
             history=(("final", load_radius, resultant(d, p) * unit.load),),
         ),
-        meridian=_meridian(result, unit, bounds),
+        state=state,
+        units=unit,
+        estimates=found,
     )
-
-
-@dataclass(frozen=True, eq=False)
-class _Placed:
-    """A contact with the discretisation it was found on."""
-
-    touch: Touch
-    discretisation: Discretisation
-
-    @property
-    def load(self) -> float:
-        return self.touch.load
-
-
-@dataclass(frozen=True, eq=False)
-class _State:
-    """The fields of one level, in units."""
-
-    normal: HarmonicField
-    tangential: HarmonicField | None
-    pressure: Callable[[np.ndarray], np.ndarray]
-
-    @property
-    def discretisation(self) -> Discretisation:
-        return self.normal.discretisation
-
-    @property
-    def sink(self) -> float:
-        """u_z at the origin."""
-        d = self.discretisation
-        origin = np.flatnonzero((d.locations[0] == 0) & (d.locations[1] == 0))
-        return float(self.normal.fields[d.N + origin[0]])
-
-
-@dataclass(frozen=True, eq=False)
-class _Bounds:
-    scalars: Uncertainty | None
-    normal: StressBound | None
-    tangential: StressBound | None
-    pressure: PressureBound | None
-
-
-_NO_BOUNDS = _Bounds(None, None, None, None)
+    return frictionless.with_friction(friction)
 
 
 def _size(quality: str, size: float | None) -> float:
@@ -320,40 +202,20 @@ def _size(quality: str, size: float | None) -> float:
     return size
 
 
-def _caution(size: float) -> float:
-    """What SAFETY is multiplied with: more where elements are too large for errors to fall as they should."""
-    return max(1.0, size / _SETTLED)
+def _checked_complementarity(contact: FixedRadiusContact) -> tuple[float, float]:
+    """Relative penetration outside and tension inside the contact.
 
-
-def _companion(size: float) -> Grading:
-    """The mesh that stands for the error: coarser everywhere, and blunter at the edge."""
-    return Grading.of(_COMPANION * size, edge_size=4 * _EDGE_SIZE)
-
-
-def _mesh(solid: LayeredSolid, grading: Grading, a: float) -> MeridianMesh:
-    return meridian_mesh(contact_radius=a, thicknesses=solid.thicknesses, far=solid.far, grading=grading)
-
-
-def _state(
-    solid: LayeredSolid,
-    d: Discretisation,
-    fields: np.ndarray,
-    pressure: Callable[[np.ndarray], np.ndarray],
-    friction: float,
-) -> _State:
-    """Wrap the normal fields, and solve for sliding where there is friction."""
-    normal = HarmonicField(d, fields, solid.materials, 0, pressure, -1.0)
-    if friction == 0:
-        return _State(normal, None, pressure)
-    sliding = loaded(
-        d,
-        harmonic=1,
-        materials=solid.materials,
-        traction=lambda r: friction * pressure(r),
-        far_displacement=solid.far_sliding,
-    )
-    tangential = HarmonicField(d, sliding, solid.materials, 1, pressure, -friction)
-    return _State(normal, tangential, pressure)
+    Raises NotConverged where either is too large, or where the stiffness is not finite.
+    """
+    penetration, tension = complementarity(contact)
+    if not (0 <= penetration <= 1e-3 and 0 <= tension <= 1e-3):  # also true of NaN and -inf
+        raise NotConverged(
+            f"the contact is not one disc: penetration outside is {penetration:.2g} of the approach, tension "
+            f"inside {tension:.2g} of the peak pressure; use quality='fine', or check the Poisson ratios"
+        )
+    if not np.isfinite(contact.stiffness):
+        raise NotConverged(f"the contact's stiffness dW/d delta is {contact.stiffness}; use quality='fine'")
+    return penetration, tension
 
 
 def _surface_nodes(d: Discretisation) -> np.ndarray:
@@ -361,76 +223,3 @@ def _surface_nodes(d: Discretisation) -> np.ndarray:
     r = d.locations[0, d.surface]
     r = r[r < 3 * d.mesh.contact_radius]
     return np.concatenate([-r[:0:-1], r])
-
-
-def _peak(pressure: Callable[[np.ndarray], np.ndarray], vertices: np.ndarray) -> tuple[float, float]:
-    """Radius and value of the largest pressure: the axis, or a ring where a stiff film bends like a plate."""
-    r = np.unique(np.linspace(vertices[:-1], vertices[1:], 9))
-    best = int(np.argmax(pressure(r)))
-    if best == 0:
-        return 0.0, float(pressure(r[:1])[0])
-    found = minimize_scalar(
-        lambda radius: -float(pressure(np.array([radius]))[0]),
-        bounds=(r[best - 1], r[min(best + 1, r.size - 1)]),
-        method="bounded",
-        options={"xatol": 1e-6 * r[-1]},
-    )
-    return float(found.x), -float(found.fun)
-
-
-def _bounds(
-    result: _State,
-    companion: _State,
-    unit: Units,
-    size_share: tuple[float, float],
-    far_share: tuple[float, float, float],
-    load_miss: float,
-    caution: float,
-) -> _Bounds:
-    """Uncertainties from the companion (element size), a nearer boundary and the load left over."""
-    d = result.discretisation
-    at, peak = _peak(result.pressure, d.contact_vertices)
-    a = d.mesh.contact_radius
-    everywhere = far_share[2] + load_miss / 3 * peak
-    pressure = PressureBound(
-        result.pressure, companion.pressure, d.contact_vertices, size_share[0], everywhere, caution
-    )
-    size_peak = float(pressure(np.array([at]))[0]) - everywhere
-    budget: tuple[tuple[str, str, float], ...] = (
-        ("contact_radius", "element size", SAFETY * caution * size_share[0] * unit.length),
-        ("contact_radius", "edge size", _EDGE_SHARE * _EDGE_SIZE * a * (size_share[0] > 0) * unit.length),
-        ("contact_radius", "outer boundary", far_share[0] * unit.length),
-        ("contact_radius", "load balance", load_miss / 3 * a * unit.length),
-        ("approach", "element size", SAFETY * caution * size_share[1] * unit.displacement),
-        ("approach", "outer boundary", far_share[1] * unit.displacement),
-        ("approach", "load balance", load_miss * result.sink * unit.displacement),
-        ("peak_pressure", "element size", size_peak * unit.pressure),
-        ("peak_pressure", "outer boundary", far_share[2] * unit.pressure),
-        ("peak_pressure", "load balance", load_miss / 3 * peak * unit.pressure),
-    )
-    budget = tuple((quantity, knob, float(value)) for quantity, knob, value in budget)
-    total = {name: sum(value for quantity, _, value in budget if quantity == name) for name, _, _ in budget}
-    sliding = None
-    if result.tangential is not None and companion.tangential is not None:
-        sliding = StressBound(result.tangential, companion.tangential, caution=caution)
-    return _Bounds(
-        scalars=Uncertainty(**total, budget=budget),
-        normal=StressBound(result.normal, companion.normal, everywhere, caution),
-        tangential=sliding,
-        pressure=pressure,
-    )
-
-
-def _meridian(state: _State, unit: Units, bounds: _Bounds) -> Meridian:
-    return Meridian(
-        normal=state.normal,
-        tangential=state.tangential,
-        pressure=state.pressure,
-        normal_bound=bounds.normal,
-        tangential_bound=bounds.tangential,
-        pressure_bound=bounds.pressure,
-        mesh=state.discretisation.mesh,
-        length=unit.length,
-        displacement=unit.displacement,
-        stress=unit.pressure,
-    )

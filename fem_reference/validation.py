@@ -1,4 +1,4 @@
-"""Checks of a stated problem, each failure one sentence."""
+"""Checks of the input; each failure raises ValueError with a message of one line."""
 
 import math
 from collections.abc import Callable, Sequence
@@ -9,6 +9,7 @@ import numpy as np
 __all__ = [
     "GivenPressure",
     "check_choice",
+    "check_friction",
     "check_materials",
     "check_positive",
     "check_proportions",
@@ -34,22 +35,25 @@ def check_choice(name: str, value: object, choices: Sequence[object]) -> None:
         raise ValueError(f"{name} = {value!r}; choose one of {', '.join(map(repr, choices))}")
 
 
+def check_friction(friction: float) -> None:
+    """Raise ValueError when ``friction`` is not a finite number."""
+    if not _is_number(friction) or not math.isfinite(friction):
+        raise ValueError(f"friction = {friction!r}; it has to be a finite number")
+
+
 def check_materials(
     coatings: Sequence[tuple[float, float, float]], substrate: tuple[float, float], friction: float
 ) -> None:
     """Raise ValueError for moduli, Poisson ratios, thicknesses or friction that make no elastic solid.
 
-    nu = 0.5 is refused: a displacement method cannot carry the undetermined pressure of an incompressible
-    solid.
+    nu = 0.5 is refused: displacements leave the pressure of an incompressible solid undetermined.
     """
-    if not _is_number(friction) or not math.isfinite(friction):
-        raise ValueError(f"friction = {friction!r}; it has to be a finite number")
+    check_friction(friction)
     if not isinstance(coatings, Sequence) or isinstance(coatings, str):
         raise ValueError(f"coatings = {coatings!r}; give a tuple of (E, nu, thickness), () for none")
     if len(coatings) > MAX_COATINGS:
         raise ValueError(
-            f"{len(coatings)} coatings; the mesh holds at most {MAX_COATINGS}, merge thin ones into "
-            "effective layers"
+            f"{len(coatings)} coatings; at most {MAX_COATINGS} can be meshed, merge thin ones into one"
         )
     if not isinstance(substrate, Sequence) or len(substrate) != 2:
         raise ValueError(f"substrate = {substrate!r}; give (E, nu)")
@@ -61,9 +65,8 @@ def check_materials(
         contrast = coating[0] / substrate[0] if _is_number(substrate[0]) and substrate[0] > 0 else 1.0
         if not 1 / MAX_CONTRAST <= contrast <= MAX_CONTRAST:
             raise ValueError(
-                f"E of coating {k} is {contrast:g} times that of the substrate; the solver is good for "
-                "ratios between "
-                f"{1 / MAX_CONTRAST:g} and {MAX_CONTRAST:g}, treat the stiffer solid as rigid instead"
+                f"E of coating {k} is {contrast:g} times that of the substrate; the solver supports ratios "
+                f"between {1 / MAX_CONTRAST:g} and {MAX_CONTRAST:g}, treat the stiffer solid as rigid instead"
             )
     _check_material("of the substrate", *substrate)
 
@@ -73,13 +76,12 @@ def check_proportions(thicknesses: Sequence[float], unit: str) -> None:
     for k, h in enumerate(thicknesses, start=1):
         if h < MIN_THICKNESS:
             raise ValueError(
-                f"thickness of coating {k} is {h:.3g} {unit}, which no stress can feel; leave the "
-                "coating out, "
+                f"thickness of coating {k} is {h:.3g} {unit}, too thin to change any stress; leave it out, "
                 f"or keep it above {MIN_THICKNESS:g} {unit}"
             )
         if h > MAX_THICKNESS:
             raise ValueError(
-                f"thickness of coating {k} is {h:.3g} {unit}; take its material for the substrate instead, "
+                f"thickness of coating {k} is {h:.3g} {unit}; use its material for the substrate instead, "
                 f"or keep it below {MAX_THICKNESS:g} {unit}"
             )
 
@@ -130,14 +132,11 @@ def _check_material(where: str, E: float, nu: float) -> None:
     check_positive(**{f"E {where}": E})
     if not _is_number(nu) or not -1 < nu < 0.5:
         raise ValueError(
-            f"nu {where} = {nu!r}; the finite element method needs -1 < nu < 0.5, use 0.499 for nearly "
+            f"nu {where} = {nu!r}; the finite element method needs -1 < nu < 0.5, such as 0.499 for nearly "
             "incompressible"
         )
 
 
 def _is_number(value: object) -> bool:
-    return (isinstance(value, (int, float)) and not isinstance(value, bool)) or _is_numpy_scalar(value)
-
-
-def _is_numpy_scalar(value: object) -> bool:
-    return hasattr(value, "dtype") and getattr(value, "shape", None) == () and hasattr(value, "__float__")
+    numpy = hasattr(value, "dtype") and getattr(value, "shape", None) == () and hasattr(value, "__float__")
+    return numpy or (isinstance(value, (int, float)) and not isinstance(value, bool))

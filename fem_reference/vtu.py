@@ -1,6 +1,6 @@
-"""ParaView files of a solution, through meshio alone.
+"""ParaView files of a solution, written by meshio.
 
-Vertices on an interface are written once per layer, so that the jump of sigma_xx stays a jump.
+Vertices on an interface are written once per layer, so that sigma_xx is discontinuous there.
 """
 
 from dataclasses import dataclass
@@ -50,11 +50,11 @@ class PlaneMesh:
 
 def plane_mesh(solution: "Solution") -> PlaneMesh:
     """The mesh of the plane y = 0 with its fields; with friction both halves x < 0 and x > 0."""
-    mesh, length = solution.meridian.mesh, solution.meridian.length
+    mesh, length = solution.state.mesh, solution.units.length
     points, cells, layer = _quadratic(mesh.points * length, mesh.triangles, mesh.layer)
     owner = np.zeros(points.shape[1], dtype=int)
     owner[cells.ravel()] = np.repeat(layer, 6)
-    halves = (1.0, -1.0) if solution.meridian.tangential is not None else (1.0,)
+    halves = (1.0, -1.0) if solution.state.tangential is not None else (1.0,)
     x = np.concatenate([half * points[0] for half in halves])
     z = np.tile(points[1], len(halves))
     owner = np.tile(owner, len(halves))

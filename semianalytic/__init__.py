@@ -8,7 +8,8 @@
 """
 
 from semianalytic.contact import NotConverged
-from semianalytic.solution import Diagnostics, Solution, Uncertainty
+from semianalytic.solution import Diagnostics, Solution
 from semianalytic.solver import indent, solve, solve_prescribed
+from semianalytic.uncertainty import Uncertainty
 
 __all__ = ["Diagnostics", "NotConverged", "Solution", "Uncertainty", "indent", "solve", "solve_prescribed"]

@@ -1,43 +1,44 @@
-"""Conjugate gradients for the pressure of a rigid indenter, its approach and its contact area.
+"""Constrained conjugate gradients for the pressure of a rigid indenter.
 
 Complementarity on surface patches, u = A p the surface deflection, g0 the undeformed gap:
 
     g = u + g0 - delta,   g = 0 where p > 0,   g >= 0 where p = 0,   p >= 0,
 
 with sum(p) prescribed (load control) or delta prescribed (approach control). As Polonsky and Keer (Wear
-231 (1999) 206-219), with five changes: a preconditioner z = P g that keeps the load (sum z = 0 fixes delta
-in each step), g continued beyond the contact before P, about the inverse of A on the whole plane, is applied
-(cut off at the edge it would press hard there: twice the iterations, three times under thin stiff coatings);
-the deflection carried along, one convolution an iteration; the contact set left alone until its residual has
-fallen, tension allowed meanwhile, then updated at once to what it will be when the residual is gone (the
-primal-dual active set of Hintermueller, Ito and Kunisch, SIAM J. Optim. 13 (2002) 865-888, with inexact inner
-solves); an end test on complementarity itself in place of the change of p.
+231 (1999) 206-219, section 3), with five changes: a preconditioner z = P g that keeps the load (sum z = 0
+fixes delta in each step); g extended beyond the contact before P, an approximate inverse of A on the whole
+plane, is applied (cut off at the edge it would cause large pressures there: twice the iterations, three times
+under thin stiff coatings); the deflection updated with the pressure, one convolution per iteration; the
+contact set kept until its residual has fallen, tension allowed meanwhile, then updated at once to the set
+predicted for a vanishing residual (the primal-dual active set of Hintermueller, Ito and Kunisch, SIAM J.
+Optim. 13 (2002) 865-888, with inexact inner solves); a stopping criterion on complementarity itself instead
+of the change of p.
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import gaussian_filter
 
-__all__ = ["Contact", "NotConverged", "press"]
+__all__ = ["Contact", "NotConverged", "solve"]
 
 Array = NDArray[np.floating]
 Mask = NDArray[np.bool_]
 Operator = Callable[[Array], Array]
 
+# Limits of the active-set strategy.
+RESIDUAL_FALL = 0.5  # on a fixed contact set, at which the set is updated
+ITERATIONS_PER_SET = 3  # after which the set is updated in any case
+PREDICTED_UPDATES = 12  # after these the set follows the signs of p and g in every iteration
+EXTENDED_ITERATIONS = 10  # after these the residual is cut off at the edge, P is symmetric again
+PRECONDITIONED_ITERATIONS = 50  # after these P is dropped: Polonsky and Keer's own iteration
+EXTENSION = 2.0  # patches over which the residual is extended beyond the contact, by default
+
 
 class NotConverged(Exception):
-    """The iteration stopped short of what was asked; the message says of what, and what to try."""
-
-
-FALL = 0.5  # of the residual on a fixed contact set, that calls for its update
-PATIENCE = 3  # iterations on a fixed contact set
-REACH = 2.0  # patches over which the residual is continued beyond the contact, unless told otherwise
-CALM = 12  # updates of the set after which it is updated in every iteration
-EAGER = 10  # iterations with the residual continued; then cut off at the edge, P is symmetric again
-STUBBORN = 50  # iterations after which the preconditioner is dropped: Polonsky and Keer's own iteration
+    """The iteration ended before the tolerance was met; the message gives the quantity and a remedy."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,51 +63,110 @@ class Contact:
 
     @classmethod
     def of_load(cls, pressure: Array) -> "Contact":
-        """A pressure that was prescribed: no condition to fulfil, nothing iterated."""
+        """A prescribed pressure: no condition to fulfil, no iteration."""
         return cls(pressure, np.zeros_like(pressure), 0.0, 0.0, 0.0, 0.0, 0, 1, ())
 
     def embedded(self, where: tuple[slice, slice], n: int, open_gap: float) -> "Contact":
-        """The same contact on an n x n grid of which it was a window; the gap beyond is said to be open."""
+        """The same contact on an n x n grid of which it was a window; the gap beyond becomes ``open_gap``."""
         pressure, gap = np.zeros((n, n)), np.full((n, n), open_gap)
         pressure[where], gap[where] = self.pressure, self.gap
         return replace(self, pressure=pressure, gap=gap)
 
 
-class _Surroundings:
-    """The contact set, and how what is known on it is continued beyond: means of ``reach`` patches."""
+class _ContactSet:
+    """Contact set, with the extension of the residual beyond it by means over ``extension`` patches."""
 
-    def __init__(self, inside: Mask, reach: float) -> None:
-        self.reach = reach
+    def __init__(self, inside: Mask, extension: float) -> None:
+        self.inside, self.extension = inside, extension
         self.indicator = inside.astype(float)
         share = self._mean(self.indicator, np.empty_like(self.indicator))
-        # fading where less than a tenth of the mean is known
+        # fading where less than a tenth of the mean lies in contact
         self._weight = (1 - self.indicator) / np.maximum(share, 0.1)
         share *= self._weight
         share += self.indicator
-        self.one = share  # a gap of 1, continued
+        self.one = share  # unit residual, extended beyond the contact set
 
-    def continued(self, r: Array, out: Array) -> Array:
-        """r, which is 0 outside, in contact, its local mean just outside, 0 far away."""
+    def extended(self, r: Array, out: Array) -> Array:
+        """r, which is 0 outside, in contact; its local mean just outside, 0 far away."""
         self._mean(r, out)
         out *= self._weight
         out += r
         return out
 
     def _mean(self, r: Array, out: Array) -> Array:
-        gaussian_filter(r, self.reach, mode="constant", truncate=3, output=out)
+        gaussian_filter(r, self.extension, mode="constant", truncate=3, output=out)
         return out
 
 
-def _largest(a: Array) -> float:
-    return float(max(a.max(), -a.min()))
+@dataclass(frozen=True, eq=False)
+class _Problem:
+    """The arguments of ``solve``."""
+
+    deflection: Operator
+    gap: Array
+    total: float | None
+    approach: float | None
+    start: Array
+    precondition: Operator
+    scale: float
+    tolerance: float
+    max_iterations: int
+    extension: float
+
+    def balanced(self, p: Array) -> Array:
+        """Pressure scaled to the load."""
+        return p if self.total is None else p * (self.total / p.sum())
 
 
-def _dot(a: Array, b: Array) -> float:
-    # not by BLAS: its threads go on turning after such a short sum, in the way of those of the FFT
-    return float(np.einsum("ij,ij->", a, b))
+@dataclass(slots=True, eq=False)
+class _State:
+    """One iterate; its arrays are reused in place, since allocating them anew costs as much as the sums.
+
+    p, u, delta : pressure, deflection, approach.  updated : u by recurrence, not by A p.
+    contact : the set, P_one : P of the unit residual on it, new : it changed since the last step.
+    g, r, extended, z : gap, gap in contact, its extension, P of that.  shift : last change of delta.
+    step, slope, last : search direction, its (r, z), and r of the iteration before.
+    residual, depth : largest |r| over the scale; penetration [m], ``deep`` its limit.  first : residual at
+    the first iteration on the set.  tension : patches with p < 0.  admissible : no tension, no penetration.
+    iterations, on_set, set_updates, convolutions : counts; on_set those since the last change of the set.
+    """
+
+    p: Array
+    u: Array
+    contact: _ContactSet
+    delta: float
+    g: Array = field(init=False)
+    r: Array = field(init=False)
+    last: Array = field(init=False)
+    extended: Array = field(init=False)
+    z: Array = field(init=False)
+    work: Array = field(init=False)
+    step: Array = field(init=False)
+    P_one: Array = field(init=False)
+    tension: Mask = field(init=False)
+    shift: float = 0.0
+    slope: float = 1.0
+    residual: float = 0.0
+    first: float = 0.0
+    depth: float = 0.0
+    deep: float = 0.0
+    updated: bool = False
+    new: bool = False
+    admissible: bool = False
+    iterations: int = 0
+    on_set: int = 0
+    set_updates: int = 0
+    convolutions: int = 1
+    history: list[tuple[float, float]] = field(default_factory=list)
+
+    def __post_init__(self) -> None:
+        self.g, self.r, self.last, self.extended, self.z, self.work = (
+            np.empty_like(self.u) for _ in range(6)
+        )
+        self.step = np.zeros_like(self.u)
 
 
-def press(
+def solve(
     deflection: Operator,
     gap: Array,
     *,
@@ -117,15 +177,15 @@ def press(
     scale: float,
     tolerance: float,
     max_iterations: int,
-    reach: float = REACH,
+    extension: float = EXTENSION,
 ) -> Contact:
     """Pressure p >= 0 that closes the gap where it acts and leaves it open elsewhere.
 
     deflection : u = A p, linear, symmetric, positive.  gap : g0 [m], any shape.
     total : sum of p over the patches [Pa], for load control; else approach : delta [m].
-    start : first guess of p.  precondition : z = P r, about the inverse of A.
-    scale : length by which gap and penetration are judged [m].  tolerance : on each of them, relative.
-    reach : patches over which the residual is continued beyond the contact.
+    start : first guess of p.  precondition : z = P r, approximate inverse of A.
+    scale : length to which gap and penetration are relative [m].  tolerance : on each of them, relative.
+    extension : patches over which the residual is extended beyond the contact.
 
     Raises NotConverged after max_iterations, ValueError unless exactly one of total and approach is given.
     """
@@ -135,125 +195,189 @@ def press(
         raise NotConverged(
             "the first guess of the pressure is not finite; look at the influence coefficients"
         )
+    problem = _Problem(
+        deflection, gap, total, approach, start, precondition, scale, tolerance, max_iterations, extension
+    )
+    # numbered as by Polonsky and Keer; their last steps come first, for the first guess may be the solution
+    state = _first_guess(problem)
+    _find_gap(state, problem)  # 1: gap, its preconditioned mean removed
+    while not _is_solved(state, problem):  # 7: stopping criterion
+        if not _update_set(state, problem):  # 5, 6: tension leaves, overlap enters; balance of the load
+            _find_direction(state)  # 2: conjugate direction
+            _advance(state, problem)  # 3, 4: step length and step
+            _choose_preconditioner(state, problem)
+        _find_gap(state, problem)  # 1
+    return _contact(state, problem)
 
-    # what every iteration fills anew: gap, gap in contact now and before, continued, P of it, an odd job's
-    g, r, last, c, z, work = (np.empty(gap.shape) for _ in range(6))
 
-    def balanced(p: Array) -> Array:
-        return p if total is None else p * (total / p.sum())
+def _first_guess(problem: _Problem) -> _State:
+    p = problem.balanced(np.maximum(problem.start, 0.0))
+    contact = _ContactSet(p > 0, problem.extension)
+    state = _State(p, problem.deflection(p), contact, problem.approach or 0.0)
+    _find_P_one(state, problem)
+    return state
 
-    def free(r: Array, continued: Array, out: Array) -> Array:
-        """P of the residual r, on the contact set."""
-        if iterations >= STUBBORN:
-            out[:] = r
-            return out
-        return np.multiply(precondition(continued if iterations < EAGER else r), near.indicator, out=out)
 
-    def of_one() -> Array:
-        return free(near.indicator, near.one, np.empty_like(gap)) if approach is None else gap
+def _choose_preconditioner(state: _State, problem: _Problem) -> None:
+    """Cut P off at the edge, later drop it; what conjugate directions have been built is discarded."""
+    if not state.on_set:
+        return
+    if state.iterations == PRECONDITIONED_ITERATIONS:
+        # where the preconditioner misleads, the iterate is far from the solution: start from the first guess
+        state.p = problem.balanced(np.maximum(problem.start, 0.0))
+        state.u, state.updated = problem.deflection(state.p), False
+        state.convolutions += 1
+        state.contact = _ContactSet(state.p > 0, problem.extension)
+        state.set_updates = PREDICTED_UPDATES
+    elif state.iterations != EXTENDED_ITERATIONS:
+        return
+    _find_P_one(state, problem)
+    state.on_set = 0
 
-    def look(final: bool = False) -> float:
-        """Fill g, r, c and z, with the delta that keeps the load; returns how far it moved, c not yet.
 
-        final : delta stays as it is, and g and r are all that is filled.
-        """
-        np.add(u, gap, out=g)
-        np.subtract(g, delta, out=g)
-        np.multiply(g, near.indicator, out=r)
-        if final:
-            return 0.0
-        free(r, near.continued(r, c), z)
-        if approach is not None:
-            return 0.0
-        more = float(z.sum() / P_one.sum())
-        np.subtract(g, more, out=g)
-        np.multiply(g, near.indicator, out=r)
-        np.subtract(z, np.multiply(P_one, more, out=work), out=z)
-        return more
+def _precondition(state: _State, problem: _Problem, r: Array, extended: Array, out: Array) -> Array:
+    """P of the residual r, on the contact set."""
+    if state.iterations >= PRECONDITIONED_ITERATIONS:
+        out[:] = r
+        return out
+    z = problem.precondition(extended if state.iterations < EXTENDED_ITERATIONS else r)
+    return np.multiply(z, state.contact.indicator, out=out)
 
-    p = balanced(np.maximum(start, 0.0))
-    u = deflection(p)
-    inside = p > 0
-    near = _Surroundings(inside, reach)
-    convolutions, updates, iterations, since, first = 1, 0, 0, 0, 0.0
-    P_one = of_one()
-    delta = approach or 0.0
-    history: list[tuple[float, float]] = []
-    step = np.zeros_like(gap)
-    slope, carried, final, fresh = 1.0, False, False, False
-    while True:
-        if iterations == STUBBORN and since:
-            # where the preconditioner misleads it has led far astray: begin again
-            p = balanced(np.maximum(start, 0.0))
-            u, inside, carried = deflection(p), p > 0, False
-            near = _Surroundings(inside, reach)
-            P_one, since, updates = of_one(), 0, CALM
-            convolutions += 1
-        if iterations == EAGER and since:
-            P_one, since = of_one(), 0
-        more = look(final)
-        delta += more
-        residual = _largest(r) / scale
-        first = residual if since == 0 else first
-        depth = float(np.subtract(r, g, out=work).max())  # of the penetration outside
-        # on the way patches enter with a margin; at the end what was asked decides
-        deep = (1.0 if residual <= tolerance else 0.5) * tolerance * scale
-        tension = p < 0
-        settled = not tension.any() and depth <= deep
-        if settled and residual <= tolerance:
-            if not carried:
-                break
-            u, carried, final = deflection(p), False, True  # the test must hold for A p itself
-            convolutions += 1
-            continue
-        if final:
-            final = False
-            continue
-        if iterations >= max_iterations:
-            raise NotConverged(
-                f"gap in contact {residual:.1e} and penetration {depth / scale:.1e} of the scale "
-                f"{scale:.3g} m after {max_iterations} iterations (asked for {tolerance:.0e}); raise "
-                "max_iterations or tolerance"
-            )
-        stays = settled or fresh
-        if not stays:
-            enter, due = ~inside, True
-            if updates >= CALM:
-                enter &= g < -deep
-            else:
-                due = residual <= max(FALL * first, 0.3 * tolerance) or since >= PATIENCE
-                # what the set will be once the residual, and its continuation outside, are gone
-                c -= np.multiply(near.one, more, out=work)
-                enter &= np.subtract(g, c, out=work) < -0.5 * tolerance * scale
-                tension &= p < z
-            stays = not (due and (tension.any() or enter.any()))
-        if not stays:
-            inside = (inside & ~tension) | enter
-            near = _Surroundings(inside, reach)
-            P_one = of_one()
-            updates, since = updates + 1, 0
-            if tension.any():
-                p = balanced(np.where(tension, 0.0, p))
-                u, carried = deflection(p), False
-                convolutions += 1
-            fresh = True
-            continue
-        fresh = False
-        history.append((residual, depth / scale))
-        descent = _dot(r, z)
-        beta = 0.0 if since == 0 else max(0.0, descent - _dot(last, z)) / slope
-        slope = descent
-        step *= beta
-        step += z
-        Au = deflection(step)
-        convolutions += 1
-        alpha = _dot(r, step) / _dot(step, Au)
-        p -= np.multiply(step, alpha, out=work)
-        u -= np.multiply(Au, alpha, out=work)
-        carried = True
-        r, last = last, r
-        iterations, since = iterations + 1, since + 1
-    error = 0.0 if total is None else abs(float(p.sum()) / total - 1)
+
+def _find_P_one(state: _State, problem: _Problem) -> None:
+    if problem.approach is None:
+        contact = state.contact
+        state.P_one = _precondition(state, problem, contact.indicator, contact.one, np.empty_like(state.u))
+
+
+def _find_gap(state: _State, problem: _Problem) -> None:
+    """Step 1: gap g, residual r in contact, z = P r, with the delta for which sum z = 0 keeps the load."""
+    _find_residual(state, problem)
+    _precondition(state, problem, state.r, state.contact.extended(state.r, state.extended), state.z)
+    if problem.approach is None:
+        shift = state.shift = float(state.z.sum() / state.P_one.sum())
+        np.subtract(state.g, shift, out=state.g)
+        np.multiply(state.g, state.contact.indicator, out=state.r)
+        np.subtract(state.z, np.multiply(state.P_one, shift, out=state.work), out=state.z)
+        state.delta += shift
+    _measure(state, problem)
+
+
+def _find_residual(state: _State, problem: _Problem) -> None:
+    np.add(state.u, problem.gap, out=state.g)
+    np.subtract(state.g, state.delta, out=state.g)
+    np.multiply(state.g, state.contact.indicator, out=state.r)
+
+
+def _measure(state: _State, problem: _Problem) -> None:
+    """Residual, penetration and tension of the iterate."""
+    state.residual = float(max(state.r.max(), -state.r.min())) / problem.scale
+    if state.on_set == 0:
+        state.first = state.residual
+    state.depth = float(np.subtract(state.r, state.g, out=state.work).max())
+    # a margin for patches that enter before the residual is small; then the tolerance alone
+    margin = 1.0 if state.residual <= problem.tolerance else 0.5
+    state.deep = margin * problem.tolerance * problem.scale
+    state.tension = state.p < 0
+    state.admissible = not state.tension.any() and state.depth <= state.deep
+
+
+def _is_solved(state: _State, problem: _Problem) -> bool:
+    """Step 7: whether the contact conditions hold within the tolerance, for A p itself.
+
+    Raises NotConverged when they do not and the iterations are used up.
+    """
+    solved = _within_tolerance(state, problem)
+    if solved and state.updated:
+        state.u, state.updated = problem.deflection(state.p), False
+        state.convolutions += 1
+        _find_residual(state, problem)
+        _measure(state, problem)
+        if not _within_tolerance(state, problem):
+            _find_gap(state, problem)
+            solved = _within_tolerance(state, problem)
+    if not solved and state.iterations >= problem.max_iterations:
+        raise NotConverged(
+            f"gap in contact {state.residual:.1e} and penetration {state.depth / problem.scale:.1e} of the "
+            f"scale {problem.scale:.3g} m after {problem.max_iterations} iterations (required: "
+            f"{problem.tolerance:.0e}); raise max_iterations or tolerance"
+        )
+    return solved
+
+
+def _within_tolerance(state: _State, problem: _Problem) -> bool:
+    return state.admissible and state.residual <= problem.tolerance
+
+
+def _update_set(state: _State, problem: _Problem) -> bool:
+    """Steps 5 and 6: patches in tension leave the set, overlapping ones enter; the load is balanced.
+
+    Returns False where the set is kept: it is admissible, new, or its residual has not fallen enough.
+    """
+    if state.admissible or state.new:
+        return False
+    leave, enter = state.tension, ~state.contact.inside
+    if state.set_updates >= PREDICTED_UPDATES:
+        enter &= state.g < -state.deep
+    else:
+        fallen = state.residual <= max(RESIDUAL_FALL * state.first, 0.3 * problem.tolerance)
+        if not fallen and state.on_set < ITERATIONS_PER_SET:
+            return False
+        # the set predicted for a vanishing residual: g less its extension outside, p less z inside
+        predicted = state.extended
+        predicted -= np.multiply(state.contact.one, state.shift, out=state.work)
+        np.subtract(state.g, predicted, out=state.work)
+        enter &= state.work < -0.5 * problem.tolerance * problem.scale
+        leave &= state.p < state.z
+    if not (leave.any() or enter.any()):
+        return False
+    state.contact = _ContactSet((state.contact.inside & ~leave) | enter, problem.extension)
+    _find_P_one(state, problem)
+    state.set_updates, state.on_set, state.new = state.set_updates + 1, 0, True
+    if leave.any():
+        state.p = problem.balanced(np.where(leave, 0.0, state.p))
+        state.u, state.updated = problem.deflection(state.p), False
+        state.convolutions += 1
+    return True
+
+
+def _find_direction(state: _State) -> None:
+    """Step 2: conjugate direction on the contact set, steepest descent after the set has changed."""
+    descent = _dot(state.r, state.z)
+    beta = 0.0 if state.on_set == 0 else max(0.0, descent - _dot(state.last, state.z)) / state.slope
+    state.slope = descent
+    state.step *= beta
+    state.step += state.z
+
+
+def _advance(state: _State, problem: _Problem) -> None:
+    """Steps 3 and 4: alpha = (r, t) / (t, A t), then p - alpha t and u - alpha A t."""
+    state.history.append((state.residual, state.depth / problem.scale))
+    Au = problem.deflection(state.step)
+    state.convolutions += 1
+    alpha = _dot(state.r, state.step) / _dot(state.step, Au)
+    state.p -= np.multiply(state.step, alpha, out=state.work)
+    state.u -= np.multiply(Au, alpha, out=state.work)
+    state.updated, state.new = True, False
+    state.r, state.last = state.last, state.r
+    state.iterations, state.on_set = state.iterations + 1, state.on_set + 1
+
+
+def _dot(a: Array, b: Array) -> float:
+    # not by BLAS: its threads keep spinning after such a short sum and slow those of the FFT
+    return float(np.einsum("ij,ij->", a, b))
+
+
+def _contact(state: _State, problem: _Problem) -> Contact:
+    error = 0.0 if problem.total is None else abs(float(state.p.sum()) / problem.total - 1)
     return Contact(
-        p, g, delta, residual, max(0.0, depth) / scale, error, iterations, convolutions, tuple(history)
+        pressure=state.p,
+        gap=state.g,
+        approach=state.delta,
+        gap_inside=state.residual,
+        penetration_outside=max(0.0, state.depth) / problem.scale,
+        load_error=error,
+        iterations=state.iterations,
+        convolutions=state.convolutions,
+        history=tuple(state.history),
     )

@@ -18,7 +18,7 @@ __all__ = ["circulant_inverse", "even_convolution", "good_size"]
 
 Array = NDArray[np.floating]
 
-SHARED = 2**18  # points of a transform below which a second thread was measured to bring nothing
+SHARED = 2**18  # points of a transform below which a second thread was measured to give no gain
 
 
 def good_size(n: int) -> int:
@@ -30,8 +30,8 @@ def even_convolution(kernel: Array, *, threads: int = 1) -> Callable[[Array], Ar
     """Linear convolution with a kernel even in both indices.
 
     kernel : K(i, j) for i, j >= 0, shape (nx, ny), the largest offsets between two patches.
-    Returns u(p) for p of shape (nx, ny); u has its shape, units K times p. It works in memory of its own,
-    so that two threads need one each.
+    Returns u(p) for p of shape (nx, ny); u has its shape, units K times p. It reuses its own work memory:
+    concurrent calls need one operator each.
     """
     nx, ny = kernel.shape
     spectrum = _even_spectrum(kernel, good_size(2 * nx - 1), good_size(2 * ny - 1), threads)
@@ -69,12 +69,12 @@ def _apply_even(spectrum: Array, nx: int, ny: int, threads: int) -> Callable[[Ar
         threads = 1
 
     wave = np.empty((mx, my // 2 + 1), dtype=complex)
-    # the real rows lie, where they fit, in that part of the memory which is idle while they are in use
+    # the real rows share, where they fit, the memory of the rows of zeros
     idle = wave[nx:].reshape(-1).view(float)
     rows = (idle if idle.size >= nx * my else np.empty(nx * my))[: nx * my].reshape(nx, my)
 
     def apply(p: Array) -> Array:
-        """Transform rows, then columns: rows of zeros are never transformed, nor rows nobody reads."""
+        """Transform rows, then columns: neither rows of zeros nor unused rows are transformed."""
         rows[:, :ny] = p
         rows[:, ny:] = 0
         ducc0.fft.r2c(rows, axes=(1,), nthreads=threads, out=wave[:nx])

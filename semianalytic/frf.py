@@ -7,7 +7,7 @@ layer the Papkovich-Neuber potentials of the plane problem (L, z) are written as
     phi - t psi = g1 / k^2,  psi = g2 / k,  g(t) = e^{-kt} [[1,-kt], [0, 1]] g(0)    up, t from the bottom
 
 so that every field is a combination of (d1, d2, g1, g2) at its depth with coefficients free of k (theory
-sheet, eqs. of 2.1, with the origin moved to the top, respectively the bottom, of the layer). What lies below
+sheet, eqs. of 2.1, with the origin moved to the top, respectively the bottom, of the layer). The solid below
 a layer enters as a reflection g = R d at its bottom. R is carried from the substrate up, the amplitudes from
 the surface down; each step is a 2 x 2 matrix without any growing exponential: k h = 1e-6 is as safe as 1e4.
 
@@ -40,7 +40,7 @@ def compliance(k: ArrayLike, coatings: Coatings, substrate: tuple[float, float])
 
 
 def compliance_excess(k: ArrayLike, coatings: Coatings, substrate: tuple[float, float]) -> Array:
-    """M(k) - 1 without the loss of digits of the subtraction; it decays like (k h)^2 exp(-2 k h).
+    """M(k) - 1 without cancellation; it decays like (k h)^2 exp(-2 k h).
 
     k : wavenumber >= 0 [rad/m], any shape.  Returns [-], shape of ``k``.
     """
@@ -70,7 +70,7 @@ def _one_coating_excess(
 
 
 def _layered_excess(k: Array, coatings: Coatings, substrate: tuple[float, float]) -> Array:
-    """M - 1 from reflection matrices: what the interfaces send back up to the surface."""
+    """M - 1 from reflection matrices: the waves reflected from the interfaces to the surface."""
     u = _fields(k.ravel(), np.zeros(1), 0, coatings, substrate, "normal", _rows_displacement, excess=True)
     return (u[0, 0] / (2 * (1 - coatings[0][1]))).reshape(k.shape)
 

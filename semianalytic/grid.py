@@ -1,8 +1,8 @@
-"""Square surface patches that hold the contact.
+"""Square surface patches of the contact.
 
 Patch centres x_i = (i - (n-1)/2) d; with n odd the origin is a patch centre. Outside the grid no pressure
-acts; the convolution is linear, so the grid, or the window of it that is worked on, needs a margin for the
-contact to settle in and no more.
+acts; the convolution is linear, so the grid, or the window of it in use, only needs a margin for the contact
+to change during the iteration.
 """
 
 from dataclasses import dataclass
@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import RectBivariateSpline
 
-__all__ = ["Grid", "Window", "carry_over", "odd", "refine", "sharpen", "touches_rim", "window_around"]
+__all__ = ["Grid", "Window", "deconvolve", "odd", "prolong", "refine", "touches_rim", "window_around"]
 
 Array = NDArray[np.floating]
 
@@ -76,7 +76,7 @@ class Window:
 
 
 def window_around(pressure: Array, source: Grid, target: Grid) -> Window:
-    """Patches of the target that the contact on the source may come to need: 4 % and 3 patches beyond it."""
+    """Patches of the target that the contact on the source may extend to: 4 % and 3 patches beyond it."""
     edges = []
     for axis in (1, 0):
         loaded = source.x[np.any(pressure > 0, axis=axis)]
@@ -88,14 +88,12 @@ def window_around(pressure: Array, source: Grid, target: Grid) -> Window:
     return Window(*edges)
 
 
-def carry_over(
-    pressure: Array, gap: Array, source: Grid, target: Grid, window: Window, E_star: float
-) -> Array:
+def prolong(pressure: Array, gap: Array, source: Grid, target: Grid, window: Window, E_star: float) -> Array:
     """Pressure of one grid as a first guess on another, its contact edge between the patches.
 
     At the edge of a contact p = K sqrt(s) inside, and outside the gap opens as g = 4 K s^(3/2) / (3 E*),
-    s the distance. p^2 inside and minus K^2 s outside is therefore smooth across the edge and is what is
-    interpolated; K is taken as one for the whole edge.
+    s the distance. p^2 inside and minus K^2 s outside is therefore smooth across the edge and is
+    interpolated, with one K for the whole edge.
 
     pressure [Pa], gap [m] : on the source.  window : of the target.  E_star [Pa].
     Returns p [Pa] on the window; 0 beyond the source.
@@ -108,7 +106,7 @@ def carry_over(
     # a rim patch lies 0.6 d from the edge on average
     K2 = float(np.mean(pressure[loaded & ~inner] ** 2)) / (0.6 * source.d)
     level = pressure**2
-    # patches that touch no loaded one share no interpolation with one: any value that is not positive will do
+    # patches not next to a loaded one are never interpolated with one: any value that is not positive serves
     beside &= ~loaded
     level[beside] = -K2 * (np.maximum(gap[beside], 0) * (0.75 * E_star) / np.sqrt(K2)) ** (2 / 3)
     rows, columns = window.slices
@@ -127,10 +125,10 @@ def refine(values: Array, source: Grid, target: Grid) -> Array:
     return _linear(_linear(values, source, target.x).T, source, target.x).T
 
 
-def sharpen(mean: Array) -> Array:
-    """Constant patches that act as a pressure of these patch means does: p - (d^2/12) laplacian(p).
+def deconvolve(mean: Array) -> Array:
+    """Constant patches equivalent to a pressure of these patch means: p - (d^2/12) laplacian(p).
 
-    The means of a pressure have lost its second moment in the patch, d^2/24, and constant patches once more.
+    The means lack the second moment of the pressure in the patch, d^2/24, and constant patches once more.
     """
     q = np.pad(mean, 1)
     around = q[2:, 1:-1] + q[:-2, 1:-1] + q[1:-1, 2:] + q[1:-1, :-2]

@@ -103,12 +103,12 @@ def tangential_displacement(
 
 
 def surface_deflection(nx: int, ny: int, dx: float, dy: float, depth: float = 0.0) -> Array:
-    """Mean of 1/rho over a rectangle seen from the centres of a grid of rectangles: V itself.
+    """Potential V of a rectangle at the centres of a grid of rectangles.
 
         V(i dx, j dy, depth),  i = 0..nx-1, j = 0..ny-1;   u_z = (1-nu)/(2 pi G) V at depth 0
 
     Love (1929) eq. 4 with every corner value used by the four rectangles that share it, so that the
-    table costs one corner evaluation an entry. Absolute error about 1e-15 of V(0, 0) times nx.
+    table takes one corner evaluation per entry. Absolute error about 1e-15 of V(0, 0) times nx.
 
     nx, ny : entries.  dx, dy, depth [m].  Returns V [m], shape (nx, ny).
     """

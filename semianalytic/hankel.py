@@ -2,17 +2,17 @@
 
     g(r) = 1/(2 pi) int_0^inf F(k) J_m(k r) k dk
 
-by the fast transform of Talman (1978) and Hamilton (2000). F must die like exp(-k L), L the ``scale``, and
-be smooth at k = 0. What it does there, F_0 + F_1 k, is taken off first in closed form (Watson 1944, 13.2),
+by the fast transform of Talman (1978) and Hamilton (2000). F must decay like exp(-k L), L the ``scale``, and
+be smooth at k = 0. Its expansion there, F_0 + F_1 k, is subtracted first in closed form (Watson 1944, 13.2),
 
     int_0^inf e^{-kL} J_m(k r) dk = t^m / rho,     rho = sqrt(r^2 + L^2),   t = (rho - L) / r,
 
 with its derivatives by L, because the logarithmic grid has to end somewhere above k = 0: a rest of order
 k^3 then leaves errors of 2e-8 of the largest value, weighted with (1 + r/L)^2, over 0.01 < r/L < 1000. A
 stiff coating bends and stretches on a base far softer over lengths much beyond L, and F changes from one
-level to another at k L << 1: the two levels are taken off each on its own length. Where that length is more
-than 1e4 L the grid has to begin at smaller wavenumbers too: what F still changes below its end is lost, and
-comes back as an error of the small radii. Nearer than L/10 the power series of J_m is exact to rounding.
+level to another at k L << 1: the two levels are subtracted each on its own length. Where that length is more
+than 1e4 L the grid has to begin at smaller wavenumbers too: a change of F below its end would be lost and
+would appear as an error at small radii. Nearer than L/10 the power series of J_m is exact to rounding.
 
 Sources
 -------
@@ -45,9 +45,9 @@ class LogGrid:
 
 
 def _log_grid(n: int) -> LogGrid:
-    ladder = np.exp(_STEP * (np.arange(n) - (n - 1) / 2))
-    centre = 3e2 / ladder[-1]
-    return LogGrid(centre * ladder, ladder / centre)
+    powers = np.exp(_STEP * (np.arange(n) - (n - 1) / 2))
+    centre = 3e2 / powers[-1]
+    return LogGrid(centre * powers, powers / centre)
 
 
 USUAL = _log_grid(1500)  # wavenumbers from 1e-8, radii to 1e8
@@ -62,7 +62,7 @@ def log_grid(longest: float) -> LogGrid:
 NEAR = 0.1  # r / L
 _TERMS = 8  # the rest is below NEAR^16
 
-# balance what the finite grid cuts off at its two ends, per order
+# per order, balances the truncation errors at the two ends of the grid
 _BIAS = (0.7, 0.25, 0.0, 0.0)
 _BIAS_OVER_K = (0.25, 0.0, -0.25, -0.25)
 
@@ -83,7 +83,7 @@ def hankel(F: Array, order: int, scale: float, *, over_k: bool = False, grid: Lo
         (low, np.where(low, slope, 0.0), length),
         (F_0 - low, slope * (low == 0), 1.0),
     ):
-        incline = incline + height * L  # of what is left of F once the height e^{-xL} is taken off
+        incline = incline + height * L  # of the rest of F after subtraction of height e^{-xL}
         powers = _closed_forms(order, L, r)
         g = g + height * powers[first] + incline * powers[first + 1]
         rest = rest - (height + incline * x) * np.exp(-x * L)
@@ -91,7 +91,7 @@ def hankel(F: Array, order: int, scale: float, *, over_k: bool = False, grid: Lo
     bias = (_BIAS_OVER_K if over_k else _BIAS)[order]
     tail = fht(rest * x**first, _STEP, order, offset=0.0, bias=bias)
     if order == 0:
-        # what wraps around from r >> L weighs on small r the less the smaller the bias
+        # the periodic image of r >> L affects small r less with a smaller bias
         bias, end = (-0.05, 10.0) if over_k else (0.1, 3.0)
         near = slice(0, int(np.searchsorted(r, end)))
         tail[..., near] = fht(rest * x**first, _STEP, order, offset=0.0, bias=bias)[..., near]
@@ -111,7 +111,7 @@ def near_axis(
     x, s = grid.wavenumbers, np.asarray(r) / scale
     powers = order + 2 * np.arange(_TERMS)
     exponent = powers + (1 if over_k else 2)
-    # a trapezoidal rule in log k, spectrally accurate, and what lies below the first wavenumber
+    # a trapezoidal rule in log k, spectrally accurate, plus the part below the first wavenumber
     weight = _STEP * x[:, None] ** exponent
     weight[0] = weight[0] / 2 + x[0] ** exponent / exponent
     j = np.arange(_TERMS)
@@ -132,7 +132,7 @@ def _closed_forms(order: int, L: Array | float, r: Array) -> tuple[Array, Array,
 
 
 def _low_level(F: Array, F_0: Array, x: Array) -> tuple[Array, Array]:
-    """How much of F_0 is gone at k L = 0.03, zero where that is little, and the length over which it goes."""
+    """Part of F_0 lost at k L = 0.03, zero where that is little, and the length over which it decays."""
     low = F_0 - F[..., [np.searchsorted(x, 0.03)]]
     low = np.where(np.abs(low) > 0.1 * np.abs(F).max(axis=-1, keepdims=True), low, 0.0)
     half = np.argmax(np.abs(F - F_0) > 0.5 * np.abs(low), axis=-1)[..., None]

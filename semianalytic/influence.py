@@ -1,14 +1,14 @@
 """Conversion of a frequency response into influence coefficients of the surface displacement.
 
-A coated half-space answers pressure with u_z(k) = (1-nu1)/(G1 k) M(k) p(k). Its influence coefficient
+Under pressure a coated half-space deflects by u_z(k) = (1-nu1)/(G1 k) M(k) p(k). Its influence coefficient
 is the displacement at one patch centre under unit pressure on another patch, the square of side d:
 
     K_ij = (1-nu1)/(2 pi G1) C_ij,    C(x, y) = int int_patch g(r),    g(r) = int_0^inf M(k) J0(kr) dk.
 
-The three conversions differ in how they get from M to C:
+The three conversions from M to C:
 
-split      M = 1 + c e^(-b k) + R(k). The first two are Love's rectangle seen from the surface and from
-           depth b, in closed form; c = M(0)-1 takes the long range away. R is small at both ends, so its
+split      M = 1 + c e^(-b k) + R(k). The first two are Love's rectangle at the surface and at
+           depth b, in closed form; c = M(0)-1 removes the long range. R is small at both ends, so its
            Hankel transform on a logarithmic grid (Hamilton, Mon. Not. R. Astron. Soc. 312 (2000) 257-284)
            serves every length from the thinnest coating to the whole grid at once: within 4e-10 of
            quadrature for modulus ratios 0.01 to 100, in a twentieth of the time of the FFT.
@@ -20,6 +20,7 @@ plain      M/k times the transform of the patch, aliases summed, FFT on an enlar
 """
 
 from collections.abc import Callable, Sequence
+from functools import partial
 
 import ducc0
 import numpy as np
@@ -27,18 +28,47 @@ from numpy.typing import NDArray
 from scipy.fft import fht, fhtoffset
 from scipy.interpolate import CubicSpline
 
-__all__ = ["CONVERSIONS", "plain_coefficients", "remainder_coefficients", "split_image"]
+from semianalytic import frf, halfspace
+from semianalytic.inputs import Body, Numerics
+
+__all__ = ["plain_coefficients", "remainder_coefficients", "split_image", "surface_coefficients"]
 
 Array = NDArray[np.floating]
 Response = Callable[[Array], Array]
 
-CONVERSIONS = ("split", "split-fft", "plain")
-DIGITS = 1e-11  # what the quadrature over a patch aims at, relative to the value at its centre
+DIGITS = 1e-11  # tolerance of the quadrature over a patch, relative to the value at its centre
 SMOOTH = 12.0  # patches from the nearest singularity, beyond which finite differences average a patch
 
 
+def surface_coefficients(n: int, d: float, body: Body, numerics: Numerics) -> Array:
+    """Influence coefficients K [m/Pa] of the surface displacement by the conversion of ``numerics``.
+
+    n : offsets 0..n-1.  d : side of the patches [m].  Returns shape (n, n), even in both indices.
+    """
+    scale = 1 / (np.pi * body.moduli[0])
+    excess = partial(frf.compliance_excess, **body.layers)
+    if numerics.conversion == "plain":
+        C = plain_coefficients(n, d, excess, enlarge=numerics.enlarge, threads=numerics.threads)
+        return scale * C
+    C = halfspace.surface_deflection(n, n, d, d)
+    if body.coatings:
+        image = split_image(excess, body.thickness)
+        C += image[0] * halfspace.surface_deflection(n, n, d, d, image[1])
+        C += remainder_coefficients(
+            n,
+            d,
+            excess,
+            body.thickness,
+            image,
+            points=numerics.hankel_points,
+            enlarge=numerics.enlarge if numerics.conversion == "split-fft" else 0,
+            threads=numerics.threads,
+        )
+    return scale * C
+
+
 def split_image(excess: Response, thickness: Sequence[float]) -> tuple[float, float]:
-    """Strength c and depth b of the image c exp(-b k) that takes the long range out of M(k) - 1.
+    """Strength c and depth b of the image c exp(-b k) that removes the long range of M(k) - 1.
 
         c = M(0) - 1,    b = ln 2 / (wavenumber at which half of c is left), but not above the image
                                       of the surface in the first interface, 2 h1
@@ -66,12 +96,12 @@ def remainder_coefficients(
     enlarge: int = 0,
     threads: int = 1,
 ) -> Array:
-    """Integral over a patch of the part of g(r) that Love's rectangle and its image leave over.
+    """Integral over a patch of the part of g(r) not due to Love's rectangle and its image.
 
         C_ij = int int_patch(i, j) int_0^inf R(k) J0(k r) dk,    R = M - 1 - c e^(-b k)
 
     n : offsets 0..n-1.  d : side of the patches [m].  excess, thickness, image : as ``split_image``.
-    points : of the logarithmic Hankel grid; the knob of this conversion.
+    points : of the logarithmic Hankel grid.
     enlarge : 0 for the Hankel transform; else the factor by which the domain of a two-dimensional FFT
     exceeds the kernel's (conversion "split-fft").  Returns [m], shape (n, n), even in both indices.
     """
@@ -143,7 +173,7 @@ def _radial(
 ) -> tuple[Response, Response]:
     """g(r) = int R(k) J0(kr) dk and int_0^r g r dr: moments to a tenth of a coating, Hankel grid beyond."""
     c, b = image
-    h = thickness[0]  # M - 1 falls as exp(-2 k h): what lies deeper is smoother still
+    h = thickness[0]  # M - 1 decays as exp(-2 k h): deeper layers give smoother terms
     low, high = 1e-7 / max(b, sum(thickness)), 1e5 / h
     k = np.geomspace(low, high, points)
     step = np.log(k[1] / k[0])

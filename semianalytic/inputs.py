@@ -1,23 +1,24 @@
 """Checked input of the semi-analytical method."""
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 __all__ = ["COARSEST", "Body", "Numerics", "check_control", "check_positive"]
 
-COARSEST = 33  # patches a side below which a contact is not worth solving
+COARSEST = 33  # patches a side of the coarsest grid
 
 
 @dataclass(frozen=True)
 class Numerics:
-    """The knobs; those that move a result have ladders of their own.
+    """Numerical parameters; the uncertainty covers those that change a result.
 
     patches : per side of the finest grid.  tolerance : gap and penetration over the approach.
     conversion : "split", with ``hankel_points``; "split-fft" or "plain", with ``enlarge``.
     fill : half-width of the grid over the contact radius.  edge_rounds : corrections of the contact edge.
-    edge_terms : of the profile they are made with, over what the finest grid takes.
+    edge_terms : terms of the edge profile over those on the finest grid.
     """
 
     patches: int = 257
@@ -51,7 +52,7 @@ class Numerics:
 
 @dataclass(frozen=True)
 class Body:
-    """The coated half-space and the friction on it, as the public functions take them."""
+    """The coated half-space and the friction on it, as given to the public functions."""
 
     coatings: tuple[tuple[float, float, float], ...]
     substrate: tuple[float, float]
@@ -81,6 +82,11 @@ class Body:
         return (*self.coatings, self.substrate)
 
     @property
+    def layers(self) -> dict[str, Any]:
+        """Coatings and substrate as keywords of `frf`."""
+        return {"coatings": self.coatings, "substrate": self.substrate}
+
+    @property
     def moduli(self) -> list[float]:
         """E* = E/(1 - nu^2) of every material from the surface down [Pa]."""
         return [material[0] / (1 - material[1] ** 2) for material in self.materials]
@@ -91,32 +97,32 @@ class Body:
         return [h for _, _, h in self.coatings]
 
     def layer_of(self, z: ArrayLike, layer: int | None) -> NDArray[np.intp]:
-        """Index of the layer at each depth; on an interface the one named, or the upper one.
+        """Index of the layer at each depth; on an interface ``layer``, or the upper one if None.
 
-        Raises ValueError for z < 0, and for a layer that does not hold z.
+        Raises ValueError for z < 0, and for a layer that does not contain z.
         """
         z = np.asarray(z, dtype=float)
         if not np.all(z >= 0):
             raise ValueError(f"z = {np.min(z):g} m is above the surface; depth counts down from 0")
         interfaces = np.cumsum(self.thickness)
-        slack = 1e-9 * interfaces  # points given within rounding of an interface are meant to lie on it
+        slack = 1e-9 * interfaces  # points within rounding of an interface are on it
         above = np.searchsorted(interfaces + slack, z)
         if layer is None:
             return above
         if not 0 <= layer <= len(self.coatings):
             raise ValueError(f"layer = {layer}; layers count from 0 to {len(self.coatings)}, the substrate")
         below = np.searchsorted(interfaces - slack, z, side="right")
-        strange = (layer < above) | (layer > below)
-        if np.any(strange):
+        outside = (layer < above) | (layer > below)
+        if np.any(outside):
             raise ValueError(
-                f"layer = {layer} does not hold z = {z[strange].flat[0]:g} m; the interfaces lie at "
+                f"layer = {layer} does not hold z = {z[outside].flat[0]:g} m; the interfaces lie at "
                 f"{', '.join(f'{i:g}' for i in interfaces) or 'no depth'} m"
             )
         return np.full(z.shape, layer)
 
 
 def check_positive(**values: float) -> None:
-    """Raise ValueError for whatever is not a positive, finite number."""
+    """Raise ValueError for any value that is not a positive, finite number."""
     for name, value in values.items():
         if not (np.isfinite(value) and value > 0):
             raise ValueError(f"{name} = {value:g}; it must be positive and finite")

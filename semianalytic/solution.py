@@ -1,88 +1,38 @@
-"""What a semi-analytical solve returns.
+"""Solution of the semi-analytical method.
 
-A ``Solution`` carries its coarser companion, the same problem on half the patches. Every uncertainty of
-a field is read from the difference of the two at the points asked for, widened so that a chance
-agreement of the two does not pass for accuracy.
+A ``Solution`` carries its coarser companion, the same problem on fewer patches. The uncertainty of a field is
+estimated from the difference of the two at the points required, widened so that a chance agreement of the
+two does not count as accuracy.
 """
 
-from collections.abc import Callable
-from dataclasses import dataclass, field
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.interpolate import RectBivariateSpline
 from scipy.ndimage import maximum_filter
 
-__all__ = ["Diagnostics", "Solution", "Uncertainty"]
+from semianalytic import fields
+from semianalytic.inputs import Body
+from semianalytic.level import Level
+from semianalytic.subsurface import Tables
+from semianalytic.uncertainty import Uncertainty, safety
+
+__all__ = ["Diagnostics", "Solution"]
 
 Array = NDArray[np.floating]
-Field = Callable[[ArrayLike, ArrayLike, ArrayLike, int | None], Array]
-Motion = Callable[[ArrayLike, ArrayLike, ArrayLike], Array]
 
 # error of the stress of a given pressure, over its peak, against Hankel quadrature: above 4 patches, below
 EVALUATION = (5e-6, 5e-7)
-# Likewise of a pressure: what the iteration leaves of a gap, answered in proportion to the patches.
+# likewise of a pressure: its response to the gap the iteration leaves, in proportion to the patches
 RESOLUTION = 1e-7
-
-
-def safety(ratio: float) -> float:
-    """What a change on refining the patches ``ratio`` times is multiplied by: at least 1.
-
-    At order 3/2, the lowest seen, the error left is the change over ratio^(3/2) - 1; never below the change.
-    """
-    return float(max(1.0, 1 / (ratio**1.5 - 1)))
-
-
-@dataclass(frozen=True)
-class Uncertainty:
-    """Numerical uncertainty in SI units; budget : rows (quantity, knob, value).
-
-    Knobs: patch size, conversion, domain, iteration; coating, where the first is thinner than four patches.
-    The three scalars are the sums of their rows.
-    """
-
-    contact_radius: float
-    approach: float
-    peak_pressure: float
-    budget: tuple[tuple[str, str, float], ...]
-
-    @classmethod
-    def from_ladders(
-        cls,
-        fine: dict[str, float],
-        middle: dict[str, float],
-        coarse: dict[str, float],
-        knobs: dict[str, dict[str, float]],
-        *,
-        base: dict[str, float],
-        ratio: float,
-    ) -> "Uncertainty":
-        """From the results on three grids, and on that of ``base`` with each other knob turned to the worse.
-
-        Patch size: the change to the finest grid, of ``ratio`` times the patches a side, times ``safety``; or
-        a sixth of the change before where the last is small by chance.
-        """
-        rows = []
-        for name, value in fine.items():
-            last, before = abs(value - middle[name]), abs(middle[name] - coarse[name])
-            rows.append((name, "patch size", float(np.maximum(safety(ratio) * last, before / 6))))
-            rows += [(name, knob, abs(result[name] - base[name])) for knob, result in knobs.items()]
-        return cls._of(rows)
-
-    def extended(self, rows: list[tuple[str, str, float]]) -> "Uncertainty":
-        """The same with more rows in the budget."""
-        return self._of([*self.budget, *rows])
-
-    @classmethod
-    def _of(cls, rows: list[tuple[str, str, float]]) -> "Uncertainty":
-        names = ("contact_radius", "approach", "peak_pressure")
-        total = {name: sum(row[2] for row in rows if row[0] == name) for name in names}
-        return cls(**total, budget=tuple(rows))
 
 
 @dataclass(frozen=True)
 class Diagnostics:
-    """What the solution took and how well the contact conditions are met.
+    """Cost of the solution and how well the contact conditions are met.
 
     gap_inside, penetration_outside : largest, over the depth of the indenter on the grid.
     load_error : relative.  load : that the pressure carries [N].  patches : loaded ones.
@@ -120,24 +70,73 @@ class Solution:
     nodes: Array = field(repr=False)  # patch centres along one axis [m]
     patch_pressure: Array = field(repr=False)  # at the patch centres [Pa], (n, n)
     coarser: "Solution | None" = field(repr=False)
-    _profile: Callable[[Array], Array] | None = field(repr=False)
-    _stress: Field = field(repr=False)
-    _plane: Callable[[float, int | None], Array] = field(repr=False)
-    _displacement_plane: Callable[[float], Array] = field(repr=False)
-    _displacement: Motion = field(repr=False)
+    _level: Level = field(repr=False)
+    _body: Body = field(repr=False)
+
+    @classmethod
+    def of_levels(
+        cls, levels: Sequence[Level], body: Body, uncertainty: Uncertainty | None, began: float
+    ) -> "Solution":
+        """Solution of the last level; with an uncertainty, the two before are its coarser companions.
+
+        began : ``time.perf_counter()`` at the start of the solve.
+        """
+        solution: Solution | None = None
+        for level in levels[-3:] if uncertainty else levels[-1:]:
+            solution = cls._of_level(level, body, solution)
+        assert solution is not None
+        diagnostics = replace(solution.diagnostics, seconds=time.perf_counter() - began)
+        return replace(solution, uncertainty=uncertainty, diagnostics=diagnostics)
+
+    @classmethod
+    def _of_level(cls, level: Level, body: Body, coarser: "Solution | None") -> "Solution":
+        grid, found = level.grid, level.found
+        beyond = max(int(np.ceil((2.05 * level.radius - grid.x[-1]) / grid.d)), 0)
+        return cls(
+            **level.scalars,
+            surface_nodes=grid.x[0] + grid.d * np.arange(-beyond, grid.n + beyond),
+            diagnostics=Diagnostics(
+                iterations=found.iterations,
+                convolutions=level.convolutions,
+                gap_inside=found.gap_inside,
+                penetration_outside=found.penetration_outside,
+                load_error=found.load_error,
+                load=level.load,
+                patches=int(np.count_nonzero(found.pressure)),
+                patches_per_side=grid.n,
+                patch_size=grid.d,
+                seconds=0.0,
+                history=found.history,
+            ),
+            uncertainty=None,
+            nodes=grid.x,
+            patch_pressure=found.pressure,
+            coarser=coarser,
+            _level=level,
+            _body=body,
+        )
+
+    def with_friction(self, friction: float) -> "Solution":
+        """The same contact sliding with another friction coefficient, which leaves the pressure unchanged.
+
+        Raises ValueError unless it is finite.
+        """
+        coarser = None if self.coarser is None else self.coarser.with_friction(friction)
+        return replace(self, coarser=coarser, _body=replace(self._body, friction=float(friction)))
 
     def pressure(self, x: ArrayLike, y: ArrayLike = 0.0) -> Array:
-        """Contact pressure [Pa], 0 outside; between nodes what is interpolated is smooth up to the edge.
+        """Contact pressure [Pa], 0 outside; between nodes by interpolation of a quantity smooth at the edge.
 
-        That is p less the profile its edge was corrected with or, where there is none, p^2.
+        That is p less its edge profile or, where there is none, p^2.
         x, y : [m], broadcast.
         """
-        if self._profile is None:
+        shape = self._level.shape
+        if shape is None:
             square = self.patch_pressure**2
-            touched = _at(self.nodes, square, x, y, order=1) > 0  # where the cubic must not ring
+            touched = _at(self.nodes, square, x, y, order=1) > 0  # the cubic may oscillate beyond
             return np.sqrt(np.maximum(np.where(touched, _at(self.nodes, square, x, y), 0), 0))
-        rest = self.patch_pressure - self._profile(np.hypot(self.nodes[:, None], self.nodes[None, :]))
-        value = self._profile(np.hypot(x, y)) + _at(self.nodes, rest, x, y, order=1)
+        rest = self.patch_pressure - shape.pressure(np.hypot(self.nodes[:, None], self.nodes[None, :]))
+        value = shape.pressure(np.hypot(x, y)) + _at(self.nodes, rest, x, y, order=1)
         return np.maximum(value, 0)
 
     def stress(self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None) -> Array:
@@ -147,55 +146,56 @@ class Solution:
         picks the side of an interface, None the upper one.
         Raises ValueError for z < 0, and for a layer that z does not lie in.
         """
-        return self._stress(x, y, z, layer)
+        return fields.stress(self._level, self._body, x, y, z, layer)
 
     def stress_plane(self, z: float, layer: int | None = None) -> Array:
         """Stress tensor [Pa] below every patch centre at one depth, shape (3, 3, n, n), by seven FFTs.
 
         z : [m].  layer : as in ``stress``.  Points are (nodes[i], nodes[j]), z.
         """
-        return self._plane(z, layer)
+        return fields.stress_plane(self._level, self._body, z, layer)
 
     def displacement_plane(self, z: float) -> Array:
         """Displacement [m] below every patch centre at one depth, shape (3, n, n), by four FFTs.
 
         z : [m].  Points are (nodes[i], nodes[j]), z.
         """
-        return self._displacement_plane(z)
+        return fields.displacement_plane(self._level, self._body, z)
 
     def displacement(self, x: ArrayLike, y: ArrayLike, z: ArrayLike) -> Array:
         """Displacement [m], shape (3,) + points, u_z into the solid.
 
         x, y, z : [m], broadcast, z >= 0.
         """
-        return self._displacement(x, y, z)
+        return fields.displacement(self._level, self._body, x, y, z)
 
     def pressure_uncertainty(self, x: ArrayLike, y: ArrayLike = 0.0) -> Array:
         """Uncertainty of the pressure [Pa] from the coarser companion.
 
         The largest difference of the two within a patch of the coarser, times ``safety``, or a sixth of that
-        of the next two; and what the other knobs do to the peak: twice, since they were turned on half the
-        patches and a pressure answers a gap in proportion to the patches. Plus what the uncertain radius
-        does to the pressure within three patches of the coarser from the edge or, where the edge is a
-        staircase, all that twice; and ``RESOLUTION`` of the peak.
+        of the next two; plus the changes of the peak by the other numerical parameters: twice, since they
+        were varied on half the patches and the pressure due to a gap is proportional to the patches. Plus
+        the change of the pressure by the uncertain radius within three patches of the coarser from the edge
+        or, where the edge is a staircase, twice the sum; and ``RESOLUTION`` of the peak.
         Raises ValueError where no uncertainty was estimated.
         """
         coarser, floor = self._companion()
+        shape = self._level.shape
         i, j = self.nodes[:, None], self.nodes[None, :]
         second = coarser.pressure(i, j)
         ratio = len(self.nodes) / len(coarser.nodes)
         difference = safety(ratio) * np.abs(self.patch_pressure - second)
         if coarser.coarser is not None:
             difference = np.maximum(difference, np.abs(second - coarser.coarser.pressure(i, j)) / 6)
-        reach = 2 * int(np.ceil(ratio if self._profile is not None else 2 * ratio)) + 1
+        reach = 2 * int(np.ceil(ratio if shape is not None else 2 * ratio)) + 1
         widened = maximum_filter(difference, size=reach, mode="nearest")
-        spread = _at(self.nodes, widened, x, y, order=1) + (2 * floor + RESOLUTION) * self.peak_pressure
-        if self._profile is None or self.uncertainty is None:
-            return 2 * spread
+        total = _at(self.nodes, widened, x, y, order=1) + (2 * floor + RESOLUTION) * self.peak_pressure
+        if shape is None or self.uncertainty is None:
+            return 2 * total
         r, shift = np.hypot(x, y), self.uncertainty.contact_radius
-        moved = np.abs([self._profile(r + s) - self._profile(r) for s in (-shift, shift)]).max(axis=0)
+        moved = np.abs([shape.pressure(r + s) - shape.pressure(r) for s in (-shift, shift)]).max(axis=0)
         edge = np.abs(r - self.contact_radius) < 3 * coarser.diagnostics.patch_size + shift
-        return spread + np.where(edge, moved, 0.0)
+        return total + np.where(edge, moved, 0.0)
 
     def stress_uncertainty(self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None) -> Array:
         """Uncertainty of the stress [Pa], shape (3, 3) + points; see ``stress_with_uncertainty``.
@@ -210,26 +210,30 @@ class Solution:
         """Stress and its uncertainty [Pa], shape (3, 3) + points each, the latter from coarser companions.
 
         The largest difference over the six components, for every component alike: of this grid and the
-        next, times ``safety``, or a third of that of the next and the one after; plus what the other knobs
-        do to the peak pressure, and the error of the evaluation, ``EVALUATION`` of the peak.
+        next, times ``safety``, or a third of that of the next and the one after; plus the changes of the peak
+        pressure by the other numerical parameters, and the error of the evaluation, ``EVALUATION`` of it.
         Raises ValueError where no uncertainty was estimated.
         """
         coarser, floor = self._companion()
-        sigma = self.stress(x, y, z, layer)
-        second = coarser.stress(x, y, z, layer)
-        spread = safety(len(self.nodes) / len(coarser.nodes)) * np.abs(sigma - second).max(axis=(0, 1))
+        kept: Tables = {}  # a point force does not depend on the grid
+
+        def stress(level: Level) -> Array:
+            return fields.stress(level, self._body, x, y, z, layer, kept)
+
+        sigma, second = stress(self._level), stress(coarser._level)
+        change = safety(len(self.nodes) / len(coarser.nodes)) * np.abs(sigma - second).max(axis=(0, 1))
         if coarser.coarser is not None:
-            third = coarser.coarser.stress(x, y, z, layer)
-            spread = np.maximum(spread, np.abs(second - third).max(axis=(0, 1)) / 3)
+            third = stress(coarser.coarser._level)
+            change = np.maximum(change, np.abs(second - third).max(axis=(0, 1)) / 3)
         shallow = np.asarray(z) < 4 * self.diagnostics.patch_size
-        total = spread + (floor + np.where(shallow, *EVALUATION)) * self.peak_pressure
-        return sigma, np.broadcast_to(total, (3, 3, *spread.shape)).copy()
+        total = change + (floor + np.where(shallow, *EVALUATION)) * self.peak_pressure
+        return sigma, np.broadcast_to(total, (3, 3, *change.shape)).copy()
 
     def _companion(self) -> tuple["Solution", float]:
         if self.uncertainty is None or self.coarser is None:
             raise ValueError("uncertainty was not estimated; solve with estimate_uncertainty=True")
         rows = self.uncertainty.budget
-        other = sum(value for name, knob, value in rows if name == "peak_pressure" and knob != "patch size")
+        other = sum(row[2] for row in rows if row[0] == "peak_pressure" and row[1] != "patch size")
         return self.coarser, other / self.peak_pressure
 
 

@@ -2,7 +2,7 @@
 
 The pressure between patch centres is the cubic convolution of its values there, q = f p. At a depth z the
 field is then a discrete convolution of the nodal forces with the influence of one node, found in one of two
-ways (d the patch, L the scale on which the response of the solid dies, exp(-k L)):
+ways (d the patch, L the length over which the response of the solid decays, exp(-k L)):
 
 - z >= 3 d. A node is a point force, tabulated for the layered solid: the lattice sum of a function of scale z
   differs from an integral by its aliases, exp(-2 pi z/d). Deeper down the forces are first gathered on
@@ -11,15 +11,15 @@ ways (d the patch, L the scale on which the response of the solid dies, exp(-k L
   that material, and the rest of the response, which is smooth on the scale 2h - z >= h, from tables. In a
   deeper layer the whole response from tables of scale z >= h.
 
-Patches of constant pressure would do below, but not near the surface: the steps of p put sigma_xx of a
-sliding load off by p' d even at the patch centres. With p continuous the field is smooth enough to be found
-below patch centres only, and interpolated between them by cubics.
+Patches of constant pressure would suffice below, but not near the surface: the steps of p change sigma_xx of
+a sliding load by p' d even at the patch centres. With p continuous the field is smooth enough to be computed
+below patch centres only, with cubic interpolation between them.
 
 "Stress analysis of elastic coated solids in point contact", eqs. 1-4. Axes: z down; tension positive; SI.
 """
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any
 
@@ -27,25 +27,36 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.fft import irfft2, next_fast_len, rfft2
 
-from .lattice import Influence, Lattice, at_points, between_sites, influence_table, nodal_forces, samples
-from .node import near_influence
-from .pointload import (
-    PointLoad,
+from . import halfspace
+from .inputs import Body
+from .interpolation_kernel import near_influence
+from .nodal_convolution import (
+    Influence,
+    Lattice,
+    at_points,
+    between_sites,
+    influence_table,
+    nodal_forces,
+    samples,
+)
+from .point_force import (
+    PointForce,
     displacement_below,
     displacement_from_lines,
     stress_below,
     stress_from_lines,
 )
 
-__all__ = ["FieldPlane", "displacement", "displacement_plane", "stress", "stress_plane"]
+__all__ = ["FieldPlane", "displacement", "displacement_plane", "stress", "stress_plane", "tensor"]
 
 Array = NDArray[Any]
 Field = Callable[..., Array]
-Coatings = Sequence[tuple[float, float, float]]
+Tables = dict[tuple[bytes, int, float, bool], list[PointForce]]
 
 SHALLOW = 3.0  # patches; above this depth a node is not yet a point force: aliases exp(-6 pi) = 7e-9
 COARSE = 12.0  # depth over lattice spacing; interpolation through ten sites then errs by 1e-8 of p_h
 CHEBYSHEV = 10  # shallow depths; more than these are interpolated, to 1e-6 three patches from the edge
+KEPT = 64  # depths of which point-force tables are kept, half a megabyte each
 SIX = ((0, 1, 2, 0, 0, 1), (0, 1, 2, 1, 2, 2))  # xx, yy, zz, xy, xz, yz
 
 
@@ -58,22 +69,25 @@ def stress(
     grid_x: Array,
     grid_y: Array,
     pressure: Array,
-    friction: float,
-    coatings: Coatings,
-    substrate: tuple[float, float],
-    rectangle: tuple[Field, Field],
-    stress_frf: Field,
+    body: Body,
+    kept: Tables | None = None,
 ) -> Array:
     """Stress at points (x, y, z) of the layers named, under pressure p with traction q = f p in +x.
 
-    x, y, z : points [m], broadcast.  layer : which side is meant at an interface, integers, broadcast.
+    x, y, z : points [m], broadcast.  layer : integers, which pick the side of an interface, broadcast.
     pressure : mean of p over each patch [Pa], (nx, ny), centred at grid_x, grid_y [m], which are uniform.
-    rectangle : normal and tangential stress of a uniformly loaded rectangle, as in `halfspace`.
-    stress_frf : response functions, as in `frf`.
+    kept : point-force tables of other calls for the same solid; those of this call are added.
     Returns sigma[i, j, ...] [Pa], shape (3, 3) + points.
     """
-    body = _stress_body(friction, coatings, substrate, rectangle, stress_frf)
-    xx, yy, zz, xy, xz, yz = _evaluate(x, y, z, layer, nodal_forces(grid_x, grid_y, pressure), body)
+    response = _stress_response(body)
+    if kept is not None:
+        response = replace(response, below=partial(_kept, kept, response.below))
+    return tensor(_evaluate(x, y, z, layer, nodal_forces(grid_x, grid_y, pressure), response))
+
+
+def tensor(components: Array) -> Array:
+    """xx, yy, zz, xy, xz, yz as a symmetric tensor, shape (3, 3, ...)."""
+    xx, yy, zz, xy, xz, yz = components
     return np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
 
 
@@ -86,18 +100,14 @@ def displacement(
     grid_x: Array,
     grid_y: Array,
     pressure: Array,
-    friction: float,
-    coatings: Coatings,
-    substrate: tuple[float, float],
-    rectangle: tuple[Field, Field],
-    displacement_frf: Field,
+    body: Body,
 ) -> Array:
-    """Displacement at points (x, y, z); arguments as in `stress`, ``rectangle`` the two displacements.
+    """Displacement at points (x, y, z); arguments as in `stress`.
 
     Returns u[i, ...] [m], shape (3,) + points; u_z into the solid.
     """
-    body = _displacement_body(friction, coatings, substrate, rectangle, displacement_frf)
-    return _evaluate(x, y, z, layer, nodal_forces(grid_x, grid_y, pressure), body)
+    response = _displacement_response(body)
+    return _evaluate(x, y, z, layer, nodal_forces(grid_x, grid_y, pressure), response)
 
 
 @dataclass(frozen=True, eq=False)
@@ -135,16 +145,10 @@ def stress_plane(
     *,
     grid_x: Array,
     grid_y: Array,
-    friction: float,
-    coatings: Coatings,
-    substrate: tuple[float, float],
-    rectangle: tuple[Field, Field],
-    stress_frf: Field,
+    body: Body,
 ) -> FieldPlane:
     """Set up the convolution for all patch centres at depth z [m]; arguments as in `stress`."""
-    return _plane(
-        z, layer, grid_x, grid_y, _stress_body(friction, coatings, substrate, rectangle, stress_frf)
-    )
+    return _plane(z, layer, grid_x, grid_y, _stress_response(body))
 
 
 def displacement_plane(
@@ -153,67 +157,59 @@ def displacement_plane(
     *,
     grid_x: Array,
     grid_y: Array,
-    friction: float,
-    coatings: Coatings,
-    substrate: tuple[float, float],
-    rectangle: tuple[Field, Field],
-    displacement_frf: Field,
+    body: Body,
 ) -> FieldPlane:
     """Set up the convolution for all patch centres at depth z [m]; arguments as in `displacement`."""
-    body = _displacement_body(friction, coatings, substrate, rectangle, displacement_frf)
-    return _plane(z, layer, grid_x, grid_y, body)
+    return _plane(z, layer, grid_x, grid_y, _displacement_response(body))
 
 
-def _plane(z: float, layer: int, grid_x: Array, grid_y: Array, body: "_Body") -> FieldPlane:
+def _plane(z: float, layer: int, grid_x: Array, grid_y: Array, response: "_Response") -> FieldPlane:
     nx, ny = len(grid_x), len(grid_y)
     unit = nodal_forces(grid_x, grid_y, np.ones((nx, ny)))
-    ((_, shallow, point),) = _tables(np.array([float(z)]), layer, max(unit.dx, unit.dy), body)
-    influence = _near(point, layer == 0, z, unit, body) if shallow else _as_points(point, unit)
+    ((_, shallow, point),) = _tables(np.array([float(z)]), layer, max(unit.dx, unit.dy), response)
+    influence = _near(point, layer == 0, z, unit, response) if shallow else _as_points(point, unit)
     # forces reach one patch beyond the grid, see `samples`
-    table = influence_table(influence, np.arange(-nx, nx + 1), np.arange(-ny, ny + 1), body.odd_in_y)
+    table = influence_table(influence, np.arange(-nx, nx + 1), np.arange(-ny, ny + 1), response.odd_in_y)
     size = (next_fast_len(2 * nx + 1, real=True), next_fast_len(2 * ny + 1, real=True))
     return FieldPlane(rfft2(table, size), size, (nx, ny), unit.dx * unit.dy)
 
 
 @dataclass(frozen=True, eq=False)
-class _Body:
-    """What the sums need to know of the solid and of the field that is asked for.
+class _Response:
+    """Response of the solid to unit forces, in stress or in displacement.
 
-    below(z, layer, scale, excess=) : point-load tables at depths z.
+    below(z, layer, scale, excess=) : point-force tables at depths z.
     closed(X, Y, z, dx, dy) : field of unit forces on a rectangle, normal then tangential, (2, n, ...).
-    from_lines : point-load table of the same away from the force.  odd_in_y : components odd in y.
+    from_lines : point-force table of the same away from the force.  odd_in_y : components odd in y.
     """
 
-    coatings: Coatings
-    below: Callable[..., list[PointLoad]]
+    body: Body
+    below: Callable[..., list[PointForce]]
     closed: Field
-    from_lines: Callable[..., PointLoad]
-    friction: float
+    from_lines: Callable[..., PointForce]
     components: int
     odd_in_y: tuple[int, ...]
 
 
-def _stress_body(friction, coatings, substrate, rectangle, stress_frf) -> _Body:
-    shared: dict[str, Any] = {"coatings": coatings, "substrate": substrate, "friction": friction}
-    return _Body(
-        coatings,
-        partial(stress_below, stress_frf=stress_frf, **shared),
-        partial(_closed, rectangle, friction, (*coatings, substrate)[0][1:2], SIX),
+def _stress_response(body: Body) -> _Response:
+    rectangle = halfspace.normal_stress, halfspace.tangential_stress
+    return _Response(
+        body,
+        partial(stress_below, body=body),
+        partial(_closed, rectangle, body.friction, body.materials[0][1:2], SIX),
         stress_from_lines,
-        friction,
         components=6,
         odd_in_y=(3, 5),
     )
 
 
-def _displacement_body(friction, coatings, substrate, rectangle, displacement_frf) -> _Body:
-    shared: dict[str, Any] = {"coatings": coatings, "substrate": substrate, "friction": friction}
-    return _Body(
-        coatings,
-        partial(displacement_below, displacement_frf=displacement_frf, **shared),
-        partial(_closed, rectangle, friction, (*coatings, substrate)[0][:2], (...,)),
+def _displacement_response(body: Body) -> _Response:
+    rectangle = halfspace.normal_displacement, halfspace.tangential_displacement
+    return _Response(
+        body,
+        partial(displacement_below, body=body),
+        partial(_closed, rectangle, body.friction, body.materials[0][:2], (...,)),
         displacement_from_lines,
-        friction,
         components=3,
         odd_in_y=(1,),
     )
@@ -226,7 +222,7 @@ def _closed(rectangle, friction, moduli, components, X, Y, z: float, dx: float, 
     return np.array(fields if friction else [*fields, np.zeros_like(fields[0])])
 
 
-def _evaluate(x, y, z, layer, fine: Lattice, body: _Body) -> Array:
+def _evaluate(x, y, z, layer, fine: Lattice, response: _Response) -> Array:
     """Field components (n,) + points, layer by layer and depth by depth."""
     x, y, z, layer = np.broadcast_arrays(*(np.asarray(v) for v in (x, y, z, layer)))
     shape = z.shape
@@ -235,7 +231,7 @@ def _evaluate(x, y, z, layer, fine: Lattice, body: _Body) -> Array:
     while max(lattices[-1].force.shape) > 24:
         lattices.append(lattices[-1].coarser())
     shallow = z < SHALLOW * max(fine.dx, fine.dy)
-    out = np.zeros((body.components, z.size))
+    out = np.zeros((response.components, z.size))
     for number in np.unique(layer):
         for here in (
             np.flatnonzero((layer == number) & shallow),
@@ -244,13 +240,13 @@ def _evaluate(x, y, z, layer, fine: Lattice, body: _Body) -> Array:
             depths, which = np.unique(z[here], return_inverse=True)
             if shallow[here].any() and depths.size > CHEBYSHEV:
                 depths, weights = _between_depths(z[here])
-                for i, field in enumerate(_fields(depths, int(number), lattices, body)):
+                for i, field in enumerate(_fields(depths, int(number), lattices, response)):
                     out[:, here] += weights[:, i] * field(x[here], y[here])
             else:
-                for i, field in enumerate(_fields(depths, int(number), lattices, body)):
+                for i, field in enumerate(_fields(depths, int(number), lattices, response)):
                     at = here[which == i]
                     out[:, at] = field(x[at], y[at])
-    return out.reshape(body.components, *shape)
+    return out.reshape(response.components, *shape)
 
 
 def _between_depths(z: Array) -> tuple[Array, Array]:
@@ -267,29 +263,33 @@ def _between_depths(z: Array) -> tuple[Array, Array]:
 
 
 def _fields(
-    depths: Array, layer: int, lattices: list[Lattice], body: _Body
+    depths: Array, layer: int, lattices: list[Lattice], response: _Response
 ) -> Iterator[Callable[..., Array]]:
     """For each depth of one layer, the field as a function of x and y, (k,) -> (components, k)."""
     fine = lattices[0]
     d = max(fine.dx, fine.dy)
-    for z, shallow, table in _tables(depths, layer, d, body):
+    for z, shallow, table in _tables(depths, layer, d, response):
         if shallow:
-            influence = _near(table, layer == 0, z, fine, body)
-            yield partial(between_sites, lattice=fine, influence=influence, odd_in_y=body.odd_in_y, order=4)
+            influence = _near(table, layer == 0, z, fine, response)
+            yield partial(
+                between_sites, lattice=fine, influence=influence, odd_in_y=response.odd_in_y, order=4
+            )
         else:
             level = int(np.clip(np.log2(max(z / (COARSE * d), 1)), 0, len(lattices) - 1))
             assert table is not None
-            yield partial(at_points, lattice=lattices[level], kernel=table, odd_in_y=body.odd_in_y, order=10)
+            yield partial(
+                at_points, lattice=lattices[level], kernel=table, odd_in_y=response.odd_in_y, order=10
+            )
 
 
 def _tables(
-    depths: Array, layer: int, d: float, body: _Body
-) -> Iterator[tuple[float, bool, PointLoad | None]]:
-    """Each depth, whether it is shallow, and its point-load table; runs share a ladder of wavenumbers.
+    depths: Array, layer: int, d: float, response: _Response
+) -> Iterator[tuple[float, bool, PointForce | None]]:
+    """Each depth, whether it is shallow, and its point-force table; those of a run share their wavenumbers.
 
-    Shallow in the first layer, the tables hold what the homogeneous solid lacks: nothing, None, if uncoated.
+    Shallow in the first layer, the tables hold the difference to the homogeneous solid: None if uncoated.
     """
-    coatings = body.coatings
+    coatings = response.body.coatings
     keys = []
     for z in depths:
         shallow = bool(z < SHALLOW * d)
@@ -305,30 +305,44 @@ def _tables(
             stop += 1
         run = depths[start:stop]
         excess = shallow and layer == 0
-        tables: Sequence[PointLoad | None] = [None] * run.size
+        tables: Sequence[PointForce | None] = [None] * run.size
         if coatings or not excess:
-            tables = body.below(run, layer, scale, excess=excess)
+            tables = response.below(run, layer, scale, excess=excess)
         for z, table in zip(run, tables, strict=True):
             yield float(z), shallow, table
         start = stop
 
 
-def _near(table: PointLoad | None, first: bool, z: float, lattice: Lattice, body: _Body) -> Influence:
+def _kept(kept: Tables, below: Callable[..., list[PointForce]], z: Array, layer, scale, *, excess):
+    """Point-force tables from ``kept``, or by ``below`` and then kept, for at most ``KEPT`` depths in all."""
+    key = (z.tobytes(), layer, scale, excess)
+    if key not in kept:
+        if z.size + sum(len(tables) for tables in kept.values()) > KEPT:
+            kept.clear()
+        kept[key] = below(z, layer, scale, excess=excess)
+    return kept[key]
+
+
+def _near(
+    table: PointForce | None, first: bool, z: float, lattice: Lattice, response: _Response
+) -> Influence:
     """Influence of a node of the grid at a shallow depth."""
     dx, dy = lattice.dx, lattice.dy
 
     def rectangle(X: Array, Y: Array) -> Array:
-        normal, tangential = body.closed(X, Y, z, dx, dy)
-        return normal + body.friction * tangential
+        normal, tangential = response.closed(X, Y, z, dx, dy)
+        return normal + response.body.friction * tangential
 
     if not first:
-        return near_influence(None, None, table, dx, dy, z, body.odd_in_y)
+        return near_influence(None, None, table, dx, dy, z, response.odd_in_y)
     # a rectangle of d/50 is a point from some patches on
     reach = 6 * max(dx, dy) * np.exp(np.arange(0, 8.5, 0.02))
-    outside = body.from_lines(partial(body.closed, z=z, dx=dx / 50, dy=dy / 50), reach, body.friction)
-    return near_influence(rectangle, outside, table, dx, dy, z, body.odd_in_y)
+    outside = response.from_lines(
+        partial(response.closed, z=z, dx=dx / 50, dy=dy / 50), reach, response.body.friction
+    )
+    return near_influence(rectangle, outside, table, dx, dy, z, response.odd_in_y)
 
 
-def _as_points(table: PointLoad | None, lattice: Lattice) -> Influence:
+def _as_points(table: PointForce | None, lattice: Lattice) -> Influence:
     assert table is not None
     return lambda m, n: table(m * lattice.dx, n * lattice.dy)

@@ -41,7 +41,7 @@ def task(how: str, folder: Path, number: int = 0) -> Task[str]:
     path = folder / f"{how}-{number}.json"
     return Task(
         path.stem,
-        ("planted_worker", how, str(path)),
+        ("planted_worker:main", how, str(path)),
         path,
         lambda data: data["said"],
         lambda reason, _: reason,
@@ -107,7 +107,7 @@ def test_worker_that_cannot_write_ends_the_run_with_one_sentence(tmp_path):
     write_checked(tmp_path / "good-0.json", {"said": "earlier"})
     (tmp_path / "file").write_text("in the way")
     blocked = Task(
-        "x", ("planted_worker", "good", str(tmp_path / "file" / "x.json")), tmp_path / "x", str, str
+        "x", ("planted_worker:main", "good", str(tmp_path / "file" / "x.json")), tmp_path / "x", str, str
     )
     with pytest.raises(StoreError, match=r"file/x\.json: cannot be written"):
         run_tasks([blocked], jobs=1, time_limit=300)

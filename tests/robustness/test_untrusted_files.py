@@ -18,8 +18,7 @@ from verification.commands.common import one_line
 from verification.judging.verdict import Outcome, Verdict
 from verification.report.page import render
 from verification.running.contact import failed
-from verification.running.fields import fields_path
-from verification.running.planes import plane_path
+from verification.running.fields import fields_path, plane_path
 from verification.running.result import RunInfo, SourceResult
 from verification.running.store import StoreError
 from verification.running.stored import read_run

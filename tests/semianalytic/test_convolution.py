@@ -1,4 +1,4 @@
-"""DC-FFT held against direct summation."""
+"""DC-FFT against direct summation."""
 
 import numpy as np
 import pytest

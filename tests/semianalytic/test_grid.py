@@ -1,8 +1,8 @@
-"""First guesses on finer grids held against the contact they were taken from."""
+"""First guesses on finer grids against the contact on the coarser one."""
 
 import numpy as np
 
-from semianalytic.grid import Grid, Window, carry_over
+from semianalytic.grid import Grid, Window, prolong
 
 
 def _hertz(grid):
@@ -18,7 +18,7 @@ def _hertz(grid):
 def test_carried_over_contact_is_hertz_with_its_edge_between_the_patches():
     source, target = Grid(40, 0.06), Grid(160, 0.015)
     p, gap = _hertz(source)
-    start = carry_over(p, gap, source, target, Window(10, 150, 10, 150), 1.0)
+    start = prolong(p, gap, source, target, Window(10, 150, 10, 150), 1.0)
     exact = _hertz(target)[0][10:150, 10:150]
     # linear interpolation of p^2, and of its continuation across the edge
     assert np.abs(start - exact)[target.radius[10:150, 10:150] < 0.9].max() < 2e-3

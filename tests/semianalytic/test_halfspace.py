@@ -1,4 +1,4 @@
-"""Love, Boussinesq and Cerruti on a rectangle, held against quadrature, equilibrium and each other."""
+"""Love, Boussinesq and Cerruti on a rectangle against quadrature, equilibrium and each other."""
 
 from itertools import pairwise
 
@@ -74,7 +74,7 @@ def test_surface_deflection_of_love_is_the_integral_of_one_over_r(place):
         for y0, y1 in pairwise(ys)
     )
     u = halfspace.normal_displacement(x, y, 0.0, DX, DY, 1.0, NU)[2]
-    # dblquad was asked for 1e-10
+    # tolerance of dblquad 1e-10
     assert u == pytest.approx((1 - NU**2) / np.pi * total, abs=1e-9)
 
 

@@ -1,13 +1,13 @@
-"""Logarithmic Hankel transform against closed forms, point-load tables against small squares."""
+"""Logarithmic Hankel transform against closed forms, point-force tables against small squares."""
 
 import numpy as np
 import pytest
 from scipy.special import gamma, hyp2f1
 
 from semianalytic import halfspace
-from semianalytic.frf import displacement_frf, stress_frf
 from semianalytic.hankel import LONG, USUAL, hankel
-from semianalytic.pointload import displacement_below, stress_below
+from semianalytic.inputs import Body
+from semianalytic.point_force import displacement_below, stress_below
 
 
 def laplace(m, n, r, L):
@@ -37,14 +37,14 @@ def test_transform_of_polynomials_times_exponentials_is_the_closed_form(order, o
 
 
 @pytest.mark.parametrize("nu", [0.0, 0.3, 0.5])
-def test_point_load_tables_are_boussinesq_and_cerruti(nu):
+def test_point_force_tables_are_boussinesq_and_cerruti(nu):
     f, E, z, side = 0.4, 2.0, np.array([1.0, 1.5]), 1e-2
     rng = np.random.default_rng(3)
     x, y = rng.normal(size=(2, 40)) * 4
     x[:3], y[:3] = (0, 1e-3, 100), (0, 2e-3, 40)
-    body = {"coatings": (), "substrate": (E, nu), "friction": f}
-    stresses = stress_below(z, 0, 1.0, stress_frf=stress_frf, **body)
-    displacements = displacement_below(z, 0, 1.0, displacement_frf=displacement_frf, **body)
+    body = Body((), (E, nu), f)
+    stresses = stress_below(z, 0, 1.0, body)
+    displacements = displacement_below(z, 0, 1.0, body)
     for depth, stress, displacement in zip(z, stresses, displacements, strict=True):
         exact = np.zeros((6, x.size))
         moved = np.zeros((3, x.size))

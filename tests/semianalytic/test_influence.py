@@ -1,4 +1,4 @@
-"""Influence coefficients of the coated solid held against direct quadrature of their definition."""
+"""Influence coefficients of the coated solid against direct quadrature of their definition."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,7 @@
-"""Laws and limits that a solution must obey, whatever the coating."""
+"""Invariants and limits that a solution must obey, whatever the coating."""
+
+import pickle
+from dataclasses import fields, is_dataclass, replace
 
 import numpy as np
 import pytest
@@ -242,7 +245,7 @@ def test_uncertainty_brackets_the_error_and_not_by_orders():
         error = abs(getattr(s, name) - exact)
         assert error <= getattr(u, name) <= 100 * error
         assert getattr(u, name) == pytest.approx(sum(v for quantity, _, v in u.budget if quantity == name))
-    assert {knob for _, knob, _ in u.budget} == {"patch size", "conversion", "domain", "iteration"}
+    assert {parameter for _, parameter, _ in u.budget} == {"patch size", "conversion", "domain", "iteration"}
     x = s.surface_nodes
     error = np.abs(s.pressure(x) - P_H * np.sqrt(np.maximum(1 - (x / A_H) ** 2, 0)))
     assert np.all(error <= s.pressure_uncertainty(x))
@@ -259,7 +262,7 @@ def test_uncertainty_of_the_default_brackets_hertz():
     assert np.all(np.abs(zz) <= s.stress_uncertainty(0.0, 0.0, z)[2, 2])
 
 
-def test_uncertainty_not_asked_for_is_refused():
+def test_uncertainty_not_estimated_is_refused():
     s = solve(patches=65, estimate_uncertainty=False)
     assert s.uncertainty is None
     with pytest.raises(ValueError, match="estimate_uncertainty=True"):
@@ -275,8 +278,8 @@ def test_other_conversions_are_worse_and_say_so(conversion, worse_than):
     assert other.uncertainty is not None
     error = abs(other.approach - best.approach)
     assert error > worse_than * best.approach
-    rows = {knob: value for quantity, knob, value in other.uncertainty.budget if quantity == "approach"}
-    # read on half the patches, from the better conversion
+    rows = {row[1]: row[2] for row in other.uncertainty.budget if row[0] == "approach"}
+    # estimated on half the patches, from the better conversion
     assert rows["conversion"] == pytest.approx(error, rel=0.5)
 
 
@@ -296,6 +299,80 @@ def test_surface_nodes_cover_twice_the_contact(coated):
     inside = np.abs(x) <= coated.nodes[-1]
     middle = len(coated.nodes) // 2
     np.testing.assert_allclose(coated.pressure(x[inside]), coated.patch_pressure[:, middle], atol=1e-12 * P_H)
+
+
+# Solutions as plain records
+
+
+def prescribed(pressure, **options):
+    return semianalytic.solve_prescribed(
+        pressure=pressure, load_radius=A_H, coatings=STIFF, substrate=STEEL, patches=65, **options
+    )
+
+
+def ellipsoid(x, y):
+    return x**2 / (2 * R) + y**2 / (6 * R)
+
+
+def answers(solution):
+    """Everything a solution answers, its coarser companions included, as a flat list."""
+    x, z = np.linspace(-2, 2, 9) * A_H, 0.3 * A_H
+    found = [solution.contact_radius, solution.approach, solution.peak_pressure, solution.diagnostics]
+    found += [solution.nodes, solution.surface_nodes, solution.patch_pressure, solution.pressure(x, z)]
+    found += [solution.stress(x, 0.0, 0.0), solution.stress_plane(z), solution.displacement_plane(z)]
+    found += [solution.displacement(x, 0.1 * A_H, z), solution.stress(x, 0.0, STIFF[0][2], layer=0)]
+    if solution.uncertainty is not None:
+        found += [solution.uncertainty, solution.pressure_uncertainty(x)]
+        found += [*solution.stress_with_uncertainty(x, 0.0, z), solution.stress_uncertainty(x, 0.0, z)]
+    return found if solution.coarser is None else found + answers(solution.coarser)
+
+
+def assert_same_bits(first, second):
+    for one, other in zip(answers(first), answers(second), strict=True):
+        np.testing.assert_array_equal(one, other)
+
+
+@pytest.mark.parametrize(
+    "solved",
+    [
+        lambda: solve(STIFF, friction=0.25, patches=65),
+        lambda: indent(ellipsoid, 2 * A_H, friction=0.25),
+        lambda: prescribed(1e9, friction=0.25),
+        lambda: prescribed(np.cos, estimate_uncertainty=False),
+    ],
+    ids=["sphere", "ellipsoid", "uniform pressure", "pressure of r"],
+)
+def test_a_pickled_solution_gives_the_same_bits(solved):
+    solution = solved()
+    assert_same_bits(pickle.loads(pickle.dumps(solution)), solution)
+
+
+def test_a_solution_holds_plain_data_only():
+    def walk(value):
+        if is_dataclass(value):
+            for field in fields(value):
+                walk(getattr(value, field.name))
+        elif isinstance(value, tuple):
+            for item in value:
+                walk(item)
+        else:
+            assert value is None or isinstance(value, int | float | str | np.ndarray), type(value)
+
+    walk(solve(STIFF, patches=65))
+
+
+@pytest.mark.parametrize("friction", [0.0, -0.3])
+def test_another_friction_needs_no_other_solve(friction):
+    def solved(f):
+        return solve(STIFF, friction=f, patches=65)
+
+    sliding = solved(0.25)
+    other, direct = sliding.with_friction(friction), solved(friction)
+    elapsed = {"seconds": other.diagnostics.seconds}  # the only field that may differ
+    assert_same_bits(other, replace(direct, diagnostics=replace(direct.diagnostics, **elapsed)))
+    assert_same_bits(other.with_friction(0.25), sliding)
+    with pytest.raises(ValueError, match="friction = nan"):
+        sliding.with_friction(float("nan"))
 
 
 # Indenters other than the sphere
@@ -364,7 +441,7 @@ def test_stopping_short_raises():
 
 
 @pytest.mark.parametrize(
-    ("changes", "sentence"),
+    ("changes", "message"),
     [
         ({"radius": -1.0}, "radius = -1"),
         ({"load": 0.0}, "load = 0"),
@@ -382,8 +459,8 @@ def test_stopping_short_raises():
         ({"fill": 1.0}, "fill = 1"),
     ],
 )
-def test_meaningless_input_is_refused_in_a_sentence(changes, sentence):
-    with pytest.raises(ValueError, match=sentence):
+def test_meaningless_input_is_refused_with_a_message(changes, message):
+    with pytest.raises(ValueError, match=message):
         solve(**changes)
 
 

@@ -1,19 +1,20 @@
-"""Influence coefficients of stress, and of displacement below the surface, held against direct quadrature."""
+"""Influence coefficients of stress, and of displacement below the surface, against direct quadrature."""
 
 import numpy as np
 import pytest
 from scipy.special import jv
 
-from semianalytic import halfspace, node
+from semianalytic import halfspace, interpolation_kernel
 from semianalytic.frf import displacement_frf, stress_frf
-from semianalytic.pointload import displacement_below, stress_below
+from semianalytic.inputs import Body
+from semianalytic.point_force import displacement_below, stress_below
 
 SUBSTRATE = (210e9, 0.3)
 FRICTION = 0.5
 SIX = ((0, 1, 2, 0, 0, 1), (0, 1, 2, 1, 2, 2))
 FIELDS = (halfspace.normal_stress, halfspace.tangential_stress)
-ASKED = 1e-7  # of the largest coefficient
-RADII = np.array([0, 0.004, 0.02, 0.1, 1, 7])  # over the depth, or what stands for it
+TOLERANCE = 1e-7  # of the largest coefficient
+RADII = np.array([0, 0.004, 0.02, 0.1, 1, 7])  # over the depth or the scale
 NEAR = [1 / 30, *(pytest.param(z, marks=pytest.mark.slow) for z in (0.0, 0.01, 0.026, 0.06))]
 
 
@@ -88,7 +89,7 @@ def stack(ratio, h, layers, nu):
     )
 
 
-def check_tables(ratio, h, layers, nu, asked=ASKED):
+def check_tables(ratio, h, layers, nu, tolerance=TOLERANCE):
     """Tables above and below every kind of interface; patches of side 1, shallow ones within 3 of them."""
     coatings = stack(ratio, h, layers, nu)
     body = {"coatings": coatings, "substrate": SUBSTRATE}
@@ -97,22 +98,18 @@ def check_tables(ratio, h, layers, nu, asked=ASKED):
     places += [(3.0, int(np.searchsorted(interfaces, 3.0)), False), (interfaces[-1] + 1, layers, False)]
     for z, layer, excess in places:
         scale = 2.0 ** np.floor(np.log2(2 * h - z if excess else z))
-        (table,) = stress_below(
-            np.array([z]), layer, scale, stress_frf=stress_frf, friction=FRICTION, excess=excess, **body
-        )
+        (table,) = stress_below(np.array([z]), layer, scale, Body(friction=FRICTION, **body), excess=excess)
         r = RADII * scale
         expected = by_quadrature(r, 0.8, 0.6, z, layer, scale, excess, body)
         # shallow in the first layer the closed form, of order 1, is added to the table
         largest = max(np.abs(expected).max(), float(excess))
-        assert np.abs(table(0.8 * r, 0.6 * r) - expected).max() <= asked * largest, (z, layer)
+        assert np.abs(table(0.8 * r, 0.6 * r) - expected).max() <= tolerance * largest, (z, layer)
     z, layer, _ = places[3]
     scale = 2.0 ** np.floor(np.log2(z))
-    (table,) = displacement_below(
-        np.array([z]), layer, scale, displacement_frf=displacement_frf, friction=FRICTION, **body
-    )
+    (table,) = displacement_below(np.array([z]), layer, scale, Body(friction=FRICTION, **body))
     expected = displacement_by_quadrature(RADII * scale, 0.8, 0.6, z, layer, scale, body)
     error = table(0.8 * RADII * scale, 0.6 * RADII * scale) - expected
-    assert np.abs(error).max() <= asked * np.abs(expected).max(), "displacement"
+    assert np.abs(error).max() <= tolerance * np.abs(expected).max(), "displacement"
 
 
 @pytest.mark.parametrize(
@@ -157,15 +154,15 @@ def test_influence_of_a_node_near_the_surface_is_the_quadrature(z):
         stresses = [field(X, Y, z, 1.0, 1.0, 0.3) for field in FIELDS]
         return np.concatenate([stress[SIX] for stress in stresses])
 
-    block = node._block_of_rectangle(rectangle, 1.0, 1.0, z)
+    block = interpolation_kernel._block_of_rectangle(rectangle, 1.0, 1.0, z)
     largest = np.abs(block).max()
     for m, n in ((0, 0), (1, 1)):
         expected = np.zeros(12)
         for c in (-1, 0, 1):
             for e in (-1, 0, 1):
-                w_c = -sum(node._keys_slope(c + t + 0.5 + k) for k in range(3)) * weight
-                w_e = -sum(node._keys_slope(e + t + 0.5 + k) for k in range(3)) * weight
+                w_c = -sum(interpolation_kernel._keys_slope(c + t + 0.5 + k) for k in range(3)) * weight
+                w_e = -sum(interpolation_kernel._keys_slope(e + t + 0.5 + k) for k in range(3)) * weight
                 X, Y = np.broadcast_arrays((m - c - t)[:, None], n - e - t)
                 expected += np.einsum("axy,x,y->a", rectangle(X, Y), w_c, w_e, optimize=True)
-        found = block[:, m + node.BLOCK, n]
-        assert np.abs(found - expected).max() <= ASKED * largest
+        found = block[:, m + interpolation_kernel.BLOCK, n]
+        assert np.abs(found - expected).max() <= TOLERANCE * largest

@@ -6,13 +6,9 @@ from scipy.special import j0, j1, jv, spherical_jn
 
 from semianalytic import halfspace, subsurface
 from semianalytic.frf import displacement_frf, stress_frf
+from semianalytic.inputs import Body
 
 NU = 0.3
-STRESS = {"rectangle": (halfspace.normal_stress, halfspace.tangential_stress), "stress_frf": stress_frf}
-DISPLACEMENT = {
-    "rectangle": (halfspace.normal_displacement, halfspace.tangential_displacement),
-    "displacement_frf": displacement_frf,
-}
 TWO_COATINGS = (((4.0, 0.25, 0.3), (0.3, 0.4, 0.15)), (1.0, 0.3))
 
 
@@ -46,15 +42,11 @@ D = GRID["grid_x"][1] - GRID["grid_x"][0]
 
 
 def sigma(x, y, z, layer, *, grid=GRID, f=0.0, coatings=(), substrate=(1.0, NU)):
-    return subsurface.stress(
-        x, y, z, layer, friction=f, coatings=coatings, substrate=substrate, **grid, **STRESS
-    )
+    return subsurface.stress(x, y, z, layer, body=Body(coatings, substrate, f), **grid)
 
 
 def displacement(x, y, z, layer, *, f=0.0, coatings=(), substrate=(1.0, NU)):
-    return subsurface.displacement(
-        x, y, z, layer, friction=f, coatings=coatings, substrate=substrate, **GRID, **DISPLACEMENT
-    )
+    return subsurface.displacement(x, y, z, layer, body=Body(coatings, substrate, f), **GRID)
 
 
 def hankel_stress(x, z, layer, coatings, substrate, f, k_max):
@@ -229,7 +221,7 @@ def test_coated_stress_is_its_hankel_integral(coatings, substrate):
         s = sigma(x, 0.0, z, layer, f=0.3, coatings=coatings, substrate=substrate)
         mine = s[0, 0], s[1, 1], s[2, 2], s[0, 2]
         scale = max(1.0, np.abs(exact).max())
-        # 2e-4 p_h is what is asked of 257 patches; here 129, and stiff films carry many p_h
+        # 2e-4 p_h is required of 257 patches; here 129, and stiff films carry many p_h
         assert np.abs(np.array(mine) - np.array(exact)).max() < 2e-4 * scale, (z, layer)
 
 
@@ -277,8 +269,7 @@ def test_oblong_patches_serve_as_well():
 def test_plane_of_stress_is_the_stress_at_the_patch_centres(z, layer):
     coatings, substrate = TWO_COATINGS
     grid = {"grid_x": GRID["grid_x"], "grid_y": GRID["grid_y"]}
-    body = {"friction": 0.3, "coatings": coatings, "substrate": substrate}
-    plane = subsurface.stress_plane(z, layer, **grid, **body, **STRESS)
+    plane = subsurface.stress_plane(z, layer, **grid, body=Body(coatings, substrate, 0.3))
     whole = plane(GRID["pressure"])
     i, j = np.array([64, 3, 90, 128, 0]), np.array([64, 10, 70, 128, 77])
     x, y = grid["grid_x"][i], grid["grid_y"][j]
@@ -289,9 +280,7 @@ def test_plane_of_stress_is_the_stress_at_the_patch_centres(z, layer):
 
 def test_plane_refuses_a_pressure_of_another_grid():
     x = GRID["grid_x"]
-    plane = subsurface.stress_plane(
-        1.0, 0, grid_x=x, grid_y=x, friction=0, coatings=(), substrate=(1, NU), **STRESS
-    )
+    plane = subsurface.stress_plane(1.0, 0, grid_x=x, grid_y=x, body=Body((), (1, NU), 0.0))
     with pytest.raises(ValueError, match=r"\(3, 3\)"):
         plane(np.zeros((3, 3)))
 

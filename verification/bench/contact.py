@@ -214,7 +214,8 @@ def _coated(patches: int, ratio: float, h: float) -> CoatedRow:
 
 def run_plane(*, sizes: Sequence[int] = (256, 512), repeats: int = 9) -> list[PlaneRow]:
     """Time the six stresses at the interface of a sliding coating, against six transforms, taken in turns."""
-    from semianalytic import frf, halfspace, subsurface
+    from semianalytic import subsurface
+    from semianalytic.inputs import Body
 
     rows = []
     for patches in sizes:
@@ -226,11 +227,7 @@ def run_plane(*, sizes: Sequence[int] = (256, 512), repeats: int = 9) -> list[Pl
             0,
             grid_x=x,
             grid_y=x,
-            friction=0.25,
-            coatings=((4 * E_STAR, 0.3, 0.3 * A),),
-            substrate=(E_STAR, 0.3),
-            rectangle=(halfspace.normal_stress, halfspace.tangential_stress),
-            stress_frf=frf.stress_frf,
+            body=Body(((4 * E_STAR, 0.3, 0.3 * A),), (E_STAR, 0.3), 0.25),
         )
         setup = time.perf_counter() - began
         ours, theirs = [], []

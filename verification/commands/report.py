@@ -15,6 +15,7 @@ from verification.commands.common import (
     BaselineFolder,
     RecordsFolder,
     exit_code,
+    nearest_run,
     print_error,
     within_package,
 )
@@ -66,7 +67,9 @@ def report(
     from verification.report.pdf import NoBrowser, printed
 
     if not (folder / "cases").is_dir():
-        return print_error(f"{folder}: holds no run; write one with: coatcheck run --output {folder}")
+        return print_error(
+            f"{folder}: holds no run; write one with: coatcheck run --output {folder}{nearest_run(folder)}"
+        )
     try:
         known = read_baseline(baseline)
         with locked(folder):

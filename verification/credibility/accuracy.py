@@ -19,7 +19,7 @@ from verification.judging.invariants.influence import ConversionError, conversio
 from verification.problem.contact import CoatedContact
 from verification.running.pool import Task
 from verification.running.provenance import commit, versions
-from verification.running.result import plain
+from verification.running.records import plain
 from verification.running.store import StoreError, read_checked, write_checked
 
 __all__ = [
@@ -47,6 +47,7 @@ FINE = (41, 49, 65, 97, 129, 257)
 STEEL = (210e9, 0.3)
 BARE = CoatedContact(10e-3, 20.0, (), STEEL)
 COATED = CoatedContact(10e-3, 20.0, ((4 * STEEL[0], 0.3, BARE.a_h),), STEEL)
+COST = 5.0  # of the whole study, over that of an uncoated contact
 PROBLEM = "a sphere of 10 mm under 20 N on steel, bare or with a coating of E1/E2 = 4, h = a_h"
 
 
@@ -132,7 +133,14 @@ def stored(
 def task(folder: Path) -> Task[AccuracyStudy]:
     """The study as a task beside the cases of a run."""
     path = path_in(folder)
-    return Task("accuracy study", ("verification.credibility.accuracy", str(path)), path, from_json, failed)
+    return Task(
+        "accuracy study",
+        ("verification.credibility.accuracy:main", str(path)),
+        path,
+        from_json,
+        failed,
+        cost=COST,
+    )
 
 
 def to_json(study: AccuracyStudy) -> dict[str, Any]:

@@ -9,7 +9,8 @@ from pathlib import Path
 from typing import Any
 
 from verification.judging.verdict import Outcome
-from verification.running.result import CaseResult, RunInfo, plain
+from verification.running.records import plain
+from verification.running.result import CaseResult, RunInfo
 from verification.running.store import StoreError, read_checked, write_checked
 
 __all__ = ["Alarm", "AlarmRecord", "counted", "path_in", "read_record", "write_record"]

@@ -6,7 +6,8 @@ from dataclasses import asdict, dataclass
 from typing import Any
 
 from verification.regression.drift import POINTS, Drift, Numbers, State, drift, measured
-from verification.running.result import CaseResult, RunInfo, plain
+from verification.running.records import plain
+from verification.running.result import CaseResult, RunInfo
 
 __all__ = [
     "Baseline",

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from verification.regression.baseline import Baseline, Update
 from verification.regression.drift import Numbers
-from verification.running.result import plain
+from verification.running.records import plain
 from verification.running.store import StoreError, read_checked, write_checked
 
 __all__ = ["path_in", "read_baseline", "write_baseline"]

@@ -11,7 +11,7 @@ from verification.report.credibility.faults import faults_section
 from verification.report.credibility.section import credibility_section
 from verification.report.credibility.self_tests import self_test_section
 from verification.report.sections.effective import effective_sections
-from verification.running.planes import read_planes
+from verification.running.fields import read_planes
 from verification.running.result import CaseResult, RunInfo
 from verification.running.self_tests import SelfTest
 from verification.running.store import StoreError

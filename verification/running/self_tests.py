@@ -24,7 +24,8 @@ from verification.problem.contact import CoatedContact, PrescribedLoad
 from verification.problem.profile import Profile, lines_of
 from verification.running.contact import judge_case, solve_case
 from verification.running.provenance import fingerprint
-from verification.running.result import CaseResult, describe, from_json, plain, to_json
+from verification.running.records import plain
+from verification.running.result import CaseResult, describe, from_json, to_json
 from verification.running.store import StoreError, read_checked, write_checked
 from verification.running.tasks import kept_result, result_path
 from verification.sampling.lines import sample, sample_contact

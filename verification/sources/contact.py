@@ -1,11 +1,12 @@
 """Sources that solve a coated contact."""
 
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from typing import Any
 
 from verification.problem.contact import CoatedContact, Solution
 
-__all__ = ["Solver", "solvers"]
+__all__ = ["Solver", "sharing_pressure", "solvers"]
 
 Solver = Callable[[CoatedContact, Mapping[str, Any]], Solution]
 
@@ -37,3 +38,23 @@ def solvers() -> dict[str, Solver]:
             problem.radius, problem.load, *problem.substrate, problem.friction
         ),
     }
+
+
+def sharing_pressure(solve: Solver) -> Solver:
+    """``solve``, but a problem that differs from the last one in friction alone is not solved anew.
+
+    The pressure does not depend on friction (Goodman): ``with_friction`` of the last solution adds to its
+    fields those of the tangential traction. Solutions that lack it are solved each time.
+    """
+    last: list[tuple[CoatedContact, dict[str, Any], Any]] = []
+
+    def shared(problem: CoatedContact, numerics: Mapping[str, Any]) -> Solution:
+        for known, given, solution in last:
+            same = replace(known, friction=problem.friction) == problem and given == numerics
+            if same and hasattr(type(solution), "with_friction"):
+                found: Solution = solution.with_friction(problem.friction)
+                return found
+        last[:] = [(problem, dict(numerics), solve(problem, numerics))]
+        return last[0][2]
+
+    return shared

@@ -226,7 +226,7 @@ def _rows(table: Array) -> Rows:
 def task(folder: Path) -> Task[EffectiveStudy]:
     """The study as a task beside the cases of a run."""
     path = folder / "effective-modulus.json"
-    command = ("verification.study.formulas", str(path))
+    command = ("verification.study.formulas:main", str(path))
     return Task(
         "effective moduli",
         command,

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from verification.problem.quantity import COMPONENTS, von_mises
-from verification.running.planes import read_plane, write_plane
+from verification.running.fields import read_plane, write_plane
 from verification.running.store import StoreError
 from verification.sampling.plane import Plane, depths_of, sample_plane
 from verification.sources.references.hertz import Hertz

@@ -13,7 +13,8 @@ from verification.credibility.faults.record import SCHEMA, Record, from_json, ro
 from verification.credibility.faults.trial import Trial, trial_from_json
 from verification.running.pool import Task
 from verification.running.provenance import fingerprint
-from verification.running.result import CaseResult, plain
+from verification.running.records import plain
+from verification.running.result import CaseResult
 from verification.running.store import StoreError, read_checked, write_checked
 
 __all__ = [
@@ -61,7 +62,7 @@ def unfit(clean: Sequence[CaseResult]) -> str:
 def trial_task(fault: Fault, output: Path) -> Task[Trial]:
     """The trial of ``fault`` in a process of its own."""
     path = _path(fault, output)
-    words = ("verification.credibility.faults.worker", fault.name, str(clean_folder(output)), str(path))
+    words = ("verification.credibility.faults.worker:main", fault.name, str(clean_folder(output)), str(path))
     return Task(fault.name, words, path, _trial, partial(_failed, fault))
 
 

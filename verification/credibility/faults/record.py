@@ -10,7 +10,7 @@ from verification.credibility.faults.planting import Fault
 from verification.credibility.faults.survivors import SURVIVORS
 from verification.credibility.faults.trial import Trial
 from verification.judging.verdict import Outcome
-from verification.running.result import plain
+from verification.running.records import plain
 
 __all__ = ["PASS_SHARE", "SCHEMA", "Catch", "Record", "Row", "Seen", "from_json", "row_of", "to_json"]
 

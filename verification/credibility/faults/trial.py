@@ -19,7 +19,8 @@ from verification.problem.profile import Profile
 from verification.regression.baseline import State, drift, measured
 from verification.running import contact as run
 from verification.running import published as printed_run
-from verification.running.result import CaseResult, SourceResult, from_json, plain
+from verification.running.records import plain
+from verification.running.result import CaseResult, SourceResult, from_json
 from verification.running.self_tests import self_tests
 from verification.running.store import read_checked
 from verification.sampling.lines import sample, sample_contact

@@ -11,7 +11,7 @@ from pathlib import Path
 from verification.credibility.faults.catalogue import BLANKS, FAULTS
 from verification.credibility.faults.trial import trial_to_json, try_fault
 from verification.running.provenance import fingerprint
-from verification.running.result import plain
+from verification.running.records import plain
 from verification.running.store import write_checked
 
 

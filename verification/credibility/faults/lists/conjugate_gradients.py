@@ -7,7 +7,7 @@ __all__ = ["FAULTS"]
 GROUP = "conjugate_gradients"
 SOLID = ("01_uncoated_steel", "14_ratio_4_sliding")
 SCALARS = ("approach", "peak_pressure", "contact_radius", "pressure")
-PRESS = "semianalytic.contact:press"
+MEASURE = "semianalytic.contact:_measure"
 
 
 def _fault(name: str, sentence: str, expected: tuple[str, ...], *changes: Edit) -> Fault:
@@ -20,7 +20,9 @@ FAULTS = (
         "the iteration ends at a gap of 1e-2 of the approach, whatever was asked for",
         SCALARS,
         Edit(
-            PRESS, "if settled and residual <= tolerance:", "if settled and residual <= max(tolerance, 1e-2):"
+            "semianalytic.contact:_within_tolerance",
+            "state.residual <= problem.tolerance",
+            "state.residual <= max(problem.tolerance, 1e-2)",
         ),
     ),
     _fault(
@@ -28,7 +30,7 @@ FAULTS = (
         "the load on the patches is 0.5 % too large",
         SCALARS,
         Edit(
-            "semianalytic.solver:_press_in",
+            "semianalytic.level:LevelProblem.solve",
             "(indenter.load - missing) /",
             "(1.005 * indenter.load - missing) /",
         ),
@@ -38,7 +40,7 @@ FAULTS = (
         "what the rim patches lack of the load is forgotten",
         (*SCALARS, "load balance"),
         Edit(
-            "semianalytic.solver:_press_round",
+            "semianalytic.defect_correction:corrected",
             "missing = shape.load - float(on_patches.sum() * grid.d**2)",
             "missing = 0.0",
         ),
@@ -48,16 +50,16 @@ FAULTS = (
         "the contact set stays that of the first guess: no patch enters it, none leaves",
         (*SCALARS, "sphere"),
         Edit(
-            PRESS,
-            "settled = not tension.any() and depth <= deep",
-            "settled = True",
+            MEASURE,
+            "state.admissible = not state.tension.any() and state.depth <= state.deep",
+            "state.admissible = True",
         ),
     ),
     _fault(
         "tension_kept",
         "negative pressure is kept: no patch ever leaves the contact",
         (*SCALARS, "surface tractions"),
-        Edit(PRESS, "tension = p < 0", "tension = p < -np.inf"),
+        Edit(MEASURE, "state.tension = state.p < 0", "state.tension = state.p < -np.inf"),
     ),
     _fault(
         "sphere_for_parabola",

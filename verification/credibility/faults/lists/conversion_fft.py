@@ -37,12 +37,12 @@ FAULTS = (
         "the convolution for the stresses is circular: no zero padding",
         STRESS,
         Edit(
-            "semianalytic.lattice:_at_sites",
+            "semianalytic.nodal_convolution:_at_sites",
             "size = (next_fast_len(m.size, real=True), next_fast_len(n.size, real=True))",
             "size = (max(force.shape[0], m.size // 2), max(force.shape[1], n.size // 2))",
         ),
         Edit(
-            "semianalytic.lattice:_at_sites",
+            "semianalytic.nodal_convolution:_at_sites",
             "irfft2(rfft2(part, size) * spectrum, size)[i, j]",
             "irfft2(rfft2(part, size) * spectrum, size)[i % size[0], j % size[1]]",
         ),
@@ -71,7 +71,7 @@ FAULTS = (
         "wavenumbers_cut",
         "the exact deflection under the layers leaves out wavelengths shorter than 4 coatings",
         SCALARS,
-        Edit("semianalytic.disc:layer_table", "k_max = min(14 / thickness,", "k_max = min(1.5 / thickness,"),
+        Edit("semianalytic.abel:layer_table", "k_max = min(14 / thickness,", "k_max = min(1.5 / thickness,"),
     ),
     _fault(
         "no_patch_averaging",
@@ -91,7 +91,7 @@ FAULTS = (
         "stresses near the surface are those of constant patches, not averaged over the pressure between",
         STRESS,
         Edit(
-            "semianalytic.node:near_influence",
+            "semianalytic.interpolation_kernel:near_influence",
             "_block_of_rectangle(rectangle, dx, dy, z)",
             "rectangle(*np.meshgrid(np.arange(-BLOCK, BLOCK + 1) * dx, np.arange(BLOCK + 1) * dy, "
             'indexing="ij"))',
@@ -112,7 +112,7 @@ FAULTS = (
         "the forces below which stresses are found lie half a patch off in x",
         STRESS,
         Edit(
-            "semianalytic.lattice:nodal_forces",
+            "semianalytic.nodal_convolution:nodal_forces",
             "Lattice(grid_x[rows[0]] - dx,",
             "Lattice(grid_x[rows[0]] - dx / 2,",
         ),
@@ -122,7 +122,7 @@ FAULTS = (
         "the table of the stress kernel is filled with x and y exchanged",
         ("sigma_xx", "sigma_yy"),
         Edit(
-            "semianalytic.lattice:influence_table",
+            "semianalytic.nodal_convolution:influence_table",
             "influence(a.ravel(), b.ravel())",
             "influence(b.ravel(), a.ravel())",
         ),
@@ -132,7 +132,7 @@ FAULTS = (
         "the stresses of sliding are correlated with the kernel where they are convolved with it",
         ("sigma_xx", "sigma_xz", "sigma_zz"),
         Edit(
-            "semianalytic.lattice:influence_table",
+            "semianalytic.nodal_convolution:influence_table",
             "influence(a.ravel(), b.ravel())",
             "influence(-a.ravel(), b.ravel())",
         ),
@@ -142,7 +142,7 @@ FAULTS = (
         "the response of the layers at k = 0 is set to zero: its image is left out and so is the mean",
         SCALARS,
         Edit(
-            "semianalytic.disc:layer_table", "* excess(k))", "* np.where(k < 0.05 / thickness, 0, excess(k)))"
+            "semianalytic.abel:layer_table", "* excess(k))", "* np.where(k < 0.05 / thickness, 0, excess(k)))"
         ),
     ),
     _fault(

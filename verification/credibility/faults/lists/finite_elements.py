@@ -105,9 +105,8 @@ FAULTS = (
         ("sigma_xx", "sigma_yy"),
         Edit(
             "fem_reference.recovery:HarmonicField.__call__",
-            "stress[:, numbers] = self._on_plane(side, strain[:, numbers], tractions[:, mine])",
-            "strains = [self._fields_and_strains(r[numbers], z[numbers], np.full(numbers.size, one))[1]"
-            " for one in (upper, upper + 1)]; "
+            "stress[:, numbers] = self._on_plane(layer, strain[:, numbers], tractions[:, mine])",
+            "strains = [self._fields_and_strains(side)[1][:, mine] for side in sides]; "
             "stress[:, numbers] = (self._on_plane(upper, strains[0], tractions[:, mine])"
             " + self._on_plane(upper + 1, strains[1], tractions[:, mine])) / 2",
         ),
@@ -117,14 +116,14 @@ FAULTS = (
         "wrong_axis_condition",
         "the first harmonic holds u_theta at zero on the axis in place of u_r + u_theta",
         ("sigma_xx", "sigma_xz", "sigma_yy"),
-        Edit("fem_reference.loading:loaded", "on_axis = (0, 2)", "on_axis = (1, 2)"),
+        Edit("fem_reference.loading:solve_traction", "on_axis = (0, 2)", "on_axis = (1, 2)"),
         cases=SLIDING,
     ),
     _fault(
         "hoop_traction_sign",
         "the circumferential part of the friction has the wrong sign",
         ("sigma_xx", "sigma_xz", "sigma_yy"),
-        Edit("fem_reference.loading:loaded", "[force, -2 * force, zero]", "[force, 2 * force, zero]"),
+        Edit("fem_reference.loading:solve_traction", "[force, -2 * force, zero]", "[force, 2 * force, zero]"),
         cases=SLIDING,
     ),
     _fault(

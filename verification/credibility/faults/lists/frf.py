@@ -101,7 +101,7 @@ FAULTS = (
     _fault(
         "anti_plane_dropped",
         "friction leaves the anti-plane part out",
-        "semianalytic.pointload:stress_below",
+        "semianalytic.point_force:stress_below",
         'A, B = response("anti-plane")',
         "A, B = 0 * Lz, 0 * Lz",
         ("sigma_xz", "sigma_yy", "sigma_xx"),

@@ -66,7 +66,7 @@ FAULTS = (
         "the semi-analytical method states ten times the uncertainty of p0, a and approach",
         ("baseline",),
         Edit(
-            "semianalytic.solution:Uncertainty._of",
+            "semianalytic.uncertainty:Uncertainty._of",
             "total = {name: sum(",
             "total = {name: 10 * sum(",
         ),
@@ -78,7 +78,6 @@ FAULTS = (
         "the finite element method states ten times its uncertainty",
         ("baseline", "sigma_xx", "sigma_zz"),
         Constant("fem_reference.estimate:SAFETY", 30.0),
-        Constant("fem_reference.solver:SAFETY", 30.0),
         cases=SOLID,
         solve=("fem_reference",),
     ),
@@ -87,7 +86,6 @@ FAULTS = (
         "the finite element method states a hundredth of its uncertainty",
         ("peak_pressure", "approach", "sigma_xx", "sigma_zz", "pressure"),
         Constant("fem_reference.estimate:SAFETY", 0.03),
-        Constant("fem_reference.solver:SAFETY", 0.03),
         solve=("fem_reference",),
     ),
     _fault(

@@ -8,8 +8,8 @@ GROUP = "stress"
 SOLID = ("01_uncoated_steel", "14_ratio_4_sliding")
 SLIDING = ("13_uncoated_sliding", "14_ratio_4_sliding")
 FILMS = ("01_uncoated_steel", "15_dlc_chromium_sliding")
-COMBINE = "semianalytic.pointload:_combine_stress"
-BELOW = "semianalytic.pointload:stress_below"
+COMBINE = "semianalytic.point_force:_combine_stress"
+BELOW = "semianalytic.point_force:stress_below"
 
 
 def _fault(
@@ -56,7 +56,7 @@ FAULTS = (
         "stresses are those of a depth one patch too large",
         ("sigma_xx", "sigma_zz", "bonded tractions", "equilibrium"),
         Edit(
-            "semianalytic.solver:_as_solution",
+            "semianalytic.fields:stress",
             "np.broadcast_arrays(x, y, z, body.layer_of(z, layer))",
             "np.broadcast_arrays(x, y, np.asarray(z) + grid.d, body.layer_of(z, layer))",
         ),
@@ -66,6 +66,7 @@ FAULTS = (
         "friction drags the solid in -x",
         ("sigma_xx", "sigma_xz"),
         Edit("semianalytic.solver:_body", "float(friction)", "-float(friction)"),
+        Edit("semianalytic.solution:Solution.with_friction", "float(friction)", "-float(friction)"),
         cases=SLIDING,
     ),
     _fault(
@@ -80,9 +81,9 @@ FAULTS = (
         "stresses near the surface take nu of the substrate for that of the coating",
         ("sigma_xx", "sigma_yy"),
         Edit(
-            "semianalytic.subsurface:_stress_body",
-            "(*coatings, substrate)[0][1:2]",
-            "(*coatings, substrate)[-1][-1:]",
+            "semianalytic.subsurface:_stress_response",
+            "body.materials[0][1:2]",
+            "body.materials[-1][-1:]",
         ),
         cases=FILMS,
     ),

@@ -29,7 +29,7 @@ Array = NDArray[Any]
 Influence = Callable[[Array, Array], Array]  # of integer offsets (m, n), each (k,) -> (components, k)
 
 PAIRS = 200_000  # points times forces, or offsets, held at a time
-FEW = 32  # sites for which a plain sum is quicker than Fourier transforms
+FEW = 32  # sites for which direct summation is faster than Fourier transforms
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,7 +72,7 @@ def samples(mean: Array) -> Array:
 
 
 def _gather(force: Array) -> Array:
-    """Every second row takes over the forces of all, starting ten rows before the first."""
+    """Forces of all rows on every second row, starting ten rows before the first."""
     n = force.shape[0]
     padded = np.zeros((n + 40, force.shape[1]))
     padded[19 : 19 + n] = force

@@ -1,13 +1,13 @@
-"""Influence of one node of a smoothly interpolated pressure on points close below the surface.
+"""Influence of one node of Keys' cubic interpolation of the pressure close below the surface.
 
 Between the nodes of a uniform grid the pressure is the cubic convolution of Keys (1981),
 
     p(x) = sum_i p_i B(x/d - i) in each direction,   B cubic on |t| < 1 and on 1 < |t| < 2,
 
 which reproduces parabolas. B(t) = int_{t-1/2}^{t+1/2} w, w quadratic between the knots -3/2, -1/2, 1/2, 3/2:
-the field under a node is the closed form of a constant rectangle averaged with w(t_x) w(t_y). Fields known
-as smooth point-load tables are integrated with B itself. B has the moments 1, 0, 0, 0, -3/10; with the fourth
-taken off as a fourth difference, a node is a point force more than ``NEAR`` patches away.
+the field under a node is the closed form of a constant rectangle averaged with w(t_x) w(t_y). Fields given
+by smooth point-force tables are integrated with B itself. B has the moments 1, 0, 0, 0, -3/10; with the
+fourth subtracted as a fourth difference, a node is a point force more than ``NEAR`` patches away.
 
 Source: R. G. Keys, IEEE Trans. Acoust. Speech Signal Process. 29 (1981) 1153-1160, eq. 15.
 """
@@ -18,22 +18,22 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .pointload import PointLoad
+from .point_force import PointForce
 
 __all__ = ["near_influence"]
 
 Array = NDArray[Any]
 Field = Callable[[Array, Array], Array]
 
-NEAR = 8  # patches; beyond, the sixth moment of B is worth 2e-6 of the pressure
+NEAR = 8  # patches; beyond, the sixth moment of B contributes 2e-6 of the pressure
 BLOCK = NEAR + 2  # offsets computed, two more for the fourth difference
-POINTLIKE = 16.0  # patches; on a field of this scale the sixth moment of B is worth 1e-6 of it
+POINTLIKE = 16.0  # patches; on a field of this scale the sixth moment of B contributes 1e-6 of it
 
 
 def near_influence(
     rectangle: Field | None,
-    outside: PointLoad | None,
-    table: PointLoad | None,
+    outside: PointForce | None,
+    table: PointForce | None,
     dx: float,
     dy: float,
     z: float,
@@ -42,12 +42,12 @@ def near_influence(
     """Influence of unit force on a node, a function of integer offsets (m, n).
 
     rectangle : field of unit force spread over a rectangle dx x dy, (x, y) -> (components, ...), or None.
-    outside : the same for a point force, used beyond NEAR.  table : what has to be added, smooth, or None.
+    outside : the same for a point force, used beyond NEAR.  table : smooth correction to add, or None.
     z : depth [m].
     """
     blocks: list[Array] = []
-    far: list[PointLoad] = []  # point forces beyond NEAR
-    smooth: list[PointLoad] = []  # point forces at any offset
+    far: list[PointForce] = []  # point forces beyond NEAR
+    smooth: list[PointForce] = []  # point forces at any offset
     if rectangle is not None and outside is not None:
         blocks.append(_block_of_rectangle(rectangle, dx, dy, z))
         far.append(outside)
@@ -74,7 +74,7 @@ def near_influence(
 def _block_of_rectangle(rectangle: Field, dx: float, dy: float, z: float) -> Array:
     """The rectangle averaged with w w at |m| <= BLOCK, 0 <= n <= BLOCK; (components, 2 BLOCK + 1, BLOCK + 1).
 
-    For integer offsets the edges of the rectangle come to lie on knots of w. Next to them the Gauss nodes
+    For integer offsets the edges of the rectangle coincide with knots of w. Next to them the Gauss nodes
     crowd towards the knots, for the logarithms and steps at z = 0, and at 0 < z << d once more towards
     the layer of width z: 1e-8 of the largest influence at any depth.
     """
@@ -103,13 +103,13 @@ def _block_of_rectangle(rectangle: Field, dx: float, dy: float, z: float) -> Arr
     moments = moments.reshape(3, 3, -1, 2 * BLOCK + 3, BLOCK + 3)
     block = np.zeros((moments.shape[2], 2 * BLOCK + 1, BLOCK + 1))
     for c in (-1, 0, 1):
-        for e in (-1, 0, 1):  # offset m takes the cell m - c with the weights of c
+        for e in (-1, 0, 1):  # offset m uses the cell m - c with the weights of c
             block += moments[c + 1, e + 1, :, 1 - c : 2 * BLOCK + 2 - c, 1 - e : BLOCK + 2 - e]
     return block
 
 
-def _block_of_table(table: PointLoad, dx: float, dy: float) -> Array:
-    """A smooth point-load table integrated with B B at the same offsets."""
+def _block_of_table(table: PointForce, dx: float, dy: float) -> Array:
+    """A smooth point-force table integrated with B B at the same offsets."""
     m, n = np.meshgrid(np.arange(-BLOCK, BLOCK + 1), np.arange(BLOCK + 1), indexing="ij")
     ratio = max(dx, dy) / table.scale
     # the table is singular at the distance L from panels of half-width d/2: the rule gains L/d digits a point

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from semianalytic import halfspace
-from semianalytic.lattice import Lattice, at_points, between_sites
-from semianalytic.node import near_influence
-from semianalytic.pointload import stress_from_lines
+from semianalytic.interpolation_kernel import near_influence
+from semianalytic.nodal_convolution import Lattice, at_points, between_sites
+from semianalytic.point_force import stress_from_lines
 
 RNG = np.random.default_rng(5)
 LATTICE = Lattice(-0.7, 0.2, 0.1, 0.15, RNG.random((23, 18)))

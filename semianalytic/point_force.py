@@ -1,4 +1,4 @@
-"""Stress below a point force on the layered half-space.
+"""Influence coefficients of a point force on the layered half-space (Boussinesq, Cerruti).
 
 A normal force 1 and a tangential force f in +x at the origin give, with the response functions of unit
 traction in the frame of the wave vector (zz, Lz, LL, TT of `frf.stress_frf`; A = s_Tz, B = s_LT of the
@@ -11,16 +11,16 @@ anti-plane part), S = (LL + TT)/2, D = (LL - TT)/2 and H_m the Hankel transform 
     (s_xx - s_yy)/2 = -cos 2t H2[D] - f (cos t H1[D - B] - cos 3t H3[D + B]) / 2
     s_xy            = -sin 2t H2[D] - f (sin t H1[D - B] - sin 3t H3[D + B]) / 2
 
-(x, y) = r (cos t, sin t); the terms without f take the response to p = 1, those with f the response to
+(x, y) = r (cos t, sin t); the terms without f use the response to p = 1, those with f the response to
 T0 = 1, t = 1. Displacements follow the same pattern, with U = u_L and V = u_T:
 
     u_z = H0[u_z] - f cos t H1[u_z]     u_x = -cos t H1[U] - f (H0[U + V] - cos 2t H2[U - V]) / 2
                                         u_y = -sin t H1[U] + f sin 2t H2[U - V] / 2
 
-Every radial function is tabulated once per depth over asinh(r / L), fair to r = 0 as to large r.
+Every radial function is tabulated once per depth over asinh(r / L), which resolves r = 0 as well as large r.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -28,10 +28,12 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
+from .frf import Load, displacement_frf, stress_frf
 from .hankel import NEAR, LogGrid, hankel, log_grid, near_axis
+from .inputs import Body
 
 __all__ = [
-    "PointLoad",
+    "PointForce",
     "displacement_below",
     "displacement_from_lines",
     "stress_below",
@@ -39,14 +41,13 @@ __all__ = [
 ]
 
 Array = NDArray[Any]
-Response = Callable[..., Array]
 Field = Callable[[Array, Array], Array]
 
 _INNER = np.linspace(0, NEAR, 60, endpoint=False)  # r / L of the table, as dense as beyond
 
 
 @dataclass(frozen=True)
-class PointLoad:
+class PointForce:
     """Field at one depth of a normal force 1 with a tangential force ``friction``, as radial tables."""
 
     radial: CubicSpline
@@ -65,71 +66,51 @@ class PointLoad:
         return self.combine(np.moveaxis(table, -1, 0), x / r, y / r, self.friction)
 
 
-def stress_below(
-    z: Array,
-    layer: int,
-    scale: float,
-    *,
-    stress_frf: Response,
-    coatings: Sequence[tuple[float, float, float]],
-    substrate: tuple[float, float],
-    friction: float,
-    excess: bool = False,
-) -> list[PointLoad]:
+def stress_below(z: Array, layer: int, scale: float, body: Body, *, excess: bool = False) -> list[PointForce]:
     """Stress below a point force at each depth ``z`` of one layer.
 
-    z : (nz,) [m].  scale : L [m] such that the response dies at least like exp(-k L).
-    excess : leave out the homogeneous half-space of the first coating.
+    z : (nz,) [m].  scale : L [m] such that the response decays at least like exp(-k L).
+    body : the layers, and the friction.  excess : leave out the homogeneous half-space of the first coating.
     """
-    grid = _grid(coatings, substrate, scale)
+    grid = _grid(body, scale)
     k = grid.wavenumbers / scale
 
-    def response(load: str) -> Array:
-        kwargs = {"coatings": coatings, "substrate": substrate, "load": load, "excess": excess}
-        return stress_frf(k, z, layer, **kwargs)
+    def response(load: Load) -> Array:
+        return stress_frf(k, z, layer, **body.layers, load=load, excess=excess)
 
     zz, Lz, LL, TT = response("normal")
     columns = [
         _radial(F, m, scale, grid) for F, m in ((zz, 0), ((LL + TT) / 2, 0), (Lz, 1), ((LL - TT) / 2, 2))
     ]
-    if friction:
+    if body.friction:
         zz, Lz, LL, TT = response("in-plane")
         A, B = response("anti-plane")
         D = (LL - TT) / 2
         pairs = ((zz, 1), ((LL + TT) / 2, 1), (Lz + A, 0), (Lz - A, 2), (D - B, 1), (D + B, 3))
         columns += [_radial(F, m, scale, grid) for F, m in pairs]
-    return _tabulate(columns, grid, scale, friction, _combine_stress)
+    return _tabulate(columns, grid, scale, body.friction, _combine_stress)
 
 
 def displacement_below(
-    z: Array,
-    layer: int,
-    scale: float,
-    *,
-    displacement_frf: Response,
-    coatings: Sequence[tuple[float, float, float]],
-    substrate: tuple[float, float],
-    friction: float,
-    excess: bool = False,
-) -> list[PointLoad]:
+    z: Array, layer: int, scale: float, body: Body, *, excess: bool = False
+) -> list[PointForce]:
     """Displacement below a point force at each depth ``z`` of one layer; arguments as in `stress_below`."""
-    grid = _grid(coatings, substrate, scale)
+    grid = _grid(body, scale)
     k = grid.wavenumbers / scale
 
-    def response(load: str) -> Array:
-        kwargs = {"coatings": coatings, "substrate": substrate, "load": load, "excess": excess}
-        return displacement_frf(k, z, layer, **kwargs)
+    def response(load: Load) -> Array:
+        return displacement_frf(k, z, layer, **body.layers, load=load, excess=excess)
 
     uz, U = response("normal")
     columns = [_radial(F, m, scale, grid, over_k=True) for F, m in ((uz, 0), (U, 1))]
-    if friction:
+    if body.friction:
         uz, U = response("in-plane")
         (V,) = response("anti-plane")
         columns += [_radial(F, m, scale, grid, over_k=True) for F, m in ((uz, 1), (U + V, 0), (U - V, 2))]
-    return _tabulate(columns, grid, scale, friction, _combine_displacement)
+    return _tabulate(columns, grid, scale, body.friction, _combine_displacement)
 
 
-def stress_from_lines(field: Field, reach: Array, friction: float) -> PointLoad:
+def stress_from_lines(field: Field, reach: Array, friction: float) -> PointForce:
     """Radial tables of a point force away from it, from its stress on the two axes.
 
     field(x, y) : xx, yy, zz, xy, xz, yz below a normal and below a tangential unit force, (2, 6, n).
@@ -146,7 +127,7 @@ def stress_from_lines(field: Field, reach: Array, friction: float) -> PointLoad:
     return _outer(columns, reach, friction, _combine_stress)
 
 
-def displacement_from_lines(field: Field, reach: Array, friction: float) -> PointLoad:
+def displacement_from_lines(field: Field, reach: Array, friction: float) -> PointForce:
     """As `stress_from_lines`, from the displacements (2, 3, n)."""
     zero = np.zeros_like(reach)
     (ux, _, uz), (ux_t, _, uz_t) = field(reach, zero)
@@ -157,26 +138,24 @@ def displacement_from_lines(field: Field, reach: Array, friction: float) -> Poin
     return _outer(columns, reach, friction, _combine_displacement)
 
 
-def _outer(columns: list[Array], reach: Array, friction: float, combine: Callable) -> PointLoad:
+def _outer(columns: list[Array], reach: Array, friction: float, combine: Callable) -> PointForce:
     table = np.stack(columns, axis=-1)
-    return PointLoad(CubicSpline(np.arcsinh(reach / reach[0]), table), float(reach[0]), friction, combine)
+    return PointForce(CubicSpline(np.arcsinh(reach / reach[0]), table), float(reach[0]), friction, combine)
 
 
-def _grid(
-    coatings: Sequence[tuple[float, float, float]], substrate: tuple[float, float], scale: float
-) -> LogGrid:
+def _grid(body: Body, scale: float) -> LogGrid:
     """Grid of the transforms: a film E, h stretches on a base E' over a length h E/E', bends over less."""
-    moduli = [material[0] for material in (*coatings, substrate)]
-    return log_grid(sum(h for _, _, h in coatings) * max(moduli) / min(moduli) / scale)
+    moduli = [material[0] for material in body.materials]
+    return log_grid(sum(body.thickness) * max(moduli) / min(moduli) / scale)
 
 
 def _tabulate(
     columns: list[Array], grid: LogGrid, scale: float, friction: float, combine: Callable
-) -> list[PointLoad]:
+) -> list[PointForce]:
     """Splines through the radial functions (nz, nr, columns)."""
     tables = np.stack(columns, axis=-1)
     nodes = np.arcsinh(np.concatenate([_INNER, grid.radii[grid.radii >= NEAR]]))
-    return [PointLoad(CubicSpline(nodes, table), scale, friction, combine) for table in tables]
+    return [PointForce(CubicSpline(nodes, table), scale, friction, combine) for table in tables]
 
 
 def _radial(F: Array, order: int, scale: float, grid: LogGrid, *, over_k: bool = False) -> Array:

@@ -9,7 +9,7 @@ and the deflection, with M(k) the compliance of the layers over that of the firs
     u(r) = (2/E1*) [ int_0^min(r, a) phi(x) dx / sqrt(r^2 - x^2) + int_0^inf (M - 1) phat(k) J0(kr) dk ]:
 
 Sneddon, Fourier Transforms (1951), section 52.3, for the first; the second converges like exp(-2 k h).
-Patches know nothing of this: it measures what a grid of constant patches makes of the contact edge.
+Independent of any patches, it gives the error of a grid of constant patches at the contact edge.
 """
 
 from collections.abc import Callable
@@ -25,7 +25,7 @@ __all__ = ["LayerTable", "deflection", "layer_table"]
 
 Array = NDArray[np.floating]
 
-CYCLES = 1400.0  # largest k a: coatings thinner than h = a/100 have no better edge
+CYCLES = 1400.0  # largest k a: complete for coatings down to h = a/100
 
 
 @dataclass(frozen=True, eq=False)

@@ -5,7 +5,7 @@ import pytest
 from scipy.integrate import quad
 from scipy.special import j0
 
-from semianalytic import disc, frf, profile
+from semianalytic import abel, edge_profile, frf
 
 A, E_STAR, P0 = 1.3, 2.0, 0.7
 
@@ -19,7 +19,7 @@ def hertz(r):
 
 def test_square_root_pressure_gives_the_deflection_of_hertz():
     r = np.linspace(0, 3 * A, 301)
-    u = disc.deflection(A, np.array([P0]), E_STAR, None, r)
+    u = abel.deflection(A, np.array([P0]), E_STAR, None, r)
     # cubic splines of 400 points inside and 300 outside
     np.testing.assert_allclose(u, hertz(r), rtol=2e-9)
 
@@ -27,8 +27,8 @@ def test_square_root_pressure_gives_the_deflection_of_hertz():
 def test_higher_terms_integrate_their_pressure():
     rng = np.random.default_rng(5)
     b = rng.normal(size=9)
-    shape = profile.Profile(A, b)
-    u = disc.deflection(A, b, E_STAR, None, np.array([0.0]))
+    shape = edge_profile.Profile(A, b)
+    u = abel.deflection(A, b, E_STAR, None, np.array([0.0]))
     # at the centre u = (2/E*) int p dr
     direct = quad(lambda t: 2 * t * shape.pressure(A * (1 - t * t)) * A, 0, 1, epsabs=1e-12)[0] * 2 / E_STAR
     assert u[0] == pytest.approx(direct, rel=1e-8)
@@ -43,9 +43,9 @@ def test_layers_add_their_hankel_integral():
         return frf.compliance_excess(k, coatings, substrate)
 
     r = np.array([0.0, 0.5, 1.3, 1.9])
-    table = disc.layer_table(excess, 0.4, A, 2.0)
-    layered = disc.deflection(A, np.array([P0]), E_STAR, table, r)
-    alone = disc.deflection(A, np.array([P0]), E_STAR, None, r)
+    table = abel.layer_table(excess, 0.4, A, 2.0)
+    layered = abel.deflection(A, np.array([P0]), E_STAR, table, r)
+    alone = abel.deflection(A, np.array([P0]), E_STAR, None, r)
 
     def phat(k):  # Hankel transform of p0 sqrt(1 - r^2/a^2)
         x = k * A
@@ -59,23 +59,23 @@ def test_layers_add_their_hankel_integral():
 
 
 def test_fit_recovers_a_profile_from_patches():
-    truth = profile.Profile(A, np.array([1.0, 0.3, -0.2, 0.05]))
+    truth = edge_profile.Profile(A, np.array([1.0, 0.3, -0.2, 0.05]))
     d = A / 40
     x = np.arange(50) * d
     r = np.hypot(x[:, None], x[None, :])
-    found = profile.fit(truth.pressure(r), r, d, radius=1.01 * A, terms=6, skip=1.5)
+    found = edge_profile.fit(truth.pressure(r), r, d, radius=1.01 * A, terms=6, skip=1.5)
     # least squares of exact data: the Newton steps on the radius end at 1e-10
     assert found.radius == pytest.approx(A, rel=1e-8)
     np.testing.assert_allclose(found.coefficients[:4], truth.coefficients, atol=1e-6)
 
 
 @pytest.mark.parametrize(
-    "shape", [profile.Profile(A, np.array([1.0, 0.3])), profile.Prescribed(A, np.ones_like)]
+    "shape", [edge_profile.Profile(A, np.array([1.0, 0.3])), edge_profile.Prescribed(A, np.ones_like)]
 )
 def test_patch_means_carry_the_load(shape):
     d = A / 20.3
     x = (np.arange(49) - 24) * d
-    mean = profile.patch_mean(shape, x, d)
+    mean = edge_profile.patch_mean(shape, x, d)
     assert mean.sum() * d * d == pytest.approx(shape.load, rel=1e-12)
     assert mean[24, 24] == pytest.approx(float(shape.pressure(np.zeros(()))), rel=1e-3)
     np.testing.assert_allclose(mean, mean.T)
@@ -85,7 +85,7 @@ def test_patch_means_carry_the_load(shape):
 def test_patch_mean_of_a_uniform_disc_is_the_covered_fraction():
     d = A / 20.3
     x = (np.arange(49) - 24) * d
-    mean = profile.patch_mean(profile.Prescribed(A, np.ones_like), x, d)
+    mean = edge_profile.patch_mean(edge_profile.Prescribed(A, np.ones_like), x, d)
     fine = (np.arange(200) + 0.5) / 200 - 0.5
     for i, j in ((24 + 20, 24), (24 + 14, 24 + 14), (24 + 17, 24 + 11), (24, 24)):
         X, Y = x[i] + fine[:, None] * d, x[j] + fine[None, :] * d
@@ -96,5 +96,5 @@ def test_patch_mean_of_a_uniform_disc_is_the_covered_fraction():
 def test_transform_of_the_uniform_part_is_the_bessel_function():
     # int_0^1 x' cos(kx) dx with x' = 1 - x^2 is the transform behind sqrt pressure: (sin k - k cos k) 2/k^3
     k = np.array([0.1, 1.0, 7.0, 40.0])
-    found = disc._cosine_transform(np.array([1.0]), k)
+    found = abel._cosine_transform(np.array([1.0]), k)
     np.testing.assert_allclose(found, 2 * (np.sin(k) - k * np.cos(k)) / k**3, atol=1e-12)

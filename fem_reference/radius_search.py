@@ -1,42 +1,33 @@
-"""Search for the contact radius that carries a given load.
+"""Search for the contact radius at a given load.
 
 The load of a rigid paraboloid rises with the contact radius, W ~ a^3 on a homogeneous solid, so log W is
-nearly linear in log a and secants converge in a few steps. Small moves stretch the mesh, large ones ask for
-a new one.
+nearly linear in log a and the secant method converges in a few steps. Small steps stretch the mesh, large
+ones generate a new one.
 """
 
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Generic, Protocol, TypeVar
 
+from .contact import FixedRadiusContact
 from .mesh import MeridianMesh
 
-__all__ = ["Carried", "carry_load"]
+__all__ = ["RadiusSearch", "find_contact_radius"]
 
-_STRETCH = 1.05  # radii may be stretched this much before the mesh is made afresh
-
-
-class _Loaded(Protocol):
-    @property
-    def load(self) -> float: ...
-
-
-Contact = TypeVar("Contact", bound=_Loaded)
+_STRETCH = 1.05  # largest factor by which radii are stretched before a new mesh is generated
 
 
 @dataclass(frozen=True, eq=False)
-class Carried(Generic[Contact]):
-    """The contact found, d log W / d log a, and (contact radius, load) of every solve."""
+class RadiusSearch:
+    """The contact found, d log W / d log a there, and (contact radius, load) of every solve."""
 
-    contact: Contact
-    contact_radius: float
+    contact: FixedRadiusContact
     slope: float
     history: tuple[tuple[float, float], ...]
     converged: bool
 
 
-def carry_load(
+def find_contact_radius(
     load: float,
     *,
     start: float,
@@ -44,19 +35,18 @@ def carry_load(
     tolerance: float,
     max_iterations: int,
     mesh_at: Callable[[float], MeridianMesh],
-    solve_on: Callable[[MeridianMesh], Contact],
-) -> Carried[Contact]:
-    """Find a with |W(a)/load - 1| <= ``tolerance``, from ``start`` and a guess of the ``slope``.
+    solve_on: Callable[[MeridianMesh], FixedRadiusContact],
+) -> RadiusSearch:
+    """Find a with |W(a)/load - 1| <= ``tolerance``, from ``start`` and an initial ``slope``.
 
-    mesh_at : contact radius -> mesh with a vertex there.  solve_on : mesh -> contact, whose ``load`` is read.
+    mesh_at : contact radius -> mesh with a vertex there.  solve_on : mesh -> contact with its radius.
     """
     a = start
     mesh = mesh_at(a)
     history: list[tuple[float, float]] = []
     last: tuple[MeridianMesh, float, float] | None = None
     while True:
-        fitted = mesh.stretched(a / mesh.contact_radius)
-        contact = solve_on(fitted)
+        contact = solve_on(mesh.stretched(a / mesh.contact_radius))
         history.append((a, contact.load))
         positive = contact.load > 0 and math.isfinite(contact.load)
         miss = math.log(load / contact.load) if positive else math.inf
@@ -64,11 +54,11 @@ def carry_load(
             here = (math.log(a), math.log(contact.load))
             if last is not None:
                 step = here[0] - last[1]
-                # between two meshes the discretisation error moves the load too: trust only long steps there
+                # from one mesh to another the discretisation error changes the load too: use long steps only
                 if abs(step) > (1e-5 if last[0] is mesh else 0.02):
                     slope = min(max((here[1] - last[2]) / step, 0.5), 12.0)
         if abs(miss) <= tolerance or not positive or len(history) >= max_iterations:
-            return Carried(contact, a, slope, tuple(history), abs(miss) <= tolerance)
+            return RadiusSearch(contact, slope, tuple(history), abs(miss) <= tolerance)
         last = (mesh, *here)
         a *= math.exp(min(max(miss / slope, -0.7), 0.7))
         if not 1 / _STRETCH < a / mesh.contact_radius < _STRETCH:

@@ -2,9 +2,8 @@
 
     p(r) = sqrt(t) q(t),   t = 1 - (r/a)^2,   q = sum_m b_m P_m(2t - 1)
 
-is what a smooth indenter presses with; the polynomial q is smooth where p is not. Fitted to patch pressures
-inside the contact it gives the contact radius a and what the pressure does between the last patch and the
-edge.
+is the pressure of a smooth indenter; the polynomial q is smooth where p is not. Fitted to patch pressures
+inside the contact it gives the contact radius a and the pressure between the last patch and the edge.
 """
 
 from collections.abc import Callable
@@ -18,8 +17,8 @@ __all__ = ["Prescribed", "Profile", "fit", "of_contact", "patch_mean"]
 
 Array = NDArray[np.floating]
 
-MISFIT = 0.02  # of the peak: a contact whose pressure is that far from a profile has no such edge
-GOOD = 0.003  # of the peak: no need to look for a better one
+MISFIT = 0.02  # of the peak, above which a contact has no edge of this kind
+GOOD = 0.003  # of the peak, below which no better fit is sought
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,7 +46,7 @@ class Profile:
 class Prescribed:
     """Any pressure p(r) [Pa] on a disc of ``radius`` [m]; ``load`` is its integral [N], by Gauss points.
 
-    They gather at the rim, where p may fall like a square root.
+    The points are crowded at the rim, where p may fall like a square root.
     Raises ValueError where the function gives no finite pressure.
     """
 
@@ -92,7 +91,7 @@ def fit(pressure: Array, r: Array, d: float, *, radius: float, terms: int, skip:
         )
         b = np.linalg.lstsq(columns, p[used], rcond=None)[0]
         at_edge = legendre.legval(-1.0, b[:terms])
-        # a slope of the wrong sign at the edge says nothing about the radius
+        # a slope of the wrong sign at the edge does not determine the radius
         step = a * b[terms] / at_edge if at_edge > 0 else 0.0
         a = float(np.clip(a + step, radius - d, radius + d))
         if abs(step) < 1e-10 * a:
@@ -103,20 +102,20 @@ def fit(pressure: Array, r: Array, d: float, *, radius: float, terms: int, skip:
 def of_contact(
     pressure: Array, r: Array, d: float, *, thickness: float | None, skip: float, share: float = 1.0
 ) -> Profile | None:
-    """Profile of a contact's patch pressures, None where they have none to within ``MISFIT`` of their peak.
+    """Profile of a contact's patch pressures, None where none fits to within ``MISFIT`` of their peak.
 
     A coating much thinner than the contact bends the pressure within its thickness of the edge, so the number
-    of terms grows as the square root of the radius over it, as far as the patches can tell them; so a ladder
-    that refines the patches refines the terms too, by ``share``.
+    of terms grows as the square root of the radius over it, as far as the patches resolve them; a refinement
+    study of the patches refines the terms too, by ``share``.
 
     pressure [Pa], r [m] : (n, n), n odd, symmetric; one quadrant is used.  thickness : of the first coating
-    [m], None when uncoated.  skip : patches inside the edge that are left out.  share : of the terms wanted.
+    [m], None when uncoated.  skip : patches inside the edge that are left out.  share : of the usual terms.
     """
     c = len(pressure) // 2
     p, r = pressure[c:, c:], r[c:, c:]
     a = float(np.sqrt(np.count_nonzero(pressure) / np.pi) * d)
-    wanted = 6 + 3.2 * np.sqrt(a / thickness) if thickness else 6
-    terms = int(min(share * wanted, 20, a / d / 5))
+    usual = 6 + 3.2 * np.sqrt(a / thickness) if thickness else 6
+    terms = int(min(share * usual, 20, a / d / 5))
     least, best = MISFIT * float(p.max()), None
     while terms >= 3:
         # patches next to the edge may be too rough for as many terms: leave out more, then fewer terms
@@ -135,8 +134,8 @@ def of_contact(
 def patch_mean(shape: Profile | Prescribed, x: Array, d: float) -> Array:
     """Mean of an axisymmetric pressure over square patches of side d centred at (x_i, x_j), shape (n, n).
 
-    Gauss points; near the rim along lines that end at it, crowded there for the square root. What the sum
-    then misses the load by, about 1e-7, the rim patches take up.
+    Gauss points; near the rim along lines that end at it, crowded there for the square root. The remaining
+    error of the load, about 1e-7, is removed at the rim patches.
 
     x : centres [m], symmetric, n odd.
     """
@@ -162,7 +161,7 @@ def patch_mean(shape: Profile | Prescribed, x: Array, d: float) -> Array:
     reach = np.where(length < d, shape.radius, np.inf)[..., None]
     value = shape.pressure(np.minimum(np.hypot(along, y[..., None]), reach))
     mean[near] = np.einsum("pjk,pj,j,k->p", value, length, w / 2, 2 * v * wv) / d
-    number = np.where(j == 0, 4, np.where(i == j, 4, 8)) - 3 * (i == 0)  # patches this one stands for
+    number = np.where(j == 0, 4, np.where(i == j, 4, 8)) - 3 * (i == 0)  # of equal patches by symmetry
     at_rim = float(np.sum((number * mean)[near]))
     if at_rim:
         mean[near] *= 1 + (shape.load / d**2 - float(np.sum(number * mean))) / at_rim

@@ -1,0 +1,112 @@
+"""Sequence of mesh levels on which the contact radius is found.
+
+A rough and a coarse mesh find the contact radius approximately. A companion, somewhat coarser than the final
+mesh, finds it closely and is the reference of the error estimate. The final mesh gives the result. A vertex
+lies at the contact radius of every level.
+"""
+
+from dataclasses import dataclass
+from functools import partial
+
+from .axisymmetric import Discretisation
+from .contact import FixedRadiusContact, solve_at_radius
+from .mesh import EDGE_SIZE, Grading, MeridianMesh, meridian_mesh
+from .radius_search import find_contact_radius
+from .scaling import LayeredSolid, first_radius
+
+__all__ = ["ContactLevels", "NotConverged", "companion_grading", "mesh_at", "solve_levels"]
+
+_COARSE = 0.5
+_COMPANION = 1.4  # size of the companion over that of the final mesh
+
+
+class NotConverged(Exception):
+    """The solver did not reach its tolerance; the message states what was reached and what to try."""
+
+
+@dataclass(frozen=True)
+class _Level:
+    name: str
+    grading: Grading
+    order: int
+    tolerance: float
+
+
+@dataclass(frozen=True, eq=False)
+class ContactLevels:
+    """Contacts on the last levels, d log W / d log a, and (level, a, W) of every solve; scaled units.
+
+    companion, near : the latter is the former with a nearer boundary; None without an error estimate
+    """
+
+    final: FixedRadiusContact
+    companion: FixedRadiusContact | None
+    near: FixedRadiusContact | None
+    slope: float
+    history: tuple[tuple[str, float, float], ...]
+
+
+def solve_levels(
+    solid: LayeredSolid,
+    load: float,
+    *,
+    order: int,
+    size: float,
+    max_iterations: int,
+    tolerance: float,
+    with_companion: bool,
+) -> ContactLevels:
+    """Find the contact radius at ``load``, each level starting from the result of the one before.
+
+    order, size, tolerance : of the final level.  max_iterations : contact solves allowed on each level
+    Raises NotConverged when the load is not reached on one of the levels.
+    """
+    levels = [_Level("rough", Grading.of(0.6), 2, 0.02), _Level("coarse", Grading.of(_COARSE), order, 1e-3)]
+    if with_companion:
+        levels.append(_Level("companion", companion_grading(size), order, tolerance))
+    levels.append(_Level("final", Grading.of(size), order, tolerance))
+    a, slope = first_radius(solid, load), 3.0
+    history: list[tuple[str, float, float]] = []
+    found: dict[str, FixedRadiusContact] = {}
+    for level in levels:
+        search = find_contact_radius(
+            load,
+            start=a,
+            slope=slope,
+            tolerance=level.tolerance,
+            max_iterations=max_iterations,
+            mesh_at=partial(mesh_at, solid, level.grading),
+            solve_on=partial(_solve_on, solid, level.order),
+        )
+        history += [(level.name, *entry) for entry in search.history]
+        a, W = search.history[-1]
+        if not search.converged:
+            raise NotConverged(
+                f"the contact radius did not converge on the {level.name} mesh: after "
+                f"{len(search.history)} solves, at {a:.4g} a_h, the load is {W / load:.6g} of the required "
+                "one; raise max_iterations, or check the thicknesses and the ratio of the moduli"
+            )
+        slope = search.slope
+        # the next level starts at the radius where this one has exactly the load
+        a *= (load / W) ** (1 / slope)
+        found[level.name] = search.contact
+    companion, near = found.get("companion"), None
+    if companion is not None:
+        near = _solve_on(solid, order, companion.discretisation.mesh.with_nearer_boundary())
+    return ContactLevels(found["final"], companion, near, slope, tuple(history))
+
+
+def companion_grading(size: float) -> Grading:
+    """The companion of ``Grading.of(size)``: coarser everywhere, with larger triangles at the edge."""
+    return Grading.of(_COMPANION * size, edge_size=4 * EDGE_SIZE)
+
+
+def mesh_at(solid: LayeredSolid, grading: Grading, contact_radius: float) -> MeridianMesh:
+    """Mesh of the ``solid`` with a vertex at the contact radius."""
+    return meridian_mesh(
+        contact_radius=contact_radius, thicknesses=solid.thicknesses, far=solid.far, grading=grading
+    )
+
+
+def _solve_on(solid: LayeredSolid, order: int, mesh: MeridianMesh) -> FixedRadiusContact:
+    return solve_at_radius(solid, Discretisation(mesh, order))

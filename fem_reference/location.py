@@ -1,0 +1,106 @@
+"""Triangles that hold given points of the meridian plane."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from .mesh import MeridianMesh
+
+__all__ = ["LocatedPoints", "Locator"]
+
+_NEIGHBOURS = 12
+# Smallest radius over the contact radius: u/r on the axis is the limit from outside, here exact to rounding.
+_AXIS = 1e-7
+
+
+@dataclass(frozen=True, eq=False)
+class LocatedPoints:
+    """Points of shape (n,) in their triangles.
+
+    r_given : radii as given.  r : at least ``_AXIS`` contact radii.  z : snapped to the interfaces.
+    layer : layer of each point.  cells : triangle of (r, z).  X : its reference coordinates, (2, n).
+    """
+
+    locator: "Locator"
+    r_given: np.ndarray
+    r: np.ndarray
+    z: np.ndarray
+    layer: np.ndarray
+    cells: np.ndarray
+    X: np.ndarray
+
+    @cached_property
+    def interfaces(self) -> "list[tuple[int, np.ndarray, list[LocatedPoints]]]":
+        """Of each interface with points: the layer above, the points' numbers, the points on either side."""
+        found = []
+        for upper, depth in enumerate(self.locator.mesh.depths):
+            numbers = np.flatnonzero(self.z == depth)
+            if numbers.size:
+                r, z = self.r[numbers], self.z[numbers]
+                sides = [self.locator.points(r, z, np.full(r.size, k)) for k in (upper, upper + 1)]
+                found.append((upper, numbers, sides))
+        return found
+
+    def triangles_as_given(self) -> tuple[np.ndarray, np.ndarray]:
+        """Triangles and reference coordinates at ``r_given`` in place of ``r``."""
+        if np.array_equal(self.r, self.r_given):
+            return self.cells, self.X
+        return self.locator.triangles(self.r_given, self.z, self.layer)
+
+
+@dataclass(frozen=True, eq=False)
+class Locator:
+    """Search for triangles of ``mesh``, whose corners are numbered ``t`` (3, triangles)."""
+
+    mesh: MeridianMesh
+    t: np.ndarray
+
+    @cached_property
+    def _trees(self) -> list[tuple[np.ndarray, cKDTree]]:
+        mesh = self.mesh
+        r, z = mesh.points[:, mesh.triangles].mean(axis=1)
+        # centroids in the stretched plane, where triangles of one neighbourhood are of one size
+        centres = mesh.plane(r, z).T
+        members = [np.flatnonzero(mesh.layer == k) for k in range(mesh.depths.size + 1)]
+        return [(m, cKDTree(centres[m])) for m in members]
+
+    def points(self, r: np.ndarray, z: np.ndarray, layer: np.ndarray) -> LocatedPoints:
+        """The points (r, z) of shape (n,) with their triangles inside ``layer``."""
+        near = np.maximum(r, _AXIS * self.mesh.contact_radius)
+        z = z.copy()
+        for depth in self.mesh.depths:
+            z[np.abs(z - depth) <= 1e-12 * depth] = depth
+        return LocatedPoints(self, r, near, z, layer, *self.triangles(near, z, layer))
+
+    def triangles(self, r: np.ndarray, z: np.ndarray, layer: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Triangle of each point inside its layer, and the point's reference coordinates (2, n)."""
+        mesh, t = self.mesh, self.t
+        cells = np.zeros(r.shape, dtype=int)
+        for k, (members, tree) in enumerate(self._trees):
+            mine = np.flatnonzero(layer == k)
+            count = min(_NEIGHBOURS, members.size)
+            while mine.size:
+                _, near = tree.query(mesh.plane(r[mine], z[mine]).T, k=count)
+                candidates = members[near.reshape(mine.size, -1)]
+                X = _reference_coordinates(mesh.points, t[:, candidates], r[mine, None], z[mine, None])
+                inside = np.min([X[0], X[1], 1 - X[0] - X[1]], axis=0)
+                best = np.argmax(inside, axis=1)
+                cells[mine] = candidates[np.arange(mine.size), best]
+                done = inside[np.arange(mine.size), best] > -1e-9
+                if count == members.size:
+                    break
+                mine, count = mine[~done], min(4 * count, members.size)
+        return cells, _reference_coordinates(mesh.points, t[:, cells], r, z)
+
+
+def _reference_coordinates(
+    points: np.ndarray, triangles: np.ndarray, r: np.ndarray, z: np.ndarray
+) -> np.ndarray:
+    """Reference coordinates (2, ...) of the points in the triangles (3, ...)."""
+    (r0, z0), (r1, z1), (r2, z2) = (points[:, corner] for corner in triangles)
+    det = (r1 - r0) * (z2 - z0) - (r2 - r0) * (z1 - z0)
+    s = ((r - r0) * (z2 - z0) - (r2 - r0) * (z - z0)) / det
+    t = ((r1 - r0) * (z - z0) - (r - r0) * (z1 - z0)) / det
+    return np.stack([s, t])
