@@ -16,11 +16,14 @@ from numpy.typing import NDArray
 from verification.problem.arrays import FloatArray
 from verification.problem.contact import CoatedContact, Solution
 from verification.problem.profile import lines_of
-from verification.sources.references import integral_equation
+from verification.problem.quantity import QUANTITIES as ALL
+from verification.problem.quantity import SCALARS
+from verification.sources.exact import solve_exactly
+from verification.sources.methods import solve_elements, solve_semianalytic
 
 __all__ = ["QUANTITIES", "Ladder", "Level", "Yardstick", "elements", "ladder", "order_of", "settled"]
 
-QUANTITIES = ("p0", "a", "approach", "pressure", "stress")
+QUANTITIES = (*(ALL[name].symbol for name in SCALARS), "pressure", "stress")
 # An error within this factor of the smallest of its ladder has stopped falling.
 SETTLED = 3.0
 # Between two levels much closer than a doubling, noise looks like an order.
@@ -142,10 +145,11 @@ class Yardstick:
         turn = np.pi / 4 * (np.arange(8) + 0.5) / 8
         gap = found.pressure(r[:, None] * np.cos(turn), r[:, None] * np.sin(turn)) - p[:, None]
         worst = [np.abs(found.stress(x, 0.0, z, layer) - s).max() for x, z, layer, s in self._stressed]
-        return {
-            "p0": abs(found.peak_pressure / p0 - 1),
-            "a": abs(found.contact_radius / exact.contact_radius - 1),
-            "approach": abs(found.approach / exact.approach - 1),
+        scalars = {
+            ALL[q].symbol: abs(ALL[q].value(found, self.problem) / ALL[q].value(exact, self.problem) - 1)
+            for q in SCALARS
+        }
+        return scalars | {
             "pressure": float(np.sqrt(weight @ np.mean(gap**2, axis=1))) / p0,
             "stress": float(np.max(worst)) / self.problem.p_h,
         }
@@ -163,12 +167,10 @@ def ladder(
     """``problem`` by the semi-analytical method at each number of ``patches`` a side.
 
     Without the method's own estimate of its error, for which it would solve again.
-    numerics : any other keyword of semianalytic.solve.   solve : another solver of the same keywords.
+    numerics : any other keyword of semianalytic.solve.   solve : another solver, see ``Source``.
     """
-    import semianalytic
-
     steps = [(f"N = {n}", {"patches": n, **numerics}, float(n)) for n in patches]
-    return _climb(problem, "semianalytic", solid, setting, solve or semianalytic.solve, steps)
+    return _climb(problem, "semianalytic", solid, setting, solve or solve_semianalytic, steps)
 
 
 def elements(
@@ -180,10 +182,8 @@ def elements(
     solve: Callable[..., Solution] | None = None,
 ) -> Ladder:
     """``problem`` by elements of ``order`` on meshes of each ``quality``; ``solve`` as in ``ladder``."""
-    import fem_reference
-
     steps = [(name, {"order": order, "quality": name}, None) for name in quality]
-    return _climb(problem, "fem_reference", solid, f"order {order}", solve or fem_reference.solve, steps)
+    return _climb(problem, "fem_reference", solid, f"order {order}", solve or solve_elements, steps)
 
 
 def _climb(
@@ -196,17 +196,11 @@ def _climb(
 ) -> Ladder:
     levels: list[Level] = []
     try:
-        keywords: dict[str, Any] = {
-            "radius": problem.radius,
-            "load": problem.load,
-            "coatings": problem.coatings,
-            "substrate": problem.substrate,
-            "estimate_uncertainty": False,
-        }
-        yardstick = Yardstick(problem, integral_equation.solve(**keywords))
+        without = {"estimate_uncertainty": False}
+        yardstick = Yardstick(problem, solve_exactly(problem, without))
         for name, numerics, resolution in steps:
             begin = time.perf_counter()
-            found = solve(**keywords, **numerics)
+            found = solve(problem, numerics | without)
             seconds = time.perf_counter() - begin
             if resolution is None:
                 resolution = float(np.sqrt(found.diagnostics.dofs))

@@ -5,7 +5,7 @@ python -m verification.study.formulas RESULT.json
 
 import sys
 import time
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -21,7 +21,7 @@ from verification.running.result import from_json as case_from_json
 from verification.running.result import to_json as case_to_json
 from verification.running.store import write_checked
 from verification.sampling.lines import sample, sample_contact
-from verification.sources.references import integral_equation
+from verification.sources.exact import solve_exactly
 from verification.sources.references.effective_modulus import (
     FORMULAS,
     I0,
@@ -32,6 +32,7 @@ from verification.sources.references.effective_modulus import (
 )
 from verification.sources.references.flat_punch import pressed
 from verification.sources.references.layer_limits import spring_bed, squeezed_film, thick
+from verification.sources.registry import EXACT
 
 __all__ = ["EffectiveStudy", "Limit", "from_json", "measure", "task", "to_json"]
 
@@ -189,29 +190,22 @@ def _member(ratio: float, friction: float) -> CaseResult:
     """The configuration of O'Sullivan and King by the exact reference: h = a_h, nu = 0.3."""
     started = time.perf_counter()
     bare = CoatedContact(10e-3, 20.0, (), (210e9, 0.3), friction)
-    problem = CoatedContact(10e-3, 20.0, ((ratio * 210e9, 0.3, bare.a_h),), (210e9, 0.3), friction)
-    found = integral_equation.solve(
-        radius=problem.radius,
-        load=problem.load,
-        coatings=problem.coatings,
-        substrate=problem.substrate,
-        friction=friction,
-        estimate_uncertainty=False,
-    )
+    problem = replace(bare, coatings=((ratio * 210e9, 0.3, bare.a_h),))
+    found = solve_exactly(problem, {"estimate_uncertainty": False})
     x, z = (
         2.5 * bare.a_h * np.linspace(-1 if friction else 0, 1, 101),
         4 * bare.a_h * np.linspace(0.005, 1, 60) ** 1.5,
     )
-    profiles = list(sample_contact(found, "integral_equation"))
+    profiles = list(sample_contact(found, EXACT[0], problem))
     for line in lines_of(problem):
-        profiles += sample(found, "integral_equation", line, z if line.depth is None else x)
+        profiles += sample(found, EXACT[0], line, z if line.depth is None else x)
     seconds = time.perf_counter() - started
     return CaseResult(
         name=f"exact-{ratio:g}-{friction:g}",
         title=f"E1/E2 = {ratio:g}, h = a_h, f = {friction:g}",
         source="configuration of E. J. O'Sullivan and R. B. King, J. Tribol. 110 (1988) 235-240",
         problem=describe(problem),
-        sources=(SourceResult("integral_equation", seconds, None),),
+        sources=(SourceResult(EXACT[0], seconds, None),),
         profiles=tuple(profiles),
         verdicts=(),
         seconds=seconds,

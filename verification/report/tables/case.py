@@ -7,13 +7,13 @@ from typing import Any
 import numpy as np
 
 from verification.judging.verdict import Claim, Outcome, Verdict
-from verification.problem.profile import SCALARS
+from verification.problem.quantity import QUANTITIES, SCALARS, unit_of
 from verification.report.tables.cells import Cell, Row, Table
 from verification.report.tables.labels import OUTCOMES, pair_label, source_label
 from verification.report.tables.lookup import baseline, layers, scalar, scale
 from verification.report.tables.matrix import outcome_cell
-from verification.report.tables.numbers import engineering, plain, scientific, seconds, with_uncertainty
-from verification.running.result import CaseResult, SourceResult
+from verification.report.tables.numbers import engineering, plain, scientific, with_uncertainty
+from verification.running.result import CaseResult
 
 __all__ = [
     "budget_table",
@@ -21,13 +21,8 @@ __all__ = [
     "diagnostics_table",
     "dominating_knob",
     "layer_table",
-    "time_table",
     "verdict_table",
 ]
-
-_UNITS = {"peak_pressure": "Pa", "contact_radius": "m", "approach": "m"}
-_SYMBOLS = {"peak_pressure": "p0", "contact_radius": "a", "approach": "approach"}
-_SCALES = {"peak_pressure": "p_h", "contact_radius": "a_h", "approach": "delta_h"}
 
 
 def layer_table(result: CaseResult) -> Table:
@@ -66,7 +61,7 @@ def contact_table(result: CaseResult) -> Table:
     columns = ["source"]
     groups = [("", 1)]
     for quantity in SCALARS:
-        columns += [f"{_SYMBOLS[quantity]}", f"/ {_SCALES[quantity]}", against]
+        columns += [QUANTITIES[quantity].symbol, f"/ {QUANTITIES[quantity].scale}", against]
         groups.append((quantity.replace("_", " "), 3))
     return Table(
         "Scalars of the contact with the numerical uncertainty each source states (±), made dimensionless "
@@ -82,9 +77,10 @@ def _scalar_cells(result: CaseResult, quantity: str, source: str, base: str | No
     if found is None:
         return [Cell("no result", css="no-result"), Cell("–"), Cell("–")]
     value, spread = found
-    unit = _UNITS[quantity]
-    shown = Cell(with_uncertainty(value, spread, unit), value, note="" if spread else _spread_note(spread))
-    relative = value / scale(result, _SCALES[quantity])
+    shown = Cell(
+        with_uncertainty(value, spread, unit_of(quantity)), value, note="" if spread else _spread_note(spread)
+    )
+    relative = value / scale(result, QUANTITIES[quantity].scale)
     ratio = Cell(f"{relative:.6f}", relative)
     reference = scalar(result, quantity, base) if base else None
     if reference is None or source == base or not reference[0]:
@@ -188,7 +184,7 @@ def budget_table(result: CaseResult) -> Table | None:
                 cells = [
                     Cell(quantity),
                     Cell(knob, css="dominant" if dominant else ""),
-                    Cell(engineering(value, _unit(quantity), 2), value),
+                    Cell(engineering(value, unit_of(quantity), 2), value),
                     Cell(scientific(_relative(result, source.source, quantity, value)), value),
                     Cell("◀ dominates" if dominant else "", css="dominant"),
                 ]
@@ -203,40 +199,10 @@ def budget_table(result: CaseResult) -> Table | None:
     )
 
 
-def _unit(quantity: str) -> str:
-    return _UNITS.get(quantity, "Pa")
-
-
 def _relative(result: CaseResult, source: str, quantity: str, value: float) -> float | None:
     found = scalar(result, quantity, source)
     size = abs(found[0]) if found else scale(result, "p_h")
     return value / size if size else None
-
-
-def time_table(results: Sequence[CaseResult], links: Sequence[str]) -> Table:
-    """Seconds of every source in every case."""
-    names = list(dict.fromkeys(s.source for result in results for s in result.sources))
-    # A case that died as a whole has its time in the last column.
-    names = [name for name in names if name != "case"]
-    rows = []
-    for result, link in zip(results, links, strict=True):
-        times = {source.source: source for source in result.sources}
-        cells = [_time_cell(times.get(name)) for name in names]
-        cells.append(Cell(seconds(result.seconds), result.seconds))
-        rows.append(Row(Cell(result.title, note=f"{result.title} ({result.name})", href=link), cells))
-    return Table(
-        "Wall-clock seconds of each source with its uncertainty ladders; the case in total.",
-        ["case", *(source_label(name) for name in names), "case in total"],
-        rows,
-    )
-
-
-def _time_cell(source: SourceResult | None) -> Cell:
-    if source is None:
-        return Cell("", css="nothing")
-    if source.failure is not None:
-        return Cell(f"failed, {seconds(source.seconds)}", source.seconds, "verdict no-result", source.failure)
-    return Cell(seconds(source.seconds), source.seconds)
 
 
 def diagnostics_table(result: CaseResult) -> Table | None:
