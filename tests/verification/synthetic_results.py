@@ -8,7 +8,8 @@ import numpy as np
 from verification.judging.claims import standard_claims
 from verification.judging.verdict import Claim, Outcome, Verdict, compare, judge
 from verification.problem.contact import CoatedContact
-from verification.problem.profile import SCALARS, STRESSES, Line, Profile, lines_of
+from verification.problem.profile import Line, Profile, lines_of
+from verification.problem.quantity import IN_PLANE, SCALARS
 from verification.running.result import CaseResult, RunInfo, SourceResult
 
 STEEL = (210e9, 0.3)
@@ -165,7 +166,7 @@ def _exact(problem: CoatedContact, source: str, points: int) -> list[Profile]:
         if line.name == "surface":
             pressure = p0 * np.sqrt(np.maximum(1 - (position / a) ** 2, 0))
             found.append(Profile("pressure", line.name, position, pressure, source))
-        found += [Profile(n, line.name, position, p0 * fields[n], source) for n in STRESSES]
+        found += [Profile(n, line.name, position, p0 * fields[n], source) for n in IN_PLANE]
     return found
 
 

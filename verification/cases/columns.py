@@ -10,10 +10,10 @@ from verification.cases.schema import ColumnEntry, PositionEntry, TableEntry
 from verification.cases.table import PublishedError, PublishedTable
 from verification.problem.arrays import Array
 from verification.problem.contact import PrescribedLoad
-from verification.problem.loading import CONTROLS, CURVES, LoadingCurve, Problem
+from verification.problem.loading import CONTROLS, LoadingCurve, Problem
 from verification.problem.points import Points
 from verification.problem.profile import Profile
-from verification.problem.quantity import EXTREMES, QUANTITIES, SCALAR
+from verification.problem.quantity import CURVES, EXTREMES, QUANTITIES, SCALARS
 from verification.sources.registry import PUBLISHED
 
 __all__ = ["PublishedColumn", "columns_of", "si_of"]
@@ -73,13 +73,15 @@ def columns_of(
             raise PublishedError(
                 f"{here}: quantity {column.quantity!r} is unknown; known are {', '.join(QUANTITIES)}"
             )
-        if (column.quantity in CURVES) != isinstance(problem, LoadingCurve) and column.quantity not in SCALAR:
+        if (column.quantity in CURVES) != isinstance(
+            problem, LoadingCurve
+        ) and column.quantity not in SCALARS:
             raise PublishedError(
                 f"{here}: quantity {column.quantity!r} does not go with this problem; {', '.join(CURVES)} "
                 "belong to a sphere without a load, all others to a load"
             )
         at = column.at or table.at
-        if at is None and column.quantity not in SCALAR + EXTREMES:
+        if at is None and column.quantity not in SCALARS + EXTREMES:
             raise ValueError(f"{key}.column.{i}: says nowhere where its values are; give at")
         try:
             to_si = column.factor * si_of(column.unit, units, here)
@@ -182,10 +184,11 @@ def _scale(
     problem: Problem,
 ) -> float:
     """Stresses over the pressure; displacements and strains over the largest of their kind in the table."""
-    kind = QUANTITIES[column.quantity]
+    kind = QUANTITIES[column.quantity].kind
     if kind in ("stress", "pressure") and not isinstance(problem, LoadingCurve):
         return problem.pressure if isinstance(problem, PrescribedLoad) else problem.p_h
-    alike = [c for c in table.column if QUANTITIES.get(c.quantity) == kind and c.unit in units]
+    known = {name for name, quantity in QUANTITIES.items() if quantity.kind == kind}
+    alike = [c for c in table.column if c.quantity in known and c.unit in units]
     if kind in ("scalar", "curve"):
         alike = [column]
     largest = 0.0

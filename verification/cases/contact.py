@@ -7,10 +7,11 @@ from typing import Annotated, Any, Literal
 from pydantic import AfterValidator, Field, model_validator
 
 from verification.cases.toml import CaseError, Length, Modulus, Poisson, Strict, Text, read_bounded, read_toml
-from verification.judging.claims import EDGE, sources_of, standard_claims
+from verification.judging.claims import EDGE, standard_claims
 from verification.judging.verdict import Claim
 from verification.problem.contact import CoatedContact
 from verification.problem.profile import Line, line_of, lines_of
+from verification.sources.registry import METHODS, sources_of
 
 __all__ = ["Case", "parse_case", "read_case", "refuse_unfit_scales", "shipped_cases"]
 
@@ -128,8 +129,9 @@ def parse_case(raw: bytes, path: Path) -> Case:
         claims=_claims(path, checked, problem),
         source=checked.source,
         numerics={
-            "semianalytic": checked.semianalytic.model_dump(exclude_none=True),
-            "fem_reference": checked.fem_reference.model_dump(exclude_none=True),
+            method: getattr(checked, method).model_dump(exclude_none=True)
+            for method in METHODS
+            if method in _CaseFile.model_fields
         },
         text=text,
         resolve=checked.resolve,

@@ -16,7 +16,7 @@ from verification.judging.verdict import Claim
 from verification.problem.contact import CoatedContact, PrescribedLoad
 from verification.problem.loading import CONTROLS, PUNCH, LoadingCurve, Problem
 from verification.problem.quantity import QUANTITIES
-from verification.sources.registry import METHODS, PUBLISHED, REFERENCE
+from verification.sources.registry import EXACT, METHODS, PUBLISHED, SOURCES
 
 __all__ = ["PublishedCase", "is_published", "parse_published", "published_cases", "read_published"]
 
@@ -87,8 +87,8 @@ def parse_published(raw: bytes, path: Path) -> PublishedCase:
             _claim(item, source)
             for item in columns
             if item.counted.any()
-            for source in (*METHODS, REFERENCE)
-            if source in METHODS or _speaks(problem, item.profile.quantity)
+            for source in (*METHODS, *EXACT)
+            if SOURCES[source].supports(problem, QUANTITIES[item.profile.quantity].kind)
         ),
         columns=tuple(columns),
         citation={
@@ -103,13 +103,6 @@ def parse_published(raw: bytes, path: Path) -> PublishedCase:
         # The tables belong to the input as much as the file that names them.
         text="\n".join(dict.fromkeys(texts)),
     )
-
-
-def _speaks(problem: Problem, quantity: str) -> bool:
-    """True where the exact reference answers: no displacement under a contact, no sliding disc."""
-    if isinstance(problem, PrescribedLoad):
-        return not problem.friction
-    return QUANTITIES[quantity] != "displacement"
 
 
 def _with_points(problem: Problem, columns: list[PublishedColumn]) -> Problem:

@@ -12,12 +12,13 @@ from cyclopts import Parameter
 from verification.cases.contact import shipped_cases
 from verification.commands.common import EXIT, Output, did_you_mean, print_error
 from verification.judging.verdict import Outcome
+from verification.problem.quantity import STRESSES
 from verification.running.fields import read_fields
 from verification.running.store import StoreError, write_atomically
 
 __all__ = ["view"]
 
-QUANTITIES = ("von_mises", "sigma_xx", "sigma_yy", "sigma_zz", "sigma_xy", "sigma_yz", "sigma_xz")
+QUANTITIES = ("von_mises", *STRESSES)
 
 
 def view(

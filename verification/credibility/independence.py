@@ -7,14 +7,14 @@ from dataclasses import dataclass
 from importlib.util import find_spec
 from pathlib import Path
 
+from verification.sources.registry import METHODS, SOURCES
+
 __all__ = ["PARTS", "Part", "imports_of", "parts", "shared"]
 
 # Each part with the packages it must not know.
-PARTS = {
-    "semianalytic": ("fem_reference", "verification"),
-    "fem_reference": ("semianalytic", "verification"),
-    "verification.sources.references": ("semianalytic", "fem_reference"),
-}
+_METHODS = tuple(SOURCES[name].package for name in METHODS)
+PARTS = {name: (*(other for other in _METHODS if other != name), "verification") for name in _METHODS}
+PARTS["verification.sources.references"] = _METHODS
 
 
 @dataclass(frozen=True)

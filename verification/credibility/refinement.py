@@ -14,13 +14,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from verification.problem.arrays import FloatArray
-from verification.problem.contact import CoatedContact, Solution
+from verification.problem.contact import CoatedContact, Solution, keywords
 from verification.problem.profile import lines_of
+from verification.problem.quantity import QUANTITIES as ALL
+from verification.problem.quantity import SCALARS
 from verification.sources.references import integral_equation
 
 __all__ = ["QUANTITIES", "Ladder", "Level", "Yardstick", "elements", "ladder", "order_of", "settled"]
 
-QUANTITIES = ("p0", "a", "approach", "pressure", "stress")
+QUANTITIES = (*(ALL[name].symbol for name in SCALARS), "pressure", "stress")
 # An error within this factor of the smallest of its ladder has stopped falling.
 SETTLED = 3.0
 # Between two levels much closer than a doubling, noise looks like an order.
@@ -142,10 +144,11 @@ class Yardstick:
         turn = np.pi / 4 * (np.arange(8) + 0.5) / 8
         gap = found.pressure(r[:, None] * np.cos(turn), r[:, None] * np.sin(turn)) - p[:, None]
         worst = [np.abs(found.stress(x, 0.0, z, layer) - s).max() for x, z, layer, s in self._stressed]
-        return {
-            "p0": abs(found.peak_pressure / p0 - 1),
-            "a": abs(found.contact_radius / exact.contact_radius - 1),
-            "approach": abs(found.approach / exact.approach - 1),
+        scalars = {
+            ALL[q].symbol: abs(ALL[q].value(found, self.problem) / ALL[q].value(exact, self.problem) - 1)
+            for q in SCALARS
+        }
+        return scalars | {
             "pressure": float(np.sqrt(weight @ np.mean(gap**2, axis=1))) / p0,
             "stress": float(np.max(worst)) / self.problem.p_h,
         }
@@ -196,17 +199,11 @@ def _climb(
 ) -> Ladder:
     levels: list[Level] = []
     try:
-        keywords: dict[str, Any] = {
-            "radius": problem.radius,
-            "load": problem.load,
-            "coatings": problem.coatings,
-            "substrate": problem.substrate,
-            "estimate_uncertainty": False,
-        }
-        yardstick = Yardstick(problem, integral_equation.solve(**keywords))
+        given = keywords(problem) | {"estimate_uncertainty": False}
+        yardstick = Yardstick(problem, integral_equation.solve(**given))
         for name, numerics, resolution in steps:
             begin = time.perf_counter()
-            found = solve(**keywords, **numerics)
+            found = solve(**given, **numerics)
             seconds = time.perf_counter() - begin
             if resolution is None:
                 resolution = float(np.sqrt(found.diagnostics.dofs))

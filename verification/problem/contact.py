@@ -4,14 +4,14 @@ Origin at first contact, ``x`` along sliding, ``z`` into the solid, surface at z
 pressure and load positive in compression. SI units.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from math import isfinite, pi
 from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-__all__ = ["CoatedContact", "NotClaimed", "PrescribedLoad", "Solution"]
+__all__ = ["CoatedContact", "NotClaimed", "PrescribedLoad", "Solution", "keywords"]
 
 
 @dataclass(frozen=True)
@@ -21,7 +21,7 @@ class CoatedContact:
     coatings : ((E [Pa], nu, thickness [m]), ...) from the surface down; () is the uncoated solid.
     substrate : (E [Pa], nu).   friction : f in q = f p, traction on the solid in +x.
 
-    Raises ValueError with one sentence naming the quantity and its value.
+    Raises ValueError with a message naming the quantity and its value.
     """
 
     radius: float
@@ -66,13 +66,18 @@ class CoatedContact:
         """True where every layer has the substrate's moduli, so that Hertz holds."""
         return all((E, nu) == self.substrate for E, nu, _ in self.coatings)
 
+    def under_disc(self, pressure: float, load_radius: float) -> "PrescribedLoad":
+        """The same solid, friction included, under ``pressure`` [Pa] on a disc of ``load_radius`` [m]."""
+        shared = {f.name for f in fields(PrescribedLoad)} & {f.name for f in fields(self)}
+        return PrescribedLoad(pressure, load_radius, **{name: getattr(self, name) for name in shared})
+
 
 @dataclass(frozen=True)
 class PrescribedLoad:
     """Uniform ``pressure`` [Pa] on a disc of ``load_radius`` [m], on ``coatings`` bonded to ``substrate``.
 
-    The others as in CoatedContact.
-    Raises ValueError with one sentence naming the quantity and its value.
+    coatings, substrate, friction as in CoatedContact.
+    Raises ValueError with a message naming the quantity and its value.
     """
 
     pressure: float
@@ -87,14 +92,19 @@ class PrescribedLoad:
         _require_solid(self.coatings, self.substrate, self.friction)
 
 
+def keywords(problem: CoatedContact | PrescribedLoad) -> dict[str, Any]:
+    """The fields of ``problem`` by name, as keywords of a solver."""
+    return {f.name: getattr(problem, f.name) for f in fields(problem)}
+
+
 class NotClaimed(ValueError):
-    """A source was asked for a field it makes no claim about, which is not a failure of it."""
+    """A source does not give the field that was requested; this is no failure of it."""
 
 
 class Solution(Protocol):
-    """What both methods and the exact reference return; see each method for its own record.
+    """Solution that both methods and the references return; see each method for its own record.
 
-    A reference without displacements raises NotClaimed when asked for them.
+    ``displacement`` of a reference without displacements raises NotClaimed.
     """
 
     @property
@@ -139,6 +149,6 @@ def _require_positive(name: str, value: float) -> None:
 
 
 def _require_poisson(name: str, nu: float) -> None:
-    # nu = 1/2 belongs to the physics; a method that cannot have it says so itself.
+    # nu = 1/2 is physical; a method that does not support it raises its own error.
     if not -1 < nu <= 0.5:
         raise ValueError(f"{name} = {nu:g}; an isotropic solid has -1 < nu <= 0.5")

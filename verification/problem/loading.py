@@ -5,17 +5,10 @@ from dataclasses import dataclass
 from verification.problem.arrays import Coatings
 from verification.problem.contact import CoatedContact, PrescribedLoad
 
-__all__ = ["CONTROLS", "CURVES", "PUNCH", "LoadingCurve", "Problem"]
+__all__ = ["CONTROLS", "PUNCH", "LoadingCurve", "Problem"]
 
 CONTROLS = ("contact_radius", "approach")
-
-
-# What may be printed over the control: W, delta, a, kappa = dW/d delta / 2 a E1*, and the ratio of a power
-# series to W or to kappa (see ``Loading.quantity``).
-CURVES = ("load", "approach", "contact_radius", "kappa", "series_over_load", "series_over_kappa")
-
-
-PUNCH = ("kappa", "series_over_kappa")  # of these, what needs S
+PUNCH = ("kappa", "series_over_kappa")  # quantities that need the stiffness S
 
 
 @dataclass(frozen=True)

@@ -10,10 +10,7 @@ from dataclasses import dataclass
 from verification.problem.arrays import Array
 from verification.problem.contact import CoatedContact
 
-__all__ = ["SCALARS", "STRESSES", "Line", "Profile", "line_of", "lines_of"]
-
-SCALARS = ("peak_pressure", "contact_radius", "approach")
-STRESSES = {"sigma_xx": (0, 0), "sigma_yy": (1, 1), "sigma_zz": (2, 2), "sigma_xz": (0, 2)}
+__all__ = ["Line", "Profile", "line_of", "lines_of"]
 
 _INTERFACE = re.compile(r"interface ([1-9]\d*), (upper|lower) side")
 

@@ -153,7 +153,8 @@ def _numbers(profile: Profile, faint: float, points: int) -> Numbers:
 
 
 def _kind(profile: Profile) -> str:
-    return QUANTITIES.get(profile.quantity, profile.quantity)
+    name = profile.quantity
+    return QUANTITIES[name].kind if name in QUANTITIES else name
 
 
 def _size(values: Array) -> float:

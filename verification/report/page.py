@@ -37,13 +37,14 @@ from verification.report.tables.case import (
 )
 from verification.report.tables.cells import Part, Section, Table
 from verification.report.tables.csv import embedded, line_csv
-from verification.report.tables.labels import METHODS, OUTCOMES, OutcomeStyle, source_label
+from verification.report.tables.labels import OUTCOMES, OutcomeStyle, source_label
 from verification.report.tables.lookup import lines, scale, slug
 from verification.report.tables.matrix import verdict_matrix
 from verification.report.tables.numbers import engineering, plain, scientific, seconds
 from verification.report.templates import rendered
 from verification.running.result import CaseResult, RunInfo
 from verification.sampling.plane import Plane
+from verification.sources.registry import METHODS
 
 __all__ = ["render"]
 

@@ -18,7 +18,8 @@ from verification.running.records import decode, encode
 from verification.running.result import CaseResult
 from verification.running.store import MAX_BYTES, StoreError, read_checked, write_atomically, write_checked
 from verification.sampling.plane import Plane
-from verification.sampling.vtk import _box_files, _mesh_file
+from verification.sampling.vtk import WRITERS
+from verification.sources.registry import SOURCES
 
 __all__ = [
     "Fields",
@@ -102,10 +103,10 @@ def write_fields(case: Case, solutions: Mapping[str, Solution], folder: Path) ->
     path = fields_path(folder, case.name)
     written: dict[str, bytes] = {}
     failures: dict[str, str] = {}
-    for source, make in (("fem_reference", _mesh_file), ("semianalytic", _box_files)):
-        if source in solutions:
+    for source, solution in solutions.items():
+        if SOURCES[source].fields:
             try:
-                written |= make(case, solutions[source])
+                written |= WRITERS[SOURCES[source].fields](case, solution)
             except Exception as error:  # fields are wanted besides; they cost no result
                 failures[source] = f"{type(error).__name__}: {' '.join(str(error).split())[:300]}"
     for name, data in written.items():

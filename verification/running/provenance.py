@@ -7,6 +7,8 @@ import subprocess
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
+from verification.sources.registry import METHODS, SOURCES
+
 __all__ = ["commit", "fingerprint", "machine", "missing_libraries", "versions"]
 
 PACKAGES = (
@@ -68,7 +70,7 @@ def fingerprint() -> str:
     """SHA-256 over versions and code of this program: equal where a result would come out the same again."""
     house = Path(__file__).resolve().parents[2]
     found = hashlib.sha256(repr(sorted(versions().items())).encode())
-    for package in ("semianalytic", "fem_reference", "verification"):
+    for package in (*(SOURCES[name].package for name in METHODS), "verification"):
         for path in sorted((house / package).rglob("*.py")):
             found.update(path.relative_to(house).as_posix().encode() + b"\0" + path.read_bytes())
     return found.hexdigest()

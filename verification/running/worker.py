@@ -4,10 +4,9 @@ Cases of one process share the normal contact where they differ in friction alon
 """
 
 from functools import cache
+from importlib import import_module
 from pathlib import Path
 
-import fem_reference  # noqa: F401 - imported once for all cases, see ``guard``
-import semianalytic  # noqa: F401
 from verification.cases.contact import parse_case
 from verification.cases.published import read_published
 from verification.running import published as published_run
@@ -17,9 +16,14 @@ from verification.running.provenance import fingerprint
 from verification.running.result import to_json
 from verification.running.store import write_checked
 from verification.sampling.plane import sample_plane
-from verification.sources.contact import Solver, sharing_pressure, solvers
+from verification.sources.methods import sharing_pressure
+from verification.sources.registry import METHODS, SOURCES, solvers
+from verification.sources.source import Solver
 
 __all__ = ["contact", "published"]
+
+for _method in METHODS:  # once for all cases, see ``guard``
+    import_module(SOURCES[_method].package)
 
 
 def contact(name: str, text: str, path: str, plane: str, directory: str | None = None) -> None:

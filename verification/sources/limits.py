@@ -4,12 +4,14 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
 from operator import attrgetter
+from types import SimpleNamespace
 from typing import Any, TypeVar
 
 import numpy as np
 
 from verification.problem.arrays import Array
 from verification.problem.contact import CoatedContact, PrescribedLoad, Solution
+from verification.problem.quantity import QUANTITIES, SCALARS
 
 __all__ = ["eased", "towards_limits"]
 
@@ -46,14 +48,6 @@ def eased(problem: Problem, t: int) -> Problem:
     return replace(problem, coatings=coatings, substrate=(E, compressible(nu)))
 
 
-@dataclass(frozen=True)
-class _Scalars:
-    contact_radius: float
-    approach: float
-    peak_pressure: float
-    budget: tuple[tuple[str, str, float], ...]
-
-
 @dataclass(frozen=True, eq=False)
 class _Extrapolated:
     """2 f(1) - f(2), with 2 U + U and the second difference for its uncertainty."""
@@ -63,25 +57,24 @@ class _Extrapolated:
     third: Solution
 
     def __getattr__(self, name: str) -> Any:
-        if name in ("contact_radius", "approach", "peak_pressure"):
+        if name in SCALARS:
             return 2 * getattr(self.near, name) - getattr(self.further, name)
         if name in ("diagnostics", "surface_nodes"):
             return getattr(self.near, name)
         raise AttributeError(name)
 
     @cached_property
-    def uncertainty(self) -> _Scalars | None:
+    def uncertainty(self) -> Any:
         """Of the three scalars; None where the solutions state none."""
         if self.near.uncertainty is None or self.further.uncertainty is None:
             return None
-        names = ("contact_radius", "approach", "peak_pressure")
         rows, total = [], {}
-        for name in names:
+        for name in (name for name in SCALARS if not QUANTITIES[name].derived):
             own = 2 * getattr(self.near.uncertainty, name) + getattr(self.further.uncertainty, name)
             bend = abs(self._bend(attrgetter(name)))
             rows += [(name, "both solutions", own), (name, "limit", bend)]
             total[name] = own + bend
-        return _Scalars(**total, budget=tuple(rows))
+        return SimpleNamespace(**total, budget=tuple(rows))
 
     def pressure(self, x: Any, y: Any = 0.0) -> Array:
         return 2 * self.near.pressure(x, y) - self.further.pressure(x, y)

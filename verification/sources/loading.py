@@ -6,7 +6,7 @@ punches too.
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import exp, log, sqrt
 
 import numpy as np
@@ -167,10 +167,7 @@ def _three(
     contact: CoatedContact, middle: Solution, solve: Callable[[CoatedContact], Solution]
 ) -> tuple[Array, Array]:
     """State with S = (W/delta) d log W / d log delta from a load above and one below."""
-    low, high = (
-        solve(CoatedContact(contact.radius, contact.load * exp(s), contact.coatings, contact.substrate))
-        for s in (-STEP, STEP)
-    )
+    low, high = (solve(replace(contact, load=contact.load * exp(s))) for s in (-STEP, STEP))
     x = np.log([low.approach, middle.approach, high.approach])
     m = 2 * STEP / (x[2] - x[0])
     # The second derivative of log W; the third, which the quotient leaves out, is no larger.

@@ -16,21 +16,21 @@ from typing import Any
 
 from verification.running.provenance import versions
 from verification.running.store import StoreError, read_checked, write_checked
+from verification.sources.registry import SOURCES
 
 __all__ = ["Cache", "code_version", "solve_key"]
 
-# Packages or folders whose source an answer of each source depends on, beside the search for its quantities.
-_SOURCES = {
-    "semianalytic": ("semianalytic",),
-    "fem_reference": ("fem_reference",),
-    "integral_equation": ("verification.sources.references",),
-}
+# Modules that an answer depends on beside the package of its source.
 _SEARCH = (
     "verification.study.quantities",
     "verification.study.planes",
     "verification.study.point",
     "verification.problem",
-    "verification.sources.contact",
+    "verification.sources.registry",
+    "verification.sources.source",
+    "verification.sources.methods",
+    "verification.sources.exact",
+    "verification.sources.limits",
     "verification.sampling.plane",
     "verification.running.result",
 )
@@ -47,7 +47,7 @@ def solve_key(request: Mapping[str, Any]) -> str:
 def code_version(source: str) -> str:
     """SHA-256 of the source files behind an answer of ``source``, and of the versions it stands on."""
     digest = hashlib.sha256()
-    for module in (*_SOURCES[source], *_SEARCH):
+    for module in (SOURCES[source].package, *_SEARCH):
         spec = find_spec(module)
         assert spec is not None
         assert spec.origin is not None

@@ -5,7 +5,7 @@ python -m verification.study.formulas RESULT.json
 
 import sys
 import time
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -13,7 +13,7 @@ import numpy as np
 from scipy.optimize import least_squares, minimize_scalar
 
 from verification.problem.arrays import Array
-from verification.problem.contact import CoatedContact
+from verification.problem.contact import CoatedContact, keywords
 from verification.problem.profile import lines_of
 from verification.running.pool import Task
 from verification.running.result import CaseResult, SourceResult, describe
@@ -189,20 +189,13 @@ def _member(ratio: float, friction: float) -> CaseResult:
     """The configuration of O'Sullivan and King by the exact reference: h = a_h, nu = 0.3."""
     started = time.perf_counter()
     bare = CoatedContact(10e-3, 20.0, (), (210e9, 0.3), friction)
-    problem = CoatedContact(10e-3, 20.0, ((ratio * 210e9, 0.3, bare.a_h),), (210e9, 0.3), friction)
-    found = integral_equation.solve(
-        radius=problem.radius,
-        load=problem.load,
-        coatings=problem.coatings,
-        substrate=problem.substrate,
-        friction=friction,
-        estimate_uncertainty=False,
-    )
+    problem = replace(bare, coatings=((ratio * 210e9, 0.3, bare.a_h),))
+    found = integral_equation.solve(**keywords(problem), estimate_uncertainty=False)
     x, z = (
         2.5 * bare.a_h * np.linspace(-1 if friction else 0, 1, 101),
         4 * bare.a_h * np.linspace(0.005, 1, 60) ** 1.5,
     )
-    profiles = list(sample_contact(found, "integral_equation"))
+    profiles = list(sample_contact(found, "integral_equation", problem))
     for line in lines_of(problem):
         profiles += sample(found, "integral_equation", line, z if line.depth is None else x)
     seconds = time.perf_counter() - started

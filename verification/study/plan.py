@@ -224,8 +224,9 @@ def parse_study(raw: bytes, path: Path) -> Study:
         frictions=tuple(sweep.friction),
         cross_check=sweep.cross_check,
         numerics={
-            "semianalytic": checked.semianalytic.model_dump(exclude_none=True),
-            "fem_reference": checked.fem_reference.model_dump(exclude_none=True),
+            source: getattr(checked, source).model_dump(exclude_none=True)
+            for source in SOURCES
+            if source in _StudyFile.model_fields
         },
         criteria=checked.criteria,
         text=text,

@@ -13,9 +13,10 @@ from typing import Any
 from threadpoolctl import threadpool_limits
 
 from verification.problem.contact import CoatedContact
+from verification.problem.quantity import QUANTITIES
 from verification.running.provenance import versions
 from verification.running.result import sentence
-from verification.sources.contact import solvers
+from verification.sources.registry import SOURCES
 from verification.study.cache import code_version
 from verification.study.quantities import quantities
 from verification.study.table import SCALARS
@@ -36,7 +37,9 @@ def answer(request: Mapping[str, Any]) -> dict[str, Any]:
     problem = problem_of(request, 1.0 if any(frictions) else 0.0)
     try:
         with threadpool_limits(1):  # the order in which threads add would show in the last digit
-            solution = solvers()[request["source"]](problem, request["numerics"])
+            solve = SOURCES[request["source"]].solve
+            assert solve is not None
+            solution = solve(problem, request["numerics"])
             rows = _rows(solution, problem, frictions)
     except Exception as error:  # a point that fails is a row with its sentence, whatever went wrong
         rows = [{"friction": f, "status": "failed", "failure": sentence(error)} for f in frictions]
@@ -98,12 +101,13 @@ def table_rows(
 def _rows(solution: Any, problem: CoatedContact, frictions: list[float]) -> list[dict[str, Any]]:
     common: dict[str, Any] = {}
     for name, scale in SCALARS.items():
-        value = float(getattr(solution, name))
+        value = QUANTITIES[name].value(solution, problem)
         if not 0 < value < float("inf"):
             raise ValueError(f"{name} = {value:g}; the solution is no contact")
         common |= {name: value, f"{name}_over_{scale}": value / getattr(problem, scale)}
-        if solution.uncertainty is not None:
-            common[f"{name}_uncertainty"] = float(getattr(solution.uncertainty, name))
+        spread = QUANTITIES[name].uncertainty(solution, problem)
+        if spread is not None:
+            common[f"{name}_uncertainty"] = spread
     rows = []
     for f, located in quantities(solution, problem, frictions).items():
         row: dict[str, Any] = {"friction": f, "status": "solved", "failure": None, **common}

@@ -23,15 +23,18 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 from numpy.typing import NDArray
 
+from verification.problem.quantity import QUANTITIES as ALL
+from verification.problem.quantity import SCALARS as CONTACT_SCALARS
 from verification.running.store import StoreError, write_atomically
+from verification.sources.registry import EXACT, METHODS
 from verification.study.quantities import QUANTITIES
 
 __all__ = ["COLUMNS", "SCALARS", "SOURCES", "read_columns", "read_study", "write_table"]
 
 # The first speaks for every point, the others for those that are cross-checked.
-SOURCES = ("semianalytic", "fem_reference", "integral_equation")
+SOURCES = (*METHODS, *EXACT)
 # Each scalar of the contact with the scale of the bare substrate that it is given over.
-SCALARS = {"peak_pressure": "p_h", "contact_radius": "a_h", "approach": "delta_h"}
+SCALARS = {name: ALL[name].scale for name in CONTACT_SCALARS}
 
 _INPUT = (
     *("radius", "load", "coating_E", "coating_nu", "thickness", "substrate_E", "substrate_nu", "friction"),

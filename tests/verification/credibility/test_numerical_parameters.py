@@ -6,11 +6,14 @@ import numpy as np
 import pytest
 
 from verification.credibility.accuracy import BARE, COATED
-from verification.credibility.parameters import KNOBS, Knob, stated, study, turn
+from verification.credibility.parameters import KNOBS, stated, study, turn
 from verification.sources.references.hertz import Hertz
+from verification.sources.source import NumericalParameter
 
 EXACT = Hertz(BARE.radius, BARE.load, *BARE.substrate)
-KNOB = Knob("semianalytic", "patch size", tuple((f"N = {n}", {"patches": n}, 1 / n) for n in (8, 16, 32, 64)))
+KNOB = NumericalParameter(
+    "semianalytic", "patch size", tuple((f"N = {n}", {"patches": n}, 1 / n) for n in (8, 16, 32, 64))
+)
 
 
 class Off:
@@ -38,7 +41,8 @@ class Off:
         return np.full((3, 3, *np.shape(x)), self._times * self._e * BARE.p_h)
 
 
-def off(patches=64, times=3.0, estimate_uncertainty=True, **_):
+def off(_, numerics=None, times=3.0):
+    patches = (numerics or {}).get("patches", 64)
     if patches > 64:
         raise ValueError("too fine for this machine; take fewer patches")
     return Off(patches, times)

@@ -20,7 +20,7 @@ from verification.running import contact as running
 from verification.running.result import from_json as result_from_json
 from verification.running.result import to_json as result_to_json
 from verification.running.store import read_checked, write_checked
-from verification.sources import contact as sources_of_contacts
+from verification.sources import registry
 from verification.sources.references.hertz import Hertz, HertzContact
 
 # What issue after issue of such codes has been about, each by the fault that stands for it.
@@ -80,7 +80,7 @@ def test_a_fault_says_what_is_wrong_where_it_sits_what_should_catch_it(fault):
     assert fault.changes
     assert fault.expected
     assert set(fault.cases) <= set(shipped_cases())
-    assert fault.where in (*sources_of_contacts.solvers(), "harness", "published")
+    assert fault.where in (*registry.solvers(), "harness", "published")
 
 
 def test_names_are_unique_across_the_groups():
@@ -168,7 +168,7 @@ def clean(tmp_path_factory):
     """A clean run of the uncoated case in which the exact reference stands in for both methods."""
     folder = tmp_path_factory.mktemp("clean")
     case = read_case(shipped_cases()["01_uncoated_steel"])
-    known = sources_of_contacts.solvers()
+    known = registry.solvers()
     exact = known["integral_equation"]
     sources = {"semianalytic": exact, "fem_reference": exact} | {
         name: known[name] for name in ("integral_equation", "hertz")

@@ -259,7 +259,7 @@ def test_thin_coating_changes_the_approach_by_the_first_order_of_perturbation():
 @pytest.mark.slow
 def test_invariants_between_solutions_hold_for_both_methods():
     from verification.judging.invariants import resolved
-    from verification.sources.contact import solvers
+    from verification.sources.registry import solvers
 
     found = resolved(SLIDING, solvers())
     assert len(found) == 10

@@ -14,8 +14,8 @@ from verification.credibility.refinement import QUANTITIES
 from verification.report.figures.loglog import Trail, decades, draw_loglog
 from verification.report.page import render
 from verification.report.sections.refinement import convergence_sections
-from verification.report.tables.labels import Style
 from verification.report.tables.numbers import factor
+from verification.sources.source import Style
 
 
 @pytest.fixture(scope="module")

@@ -15,7 +15,6 @@ from verification.judging.verdict import Outcome
 from verification.report.page import render
 from verification.report.tables import labels as names
 from verification.running.result import CaseResult, RunInfo, from_json, to_json
-from verification.sources import registry
 
 
 @pytest.fixture(scope="module")
@@ -194,10 +193,6 @@ def test_problem_is_told_in_real_units():
     # Hertz on the bare steel: a = (3 W R / 4 E*)^(1/3), E* = 210e9/0.91.
     for text in ("10 mm", "20 N", "86.62 µm", "1.273 GPa", "750.4 nm", "420 GPa"):
         assert text in said
-
-
-def test_the_report_knows_the_methods_that_cases_know():
-    assert names.METHODS == registry.METHODS
 
 
 def test_no_number_whatever_keeps_a_report_from_being_written(results):

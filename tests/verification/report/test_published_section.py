@@ -16,7 +16,7 @@ from verification.report.page import render
 from verification.running.published import failed, run
 from verification.running.result import RunInfo, from_json
 from verification.running.store import read_checked
-from verification.sources.published import solvers
+from verification.sources.registry import solvers
 
 SHIPPED = published_cases()
 INFO = RunInfo("coatcheck run published", "2026-01-01T00:00:00+00:00", 1.0, 1, None, "a machine", {})

@@ -13,8 +13,7 @@ from verification.running.published import failed, run
 from verification.running.result import from_json, to_json
 from verification.sampling.points import values
 from verification.sources.limits import towards_limits
-from verification.sources.published import solvers
-from verification.sources.registry import PUBLISHED
+from verification.sources.registry import PUBLISHED, solvers
 
 SHIPPED = published_cases()
 DISC = PrescribedLoad(1e6, 0.1, (), (1e9, 0.3))

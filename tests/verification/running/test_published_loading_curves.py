@@ -10,8 +10,7 @@ from verification.problem.loading import LoadingCurve
 from verification.report.page import render
 from verification.running.published import run
 from verification.running.result import RunInfo, from_json, to_json
-from verification.sources.published import solvers
-from verification.sources.registry import REFERENCE
+from verification.sources.registry import EXACT, solvers
 
 SHIPPED = published_cases()
 INFO = RunInfo("coatcheck run published", "2026-01-01T00:00:00+00:00", 1.0, 1, None, "a machine", {})
@@ -72,9 +71,9 @@ def test_a_sphere_without_a_load_is_a_loading_curve(files):
 
 
 def test_only_what_counts_is_judged_and_all_of_it_is_shown(files):
-    exact = {REFERENCE: solvers()[REFERENCE]}
+    exact = {"integral_equation": solvers()["integral_equation"]}
     result = run(files(), exact)
-    judged = {c.line.rsplit(" ", 1)[1]: v.outcome for c, v in result.verdicts if REFERENCE in c.between}
+    judged = {c.line.rsplit(" ", 1)[1]: v.outcome for c, v in result.verdicts if EXACT[0] in c.between}
     assert judged["k"] is Outcome.AGREES
     assert judged["s"] is Outcome.AGREES
     assert from_json(to_json(result)).problem["control"] == "contact_radius"
@@ -82,7 +81,7 @@ def test_only_what_counts_is_judged_and_all_of_it_is_shown(files):
     assert "superseded, not counted" in page
     assert "stiffness of the flat punch over 2 a E1*" in page
     wrong = run(files(csv=CSV.replace("2.483525", "2.483535")), exact)
-    judged = {c.line.rsplit(" ", 1)[1]: v.outcome for c, v in wrong.verdicts if REFERENCE in c.between}
+    judged = {c.line.rsplit(" ", 1)[1]: v.outcome for c, v in wrong.verdicts if EXACT[0] in c.between}
     assert judged["k"] is Outcome.DISAGREES
 
 
@@ -130,9 +129,9 @@ def test_one_case_has_one_control(files):
     "name", [n for n in SHIPPED if isinstance(read_published(SHIPPED[n]).problem, LoadingCurve)]
 )
 def test_exact_reference_meets_every_shipped_curve(name):
-    result = run(read_published(SHIPPED[name]), {REFERENCE: solvers()[REFERENCE]})
+    result = run(read_published(SHIPPED[name]), {"integral_equation": solvers()["integral_equation"]})
     reasons = [
-        v.reason for c, v in result.verdicts if REFERENCE in c.between and v.outcome is not Outcome.AGREES
+        v.reason for c, v in result.verdicts if EXACT[0] in c.between and v.outcome is not Outcome.AGREES
     ]
     assert reasons == []
 

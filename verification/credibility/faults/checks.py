@@ -6,10 +6,10 @@ from verification.judging.invariants import Invariant
 from verification.judging.verdict import Claim, Outcome, Verdict
 from verification.regression.baseline import Drift
 from verification.running.self_tests import SelfTest
+from verification.sources.registry import CLOSED, EXACT
 
 __all__ = ["COLUMNS", "Check", "of_baseline", "of_claim", "of_invariant", "of_self_test"]
 
-CLOSED = ("hertz", "hamilton")
 # What a matrix of faults shows side by side: (title, what it holds against what).
 COLUMNS = {
     "bare, closed form": "uncoated cases, Hertz or Hamilton on one side",
@@ -56,9 +56,7 @@ def of_claim(claim: Claim, verdict: Verdict, case: str, coated: bool, kind: str 
         column = kind
     else:
         sides = set(claim.between)
-        other = (
-            "closed form" if sides & set(CLOSED) else "exact" if "integral_equation" in sides else "methods"
-        )
+        other = "closed form" if sides & set(CLOSED) else "exact" if sides & set(EXACT) else "methods"
         column = f"{'coated' if coated else 'bare'}, {other}"
     detail = f"{claim.line}, {' against '.join(claim.between)}"
     return Check(column, claim.quantity, case, detail, verdict.outcome, verdict.reason)

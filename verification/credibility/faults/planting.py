@@ -17,9 +17,11 @@ from importlib import import_module
 from types import ModuleType
 from typing import Any
 
+from verification.sources.registry import METHODS, SOURCES
+
 __all__ = ["PACKAGES", "Constant", "Edit", "Fault", "PlantError", "planted"]
 
-PACKAGES = ("semianalytic", "fem_reference", "verification")
+PACKAGES = (*(SOURCES[name].package for name in METHODS), "verification")
 
 
 class PlantError(Exception):

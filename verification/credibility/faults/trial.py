@@ -24,11 +24,12 @@ from verification.running.result import CaseResult, SourceResult, from_json
 from verification.running.self_tests import self_tests
 from verification.running.store import read_checked
 from verification.sampling.lines import sample, sample_contact
+from verification.sources.registry import METHODS
 
 __all__ = ["Trial", "clean_path", "trial_from_json", "trial_to_json", "try_fault"]
 
 Profiles = dict[tuple[str, str, str], Profile]
-METHODS_FOR_PRINT = ("semianalytic",)  # reading print is tried with the faster of the two
+METHODS_FOR_PRINT = METHODS[:1]  # reading print is tried with the faster of the two
 
 
 @dataclass(frozen=True)
@@ -129,7 +130,7 @@ def _judged(case: Case, clean: CaseResult, fault: Fault) -> tuple[list[Check], P
 
 def _sampled(case: Case, clean: CaseResult, source: str, solution: Solution) -> list[Profile]:
     places = {profile.line: profile.position for profile in clean.profiles}
-    found = list(sample_contact(solution, source))
+    found = list(sample_contact(solution, source, case.problem))
     for line in case.lines:
         found += sample(solution, source, line, places[line.name])
     return found
@@ -193,7 +194,7 @@ def _as_read(case: PublishedCase) -> list[_AsRead]:
 def _printed(name: str, before: list[_AsRead]) -> tuple[list[Check], tuple[float, str]]:
     """Verdicts of a printed table read under the fault, and how far the fault moved what was read."""
     case = read_published(published_cases()[name])
-    available = {m: s for m, s in printed_run.solvers().items() if m in METHODS_FOR_PRINT}
+    available = {m: s for m, s in run.solvers().items() if m in METHODS_FOR_PRINT}
     result = printed_run.run(case, available)
     asked = [(c, v) for c, v in result.verdicts if set(c.between) & set(available)]
     checks = [of_claim(c, v, name, False, kind="printed") for c, v in asked]

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from verification.problem.arrays import FloatArray
-from verification.problem.contact import CoatedContact
+from verification.problem.contact import CoatedContact, keywords
 from verification.sources.references import integral_equation
 from verification.sources.references.patch import surface_coefficient
 
@@ -43,13 +43,7 @@ def conversion_errors(
     """
     from semianalytic import frf, halfspace, influence
 
-    a = integral_equation.solve(
-        radius=problem.radius,
-        load=problem.load,
-        coatings=problem.coatings,
-        substrate=problem.substrate,
-        estimate_uncertainty=False,
-    ).contact_radius
+    a = integral_equation.solve(**keywords(problem), estimate_uncertainty=False).contact_radius
     n, d = patches, 2.24 * a / patches
     E, nu = problem.coatings[0][:2] if problem.coatings else problem.substrate
     scale = (1 - nu**2) / (np.pi * E)

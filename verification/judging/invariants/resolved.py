@@ -17,18 +17,14 @@ from verification.judging.invariants.bond import displacement_bound
 from verification.judging.invariants.limits import thick_shift, thin_shift
 from verification.problem.arrays import Array
 from verification.problem.contact import CoatedContact, PrescribedLoad, Solution
+from verification.problem.quantity import QUANTITIES, SCALARS
 from verification.sources.references.hamilton import Hamilton
+from verification.sources.registry import METHODS, SOURCES
 
-__all__ = ["COARSE", "resolved"]
+__all__ = ["resolved"]
 
-Solve = Callable[[CoatedContact], Solution]
+Solve = Callable[[CoatedContact | PrescribedLoad], Solution]
 Law = Callable[[], Invariant]
-
-# Each as coarse as leaves the uncertainty below the caps; stresses and thin coatings want more of a mesh.
-Numerics = Mapping[str, Mapping[str, Any]]
-COARSE: Numerics = {"semianalytic": {"patches": 129}, "fem_reference": {"size": 0.25}}
-STRESSES: Numerics = {"semianalytic": {"patches": 129}, "fem_reference": {"size": 0.22}}
-THIN: Numerics = {"semianalytic": {"patches": 129}, "fem_reference": {"size": 0.22}}
 
 # Of a_h: far enough in the limit for what is left of the coating to be bounded below the caps.
 THICK_AT, THIN_AT = 20.0, 0.03
@@ -39,7 +35,7 @@ PLACES = ((0.0, 0.45), (0.6, 0.3), (-0.6, 1.7), (1.3, 0.3))  # x, z over a_h
 
 
 def resolved(
-    problem: CoatedContact, available: Mapping[str, Callable[[CoatedContact, Mapping[str, Any]], Solution]]
+    problem: CoatedContact, available: Mapping[str, Callable[..., Solution]]
 ) -> tuple[Invariant, ...]:
     """Scaling, equal moduli, thick and thin limit, reciprocity of each method that is available.
 
@@ -47,18 +43,12 @@ def resolved(
     A law that cannot be had is NO_RESULT with its sentence.
     """
     found = []
-    for source in COARSE:
-        if source not in available:
-            continue
-
-        def solve(
-            changed: CoatedContact,
-            numerics: Numerics = COARSE,
-            source: str = source,
-        ) -> Solution:
-            return available[source](changed, numerics[source])
-
-        for name, law in _laws(solve, source, problem):
+    for source in (name for name in METHODS if name in available):
+        coarse, finer = (
+            partial(_solved, available[source], numerics)
+            for numerics in (SOURCES[source].coarse, SOURCES[source].coarse_stress)
+        )
+        for name, law in _laws(coarse, finer, source, problem):
             try:
                 found.append(law())
             except Exception as error:  # as in ``check``: a row of the report, whatever went wrong
@@ -67,20 +57,26 @@ def resolved(
     return tuple(found)
 
 
-def _laws(solve: Callable[..., Solution], source: str, problem: CoatedContact) -> Iterator[tuple[str, Law]]:
+def _solved(
+    solve: Callable[..., Solution], numerics: Mapping[str, Any], problem: CoatedContact | PrescribedLoad
+) -> Solution:
+    return solve(problem, numerics)
+
+
+def _laws(solve: Solve, finer: Solve, source: str, problem: CoatedContact) -> Iterator[tuple[str, Law]]:
     base: list[Solution] = []
 
-    def once(given: CoatedContact) -> Solution:
+    def once(given: CoatedContact | PrescribedLoad) -> Solution:
         if not base:
-            base.append(solve(given, STRESSES))
+            base.append(finer(given))
         return base[0]
 
-    yield "scaling", partial(_scaling, partial(solve, numerics=STRESSES), once, source, problem)
-    yield "reciprocity", partial(_reciprocity, once, source, problem)
+    yield "scaling", partial(_scaling, finer, once, source, problem)
+    yield "reciprocity", partial(_reciprocity, once, solve, source, problem)
     yield "equal moduli", partial(_equal_moduli, solve, source, problem)
     smooth = replace(problem, friction=0.0)
     yield "thick coating", partial(_thick, solve, source, smooth)
-    yield "thin coating", partial(_thin, partial(solve, numerics=THIN), source, smooth)
+    yield "thin coating", partial(_thin, finer, source, smooth)
 
 
 def _scaling(solve: Solve, base: Solve, source: str, problem: CoatedContact) -> Invariant:
@@ -149,27 +145,14 @@ def _thin(solve: Solve, source: str, problem: CoatedContact) -> Invariant:
     return decide("thin coating", source, law, gap, bound, cap=APPROACH_CAP)
 
 
-def _reciprocity(solve: Solve, source: str, problem: CoatedContact) -> Invariant:
+def _reciprocity(base: Solve, solve: Solve, source: str, problem: CoatedContact) -> Invariant:
     """Betti: the contact pressure works on a disc's displacements what the disc's works on the contact's.
 
     int p u_disc dA = int p_disc u dA, over W times the approach. Along x = 0, where friction lifts nothing.
     """
-    import fem_reference
-    import semianalytic
-
-    method: Any = {"semianalytic": semianalytic, "fem_reference": fem_reference}[source]
-    contact = solve(problem)
-    disc = PrescribedLoad(
-        problem.p_h, 0.6 * contact.contact_radius, problem.coatings, problem.substrate, problem.friction
-    )
-    pressed: Solution = method.solve_prescribed(
-        pressure=disc.pressure,
-        load_radius=disc.load_radius,
-        coatings=disc.coatings,
-        substrate=disc.substrate,
-        friction=disc.friction,
-        **COARSE[source],
-    )
+    contact = base(problem)
+    disc = problem.under_disc(problem.p_h, 0.6 * contact.contact_radius)
+    pressed = solve(disc)
     work = problem.load * contact.approach
 
     def works(n: int) -> tuple[float, float]:
@@ -196,13 +179,11 @@ def _sink(solution: Solution, y: Array) -> Array:
 
 def _dimensionless(solution: Solution, problem: CoatedContact) -> tuple[Array, Array]:
     """a/a_h, p0/p_h, approach/delta_h and the stresses over p_h at ``PLACES``, with their uncertainties."""
-    scales = (problem.a_h, problem.p_h, problem.delta_h)
-    names = ("contact_radius", "peak_pressure", "approach")
-    U = solution.uncertainty
+    scalars = [(QUANTITIES[name], getattr(problem, QUANTITIES[name].scale)) for name in SCALARS]
     x, z = problem.a_h * np.array(PLACES).T
     y = 0.2 * np.abs(x)
-    values = [getattr(solution, name) / scale for name, scale in zip(names, scales, strict=True)]
-    spread = [getattr(U, name) / scale for name, scale in zip(names, scales, strict=True)]
+    values = [quantity.value(solution, problem) / scale for quantity, scale in scalars]
+    spread = [(quantity.uncertainty(solution, problem) or 0.0) / scale for quantity, scale in scalars]
     sigma = solution.stress(x, y, z) / problem.p_h
     return (
         np.concatenate([values, sigma.ravel()]),

@@ -12,14 +12,15 @@ from verification.credibility.independence import Part
 from verification.credibility.manufactured import DesignOrder
 from verification.credibility.refinement import QUANTITIES
 from verification.judging.verdict import Outcome
-from verification.problem.profile import SCALARS
+from verification.problem.quantity import SCALARS
 from verification.report.sections.accuracy import accuracies
 from verification.report.tables.cells import Cell, Row, Table
-from verification.report.tables.labels import METHODS, pair_label, source_label
+from verification.report.tables.labels import pair_label, source_label
 from verification.report.tables.lookup import layers, scale
 from verification.report.tables.matrix import outcome_cell
 from verification.report.tables.numbers import factor, plain, scientific
 from verification.running.result import CaseResult
+from verification.sources.registry import METHODS
 
 __all__ = [
     "alarm_table",

@@ -6,16 +6,10 @@ import numpy as np
 from markupsafe import Markup
 
 from verification.judging.verdict import Claim, Outcome
+from verification.problem.quantity import QUANTITIES
 from verification.report.figures.curves import FLOOR, Curve, Difference, draw
 from verification.report.tables.cells import Panel
-from verification.report.tables.labels import (
-    METHODS,
-    Style,
-    pair_label,
-    pair_style,
-    source_label,
-    source_style,
-)
+from verification.report.tables.labels import pair_label, pair_style, source_label, source_style
 from verification.report.tables.lookup import (
     baseline,
     claimed_quantities,
@@ -27,6 +21,8 @@ from verification.report.tables.lookup import (
 )
 from verification.report.tables.numbers import scientific
 from verification.running.result import CaseResult
+from verification.sources.registry import METHODS
+from verification.sources.source import Style
 
 __all__ = ["LineFigures", "line_figures", "swatch"]
 
@@ -114,7 +110,7 @@ def _panel(result: CaseResult, line: str, quantity: str) -> Panel:
     note = f"largest judged difference {scientific(largest)}"
     if bad:
         note = f"{len(bad)} of {len(claims)} do not agree, difference {scientific(largest)}"
-    title = "p / p_h" if quantity == "pressure" else f"{quantity} / p_h"
+    title = f"{QUANTITIES[quantity].symbol if quantity in QUANTITIES else quantity} / p_h"
     return Panel(title, figure, note if claims else "not compared", "fails" if bad else "")
 
 

@@ -9,7 +9,7 @@ import numpy as np
 from markupsafe import Markup, escape
 
 from verification.problem.arrays import Array
-from verification.report.tables.labels import Style
+from verification.sources.source import Style
 
 __all__ = ["HUGE", "Axes", "drawing", "polyline", "power_of_ten", "round_ticks", "short"]
 

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from verification.judging.verdict import Claim
-from verification.problem.profile import SCALARS
+from verification.problem.quantity import SCALARS
 from verification.report.tables.cells import Cell, Row, Table
-from verification.report.tables.labels import EXACT, METHODS, source_label
+from verification.report.tables.labels import source_label
 from verification.report.tables.lookup import (
     GROUPS,
     baseline,
@@ -19,6 +19,7 @@ from verification.report.tables.lookup import (
 )
 from verification.report.tables.numbers import plain, scientific
 from verification.running.result import CaseResult
+from verification.sources.registry import METHODS, REFERENCES
 
 __all__ = [
     "Accuracy",
@@ -66,7 +67,7 @@ class Accuracy:
 def accuracies(result: CaseResult) -> tuple[Accuracy, ...]:
     """Every quantity of every method with an exact counterpart; () where the case has no exact reference."""
     exact = baseline(result)
-    if exact not in EXACT:
+    if exact not in REFERENCES:
         return ()
     edges = {(c.quantity, c.line): c for c, _ in result.verdicts}
     found = []

@@ -9,8 +9,8 @@ from verification.judging.invariants.influence import ConversionError
 from verification.report.figures.loglog import Trail, decades, draw_loglog
 from verification.report.figures.panels import swatch
 from verification.report.tables.cells import Cell, Gallery, Panel, Part, Row, Table
-from verification.report.tables.labels import Style
 from verification.report.tables.numbers import factor, plain, scientific
+from verification.sources.source import Style
 
 __all__ = ["conversion_part"]
 

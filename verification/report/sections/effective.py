@@ -12,9 +12,9 @@ from verification.report.figures.panels import swatch
 from verification.report.figures.plot import Axes, drawing, power_of_ten
 from verification.report.sections.family import family_section
 from verification.report.tables.cells import Cell, Gallery, Panel, Part, Row, Section, Table
-from verification.report.tables.labels import Style
 from verification.report.tables.numbers import plain, scientific
 from verification.sources.references.effective_modulus import PERRIOT_BARTHEL_N
+from verification.sources.source import Style
 from verification.study.formulas import EffectiveStudy, Limit
 
 __all__ = ["effective_sections"]

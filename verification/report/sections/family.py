@@ -12,6 +12,7 @@ from typing import NamedTuple
 import numpy as np
 from markupsafe import Markup
 
+from verification.problem.quantity import QUANTITIES, SCALARS
 from verification.report.figures.panels import swatch
 from verification.report.figures.plot import HUGE, Axes, drawing, round_ticks
 from verification.report.tables.cells import Cell, Gallery, Panel, Part, Row, Section, Table
@@ -20,12 +21,12 @@ from verification.report.tables.labels import source_label, source_style
 from verification.report.tables.lookup import coordinate, layers, scalar, scale, sources_with_profiles
 from verification.report.tables.numbers import plain
 from verification.running.result import CaseResult
+from verification.sources.registry import CLOSED
 
 __all__ = ["family_section"]
 
 WIDTH, HEIGHT = 320, 260
 BOX = (48.0, 6.5, 265.6, 215.8)  # left, top, width, height
-CLOSED = ("hertz", "hamilton")  # of the uncoated member only
 SMALLEST = 3  # fewer than this many moduli are no family
 PANELS = (
     ("pressure", "surface"),
@@ -93,7 +94,7 @@ def _gallery(members: Sequence[Member]) -> Gallery:
         if any(p.quantity == quantity and p.line == line for m in members for p in m.result.profiles)
     ]
     panels = [
-        Panel("p / p_h" if quantity == "pressure" else f"{quantity} / p_h", figure, f"on {line}", "")
+        Panel(f"{QUANTITIES[quantity].symbol} / p_h", figure, f"on {line}", "")
         for quantity, line in shown
         if (figure := _draw(members, quantity, line))
     ]
@@ -120,28 +121,24 @@ def _curves_csv(members: Sequence[Member], shown: Sequence[tuple[str, str]]) -> 
 
 def _numbers(members: Sequence[Member]) -> Table:
     """The contact's scalars over their Hertz scales, by every source."""
-    scalars = (
-        ("contact_radius", "a_h", "a"),
-        ("peak_pressure", "p_h", "p0"),
-        ("approach", "delta_h", "delta"),
-    )
+    scalars = [QUANTITIES[name] for name in SCALARS]
     sources = [
         s
         for s in dict.fromkeys(s for m in members for s in sources_with_profiles(m.result))
-        if s not in CLOSED
+        if s not in CLOSED  # which hold for the uncoated member only
     ]
     rows = []
     for member in members:
         cells = []
         for source in sources:
-            for quantity, unit, _ in scalars:
-                found = scalar(member.result, quantity, source)
-                value = None if found is None else float(found[0] / scale(member.result, unit))
+            for quantity in scalars:
+                found = scalar(member.result, quantity.name, source)
+                value = None if found is None else float(found[0] / scale(member.result, quantity.scale))
                 cells.append(Cell("–" if value is None else f"{value:.6f}", value))
         rows.append(Row(Cell(plain(member.ratio, 3), member.ratio, note=member.result.title), cells))
     return Table(
-        "Contact radius, peak pressure and approach over the Hertz scales of the bare substrate.",
-        ["E1/E2", *(f"{symbol} / {unit}" for _ in sources for _, unit, symbol in scalars)],
+        "Scalars of the contact over the Hertz scales of the bare substrate.",
+        ["E1/E2", *(f"{q.symbol} / {q.scale}" for _ in sources for q in scalars)],
         rows,
         [("", 1), *((source_label(source), len(scalars)) for source in sources)],
     )

@@ -8,27 +8,16 @@ import numpy as np
 
 from verification.judging.verdict import Outcome
 from verification.problem.profile import Profile
+from verification.problem.quantity import QUANTITIES
 from verification.report.tables.case import budget_table, diagnostics_table, layer_table, verdict_table
 from verification.report.tables.cells import Cell, Row, Table
-from verification.report.tables.labels import EXACT, METHODS, OUTCOMES, OutcomeStyle, source_label
+from verification.report.tables.labels import OUTCOMES, OutcomeStyle, source_label
 from verification.report.tables.matrix import outcome_cell
 from verification.report.tables.numbers import engineering, plain, scientific
 from verification.running.result import CaseResult
+from verification.sources.registry import METHODS, PUBLISHED, REFERENCES
 
 __all__ = ["PublishedView", "published_overview", "published_view"]
-
-PUBLISHED = "published"
-_SAID = {
-    "peak_pressure": "p0",
-    "contact_radius": "a",
-    "approach": "delta",
-    "load": "W",
-    "kappa": "stiffness of the flat punch over 2 a E1*",
-    "series_over_load": "load by the formula over W",
-    "series_over_kappa": "stiffness by the formula over that of the flat punch",
-    "tau_max": "largest shear on the axis",
-    "von_mises_max": "largest von Mises stress on the axis",
-}
 
 
 @dataclass(frozen=True)
@@ -52,7 +41,7 @@ class PublishedView:
 def _sources(result: CaseResult) -> tuple[str, ...]:
     """Both methods, and the exact reference where it was asked."""
     claimed = {source for claim, _ in result.verdicts for source in claim.between}
-    return METHODS + tuple(source for source in EXACT if source in claimed)
+    return METHODS + tuple(source for source in REFERENCES if source in claimed)
 
 
 def published_overview(results: Sequence[CaseResult], anchors: Mapping[int, str]) -> Table:
@@ -209,7 +198,9 @@ def _table(result: CaseResult, column: str, quantity: str, items: Sequence[Mappi
             )
             rows.append(Row(head, cells, "" if counted else "inconclusive"))
     unit = f" in {first['unit']}" if first["unit"] != "1" else ""
-    said = _SAID.get(quantity, quantity) + (" here, of the other sign" if first["to_si"] < 0 else " here")
+    said = (QUANTITIES[quantity].meaning or QUANTITIES[quantity].symbol) + (
+        " here, of the other sign" if first["to_si"] < 0 else " here"
+    )
     return Table(
         f"{column}{unit}, as printed ({said}): "
         "the difference of each method from it, and the uncertainty of both together that allows for it.",

@@ -4,27 +4,24 @@ from collections.abc import Sequence
 
 from verification.credibility.accuracy import CORRECTED, PLAIN, PROBLEM, STAIRCASE, AccuracyStudy
 from verification.credibility.refinement import QUANTITIES, Ladder, settled
+from verification.problem.quantity import QUANTITIES as QUANTITY
+from verification.problem.quantity import SCALARS
 from verification.report.figures.loglog import Trail, decades, draw_loglog
 from verification.report.figures.panels import swatch
 from verification.report.sections.conversion import conversion_part
 from verification.report.sections.parameters import knob_section
 from verification.report.tables.cells import Cell, Gallery, Panel, Part, Row, Section, Table
-from verification.report.tables.labels import Style
 from verification.report.tables.numbers import factor, plain, scientific, seconds
+from verification.sources.source import Style
 
 __all__ = ["convergence_sections"]
 
-_TITLES = {
-    "p0": "p0",
-    "a": "contact radius a",
-    "approach": "approach",
+_SCALARS = [QUANTITY[name] for name in SCALARS]
+_TITLES = {q.symbol: q.symbol for q in _SCALARS} | {
     "pressure": "pressure, L2 over the contact",
     "stress": "stress, axis and interfaces",
 }
-_SCALES = {
-    "p0": "relative",
-    "a": "relative",
-    "approach": "relative",
+_SCALES = {q.symbol: "relative" for q in _SCALARS} | {
     "pressure": "over p0",
     "stress": "largest, over p_h",
 }

@@ -25,11 +25,14 @@ from matplotlib.ticker import NullFormatter, ScalarFormatter
 from scipy.interpolate import PchipInterpolator
 
 from verification.problem.arrays import Array
+from verification.problem.quantity import QUANTITIES as QUANTITY
 from verification.report.tables.csv import written
 from verification.running.store import write_atomically
+from verification.sources.registry import SOURCES as RECORDS
 from verification.study.criteria import MODES, Judged
 from verification.study.curves import Curve
 from verification.study.quantities import QUANTITIES
+from verification.study.table import SCALARS, SOURCES
 
 __all__ = [
     "Drawn",
@@ -45,7 +48,6 @@ __all__ = [
 # Okabe and Ito's colours, told apart by the colour-blind; friction is told by the dash besides.
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00", "#000000")
 DASHES: tuple[Any, ...] = ("-", (0, (5, 2)), (0, (1.2, 1.4)), (0, (5, 1.5, 1, 1.5)))
-MARKS = {"fem_reference": ("o", "finite elements"), "integral_equation": ("+", "exact reference")}
 DPI = 200
 LEAST = 1e-7  # smaller differences are drawn here
 NAMES = {
@@ -129,11 +131,8 @@ def contact_figure(curves: Sequence[Curve]) -> list[Drawn]:
     """Peak pressure, contact radius and approach against thickness; they do not depend on friction."""
     smallest = min(curve.friction for curve in curves)
     chosen = [curve for curve in curves if curve.friction == smallest]
-    names = {
-        "peak_pressure": r"$p_0 / p_h$",
-        "contact_radius": r"$a / a_h$",
-        "approach": r"$\delta / \delta_h$",
-    }
+    scales = {"delta_h": r"\delta_h"}
+    names = {name: f"${QUANTITY[name].tex} / {scales.get(scale, scale)}$" for name, scale in SCALARS.items()}
     return [
         _against_thickness(
             chosen,
@@ -186,7 +185,7 @@ def _against_thickness(
                 for source, marks in curve.marks.items():
                     _mark(axes, *marks[quantity], source, colour)
                 for source, (h, value) in {
-                    "semianalytic": (curve.h, values(curve)),
+                    SOURCES[0]: (curve.h, values(curve)),
                     **{s: m[quantity] for s, m in curve.marks.items()},
                 }.items():
                     rows += [
@@ -239,7 +238,7 @@ def _differences(
 
 
 def _mark(axes: Axes, h: Array, value: Array, source: str, colour: str) -> None:
-    marker = MARKS[source][0]
+    marker = RECORDS[source].style.marker
     axes.plot(h, value, marker, color=colour, markerfacecolor="none", markersize=4.5, markeredgewidth=0.8)
 
 
@@ -272,8 +271,7 @@ def _legend(figure: Figure, ratios: Sequence[float], frictions: Sequence[float],
         ]
     handles += [
         Line2D([], [], color="#444444", marker=mark, linestyle="none", markerfacecolor="none", label=said)
-        for source, (mark, said) in MARKS.items()
-        if source in sources
+        for mark, said in [(RECORDS[s].style.marker, RECORDS[s].label) for s in SOURCES[1:] if s in sources]
     ]
     figure.legend(handles=handles, loc="outside lower center", ncols=min(len(handles), 5), frameon=False)
 

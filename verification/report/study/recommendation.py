@@ -9,11 +9,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from verification.report.tables.labels import source_label
 from verification.study.criteria import MODES, Judged
 
 __all__ = ["Near", "near", "recommendation_sentences"]
-
-SOURCE = {"fem_reference": "the finite elements", "integral_equation": "the exact reference"}
 
 
 @dataclass(frozen=True)
@@ -148,7 +147,7 @@ def _checked(asked: Sequence[tuple[Judged, float, str]]) -> str:
             ((j, one) for j, one in found if one.source == source), key=lambda item: item[1].difference
         )
         said.append(
-            f"at most {one.difference:.1e} p_h off {SOURCE[source]} ({one.mode}, "
+            f"at most {one.difference:.1e} p_h off the {source_label(source)} ({one.mode}, "
             f"h = {_micrometres(j, one.h)}, f = {j.curve.friction:g})"
         )
     return f"At the checked thicknesses nearest to it these stresses are {' and '.join(said)}."

@@ -4,6 +4,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from verification.problem.quantity import QUANTITIES
+from verification.report.tables.labels import source_label
 from verification.study.criteria import MODES, Judged
 from verification.study.curves import Curve, Difference
 from verification.study.table import SCALARS
@@ -49,14 +51,14 @@ def _main(quantity: str, curves: Sequence[Curve]) -> str:
 
 def _contact(curves: Sequence[Curve]) -> str:
     """Ranges of the scalars of the contact, with the coating of each end."""
-    symbols = {"peak_pressure": "p0", "contact_radius": "a", "approach": "delta"}
     found = []
     for name, scale in SCALARS.items():
         low = min(curves, key=lambda c: c.extremes(name)[0][1])
         high = max(curves, key=lambda c: c.extremes(name)[1][1])
         (h_low, least), (h_high, most) = low.extremes(name)[0], high.extremes(name)[1]
         found.append(
-            f"{symbols[name]} is between {least:.3g} {scale} (E1/E2 = {low.ratio:.3g}, h = {h_low:.2g} a_h) "
+            f"{QUANTITIES[name].symbol} is between {least:.3g} {scale} (E1/E2 = {low.ratio:.3g}, "
+            f"h = {h_low:.2g} a_h) "
             f"and {most:.3g} {scale} (E1/E2 = {high.ratio:.3g}, h = {h_high:.2g} a_h)"
         )
     return f"Of the contact, {'; '.join(found)}."
@@ -159,7 +161,6 @@ def _range(j: Judged, low: float, high: float) -> str:
 
 def agreement_sentences(differences: Sequence[Difference]) -> list[str]:
     """How far the other sources are from the semi-analytical method over all checked points."""
-    names = {"fem_reference": "finite element model", "integral_equation": "exact reference"}
     found = []
     for source in dict.fromkeys(d.source for d in differences):
         mine = [d for d in differences if d.source == source]
@@ -167,8 +168,8 @@ def agreement_sentences(differences: Sequence[Difference]) -> list[str]:
         scalar = max((d for d in mine if d.quantity in SCALARS), key=lambda d: d.largest)
         where = f"E1/E2 = {stress.ratio:.3g}, h = {stress.h:.3g} a_h, f = {stress.friction:g}"
         found.append(
-            f"{stress.points} points were also solved by the {names[source]}: no stress differs by more than "
-            f"{stress.largest:.1e} p_h ({stress.quantity} at {where}), "
+            f"{stress.points} points were also solved by the {source_label(source)}: no stress differs "
+            f"by more than {stress.largest:.1e} p_h ({stress.quantity} at {where}), "
             f"no scalar of the contact by more than {scalar.largest:.1e} of its scale "
             f"({scalar.quantity.replace('_', ' ')})."
         )

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from verification.judging.verdict import Claim, Outcome, Verdict
-from verification.problem.profile import SCALARS
+from verification.problem.quantity import QUANTITIES, SCALARS, unit_of
 from verification.report.tables.cells import Cell, Row, Table
 from verification.report.tables.labels import OUTCOMES, pair_label, source_label
 from verification.report.tables.lookup import baseline, layers, scalar, scale
@@ -24,10 +24,6 @@ __all__ = [
     "time_table",
     "verdict_table",
 ]
-
-_UNITS = {"peak_pressure": "Pa", "contact_radius": "m", "approach": "m"}
-_SYMBOLS = {"peak_pressure": "p0", "contact_radius": "a", "approach": "approach"}
-_SCALES = {"peak_pressure": "p_h", "contact_radius": "a_h", "approach": "delta_h"}
 
 
 def layer_table(result: CaseResult) -> Table:
@@ -66,7 +62,7 @@ def contact_table(result: CaseResult) -> Table:
     columns = ["source"]
     groups = [("", 1)]
     for quantity in SCALARS:
-        columns += [f"{_SYMBOLS[quantity]}", f"/ {_SCALES[quantity]}", against]
+        columns += [QUANTITIES[quantity].symbol, f"/ {QUANTITIES[quantity].scale}", against]
         groups.append((quantity.replace("_", " "), 3))
     return Table(
         "Scalars of the contact with the numerical uncertainty each source states (±), made dimensionless "
@@ -82,9 +78,10 @@ def _scalar_cells(result: CaseResult, quantity: str, source: str, base: str | No
     if found is None:
         return [Cell("no result", css="no-result"), Cell("–"), Cell("–")]
     value, spread = found
-    unit = _UNITS[quantity]
-    shown = Cell(with_uncertainty(value, spread, unit), value, note="" if spread else _spread_note(spread))
-    relative = value / scale(result, _SCALES[quantity])
+    shown = Cell(
+        with_uncertainty(value, spread, unit_of(quantity)), value, note="" if spread else _spread_note(spread)
+    )
+    relative = value / scale(result, QUANTITIES[quantity].scale)
     ratio = Cell(f"{relative:.6f}", relative)
     reference = scalar(result, quantity, base) if base else None
     if reference is None or source == base or not reference[0]:
@@ -188,7 +185,7 @@ def budget_table(result: CaseResult) -> Table | None:
                 cells = [
                     Cell(quantity),
                     Cell(knob, css="dominant" if dominant else ""),
-                    Cell(engineering(value, _unit(quantity), 2), value),
+                    Cell(engineering(value, unit_of(quantity), 2), value),
                     Cell(scientific(_relative(result, source.source, quantity, value)), value),
                     Cell("◀ dominates" if dominant else "", css="dominant"),
                 ]
@@ -201,10 +198,6 @@ def budget_table(result: CaseResult) -> Table | None:
         ["source", "quantity", "knob", "uncertainty", "relative", ""],
         rows,
     )
-
-
-def _unit(quantity: str) -> str:
-    return _UNITS.get(quantity, "Pa")
 
 
 def _relative(result: CaseResult, source: str, quantity: str, value: float) -> float | None:

@@ -7,7 +7,8 @@ from collections.abc import Sequence
 from io import StringIO
 from itertools import zip_longest
 
-from verification.problem.profile import SCALARS, Profile
+from verification.problem.profile import Profile
+from verification.problem.quantity import unit_of
 from verification.report.tables.lookup import coordinate
 from verification.running.result import CaseResult
 
@@ -33,7 +34,7 @@ def line_csv(result: CaseResult, line: str) -> str:
         if line != "contact":
             columns.append([f"{coordinate(line)} [m]", *(f"{x:.9g}" for x in group[0].position.tolist())])
         for profile in group:
-            head = f"{profile.quantity} [{_unit(profile)}] {profile.source}"
+            head = f"{profile.quantity} [{unit_of(profile.quantity)}] {profile.source}"
             columns.append([_safe(head), *(f"{v:.8g}" for v in profile.value.tolist())])
             if profile.uncertainty is not None:
                 spread = [f"{v:.3g}" for v in profile.uncertainty.tolist()]
@@ -45,10 +46,6 @@ def embedded(text: str) -> str:
     """``text`` compressed as a data address; the same text always gives the same address."""
     packed = gzip.compress(text.encode(), compresslevel=9, mtime=0)
     return f"data:application/gzip;base64,{base64.b64encode(packed).decode()}"
-
-
-def _unit(profile: Profile) -> str:
-    return "m" if profile.quantity in SCALARS[1:] else "Pa"
 
 
 def written(rows: Sequence[Sequence[str]]) -> str:

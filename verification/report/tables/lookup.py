@@ -7,9 +7,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from verification.judging.verdict import Claim
-from verification.problem.profile import SCALARS, Profile
-from verification.report.tables.labels import EXACT, METHODS
+from verification.problem.profile import Profile
+from verification.problem.quantity import QUANTITIES, SCALARS
 from verification.running.result import CaseResult
+from verification.sources.registry import METHODS, REFERENCES
 
 __all__ = [
     "GROUPS",
@@ -28,8 +29,7 @@ __all__ = [
     "sources_with_profiles",
 ]
 
-GROUPS = ("p0, a, approach", "surface", "axis", "interfaces")
-_SCALAR_SCALES = {"peak_pressure": "p_h", "contact_radius": "a_h", "approach": "delta_h"}
+GROUPS = (", ".join(QUANTITIES[name].symbol for name in SCALARS), "surface", "axis", "interfaces")
 
 
 def group_of(line: str) -> str:
@@ -54,9 +54,9 @@ def sources_with_profiles(result: CaseResult) -> tuple[str, ...]:
 def baseline(result: CaseResult) -> str | None:
     """What the others are held against: the last exact reference, else the finite elements."""
     found = sources_with_profiles(result)
-    exact = [source for source in found if source in EXACT]
+    exact = [source for source in found if source in REFERENCES]
     references = [source for source in found if source not in METHODS]
-    for choice in (exact, references, [s for s in found if s == "fem_reference"]):
+    for choice in (exact, references, [s for s in found if s in METHODS[1:]]):
         if choice:
             return choice[-1]
     return None

@@ -4,10 +4,11 @@ from collections.abc import Callable, Mapping, Sequence
 
 from verification.judging.verdict import Claim, Outcome, Verdict
 from verification.report.tables.cells import Cell, Row, Table
-from verification.report.tables.labels import METHODS, OUTCOMES, source_label
+from verification.report.tables.labels import OUTCOMES, source_label
 from verification.report.tables.lookup import GROUPS, group_of, slug
 from verification.report.tables.numbers import scientific
 from verification.running.result import CaseResult
+from verification.sources.registry import METHODS
 
 __all__ = ["outcome_cell", "verdict_matrix"]
 

@@ -46,8 +46,8 @@ FAULTS = (
         ("peak_pressure", "contact_radius", "approach", "sampling"),
         Edit(
             "verification.sampling.lines:sample_contact",
-            "np.array([getattr(stated, name)], dtype=float)",
-            "np.array([getattr(stated, name) * getattr(solution, name)], dtype=float)",
+            "np.array([stated])",
+            "np.array([stated]) * value",
         ),
         solve=("semianalytic", "integral_equation"),
     ),
@@ -161,7 +161,7 @@ FAULTS = (
         "sigma_xx and sigma_yy of every source are sampled for each other",
         ("sampling",),
         Constant(
-            "verification.sampling.lines:STRESSES",
+            "verification.sampling.lines:IN_PLANE",
             {"sigma_xx": (1, 1), "sigma_yy": (0, 0), "sigma_zz": (2, 2), "sigma_xz": (0, 2)},
         ),
         cases=(),
@@ -192,7 +192,11 @@ FAULTS = (
         "units_slipped_load",
         "every method is handed the load in kgf for N",
         ("load balance", "peak_pressure", "contact_radius", "approach"),
-        Edit("verification.sources.contact:solvers", "load=problem.load,", "load=problem.load * 9.80665,"),
+        Edit(
+            "verification.problem.contact:keywords",
+            "for f in fields(problem)}",
+            "for f in fields(problem)} | {'load': problem.load * 9.80665}",
+        ),
         cases=SOLID,
         solve=(*METHODS, "integral_equation"),
     ),
