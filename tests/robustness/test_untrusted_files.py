@@ -18,6 +18,7 @@ from verification.cases.published import is_published
 from verification.cases.toml import CaseError
 from verification.commands.common import one_line
 from verification.judging.verdict import Outcome, Verdict
+from verification.report.material import Material
 from verification.report.page import render
 from verification.running.contact import failed
 from verification.running.fields import fields_path, plane_path
@@ -112,7 +113,7 @@ def page_of(text: str) -> str:
         sources=(SourceResult(text, 1.0, text, {text: text}, ((text, text, 1.0),)),),
         verdicts=((claim, Verdict(Outcome.NO_RESULT, text)),),
     )
-    return render([result], RunInfo(text, text, 1.0, 1, text, text, {text: text}))
+    return render(Material([result], RunInfo(text, text, 1.0, 1, text, text, {text: text})))
 
 
 def test_text_of_a_stranger_stays_text_in_the_page():

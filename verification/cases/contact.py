@@ -115,7 +115,8 @@ def parse_case(raw: bytes, path: Path) -> Case:
     text, checked = read_toml(raw, path, _CaseFile)
     try:
         p = checked.problem
-        bare = CoatedContact(p.radius, p.load, (), (p.substrate.E, p.substrate.nu), p.friction)
+        given = dict(p) | {"substrate": (p.substrate.E, p.substrate.nu), "coatings": ()}
+        bare = CoatedContact(**given)
         problem = replace(bare, coatings=tuple((c.E, c.nu, c.in_metres(bare.a_h)) for c in p.coatings))
     except (ValueError, OverflowError, ZeroDivisionError) as error:
         raise CaseError(f"{path}: problem: {error}") from None

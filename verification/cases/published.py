@@ -130,7 +130,7 @@ def _problem(p: ProblemEntry) -> Problem:
     if p.radius is not None and p.load is not None:
         bare = CoatedContact(p.radius * length, p.load * force, (), substrate, p.friction)
         coatings = tuple((c.E * stress, c.nu, _thickness(c, length, bare.a_h)) for c in p.coatings)
-        return CoatedContact(bare.radius, bare.load, coatings, substrate, p.friction)
+        return replace(bare, coatings=coatings)
     if p.radius is not None:
         coatings = tuple((c.E * stress, c.nu, _thickness(c, length, None)) for c in p.coatings)
         return LoadingCurve(p.radius * length, CONTROLS[0], (1.0,), coatings, substrate)

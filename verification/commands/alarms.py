@@ -88,7 +88,8 @@ def alarms(
     if (code := no_gmsh()) is not None:
         return code
 
-    from verification.report import write_report
+    from verification.report.material import Material
+    from verification.report.write import write_report
 
     started = datetime.datetime.now(datetime.UTC)
     try:
@@ -99,7 +100,7 @@ def alarms(
             solved = {r.name: r for r in solve(tasks, jobs, time_limit, quiet or as_json)}
             results = [kept.get(case.name) or solved[case.name] for case in cases]
             info = run_info(f"coatcheck alarms --count {count} --seed {seed}", started, jobs)
-            page = write_report(results, output, info)
+            page = write_report(Material(results, info), output)
             found = counted(results, seed, info)
             stored = write_record(records, found) if record else None
     except (StoreError, OSError) as error:

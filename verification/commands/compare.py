@@ -57,7 +57,7 @@ def compare(
     try:
         found = compare_runs(read_run(first), read_run(second))
         if output is not None:
-            from verification.report.sections.comparison import comparison_page
+            from verification.report.comparison import comparison_page
 
             write_atomically(output, comparison_page(found).encode("utf-8", errors="replace"))
     except StoreError as error:
@@ -92,6 +92,6 @@ def _print(found: RunComparison) -> None:
         print_out(f"... with {more} more, which --output or --json shows")
     for name, then, now in found.versions:
         print_out(escape(f"{name}: {one_line(then)} to {one_line(now)}"))
-    from verification.report.sections.comparison import comparison_sentence
+    from verification.report.comparison import comparison_sentence
 
     print_out(comparison_sentence(found))

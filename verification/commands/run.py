@@ -8,6 +8,7 @@ import unicodedata
 from collections import Counter
 from collections.abc import Sequence
 from contextlib import suppress
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import Annotated
@@ -108,7 +109,9 @@ def run(
 
     from verification.credibility import accuracy as accuracy_study
     from verification.credibility.accuracy import AccuracyStudy
-    from verification.report.assemble import write
+    from verification.report.material import Material, gather
+    from verification.report.write import write_report
+    from verification.running.fields import read_planes
     from verification.study import formulas as effective_study
     from verification.study.formulas import EffectiveStudy
 
@@ -135,7 +138,10 @@ def run(
             ordered = [kept.get(case.name) or results[case.name] for case in chosen]
             info = run_info(shlex.join(["coatcheck", "run", *cases]), started, jobs)
             beside = regression(ordered, known, within_package(baseline), info, whole=not cases)
-            page = write(ordered, output, info, study, beside, records, tests, formulas)
+            evidence = replace(
+                gather(records), accuracy=study, baseline=beside, self_tests=tests, formulas=formulas
+            )
+            page = write_report(Material(ordered, info, evidence, read_planes(output, ordered)), output)
     except StoreError as error:
         return print_error(str(error))
     except KeyboardInterrupt:

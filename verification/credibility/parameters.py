@@ -11,9 +11,9 @@ from typing import Any
 import numpy as np
 
 from verification.credibility.uncertainty import Estimate, uncertainty
-from verification.problem.contact import CoatedContact, Solution, keywords
+from verification.problem.contact import CoatedContact, Solution
 from verification.problem.quantity import QUANTITIES, SCALARS
-from verification.sources.references import integral_equation
+from verification.sources.exact import solve_exactly
 from verification.sources.registry import METHODS, SOURCES, solvers
 from verification.sources.source import NumericalParameter
 
@@ -146,7 +146,7 @@ def study(
     problem: CoatedContact, solid: str, methods: Sequence[str] = METHODS
 ) -> tuple[tuple[KnobLadder, ...], tuple[Stated, ...]]:
     """Every ladder of every knob, and what each method states of itself."""
-    exact = integral_equation.solve(**keywords(problem), estimate_uncertainty=False)
+    exact = solve_exactly(problem, {"estimate_uncertainty": False})
     available = solvers()
     knobs = [k for k in KNOBS if k.method in methods and (problem.coatings or not k.coated)]
     ladders = tuple(turn(problem, k, exact.contact_radius, available[k.method], solid) for k in knobs)

@@ -14,11 +14,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from verification.problem.arrays import FloatArray
-from verification.problem.contact import CoatedContact, Solution, keywords
+from verification.problem.contact import CoatedContact, Solution
 from verification.problem.profile import lines_of
 from verification.problem.quantity import QUANTITIES as ALL
 from verification.problem.quantity import SCALARS
-from verification.sources.references import integral_equation
+from verification.sources.exact import solve_exactly
+from verification.sources.methods import solve_elements, solve_semianalytic
 
 __all__ = ["QUANTITIES", "Ladder", "Level", "Yardstick", "elements", "ladder", "order_of", "settled"]
 
@@ -166,12 +167,10 @@ def ladder(
     """``problem`` by the semi-analytical method at each number of ``patches`` a side.
 
     Without the method's own estimate of its error, for which it would solve again.
-    numerics : any other keyword of semianalytic.solve.   solve : another solver of the same keywords.
+    numerics : any other keyword of semianalytic.solve.   solve : another solver, see ``Source``.
     """
-    import semianalytic
-
     steps = [(f"N = {n}", {"patches": n, **numerics}, float(n)) for n in patches]
-    return _climb(problem, "semianalytic", solid, setting, solve or semianalytic.solve, steps)
+    return _climb(problem, "semianalytic", solid, setting, solve or solve_semianalytic, steps)
 
 
 def elements(
@@ -183,10 +182,8 @@ def elements(
     solve: Callable[..., Solution] | None = None,
 ) -> Ladder:
     """``problem`` by elements of ``order`` on meshes of each ``quality``; ``solve`` as in ``ladder``."""
-    import fem_reference
-
     steps = [(name, {"order": order, "quality": name}, None) for name in quality]
-    return _climb(problem, "fem_reference", solid, f"order {order}", solve or fem_reference.solve, steps)
+    return _climb(problem, "fem_reference", solid, f"order {order}", solve or solve_elements, steps)
 
 
 def _climb(
@@ -199,11 +196,11 @@ def _climb(
 ) -> Ladder:
     levels: list[Level] = []
     try:
-        given = keywords(problem) | {"estimate_uncertainty": False}
-        yardstick = Yardstick(problem, integral_equation.solve(**given))
+        without = {"estimate_uncertainty": False}
+        yardstick = Yardstick(problem, solve_exactly(problem, without))
         for name, numerics, resolution in steps:
             begin = time.perf_counter()
-            found = solve(**given, **numerics)
+            found = solve(problem, numerics | without)
             seconds = time.perf_counter() - begin
             if resolution is None:
                 resolution = float(np.sqrt(found.diagnostics.dofs))

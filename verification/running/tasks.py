@@ -56,7 +56,7 @@ def cost(case: Case) -> float:
     solves = 1 + bool(problem.friction) + 4 * case.resolve
     finest = [numerics["patches"] / 257 for numerics in case.numerics.values() if "patches" in numerics]
     thin = [0.1 * problem.a_h / thickness for _, _, thickness in problem.coatings[:1]]
-    return layers * solves * min(max(1.0, *finest, *thin), 2.0) ** 2
+    return layers * solves * min(max([1.0, *finest, *thin]), 2.0) ** 2
 
 
 def published_task(case: PublishedCase, folder: Path) -> Task[CaseResult]:

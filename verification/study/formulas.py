@@ -13,7 +13,7 @@ import numpy as np
 from scipy.optimize import least_squares, minimize_scalar
 
 from verification.problem.arrays import Array
-from verification.problem.contact import CoatedContact, keywords
+from verification.problem.contact import CoatedContact
 from verification.problem.profile import lines_of
 from verification.running.pool import Task
 from verification.running.result import CaseResult, SourceResult, describe
@@ -21,7 +21,7 @@ from verification.running.result import from_json as case_from_json
 from verification.running.result import to_json as case_to_json
 from verification.running.store import write_checked
 from verification.sampling.lines import sample, sample_contact
-from verification.sources.references import integral_equation
+from verification.sources.exact import solve_exactly
 from verification.sources.references.effective_modulus import (
     FORMULAS,
     I0,
@@ -32,6 +32,7 @@ from verification.sources.references.effective_modulus import (
 )
 from verification.sources.references.flat_punch import pressed
 from verification.sources.references.layer_limits import spring_bed, squeezed_film, thick
+from verification.sources.registry import EXACT
 
 __all__ = ["EffectiveStudy", "Limit", "from_json", "measure", "task", "to_json"]
 
@@ -190,21 +191,21 @@ def _member(ratio: float, friction: float) -> CaseResult:
     started = time.perf_counter()
     bare = CoatedContact(10e-3, 20.0, (), (210e9, 0.3), friction)
     problem = replace(bare, coatings=((ratio * 210e9, 0.3, bare.a_h),))
-    found = integral_equation.solve(**keywords(problem), estimate_uncertainty=False)
+    found = solve_exactly(problem, {"estimate_uncertainty": False})
     x, z = (
         2.5 * bare.a_h * np.linspace(-1 if friction else 0, 1, 101),
         4 * bare.a_h * np.linspace(0.005, 1, 60) ** 1.5,
     )
-    profiles = list(sample_contact(found, "integral_equation", problem))
+    profiles = list(sample_contact(found, EXACT[0], problem))
     for line in lines_of(problem):
-        profiles += sample(found, "integral_equation", line, z if line.depth is None else x)
+        profiles += sample(found, EXACT[0], line, z if line.depth is None else x)
     seconds = time.perf_counter() - started
     return CaseResult(
         name=f"exact-{ratio:g}-{friction:g}",
         title=f"E1/E2 = {ratio:g}, h = a_h, f = {friction:g}",
         source="configuration of E. J. O'Sullivan and R. B. King, J. Tribol. 110 (1988) 235-240",
         problem=describe(problem),
-        sources=(SourceResult("integral_equation", seconds, None),),
+        sources=(SourceResult(EXACT[0], seconds, None),),
         profiles=tuple(profiles),
         verdicts=(),
         seconds=seconds,

@@ -21,6 +21,7 @@ from verification.cases.published import published_cases
 from verification.commands import common
 from verification.commands.compare import compare
 from verification.commands.list_cases import list_cases
+from verification.report.material import Material
 from verification.report.pdf import NoBrowser, browser, printed
 from verification.report.write import report_json
 from verification.running.result import to_json
@@ -63,7 +64,7 @@ def stored(tmp_path):
     ]
     for result in results:
         write_checked(tmp_path / "run" / "cases" / f"{result.name}.json", to_json(result))
-    (tmp_path / "run" / "report.json").write_text(report_json(results, INFO))
+    (tmp_path / "run" / "report.json").write_text(report_json(Material(results, INFO)))
     return tmp_path / "run"
 
 
@@ -166,7 +167,7 @@ def test_names_are_whole_in_a_terminal(stored, screen, width):
     shown = screen(width)
     name = "16_ratio_quarter_sliding_of_mine"
     results = [replace(result, name=name) for result in read_run(stored).results[:1]]
-    (stored / "report.json").write_text(report_json(results, INFO))
+    (stored / "report.json").write_text(report_json(Material(results, INFO)))
     assert list_cases() == 0
     assert compare(stored, stored) == 0
     assert [n for n in [name, *shipped_cases(), *published_cases()] if n not in shown()] == []

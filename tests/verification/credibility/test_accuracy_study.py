@@ -15,6 +15,7 @@ from verification.credibility.refinement import QUANTITIES, elements, ladder, or
 from verification.judging.invariants.influence import conversion_errors
 from verification.running.pool import Task, run_tasks
 from verification.running.store import StoreError, write_checked
+from verification.sources.methods import solve_semianalytic
 from verification.sources.references.patch import over_square, surface_coefficient
 
 PLACES = [(0, 0), (1, 0), (1, 1), (3, 2), (20, 0), (64, 64)]
@@ -137,10 +138,10 @@ def test_elements_of_higher_order_are_closer_on_the_same_mesh():
 def test_level_that_fails_is_a_sentence_and_the_coarser_ones_stay():
     import semianalytic
 
-    def stops(*, patches, **others):
-        if patches > 33:
+    def stops(problem, numerics):
+        if numerics["patches"] > 33:
             raise semianalytic.NotConverged("not settled after 3 iterations;\n raise max_iterations")
-        return semianalytic.solve(patches=patches, **others)
+        return solve_semianalytic(problem, numerics)
 
     found = ladder(BARE, (33, 65, 129), solve=stops)
     assert [level.name for level in found.levels] == ["N = 33"]

@@ -21,6 +21,7 @@ from verification.regression.baseline import (
 )
 from verification.regression.drift import State, measured
 from verification.regression.record import path_in, read_baseline, write_baseline
+from verification.report.material import Material
 from verification.report.write import report_json
 from verification.running.result import CaseResult, to_json
 from verification.running.store import StoreError, write_checked
@@ -204,7 +205,7 @@ def test_a_damaged_baseline_is_one_sentence_that_names_it(tmp_path):
 def run_directory(folder: Path, results: list[CaseResult]) -> None:
     """What a run leaves: the report with a checked file beside it for each case."""
     folder.mkdir()
-    (folder / "report.json").write_text(report_json(results, INFO))
+    (folder / "report.json").write_text(report_json(Material(results, INFO)))
     for result in results:
         write_checked(folder / "cases" / f"{result.name}.json", to_json(result))
 

@@ -14,7 +14,8 @@ from synthetic_results import INFO, STEEL, contact, result_of
 from verification.judging.verdict import Outcome
 from verification.regression.comparison import compare_runs
 from verification.regression.drift import State
-from verification.report.sections.comparison import comparison_page, comparison_sentence
+from verification.report.comparison import comparison_page, comparison_sentence
+from verification.report.material import Material
 from verification.report.write import report_json
 from verification.running.result import CaseResult, RunInfo
 from verification.running.store import StoreError
@@ -38,7 +39,7 @@ def run_of(*results: CaseResult, info: RunInfo = INFO) -> StoredRun:
 
 def write(folder: Path, *results: CaseResult, info: RunInfo = INFO) -> None:
     folder.mkdir(parents=True)
-    (folder / "report.json").write_text(report_json(results, info))
+    (folder / "report.json").write_text(report_json(Material(results, info)))
 
 
 def test_a_run_beside_itself_shows_nothing():

@@ -12,15 +12,25 @@ from synthetic_study import conversion, elements, falling, study
 from verification.credibility.accuracy import CORRECTED, PLAIN, STAIRCASE, failed
 from verification.credibility.refinement import QUANTITIES
 from verification.report.figures.loglog import Trail, decades, draw_loglog
+from verification.report.material import Evidence, Material
 from verification.report.page import render
-from verification.report.sections.refinement import convergence_sections
+from verification.report.sections.refinement import finite_element_section, semianalytic_section
 from verification.report.tables.numbers import factor
 from verification.sources.source import Style
 
 
+def material(found, results=()) -> Material:
+    return Material(list(results), INFO, Evidence(accuracy=found))
+
+
+def convergence_sections(found):
+    made = (make(material(found)) for make in (semianalytic_section, finite_element_section))
+    return [section for section in made if section is not None]
+
+
 @pytest.fixture(scope="module")
 def page():
-    return render([result_of(contact(), points=11)], INFO, study())
+    return render(material(study(), [result_of(contact(), points=11)]))
 
 
 def text_of(sections) -> str:
@@ -34,7 +44,7 @@ def test_sections_stand_between_the_accuracy_and_the_times(page):
 
 
 def test_without_a_study_there_is_no_section():
-    assert 'id="semi-analytical-accuracy"' not in render([result_of(contact(), points=11)], INFO)
+    assert 'id="semi-analytical-accuracy"' not in render(Material([result_of(contact(), points=11)], INFO))
 
 
 def test_every_quantity_has_a_figure_with_every_curve(page):
@@ -87,7 +97,7 @@ def test_what_failed_is_said_in_its_section():
     grid, element = convergence_sections(broken)
     assert grid.failures == ("semianalytic: no grid fits",)
     assert element.failures == ("fem_reference, coated, order 3, default: no mesh",)
-    document = Document(render([], INFO, broken))
+    document = Document(render(material(broken)))
     assert len([a for a in document.all("p") if a.get("class") == "failure"]) == 2
 
 
@@ -95,7 +105,7 @@ def test_study_that_died_is_its_reason_alone():
     (section,) = convergence_sections(failed("its process was killed", 3.0))
     assert section.failures == ("its process was killed",)
     assert section.parts == []
-    assert "its process was killed" in Document(render([], INFO, failed("its process was killed", 3.0))).text(
+    assert "its process was killed" in Document(render(material(failed("its process was killed", 3.0)))).text(
         "p"
     )
 
@@ -104,9 +114,9 @@ def test_part_that_is_missing_leaves_the_others():
     whole = study()
     bare = replace(whole.ladders[0], levels=(), failure="N = 33: no grid fits")
     for ladders in ((bare,), (bare, *whole.ladders[1:]), (bare, elements(3)), whole.ladders[1:2]):
-        Document(render([], INFO, replace(whole, ladders=ladders)))
+        Document(render(material(replace(whole, ladders=ladders))))
     for conversions in ((), whole.conversions[:1], whole.conversions[1:2], (conversion("new", 4, 1, 1.0),)):
-        Document(render([], INFO, replace(whole, conversions=conversions)))
+        Document(render(material(replace(whole, conversions=conversions))))
 
 
 def test_no_number_whatever_keeps_a_report_from_being_written():
@@ -133,19 +143,19 @@ def test_no_number_whatever_keeps_a_report_from_being_written():
             replace(one, error=tuple(float(random.choice(odd)) for _ in one.error), largest=float("nan"))
             for one in whole.conversions
         )
-        Document(render([], INFO, replace(whole, ladders=ladders, conversions=conversions)))
+        Document(render(material(replace(whole, ladders=ladders, conversions=conversions))))
 
 
 def test_words_from_strangers_stay_words():
     evil = "<script>alert(1)</script>{{7*7}}"
     bad = replace(falling(evil, 2.0, solid=evil), failure=evil)
-    document = Document(render([], INFO, replace(study(evil), ladders=(bad,))))
+    document = Document(render(material(replace(study(evil), ladders=(bad,)))))
     assert len(document.all("script")) == 1
     assert " ".join(text for _, text in document.texts).count(evil) >= 3
 
 
 def test_sections_cost_little(page):
-    assert len(page.encode()) - len(render([result_of(contact(), points=11)], INFO).encode()) < 2e5
+    assert len(page.encode()) - len(render(Material([result_of(contact(), points=11)], INFO)).encode()) < 2e5
 
 
 def test_scales_hold_every_point_off_the_frame():

@@ -11,8 +11,9 @@ from verification.credibility.faults import campaign
 from verification.credibility.faults.record import Catch, Record, Row
 from verification.credibility.independence import PARTS, imports_of, parts, shared
 from verification.regression.baseline import regression
-from verification.report.credibility.evidence import Evidence, gather
-from verification.report.credibility.section import credibility_section, figures
+from verification.report.credibility import statement
+from verification.report.credibility.statement import figures
+from verification.report.material import Evidence, Material, gather
 from verification.report.page import render
 from verification.report.tables.cells import Part, Section
 from verification.running.result import CaseResult
@@ -40,7 +41,9 @@ def evidence(tmp_path_factory) -> Evidence:
 
 
 def section(evidence: Evidence, results: list[CaseResult] = RESULTS, **more) -> Section:
-    return credibility_section(results, INFO, more.get("study"), evidence, more.get("baseline"))
+    found = statement.section(Material(results, INFO, replace(evidence, **more)))
+    assert found is not None
+    return found
 
 
 def part(found: Section, title: str) -> Part:
@@ -125,7 +128,7 @@ def test_a_damaged_record_is_named_and_its_figure_is_not_measured(tmp_path):
 
 
 def test_figures_of_this_run_follow_its_results(evidence):
-    good = section(evidence, study=study())
+    good = section(evidence, accuracy=study())
     total = sum(len(r.verdicts) for r in RESULTS)
     assert f"{total} of {total} comparisons of this run agree" in part(good, STEPS[3]).text
     assert "100 %" in part(good, STEPS[2]).text
@@ -187,7 +190,7 @@ def test_an_import_across_the_border_is_found(tmp_path, monkeypatch):
 def test_the_page_takes_the_section_and_escapes_it(evidence, tmp_path):
     bad = result_of(contact((E / 2, NU, 1.0)), name="vague", points=9, errors={"semianalytic": 4e-3})
     write_record(tmp_path, counted([replace(bad, title="<script>alert(1)</script>")], 1, INFO))
-    text = render(RESULTS[:1], INFO, extra=[section(gather(tmp_path))])
+    text = render(Material(RESULTS[:1], INFO, gather(tmp_path)))
     assert '<section class="run" id="credibility">' in text
     for title in STEPS:
         assert f"<h3>{title}</h3>" in text

@@ -15,9 +15,10 @@ from verification.credibility.parameters import KnobLadder, Stated
 from verification.judging.invariants import Invariant
 from verification.judging.verdict import Outcome
 from verification.report.junit import junit_xml
+from verification.report.material import Material
 from verification.report.page import render
 from verification.report.sections.accuracy import coverage_table
-from verification.report.sections.invariants import invariant_cell, invariant_section, invariant_table
+from verification.report.sections.invariants import invariant_cell, invariant_table, section
 from verification.report.sections.parameters import knob_section
 from verification.report.tables.case import dominating_knob
 from verification.running.result import from_json, to_json
@@ -81,17 +82,17 @@ def test_table_begins_with_what_is_broken_then_with_the_closest_to_its_bound(sli
 
 
 def test_section_gathers_the_layers_of_a_law_over_all_cases(sound, slipped):
-    section = invariant_section([sound, slipped], {0: "a", 1: "b"})
-    assert "4 of 6 invariants hold over 2 cases" in section.parts[0].text
-    rows = {row.head.text: row for row in section.parts[0].tables[0].rows}
+    found = section(Material([sound, slipped], INFO))
+    assert "4 of 6 invariants hold over 2 cases" in found.parts[0].text
+    rows = {row.head.text: row for row in found.parts[0].tables[0].rows}
     assert set(rows) == {"load balance", "equilibrium", "sphere"}
     held = next(cell for cell in rows["equilibrium"].cells if cell.text)
-    assert (held.text, held.href) == ("2 of 3", "#b-invariants")
-    assert invariant_section([replace(sound, invariants=())], {0: "a"}) is None
+    assert (held.text, held.href) == ("2 of 3", "#case-stiff-coating--2-invariants")
+    assert section(Material([replace(sound, invariants=())], INFO)) is None
 
 
 def test_page_says_what_is_broken_before_the_problem(slipped):
-    page = render([slipped], INFO)
+    page = render(Material([slipped], INFO))
     assert "2 of 4 invariants do not hold" in page
     assert page.index("Invariants that do not hold") < page.index("<h3>Problem</h3>")
     assert 'id="case-stiff-coating-invariants"' in page

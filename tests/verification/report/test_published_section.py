@@ -12,6 +12,7 @@ import pytest
 
 from verification.cases.published import published_cases, read_published
 from verification.report.junit import junit_xml
+from verification.report.material import Material
 from verification.report.page import render
 from verification.running.published import failed, run
 from verification.running.result import RunInfo, from_json
@@ -32,7 +33,7 @@ def results():
 
 @pytest.fixture(scope="module")
 def page(results):
-    return render(results, INFO)
+    return render(Material(results, INFO))
 
 
 def rows_of(page, anchor):
@@ -83,13 +84,13 @@ def test_a_value_that_is_not_met_is_marked(results):
     profiles = tuple(
         replace(p, value=p.value * 1.001) if p.source == "fem_reference" else p for p in wrong.profiles
     )
-    rows = rows_of(render([replace(wrong, profiles=profiles)], INFO), "jones-1962")
+    rows = rows_of(render(Material([replace(wrong, profiles=profiles)], INFO)), "jones-1962")
     assert sum(row.endswith("✗") for row in rows) == 2
 
 
 def test_a_failed_source_still_has_its_page():
     case = read_published(SHIPPED["jones_1962"])
-    page = render([failed(case, "its process <died>", 1.0)], INFO)
+    page = render(Material([failed(case, "its process <died>", 1.0)], INFO))
     assert "its process &lt;died&gt;" in page
     assert "0 of 2" in page
 

@@ -80,7 +80,7 @@ def test_the_best_reference_is_the_last_exact_one_that_gave_a_result():
 
 def test_the_worst_verdict_of_a_group_decides_its_cell():
     result = result_of(COATED, spoil={("sigma_yy", "surface", "fem_reference"): 9 * COATED.p_h}, points=31)
-    (row,) = verdict_matrix([result], {0: "case-x"}).rows
+    (row,) = verdict_matrix([result], {result: "case-x"}).rows
     cells = {(cell.css.split()[1], cell.text[0], cell.href) for cell in row.cells if "verdict" in cell.css}
     assert ("disagrees", "D", "#case-x-surface") in cells
     assert row.cells[0].text.startswith("D")

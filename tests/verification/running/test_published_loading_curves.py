@@ -7,6 +7,7 @@ from verification.cases.published import published_cases, read_published
 from verification.cases.toml import CaseError
 from verification.judging.verdict import Outcome
 from verification.problem.loading import LoadingCurve
+from verification.report.material import Material
 from verification.report.page import render
 from verification.running.published import run
 from verification.running.result import RunInfo, from_json, to_json
@@ -77,7 +78,7 @@ def test_only_what_counts_is_judged_and_all_of_it_is_shown(files):
     assert judged["k"] is Outcome.AGREES
     assert judged["s"] is Outcome.AGREES
     assert from_json(to_json(result)).problem["control"] == "contact_radius"
-    page = render([result], INFO)
+    page = render(Material([result], INFO))
     assert "superseded, not counted" in page
     assert "stiffness of the flat punch over 2 a E1*" in page
     wrong = run(files(csv=CSV.replace("2.483525", "2.483535")), exact)

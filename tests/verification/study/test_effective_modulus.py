@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from verification.report.material import Evidence, Material
 from verification.report.page import render
-from verification.report.sections.effective import effective_sections
 from verification.running.result import RunInfo
 from verification.running.store import read_checked
 from verification.sources.references.effective_modulus import (
@@ -114,10 +114,10 @@ def test_it_runs_in_a_process_of_its_own(tmp_path, monkeypatch, study):
 
 
 def test_page_shows_maps_limits_and_moduli_side_by_side(study):
-    page = render([], INFO, None, effective_sections(study))
+    page = render(Material([], INFO, Evidence(formulas=study)))
     for name, _ in study.formulas:
         assert name in page
     assert "sliding with f = 0.25, for E1/E2 = 0.25, 0.5, 1, 2, 4" in page
     assert page.count("Numbers as CSV") >= 4
     failed = replace(EffectiveStudy(), failure="its process <died>")
-    assert "its process &lt;died&gt;" in render([], INFO, None, effective_sections(failed))
+    assert "its process &lt;died&gt;" in render(Material([], INFO, Evidence(formulas=failed)))

@@ -9,8 +9,8 @@ import numpy as np
 
 from verification.judging.invariant import Invariant, decide
 from verification.problem.arrays import FloatArray
-from verification.problem.contact import CoatedContact, Solution, keywords
-from verification.sources.references import integral_equation
+from verification.problem.contact import CoatedContact, Solution
+from verification.sources.exact import solve_exactly
 from verification.sources.references.patch import surface_coefficient
 
 __all__ = ["ConversionError", "conversion_errors", "influence_coefficients"]
@@ -48,7 +48,7 @@ def conversion_errors(
     """
     from semianalytic import frf, halfspace, influence
 
-    a = integral_equation.solve(**keywords(problem), estimate_uncertainty=False).contact_radius
+    a = solve_exactly(problem, {"estimate_uncertainty": False}).contact_radius
     n, d = patches, 2.24 * a / patches
     E, nu = problem.coatings[0][:2] if problem.coatings else problem.substrate
     scale = (1 - nu**2) / (np.pi * E)

@@ -7,12 +7,13 @@ from verification.credibility.faults.catalogue import GROUPS
 from verification.credibility.faults.checks import COLUMNS
 from verification.credibility.faults.record import Catch, Record, Seen
 from verification.credibility.faults.record import Row as FaultRow
+from verification.report.material import Material
 from verification.report.tables.cells import Cell, Part, Row, Section, Table
 from verification.report.tables.labels import source_label
 from verification.report.tables.numbers import plain, scientific, seconds
 from verification.report.templates import render_sections
 
-__all__ = ["faults_page", "faults_section", "faults_sentence"]
+__all__ = ["faults_page", "faults_section", "faults_sentence", "section"]
 
 # Mark, class and words of each way in which a fault may end.
 _CATCHES = {
@@ -40,6 +41,12 @@ def faults_sentence(record: Record) -> str:
         number = len(record.blanks)
         said += f"; of {number} trials with nothing planted {len(record.alarms) or 'none'} raised an alarm"
     return said + "."
+
+
+def section(material: Material) -> Section | None:
+    """The planted faults on record; None without a record."""
+    record = material.evidence.faults
+    return None if record is None else faults_section(record)
 
 
 def faults_section(record: Record) -> Section:

@@ -1,15 +1,16 @@
 """The answers of the harness to questions whose answer is known."""
 
-from collections.abc import Sequence
-
+from verification.report.material import Material
 from verification.report.tables.cells import Cell, Part, Row, Section, Table
-from verification.running.self_tests import SelfTest
 
-__all__ = ["self_test_section"]
+__all__ = ["section"]
 
 
-def self_test_section(tests: Sequence[SelfTest]) -> Section:
-    """Each self-test with what it asks for and what came out."""
+def section(material: Material) -> Section | None:
+    """Each self-test with its requirement and its outcome; None where none was made."""
+    tests = material.evidence.self_tests
+    if not tests:
+        return None
     rows = [
         Row(
             Cell(test.name),

@@ -2,12 +2,14 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
 from verification.judging.verdict import Claim
 from verification.problem.quantity import SCALARS
-from verification.report.tables.cells import Cell, Row, Table
+from verification.report.material import Material
+from verification.report.tables.cells import Cell, Part, Row, Section, Table
 from verification.report.tables.labels import source_label
 from verification.report.tables.lookup import (
     GROUPS,
@@ -17,6 +19,7 @@ from verification.report.tables.lookup import (
     judged,
     sources_with_profiles,
 )
+from verification.report.tables.matrix import case_cell
 from verification.report.tables.numbers import plain, scientific
 from verification.running.result import CaseResult
 from verification.sources.registry import METHODS, REFERENCES
@@ -28,6 +31,7 @@ __all__ = [
     "accuracy_sentence",
     "accuracy_table",
     "coverage_table",
+    "section",
 ]
 
 # An estimate below half the true error is no estimate.
@@ -64,6 +68,20 @@ class Accuracy:
         return "agrees" if self.ratio >= 1 else "inconclusive"
 
 
+def section(material: Material) -> Section | None:
+    """How often the stated uncertainty covers the true error, then the errors of each method."""
+    results = material.contacts
+    parts = [
+        Part(accuracy_sentence(results, source), [overview])
+        for source in METHODS
+        if (overview := accuracy_overview(results, material.anchors, source)) is not None
+    ]
+    if (coverage := coverage_table(results)) is not None:
+        parts.insert(0, Part("", [coverage]))
+    return Section("accuracy", "Accuracy against the exact reference", parts) if parts else None
+
+
+@lru_cache(maxsize=256)
 def accuracies(result: CaseResult) -> tuple[Accuracy, ...]:
     """Every quantity of every method with an exact counterpart; () where the case has no exact reference."""
     exact = baseline(result)
@@ -132,19 +150,20 @@ def _three_cells(item: Accuracy) -> list[Cell]:
     ]
 
 
-def accuracy_overview(results: Sequence[CaseResult], anchors: Mapping[int, str], source: str) -> Table | None:
+def accuracy_overview(
+    results: Sequence[CaseResult], anchors: Mapping[CaseResult, str], source: str
+) -> Table | None:
     """The errors of one method over all cases, the worst quantity of each group; None where there is none."""
     columns = [*SCALARS, *GROUPS[1:]]
     rows = []
-    for number, result in enumerate(results):
+    for result in results:
         found = [item for item in accuracies(result) if item.source == source]
         if not found:
             continue
         cells = [
             _overview_cell([i for i in found if name in (i.quantity, group_of(i.line))]) for name in columns
         ]
-        note = f"{result.title} ({result.name})"
-        rows.append(Row(Cell(result.title, note=note, href=f"#{anchors[number]}-accuracy"), cells))
+        rows.append(Row(case_cell(result, f"#{anchors[result]}-accuracy"), cells))
     if not rows:
         return None
     return Table(

@@ -5,11 +5,12 @@ from math import isfinite
 
 from verification.regression.baseline import CaseDrift, Regression
 from verification.regression.drift import FACTOR, RELATIVE, Drift, State
+from verification.report.material import Material
 from verification.report.tables.cells import Cell, Part, Row, Section, Table
 from verification.report.tables.labels import source_label
 from verification.report.tables.numbers import scientific
 
-__all__ = ["ANCHOR", "baseline_section", "baseline_sentence", "drift_table", "state_cell"]
+__all__ = ["ANCHOR", "baseline_sentence", "drift_table", "section", "state_cell"]
 
 ANCHOR = "baseline"
 MOST = 40
@@ -45,8 +46,12 @@ def baseline_sentence(found: Regression) -> str:
     return f"{', '.join(told)}, of {sum(counts.values())} numbers{by}."
 
 
-def baseline_section(found: Regression, anchors: Mapping[str, str]) -> Section:
-    """The run beside its baseline; ``anchors`` leads to cases by name."""
+def section(material: Material) -> Section | None:
+    """The run compared with its baseline; None where that was not done."""
+    found = material.evidence.baseline
+    if found is None:
+        return None
+    anchors = {result.name: anchor for result, anchor in material.anchors.items()}
     if found.update is None:
         text = (
             f"{baseline_sentence(found)} A run that is whole, agreeing throughout, becomes one by: "

@@ -10,14 +10,15 @@ from markupsafe import Markup
 from verification.problem.arrays import Array
 from verification.report.figures.panels import swatch
 from verification.report.figures.plot import Axes, drawing, power_of_ten
-from verification.report.sections.family import family_section
+from verification.report.material import Material
+from verification.report.sections import family
 from verification.report.tables.cells import Cell, Gallery, Panel, Part, Row, Section, Table
 from verification.report.tables.numbers import plain, scientific
 from verification.sources.references.effective_modulus import PERRIOT_BARTHEL_N
 from verification.sources.source import Style
 from verification.study.formulas import EffectiveStudy, Limit
 
-__all__ = ["effective_sections"]
+__all__ = ["family_section", "section"]
 
 
 WIDTH, HEIGHT = 320, 250
@@ -34,14 +35,21 @@ _CURVES = (
 )
 
 
-def effective_sections(study: EffectiveStudy) -> list[Section]:
-    """Moduli side by side, then the maps of the formulas with the limits; what failed is said there."""
+def family_section(material: Material) -> Section | None:
+    """Contacts of the exact reference side by side; None where they were not solved."""
+    study = material.evidence.formulas
+    return family.family_section(study.family, "exact-family") if study and not study.failure else None
+
+
+def section(material: Material) -> Section | None:
+    """Maps of the formulas with the limits; None where they were not measured."""
+    study = material.evidence.formulas
+    if study is None:
+        return None
     if study.failure:
-        return [Section("effective-modulus", "Effective-modulus formulas", [], [study.failure])]
-    family = family_section(study.family)
-    sections = [] if family is None else [family]
+        return Section("effective-modulus", "Effective-modulus formulas", [], [study.failure])
     parts = [_map_part(study), _confirmation(study), *_limit_parts(study.limits)]
-    return [*sections, Section("effective-modulus", "Effective-modulus formulas and simple limits", parts)]
+    return Section("effective-modulus", "Effective-modulus formulas and simple limits", parts)
 
 
 def _map_part(study: EffectiveStudy) -> Part:

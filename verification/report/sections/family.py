@@ -15,6 +15,7 @@ from markupsafe import Markup
 from verification.problem.quantity import QUANTITIES, SCALARS
 from verification.report.figures.panels import swatch
 from verification.report.figures.plot import HUGE, Axes, drawing, round_ticks
+from verification.report.material import Material
 from verification.report.tables.cells import Cell, Gallery, Panel, Part, Row, Section, Table
 from verification.report.tables.csv import written
 from verification.report.tables.labels import source_label, source_style
@@ -23,7 +24,7 @@ from verification.report.tables.numbers import plain
 from verification.running.result import CaseResult
 from verification.sources.registry import CLOSED
 
-__all__ = ["family_section"]
+__all__ = ["family_section", "section"]
 
 WIDTH, HEIGHT = 320, 260
 BOX = (48.0, 6.5, 265.6, 215.8)  # left, top, width, height
@@ -45,11 +46,16 @@ class Member(NamedTuple):
     result: CaseResult
 
 
-def family_section(results: Sequence[CaseResult]) -> Section | None:
+def section(material: Material) -> Section | None:
+    """The families among the cases of the run."""
+    return family_section(material.contacts)
+
+
+def family_section(results: Sequence[CaseResult], anchor: str = "family") -> Section | None:
     """A gallery for every family among the cases; None where there is none.
 
     A family: one coating, one thickness over a_h, one nu throughout, one friction, and three or more E1/E2,
-    the uncoated solid standing for E1/E2 = 1.
+    the uncoated solid as E1/E2 = 1.
     """
     parts = []
     for (thickness, friction, nu), members in sorted(_families(results).items()):
@@ -62,7 +68,7 @@ def family_section(results: Sequence[CaseResult]) -> Section | None:
             "configuration of O'Sullivan and King (1988), lengths over a_h, stresses over p_h."
         )
         parts.append(Part(text, [_numbers(members)], _gallery(members)))
-    return Section("family", "Pressure and stress against the coating's modulus", parts) if parts else None
+    return Section(anchor, "Pressure and stress against the coating's modulus", parts) if parts else None
 
 
 def _families(results: Sequence[CaseResult]) -> dict[tuple[float, float, float], list[Member]]:

@@ -5,13 +5,14 @@ from collections.abc import Mapping, Sequence
 
 from verification.judging.invariants import Invariant
 from verification.judging.verdict import Outcome
+from verification.report.material import Material
 from verification.report.tables.cells import Cell, Part, Row, Section, Table
 from verification.report.tables.labels import OUTCOMES, source_label
 from verification.report.tables.matrix import outcome_cell
 from verification.report.tables.numbers import plain, scientific
 from verification.running.result import CaseResult
 
-__all__ = ["invariant_cell", "invariant_section", "invariant_table"]
+__all__ = ["invariant_cell", "invariant_table", "section"]
 
 _NUMBERED = re.compile(r", (?:coating|interface|layer) \d+$|, substrate$")
 
@@ -59,9 +60,10 @@ def invariant_cell(result: CaseResult, href: str) -> Cell:
     return Cell(text, held / len(found), f"verdict {style.css}", note, href)
 
 
-def invariant_section(results: Sequence[CaseResult], anchors: Mapping[int, str]) -> Section | None:
-    """Every law over all cases, by source; None where no case has any."""
-    rows = [(n, one) for n, result in enumerate(results) for one in result.invariants]
+def section(material: Material) -> Section | None:
+    """Every invariant over all cases, by source; None where no case has any."""
+    results, anchors = material.contacts, material.anchors
+    rows = [(result, one) for result in results for one in result.invariants]
     if not rows:
         return None
     sources = list(dict.fromkeys(one.source for _, one in rows))
@@ -90,7 +92,9 @@ def invariant_section(results: Sequence[CaseResult], anchors: Mapping[int, str])
     return Section("invariants", "Invariants of every solution", [Part(text, [table])])
 
 
-def _family_cells(found: Sequence[tuple[int, Invariant]], anchors: Mapping[int, str]) -> list[Cell]:
+def _family_cells(
+    found: Sequence[tuple[CaseResult, Invariant]], anchors: Mapping[CaseResult, str]
+) -> list[Cell]:
     if not found:
         return [Cell("", css="nothing")] * 3
     case, worst = min(found, key=lambda item: _badness(item[1]))

@@ -3,11 +3,18 @@
 from collections.abc import Sequence
 
 from verification.credibility.parameters import KnobLadder, Stated
+from verification.report.material import Material
 from verification.report.tables.cells import Cell, Part, Row, Section, Table
 from verification.report.tables.labels import source_label
 from verification.report.tables.numbers import plain, scientific
 
-__all__ = ["knob_section"]
+__all__ = ["knob_section", "section"]
+
+
+def section(material: Material) -> Section | None:
+    """The parameter sweeps of the accuracy study; None where there are none."""
+    study = material.evidence.accuracy
+    return knob_section(study.knobs, study.stated) if study is not None and study.stated else None
 
 
 def knob_section(ladders: Sequence[KnobLadder], stated: Sequence[Stated]) -> Section:

@@ -9,15 +9,16 @@ import numpy as np
 from verification.judging.verdict import Outcome
 from verification.problem.profile import Profile
 from verification.problem.quantity import QUANTITIES
+from verification.report.material import Material, rerun_command
 from verification.report.tables.case import budget_table, diagnostics_table, layer_table, verdict_table
-from verification.report.tables.cells import Cell, Row, Table
+from verification.report.tables.cells import Cell, Part, Row, Section, Table
 from verification.report.tables.labels import OUTCOMES, OutcomeStyle, source_label
 from verification.report.tables.matrix import outcome_cell
 from verification.report.tables.numbers import engineering, plain, scientific
 from verification.running.result import CaseResult
 from verification.sources.registry import METHODS, PUBLISHED, REFERENCES
 
-__all__ = ["PublishedView", "published_overview", "published_view"]
+__all__ = ["PublishedView", "published_view", "section"]
 
 
 @dataclass(frozen=True)
@@ -44,14 +45,13 @@ def _sources(result: CaseResult) -> tuple[str, ...]:
     return METHODS + tuple(source for source in REFERENCES if source in claimed)
 
 
-def published_overview(results: Sequence[CaseResult], anchors: Mapping[int, str]) -> Table:
+def section(material: Material) -> Section | None:
     """Every source at a glance: year, how it was read, values that count, verdict of each method."""
+    if not material.published:
+        return None
     rows = []
-    shown = [result for result in results if result.published]
-    sources = tuple(dict.fromkeys(source for result in shown for source in _sources(result)))
-    for number, result in enumerate(results):
-        if not result.published:
-            continue
+    sources = tuple(dict.fromkeys(s for result in material.published for s in _sources(result)))
+    for result in material.published:
         printed = result.published["columns"]
         counted = sum(sum(item["counted"]) for item in printed)
         total = sum(len(item["counted"]) for item in printed)
@@ -67,11 +67,11 @@ def published_overview(results: Sequence[CaseResult], anchors: Mapping[int, str]
         ]
         for source in sources:
             cells += _method_cells(result, source) if source in _sources(result) else [Cell("–"), Cell("–")]
-        head = Cell(result.title, note=result.source, href=f"#{anchors[number]}")
+        head = Cell(result.title, note=result.source, href=f"#{material.anchors[result]}")
         rows.append(
             Row(head, cells, "" if result.outcome is Outcome.AGREES else OUTCOMES[result.outcome].css)
         )
-    return Table(
+    table = Table(
         "A method meets a value when the difference is within the reading uncertainty of the source and the "
         "method's own uncertainty together. Values known to be misprints, or second-hand where better ones "
         "stand beside, are shown below and never counted. Differences are over the pressure for stresses, "
@@ -82,6 +82,7 @@ def published_overview(results: Sequence[CaseResult], anchors: Mapping[int, str]
         rows,
         [("", 6), *((source_label(source), 2) for source in sources)],
     )
+    return Section("published", "Published results", [Part("", [table])])
 
 
 def _method_cells(result: CaseResult, method: str) -> list[Cell]:
@@ -102,16 +103,16 @@ def _method_cells(result: CaseResult, method: str) -> list[Cell]:
     ]
 
 
-def published_view(result: CaseResult, anchor: str, command: str) -> PublishedView:
-    """Citation, problem, tables and verdicts of one published source; ``command`` solves it again."""
+def published_view(material: Material, result: CaseResult) -> PublishedView:
+    """Citation, problem, tables and verdicts of one published source."""
     bad = sum(verdict.outcome is not Outcome.AGREES for _, verdict in result.verdicts)
     total = len(result.verdicts)
     return PublishedView(
-        anchor=anchor,
+        anchor=material.anchors[result],
         result=result,
         outcome=OUTCOMES[result.outcome],
         sentence=f"{bad} of {total} comparisons do not agree." if bad else f"All {total} comparisons agree.",
-        command=command,
+        command=rerun_command(result.name, material.info.command),
         facts=_facts(result),
         failures=[(source_label(s.source), s.failure) for s in result.sources if s.failure is not None],
         layers=layer_table(result),

@@ -2,19 +2,19 @@
 
 from collections.abc import Sequence
 
-from verification.credibility.accuracy import CORRECTED, PLAIN, PROBLEM, STAIRCASE, AccuracyStudy
+from verification.credibility.accuracy import CORRECTED, PLAIN, PROBLEM, STAIRCASE
 from verification.credibility.refinement import QUANTITIES, Ladder, settled
 from verification.problem.quantity import QUANTITIES as QUANTITY
 from verification.problem.quantity import SCALARS
 from verification.report.figures.loglog import Trail, decades, draw_loglog
 from verification.report.figures.panels import swatch
+from verification.report.material import Material
 from verification.report.sections.conversion import conversion_part
-from verification.report.sections.parameters import knob_section
 from verification.report.tables.cells import Cell, Gallery, Panel, Part, Row, Section, Table
 from verification.report.tables.numbers import factor, plain, scientific, seconds
 from verification.sources.source import Style
 
-__all__ = ["convergence_sections"]
+__all__ = ["finite_element_section", "semianalytic_section"]
 
 _SCALARS = [QUANTITY[name] for name in SCALARS]
 _TITLES = {q.symbol: q.symbol for q in _SCALARS} | {
@@ -39,24 +39,28 @@ _SETTINGS = {
 _UNKNOWN = Style("ink", (5.0, 1.5, 1.0, 1.5))
 
 
-def convergence_sections(study: AccuracyStudy) -> list[Section]:
-    """Semi-analytical, then finite element accuracy; what failed is said in its section."""
-    elements = [one for one in study.ladders if one.method == "fem_reference"]
+def semianalytic_section(material: Material) -> Section | None:
+    """Errors of the semi-analytical method over its grid; None where they were not measured."""
+    study = material.evidence.accuracy
+    if study is None:
+        return None
     grids = [one for one in study.ladders if one.method == "semianalytic"]
-    theirs = tuple(f for f in study.failures if f.startswith("fem_reference"))
-    ours = tuple(f for f in study.failures if f not in theirs)
-    parts: list[Part] = []
-    if any(one.levels for one in grids):
-        parts += _grid_parts(grids)
+    parts = _grid_parts(grids) if any(one.levels for one in grids) else []
     if study.conversions:
         parts.append(conversion_part(study.conversions))
-    sections = [Section("semi-analytical-accuracy", "Semi-analytical accuracy", parts, ours)]
-    if elements:
-        parts = _element_parts(elements) if any(one.levels for one in elements) else []
-        sections.append(Section("finite-element-accuracy", "Finite element accuracy", parts, theirs))
-    if study.stated:
-        sections.append(knob_section(study.knobs, study.stated))
-    return sections
+    failures = tuple(f for f in study.failures if not f.startswith("fem_reference"))
+    return Section("semi-analytical-accuracy", "Semi-analytical accuracy", parts, failures)
+
+
+def finite_element_section(material: Material) -> Section | None:
+    """Errors of the finite elements over their mesh; None where they were not measured."""
+    study = material.evidence.accuracy
+    elements = [one for one in study.ladders if one.method == "fem_reference"] if study else []
+    if study is None or not elements:
+        return None
+    parts = _element_parts(elements) if any(one.levels for one in elements) else []
+    failures = tuple(f for f in study.failures if f.startswith("fem_reference"))
+    return Section("finite-element-accuracy", "Finite element accuracy", parts, failures)
 
 
 def _grid_parts(ladders: Sequence[Ladder]) -> list[Part]:

@@ -12,8 +12,8 @@ from verification.report.tables.cells import Cell, Row, Table
 from verification.report.tables.labels import OUTCOMES, pair_label, source_label
 from verification.report.tables.lookup import baseline, layers, scalar, scale
 from verification.report.tables.matrix import outcome_cell
-from verification.report.tables.numbers import engineering, plain, scientific, seconds, with_uncertainty
-from verification.running.result import CaseResult, SourceResult
+from verification.report.tables.numbers import engineering, plain, scientific, with_uncertainty
+from verification.running.result import CaseResult
 
 __all__ = [
     "budget_table",
@@ -21,7 +21,6 @@ __all__ = [
     "diagnostics_table",
     "dominating_knob",
     "layer_table",
-    "time_table",
     "verdict_table",
 ]
 
@@ -204,32 +203,6 @@ def _relative(result: CaseResult, source: str, quantity: str, value: float) -> f
     found = scalar(result, quantity, source)
     size = abs(found[0]) if found else scale(result, "p_h")
     return value / size if size else None
-
-
-def time_table(results: Sequence[CaseResult], links: Sequence[str]) -> Table:
-    """Seconds of every source in every case."""
-    names = list(dict.fromkeys(s.source for result in results for s in result.sources))
-    # A case that died as a whole has its time in the last column.
-    names = [name for name in names if name != "case"]
-    rows = []
-    for result, link in zip(results, links, strict=True):
-        times = {source.source: source for source in result.sources}
-        cells = [_time_cell(times.get(name)) for name in names]
-        cells.append(Cell(seconds(result.seconds), result.seconds))
-        rows.append(Row(Cell(result.title, note=f"{result.title} ({result.name})", href=link), cells))
-    return Table(
-        "Wall-clock seconds of each source with its uncertainty ladders; the case in total.",
-        ["case", *(source_label(name) for name in names), "case in total"],
-        rows,
-    )
-
-
-def _time_cell(source: SourceResult | None) -> Cell:
-    if source is None:
-        return Cell("", css="nothing")
-    if source.failure is not None:
-        return Cell(f"failed, {seconds(source.seconds)}", source.seconds, "verdict no-result", source.failure)
-    return Cell(seconds(source.seconds), source.seconds)
 
 
 def diagnostics_table(result: CaseResult) -> Table | None:

@@ -7,11 +7,8 @@ the result, evidence for each.
 
 from collections.abc import Sequence
 
-from verification.credibility.accuracy import AccuracyStudy
 from verification.credibility.independence import shared
 from verification.judging.verdict import Outcome
-from verification.regression.baseline import Regression
-from verification.report.credibility.evidence import Evidence
 from verification.report.credibility.tables import (
     alarm_table,
     bracket_table,
@@ -23,13 +20,14 @@ from verification.report.credibility.tables import (
     range_table,
     survivor_table,
 )
+from verification.report.material import Evidence, Material
 from verification.report.sections.accuracy import accuracies
 from verification.report.sections.baseline import baseline_sentence
 from verification.report.tables.cells import Cell, Part, Row, Section, Table
 from verification.report.tables.numbers import plain
-from verification.running.result import CaseResult, RunInfo
+from verification.running.result import CaseResult
 
-__all__ = ["ANCHOR", "credibility_section", "figures"]
+__all__ = ["ANCHOR", "figures", "section"]
 
 ANCHOR = "credibility"
 ASSUMED = (
@@ -47,21 +45,21 @@ NOT_CLAIMED = (
 )
 
 
-def credibility_section(
-    results: Sequence[CaseResult],
-    info: RunInfo,
-    study: AccuracyStudy | None,
-    evidence: Evidence,
-    baseline: Regression | None = None,
-) -> Section:
-    """Eight steps from the intended use to what is not claimed, under a table of their figures."""
-    contacts = [result for result in results if not result.published]
+def section(material: Material) -> Section | None:
+    """Eight steps from the intended use to the limits of the claim, under a table of their figures.
+
+    None where no evidence was collected.
+    """
+    results, evidence = material.results, material.evidence
+    if evidence == Evidence():
+        return None
+    contacts = material.contacts
     parts = [
         Part(
             "What an AGREES of this report is worth, in the order of ASME V&V 10 (Guide for Verification and "
             "Validation in Computational Solid Mechanics) with what NASA-STD-7009A asks besides. Every "
             "figure was measured in this run, or is read from a record with its date and commit.",
-            [_overview(results, info, study, evidence, baseline)],
+            [_overview(material)],
         ),
         Part(
             "To decide whether numerical solutions of one mathematical model are right within a stated "
@@ -73,7 +71,7 @@ def credibility_section(
         Part(
             "Orders of convergence where the answer is known beforehand: manufactured fields in two bonded "
             "materials for the finite element operator, exact solutions of the contact for both methods.",
-            [t for t in (design_table(evidence.orders), order_table(study)) if t is not None],
+            [t for t in (design_table(evidence.orders), order_table(evidence.accuracy)) if t is not None],
             title="2. Code verification",
         ),
         Part(
@@ -113,13 +111,9 @@ def figures(evidence: Evidence) -> tuple[str, str]:
     return _faults(evidence), _alarms(evidence)
 
 
-def _overview(
-    results: Sequence[CaseResult],
-    info: RunInfo,
-    study: AccuracyStudy | None,
-    evidence: Evidence,
-    baseline: Regression | None,
-) -> Table:
+def _overview(material: Material) -> Table:
+    results, info, evidence = material.results, material.info, material.evidence
+    study, baseline = evidence.accuracy, evidence.baseline
     here = f"this run, {_day(info.started)}, {info.commit or 'no commit'}"
     good = [one for one in evidence.orders if one.as_designed]
     invariants = [one for result in results for one in result.invariants]
@@ -136,7 +130,7 @@ def _overview(
             f"{design}; {ladders}" if evidence.orders else f"not measured; {ladders}",
             here,
         ),
-        ("Solution verification", _bracketed([r for r in results if not r.published]), here),
+        ("Solution verification", _bracketed(material.contacts), here),
         ("Invariants of each solution", laws, here),
         ("Comparison", f"{agreeing} of {total} comparisons agree", here),
         ("Independence", _short_independence(evidence), here),
