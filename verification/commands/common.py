@@ -1,4 +1,7 @@
-"""Shared parts of the commands: options, exit codes, messages, tables, progress bar."""
+"""What the commands share: exit codes, colours of outcomes, messages of one line.
+
+The command line imports this for each command, so nothing here needs numpy or rich.
+"""
 
 import datetime
 import json
@@ -6,28 +9,17 @@ import sys
 from collections.abc import Iterable, Sequence
 from difflib import get_close_matches
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 from cyclopts import Parameter
-from rich.console import Console
-from rich.progress import (
-    BarColumn,
-    MofNCompleteColumn,
-    Progress,
-    ProgressColumn,
-    TextColumn,
-    TimeElapsedColumn,
-    TimeRemainingColumn,
-)
-from rich.progress import Task as RichTask
-from rich.table import Column, Table
-from rich.text import Text
 
 import verification
-from verification.judging.verdict import Outcome
-from verification.running.pool import cores
-from verification.running.provenance import commit, machine, missing_libraries, versions
-from verification.running.result import CaseResult, RunInfo
+from verification.judging.outcome import Outcome
+
+if TYPE_CHECKING:
+    from rich.table import Table
+
+    from verification.running.result import CaseResult, RunInfo
 
 __all__ = [
     "BAD_INPUT",
@@ -54,13 +46,11 @@ __all__ = [
     "print_error",
     "print_json",
     "print_out",
-    "progress_bar",
     "refuse_installed",
     "run_info",
     "within_package",
 ]
 
-NARROW = 60  # columns
 UNBROKEN = 100_000  # columns of a file or pipe
 PACKAGE = Path(verification.__file__).parent
 BASELINE = PACKAGE / "regression" / "shipped"
@@ -100,7 +90,7 @@ Quiet = Annotated[bool, Parameter(name=["--quiet", "-q"], negative="", help="Pri
 AsJson = Annotated[bool, Parameter(name="--json", negative="", help="Print JSON instead of text.")]
 
 
-def exit_code(results: Sequence[CaseResult]) -> int:
+def exit_code(results: Sequence["CaseResult"]) -> int:
     """The code of the worst outcome: disagreement before a missing result before inconclusive."""
     found = {result.outcome for result in results}
     for outcome in (Outcome.DISAGREES, Outcome.NO_RESULT, Outcome.INCONCLUSIVE):
@@ -134,13 +124,18 @@ def nearest_run(path: Path) -> str:
     return did_you_mean(path.name, runs)
 
 
-def named_table(*heads: str) -> Table:
+def named_table(*heads: str) -> "Table":
     """A table for ``print_out``; its first column holds names that users type."""
+    from rich.table import Column, Table
+
     return Table(Column(heads[0], overflow="fold"), *heads[1:], box=None, header_style="bold")
 
 
-def print_out(*items: Table | str) -> None:
+def print_out(*items: "Table | str") -> None:
     """Print tables with lines of markup. Names in a first column are never cut, in a file or pipe no line."""
+    from rich.console import Console
+    from rich.table import Table
+
     console = Console(highlight=False)
     if not console.is_terminal:
         console = Console(highlight=False, width=UNBROKEN)
@@ -160,6 +155,8 @@ def one_line(message: str, most: int = 1000) -> str:
 
 def no_gmsh() -> int | None:
     """None where gmsh can be loaded; else prints the packages to install and returns the exit code."""
+    from verification.running.provenance import missing_libraries
+
     if not (lacking := missing_libraries()):
         return None
     print_error(f"gmsh lacks system libraries here; install them with: apt-get install {' '.join(lacking)}")
@@ -168,6 +165,8 @@ def no_gmsh() -> int | None:
 
 def refuse_installed(folder: Path, option: str) -> int | None:
     """The exit code where ``folder`` is the package's own and not of a source checkout, after a message."""
+    from verification.running.provenance import commit
+
     if folder not in (BASELINE, RECORDS) or commit() is not None:
         return None
     return print_error(f"this coatcheck is installed, not a source checkout; name a directory with {option}")
@@ -178,8 +177,12 @@ def within_package(folder: Path) -> str:
     return str(folder.relative_to(PACKAGE.parent) if folder.is_relative_to(PACKAGE) else folder)
 
 
-def run_info(command: str, started: datetime.datetime, jobs: int) -> RunInfo:
+def run_info(command: str, started: datetime.datetime, jobs: int) -> "RunInfo":
     """Command, time, commit, machine and versions of the run that ends now."""
+    from verification.running.pool import cores
+    from verification.running.provenance import commit, machine, versions
+    from verification.running.result import RunInfo
+
     return RunInfo(
         command=command,
         started=started.isoformat(timespec="seconds"),
@@ -188,31 +191,4 @@ def run_info(command: str, started: datetime.datetime, jobs: int) -> RunInfo:
         commit=commit(),
         machine=f"{machine()}, {cores()} cores",
         versions=versions(),
-    )
-
-
-class _Description(ProgressColumn):
-    """What is at work, on one line."""
-
-    def render(self, task: RichTask) -> Text:
-        return Text(task.description, no_wrap=True, overflow="ellipsis")
-
-
-def progress_bar(console: Console, *more: ProgressColumn, silent: bool = False) -> Progress:
-    """A bar that counts, with time gone and left; nothing at all where ``console`` is not a terminal.
-
-    more : columns behind the count.
-    """
-    return Progress(
-        # Words and bar give way where the terminal is narrow; counts and times stay whole.
-        _Description(table_column=Column(no_wrap=False)),
-        *([BarColumn(table_column=Column(no_wrap=False))] if console.width >= NARROW else []),
-        MofNCompleteColumn(),
-        *more,
-        TimeElapsedColumn(),
-        TextColumn("left"),
-        TimeRemainingColumn(),
-        console=console,
-        transient=True,
-        disable=silent or not console.is_terminal,
     )

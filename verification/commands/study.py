@@ -26,8 +26,8 @@ from verification.commands.common import (
     print_error,
     print_json,
     print_out,
-    progress_bar,
 )
+from verification.commands.solving import progress_bar
 from verification.judging.verdict import Outcome
 from verification.running.pool import cores
 from verification.running.provenance import commit, machine

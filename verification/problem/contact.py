@@ -1,4 +1,4 @@
-"""The physical problem: a rigid sphere pressed on a coated elastic half-space.
+"""The physical problem: a rigid sphere in contact with a coated elastic half-space.
 
 Origin at first contact, ``x`` along sliding, ``z`` into the solid, surface at z = 0. Tension positive,
 pressure and load positive in compression. SI units.
@@ -11,7 +11,14 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-__all__ = ["CoatedContact", "NotClaimed", "PrescribedLoad", "Solution", "keywords"]
+__all__ = [
+    "CoatedContact",
+    "NotClaimed",
+    "PrescribedLoad",
+    "Solution",
+    "keywords",
+    "stress_with_uncertainty",
+]
 
 
 @dataclass(frozen=True)
@@ -128,6 +135,23 @@ class Solution(Protocol):
     def stress_uncertainty(
         self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None
     ) -> NDArray[np.float64]: ...
+
+
+def stress_with_uncertainty(
+    solution: Solution, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None
+) -> tuple[NDArray[np.float64], NDArray[np.float64] | None]:
+    """Stress and its uncertainty [Pa] at points, (3, 3) + points; None where the solution states none.
+
+    A solution with a method of this name evaluates its stress once for both.
+    """
+    if solution.uncertainty is None:
+        return solution.stress(x, y, z, layer=layer), None
+    # Looked up in the type: a wrapper that changes ``stress`` alone must not be passed over.
+    both = getattr(type(solution), "stress_with_uncertainty", None)
+    if both is not None:
+        sigma, U = both(solution, x, y, z, layer=layer)
+        return sigma, U
+    return solution.stress(x, y, z, layer=layer), solution.stress_uncertainty(x, y, z, layer=layer)
 
 
 def _require_solid(

@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from verification.problem.contact import CoatedContact, Solution
+from verification.problem.contact import CoatedContact, Solution, stress_with_uncertainty
 from verification.problem.profile import Line, Profile
 from verification.problem.quantity import IN_PLANE, QUANTITIES, SCALARS
 
@@ -40,13 +40,7 @@ def sample(solution: Solution, source: str, line: Line, position: NDArray[np.flo
                 solution.pressure_uncertainty(x) if stated else None,
             )
         )
-    # asked of the type: a stand-in that answers for ``stress`` alone is asked for ``stress``
-    both = getattr(type(solution), "stress_with_uncertainty", None)
-    if stated and both is not None:
-        sigma, spread = both(solution, x, 0.0, z, layer=line.layer)
-    else:
-        sigma = solution.stress(x, 0.0, z, layer=line.layer)
-        spread = solution.stress_uncertainty(x, 0.0, z, layer=line.layer) if stated else None
+    sigma, spread = stress_with_uncertainty(solution, x, 0.0, z, layer=line.layer)
     for name, component in IN_PLANE.items():
         profiles.append(
             Profile(

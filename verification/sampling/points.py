@@ -5,7 +5,7 @@ from typing import cast
 import numpy as np
 
 from verification.problem.arrays import Array
-from verification.problem.contact import CoatedContact, PrescribedLoad, Solution
+from verification.problem.contact import CoatedContact, PrescribedLoad, Solution, stress_with_uncertainty
 from verification.problem.loading import LoadingCurve
 from verification.problem.points import Points
 from verification.problem.quantity import EXTREMES, QUANTITIES
@@ -55,9 +55,9 @@ def values(
         here = at.layer == layer
         place = (at.x[here], at.y[here], at.z[here])
         weight = _weights(quantity, *moduli[layer])
-        value[here] = np.einsum("ij,ij...->...", weight, solution.stress(*place, layer=layer))
-        if stated is not None:
-            U = solution.stress_uncertainty(*place, layer=layer)
+        sigma, U = stress_with_uncertainty(solution, *place, layer=layer)
+        value[here] = np.einsum("ij,ij...->...", weight, sigma)
+        if U is not None:
             spread[here] = np.einsum("ij,ij...->...", np.abs(weight), U)
     return value, None if stated is None else spread
 

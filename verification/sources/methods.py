@@ -29,13 +29,13 @@ def solve_semianalytic(problem: Problem, numerics: Mapping[str, Any] | None = No
 
 def solve_elements(problem: Problem, numerics: Mapping[str, Any] | None = None) -> Any:
     """``problem`` by finite elements, extrapolated where a layer is incompressible or the base rigid."""
-    from verification.sources.limits import towards_limits
+    from verification.sources.extrapolation import extrapolated
 
     if isinstance(problem, LoadingCurve):
         from verification.sources.loading import loading
 
         return loading(problem, partial(_elements, {"size": CURVE_SIZE, **(numerics or {})}), limits=True)
-    return towards_limits(problem, partial(_elements, numerics or {}))
+    return extrapolated(problem, partial(_elements, numerics or {}))
 
 
 def _elements(numerics: Mapping[str, Any], problem: CoatedContact | PrescribedLoad) -> Any:

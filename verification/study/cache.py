@@ -30,7 +30,7 @@ _SEARCH = (
     "verification.sources.source",
     "verification.sources.methods",
     "verification.sources.exact",
-    "verification.sources.limits",
+    "verification.sources.extrapolation",
     "verification.sampling.plane",
     "verification.running.result",
 )

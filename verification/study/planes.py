@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from scipy.interpolate import make_interp_spline
 
 from verification.problem.arrays import Array
-from verification.problem.contact import Solution
+from verification.problem.contact import Solution, stress_with_uncertainty
 
 __all__ = ["XX", "XZ", "YY", "ZZ", "Parts", "Plane", "crowded", "plane", "stress_at", "surface"]
 
@@ -63,17 +63,8 @@ class Parts:
         return here * spread[0] + np.abs(1 - here) * spread[1]
 
     def _sampled(self, x: Array, z: float, layer: int) -> tuple[Array, Array]:
-        stated = self.solution.uncertainty is not None
-        both = getattr(type(self.solution), "stress_with_uncertainty", None)
-        if stated and both is not None:
-            sigma, spread = both(self.solution, x, 0.0, z, layer=layer)
-        else:
-            sigma = self.solution.stress(x, 0.0, z, layer=layer)
-            spread = (
-                self.solution.stress_uncertainty(x, 0.0, z, layer=layer)
-                if stated
-                else np.full_like(sigma, np.nan)
-            )
+        sigma, U = stress_with_uncertainty(self.solution, x, 0.0, z, layer=layer)
+        spread = np.full_like(sigma, np.nan) if U is None else U
         return _components(sigma), _components(spread)
 
 

@@ -7,6 +7,7 @@ import re
 import shutil
 import signal
 import subprocess
+import sys
 import time
 from dataclasses import replace
 from functools import partial
@@ -155,7 +156,7 @@ def screen(monkeypatch):
 
     def of_width(width):
         monkeypatch.setattr(
-            common, "Console", partial(Console, file=written, force_terminal=True, width=width)
+            "rich.console.Console", partial(Console, file=written, force_terminal=True, width=width)
         )
         return lambda: re.sub(r"\x1b\[[0-9;]*m", "", written.getvalue())
 
@@ -222,7 +223,7 @@ def test_what_is_piped_has_no_colours(tmp_path):
 
 def test_ctrl_c_keeps_what_was_done_and_says_so(tmp_path):
     (tmp_path / "quick.toml").write_text(QUICK)
-    words = ["run", "quick.toml", "05_ratio_4", "--jobs", "1", "--output", "out"]
+    words = ["run", "quick.toml", "05_ratio_4", "--jobs", "2", "--output", "out"]
     process = subprocess.Popen(
         [*COMMAND, *words],
         cwd=tmp_path,
@@ -321,3 +322,19 @@ def test_a_page_is_printed(tmp_path):
     data = printed(page, tmp_path / "page.pdf", 120.0).read_bytes()
     assert data.startswith(b"%PDF-")
     assert data.rstrip().endswith(b"%%EOF")
+
+
+@pytest.mark.parametrize(
+    ("command", "unused"),
+    [
+        ("--help", ("numpy", "scipy", "pydantic", "matplotlib", "dask", "fem_reference", "semianalytic")),
+        ("list", ("scipy", "matplotlib", "dask", "gmsh", "pyvista", "fem_reference", "semianalytic")),
+    ],
+)
+def test_commands_that_solve_nothing_load_no_solver(command, unused):
+    text = f"import sys; sys.argv = ['coatcheck', {command!r}]\nfrom verification.cli import main\n"
+    text += "try: main()\nexcept SystemExit: print('loaded', *sys.modules)"
+    done = subprocess.run([sys.executable, "-c", text], capture_output=True, text=True, check=True)
+    loaded = set(done.stdout.splitlines()[-1].split()[1:])
+    assert "verification.cli" in loaded
+    assert not loaded & set(unused)

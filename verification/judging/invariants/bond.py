@@ -8,7 +8,7 @@ from verification.judging.invariant import Invariant, decide, layer_name
 from verification.judging.invariants.refinement import INNER, followed
 from verification.judging.invariants.stencil import Stencil
 from verification.problem.arrays import Array
-from verification.problem.contact import CoatedContact, PrescribedLoad, Solution
+from verification.problem.contact import CoatedContact, PrescribedLoad, Solution, stress_with_uncertainty
 
 __all__ = [
     "bonded_displacement",
@@ -29,13 +29,13 @@ STEP = 1e-3
 def bonded_traction(solution: Solution, source: str, problem: CoatedContact, k: int) -> Invariant:
     """sigma_xz, sigma_yz and sigma_zz are the same on both sides of interface ``k``, from 1."""
     x, y, z = _line(solution, problem, k)
-    sides = [solution.stress(x, y, z, layer=layer)[:, 2] for layer in (k - 1, k)]
-    bound = None
-    if solution.uncertainty is not None:
-        U = [solution.stress_uncertainty(x, y, z, layer=layer)[:, 2] for layer in (k - 1, k)]
-        bound = (U[0] + U[1]) / problem.p_h
+    (upper, U_upper), (lower, U_lower) = (
+        stress_with_uncertainty(solution, x, y, z, layer=layer) for layer in (k - 1, k)
+    )
+    jump = (upper - lower)[:, 2] / problem.p_h
+    bound = None if U_upper is None or U_lower is None else (U_upper + U_lower)[:, 2] / problem.p_h
     law = f"sigma_xz, sigma_yz, sigma_zz pass interface {k} unchanged, over p_h"
-    return decide(f"bonded tractions, interface {k}", source, law, (sides[0] - sides[1]) / problem.p_h, bound)
+    return decide(f"bonded tractions, interface {k}", source, law, jump, bound)
 
 
 def bonded_displacement(solution: Solution, source: str, problem: CoatedContact, k: int) -> Invariant:
@@ -74,12 +74,11 @@ def hooke(solution: Solution, source: str, problem: CoatedContact, layer: int, s
     gradient, error = stencil.gradient(u)
     strain = (gradient + gradient.swapaxes(0, 1)) / 2
     x, y, z = stencil.place
-    sigma = solution.stress(x, y, z, layer=layer)
+    sigma, U = stress_with_uncertainty(solution, x, y, z, layer=layer)
     unit = np.eye(3)[:, :, None]
     residual = E * strain - (1 + nu) * sigma + nu * unit * np.trace(sigma)
     bound = None
-    if solution.uncertainty is not None:
-        U = solution.stress_uncertainty(x, y, z, layer=layer)
+    if U is not None:
         error = (error + error.swapaxes(0, 1)) / 2
         bound = (E * error + 2 * (1 + nu) * U + 2 * abs(nu) * unit * np.trace(U)) / problem.p_h
     name = layer_name(layer, problem)

@@ -16,7 +16,7 @@ from verification.judging.invariant import Invariant, decide, failed
 from verification.judging.invariants.bond import displacement_bound
 from verification.judging.invariants.limits import thick_shift, thin_shift
 from verification.problem.arrays import Array
-from verification.problem.contact import CoatedContact, PrescribedLoad, Solution
+from verification.problem.contact import CoatedContact, PrescribedLoad, Solution, stress_with_uncertainty
 from verification.problem.quantity import QUANTITIES, SCALARS
 from verification.sources.references.hamilton import Hamilton
 from verification.sources.registry import METHODS, SOURCES
@@ -183,8 +183,10 @@ def _dimensionless(solution: Solution, problem: CoatedContact) -> tuple[Array, A
     y = 0.2 * np.abs(x)
     values = [quantity.value(solution, problem) / scale for quantity, scale in scalars]
     U = [(quantity.uncertainty(solution, problem) or 0.0) / scale for quantity, scale in scalars]
-    sigma = solution.stress(x, y, z) / problem.p_h
+    sigma, U_sigma = stress_with_uncertainty(solution, x, y, z)
+    if U_sigma is None:
+        raise ValueError("states no uncertainty that would bound the invariant")
     return (
-        np.concatenate([values, sigma.ravel()]),
-        np.concatenate([U, solution.stress_uncertainty(x, y, z).ravel() / problem.p_h]),
+        np.concatenate([values, (sigma / problem.p_h).ravel()]),
+        np.concatenate([U, (U_sigma / problem.p_h).ravel()]),
     )

@@ -7,7 +7,7 @@ from verification.judging.invariant import Invariant, decide, layer_name
 from verification.judging.invariants.refinement import INNER, followed
 from verification.judging.invariants.stencil import Stencil
 from verification.problem.arrays import Array
-from verification.problem.contact import CoatedContact, Solution
+from verification.problem.contact import CoatedContact, Solution, stress_with_uncertainty
 
 __all__ = ["equilibrium", "load_balance", "places_in", "surface"]
 
@@ -69,14 +69,15 @@ def surface(solution: Solution, source: str, problem: CoatedContact) -> tuple[In
     inside = np.abs(x) < solution.contact_radius
     f, p_h = problem.friction, problem.p_h
     p = solution.pressure(x, y) / p_h
-    sigma = solution.stress(x, y, 0.0, layer=0)[:, 2] / p_h
+    stress, spread = stress_with_uncertainty(solution, x, y, 0.0, layer=0)
+    sigma = stress[:, 2] / p_h
     normal, shear = sigma[2] + p, np.stack([sigma[0] + f * p, sigma[1]])
     free = np.concatenate([sigma, p[None]])
     laws: list[tuple[str, str, Array, Array | None]]
     bounds: list[Array | None] = [None, None, None]
-    if solution.uncertainty is not None:
+    if spread is not None:
         Up = solution.pressure_uncertainty(x, y) / p_h
-        U = solution.stress_uncertainty(x, y, 0.0, layer=0)[:, 2] / p_h
+        U = spread[:, 2] / p_h
         bounds = [
             (U[2] + Up)[inside],
             np.stack([U[0] + f * Up, U[1]])[:, inside],

@@ -4,7 +4,7 @@ import numpy as np
 
 from verification.judging.invariant import Invariant, decide
 from verification.problem.arrays import Array
-from verification.problem.contact import CoatedContact, Solution
+from verification.problem.contact import CoatedContact, Solution, stress_with_uncertainty
 
 __all__ = ["symmetry"]
 
@@ -27,9 +27,10 @@ def symmetry(solution: Solution, source: str, problem: CoatedContact) -> tuple[I
     stated = solution.uncertainty is not None
     sigma, U = [], []
     for z, layer in _depths(solution, problem):
-        sigma.append(solution.stress(x, y, z, layer) / problem.p_h)
-        if stated:
-            U.append(solution.stress_uncertainty(x, y, z, layer) / problem.p_h)
+        stress, spread = stress_with_uncertainty(solution, x, y, z, layer)
+        sigma.append(stress / problem.p_h)
+        if spread is not None:
+            U.append(spread / problem.p_h)
     s = np.stack(sigma, axis=2)
     u = np.stack(U, axis=2) if stated else np.zeros_like(s)
     found = []
