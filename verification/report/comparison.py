@@ -4,7 +4,7 @@ from verification.judging.verdict import Outcome
 from verification.regression.comparison import RunComparison
 from verification.regression.drift import State
 from verification.report.sections.baseline import MOST, drift_table, state_cell
-from verification.report.tables.cells import Cell, Part, Row, Section, Table
+from verification.report.tables.cells import Cell, Part, Row, Section, Table, number
 from verification.report.tables.labels import pair_label
 from verification.report.tables.matrix import outcome_cell
 from verification.report.tables.numbers import factor, scientific, seconds
@@ -66,10 +66,8 @@ def _numbers(found: RunComparison) -> Part:
     rows = []
     for case in found.cases:
         counts = [case.count(state) for state in (State.SAME, State.DRIFTED, State.GONE, State.NEW)]
-        cells = [state_cell(case), *(Cell(str(count), float(count)) for count in counts)]
-        rows.append(
-            Row(Cell(case.name, note=case.title), [*cells, Cell(scientific(case.change), case.change)])
-        )
+        cells = [state_cell(case), *(number(count, str) for count in counts)]
+        rows.append(Row(Cell(case.name, note=case.title), [*cells, number(case.change)]))
     table = Table(
         "Every point of every profile of the second run against the first.",
         ["case", "state", "same", "drifted", "gone", "new", "largest change"],
@@ -93,7 +91,7 @@ def _times(found: RunComparison) -> Table:
     rows = []
     for name, then, now in found.seconds:
         ratio = Cell("–") if then is None or now is None else Cell(factor(now, then), now / max(then, 1e-9))
-        rows.append(Row(Cell(name), [Cell(seconds(then), then), Cell(seconds(now), now), ratio]))
+        rows.append(Row(Cell(name), [number(then, seconds), number(now, seconds), ratio]))
     return Table("Seconds of each case.", ["case", "first", "second", "second over first"], rows)
 
 

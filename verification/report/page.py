@@ -31,6 +31,7 @@ from verification.report.tables.case import (
     contact_table,
     diagnostics_table,
     dominating_knob,
+    facts,
     layer_table,
     verdict_table,
 )
@@ -39,7 +40,7 @@ from verification.report.tables.csv import embedded, line_csv
 from verification.report.tables.labels import OUTCOMES, OutcomeStyle, source_label
 from verification.report.tables.lookup import lines, scale, slug
 from verification.report.tables.matrix import verdict_matrix
-from verification.report.tables.numbers import engineering, plain, scientific, seconds
+from verification.report.tables.numbers import scientific, seconds
 from verification.report.templates import rendered
 from verification.running.result import CaseResult
 
@@ -86,7 +87,7 @@ class CaseView:
     outcome: OutcomeStyle
     sentence: str
     command: str
-    facts: tuple[tuple[str, str], ...]
+    facts: Sequence[tuple[str, str]]
     sketch: Markup
     failures: tuple[tuple[str, str], ...]
     layers: Table
@@ -184,7 +185,7 @@ def _case(material: Material, result: CaseResult) -> CaseView:
         outcome=OUTCOMES[result.outcome],
         sentence=_case_sentence(result, len(bad), len(broken)),
         command=rerun_command(result.name, material.info.command),
-        facts=_facts(result),
+        facts=facts(result),
         sketch=sketch(result),
         failures=tuple((source_label(s.source), s.failure) for s in result.sources if s.failure is not None),
         layers=layer_table(result),
@@ -222,15 +223,3 @@ def _case_sentence(result: CaseResult, bad: int, broken: int) -> str:
     if laws:
         text += f", {broken} of {laws} invariants do not hold" if broken else f", all {laws} invariants hold"
     return text + "."
-
-
-def _facts(result: CaseResult) -> tuple[tuple[str, str], ...]:
-    problem = result.problem
-    return (
-        ("sphere radius R", engineering(problem.get("radius"), "m")),
-        ("load W", engineering(problem.get("load"), "N")),
-        ("friction f", plain(problem.get("friction", 0.0))),
-        ("a_h, Hertz contact radius", engineering(scale(result, "a_h"), "m")),
-        ("p_h, Hertz peak pressure", engineering(scale(result, "p_h"), "Pa")),
-        ("delta_h, Hertz approach", engineering(scale(result, "delta_h"), "m")),
-    )

@@ -129,10 +129,10 @@ def test_accuracy_tells_an_honest_estimate_from_a_vain_one():
     # A method that states a fifth of its error cannot be honest about the largest one.
     vain = result_of(COATED, stated={"fem_reference": 0.2}, points=31)
     silent = result_of(COATED, stated={"fem_reference": None}, points=31)
-    assert all(item.brackets for item in accuracies(honest))
+    assert all(item.covered for item in accuracies(honest))
     fem = [item for item in accuracies(vain) if item.source == "fem_reference" and item.line != "contact"]
     assert fem
-    assert not any(item.brackets for item in fem)
+    assert not any(item.covered for item in fem)
     assert all(item.css == "disagrees" for item in fem)
     assert "(100.0 %)" in accuracy_sentence([honest], "fem_reference")
     assert "none is stated" in accuracy_sentence([silent], "fem_reference")

@@ -11,17 +11,15 @@ from verification.credibility.independence import shared
 from verification.judging.verdict import Outcome
 from verification.report.credibility.tables import (
     alarm_table,
-    bracket_table,
     design_table,
     import_table,
-    knob_table,
     order_table,
     pair_table,
+    parameter_table,
     range_table,
-    survivor_table,
 )
 from verification.report.material import Evidence, Material
-from verification.report.sections.accuracy import accuracies
+from verification.report.sections.accuracy import accuracies, coverage_table
 from verification.report.sections.baseline import baseline_sentence
 from verification.report.tables.cells import Cell, Part, Row, Section, Table
 from verification.report.tables.numbers import plain
@@ -71,36 +69,26 @@ def section(material: Material) -> Section | None:
         Part(
             "Orders of convergence where the answer is known beforehand: manufactured fields in two bonded "
             "materials for the finite element operator, exact solutions of the contact for both methods.",
-            [t for t in (design_table(evidence.orders), order_table(evidence.accuracy)) if t is not None],
+            [design_table(evidence.orders), order_table(evidence.accuracy)],
             title="2. Code verification",
         ),
         Part(
             "Every method states an uncertainty U for each number, from coarser companions of the same "
             "problem, one for each knob. Whether U can be believed is seen where the answer is known: "
             f"{_bracketed(contacts)}",
-            [t for t in (bracket_table(contacts), knob_table(contacts)) if t is not None],
+            [coverage_table(contacts), parameter_table(contacts)],
             title="3. Solution verification",
         ),
         Part(
             _compared(results),
-            [t for t in (pair_table(results),) if t is not None],
+            [pair_table(results)],
             title="4. Comparison with references and between methods",
         ),
         Part(
-            _independent(evidence),
-            [t for t in (import_table(evidence.parts),) if t is not None],
-            title="5. Independence of the two methods",
+            _independent(evidence), [import_table(evidence.parts)], title="5. Independence of the two methods"
         ),
-        Part(
-            _faults(evidence),
-            [t for t in (survivor_table(evidence.faults),) if t is not None],
-            title="6. Fault detection",
-        ),
-        Part(
-            _alarms(evidence),
-            [t for t in (alarm_table(evidence.alarms),) if t is not None],
-            title="7. False alarms",
-        ),
+        Part(_faults(evidence), [], title="6. Fault detection"),
+        Part(_alarms(evidence), [alarm_table(evidence.alarms)], title="7. False alarms"),
         Part(NOT_CLAIMED, title="8. What is not claimed"),
     ]
     return Section(ANCHOR, "Credibility", parts, evidence.failures)
@@ -167,7 +155,7 @@ def _bracketed(results: Sequence[CaseResult]) -> str:
     found = [item for result in results for item in accuracies(result)]
     if not found:
         return "not measured: no case of this run has an exact reference."
-    good = sum(item.brackets for item in found)
+    good = sum(item.covered for item in found)
     return (
         f"U holds the true error at every judged point in {good} of {len(found)} quantities "
         f"({plain(100 * good / len(found), 3)} %)."

@@ -6,7 +6,7 @@ from math import isfinite
 from verification.regression.baseline import CaseDrift, Regression
 from verification.regression.drift import FACTOR, RELATIVE, Drift, State
 from verification.report.material import Material
-from verification.report.tables.cells import Cell, Part, Row, Section, Table
+from verification.report.tables.cells import Cell, Part, Row, Section, Table, number
 from verification.report.tables.labels import source_label
 from verification.report.tables.numbers import scientific
 
@@ -103,7 +103,7 @@ def _case_table(cases: Sequence[CaseDrift], anchors: Mapping[str, str]) -> Table
         counts = [case.count(state) for state in (State.SAME, State.DRIFTED, State.GONE, State.NEW)]
         cells = [
             state_cell(case),
-            *(Cell(str(count), float(count)) for count in counts),
+            *(number(count, str) for count in counts),
             Cell(_change(case.change), case.change if _finite(case.change) else None),
             Cell(case.said),
         ]

@@ -8,7 +8,7 @@ import numpy as np
 from verification.judging.invariants.influence import ConversionError
 from verification.report.figures.loglog import Trail, decades, draw_loglog
 from verification.report.figures.panels import swatch
-from verification.report.tables.cells import Cell, Gallery, Panel, Part, Row, Table
+from verification.report.tables.cells import Cell, Gallery, Panel, Part, Row, Table, number
 from verification.report.tables.numbers import factor, plain, scientific
 from verification.sources.source import Style
 
@@ -136,7 +136,7 @@ def _conversion_table(found: Sequence[ConversionError]) -> Table:
                 Cell(_look(_kind(one))[0]),
                 [
                     Cell("–" if not one.enlarge else f"{one.enlarge}", float(one.enlarge)),
-                    *(Cell(scientific(e), e) for e in numbers),
+                    *(number(e) for e in numbers),
                     Cell(_milli(one.seconds), one.seconds),
                 ],
             )

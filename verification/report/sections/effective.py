@@ -113,10 +113,7 @@ def _confirmation(study: EffectiveStudy) -> Part:
         f"from {plain(min(n), 3)} to {plain(max(n), 3)}."
     )
     rows = [
-        Row(
-            Cell(plain(ratio, 3), ratio),
-            [Cell(plain(v, 3), v) for v in (theirs, fitted, exponent)],
-        )
+        Row(Cell(plain(ratio, 3), ratio), [Cell(plain(v, 3), v) for v in (theirs, fitted, exponent)])
         for ratio, theirs, fitted, exponent in study.refitted
     ]
     table = Table(

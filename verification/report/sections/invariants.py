@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from verification.judging.invariants import Invariant
 from verification.judging.verdict import Outcome
 from verification.report.material import Material
-from verification.report.tables.cells import Cell, Part, Row, Section, Table
+from verification.report.tables.cells import Cell, Part, Row, Section, Table, number
 from verification.report.tables.labels import OUTCOMES, source_label
 from verification.report.tables.matrix import outcome_cell
 from verification.report.tables.numbers import plain, scientific
@@ -28,8 +28,8 @@ def invariant_table(found: Sequence[Invariant]) -> Table | None:
                 Cell(one.name),
                 Cell(source_label(one.source)),
                 Cell(one.message, css="reason"),
-                Cell(scientific(one.value), one.value),
-                Cell(scientific(one.bound), one.bound),
+                number(one.value),
+                number(one.bound),
                 Cell(scientific(one.margin, sign=True), one.margin),
                 Cell(_percent(one.share), one.share),
             ],
@@ -104,7 +104,7 @@ def _family_cells(
     href = f"#{anchors[case]}-invariants"
     return [
         Cell(f"{held} of {len(found)}", held / len(found), css, worst.message, href),
-        Cell(scientific(largest), largest),
+        number(largest),
         Cell(_percent(worst.share), worst.share),
     ]
 

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 from verification.credibility.parameters import KnobLadder, Stated
 from verification.report.material import Material
-from verification.report.tables.cells import Cell, Part, Row, Section, Table
+from verification.report.tables.cells import Cell, Part, Row, Section, Table, number
 from verification.report.tables.labels import source_label
 from verification.report.tables.numbers import plain, scientific
 
@@ -42,15 +42,13 @@ def _totals(one: Stated, ladders: Sequence[KnobLadder]) -> Table:
     rows = []
     for name, U in one.uncertainty.items():
         cells = [
-            Cell(scientific(one.error[name]), one.error[name]),
+            number(one.error[name]),
             _held(U, one.error[name]),
             _held(_sum(ladders, name), one.error[name]),
         ]
         for ladder in ladders:
             found = ladder.estimate(name)
-            cells.append(
-                Cell("–") if found is None else Cell(scientific(found.uncertainty), found.uncertainty)
-            )
+            cells.append(Cell("–") if found is None else number(found.uncertainty))
         rows.append(Row(Cell(name), cells))
     return Table(
         "True error at the default numerics, the uncertainty stated, and that of the ladders: the sum over "

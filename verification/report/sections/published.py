@@ -10,11 +10,11 @@ from verification.judging.verdict import Outcome
 from verification.problem.profile import Profile
 from verification.problem.quantity import QUANTITIES
 from verification.report.material import Material, rerun_command
-from verification.report.tables.case import budget_table, diagnostics_table, layer_table, verdict_table
-from verification.report.tables.cells import Cell, Part, Row, Section, Table
+from verification.report.tables.case import budget_table, diagnostics_table, facts, layer_table, verdict_table
+from verification.report.tables.cells import Cell, Part, Row, Section, Table, number
 from verification.report.tables.labels import OUTCOMES, OutcomeStyle, source_label
 from verification.report.tables.matrix import outcome_cell
-from verification.report.tables.numbers import engineering, plain, scientific
+from verification.report.tables.numbers import plain, scientific
 from verification.running.result import CaseResult
 from verification.sources.registry import METHODS, PUBLISHED, REFERENCES
 
@@ -99,7 +99,7 @@ def _method_cells(result: CaseResult, method: str) -> list[Cell]:
     largest = max(numbers, default=None)
     return [
         Cell(f"{met} of {total}", met, "verdict agrees" if met == total else "verdict disagrees"),
-        Cell(scientific(largest), largest),
+        number(largest),
     ]
 
 
@@ -113,7 +113,7 @@ def published_view(material: Material, result: CaseResult) -> PublishedView:
         outcome=OUTCOMES[result.outcome],
         sentence=f"{bad} of {total} comparisons do not agree." if bad else f"All {total} comparisons agree.",
         command=rerun_command(result.name, material.info.command),
-        facts=_facts(result),
+        facts=facts(result),
         failures=[(source_label(s.source), s.failure) for s in result.sources if s.failure is not None],
         layers=layer_table(result),
         tables=_tables(result),
@@ -121,24 +121,6 @@ def published_view(material: Material, result: CaseResult) -> PublishedView:
         budget=budget_table(result),
         diagnostics=diagnostics_table(result),
     )
-
-
-def _facts(result: CaseResult) -> list[tuple[str, str]]:
-    names = {
-        "pressure": ("uniform pressure q", "Pa"),
-        "load_radius": ("radius of the disc a", "m"),
-        "radius": ("sphere radius R", "m"),
-        "load": ("load W", "N"),
-        "a_h": ("a_h, Hertz contact radius", "m"),
-        "p_h": ("p_h, Hertz peak pressure", "Pa"),
-        "delta_h": ("delta_h, Hertz approach", "m"),
-    }
-    found = [
-        (said, engineering(result.problem[name], unit))
-        for name, (said, unit) in names.items()
-        if name in result.problem
-    ]
-    return [*found, ("friction f", plain(result.problem.get("friction", 0.0)))]
 
 
 def _tables(result: CaseResult) -> list[tuple[str, Table]]:

@@ -10,7 +10,7 @@ from verification.report.figures.loglog import Trail, decades, draw_loglog
 from verification.report.figures.panels import swatch
 from verification.report.material import Material
 from verification.report.sections.conversion import conversion_part
-from verification.report.tables.cells import Cell, Gallery, Panel, Part, Row, Section, Table
+from verification.report.tables.cells import Cell, Gallery, Panel, Part, Row, Section, Table, number
 from verification.report.tables.numbers import factor, plain, scientific, seconds
 from verification.sources.source import Style
 
@@ -21,10 +21,7 @@ _TITLES = {q.symbol: q.symbol for q in _SCALARS} | {
     "pressure": "pressure, L2 over the contact",
     "stress": "stress, axis and interfaces",
 }
-_SCALES = {q.symbol: "relative" for q in _SCALARS} | {
-    "pressure": "over p0",
-    "stress": "largest, over p_h",
-}
+_SCALES = {q.symbol: "relative" for q in _SCALARS} | {"pressure": "over p0", "stress": "largest, over p_h"}
 _DOTS, _DASHES, _MIXED = (1.0, 1.4), (3.6, 3.0), (4.5, 1.4, 1.0, 1.4)
 _SETTINGS = {
     (CORRECTED, True): Style("semi"),
@@ -205,8 +202,8 @@ def _ladder_table(ladders: Sequence[Ladder], level_name: str) -> Table:
         name = f"{one.solid}: {one.setting}"
         for level in one.levels:
             cells = [Cell(level.name)]
-            cells += [Cell(scientific(level.errors[q]), level.errors[q]) for q in QUANTITIES]
-            rows.append(Row(Cell(name), [*cells, Cell(seconds(level.seconds), level.seconds)]))
+            cells += [number(level.errors[q]) for q in QUANTITIES]
+            rows.append(Row(Cell(name), [*cells, number(level.seconds, seconds)]))
         orders = [one.order(q) for q in QUANTITIES]
         cells = [Cell("–" if o is None else f"{o:.1f}", -1.0 if o is None else o) for o in orders]
         rows.append(Row(Cell(name), [Cell("observed order"), *cells, Cell("")], "order"))

@@ -1,7 +1,7 @@
 """Run times of every source in every case."""
 
 from verification.report.material import Material
-from verification.report.tables.cells import Cell, Part, Row, Section, Table
+from verification.report.tables.cells import Cell, Part, Row, Section, Table, number
 from verification.report.tables.labels import source_label
 from verification.report.tables.matrix import case_cell
 from verification.report.tables.numbers import seconds
@@ -20,7 +20,7 @@ def section(material: Material) -> Section | None:
     for result in material.results:
         times = {source.source: source for source in result.sources}
         cells = [_time_cell(times.get(name)) for name in names]
-        cells.append(Cell(seconds(result.seconds), result.seconds))
+        cells.append(number(result.seconds, seconds))
         rows.append(Row(case_cell(result, f"#{material.anchors[result]}"), cells))
     table = Table(
         "Wall-clock seconds of each source including its uncertainty estimate; the case in total.",
@@ -35,4 +35,4 @@ def _time_cell(source: SourceResult | None) -> Cell:
         return Cell("", css="nothing")
     if source.failure is not None:
         return Cell(f"failed, {seconds(source.seconds)}", source.seconds, "verdict no-result", source.failure)
-    return Cell(seconds(source.seconds), source.seconds)
+    return number(source.seconds, seconds)

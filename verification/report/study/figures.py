@@ -341,7 +341,7 @@ def governing_figure(judgements: Sequence[Judged]) -> list[Drawn]:
             colours = ListedColormap([_pale(COLOURS[list(MODES).index(mode)]) for mode in modes])
             axes.pcolormesh(
                 h, ratio, governing, cmap=colours, vmin=-0.5, vmax=len(modes) - 0.5, shading="nearest",
-                rasterized=True,
+                rasterized=True
             )  # fmt: skip
             lines = axes.contour(h, ratio, largest, levels=6, colors="#555555", linewidths=0.6)
             axes.clabel(lines, fontsize=6, fmt="%.3g", manual=_places(lines, h, ratio))

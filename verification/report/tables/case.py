@@ -8,7 +8,7 @@ import numpy as np
 
 from verification.judging.verdict import Claim, Outcome, Verdict
 from verification.problem.quantity import QUANTITIES, SCALARS, unit_of
-from verification.report.tables.cells import Cell, Row, Table
+from verification.report.tables.cells import Cell, Row, Table, number
 from verification.report.tables.labels import OUTCOMES, pair_label, source_label
 from verification.report.tables.lookup import baseline, layers, scalar, scale
 from verification.report.tables.matrix import outcome_cell
@@ -20,9 +20,32 @@ __all__ = [
     "contact_table",
     "diagnostics_table",
     "dominating_knob",
+    "facts",
     "layer_table",
     "verdict_table",
 ]
+
+
+_FACTS = {
+    "pressure": ("uniform pressure q", "Pa"),
+    "load_radius": ("radius of the disc a", "m"),
+    "radius": ("sphere radius R", "m"),
+    "load": ("load W", "N"),
+    "friction": ("friction f", ""),
+    "a_h": ("a_h, Hertz contact radius", "m"),
+    "p_h": ("p_h, Hertz peak pressure", "Pa"),
+    "delta_h": ("delta_h, Hertz approach", "m"),
+}
+
+
+def facts(result: CaseResult) -> list[tuple[str, str]]:
+    """(name, value) of each parameter and each Hertz scale of a problem."""
+    given = {"friction": 0.0} | result.problem
+    return [
+        (text, engineering(given[name], unit) if unit else plain(given[name]))
+        for name, (text, unit) in _FACTS.items()
+        if name in given
+    ]
 
 
 def layer_table(result: CaseResult) -> Table:
@@ -34,8 +57,8 @@ def layer_table(result: CaseResult) -> Table:
     a_h = scale(result, "load_radius" if length == "a" else "a_h")
     found = layers(result)
     rows = []
-    for number, (E, nu, thickness) in enumerate(found, start=1):
-        below = number == len(found)
+    for layer, (E, nu, thickness) in enumerate(found, start=1):
+        below = layer == len(found)
         cells = [
             Cell(engineering(E, "Pa"), E),
             Cell(plain(E / found[-1][0], 3), E),
@@ -43,7 +66,7 @@ def layer_table(result: CaseResult) -> Table:
             Cell("∞" if below else engineering(thickness, "m"), thickness),
             Cell("∞" if below else plain(thickness / a_h, 3) if a_h > 0 else "–", thickness),
         ]
-        rows.append(Row(Cell("substrate" if below else f"coating {number}"), cells))
+        rows.append(Row(Cell("substrate" if below else f"coating {layer}"), cells))
     return Table("Layers from the surface down.", ["layer", "E", "E / E_s", "nu", "h", f"h / {length}"], rows)
 
 
@@ -115,9 +138,9 @@ def verdict_table(
                     Cell(claim.quantity, note=claim.why),
                     Cell(claim.line),
                     Cell(pair_label(claim.between)),
-                    Cell(scientific(verdict.difference), verdict.difference),
-                    Cell(scientific(verdict.uncertainty), verdict.uncertainty),
-                    Cell(scientific(claim.cap), claim.cap),
+                    number(verdict.difference),
+                    number(verdict.uncertainty),
+                    number(claim.cap),
                     Cell(scientific(verdict.margin, sign=True), verdict.margin),
                     *([Cell(knob(claim, verdict))] if knob is not None else []),
                     Cell(where, verdict.worst),
@@ -189,8 +212,6 @@ def budget_table(result: CaseResult) -> Table | None:
                     Cell("◀ dominates" if dominant else "", css="dominant"),
                 ]
                 rows.append(Row(Cell(source_label(source.source)), cells))
-    if not rows:
-        return None
     return Table(
         "Each method's own uncertainty, knob by knob from its own ladder; relative to the value, to p_h for "
         "stresses.",
@@ -212,8 +233,6 @@ def diagnostics_table(result: CaseResult) -> Table | None:
         for source in result.sources
         for name, value in source.diagnostics.items()
     ]
-    if not rows:
-        return None
     return Table("Diagnostics each source reports of itself.", ["source", "diagnostic", "value"], rows)
 
 

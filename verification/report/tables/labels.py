@@ -6,14 +6,7 @@ from verification.judging.verdict import Outcome
 from verification.sources.registry import METHODS, SOURCES
 from verification.sources.source import Style
 
-__all__ = [
-    "OUTCOMES",
-    "OutcomeStyle",
-    "pair_label",
-    "pair_style",
-    "source_label",
-    "source_style",
-]
+__all__ = ["OUTCOMES", "OutcomeStyle", "pair_label", "pair_style", "source_label", "source_style"]
 
 _OTHER = SOURCES["published"].style
 _BETWEEN_METHODS = Style("pair", (4.5, 1.4, 1.0, 1.4), 1.4)
