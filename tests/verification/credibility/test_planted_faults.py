@@ -21,7 +21,7 @@ from verification.running.result import from_json as result_from_json
 from verification.running.result import to_json as result_to_json
 from verification.running.store import read_checked, write_checked
 from verification.sources import registry
-from verification.sources.references.hertz import Hertz
+from verification.sources.references.hertz import Hertz, HertzContact
 
 # What issue after issue of such codes has been about, each by the fault that stands for it.
 NAMED = {
@@ -110,10 +110,10 @@ def test_a_plant_fits_the_source_and_leaves_no_trace(fault):
 
 def test_a_plant_is_taken_out_when_the_trial_fails():
     fault = FAULTS["hertz_exponent"]
-    original = vars(Hertz)["contact_radius"]
+    original = vars(HertzContact)["contact_radius"]
     with pytest.raises(RuntimeError), planted(fault.changes):
         raise RuntimeError("a trial that fails")
-    assert vars(Hertz)["contact_radius"] is original
+    assert vars(HertzContact)["contact_radius"] is original
 
 
 def test_a_function_imported_by_name_is_exchanged_there_too():
@@ -127,8 +127,9 @@ def test_a_function_imported_by_name_is_exchanged_there_too():
 
 
 def test_two_edits_of_one_function_both_take():
-    first = Edit("verification.sources.references.hertz:Hertz.approach", "self.radius", "(2 * self.radius)")
-    second = Edit("verification.sources.references.hertz:Hertz.approach", "**2 /", "**3 /")
+    approach = "verification.sources.references.hertz:HertzContact.approach"
+    first = Edit(approach, "self.radius", "(2 * self.radius)")
+    second = Edit(approach, "**2 /", "**3 /")
     hertz = Hertz(1e-2, 20.0, 210e9, 0.3)
     a = hertz.contact_radius
     with planted((first, second)):

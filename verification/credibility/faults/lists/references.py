@@ -16,7 +16,7 @@ FAULTS = (
         "hertz_exponent",
         "Hertz's contact radius takes the square root where it takes the cube root",
         SCALARS,
-        Edit("verification.sources.references.hertz:Hertz.contact_radius", "** (1 / 3)", "** (1 / 2)"),
+        Edit("verification.sources.references.hertz:HertzContact.contact_radius", "** (1 / 3)", "** (1 / 2)"),
         where="hertz",
     ),
     fault(
@@ -24,7 +24,7 @@ FAULTS = (
         "Hertz's peak pressure is the mean pressure",
         ("peak_pressure", "pressure", "sigma_zz"),
         Edit(
-            "verification.sources.references.hertz:Hertz.peak_pressure",
+            "verification.sources.references.hertz:HertzContact.peak_pressure",
             "3 * self.load / (2 *",
             "self.load / (1 *",
         ),
