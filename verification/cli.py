@@ -206,7 +206,7 @@ app.command(
 def main() -> None:
     """Entry of the ``coatcheck`` command."""
     try:
-        code = app(exit_on_error=False, print_error=False, result_action="return_value")
+        code = app(sys.argv[1:], exit_on_error=False, print_error=False, result_action="return_value")
     except CycloptsError as error:
         code = print_error(" ".join(str(error).split()) + " Try: coatcheck --help")
     except KeyboardInterrupt:

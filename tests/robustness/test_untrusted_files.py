@@ -3,15 +3,13 @@
 import ast
 import json
 import shutil
-import subprocess
-import sys
 import time
 from dataclasses import replace
 from html.parser import HTMLParser
 from pathlib import Path
 
 import pytest
-from quick_case import QUICK
+from quick_case import QUICK, coatcheck
 
 from verification.cases.contact import parse_case, read_case
 from verification.cases.published import is_published
@@ -160,23 +158,7 @@ def test_run_with_strange_names_writes_into_its_output_directory_only(tmp_path):
         (tmp_path / "here").mkdir(exist_ok=True)
         (tmp_path / "here" / f"{name}.toml").write_text(QUICK)
     before = sorted(tmp_path.rglob("*"))
-    done = subprocess.run(
-        [
-            sys.executable,
-            "-m",
-            "verification.cli",
-            "run",
-            "...toml",
-            "../-rf.toml",
-            "-q",
-            "-o",
-            "out",
-        ],
-        cwd=tmp_path / "here",
-        capture_output=True,
-        text=True,
-        timeout=300,
-    )
+    done = coatcheck("run", "...toml", "../-rf.toml", "-q", "-o", "out", cwd=tmp_path / "here")
     assert done.returncode == 0, done.stderr
     after = sorted(
         path for path in tmp_path.rglob("*") if tmp_path / "here" / "out" not in (path, *path.parents)

@@ -1,4 +1,4 @@
-"""Columns of a published table as profiles on lines, each with the reading uncertainty of its source."""
+"""Columns of a published table as profiles on lines with the digitisation uncertainty of the source."""
 
 from dataclasses import dataclass
 from math import isfinite
@@ -21,12 +21,12 @@ __all__ = ["PublishedColumn", "columns_of", "si_of"]
 
 @dataclass(frozen=True, eq=False)
 class PublishedColumn:
-    """One column of a table on one line: where, what, and which rows count.
+    """One column of a table on one line.
 
-    profile : in SI, tension positive, with the reading uncertainty.   at : the points of its values.
+    profile : in SI, tension positive, with the digitisation uncertainty.   at : the points of its values.
     rows : their lines in ``file``, with their ``labels``.   text : the cells as printed, in ``unit``.
-    to_si : SI value of a printed 1, its sign included.   why_not : why a row does not count, or "".
-    scale : what differences are divided by [SI].   series : coefficients that the quantity speaks of.
+    to_si : SI value of a printed 1, with its sign.   why_not : reason why a row does not count, or "".
+    scale : divisor of differences [SI].   series : coefficients of a power series, see ``ColumnEntry``.
     """
 
     profile: Profile
@@ -49,7 +49,7 @@ class PublishedColumn:
 
 
 def si_of(name: str, units: dict[str, float], where: str) -> float:
-    """SI value of a unit. Raises ValueError naming ``where`` it stands."""
+    """SI value of the unit ``name`` among ``units``. Raises ValueError naming ``where`` it is used."""
     if name not in units:
         raise ValueError(f"{where}: unit {name!r} is unknown; known are {', '.join(units)}")
     if not (isfinite(units[name]) and units[name] > 0):
@@ -82,7 +82,7 @@ def columns_of(
             )
         at = column.at or table.at
         if at is None and column.quantity not in SCALARS + EXTREMES:
-            raise ValueError(f"{key}.column.{i}: says nowhere where its values are; give at")
+            raise ValueError(f"{key}.column.{i}: has no positions; give at")
         try:
             to_si = column.factor * si_of(column.unit, units, here)
         except ValueError as error:
@@ -91,12 +91,12 @@ def columns_of(
         value = np.array(content.numbers(column.name)) * to_si
         why_not = _why_not(table, content, column.name)
         counted = np.array([not why for why in why_not])
-        spread = _uncertainty(column, content, counted) * abs(to_si)
+        U = _uncertainty(column, content, counted) * abs(to_si)
         scale = _scale(column, table, content, units, problem)
         for name, rows in points.lines():
             line = f"{name}, {content.path.stem}, column {column.name}"
             part = points.part(rows)
-            profile = Profile(column.quantity, line, part.along, value[rows], PUBLISHED, spread[rows])
+            profile = Profile(column.quantity, line, part.along, value[rows], PUBLISHED, U[rows])
             found.append(
                 PublishedColumn(
                     profile,
@@ -133,7 +133,9 @@ def _points(
         def metres(given: str | float) -> Array:
             value = np.array(content.numbers(given)) if isinstance(given, str) else np.full(n, given)
             if not np.all(abs(value) <= np.finfo(float).max / max(unit, 1.0)):
-                raise ValueError(f"at: {given} in {at.unit!r} is beyond all numbers; give another unit")
+                raise ValueError(
+                    f"at: {given} in {at.unit!r} is too large for floating point; give another unit"
+                )
             return value * unit
 
         if isinstance(problem, LoadingCurve):
@@ -148,7 +150,7 @@ def _points(
 
 
 def _why_not(table: TableEntry, content: PublishedTable, column: str) -> list[str]:
-    """Why a row does not count: it is flagged, or the cell named, as a misprint; "" for one that counts."""
+    """Reason why each row does not count, flagged or named as a misprint; "" for one that counts."""
     why = [""] * len(content.rows)
     if table.flag is not None:
         why = ["misprint" if cell else "" for cell in content.text(table.flag)]
@@ -161,10 +163,10 @@ def _why_not(table: TableEntry, content: PublishedTable, column: str) -> list[st
 
 
 def _uncertainty(column: ColumnEntry, content: PublishedTable, counted: NDArray[np.bool_]) -> Array:
-    """Reading uncertainty of every row, in the unit of the column.
+    """Digitisation uncertainty of every row, in the unit of the column.
 
-    Stated by the file; or half the last digit with the error of the program that printed it; or, where
-    several programs speak row by row, with all that they differ by.
+    As stated by the file; or half of the last digit, plus the error of the program that printed it or, where
+    each row is of another program, the range of the rows.
     """
     if column.relative is not None:
         return column.relative * np.abs(content.numbers(column.name))

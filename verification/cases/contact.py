@@ -1,4 +1,4 @@
-"""A case: one coated contact with the claims made about it, read from a TOML file."""
+"""A case: one coated contact with the claims about it, read from a TOML file."""
 
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -38,7 +38,7 @@ class Case:
 
     @property
     def lines(self) -> tuple[Line, ...]:
-        """The lines of the plane y = 0 on which this case is looked at."""
+        """The lines of the plane y = 0 on which sources are compared."""
         return lines_of(self.problem)
 
 
@@ -106,12 +106,12 @@ class _CaseFile(Strict):
 
 
 def read_case(path: Path) -> Case:
-    """Read and check one case file. Raises CaseError: one sentence with file and key."""
+    """Read and check one case file. Raises CaseError naming file and key."""
     return parse_case(read_bounded(path, "case", "one problem"), path)
 
 
 def parse_case(raw: bytes, path: Path) -> Case:
-    """Check the content of a case file; ``path`` names it in complaints. Raises CaseError."""
+    """Check the content of a case file; ``path`` names it in messages. Raises CaseError."""
     text, checked = read_toml(raw, path, _CaseFile)
     try:
         p = checked.problem
@@ -140,7 +140,7 @@ def parse_case(raw: bytes, path: Path) -> Case:
 
 
 def refuse_unfit_scales(path: Path, problem: CoatedContact) -> None:
-    """Raise CaseError where the parabolic sphere, a method or floating point no longer holds."""
+    """Raise CaseError beyond the range of the parabolic sphere, of a method or of floating point."""
     if problem.a_h > problem.radius:
         raise CaseError(
             f"{path}: problem.load: gives a contact radius of {problem.a_h:.3g} m on a sphere of "
@@ -154,7 +154,7 @@ def refuse_unfit_scales(path: Path, problem: CoatedContact) -> None:
         if not 1e-3 <= thickness / problem.a_h <= 1e3:
             raise CaseError(
                 f"{path}: problem.coatings.{i}.thickness: {thickness / problem.a_h:.3g} times the contact "
-                f"radius {problem.a_h:.3g} m; both methods are made for 1e-3 to 1e3"
+                f"radius {problem.a_h:.3g} m; both methods support 1e-3 to 1e3"
             )
     stiffest = max([E for E, _, _ in problem.coatings] + [problem.substrate[0]])
     softest = min([E for E, _, _ in problem.coatings] + [problem.substrate[0]])

@@ -84,16 +84,16 @@ def faults(
     jobs = cores() if jobs is None else jobs
     if jobs < 1 or not time_limit > 0:
         return print_error(f"--jobs = {jobs}, --time-limit = {time_limit:g}; both must be positive")
-    from verification.credibility.faults.catalogue import BLANKS, FAULTS, GROUPS, chosen
+    from verification.credibility.faults.catalogue import CONTROLS, FAULTS, GROUPS, chosen
 
     if group is not None and (group not in GROUPS or names):
-        cure = "give a group or names, not both" if names else f"choose one of {', '.join(GROUPS)}"
-        return print_error(f"--group = {group}: {cure}{did_you_mean(group, GROUPS)}")
+        remedy = "give a group or names, not both" if names else f"choose one of {', '.join(GROUPS)}"
+        return print_error(f"--group = {group}: {remedy}{did_you_mean(group, GROUPS)}")
     try:
         wanted = chosen(names, group)
     except KeyError as error:
         name = str(error.args[0])
-        near = did_you_mean(name, FAULTS | BLANKS)
+        near = did_you_mean(name, FAULTS | CONTROLS)
         return print_error(f"{name}: no fault has this name, see coatcheck faults --list{near}")
     if listed:
         _list(wanted, as_json)
@@ -106,7 +106,7 @@ def faults(
         return code
 
     from verification.credibility.faults import campaign
-    from verification.credibility.faults.record import to_json
+    from verification.credibility.faults.record import to_json, write_record
     from verification.report.credibility.faults import faults_page
 
     started = datetime.datetime.now(datetime.UTC)
@@ -115,7 +115,9 @@ def faults(
             cases = campaign.clean_cases(wanted)
             clean = kept_results(cases, campaign.clean_folder(output)) if resume else {}
             tasks = [case_task(c, campaign.clean_folder(output)) for c in cases if c.name not in clean]
-            if reason := campaign.unfit([*clean.values(), *solve(tasks, jobs, time_limit, quiet or as_json)]):
+            if reason := campaign.failed_source(
+                [*clean.values(), *solve(tasks, jobs, time_limit, quiet or as_json)]
+            ):
                 print_error(reason)
                 return EXIT[Outcome.NO_RESULT]
             kept = {f.name: t for f in wanted if resume and (t := campaign.kept_trial(f, output))}
@@ -132,11 +134,11 @@ def faults(
                 machine=f"{info.machine}, {jobs} jobs",
                 versions=info.versions,
             )
-            campaign.write_record(output / campaign.RECORD, found)
+            write_record(output / campaign.RECORD, found)
             page = output / "faults.html"
             write_atomically(page, faults_page(found))
             if record:
-                campaign.write_record(records / campaign.RECORD, found)
+                write_record(records / campaign.RECORD, found)
     except StoreError as error:
         return print_error(str(error))
     if as_json:
@@ -148,11 +150,11 @@ def faults(
 
 def _list(wanted: Sequence["Fault"], as_json: bool) -> None:
     if as_json:
-        keys = ("name", "group", "where", "sentence")
+        keys = ("name", "group", "where", "description")
         return print_json([{key: getattr(fault, key) for key in keys} for fault in wanted])
     table = named_table("fault", "group", "what is wrong")
     for fault in wanted:
-        table.add_row(fault.name, fault.group, escape(fault.sentence))
+        table.add_row(fault.name, fault.group, escape(fault.description))
     return print_out(table)
 
 
@@ -167,20 +169,22 @@ def _print(found: "Record", page: Path) -> None:
         if rows:
             count = Counter(row.catch for row in rows)
             cells = [str(count[catch] or ".") for catch in shown]
-            table.add_row(title, str(len(rows)), *cells, str(sum(row.as_expected for row in rows)))
+            table.add_row(title, str(len(rows)), *cells, str(sum(row.as_predicted for row in rows)))
     if found.rows:
         print_out(table)
     for row in found.survivors:
-        reason = f"{row.reason}; {row.cure} would catch it" if row.reason else row.failure or "not explained"
-        print_out(f"[bold red]{row.catch}[/] {row.name}: {escape(row.sentence)}. {escape(reason)}")
+        reason = (
+            f"{row.reason}; {row.remedy} would catch it" if row.reason else row.failure or "not explained"
+        )
+        print_out(f"[bold red]{row.catch}[/] {row.name}: {escape(row.description)}. {escape(reason)}")
     for row in found.idle:
         print_out(f"[bold red]changes nothing[/] {row.name}")
     for row in found.alarms:
         print_out(f"[bold red]alarm[/] {row.name}, nothing planted: {escape(row.by)}")
-    for failure in found.already:
+    for failure in found.failing_clean:
         print_out(f"[bold red]fails without a fault[/] {escape(failure)}")
     text = f"{found.caught} of {len(found.rows)} faults caught ({100 * found.share:.0f} %), "
-    text += f"{found.as_expected} by the predicted check"
-    if found.blanks:
-        text += f"; {len(found.alarms)} alarms in {len(found.blanks)} negative controls"
+    text += f"{found.as_predicted} by the predicted check"
+    if found.controls:
+        text += f"; {len(found.alarms)} alarms in {len(found.controls)} negative controls"
     print_out(f"{text}; {found.seconds:.0f} s; matrix: {escape(str(page))}")

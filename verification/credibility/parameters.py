@@ -1,7 +1,8 @@
-"""One ladder for each numerical knob of each method, with the uncertainty that least squares make of it.
+"""Parameter sweeps: one numerical parameter of a method over its levels, with the uncertainty fitted to it.
 
-A knob is turned over four levels or more while the others stay, so that its own error shows. What a method
-states in its budget stands beside the fit, and beside both the true error, known from the integral equation.
+A parameter takes four levels or more while the others stay at their defaults, which isolates its error. The
+fitted uncertainty is compared with the budget that the method states and with the true error, known from the
+integral equation.
 """
 
 from collections.abc import Callable, Sequence
@@ -10,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from verification.credibility.refinement import failure_message
 from verification.credibility.uncertainty import Estimate, uncertainty
 from verification.problem.contact import CoatedContact, Solution
 from verification.problem.quantity import QUANTITIES, SCALARS
@@ -17,21 +19,21 @@ from verification.sources.exact import solve_exactly
 from verification.sources.registry import METHODS, SOURCES, solvers
 from verification.sources.source import NumericalParameter
 
-__all__ = ["KNOBS", "KnobLadder", "Stated", "places", "probe", "stated", "study", "turn"]
+__all__ = ["PARAMETERS", "Stated", "Sweep", "places", "probe", "stated", "study", "sweep"]
 
-KNOBS = tuple(knob for source in SOURCES.values() for knob in source.parameters)
+PARAMETERS = tuple(parameter for source in SOURCES.values() for parameter in source.parameters)
 
 
 @dataclass(frozen=True)
-class KnobLadder:
-    """The values of each quantity, over its scale, on the levels of one knob; coarse to fine.
+class Sweep:
+    """The values of each quantity, over its scale, on the levels of one parameter; coarse to fine.
 
-    failure : the sentence the next level failed with.
+    failure : message of the level that failed next.
     """
 
     method: str
     solid: str
-    knob: str
+    parameter: str
     order: float
     levels: tuple[str, ...]
     steps: tuple[float, ...]
@@ -39,16 +41,16 @@ class KnobLadder:
     failure: str | None = None
 
     def estimate(self, quantity: str) -> Estimate | None:
-        """What the ladder says of the finest value of ``quantity``; None with fewer than two levels."""
+        """Uncertainty of the finest value of ``quantity``; None with fewer than two levels."""
         found = self.values.get(quantity, ())
         return uncertainty(self.steps, found, self.order) if len(found) > 1 else None
 
 
 @dataclass(frozen=True)
 class Stated:
-    """What a method states of itself at its default numerics, over the scale of each quantity.
+    """The uncertainty that a method states at its default numerics, over the scale of each quantity.
 
-    uncertainty : by quantity.   budget : (quantity, knob, value).   error : true one, by quantity.
+    uncertainty : by quantity.   budget : (quantity, parameter, value).   error : true one, by quantity.
     """
 
     method: str
@@ -59,7 +61,7 @@ class Stated:
 
 
 def places(problem: CoatedContact, a: float) -> dict[str, tuple[tuple[int, int], float, float, int]]:
-    """Where stresses are looked at: (component), x [m], z [m], layer. On the first interface, or at a/2."""
+    """Points of comparison of the stress, (component), x [m], z [m], layer, on an interface or at a/2."""
     depth, lower = (problem.interfaces[0], 1) if problem.coatings else (0.5 * a, 0)
     where = "interface" if problem.coatings else "z = a/2"
     return {
@@ -91,32 +93,32 @@ def _collect(
     return found
 
 
-def turn(
+def sweep(
     problem: CoatedContact,
-    knob: NumericalParameter,
+    parameter: NumericalParameter,
     a: float,
     solve: Callable[..., Solution],
     solid: str = "",
-) -> KnobLadder:
-    """``problem`` on every level of ``knob``; a level that fails ends the ladder with its sentence.
+) -> Sweep:
+    """``problem`` on every level of ``parameter``; a level that fails ends the sweep with its message.
 
-    a : contact radius that the places are named by [m].   solve : of the knob's method.
+    a : contact radius that scales the points of comparison [m].   solve : of the parameter's method.
     """
     found: list[dict[str, float]] = []
     failure = None
-    for name, numerics, _ in knob.levels:
+    for name, numerics, _ in parameter.levels:
         try:
             solution = solve(problem, {"estimate_uncertainty": False, **numerics})
             found.append(probe(solution, problem, a))
-        except Exception as error:  # a level that cannot be had is a sentence of the report, not a traceback
-            failure = f"{name}: {' '.join(str(error).split())[:300]}"
+        except Exception as error:  # a message of the report, not a traceback
+            failure = f"{name}: {failure_message(error)}"
             break
-    done = knob.levels[: len(found)]
-    return KnobLadder(
-        knob.method,
+    done = parameter.levels[: len(found)]
+    return Sweep(
+        parameter.method,
         solid,
-        knob.name,
-        knob.order,
+        parameter.name,
+        parameter.order,
         tuple(name for name, _, _ in done),
         tuple(step for _, _, step in done),
         {name: tuple(level[name] for level in found) for name in (found[0] if found else {})},
@@ -132,25 +134,25 @@ def stated(
     solution = solve(problem)
     value, truth = probe(solution, problem, a), probe(exact, problem, a)
     scalars = {q: QUANTITIES[q].uncertainty(solution, problem) or 0.0 for q in SCALARS}
-    spread = _collect(problem, a, scalars, solution.pressure_uncertainty, solution.stress_uncertainty)
+    bounds = _collect(problem, a, scalars, solution.pressure_uncertainty, solution.stress_uncertainty)
     budget = tuple(
-        (QUANTITIES[q].symbol, knob, float(v) / _scale(q, problem))
-        for q, knob, v in solution.uncertainty.budget
+        (QUANTITIES[q].symbol, parameter, float(v) / _scale(q, problem))
+        for q, parameter, v in solution.uncertainty.budget
         if q in SCALARS
     )
     error = {name: abs(value[name] - truth[name]) for name in value}
-    return Stated(method, solid, spread, budget, error)
+    return Stated(method, solid, bounds, budget, error)
 
 
 def study(
     problem: CoatedContact, solid: str, methods: Sequence[str] = METHODS
-) -> tuple[tuple[KnobLadder, ...], tuple[Stated, ...]]:
-    """Every ladder of every knob, and what each method states of itself."""
+) -> tuple[tuple[Sweep, ...], tuple[Stated, ...]]:
+    """Every parameter sweep and the uncertainty that each method states."""
     exact = solve_exactly(problem, {"estimate_uncertainty": False})
     available = solvers()
-    knobs = [k for k in KNOBS if k.method in methods and (problem.coatings or not k.coated)]
-    ladders = tuple(turn(problem, k, exact.contact_radius, available[k.method], solid) for k in knobs)
-    return ladders, tuple(stated(problem, m, available[m], exact, solid) for m in methods)
+    chosen = [p for p in PARAMETERS if p.method in methods and (problem.coatings or not p.coated)]
+    sweeps = tuple(sweep(problem, p, exact.contact_radius, available[p.method], solid) for p in chosen)
+    return sweeps, tuple(stated(problem, m, available[m], exact, solid) for m in methods)
 
 
 def _scale(name: str, problem: CoatedContact) -> float:

@@ -30,7 +30,7 @@ def comparison_sentence(found: RunComparison) -> str:
 
 def comparison_page(found: RunComparison) -> str:
     """The whole page as text."""
-    facts = [("first run", found.places[0]), ("second run", found.places[1])]
+    facts = [("first run", found.paths[0]), ("second run", found.paths[1])]
     facts += [("first started", found.started[0]), ("second started", found.started[1])]
     sections = [
         Section("verdicts", "Verdicts", [_verdicts(found)]),

@@ -15,8 +15,8 @@ from verification.cases.published import published_cases
 from verification.credibility import alarms
 from verification.credibility.accuracy import AccuracyStudy
 from verification.credibility.alarms import AlarmRecord
-from verification.credibility.faults import campaign
-from verification.credibility.faults.record import Record
+from verification.credibility.faults.campaign import RECORD
+from verification.credibility.faults.record import Record, read_record
 from verification.credibility.independence import Part, parts
 from verification.credibility.manufactured import DesignOrder, design_orders
 from verification.regression.baseline import Regression
@@ -70,7 +70,7 @@ def gather(records: Path) -> Evidence:
     return Evidence(
         attempt("manufactured solutions", design_orders, ()),
         attempt("imports", parts, ()),
-        attempt("planted faults", lambda: campaign.read_record(records / campaign.RECORD), None),
+        attempt("planted faults", lambda: read_record(records / RECORD), None),
         attempt("false alarms", lambda: alarms.read_record(records), None),
         tuple(failures),
     )

@@ -2,7 +2,6 @@
 
 import io
 import json
-import os
 import re
 import shutil
 import signal
@@ -141,7 +140,7 @@ def test_the_table_stands_in_a_narrow_terminal(stored, capsys, monkeypatch, widt
 
 def test_names_are_whole_in_a_pipe(tmp_path):
     names = [*shipped_cases(), *published_cases()]
-    listed = subprocess.run([*COMMAND, "list"], capture_output=True, text=True, cwd=tmp_path, timeout=60)
+    listed = coatcheck("list", cwd=tmp_path)
     lines = listed.stdout.splitlines()
     assert [line.split()[0] for line in lines if line.strip() and line.split()[0] in names] == names
     # Two heads and a line between the tables: no row is folded.
@@ -211,9 +210,10 @@ def test_a_name_like_no_other_gets_no_suggestion(capsys):
     assert (code, "did you mean" in error) == (2, False)
 
 
-def test_what_is_piped_has_no_colours(tmp_path):
+def test_what_is_piped_has_no_colours(tmp_path, monkeypatch):
+    monkeypatch.setenv("TERM", "xterm-256color")
     (tmp_path / "quick.toml").write_text(QUICK)
-    done = coatcheck("run", "quick.toml", "-v", cwd=tmp_path, env=os.environ | {"TERM": "xterm-256color"})
+    done = coatcheck("run", "quick.toml", "-v", cwd=tmp_path)
     assert done.returncode == 0, done.stderr
     assert "\x1b" not in done.stdout + done.stderr
     # Verbose: every source with its seconds.

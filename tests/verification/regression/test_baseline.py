@@ -126,10 +126,10 @@ def test_points_that_moved_are_said_to_have_moved():
     found = case_drift(replace(RESULT, profiles=profiles), baseline_of(RESULT))
     bad = [d for d in found.drifts if d.state is State.DRIFTED]
     assert {d.line for d in bad} == {"surface"}
-    assert all("points moved by 1.0e-04" in d.said and d.change is None for d in bad)
+    assert all("points moved by 1.0e-04" in d.message and d.change is None for d in bad)
     coarser = result_of(contact((2 * E, NU, 1.0)), points=65)
-    said = {d.said for d in case_drift(coarser, baseline_of(RESULT)).drifts if d.line != "contact"}
-    assert said == {"sampled at 65 points instead of 129"}
+    messages = {d.message for d in case_drift(coarser, baseline_of(RESULT)).drifts if d.line != "contact"}
+    assert messages == {"sampled at 65 points instead of 129"}
 
 
 def test_cases_and_sources_come_and_go():
@@ -167,7 +167,7 @@ def test_another_case_file_and_other_versions_are_said():
         replace(INFO, versions=INFO.versions | {"numpy": "9.9"}, machine="abacus"),
         whole=True,
     )
-    assert found.cases[0].said == "its case file was changed"
+    assert found.cases[0].message == "its case file was changed"
     assert found.other_versions == (("machine", INFO.machine, "abacus"), ("numpy", "2.4.0", "9.9"))
 
 

@@ -79,7 +79,9 @@ def test_words_come_from_the_numbers():
     assert "2.0e-12 of the largest coefficient" in said
     assert "2.0e9 times as large" in said
     assert "Order 4 gains over order 2 factors of 40000 in p0" in said
-    other = replace(study(), ladders=(falling(CORRECTED, 2.0), falling(STAIRCASE, 0.1), falling(PLAIN, 3.0)))
+    other = replace(
+        study(), refinements=(falling(CORRECTED, 2.0), falling(STAIRCASE, 0.1), falling(PLAIN, 3.0))
+    )
     said = text_of(convergence_sections(other))
     assert "does not converge" in said
     assert "numerical parameter" not in said
@@ -112,9 +114,9 @@ def test_study_that_died_is_its_reason_alone():
 
 def test_part_that_is_missing_leaves_the_others():
     whole = study()
-    bare = replace(whole.ladders[0], levels=(), failure="N = 33: no grid fits")
-    for ladders in ((bare,), (bare, *whole.ladders[1:]), (bare, elements(3)), whole.ladders[1:2]):
-        Document(render(material(replace(whole, ladders=ladders))))
+    bare = replace(whole.refinements[0], levels=(), failure="N = 33: no grid fits")
+    for ladders in ((bare,), (bare, *whole.refinements[1:]), (bare, elements(3)), whole.refinements[1:2]):
+        Document(render(material(replace(whole, refinements=ladders))))
     for conversions in ((), whole.conversions[:1], whole.conversions[1:2], (conversion("new", 4, 1, 1.0),)):
         Document(render(material(replace(whole, conversions=conversions))))
 
@@ -137,19 +139,19 @@ def test_no_number_whatever_keeps_a_report_from_being_written():
                     for level in one.levels
                 ),
             )
-            for one in whole.ladders
+            for one in whole.refinements
         )
         conversions = tuple(
             replace(one, error=tuple(float(random.choice(odd)) for _ in one.error), largest=float("nan"))
             for one in whole.conversions
         )
-        Document(render(material(replace(whole, ladders=ladders, conversions=conversions))))
+        Document(render(material(replace(whole, refinements=ladders, conversions=conversions))))
 
 
 def test_words_from_strangers_stay_words():
     evil = "<script>alert(1)</script>{{7*7}}"
     bad = replace(falling(evil, 2.0, solid=evil), failure=evil)
-    document = Document(render(material(replace(study(evil), ladders=(bad,)))))
+    document = Document(render(material(replace(study(evil), refinements=(bad,)))))
     assert len(document.all("script")) == 1
     assert " ".join(text for _, text in document.texts).count(evil) >= 3
 

@@ -6,9 +6,10 @@ import pytest
 from synthetic_results import INFO, STEEL, contact, result_of
 from synthetic_study import study
 
-from verification.credibility.alarms import counted, write_record
+from verification.credibility import alarms
+from verification.credibility.alarms import counted
 from verification.credibility.faults import campaign
-from verification.credibility.faults.record import Catch, Record, Row
+from verification.credibility.faults.record import Catch, Record, Row, write_record
 from verification.credibility.independence import PARTS, imports_of, parts, shared
 from verification.regression.baseline import regression
 from verification.report.credibility import statement
@@ -84,7 +85,7 @@ def test_figures_of_a_record_carry_date_and_commit(evidence, tmp_path):
     vague = result_of(contact((E / 2, NU, 1.0)), name="vague", points=33, errors={"semianalytic": 4e-3})
     info = replace(INFO, started="2026-10-09T08:00:00+00:00", commit="c0ffee123456")
     record = counted([RESULTS[0], vague], 1, info)
-    write_record(tmp_path, record)
+    alarms.write_record(tmp_path, record)
     known = gather(tmp_path)
     assert known.alarms == record
     text = said(part(section(known), STEPS[6]))
@@ -107,11 +108,11 @@ def test_the_fault_score_and_its_survivors_come_from_the_record(tmp_path):
         )
 
     rows = [row(f"fault_{n}", Catch.DISAGREES) for n in range(19)]
-    rows.append(row("shy", Catch.SURVIVED, reason="no case sees it", cure="a thicker film would"))
+    rows.append(row("shy", Catch.SURVIVED, reason="no case sees it", remedy="a thicker film would"))
     record = Record(
         tuple(rows), (), "2026-10-09T08:00:00+00:00", 60.0, 90.0, "c0ffee123456", "m", dict(INFO.versions)
     )
-    campaign.write_record(tmp_path / campaign.RECORD, record)
+    write_record(tmp_path / campaign.RECORD, record)
     found = gather(tmp_path)
     assert found.failures == ()
     text = said(part(section(found), STEPS[5]))
@@ -191,7 +192,7 @@ def test_an_import_across_the_border_is_found(tmp_path, monkeypatch):
 
 def test_the_page_takes_the_section_and_escapes_it(evidence, tmp_path):
     bad = result_of(contact((E / 2, NU, 1.0)), name="vague", points=9, errors={"semianalytic": 4e-3})
-    write_record(tmp_path, counted([replace(bad, title="<script>alert(1)</script>")], 1, INFO))
+    alarms.write_record(tmp_path, counted([replace(bad, title="<script>alert(1)</script>")], 1, INFO))
     text = render(Material(RESULTS[:1], INFO, gather(tmp_path)))
     assert '<section class="run" id="credibility">' in text
     for title in STEPS:

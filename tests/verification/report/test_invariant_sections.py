@@ -11,7 +11,7 @@ from synthetic_study import study
 
 from verification.credibility.accuracy import from_json as study_from_json
 from verification.credibility.accuracy import to_json as study_to_json
-from verification.credibility.parameters import KnobLadder, Stated
+from verification.credibility.parameters import Stated, Sweep
 from verification.judging.invariants import Invariant
 from verification.judging.verdict import Outcome
 from verification.report.junit import junit_xml
@@ -130,7 +130,7 @@ def test_coverage_counts_the_quantities_whose_error_lies_within_what_is_stated()
 def knobs():
     steps = (8.0, 4.0, 2.0, 1.0)
     values = {"p0": tuple(1 + 1e-3 * h**2 for h in steps), "a": tuple(1 + 1e-5 * h for h in steps)}
-    ladder = KnobLadder("semianalytic", "coated", "patch size", 2.0, tuple("abcd"), steps, values)
+    ladder = Sweep("semianalytic", "coated", "patch size", 2.0, tuple("abcd"), steps, values)
     stated = Stated("semianalytic", "coated", {"p0": 5e-4, "a": 1e-4}, (), {"p0": 1e-3, "a": 1e-5})
     return (ladder,), (stated,)
 
@@ -150,7 +150,7 @@ def test_parameter_section_marks_a_stated_uncertainty_below_the_true_error():
 
 def test_knobs_survive_the_file_of_the_accuracy_study():
     ladders, stated = knobs()
-    whole = replace(study(), knobs=ladders, stated=stated)
+    whole = replace(study(), sweeps=ladders, stated=stated)
     back = study_from_json(json.loads(json.dumps(study_to_json(whole), allow_nan=False)))
     assert back == whole
-    assert np.isclose(back.knobs[0].estimate("a").uncertainty, 1.25e-5)
+    assert np.isclose(back.sweeps[0].estimate("a").uncertainty, 1.25e-5)

@@ -1,4 +1,4 @@
-"""Published curves of a sphere pressed deeper and deeper: read, refused where malformed, met or not."""
+"""Published loading curves: read, refused where malformed, met or not."""
 
 import numpy as np
 import pytest
@@ -104,7 +104,7 @@ def test_only_what_counts_is_judged_and_all_of_it_is_shown(files):
         ("relative = 0.1", "relative = -0.1", r"curve\.toml: table\.0\.column\.2\.relative"),
         ("radius = 10.0\n", "radius = 10.0\nfriction = 0.1\n", "friction belongs to"),
         ("radius = 10.0\n", "load = 10.0\n", "needs pressure and load_radius"),
-        ('at = { contact_radius = "a", unit = "h" }', "", "says nowhere where its values are"),
+        ('at = { contact_radius = "a", unit = "h" }', "", "has no positions"),
     ],
 )
 def test_malformed_curves_are_refused_with_file_and_key(files, old, new, said):
@@ -122,7 +122,7 @@ def test_points_without_meaning_are_refused(files, a):
 def test_one_case_has_one_control(files):
     second = TOML.replace("kappa", "load").split("[[table]]")[1].replace("contact_radius", "approach")
     second = second.replace("series_over_load", "load")
-    with pytest.raises(CaseError, match="has to say where every value of a loading curve is"):
+    with pytest.raises(CaseError, match="for every value of a loading curve"):
         files(TOML + "\n[[table]]" + second)
 
 

@@ -31,7 +31,7 @@ def test_a_fault_of_the_harness_turns_the_answer_named_for_it(name):
     fault = FAULTS[name]
     with planted(fault.changes):
         failed = {test.name for test in self_tests() if not test.passed}
-    assert failed & set(fault.expected)
+    assert failed & set(fault.predicted)
 
 
 def test_a_run_is_no_better_than_its_harness(tmp_path):

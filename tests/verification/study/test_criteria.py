@@ -83,7 +83,7 @@ def test_reading_error_bounds_what_a_curve_read_between_its_points_is_off_by(fou
     judgement = judged(found[3], Criteria(minimise=["sigma_xx_surface"]))
     exact = study_table.stress("sigma_xx_surface", 2.0, judgement.h, 0.25)
     error = np.abs(judgement.largest - exact).max() / judgement.utilisation.max()
-    assert 0 < error < judgement.reading
+    assert 0 < error < judgement.interpolation_error
 
 
 def test_uncertain_stress_shrinks_what_is_surely_admissible(found):

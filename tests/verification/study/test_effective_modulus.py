@@ -105,6 +105,16 @@ def test_the_study_survives_json(study, tmp_path):
         from_json(to_json(study) | {"schema": "other"})
 
 
+def test_a_weight_that_is_not_a_number_does_not_end_the_study(study, tmp_path, monkeypatch):
+    spoiled = replace(study, weights=(float("nan"), 1e-9))
+    monkeypatch.setattr(effective_study, "measure", lambda: spoiled)
+    effective_study.main(str(tmp_path / "study.json"))
+    back = from_json(read_checked(tmp_path / "study.json"))
+    assert np.array_equal(back.weights, spoiled.weights, equal_nan=True)
+    assert "not finite" in render(Material([], INFO, Evidence(formulas=back)))
+    assert from_json(to_json(EffectiveStudy())) == EffectiveStudy()
+
+
 def test_it_runs_in_a_process_of_its_own(tmp_path, monkeypatch, study):
     monkeypatch.setattr(effective_study, "measure", lambda: study)
     task = effective_study.task(tmp_path)

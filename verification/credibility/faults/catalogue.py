@@ -1,4 +1,4 @@
-"""Every planted fault by name, group after group, with the trials in which nothing is planted."""
+"""Every planted fault by name, group after group, with the negative controls."""
 
 from verification.credibility.faults.lists import (
     conjugate_gradients,
@@ -10,9 +10,9 @@ from verification.credibility.faults.lists import (
     references,
     stress,
 )
-from verification.credibility.faults.planting import Edit, Fault
+from verification.credibility.faults.planting import Edit, Fault, faults_of
 
-__all__ = ["BLANKS", "FAULTS", "GROUPS", "chosen"]
+__all__ = ["CONTROLS", "FAULTS", "GROUPS", "chosen"]
 
 # The title of each group, in the order of the matrix.
 GROUPS = {
@@ -39,58 +39,42 @@ FAULTS: dict[str, Fault] = {fault.name: fault for module in _MODULES for fault i
 
 _CASES = ("01_uncoated_steel", "14_ratio_4_sliding")
 _ALL = ("01_uncoated_steel", "13_uncoated_sliding", "14_ratio_4_sliding", "15_dlc_chromium_sliding")
-# What catches a fault must not catch these.
-BLANKS: dict[str, Fault] = {
+_NOTHING = "nothing is planted"
+_control = faults_of("control", "semianalytic", _CASES)
+# No check that catches a fault may fail in these trials.
+CONTROLS: dict[str, Fault] = {
     fault.name: fault
     for fault in (
-        Fault(
-            "blank_semianalytic",
-            "blank",
-            "nothing is planted",
-            "semianalytic",
-            (),
-            (),
-            (*_ALL, "10_silver_steel"),
+        _control("control_semianalytic", _NOTHING, (), cases=(*_ALL, "10_silver_steel")),
+        _control(
+            "control_finite_elements", _NOTHING, (), where="fem_reference", cases=(*_ALL[:1], *_ALL[2:])
         ),
-        Fault(
-            "blank_finite_elements",
-            "blank",
-            "nothing is planted",
-            "fem_reference",
+        _control("control_references", _NOTHING, (), where="integral_equation", cases=_ALL),
+        _control(
+            "control_published",
+            _NOTHING,
             (),
-            (),
-            (*_ALL[:1], *_ALL[2:]),
-        ),
-        Fault("blank_references", "blank", "nothing is planted", "integral_equation", (), (), _ALL),
-        Fault(
-            "blank_printed",
-            "blank",
-            "nothing is planted",
-            "published",
-            (),
-            (),
+            where="published",
+            cases=(),
             published=("kenpave_three_layer_axis", "ahlvin_ulery_1962"),
         ),
-        # A faulty method is sampled at the points of the clean run, which are no nodes of its own grid where
-        # the fault moves the contact: that by itself must raise no alarm.
-        Fault(
-            "blank_other_grid",
-            "blank",
-            "nothing is wrong: the grid is 1 % wider, so that no point of comparison is a node of it",
-            "semianalytic",
-            (Edit("semianalytic.solver:solve", "fill: float = 1.12", "fill: float = 1.13"),),
+        # A faulty method is sampled at the points of the clean run, which are not nodes of its own grid where
+        # the fault moves the contact: that alone must raise no alarm.
+        _control(
+            "control_other_grid",
+            "no fault: the grid is 1 % wider, so that no point of comparison is a node of it",
             (),
-            _CASES,
+            Edit("semianalytic.solver:solve", "fill: float = 1.12", "fill: float = 1.13"),
         ),
     )
 }
 
 
 def chosen(names: tuple[str, ...], group: str | None) -> list[Fault]:
-    """The faults named, those of a group, or all with the blanks. Raises KeyError for one there is not."""
-    known = FAULTS | BLANKS
+    """The faults named, those of a group, or all with the controls. Raises KeyError for an unknown name."""
+    known = FAULTS | CONTROLS
     if names:
         return [known[name] for name in dict.fromkeys(names)]
     if group is not None:
         return [fault for fault in FAULTS.values() if fault.group == group]
-    return [*FAULTS.values(), *BLANKS.values()]
+    return list(known.values())

@@ -1,4 +1,4 @@
-"""Invariants between solutions: one problem solved scaled, with equal moduli, thick, thin, pressed otherwise.
+"""Invariants between solutions: one problem also solved scaled, with equal moduli, thick, thin, under a disc.
 
 They need further solves, so a case has to enable them (``resolve = true``), and both methods solve on coarse
 grids and meshes, whose uncertainty bounds each invariant and is capped like any other.
@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.polynomial import legendre
 
-from verification.judging.invariant import Invariant, absent, decide
+from verification.judging.invariant import Invariant, decide, failed
 from verification.judging.invariants.bond import displacement_bound
 from verification.judging.invariants.limits import thick_shift, thin_shift
 from verification.problem.arrays import Array
@@ -26,7 +26,7 @@ __all__ = ["resolved"]
 Solve = Callable[[CoatedContact | PrescribedLoad], Solution]
 Law = Callable[[], Invariant]
 
-# Of a_h: far enough in the limit for what is left of the coating to be bounded below the caps.
+# h/a_h, so near to the limit that the remaining effect of the coating is bounded below the caps.
 THICK_AT, THIN_AT = 20.0, 0.03
 # No powers of two, so that scaled numbers share no digits.
 RADIUS, LOAD, MODULUS = 2.7, 0.37, 1.9
@@ -40,7 +40,7 @@ def resolved(
     """Scaling, equal moduli, thick and thin limit, reciprocity of each method that is available.
 
     problem : with one coating at least.   available : solvers by name, as in ``run.solvers``.
-    A law that cannot be had is NO_RESULT with its sentence.
+    One that raises an exception is NO_RESULT with its message.
     """
     found = []
     for source in (name for name in METHODS if name in available):
@@ -51,9 +51,8 @@ def resolved(
         for name, law in _laws(coarse, finer, source, problem):
             try:
                 found.append(law())
-            except Exception as error:  # as in ``check``: a row of the report, whatever went wrong
-                said = f"{type(error).__name__}: {' '.join(str(error).split())[:300]}"
-                found.append(absent(name, source, said))
+            except Exception as error:  # as in ``check``, a row of the report
+                found.append(failed(name, source, error))
     return tuple(found)
 
 
@@ -101,7 +100,7 @@ def _scaling(solve: Solve, base: Solve, source: str, problem: CoatedContact) -> 
 
 
 def _equal_moduli(solve: Solve, source: str, problem: CoatedContact) -> Invariant:
-    """A coating of the substrate's own material is none: Hertz, with friction Hamilton."""
+    """Coatings of the substrate's material: Hertz's contact, with friction Hamilton's."""
     coatings = tuple((*problem.substrate, h) for _, _, h in problem.coatings)
     same = replace(problem, coatings=coatings)
     exact = Hamilton(problem.radius, problem.load, *problem.substrate, problem.friction)
@@ -112,25 +111,25 @@ def _equal_moduli(solve: Solve, source: str, problem: CoatedContact) -> Invarian
 
 
 def _thick(solve: Solve, source: str, problem: CoatedContact) -> Invariant:
-    """A very thick coating is a half-space of its own."""
+    """A very thick coating: Hertz's contact of the coating's material, on a base that is displaced."""
     E, nu, _ = problem.coatings[0]
     alone = replace(problem, coatings=(), substrate=(E, nu))
     thick = replace(problem, coatings=((E, nu, THICK_AT * alone.a_h),))
     found = solve(thick)
-    sink, left = thick_shift(thick, alone)
+    base, eta = thick_shift(thick, alone)
     scales = np.array([alone.a_h, alone.p_h, alone.delta_h])
-    values = np.array([found.contact_radius, found.peak_pressure, found.approach - sink]) / scales
+    values = np.array([found.contact_radius, found.peak_pressure, found.approach - base]) / scales
     U = found.uncertainty
-    # A gap bent by ``left`` of the approach changes the curvature by twice that; a and p0 go by powers 1/3
-    # and 2/3 of it.
-    bent = np.array([2 / 3, 4 / 3, 1.0]) * left
+    # A gap changed by eta of the approach has a curvature changed by twice that; a and p0 vary as its powers
+    # 1/3 and 2/3.
+    bent = np.array([2 / 3, 4 / 3, 1.0]) * eta
     bound = np.array([U.contact_radius, U.peak_pressure, U.approach]) / scales + bent
-    law = f"h = {THICK_AT:g} a_h gives Hertz of the coating, and an approach less by the sinking of the base"
+    law = f"h = {THICK_AT:g} a_h gives Hertz of the coating, plus the displacement of the base"
     return decide("thick coating", source, law, values - 1, bound)
 
 
 def _thin(solve: Solve, source: str, problem: CoatedContact) -> Invariant:
-    """A very thin coating leaves Hertz of the substrate but for a first-order term.
+    """A very thin coating: Hertz's contact of the substrate with a first-order change of the approach.
 
     The second order is minus the square of the first, over the approach, to a few per cent from h = 0.01 a_h
     down; twice that is allowed.
@@ -146,9 +145,9 @@ def _thin(solve: Solve, source: str, problem: CoatedContact) -> Invariant:
 
 
 def _reciprocity(base: Solve, solve: Solve, source: str, problem: CoatedContact) -> Invariant:
-    """Betti: the contact pressure works on a disc's displacements what the disc's works on the contact's.
+    """Betti's reciprocity of the contact with a uniform disc: int p u_disc dA = int p_disc u dA.
 
-    int p u_disc dA = int p_disc u dA, over W times the approach. Along x = 0, where friction lifts nothing.
+    Over W times the approach, along x = 0, where friction causes no u_z.
     """
     contact = base(problem)
     disc = problem.under_disc(problem.p_h, 0.6 * contact.contact_radius)
@@ -163,17 +162,17 @@ def _reciprocity(base: Solve, solve: Solve, source: str, problem: CoatedContact)
         s = disc.load_radius * (t + 1) / 2
         patch = np.pi * s * disc.load_radius * w / work
         p, U_p = contact.pressure(0 * r, r), contact.pressure_uncertainty(0 * r, r)
-        u_disc, u = _sink(pressed, r), _sink(contact, s)
-        spread = area @ (U_p * np.abs(u_disc) + p * displacement_bound(pressed, disc, 0 * r, r, 0 * r))
-        spread += disc.pressure * patch @ displacement_bound(contact, problem, 0 * s, s, 0 * s)
-        return float(area @ (p * u_disc) - disc.pressure * patch @ u), float(spread)
+        u_disc, u = _surface_displacement(pressed, r), _surface_displacement(contact, s)
+        U = area @ (U_p * np.abs(u_disc) + p * displacement_bound(pressed, disc, 0 * r, r, 0 * r))
+        U += disc.pressure * patch @ displacement_bound(contact, problem, 0 * s, s, 0 * s)
+        return float(area @ (p * u_disc) - disc.pressure * patch @ u), float(U)
 
-    (gap, spread), (coarser, _) = works(32), works(24)
+    (gap, bound), (coarser, _) = works(32), works(24)
     law = "int p u_disc dA = int p_disc u dA with a uniform disc, over W times the approach"
-    return decide("reciprocity", source, law, gap, spread + abs(gap - coarser))
+    return decide("reciprocity", source, law, gap, bound + abs(gap - coarser))
 
 
-def _sink(solution: Solution, y: Array) -> Array:
+def _surface_displacement(solution: Solution, y: Array) -> Array:
     return solution.displacement(np.zeros_like(y), y, np.zeros_like(y))[2]
 
 
@@ -183,11 +182,11 @@ def _dimensionless(solution: Solution, problem: CoatedContact) -> tuple[Array, A
     x, z = problem.a_h * np.array(PLACES).T
     y = 0.2 * np.abs(x)
     values = [quantity.value(solution, problem) / scale for quantity, scale in scalars]
-    spread = [(quantity.uncertainty(solution, problem) or 0.0) / scale for quantity, scale in scalars]
+    U = [(quantity.uncertainty(solution, problem) or 0.0) / scale for quantity, scale in scalars]
     sigma, U_sigma = stress_with_uncertainty(solution, x, y, z)
     if U_sigma is None:
         raise ValueError("states no uncertainty that would bound the invariant")
     return (
         np.concatenate([values, (sigma / problem.p_h).ravel()]),
-        np.concatenate([spread, (U_sigma / problem.p_h).ravel()]),
+        np.concatenate([U, (U_sigma / problem.p_h).ravel()]),
     )

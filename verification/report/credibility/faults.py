@@ -5,7 +5,7 @@ from collections.abc import Sequence
 
 from verification.credibility.faults.catalogue import GROUPS
 from verification.credibility.faults.checks import COLUMNS
-from verification.credibility.faults.record import Catch, Record, Seen
+from verification.credibility.faults.record import Catch, Record, Tally
 from verification.credibility.faults.record import Row as FaultRow
 from verification.report.material import Material
 from verification.report.tables.cells import Cell, Part, Row, Section, Table
@@ -39,10 +39,10 @@ def faults_sentence(record: Record) -> str:
     text = (
         f"{record.caught} of {len(record.rows)} planted faults are detected "
         f"({plain(100 * record.share, 3)} %), "
-        f"{record.as_expected} of them by the check predicted before the trial"
+        f"{record.as_predicted} of them by the check predicted before the trial"
     )
-    if record.blanks:
-        number = len(record.blanks)
+    if record.controls:
+        number = len(record.controls)
         text += f"; of {number} negative controls {len(record.alarms) or 'none'} raised an alarm"
     return text + "."
 
@@ -62,13 +62,15 @@ def faults_section(record: Record) -> Section:
         )
     groups = [(title, [row for row in record.rows if row.group == key]) for key, title in GROUPS.items()]
     parts.append(Part(_explained(record), [_matrix(rows, title) for title, rows in groups if rows]))
-    if record.blanks:
+    if record.controls:
         text = "Negative controls, the same trials with nothing planted: any detection is a false alarm."
-        parts.append(Part(text, [_matrix(record.blanks, "Nothing planted")]))
+        parts.append(Part(text, [_matrix(record.controls, "Nothing planted")]))
     failures = [f"{row.name} changes no number, so it is not a fault." for row in record.idle]
     failures += [f"{row.name}, a negative control, is detected: {row.by}" for row in record.alarms]
     failures += [f"{row.name}: {row.failure}" for row in record.rows if row.failure]
-    failures += [f"Fails without any fault, so that it is no evidence: {check}" for check in record.already]
+    failures += [
+        f"Fails without any fault, so that it is no evidence: {check}" for check in record.failing_clean
+    ]
     return Section("faults", "Planted faults", parts, failures)
 
 
@@ -136,7 +138,7 @@ def _score(record: Record) -> Table:
         count = Counter(row.catch for row in members)
         cells = [Cell(str(len(members)), len(members))]
         cells += [Cell(str(count[catch] or "–"), count[catch]) for catch in shown]
-        caught, named = sum(row.caught for row in members), sum(row.as_expected for row in members)
+        caught, named = sum(row.caught for row in members), sum(row.as_predicted for row in members)
         cells.append(Cell(f"{plain(100 * caught / len(members), 3)} %", caught / len(members)))
         cells.append(Cell(str(named), named))
         rows.append(Row(Cell(title), cells))
@@ -151,12 +153,12 @@ def _score(record: Record) -> Table:
 def _survivors(record: Record) -> Table:
     rows = [
         Row(
-            Cell(row.name, note=row.sentence),
+            Cell(row.name, note=row.description),
             [
                 _catch_cell(row),
-                Cell(row.sentence, css="words"),
+                Cell(row.description, css="words"),
                 Cell(row.reason or row.failure or "not known", css="words"),
-                Cell(row.cure or "–", css="words"),
+                Cell(row.remedy or "–", css="words"),
             ],
         )
         for row in record.survivors
@@ -169,10 +171,10 @@ def _matrix(rows: Sequence[FaultRow], caption: str) -> Table:
     made = []
     for row in rows:
         cells = [
-            Cell(row.sentence, css="words"),
+            Cell(row.description, css="words"),
             Cell(source_label(row.where)),
             _catch_cell(row),
-            Cell("✓" if row.as_expected else "–", note=row.by),
+            Cell("✓" if row.as_predicted else "–", note=row.by),
             *(_seen_cell(row.columns.get(column)) for column in COLUMNS),
             Cell(scientific(row.change), row.change, note=f"{row.changed}; {seconds(row.seconds)}"),
         ]
@@ -187,7 +189,7 @@ def _catch_cell(row: FaultRow) -> Cell:
     return Cell(text, float(list(Catch).index(row.catch)), css, row.by or meaning)
 
 
-def _seen_cell(seen: Seen | None) -> Cell:
+def _seen_cell(seen: Tally | None) -> Cell:
     if seen is None:
         return Cell("", None, "nothing", "not made")
     parts = [("✓", seen.disagree), ("?", seen.inconclusive), ("∅", seen.no_result)]
@@ -195,4 +197,4 @@ def _seen_cell(seen: Seen | None) -> Cell:
     if not text:
         return Cell(f"0/{seen.made}", 0.0, note=f"all {seen.made} pass")
     css = "agrees" if seen.disagree else "inconclusive" if seen.inconclusive else "no-result"
-    return Cell(f"{text}/{seen.made}", seen.disagree + seen.inconclusive, f"verdict {css}", seen.said)
+    return Cell(f"{text}/{seen.made}", seen.disagree + seen.inconclusive, f"verdict {css}", seen.message)

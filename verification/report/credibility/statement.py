@@ -111,7 +111,7 @@ def _overview(material: Material) -> Table:
     refinements = (
         "not measured in this run"
         if study is None
-        else f"{len(study.ladders)} refinement studies on exact solutions"
+        else f"{len(study.refinements)} refinement studies on exact solutions"
     )
     held = f"{holding} of {len(invariants)} invariants hold" if invariants else "not measured"
     rows = [
@@ -218,7 +218,7 @@ def _short_faults(evidence: Evidence) -> str:
         return "not measured"
     return (
         f"{record.caught} of {len(record.rows)} planted faults are detected, "
-        f"{plain(100 * record.share, 3)} %; {record.as_expected} of them by the predicted check."
+        f"{plain(100 * record.share, 3)} %; {record.as_predicted} of them by the predicted check."
     )
 
 
@@ -237,6 +237,7 @@ def _short_alarms(evidence: Evidence) -> str:
     if record is None:
         return "not measured"
     return (
-        f"{len(record.alarms)} false alarms in {record.comparisons} comparisons and {record.laws} invariants "
-        f"of {record.problems} clean random problems; {record.agreeing} of the problems agree throughout."
+        f"{len(record.alarms)} false alarms in {record.comparisons} comparisons and {record.invariants} "
+        f"invariants of {record.problems} clean random problems; {record.agreeing} of the problems agree "
+        "throughout."
     )

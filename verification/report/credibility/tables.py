@@ -79,7 +79,7 @@ def design_table(orders: Sequence[DesignOrder]) -> Table:
 def order_table(study: AccuracyStudy | None) -> Table:
     """Observed order of each quantity in each refinement study on exact solutions."""
     rows = []
-    for one in study.ladders if study is not None else ():
+    for one in study.refinements if study is not None else ():
         if not one.levels:
             continue
         cells = [Cell(one.solid), Cell(one.setting)]

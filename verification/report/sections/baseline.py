@@ -31,7 +31,7 @@ _RULE = (
 def state_cell(case: CaseDrift, *, short: bool = False) -> Cell:
     """State of a case as mark and word, or as mark alone; it sorts by severity."""
     mark, css, rank = _STATES[case.state]
-    note = f"{case.state}: {case.said or f'largest change {_change(case.change)} of the scale'}"
+    note = f"{case.state}: {case.message or f'largest change {_change(case.change)} of the scale'}"
     return Cell(mark if short else f"{mark} {case.state}", float(rank), f"verdict {css}".strip(), note)
 
 
@@ -88,7 +88,7 @@ def drift_table(moved: Sequence[tuple[CaseDrift, Drift]]) -> Table:
             Cell(drift.quantity),
             Cell(drift.line),
             Cell(_change(drift.change), drift.change if _finite(drift.change) else None),
-            Cell(drift.said),
+            Cell(drift.message),
         ]
         rows.append(Row(Cell(case.name, note=case.title), cells))
     more = f" The {MOST} of {len(order)} with the largest change." if len(order) > MOST else ""
@@ -107,7 +107,7 @@ def _case_table(cases: Sequence[CaseDrift], anchors: Mapping[str, str]) -> Table
             state_cell(case),
             *(number(count, str) for count in counts),
             Cell(_change(case.change), case.change if _finite(case.change) else None),
-            Cell(case.said),
+            Cell(case.message),
         ]
         place = anchors.get(case.name)
         rows.append(Row(Cell(case.title, note=case.name, href=f"#{place}" if place else ""), cells))

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from verification.credibility.parameters import KnobLadder, Stated
+from verification.credibility.parameters import Stated, Sweep
 from verification.report.material import Material
 from verification.report.tables.cells import Cell, Part, Row, Section, Table, number
 from verification.report.tables.labels import source_label
@@ -14,22 +14,22 @@ __all__ = ["parameter_section", "section"]
 def section(material: Material) -> Section | None:
     """The parameter sweeps of the accuracy study; None where there are none."""
     study = material.evidence.accuracy
-    return parameter_section(study.knobs, study.stated) if study is not None and study.stated else None
+    return parameter_section(study.sweeps, study.stated) if study is not None and study.stated else None
 
 
-def parameter_section(ladders: Sequence[KnobLadder], stated: Sequence[Stated]) -> Section:
+def parameter_section(sweeps: Sequence[Sweep], stated: Sequence[Stated]) -> Section:
     """Stated uncertainty, fitted uncertainty, true error of each method; then every parameter by itself."""
     parts = []
     for one in stated:
-        mine = [ladder for ladder in ladders if ladder.method == one.method]
+        mine = [sweep for sweep in sweeps if sweep.method == one.method]
         parts.append(Part(_summary(one, mine), [_totals(one, mine), _orders(mine)]))
     return Section("parameters", "Uncertainty by numerical parameter", parts)
 
 
-def _summary(one: Stated, ladders: Sequence[KnobLadder]) -> str:
+def _summary(one: Stated, sweeps: Sequence[Sweep]) -> str:
     names = list(one.uncertainty)
     held = sum(one.uncertainty[name] >= one.error[name] for name in names)
-    fitted = [_sum(ladders, name) for name in names]
+    fitted = [_sum(sweeps, name) for name in names]
     by_fit = sum(U is not None and one.error[name] <= U for name, U in zip(names, fitted, strict=True))
     return (
         f"{source_label(one.method).capitalize()}, {one.solid} solid: the uncertainty that the solution "
@@ -38,16 +38,16 @@ def _summary(one: Stated, ladders: Sequence[KnobLadder]) -> str:
     )
 
 
-def _totals(one: Stated, ladders: Sequence[KnobLadder]) -> Table:
+def _totals(one: Stated, sweeps: Sequence[Sweep]) -> Table:
     rows = []
     for name, U in one.uncertainty.items():
         cells = [
             number(one.error[name]),
             _held(U, one.error[name]),
-            _held(_sum(ladders, name), one.error[name]),
+            _held(_sum(sweeps, name), one.error[name]),
         ]
-        for ladder in ladders:
-            found = ladder.estimate(name)
+        for sweep in sweeps:
+            found = sweep.estimate(name)
             cells.append(Cell("–") if found is None else number(found.uncertainty))
         rows.append(Row(Cell(name), cells))
     return Table(
@@ -56,30 +56,30 @@ def _totals(one: Stated, ladders: Sequence[KnobLadder]) -> Table:
         "2014), by the grid convergence index where there are three. All over the scales of the bare "
         "substrate. The order of the elements is another way to lower the error of their size: it is shown "
         "and not added.",
-        ["quantity", "true error", "stated U", "fitted U", *(ladder.knob for ladder in ladders)],
+        ["quantity", "true error", "stated U", "fitted U", *(sweep.parameter for sweep in sweeps)],
         rows,
         css="overview",
     )
 
 
-def _orders(ladders: Sequence[KnobLadder]) -> Table:
-    names = list(dict.fromkeys(name for ladder in ladders for name in ladder.values))
+def _orders(sweeps: Sequence[Sweep]) -> Table:
+    names = list(dict.fromkeys(name for sweep in sweeps for name in sweep.values))
     rows = []
     for name in names:
-        found = [ladder.estimate(name) for ladder in ladders]
+        found = [sweep.estimate(name) for sweep in sweeps]
         orders = [None if one is None else one.order for one in found]
         rows.append(Row(Cell(name), [Cell("–" if p is None else plain(p, 2), p) for p in orders]))
-    levels = "; ".join(f"{ladder.knob}: {', '.join(ladder.levels)}" for ladder in ladders)
+    levels = "; ".join(f"{sweep.parameter}: {', '.join(sweep.levels)}" for sweep in sweeps)
     return Table(
         "Observed order in the step of each parameter; a dash where the values are constant, are noise or "
         f"fall too fast for a power of the step. Levels: {levels}.",
-        ["quantity", *(ladder.knob for ladder in ladders)],
+        ["quantity", *(sweep.parameter for sweep in sweeps)],
         rows,
     )
 
 
-def _sum(ladders: Sequence[KnobLadder], name: str) -> float | None:
-    found = [ladder.estimate(name) for ladder in ladders if ladder.knob != "element order"]
+def _sum(sweeps: Sequence[Sweep], name: str) -> float | None:
+    found = [sweep.estimate(name) for sweep in sweeps if sweep.parameter != "element order"]
     values = [one.uncertainty for one in found if one is not None]
     return sum(values) if values else None
 

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 
 from verification.credibility.accuracy import CORRECTED, PLAIN, PROBLEM, STAIRCASE
-from verification.credibility.refinement import QUANTITIES, Ladder, settled
+from verification.credibility.refinement import QUANTITIES, Refinement, settled
 from verification.problem.quantity import QUANTITIES as QUANTITY
 from verification.problem.quantity import SCALARS
 from verification.report.figures.loglog import Trail, decades, draw_loglog
@@ -41,7 +41,7 @@ def semianalytic_section(material: Material) -> Section | None:
     study = material.evidence.accuracy
     if study is None:
         return None
-    grids = [one for one in study.ladders if one.method == "semianalytic"]
+    grids = [one for one in study.refinements if one.method == "semianalytic"]
     parts = _grid_parts(grids) if any(one.levels for one in grids) else []
     if study.conversions:
         parts.append(conversion_part(study.conversions))
@@ -52,7 +52,7 @@ def semianalytic_section(material: Material) -> Section | None:
 def finite_element_section(material: Material) -> Section | None:
     """Errors of the finite elements over their mesh; None where they were not measured."""
     study = material.evidence.accuracy
-    elements = [one for one in study.ladders if one.method == "fem_reference"] if study else []
+    elements = [one for one in study.refinements if one.method == "fem_reference"] if study else []
     if study is None or not elements:
         return None
     parts = _element_parts(elements) if any(one.levels for one in elements) else []
@@ -60,41 +60,43 @@ def finite_element_section(material: Material) -> Section | None:
     return Section("finite-element-accuracy", "Finite element accuracy", parts, failures)
 
 
-def _grid_parts(ladders: Sequence[Ladder]) -> list[Part]:
+def _grid_parts(studies: Sequence[Refinement]) -> list[Part]:
     caption = (
         "Error against the integral equation over N, the number of patches along a side of the grid, which "
         "is 1.12 times as wide as the contact. Beside each curve its observed slope, as far as the error "
         "falls; a dash where it falls less than threefold, or over less than a doubling of N."
     )
-    first, *others = _grid_summary([one for one in ladders if one.levels])
+    first, *others = _grid_summary([one for one in studies if one.levels])
     return [
         Part(f"{PROBLEM[0].upper()}{PROBLEM[1:]}. {first}"),
         *(Part(sentence) for sentence in others),
         Part(
             "",
-            [_ladder_table(ladders, "patches per side")],
-            _ladder_gallery(ladders, "semi", "N", (33, 49, 65, 97, 129, 257), caption),
+            [_refinement_table(studies, "patches per side")],
+            _refinement_gallery(studies, "semi", "N", (33, 49, 65, 97, 129, 257), caption),
         ),
     ]
 
 
-def _element_parts(ladders: Sequence[Ladder]) -> list[Part]:
+def _element_parts(studies: Sequence[Refinement]) -> list[Part]:
     caption = (
         "Error against the integral equation over the square root of the number of degrees of freedom, which "
         "grows as the elements shrink: its slope is the order in the size of the elements."
     )
     return [
         Part(
-            _element_summary([one for one in ladders if one.levels]),
-            [_ladder_table(ladders, "mesh")],
-            _ladder_gallery(ladders, "fem", "√(degrees of freedom)", (50, 70, 100, 150, 200, 300), caption),
+            _element_summary([one for one in studies if one.levels]),
+            [_refinement_table(studies, "mesh")],
+            _refinement_gallery(
+                studies, "fem", "√(degrees of freedom)", (50, 70, 100, 150, 200, 300), caption
+            ),
         )
     ]
 
 
-def _grid_summary(ladders: Sequence[Ladder]) -> list[str]:
-    found = [_errors_summary(one) for one in ladders if one.setting == CORRECTED]
-    by_setting = {one.setting: one for one in ladders if one.solid == ladders[0].solid}
+def _grid_summary(studies: Sequence[Refinement]) -> list[str]:
+    found = [_errors_summary(one) for one in studies if one.setting == CORRECTED]
+    by_setting = {one.setting: one for one in studies if one.solid == studies[0].solid}
     best, stairs, paper = (by_setting.get(setting) for setting in (CORRECTED, STAIRCASE, PLAIN))
     if best and stairs:
         here, there = best.levels[-1].errors["pressure"], stairs.levels[-1].errors["pressure"]
@@ -124,7 +126,7 @@ def _grid_summary(ladders: Sequence[Ladder]) -> list[str]:
     return found or ["No refinement study has more than one level."]
 
 
-def _errors_summary(one: Ladder) -> str:
+def _errors_summary(one: Refinement) -> str:
     first, last = one.levels[0], one.levels[-1]
     numbers = ", ".join(
         f"{q} {scientific(first.errors[q])} → {scientific(last.errors[q])}" for q in QUANTITIES
@@ -145,30 +147,30 @@ def _errors_summary(one: Ladder) -> str:
     return text
 
 
-def _element_summary(ladders: Sequence[Ladder]) -> str:
+def _element_summary(studies: Sequence[Refinement]) -> str:
     found = []
-    for one in ladders:
+    for one in studies:
         last = one.levels[-1]
         found.append(
             f"{one.setting} gives p0 {scientific(last.errors['p0'])}, pressure "
             f"{scientific(last.errors['pressure'])}, stress {scientific(last.errors['stress'])} with "
             f"{plain(last.resolution * last.resolution, 6)} degrees of freedom in {seconds(last.seconds)}"
         )
-    text = f"On the {ladders[0].solid} solid and the {ladders[0].levels[-1].name} mesh {'; '.join(found)}."
-    if len(ladders) > 1:
-        low, high = ladders[0], ladders[-1]
+    text = f"On the {studies[0].solid} solid and the {studies[0].levels[-1].name} mesh {'; '.join(found)}."
+    if len(studies) > 1:
+        low, high = studies[0], studies[-1]
         worse, better = low.levels[-1].errors, high.levels[-1].errors
         gains = [f"{factor(worse[q], better[q])} in {q}" for q in ("p0", "pressure", "stress")]
         text += f" {high.setting.capitalize()} gains over {low.setting} factors of {_listed(gains)}."
     return text
 
 
-def _ladder_gallery(
-    ladders: Sequence[Ladder], key: str, coordinate: str, ticks: Sequence[float], caption: str
+def _refinement_gallery(
+    studies: Sequence[Refinement], key: str, coordinate: str, ticks: Sequence[float], caption: str
 ) -> Gallery:
-    first = ladders[0].solid
+    first = studies[0].solid
 
-    def trail(one: Ladder, quantity: str) -> Trail:
+    def trail(one: Refinement, quantity: str) -> Trail:
         order = one.order(quantity)
         return Trail(
             tuple(level.resolution for level in one.levels),
@@ -177,7 +179,7 @@ def _ladder_gallery(
             "–" if order is None else f"−{order:.1f}",
         )
 
-    trails = {q: [trail(one, q) for one in ladders if one.levels] for q in QUANTITIES}
+    trails = {q: [trail(one, q) for one in studies if one.levels] for q in QUANTITIES}
     height = decades([one for some in trails.values() for one in some])
     panels = [
         Panel(
@@ -196,14 +198,14 @@ def _ladder_gallery(
     ]
     legend = [
         (swatch(_SETTINGS.get((one.setting, one.solid == first), _UNKNOWN)), f"{one.solid}: {one.setting}")
-        for one in ladders
+        for one in studies
     ]
     return Gallery(legend, panels, caption)
 
 
-def _ladder_table(ladders: Sequence[Ladder], level_name: str) -> Table:
+def _refinement_table(studies: Sequence[Refinement], level_name: str) -> Table:
     rows = []
-    for one in ladders:
+    for one in studies:
         name = f"{one.solid}: {one.setting}"
         for level in one.levels:
             cells = [Cell(level.name)]

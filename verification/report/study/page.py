@@ -151,7 +151,7 @@ def _preference(study: Study, judgements: Sequence[Judged]) -> Section:
                     Cell(f"{use:.4f}", use),
                     Cell(mode, note=MODES[mode]),
                     *([Cell(ranges or "none")] if limited else []),
-                    number(j.reading),
+                    number(j.interpolation_error),
                     *_near_cells(j, h, mode),
                 ],
                 "" if j.admissible or not j.limited else "disagrees",
@@ -177,7 +177,7 @@ def _preference(study: Study, judgements: Sequence[Judged]) -> Section:
         ],
         rows,
     )
-    parts = [Part(study.criteria.sentence()), *(Part(s) for s in recommendation_sentences(judgements))]
+    parts = [Part(study.criteria.description()), *(Part(s) for s in recommendation_sentences(judgements))]
     return Section("preferable", "Which thickness", [*parts, Part("", [table])])
 
 

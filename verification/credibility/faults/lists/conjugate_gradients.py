@@ -1,21 +1,16 @@
 """Faults in the contact iteration of the semi-analytical method."""
 
-from verification.credibility.faults.planting import Edit, Fault
+from verification.credibility.faults.planting import Edit, faults_of
 
 __all__ = ["FAULTS"]
 
-GROUP = "conjugate_gradients"
 SOLID = ("01_uncoated_steel", "14_ratio_4_sliding")
 SCALARS = ("approach", "peak_pressure", "contact_radius", "pressure")
 MEASURE = "semianalytic.contact:_measure"
-
-
-def _fault(name: str, sentence: str, expected: tuple[str, ...], *changes: Edit) -> Fault:
-    return Fault(name, GROUP, sentence, "semianalytic", changes, expected, SOLID)
-
+fault = faults_of("conjugate_gradients", "semianalytic", SOLID)
 
 FAULTS = (
-    _fault(
+    fault(
         "loose_tolerance",
         "the iteration ends at a gap of 1e-2 of the approach, whatever was asked for",
         SCALARS,
@@ -25,7 +20,7 @@ FAULTS = (
             "state.residual <= max(problem.tolerance, 1e-2)",
         ),
     ),
-    _fault(
+    fault(
         "load_off",
         "the load on the patches is 0.5 % too large",
         SCALARS,
@@ -35,7 +30,7 @@ FAULTS = (
             "(1.005 * indenter.load - missing) /",
         ),
     ),
-    _fault(
+    fault(
         "load_of_the_rim",
         "what the rim patches lack of the load is forgotten",
         (*SCALARS, "load balance"),
@@ -44,8 +39,14 @@ FAULTS = (
             "missing = shape.load - float(on_patches.sum() * grid.d**2)",
             "missing = 0.0",
         ),
+        reason="the missing load decreases with the patch size, so that the refinement over it shows the "
+        "error: the result is off by 5e-5 of p_h at most, and the stated uncertainty covers it, far "
+        "below the caps",
+        remedy="caps as tight as the uncertainties the method usually states, or the baseline, which reports "
+        "that the uncertainty increased; a result whose error is within its stated uncertainty is not "
+        "wrong",
     ),
-    _fault(
+    fault(
         "stale_contact_set",
         "the contact set stays that of the first guess: no patch enters it, none leaves",
         (*SCALARS, "sphere"),
@@ -55,13 +56,13 @@ FAULTS = (
             "state.admissible = True",
         ),
     ),
-    _fault(
+    fault(
         "tension_kept",
         "negative pressure is kept: no patch ever leaves the contact",
         (*SCALARS, "surface tractions"),
         Edit(MEASURE, "state.tension = state.p < 0", "state.tension = state.p < -np.inf"),
     ),
-    _fault(
+    fault(
         "sphere_for_parabola",
         "the gap is that of a round sphere where every other source takes the parabola",
         SCALARS,
@@ -71,7 +72,7 @@ FAULTS = (
             "radius - np.sqrt(radius**2 - grid.radius**2)",
         ),
     ),
-    _fault(
+    fault(
         "diameter_for_radius",
         "the gap is that of a sphere of 1.001 times the radius",
         SCALARS,

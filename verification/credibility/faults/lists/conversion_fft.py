@@ -1,27 +1,17 @@
 """Faults in the conversion to influence coefficients and in the discrete convolutions."""
 
-from verification.credibility.faults.planting import Constant, Edit, Fault
+from verification.credibility.faults.planting import Edit, faults_of
 
 __all__ = ["FAULTS"]
 
-GROUP = "conversion_fft"
 SOLID = ("01_uncoated_steel", "14_ratio_4_sliding")
 SCALARS = ("approach", "peak_pressure", "contact_radius", "pressure", "influence coefficients")
 STRESS = ("sigma_xx", "sigma_yy", "sigma_zz", "sigma_xz")
-
-
-def _fault(
-    name: str,
-    sentence: str,
-    expected: tuple[str, ...],
-    *changes: Edit | Constant,
-    cases: tuple[str, ...] = SOLID,
-) -> Fault:
-    return Fault(name, GROUP, sentence, "semianalytic", changes, expected, cases)
-
+fault = faults_of("conversion_fft", "semianalytic", SOLID)
+fault = faults_of("conversion_fft", "semianalytic", SOLID)
 
 FAULTS = (
-    _fault(
+    fault(
         "no_padding",
         "the convolution for the surface is circular: no zero padding",
         SCALARS,
@@ -32,7 +22,7 @@ FAULTS = (
             "spectrum = _even_spectrum(kernel[: mx // 2 + 1, : my // 2 + 1], mx, my, threads)",
         ),
     ),
-    _fault(
+    fault(
         "no_padding_stress",
         "the convolution for the stresses is circular: no zero padding",
         STRESS,
@@ -47,7 +37,7 @@ FAULTS = (
             "irfft2(rfft2(part, size) * spectrum, size)[i % size[0], j % size[1]]",
         ),
     ),
-    _fault(
+    fault(
         "grid_too_small",
         "the grid reaches to 0.98 of the contact radius only",
         SCALARS,
@@ -57,7 +47,7 @@ FAULTS = (
             "half_width = 0.98 * first.radius",
         ),
     ),
-    _fault(
+    fault(
         "conversion_domain_too_small",
         "the wavenumbers of the layers' response start at 1/(20 h): the domain of its transform is too small",
         SCALARS,
@@ -67,13 +57,13 @@ FAULTS = (
             "low, high = 0.05 / h",
         ),
     ),
-    _fault(
+    fault(
         "wavenumbers_cut",
         "the exact deflection under the layers leaves out wavelengths shorter than 4 coatings",
         SCALARS,
         Edit("semianalytic.abel:layer_table", "k_max = min(14 / thickness,", "k_max = min(1.5 / thickness,"),
     ),
-    _fault(
+    fault(
         "no_patch_averaging",
         "the surface is deflected by point forces at the patch centres: no average over the patch",
         SCALARS,
@@ -86,7 +76,7 @@ FAULTS = (
             "corner = None",
         ),
     ),
-    _fault(
+    fault(
         "no_patch_averaging_stress",
         "stresses near the surface are those of constant patches, not averaged over the pressure between",
         STRESS,
@@ -97,7 +87,7 @@ FAULTS = (
             'indexing="ij"))',
         ),
     ),
-    _fault(
+    fault(
         "half_patch_shift",
         "the patches of the surface kernel are counted from their corners",
         SCALARS,
@@ -107,7 +97,7 @@ FAULTS = (
             "X = np.arange(nx + 1) * dx",
         ),
     ),
-    _fault(
+    fault(
         "half_patch_shift_stress",
         "the forces below which stresses are found lie half a patch off in x",
         STRESS,
@@ -117,7 +107,7 @@ FAULTS = (
             "Lattice(grid_x[rows[0]] - dx / 2,",
         ),
     ),
-    _fault(
+    fault(
         "transposed_kernel",
         "the table of the stress kernel is filled with x and y exchanged",
         ("sigma_xx", "sigma_yy"),
@@ -127,7 +117,7 @@ FAULTS = (
             "influence(b.ravel(), a.ravel())",
         ),
     ),
-    _fault(
+    fault(
         "correlation",
         "the stresses of sliding are correlated with the kernel where they are convolved with it",
         ("sigma_xx", "sigma_xz", "sigma_zz"),
@@ -137,7 +127,7 @@ FAULTS = (
             "influence(-a.ravel(), b.ravel())",
         ),
     ),
-    _fault(
+    fault(
         "k_zero_zeroed",
         "the response of the layers at k = 0 is set to zero: its image is left out and so is the mean",
         SCALARS,
@@ -145,7 +135,7 @@ FAULTS = (
             "semianalytic.abel:layer_table", "* excess(k))", "* np.where(k < 0.05 / thickness, 0, excess(k)))"
         ),
     ),
-    _fault(
+    fault(
         "k_zero_zeroed_stress",
         "the transforms of the stress response leave out its value at k = 0",
         STRESS,

@@ -1,36 +1,24 @@
 """Faults in the harness itself: what reads, samples, judges, stores."""
 
-from verification.credibility.faults.planting import Constant, Edit, Fault
+from verification.credibility.faults.planting import Constant, Edit, faults_of
 
 __all__ = ["FAULTS"]
 
-GROUP = "harness"
 BARE = ("01_uncoated_steel",)
 SOLID = ("01_uncoated_steel", "14_ratio_4_sliding")
 KENPAVE = ("kenpave_three_layer_axis",)
 METHODS = ("semianalytic", "fem_reference")
 JUDGE = "verification.judging.verdict:judge"
-
-
-def _fault(
-    name: str,
-    sentence: str,
-    expected: tuple[str, ...],
-    *changes: Edit | Constant,
-    cases: tuple[str, ...] = BARE,
-    solve: tuple[str, ...] = (),
-) -> Fault:
-    return Fault(name, GROUP, sentence, "harness", changes, expected, cases, solve)
-
+fault = faults_of("harness", "harness", BARE)
 
 FAULTS = (
-    _fault(
+    fault(
         "nan_agrees",
         "NaN counts as agreement",
         ("judging",),
         Edit(JUDGE, "bad = ~np.isfinite(side.value[judged])", "bad = np.zeros(judged.sum(), dtype=bool)"),
     ),
-    _fault(
+    fault(
         "absolute_for_relative",
         "an absolute uncertainty is read as one relative to the scale",
         ("peak_pressure", "pressure", "judging"),
@@ -40,18 +28,16 @@ FAULTS = (
             "return self.a.uncertainty + self.b.uncertainty",
         ),
     ),
-    _fault(
+    fault(
         "relative_for_absolute",
         "the uncertainties of p0, a and approach are multiplied by the value once more",
         ("peak_pressure", "contact_radius", "approach", "sampling"),
         Edit(
-            "verification.sampling.lines:sample_contact",
-            "np.array([stated])",
-            "np.array([stated]) * value",
+            "verification.sampling.lines:sample_contact", "np.array([stated])", "np.array([stated]) * value"
         ),
         solve=("semianalytic", "integral_equation"),
     ),
-    _fault(
+    fault(
         "u_inflated_in_the_judge",
         "the judge inflates every uncertainty tenfold",
         ("judging",),
@@ -61,19 +47,15 @@ FAULTS = (
             "return 10 * (self.a.uncertainty + self.b.uncertainty) / self.scale",
         ),
     ),
-    _fault(
+    fault(
         "u_inflated_semianalytic",
         "the semi-analytical method states ten times the uncertainty of p0, a and approach",
         ("baseline",),
-        Edit(
-            "semianalytic.uncertainty:Uncertainty._of",
-            "total = {name: sum(",
-            "total = {name: 10 * sum(",
-        ),
+        Edit("semianalytic.uncertainty:Uncertainty._of", "total = {name: sum(", "total = {name: 10 * sum("),
         cases=SOLID,
         solve=("semianalytic",),
     ),
-    _fault(
+    fault(
         "u_inflated_finite_elements",
         "the finite element method states ten times its uncertainty",
         ("baseline", "sigma_xx", "sigma_zz"),
@@ -81,20 +63,20 @@ FAULTS = (
         cases=SOLID,
         solve=("fem_reference",),
     ),
-    _fault(
+    fault(
         "u_deflated",
         "the finite element method states a hundredth of its uncertainty",
         ("peak_pressure", "approach", "sigma_xx", "sigma_zz", "pressure"),
         Constant("fem_reference.estimate:SAFETY", 0.03),
         solve=("fem_reference",),
     ),
-    _fault(
+    fault(
         "cap_ignored",
         "an uncertainty beyond the cap passes",
         ("judging", "whole runs"),
         Edit(JUDGE, "if U.max() > cap:", "if False:"),
     ),
-    _fault(
+    fault(
         "sign_of_difference",
         "only differences upwards count",
         ("judging",),
@@ -104,19 +86,19 @@ FAULTS = (
             "difference = comparison.difference[judged]",
         ),
     ),
-    _fault(
+    fault(
         "unstated_for_exact",
         "an uncertainty that was not stated counts as zero",
         ("judging",),
         Edit(JUDGE, "uncertainty = comparison.uncertainty\n", "uncertainty = np.zeros(judged.size)\n"),
     ),
-    _fault(
+    fault(
         "mean_for_largest",
         "the mean over the points decides in place of the worst of them",
         ("judged points",),
         Edit(JUDGE, "margin = U - difference\n", "margin = U - difference.mean()\n"),
     ),
-    _fault(
+    fault(
         "source_against_itself",
         "a source is held against itself",
         ("whole runs",),
@@ -126,7 +108,7 @@ FAULTS = (
             "sides.append(profiles[claim.quantity, claim.line, claim.between[0]])",
         ),
     ),
-    _fault(
+    fault(
         "failure_passes",
         "a source that failed passes",
         ("whole runs",),
@@ -136,7 +118,7 @@ FAULTS = (
             "return Verdict(Outcome.AGREES, f",
         ),
     ),
-    _fault(
+    fault(
         "wide_edge_zone",
         "a quarter of the contact is left unjudged at its edge",
         ("whole runs",),
@@ -146,7 +128,7 @@ FAULTS = (
             "np.abs(np.abs(a.position) - edge) < 5 * claim.edge * edge",
         ),
     ),
-    _fault(
+    fault(
         "best_for_worst",
         "a case is called by its best verdict",
         ("whole runs",),
@@ -156,7 +138,7 @@ FAULTS = (
             "for outcome in (Outcome.AGREES,):",
         ),
     ),
-    _fault(
+    fault(
         "components_swapped",
         "sigma_xx and sigma_yy of every source are sampled for each other",
         ("sampling",),
@@ -166,7 +148,7 @@ FAULTS = (
         ),
         cases=(),
     ),
-    _fault(
+    fault(
         "sides_swapped",
         "the upper side of an interface is sampled for the lower one, by every source",
         ("sampling",),
@@ -177,7 +159,7 @@ FAULTS = (
         ),
         cases=(),
     ),
-    _fault(
+    fault(
         "units_slipped_case",
         "thicknesses of a case file are read in mm where they stand in m, for every source alike",
         ("case file",),
@@ -188,7 +170,7 @@ FAULTS = (
         ),
         cases=(),
     ),
-    _fault(
+    fault(
         "units_slipped_load",
         "every method is handed the load in kgf for N",
         ("load balance", "peak_pressure", "contact_radius", "approach"),
@@ -200,22 +182,20 @@ FAULTS = (
         cases=SOLID,
         solve=(*METHODS, "integral_equation"),
     ),
-    Fault(
+    fault(
         "units_slipped_table",
-        GROUP,
         "depths of a printed table are read in cm where they stand in inches",
-        "published",
-        (
-            Edit(
-                "verification.cases.columns:_points",
-                'unit = si_of(at.unit, units, "at")',
-                'unit = si_of(at.unit, units, "at") * 0.01 / 0.0254',
-            ),
-        ),
         ("sigma_zz", "u_z", "printed table"),
+        Edit(
+            "verification.cases.columns:_points",
+            'unit = si_of(at.unit, units, "at")',
+            'unit = si_of(at.unit, units, "at") * 0.01 / 0.0254',
+        ),
+        where="published",
         published=KENPAVE,
+        cases=(),
     ),
-    _fault(
+    fault(
         "stale_cache",
         "a stored result is used again though its case file has changed",
         ("storing",),
@@ -227,18 +207,16 @@ FAULTS = (
         ),
         cases=(),
     ),
-    _fault(
+    fault(
         "stale_code",
         "a stored result is used again though the code that made it has changed",
         ("storing",),
         Edit(
-            "verification.running.tasks:kept_result",
-            'if data.get("made_by") != fingerprint():',
-            "if False:",
+            "verification.running.tasks:kept_result", 'if data.get("made_by") != fingerprint():', "if False:"
         ),
         cases=(),
     ),
-    _fault(
+    fault(
         "checksum_ignored",
         "a stored result is read though its checksum does not hold",
         ("storing",),
