@@ -12,7 +12,7 @@ fault = faults_of("conjugate_gradients", "semianalytic", SOLID)
 FAULTS = (
     fault(
         "loose_tolerance",
-        "the iteration ends at a gap of 1e-2 of the approach, whatever was asked for",
+        "the iteration ends at a gap of 1e-2 of the approach, whatever tolerance is given",
         SCALARS,
         Edit(
             "semianalytic.contact:_within_tolerance",
@@ -32,7 +32,7 @@ FAULTS = (
     ),
     fault(
         "load_of_the_rim",
-        "what the rim patches lack of the load is forgotten",
+        "the load missing on the rim patches is left out",
         (*SCALARS, "load balance"),
         Edit(
             "semianalytic.defect_correction:corrected",
@@ -64,7 +64,7 @@ FAULTS = (
     ),
     fault(
         "sphere_for_parabola",
-        "the gap is that of a round sphere where every other source takes the parabola",
+        "the gap is that of a sphere where every other source uses the parabola",
         SCALARS,
         Edit(
             "semianalytic.solver:solve",

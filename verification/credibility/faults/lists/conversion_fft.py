@@ -1,4 +1,4 @@
-"""Faults in the conversion to influence coefficients and in the discrete convolutions."""
+"""Faults in influence coefficients, with those of the discrete convolutions."""
 
 from verification.credibility.faults.planting import Edit, faults_of
 

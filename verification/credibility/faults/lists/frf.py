@@ -68,7 +68,7 @@ FAULTS = (
     ),
     fault(
         "anti_plane_dropped",
-        "friction leaves the anti-plane part out",
+        "the anti-plane part of friction is left out",
         ("sigma_xz", "sigma_yy", "sigma_xx"),
         Edit(
             "semianalytic.point_force:stress_below", 'A, B = response("anti-plane")', "A, B = 0 * Lz, 0 * Lz"

@@ -1,4 +1,4 @@
-"""Faults in the harness itself: what reads, samples, judges, stores."""
+"""Faults in the harness itself: readers, sampling, verdicts, store."""
 
 from verification.credibility.faults.planting import Constant, Edit, faults_of
 
@@ -100,7 +100,7 @@ FAULTS = (
     ),
     fault(
         "source_against_itself",
-        "a source is held against itself",
+        "a source is compared with itself",
         ("whole runs",),
         Edit(
             "verification.running.contact:decide",
@@ -120,7 +120,7 @@ FAULTS = (
     ),
     fault(
         "wide_edge_zone",
-        "a quarter of the contact is left unjudged at its edge",
+        "a quarter of the contact at its edge is excluded from the comparison",
         ("whole runs",),
         Edit(
             "verification.running.contact:decide",
@@ -130,7 +130,7 @@ FAULTS = (
     ),
     fault(
         "best_for_worst",
-        "a case is called by its best verdict",
+        "the outcome of a case is its best verdict",
         ("whole runs",),
         Edit(
             "verification.running.result:CaseResult.outcome",
@@ -140,7 +140,7 @@ FAULTS = (
     ),
     fault(
         "components_swapped",
-        "sigma_xx and sigma_yy of every source are sampled for each other",
+        "sigma_xx and sigma_yy of every source are exchanged in sampling",
         ("sampling",),
         Constant(
             "verification.sampling.lines:IN_PLANE",
@@ -161,7 +161,7 @@ FAULTS = (
     ),
     fault(
         "units_slipped_case",
-        "thicknesses of a case file are read in mm where they stand in m, for every source alike",
+        "thicknesses of a case file in m are read as mm, for every source alike",
         ("case file",),
         Edit(
             "verification.cases.contact:_Coating.in_metres",
@@ -172,7 +172,7 @@ FAULTS = (
     ),
     fault(
         "units_slipped_load",
-        "every method is handed the load in kgf for N",
+        "every method is given the load in kgf for N",
         ("load balance", "peak_pressure", "contact_radius", "approach"),
         Edit(
             "verification.problem.contact:keywords",
@@ -184,7 +184,7 @@ FAULTS = (
     ),
     fault(
         "units_slipped_table",
-        "depths of a printed table are read in cm where they stand in inches",
+        "depths of a published table in inches are read as cm",
         ("sigma_zz", "u_z", "printed table"),
         Edit(
             "verification.cases.columns:_points",

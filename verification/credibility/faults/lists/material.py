@@ -1,4 +1,4 @@
-"""Faults in the material: moduli and Poisson ratios."""
+"""Faults in the moduli of the material, with those of Poisson's ratio."""
 
 from verification.credibility.faults.planting import Edit, faults_of
 
@@ -71,7 +71,7 @@ FAULTS = (
     ),
     fault(
         "young_for_shear_ratio",
-        "the ratio of Young's moduli stands where that of the shear moduli belongs, at every interface",
+        "the ratio of Young's moduli replaces that of the shear moduli at every interface",
         ("sigma_xx", "sigma_yy", "approach"),
         Edit(
             "semianalytic.frf:_interface",

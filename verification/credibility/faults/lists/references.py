@@ -1,4 +1,4 @@
-"""Faults in the references and in the reading of printed tables."""
+"""Faults in the references, with those of the reader of published tables."""
 
 from verification.credibility.faults.planting import Edit, faults_of
 
@@ -118,7 +118,7 @@ FAULTS = (
     ),
     fault(
         "table_column_swapped",
-        "two columns of a printed table are read for each other",
+        "two columns of a published table are exchanged",
         ("sigma_zz", "sigma_xx", "printed table"),
         Edit(
             "verification.cases.table:PublishedTable.text",
@@ -132,7 +132,7 @@ FAULTS = (
     ),
     fault(
         "compressive_sign_kept",
-        "a printed compression keeps the positive sign of its source",
+        "a published compression keeps the positive sign of its source",
         ("sigma_zz", "sigma_xx", "printed table"),
         Edit(
             "verification.cases.columns:columns_of", "to_si = column.factor *", "to_si = abs(column.factor) *"

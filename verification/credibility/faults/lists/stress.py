@@ -33,13 +33,13 @@ FAULTS = (
     ),
     fault(
         "bessel_order",
-        "the difference of the in-plane stresses is transformed with J1 where J2 belongs",
+        "the difference of the in-plane stresses is transformed with J1 in place of J2",
         ("sigma_xx", "sigma_yy"),
         Edit(BELOW, "((LL - TT) / 2, 2)", "((LL - TT) / 2, 1)"),
     ),
     fault(
         "bessel_order_friction",
-        "the shear of friction is transformed with J1 where J2 belongs",
+        "the shear of friction is transformed with J1 in place of J2",
         ("sigma_xz",),
         Edit(BELOW, "(Lz - A, 2)", "(Lz - A, 1)"),
         cases=SLIDING,
