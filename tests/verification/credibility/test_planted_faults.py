@@ -281,7 +281,7 @@ def test_the_page_shows_every_fault_and_escapes_what_checks_say():
     assert "as &lt;it&gt; is" in page
     assert "<it>" not in page
     assert "http://" not in page.replace("http://www.w3.org", "")
-    assert "1 of 3 planted faults are caught" in page
+    assert "1 of 3 planted faults are detected" in page
 
 
 @pytest.mark.parametrize(
