@@ -7,7 +7,6 @@ a number is not that of the baseline, 130 stopped by Ctrl-C.
 import re
 import sys
 from collections.abc import Sequence
-from importlib.metadata import version
 from typing import Literal, NamedTuple
 
 from cyclopts import App, CycloptsError
@@ -132,11 +131,17 @@ def _add(parent: App, command: Command) -> None:
     )
 
 
+def _version() -> str:
+    from importlib.metadata import version
+
+    return version("coatcheck")
+
+
 app = App(
     name="coatcheck",
     help="Verify coated point contact: two independent methods, Hertz and an exact reference in one report.",
     help_epilogue=_epilogue(["coatcheck run", "coatcheck run --help"]),
-    version=lambda: version("coatcheck"),
+    version=_version,
     help_format="plaintext",
 )
 baseline = App(
@@ -201,7 +206,7 @@ app.command(
 def main() -> None:
     """Entry of the ``coatcheck`` command."""
     try:
-        code = app(exit_on_error=False, print_error=False, result_action="return_value")
+        code = app(sys.argv[1:], exit_on_error=False, print_error=False, result_action="return_value")
     except CycloptsError as error:
         code = print_error(" ".join(str(error).split()) + " Try: coatcheck --help")
     except KeyboardInterrupt:

@@ -14,16 +14,21 @@ COATED = ((2 * E, 0.25, 0.5 * A_H),)
 
 
 @lru_cache
-def sliding(friction=F, coatings=(), quality="default"):
+def at_rest(coatings, quality):
     return solve(
         radius=R,
         load=W,
         coatings=coatings,
         substrate=(E, NU),
-        friction=friction,
         quality=quality,
         estimate_uncertainty=False,
     )
+
+
+@lru_cache
+def sliding(friction=F, coatings=(), quality="default"):
+    """The contact is solved once; that sliding later equals sliding from the start has a test of its own."""
+    return at_rest(coatings, quality).with_friction(friction)
 
 
 def cerruti_stress(x, y, z, nu):
@@ -77,6 +82,12 @@ def test_tension_at_the_trailing_edge_follows_the_closed_form():
     expected = (1 - 2 * NU) / 3 + F * np.pi * (4 + NU) / 8
     # vertical tangent at the edge: the last triangle is 1e-6 a, its square root 1e-3
     assert got == pytest.approx(expected, rel=2e-3)
+
+
+def test_tension_at_the_edge_of_a_contact_at_rest_follows_the_closed_form():
+    s = sliding(0.0)
+    peak = s.stress(s.contact_radius, 0.0, 0.0)[0, 0]
+    assert peak == pytest.approx((1 - 2 * NU) / 3 * s.peak_pressure, rel=0.01)
 
 
 def test_surface_stress_inside_the_contact_is_linear_in_x():

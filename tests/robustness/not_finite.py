@@ -22,7 +22,7 @@ from verification.judging.claims import standard_claims
 from verification.judging.verdict import Outcome
 from verification.running.contact import run
 from verification.running.result import CaseResult
-from verification.sources.contact import solvers
+from verification.sources.registry import solvers
 
 __all__ = ["BAD", "PLACES", "Place", "clean", "outcome_of", "planted"]
 

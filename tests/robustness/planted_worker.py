@@ -46,6 +46,8 @@ def main(how: str, path: str) -> None:
         blocks = []
         while True:
             blocks.append(np.ones(1 << 22))
+    elif how == "process":
+        write_checked(Path(path), {"said": str(os.getpid())})
     elif how == "nothing":
         pass
     else:

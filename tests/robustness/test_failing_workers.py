@@ -8,6 +8,7 @@ import subprocess
 import sys
 import time
 from collections import Counter
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -41,7 +42,7 @@ def task(how: str, folder: Path, number: int = 0) -> Task[str]:
     path = folder / f"{how}-{number}.json"
     return Task(
         path.stem,
-        ("planted_worker", how, str(path)),
+        ("planted_worker:main", how, str(path)),
         path,
         lambda data: data["said"],
         lambda reason, _: reason,
@@ -107,7 +108,7 @@ def test_worker_that_cannot_write_ends_the_run_with_one_sentence(tmp_path):
     write_checked(tmp_path / "good-0.json", {"said": "earlier"})
     (tmp_path / "file").write_text("in the way")
     blocked = Task(
-        "x", ("planted_worker", "good", str(tmp_path / "file" / "x.json")), tmp_path / "x", str, str
+        "x", ("planted_worker:main", "good", str(tmp_path / "file" / "x.json")), tmp_path / "x", str, str
     )
     with pytest.raises(StoreError, match=r"file/x\.json: cannot be written"):
         run_tasks([blocked], jobs=1, time_limit=300)
@@ -119,6 +120,28 @@ def test_failing_worker_leaves_the_earlier_file_and_does_not_pass_it_off_as_its_
     write_checked(nothing.path, {"said": "earlier"})
     assert re.fullmatch(REASONS["nothing"], run_tasks([nothing], jobs=1, time_limit=300)[0])
     assert read_checked(nothing.path) == {"said": "earlier"}
+
+
+def grouped(how: str, folder: Path, number: int = 0) -> Task[str]:
+    return replace(task(how, folder, number), together="one process")
+
+
+def test_tasks_together_run_in_one_process_which_a_failed_one_alone_leaves(tmp_path):
+    hows = ["process", "process", "abort", "process", "process"]
+    first, second, died, third, fourth = run_tasks(
+        [grouped(how, tmp_path, n) for n, how in enumerate(hows)], jobs=2, time_limit=300
+    )
+    assert first == second
+    assert re.fullmatch(REASONS["abort"], died)
+    assert third == fourth
+    assert third not in (first, str(os.getpid()))
+
+
+def test_costly_tasks_start_first(tmp_path):
+    order: list[str] = []
+    tasks = [replace(task("good", tmp_path, n), cost=cost) for n, cost in enumerate((1.0, 3.0, 0.0, 2.0))]
+    assert run_tasks(tasks, jobs=1, time_limit=300, started=order.append) == ["good"] * 4
+    assert order == ["good-1", "good-3", "good-0", "good-2"]
 
 
 def test_process_that_cannot_be_started_is_a_reason(tmp_path, monkeypatch):
@@ -175,16 +198,15 @@ def test_every_death_ten_times_in_a_run_that_still_writes_its_report(tmp_path, m
     (tmp_path / "quick.toml").write_text(QUICK)
     for name in names:
         (tmp_path / f"{name}.toml").write_text(QUICK)
-    popen = subprocess.Popen
+    solving = command.case_task
 
-    def planted(words, **keywords):
-        for name, how in names.items():
-            if name in words:
-                place = words.index("verification.running.worker")
-                words = [*words[:place], "planted_worker", how, words[place + 2]]
-        return popen(words, **keywords)
+    def planted(case, folder, **keywords):
+        task = solving(case, folder, **keywords)
+        how = names.get(case.name)
+        words = ("planted_worker:main", how, str(task.path))
+        return task if how is None else replace(task, command=words, together=None)
 
-    monkeypatch.setattr(pool.subprocess, "Popen", planted)
+    monkeypatch.setattr(command, "case_task", planted)
     files = [str(tmp_path / f"{name}.toml") for name in ("quick", *names)]
     output = tmp_path / "out"
     code = command.run(*files, output=output, jobs=10, time_limit=40, as_json=True)

@@ -12,14 +12,13 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from quick_case import COMMAND, QUICK, coatcheck
+from quick_case import COMMAND, QUICK, coatcheck, coatcheck_process
 
 from verification.cases.contact import parse_case
 from verification.cases.published import published_cases, read_published
 from verification.commands.solving import kept_results
-from verification.running import pool
 from verification.running.contact import judge_case, solve_case
-from verification.running.planes import plane_path, write_plane
+from verification.running.fields import plane_path, write_plane
 from verification.running.pool import run_tasks
 from verification.running.provenance import fingerprint
 from verification.running.published import failed as printed_failed
@@ -63,22 +62,18 @@ def damaged(whole: bytes, rng: random.Random, number: int) -> bytes:
     return bytes(flipped)
 
 
-def test_two_hundred_damaged_files_are_named_and_computed_again(tmp_path, stored, monkeypatch, capsys):
+def test_two_hundred_damaged_files_are_named_and_computed_again(tmp_path, stored, capsys):
     origin, cases = stored
     folder = tmp_path / "run"
     shutil.copytree(origin, folder)
     assert len(kept_results(cases, folder)) == len(cases)
     assert capsys.readouterr().err == ""
-    popen = subprocess.Popen
     rng = random.Random(20261121)
-
-    def copied(words, **keywords):
-        # A worker that need not compute: what it would leave is known.
-        path = Path(next(word for word in words if word.endswith(".json")))
-        keywords.pop("pass_fds")
-        return popen(["cp", origin / "cases" / path.name, path], **keywords)
-
-    monkeypatch.setattr(pool.subprocess, "Popen", copied)
+    # Workers that need not compute: what they would leave is known.
+    tasks = [
+        replace(task, command=("shutil:copyfile", str(origin / "cases" / task.path.name), str(task.path)))
+        for task in (case_task(c, folder) for c in cases)
+    ]
     count = 0
     for turn in range(10):
         files = [
@@ -94,7 +89,7 @@ def test_two_hundred_damaged_files_are_named_and_computed_again(tmp_path, stored
         for file, line in zip(files, said, strict=True):
             assert line.startswith(f"coatcheck: {file}: ")
             assert line.endswith("; computed again")
-        results = run_tasks([case_task(c, folder) for c in cases], jobs=4, time_limit=300)
+        results = run_tasks(tasks, jobs=4, time_limit=300)
         assert {r.outcome for r in results} == {"AGREES"}
         shutil.rmtree(folder / "planes")
         shutil.copytree(origin / "planes", folder / "planes")
@@ -296,7 +291,7 @@ def test_limit_on_file_size_is_one_sentence_and_the_earlier_results_stay(tmp_pat
     def small():
         resource.setrlimit(resource.RLIMIT_FSIZE, (60_000, 60_000))
 
-    done = coatcheck("run", "quick.toml", "-q", "-o", "out", cwd=tmp_path, preexec_fn=small)
+    done = coatcheck_process("run", "quick.toml", "-q", "-o", "out", cwd=tmp_path, preexec_fn=small)
     one_sentence(done, "cannot be written (File too large)")
     found = content(tmp_path / "out")
     assert {name: found[name] for name in earlier} == earlier

@@ -3,25 +3,23 @@
 import ast
 import json
 import shutil
-import subprocess
-import sys
 import time
 from dataclasses import replace
 from html.parser import HTMLParser
 from pathlib import Path
 
 import pytest
-from quick_case import QUICK
+from quick_case import QUICK, coatcheck
 
 from verification.cases.contact import parse_case, read_case
 from verification.cases.published import is_published
 from verification.cases.toml import CaseError
 from verification.commands.common import one_line
 from verification.judging.verdict import Outcome, Verdict
+from verification.report.material import Material
 from verification.report.page import render
 from verification.running.contact import failed
-from verification.running.fields import fields_path
-from verification.running.planes import plane_path
+from verification.running.fields import fields_path, plane_path
 from verification.running.result import RunInfo, SourceResult
 from verification.running.store import StoreError
 from verification.running.stored import read_run
@@ -113,7 +111,7 @@ def page_of(text: str) -> str:
         sources=(SourceResult(text, 1.0, text, {text: text}, ((text, text, 1.0),)),),
         verdicts=((claim, Verdict(Outcome.NO_RESULT, text)),),
     )
-    return render([result], RunInfo(text, text, 1.0, 1, text, text, {text: text}))
+    return render(Material([result], RunInfo(text, text, 1.0, 1, text, text, {text: text})))
 
 
 def test_text_of_a_stranger_stays_text_in_the_page():
@@ -160,23 +158,7 @@ def test_run_with_strange_names_writes_into_its_output_directory_only(tmp_path):
         (tmp_path / "here").mkdir(exist_ok=True)
         (tmp_path / "here" / f"{name}.toml").write_text(QUICK)
     before = sorted(tmp_path.rglob("*"))
-    done = subprocess.run(
-        [
-            sys.executable,
-            "-m",
-            "verification.cli",
-            "run",
-            "...toml",
-            "../-rf.toml",
-            "-q",
-            "-o",
-            "out",
-        ],
-        cwd=tmp_path / "here",
-        capture_output=True,
-        text=True,
-        timeout=300,
-    )
+    done = coatcheck("run", "...toml", "../-rf.toml", "-q", "-o", "out", cwd=tmp_path / "here")
     assert done.returncode == 0, done.stderr
     after = sorted(
         path for path in tmp_path.rglob("*") if tmp_path / "here" / "out" not in (path, *path.parents)

@@ -1,8 +1,15 @@
 """A case of two closed forms, solved in a moment, for tests of what stands around the solving."""
 
+import contextlib
+import io
 import subprocess
 import sys
 from pathlib import Path
+from unittest import mock
+
+import pytest
+
+from verification.cli import main
 
 QUICK = """
 title = "Quick"
@@ -20,8 +27,22 @@ why = "two references, no method"
 COMMAND = [sys.executable, "-m", "verification.cli"]
 
 
-def coatcheck(*words: str, cwd: Path, **keywords) -> subprocess.CompletedProcess[str]:
-    """What the command line does in a process of its own, in the folder ``cwd``."""
+def coatcheck(*words: str, cwd: Path) -> subprocess.CompletedProcess[str]:
+    """Exit code, output and messages of the command line, run in this process in the folder ``cwd``."""
+    out, err = io.StringIO(), io.StringIO()
+    with (
+        contextlib.chdir(cwd),
+        contextlib.redirect_stdout(out),
+        contextlib.redirect_stderr(err),
+        mock.patch.object(sys, "argv", ["coatcheck", *words]),
+        pytest.raises(SystemExit) as ended,
+    ):
+        main()
+    return subprocess.CompletedProcess(words, int(ended.value.code or 0), out.getvalue(), err.getvalue())
+
+
+def coatcheck_process(*words: str, cwd: Path, **keywords) -> subprocess.CompletedProcess[str]:
+    """The same in a process of its own."""
     return subprocess.run(
         [*COMMAND, *words], cwd=cwd, capture_output=True, text=True, timeout=300, check=False, **keywords
     )

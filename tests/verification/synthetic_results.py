@@ -1,6 +1,7 @@
 """Case results made up from Hertz's closed forms with errors of known size, for tests of the report."""
 
 import functools
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -8,8 +9,10 @@ import numpy as np
 from verification.judging.claims import standard_claims
 from verification.judging.verdict import Claim, Outcome, Verdict, compare, judge
 from verification.problem.contact import CoatedContact
-from verification.problem.profile import SCALARS, STRESSES, Line, Profile, lines_of
+from verification.problem.profile import Line, Profile, lines_of
+from verification.problem.quantity import IN_PLANE, QUANTITIES, SCALARS
 from verification.running.result import CaseResult, RunInfo, SourceResult
+from verification.sources.registry import CLOSED, SOURCES
 
 STEEL = (210e9, 0.3)
 INFO = RunInfo(
@@ -22,13 +25,8 @@ INFO = RunInfo(
     versions={"coatcheck": "0.1.0", "python": "3.11.9", "numpy": "2.4.0", "scipy": "1.17.0"},
 )
 # Relative errors that the made-up methods have, and the uncertainty they state, as multiples of it.
-ERRORS = {
-    "semianalytic": 1.5e-4,
-    "fem_reference": 1.2e-5,
-    "integral_equation": 1e-10,
-    "hertz": 0.0,
-    "hamilton": 0.0,
-}
+ERRORS = {name: 0.0 if name in CLOSED else 1e-10 for name in SOURCES}
+ERRORS |= {"semianalytic": 1.5e-4, "fem_reference": 1.2e-5}
 STATED = 2.5
 
 
@@ -140,9 +138,7 @@ def _decide(
 
 
 def _knobs(problem: CoatedContact, quantity: str) -> list[tuple[str, float]]:
-    size = {"peak_pressure": problem.p_h, "contact_radius": problem.a_h, "approach": problem.delta_h}[
-        quantity
-    ]
+    size = getattr(problem, QUANTITIES[quantity].scale)
     return [
         ("patch or element size", 1.9 * size),
         ("conversion or order", 0.5 * size),
@@ -153,9 +149,10 @@ def _knobs(problem: CoatedContact, quantity: str) -> list[tuple[str, float]]:
 def _exact(problem: CoatedContact, source: str, points: int) -> list[Profile]:
     a, p0, nu = problem.a_h, problem.p_h, problem.substrate[1]
     origin = np.zeros(1)
+    hertz = SimpleNamespace(contact_radius=a, peak_pressure=p0, approach=problem.delta_h)
     found = [
-        Profile(name, "contact", origin, np.array([value]), source)
-        for name, value in zip(SCALARS, (p0, a, problem.delta_h), strict=True)
+        Profile(name, "contact", origin, np.array([QUANTITIES[name].value(hertz, problem)]), source)
+        for name in SCALARS
     ]
     for line in lines_of(problem):
         position = np.linspace(
@@ -165,7 +162,7 @@ def _exact(problem: CoatedContact, source: str, points: int) -> list[Profile]:
         if line.name == "surface":
             pressure = p0 * np.sqrt(np.maximum(1 - (position / a) ** 2, 0))
             found.append(Profile("pressure", line.name, position, pressure, source))
-        found += [Profile(n, line.name, position, p0 * fields[n], source) for n in STRESSES]
+        found += [Profile(n, line.name, position, p0 * fields[n], source) for n in IN_PLANE]
     return found
 
 

@@ -1,28 +1,28 @@
 """A study of accuracy made up from power laws, for tests of the report."""
 
 from verification.credibility.accuracy import CORRECTED, PLAIN, STAIRCASE, AccuracyStudy
-from verification.credibility.refinement import QUANTITIES, Ladder, Level
+from verification.credibility.refinement import QUANTITIES, Level, Refinement
 from verification.judging.invariants.influence import ConversionError
 
 PATCHES = (33, 65, 129, 257)
 
 
-def falling(setting: str, order: float, floor: float = 0.0, solid: str = "coated") -> Ladder:
+def falling(setting: str, order: float, floor: float = 0.0, solid: str = "coated") -> Refinement:
     """Errors of N^-order, no smaller than ``floor``, in every quantity."""
     levels = tuple(
         Level(f"N = {n}", float(n), 0.01 * n, dict.fromkeys(QUANTITIES, max(float(n) ** -order, floor)))
         for n in PATCHES
     )
-    return Ladder("semianalytic", solid, setting, levels)
+    return Refinement("semianalytic", solid, setting, levels)
 
 
-def elements(order: int) -> Ladder:
+def elements(order: int) -> Refinement:
     """Finite elements that converge as their order says."""
     levels = tuple(
         Level(name, size, 1.0, dict.fromkeys(QUANTITIES, size**-order))
         for name, size in (("fast", 100.0), ("default", 200.0))
     )
-    return Ladder("fem_reference", "coated", f"order {order}", levels)
+    return Refinement("fem_reference", "coated", f"order {order}", levels)
 
 
 def conversion(name: str, enlarge: int, aliases: int, error: float) -> ConversionError:

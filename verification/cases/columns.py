@@ -1,4 +1,4 @@
-"""Columns of a published table as profiles on lines, each with the reading uncertainty of its source."""
+"""Columns of a published table as profiles on lines with the digitisation uncertainty of the source."""
 
 from dataclasses import dataclass
 from math import isfinite
@@ -10,10 +10,10 @@ from verification.cases.schema import ColumnEntry, PositionEntry, TableEntry
 from verification.cases.table import PublishedError, PublishedTable
 from verification.problem.arrays import Array
 from verification.problem.contact import PrescribedLoad
-from verification.problem.loading import CONTROLS, CURVES, LoadingCurve, Problem
+from verification.problem.loading import CONTROLS, LoadingCurve, Problem
 from verification.problem.points import Points
 from verification.problem.profile import Profile
-from verification.problem.quantity import EXTREMES, QUANTITIES, SCALAR
+from verification.problem.quantity import CURVES, EXTREMES, QUANTITIES, SCALARS
 from verification.sources.registry import PUBLISHED
 
 __all__ = ["PublishedColumn", "columns_of", "si_of"]
@@ -21,12 +21,12 @@ __all__ = ["PublishedColumn", "columns_of", "si_of"]
 
 @dataclass(frozen=True, eq=False)
 class PublishedColumn:
-    """One column of a table on one line: where, what, and which rows count.
+    """One column of a table on one line.
 
-    profile : in SI, tension positive, with the reading uncertainty.   at : the points of its values.
+    profile : in SI, tension positive, with the digitisation uncertainty.   at : the points of its values.
     rows : their lines in ``file``, with their ``labels``.   text : the cells as printed, in ``unit``.
-    to_si : SI value of a printed 1, its sign included.   why_not : why a row does not count, or "".
-    scale : what differences are divided by [SI].   series : coefficients that the quantity speaks of.
+    to_si : SI value of a printed 1, with its sign.   why_not : reason why a row does not count, or "".
+    scale : divisor of differences [SI].   series : coefficients of a power series, see ``ColumnEntry``.
     """
 
     profile: Profile
@@ -49,7 +49,7 @@ class PublishedColumn:
 
 
 def si_of(name: str, units: dict[str, float], where: str) -> float:
-    """SI value of a unit. Raises ValueError naming ``where`` it stands."""
+    """SI value of the unit ``name`` among ``units``. Raises ValueError naming ``where`` it is used."""
     if name not in units:
         raise ValueError(f"{where}: unit {name!r} is unknown; known are {', '.join(units)}")
     if not (isfinite(units[name]) and units[name] > 0):
@@ -73,14 +73,16 @@ def columns_of(
             raise PublishedError(
                 f"{here}: quantity {column.quantity!r} is unknown; known are {', '.join(QUANTITIES)}"
             )
-        if (column.quantity in CURVES) != isinstance(problem, LoadingCurve) and column.quantity not in SCALAR:
+        if (column.quantity in CURVES) != isinstance(
+            problem, LoadingCurve
+        ) and column.quantity not in SCALARS:
             raise PublishedError(
                 f"{here}: quantity {column.quantity!r} does not go with this problem; {', '.join(CURVES)} "
                 "belong to a sphere without a load, all others to a load"
             )
         at = column.at or table.at
-        if at is None and column.quantity not in SCALAR + EXTREMES:
-            raise ValueError(f"{key}.column.{i}: says nowhere where its values are; give at")
+        if at is None and column.quantity not in SCALARS + EXTREMES:
+            raise ValueError(f"{key}.column.{i}: has no positions; give at")
         try:
             to_si = column.factor * si_of(column.unit, units, here)
         except ValueError as error:
@@ -89,12 +91,12 @@ def columns_of(
         value = np.array(content.numbers(column.name)) * to_si
         why_not = _why_not(table, content, column.name)
         counted = np.array([not why for why in why_not])
-        spread = _uncertainty(column, content, counted) * abs(to_si)
+        U = _uncertainty(column, content, counted) * abs(to_si)
         scale = _scale(column, table, content, units, problem)
         for name, rows in points.lines():
             line = f"{name}, {content.path.stem}, column {column.name}"
             part = points.part(rows)
-            profile = Profile(column.quantity, line, part.along, value[rows], PUBLISHED, spread[rows])
+            profile = Profile(column.quantity, line, part.along, value[rows], PUBLISHED, U[rows])
             found.append(
                 PublishedColumn(
                     profile,
@@ -131,7 +133,9 @@ def _points(
         def metres(given: str | float) -> Array:
             value = np.array(content.numbers(given)) if isinstance(given, str) else np.full(n, given)
             if not np.all(abs(value) <= np.finfo(float).max / max(unit, 1.0)):
-                raise ValueError(f"at: {given} in {at.unit!r} is beyond all numbers; give another unit")
+                raise ValueError(
+                    f"at: {given} in {at.unit!r} is too large for floating point; give another unit"
+                )
             return value * unit
 
         if isinstance(problem, LoadingCurve):
@@ -146,7 +150,7 @@ def _points(
 
 
 def _why_not(table: TableEntry, content: PublishedTable, column: str) -> list[str]:
-    """Why a row does not count: it is flagged, or the cell named, as a misprint; "" for one that counts."""
+    """Reason why each row does not count, flagged or named as a misprint; "" for one that counts."""
     why = [""] * len(content.rows)
     if table.flag is not None:
         why = ["misprint" if cell else "" for cell in content.text(table.flag)]
@@ -159,10 +163,10 @@ def _why_not(table: TableEntry, content: PublishedTable, column: str) -> list[st
 
 
 def _uncertainty(column: ColumnEntry, content: PublishedTable, counted: NDArray[np.bool_]) -> Array:
-    """Reading uncertainty of every row, in the unit of the column.
+    """Digitisation uncertainty of every row, in the unit of the column.
 
-    Stated by the file; or half the last digit with the error of the program that printed it; or, where
-    several programs speak row by row, with all that they differ by.
+    As stated by the file; or half of the last digit, plus the error of the program that printed it or, where
+    each row is of another program, the range of the rows.
     """
     if column.relative is not None:
         return column.relative * np.abs(content.numbers(column.name))
@@ -182,10 +186,11 @@ def _scale(
     problem: Problem,
 ) -> float:
     """Stresses over the pressure; displacements and strains over the largest of their kind in the table."""
-    kind = QUANTITIES[column.quantity]
+    kind = QUANTITIES[column.quantity].kind
     if kind in ("stress", "pressure") and not isinstance(problem, LoadingCurve):
         return problem.pressure if isinstance(problem, PrescribedLoad) else problem.p_h
-    alike = [c for c in table.column if QUANTITIES.get(c.quantity) == kind and c.unit in units]
+    known = {name for name, quantity in QUANTITIES.items() if quantity.kind == kind}
+    alike = [c for c in table.column if c.quantity in known and c.unit in units]
     if kind in ("scalar", "curve"):
         alike = [column]
     largest = 0.0

@@ -1,4 +1,4 @@
-"""A case: one coated contact with the claims made about it, read from a TOML file."""
+"""A case: one coated contact with the claims about it, read from a TOML file."""
 
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -7,10 +7,11 @@ from typing import Annotated, Any, Literal
 from pydantic import AfterValidator, Field, model_validator
 
 from verification.cases.toml import CaseError, Length, Modulus, Poisson, Strict, Text, read_bounded, read_toml
-from verification.judging.claims import EDGE, sources_of, standard_claims
+from verification.judging.claims import EDGE, standard_claims
 from verification.judging.verdict import Claim
 from verification.problem.contact import CoatedContact
 from verification.problem.profile import Line, line_of, lines_of
+from verification.sources.registry import METHODS, sources_of
 
 __all__ = ["Case", "parse_case", "read_case", "refuse_unfit_scales", "shipped_cases"]
 
@@ -37,7 +38,7 @@ class Case:
 
     @property
     def lines(self) -> tuple[Line, ...]:
-        """The lines of the plane y = 0 on which this case is looked at."""
+        """The lines of the plane y = 0 on which sources are compared."""
         return lines_of(self.problem)
 
 
@@ -105,16 +106,17 @@ class _CaseFile(Strict):
 
 
 def read_case(path: Path) -> Case:
-    """Read and check one case file. Raises CaseError: one sentence with file and key."""
+    """Read and check one case file. Raises CaseError naming file and key."""
     return parse_case(read_bounded(path, "case", "one problem"), path)
 
 
 def parse_case(raw: bytes, path: Path) -> Case:
-    """Check the content of a case file; ``path`` names it in complaints. Raises CaseError."""
+    """Check the content of a case file; ``path`` names it in messages. Raises CaseError."""
     text, checked = read_toml(raw, path, _CaseFile)
     try:
         p = checked.problem
-        bare = CoatedContact(p.radius, p.load, (), (p.substrate.E, p.substrate.nu), p.friction)
+        given = dict(p) | {"substrate": (p.substrate.E, p.substrate.nu), "coatings": ()}
+        bare = CoatedContact(**given)
         problem = replace(bare, coatings=tuple((c.E, c.nu, c.in_metres(bare.a_h)) for c in p.coatings))
     except (ValueError, OverflowError, ZeroDivisionError) as error:
         raise CaseError(f"{path}: problem: {error}") from None
@@ -128,8 +130,9 @@ def parse_case(raw: bytes, path: Path) -> Case:
         claims=_claims(path, checked, problem),
         source=checked.source,
         numerics={
-            "semianalytic": checked.semianalytic.model_dump(exclude_none=True),
-            "fem_reference": checked.fem_reference.model_dump(exclude_none=True),
+            method: getattr(checked, method).model_dump(exclude_none=True)
+            for method in METHODS
+            if method in _CaseFile.model_fields
         },
         text=text,
         resolve=checked.resolve,
@@ -137,7 +140,7 @@ def parse_case(raw: bytes, path: Path) -> Case:
 
 
 def refuse_unfit_scales(path: Path, problem: CoatedContact) -> None:
-    """Raise CaseError where the parabolic sphere, a method or floating point no longer holds."""
+    """Raise CaseError beyond the range of the parabolic sphere, of a method or of floating point."""
     if problem.a_h > problem.radius:
         raise CaseError(
             f"{path}: problem.load: gives a contact radius of {problem.a_h:.3g} m on a sphere of "
@@ -151,7 +154,7 @@ def refuse_unfit_scales(path: Path, problem: CoatedContact) -> None:
         if not 1e-3 <= thickness / problem.a_h <= 1e3:
             raise CaseError(
                 f"{path}: problem.coatings.{i}.thickness: {thickness / problem.a_h:.3g} times the contact "
-                f"radius {problem.a_h:.3g} m; both methods are made for 1e-3 to 1e3"
+                f"radius {problem.a_h:.3g} m; both methods support 1e-3 to 1e3"
             )
     stiffest = max([E for E, _, _ in problem.coatings] + [problem.substrate[0]])
     softest = min([E for E, _, _ in problem.coatings] + [problem.substrate[0]])

@@ -1,7 +1,7 @@
-"""A published case: a problem with the tables printed about it, read from one TOML file and its CSV files.
+"""A published case: a problem with published tables, read from a TOML file with its CSV files.
 
-The problem stands in the units of the source and is converted here, at the border; so are the tables, which
-become Profiles with the reading uncertainty of the source, so that no comparison asks where they came from.
+The file is in the units of the source and converted to SI here; the tables become Profiles with the
+digitisation uncertainty of the source, which are compared like those of any other source.
 """
 
 from dataclasses import dataclass, replace
@@ -16,12 +16,12 @@ from verification.judging.verdict import Claim
 from verification.problem.contact import CoatedContact, PrescribedLoad
 from verification.problem.loading import CONTROLS, PUNCH, LoadingCurve, Problem
 from verification.problem.quantity import QUANTITIES
-from verification.sources.registry import METHODS, PUBLISHED, REFERENCE
+from verification.sources.registry import EXACT, METHODS, PUBLISHED, SOURCES
 
 __all__ = ["PublishedCase", "is_published", "parse_published", "published_cases", "read_published"]
 
-# Largest admissible uncertainty of a method, as on the lines of every other case; what the source itself
-# leaves unknown comes on top.
+# Largest admissible uncertainty of a method, as on the lines of every other case; the digitisation
+# uncertainty is added to it.
 CAP = 5e-3
 
 
@@ -29,8 +29,8 @@ CAP = 5e-3
 class PublishedCase:
     """``problem`` with the ``columns`` published about it.
 
-    path : of its file.   text : all it was read from, tables included.
-    citation : year, how it was read, whether the primary source was seen, and remarks.
+    path : of its file.   text : that of its files, tables included.
+    citation : year, origin of the numbers, whether the primary source was read, remarks.
     """
 
     name: str
@@ -58,7 +58,7 @@ def is_published(path: Path) -> bool:
 
 
 def read_published(path: Path) -> PublishedCase:
-    """Read one published case. Raises CaseError: one sentence with file and key, or file, row and column."""
+    """Read one published case. Raises CaseError naming file and key, or file, row and column."""
     return parse_published(read_bounded(path, "case", "one problem"), path)
 
 
@@ -87,8 +87,8 @@ def parse_published(raw: bytes, path: Path) -> PublishedCase:
             _claim(item, source)
             for item in columns
             if item.counted.any()
-            for source in (*METHODS, REFERENCE)
-            if source in METHODS or _speaks(problem, item.profile.quantity)
+            for source in (*METHODS, *EXACT)
+            if SOURCES[source].supports(problem, QUANTITIES[item.profile.quantity].kind)
         ),
         columns=tuple(columns),
         citation={
@@ -105,22 +105,13 @@ def parse_published(raw: bytes, path: Path) -> PublishedCase:
     )
 
 
-def _speaks(problem: Problem, quantity: str) -> bool:
-    """True where the exact reference answers: no displacement under a contact, no sliding disc."""
-    if isinstance(problem, PrescribedLoad):
-        return not problem.friction
-    return QUANTITIES[quantity] != "displacement"
-
-
 def _with_points(problem: Problem, columns: list[PublishedColumn]) -> Problem:
-    """A loading curve with the points that its tables ask for."""
+    """A loading curve with the points of its tables."""
     if not isinstance(problem, LoadingCurve):
         return problem
     controls = {item.at.control for item in columns}
     if len(controls) > 1 or "" in controls:
-        raise ValueError(
-            f"at: one of {', '.join(CONTROLS)} has to say where every value of a loading curve is"
-        )
+        raise ValueError(f"at: give one of {', '.join(CONTROLS)} for every value of a loading curve")
     at = sorted({float(x) for item in columns for x in item.at.along})
     punch = any(item.profile.quantity in PUNCH for item in columns)
     return replace(problem, control=controls.pop(), at=tuple(at), punch=punch)
@@ -139,7 +130,7 @@ def _problem(p: ProblemEntry) -> Problem:
     if p.radius is not None and p.load is not None:
         bare = CoatedContact(p.radius * length, p.load * force, (), substrate, p.friction)
         coatings = tuple((c.E * stress, c.nu, _thickness(c, length, bare.a_h)) for c in p.coatings)
-        return CoatedContact(bare.radius, bare.load, coatings, substrate, p.friction)
+        return replace(bare, coatings=coatings)
     if p.radius is not None:
         coatings = tuple((c.E * stress, c.nu, _thickness(c, length, None)) for c in p.coatings)
         return LoadingCurve(p.radius * length, CONTROLS[0], (1.0,), coatings, substrate)
@@ -158,7 +149,7 @@ def _thickness(c: LayerEntry, length: float, a_h: float | None) -> float:
 
 
 def _units(problem: Problem) -> dict[str, float]:
-    """The units a table of this problem may be printed in: those of UNITS and its own scales."""
+    """The units of the tables of this problem: UNITS with its own scales."""
     if isinstance(problem, LoadingCurve):
         R = problem.radius
         layer: dict[str, float] = {}
@@ -172,8 +163,8 @@ def _units(problem: Problem) -> dict[str, float]:
 
 
 def _claim(item: PublishedColumn, source: str) -> Claim:
-    spread = item.profile.uncertainty
-    assert spread is not None
-    cap = CAP + float(spread[item.counted].max()) / item.scale if item.scale else CAP
+    U = item.profile.uncertainty
+    assert U is not None
+    cap = CAP + float(U[item.counted].max()) / item.scale if item.scale else CAP
     why = f"published in column {item.column} of {item.file}"
     return Claim(item.profile.quantity, item.profile.line, (source, PUBLISHED), cap, why)

@@ -1,9 +1,9 @@
-"""Valid coated contacts drawn at random.
+"""Random coated contacts as case files.
 
     problem = draw(seed, number)
 
-The same seed with the same number is the same problem on every machine: what is drawn is rounded to
-four digits and written as a case file, and that file is what is solved.
+The same seed with the same number is the same problem on every machine: the random numbers are rounded to
+four digits and written as a case file, which is then read and solved.
 """
 
 from dataclasses import dataclass
@@ -13,7 +13,7 @@ import numpy as np
 
 __all__ = ["FRICTION", "MOST_COATINGS", "POISSON", "RATIO", "THICKNESS", "THINNEST", "Draw", "draw"]
 
-# What a valid problem is drawn from.
+# Ranges of the problems.
 RATIO = (0.1, 10.0)  # E_i / E of the substrate, of every coating
 THICKNESS = (0.1, 5.0)  # h / a_h, of each coating or of all together
 THINNEST = 0.05  # h / a_h of a coating where THICKNESS is that of all together
@@ -21,7 +21,7 @@ POISSON = (0.0, 0.49)  # of every layer
 FRICTION = (0.0, 0.5)
 MOST_COATINGS = 3
 FRICTIONLESS = 1 / 3  # share of the problems with f = 0, the only ones with a symmetric stress
-# Size plays no part in what is elastic, linear: these only see to it that no unit is special.
+# Linear elasticity has no length scale: these ranges only exclude an effect of the units.
 RADIUS = (1e-4, 1e-1)  # m
 MODULUS = (1e9, 5e11)  # Pa, of the substrate
 FLATNESS = (3e-3, 3e-2)  # a_h / R
@@ -41,8 +41,8 @@ def draw(seed: int, number: int) -> Draw:
 
     Moduli, thicknesses, radius are uniform in their logarithm, Poisson's ratios as well as friction
     uniform; one to three coatings. In half of the problems THICKNESS is that of each coating, in the
-    other half that of the whole stack, which is then cut at random, so that thinner films occur, down to
-    THINNEST, from which on the accuracy of both methods is stated.
+    other half that of the whole stack, divided at random, so that thinner films occur, down to THINNEST, the
+    smallest for which the accuracy of both methods is stated.
     """
     random = np.random.default_rng([seed, number])
     coatings = int(random.integers(1, MOST_COATINGS + 1))

@@ -1,4 +1,4 @@
-"""What a file of a published case may say, key by key."""
+"""Schema of the TOML file of a published case."""
 
 from typing import Annotated, Literal
 
@@ -9,7 +9,7 @@ from verification.cases.toml import Strict, Text
 __all__ = ["ColumnEntry", "LayerEntry", "PositionEntry", "ProblemEntry", "PublishedFile", "TableEntry"]
 
 Positive = Annotated[float, Field(gt=0)]
-# Of incompressible layers the finite element method speaks by extrapolation only, so 1/2 is allowed here.
+# 1/2 is allowed: the finite element method extrapolates to the incompressible limit.
 Poisson = Annotated[float, Field(gt=-1, le=0.5)]
 Cells = Annotated[dict[str, str | float], Field(max_length=20)]
 
@@ -26,7 +26,7 @@ class LayerEntry(Strict):
 class ProblemEntry(Strict):
     """A uniform disc or a sphere on a layered solid, in the units of the source.
 
-    A sphere without a load is pressed deeper and deeper, to where the tables say.
+    A sphere without a load follows a loading curve, to the positions of the tables.
     """
 
     length_unit: Text
@@ -47,7 +47,7 @@ class ProblemEntry(Strict):
         if (disc, sphere) not in ((2, 0), (0, 2)) and not (disc == 0 and self.load is None and self.radius):
             raise ValueError(
                 "needs pressure and load_radius (a uniform disc), radius and load (a sphere), or radius "
-                "alone (a sphere pressed deeper and deeper)"
+                "alone (a loading curve)"
             )
         if self.load is None and self.friction and disc == 0:
             raise ValueError("friction belongs to a disc, or to a sphere under a load")
@@ -55,9 +55,9 @@ class ProblemEntry(Strict):
 
 
 class PositionEntry(Strict):
-    """Where values are: numbers or names of columns, in ``unit``; ``layer`` picks a side of an interface.
+    """Positions of values: numbers or names of columns, in ``unit``; ``layer`` picks a side of an interface.
 
-    contact_radius, approach : of a sphere pressed deeper and deeper, one of them in place of x, y, z.
+    contact_radius, approach : on a loading curve, one of them in place of x, y, z.
     """
 
     x: str | float = 0.0
@@ -70,13 +70,13 @@ class PositionEntry(Strict):
 
 
 class ColumnEntry(Strict):
-    """A column of a table: ``quantity`` = ``factor`` times what is printed, in ``unit``.
+    """A column of a table: ``quantity`` = ``factor`` times the printed number, in ``unit``.
 
-    uncertainty : reading uncertainty in that unit, or "range" of the rows; otherwise half of the last digit,
-    of so many ``significant`` ones, with ``program_error`` on top.
-    relative : reading uncertainty as a fraction of each value, instead.
-    not_counted : why the column is shown but held against nobody.
-    series : coefficients c1, c2, .. of a power series whose ratio to the exact answer is printed.
+    uncertainty : digitisation uncertainty in that unit, or "range" of the rows; otherwise half of the last
+    digit, or of the last of ``significant`` digits, plus ``program_error``.
+    relative : digitisation uncertainty as a fraction of each value, instead.
+    not_counted : reason why the column is shown but not compared.
+    series : coefficients c1, c2, .. of a power series whose ratio to the exact solution is published.
     """
 
     name: Text
@@ -93,7 +93,7 @@ class ColumnEntry(Strict):
 
 
 class MisprintEntry(Strict):
-    """Cells known to be wrong, ``why`` in a few words: shown, never counted."""
+    """Cells known to be wrong, with the reason ``why``: shown, never counted."""
 
     row: Cells
     column: Text
@@ -101,9 +101,9 @@ class MisprintEntry(Strict):
 
 
 class TableEntry(Strict):
-    """One CSV file, the rows of it that are meant, its columns.
+    """One CSV file with the rows selected and their columns.
 
-    flag : a column that is empty but for misprints.   label : a column that names rows.
+    flag : a column that is empty except in rows with misprints.   label : a column that names rows.
     """
 
     file: Annotated[str, Field(pattern=r"^[A-Za-z0-9_.-]+\.csv$")]
@@ -116,7 +116,7 @@ class TableEntry(Strict):
 
 
 class PublishedFile(Strict):
-    """A published case as its TOML file says it."""
+    """The TOML file of a published case."""
 
     title: Text
     source: Text

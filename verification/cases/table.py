@@ -1,12 +1,12 @@
-"""Printed tables as they stand in the files of ``published/``: notes, columns, numbers with their digits.
+"""Published tables in CSV files: notes, columns, numbers with their digits.
 
-A table is a CSV file whose first lines, marked #, are notes on its source. It is kept as printed: units,
-signs, and rows known to be misprints are dealt with by whoever reads it.
+The first lines, marked #, are notes on the source. Cells are kept as printed; ``columns`` converts units and
+signs and excludes misprints.
 """
 
 import csv
 import io
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import floor, isfinite, log10
 from pathlib import Path
 
@@ -16,7 +16,7 @@ FOLDER = Path(__file__).parent / "shipped" / "published"
 MAX_BYTES = 1_000_000
 
 INCH, PSI = 0.0254, 6894.757293168361
-# SI value of each unit a table may be printed in.
+# SI value of each unit of a table.
 UNITS = {
     "Pa": 1.0,
     "kPa": 1e3,
@@ -40,7 +40,7 @@ class PublishedError(ValueError):
 
 @dataclass(frozen=True)
 class PublishedTable:
-    """The cells of a table as text, row by row, each with the line of the file it stands on.
+    """The cells of a table as text, row by row, with their line numbers.
 
     raw : the whole file.
     """
@@ -56,16 +56,9 @@ class PublishedTable:
         """The rows in which every column named has the value given; at least one."""
         kept = [i for i, _ in enumerate(self.rows) if all(self._is(i, c, v) for c, v in condition.items())]
         if not kept:
-            said = ", ".join(f"{column} = {value}" for column, value in condition.items())
-            raise PublishedError(f"{self.path.name}: no row has {said}")
-        return PublishedTable(
-            self.path,
-            self.raw,
-            self.notes,
-            self.columns,
-            tuple(self.rows[i] for i in kept),
-            tuple(self.lines[i] for i in kept),
-        )
+            wanted = ", ".join(f"{column} = {value}" for column, value in condition.items())
+            raise PublishedError(f"{self.path.name}: no row has {wanted}")
+        return replace(self, rows=tuple(self.rows[i] for i in kept), lines=tuple(self.lines[i] for i in kept))
 
     def text(self, column: str) -> tuple[str, ...]:
         """The cells of a column as printed. Raises PublishedError where there is no such column."""
@@ -77,14 +70,14 @@ class PublishedTable:
         return tuple(row[number] for row in self.rows)
 
     def numbers(self, column: str) -> tuple[float, ...]:
-        """The cells of a column as numbers. Raises PublishedError at the first that is none."""
+        """The cells of a column as numbers. Raises PublishedError where one is not a finite number."""
         return tuple(self._number(i, column, cell) for i, cell in enumerate(self.text(column)))
 
     def half_digits(self, column: str, significant: int | None = None) -> tuple[float, ...]:
-        """Half a unit of the last digit printed: what rounding alone leaves unknown.
+        """Half a unit of the last digit printed, the uncertainty by rounding.
 
-        That digit is the one of the cell with most decimals, for printers drop zeros at the end; or the one
-        of so many ``significant`` digits in each cell.
+        The last digit is that of the cell with most decimals, since trailing zeros are often dropped; or the
+        last of ``significant`` digits in each cell.
         """
         values = self.numbers(column)
         if significant is None:
@@ -111,7 +104,7 @@ class PublishedTable:
 def read_table(path: Path) -> PublishedTable:
     """Read a CSV file: notes marked #, one line of column names, then rows of as many cells.
 
-    Raises PublishedError naming file and line where that is not what it holds.
+    Raises PublishedError naming file and line where it is not so.
     """
     try:
         if not path.is_file():
@@ -124,7 +117,7 @@ def read_table(path: Path) -> PublishedTable:
     except UnicodeDecodeError:
         raise PublishedError(f"{path.name}: not UTF-8 text; a table is a CSV file") from None
     if len(raw) > MAX_BYTES:
-        raise PublishedError(f"{path.name}: larger than {MAX_BYTES} bytes; a table is what fits on a page")
+        raise PublishedError(f"{path.name}: larger than {MAX_BYTES} bytes; split the table")
     notes, header, rows, lines = [], None, [], []
     for number, line in enumerate(text.splitlines(), start=1):
         if line.startswith("#") and header is None:
@@ -146,7 +139,7 @@ def read_table(path: Path) -> PublishedTable:
     if header is None or not rows:
         raise PublishedError(f"{path.name}: no {'columns' if header is None else 'rows'} in it")
     if len(set(header)) < len(header) or "" in header:
-        raise PublishedError(f"{path.name}: column names must be there and differ: {', '.join(header)}")
+        raise PublishedError(f"{path.name}: column names must be given and differ: {', '.join(header)}")
     return PublishedTable(path, text, "\n".join(notes), header, tuple(rows), tuple(lines))
 
 

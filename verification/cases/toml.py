@@ -1,4 +1,4 @@
-"""TOML files from users: bounded reading, schema checks, one-line error messages."""
+"""TOML files of users: bounded reading, checks by a schema, error messages in one line."""
 
 import tomllib
 from pathlib import Path
@@ -61,7 +61,7 @@ Text = Annotated[str, Field(min_length=1, max_length=500)]
 
 
 def read_bounded(path: Path, kind: str, holds: str) -> bytes:
-    """The content of a .toml file of a ``kind`` that ``holds`` little. Raises CaseError."""
+    """The content of a .toml file of a ``kind``; ``holds`` names its content. Raises CaseError."""
     # The name goes into file names, terminals and tables.
     if len(path.stem) > MAX_NAME or not path.stem.isprintable():
         raise CaseError(
@@ -81,7 +81,7 @@ def read_bounded(path: Path, kind: str, holds: str) -> bytes:
 
 
 def load_toml(raw: bytes) -> tuple[str, dict[str, Any]]:
-    """The text of a TOML file with its content. Raises ValueError, in one sentence, where it is none."""
+    """The text of a TOML file with its content. Raises ValueError where it is not TOML."""
     try:
         text = raw.decode("utf-8")
     except UnicodeDecodeError:
@@ -109,12 +109,12 @@ def read_toml(raw: bytes, path: Path, model: type[Checked]) -> tuple[str, Checke
 
 
 def first_error(error: ValidationError) -> str:
-    """The first thing wrong with a case file, with its key and what stands there, in one sentence."""
+    """The first error of a case file with its key and value, in one line."""
     first = error.errors(include_url=False)[0]
     key = ".".join(_shortened(str(part)) for part in first["loc"]) or "top level"
     renamed = RENAMED.get(key, "")
     message = first["msg"].removeprefix("Value error, ")
-    said = {
+    text = {
         "missing": "is missing",
         "extra_forbidden": f"is now called {renamed}" if renamed else "is an unknown key",
         "finite_number": "must be a finite number",
@@ -123,9 +123,9 @@ def first_error(error: ValidationError) -> str:
         "string_type": "must be text",
     }.get(first["type"], message[0].lower() + message[1:])
     if first["type"] not in ("missing", "extra_forbidden") and not isinstance(first["input"], dict | list):
-        said += f", not {_shown(first['input'])}"
+        text += f", not {_shown(first['input'])}"
     more = error.error_count() - 1
-    return f"{key} {said}" + (f" (and {more} more)" if more else "")
+    return f"{key} {text}" + (f" (and {more} more)" if more else "")
 
 
 def _shown(value: object) -> str:

@@ -1,34 +1,37 @@
-"""coatcheck alarms: what the verdicts say of random problems in which nothing is wrong."""
+"""coatcheck alarms: false alarms among the verdicts on random problems."""
 
 import datetime
-import json
-import sys
 from dataclasses import asdict
 from pathlib import Path
-from typing import Annotated
 
-from cyclopts import Parameter
-from rich.console import Console
 from rich.markup import escape
-from rich.table import Table
 
 from verification.cases.contact import Case, parse_case
 from verification.cases.random_problems import draw
 from verification.commands.common import (
     RECORDS,
     STYLE,
+    AsJson,
+    Flag,
+    Jobs,
+    Output,
+    Quiet,
     RecordsFolder,
+    Resume,
     exit_code,
+    named_table,
     no_gmsh,
     one_line,
     print_error,
+    print_json,
+    print_out,
     refuse_installed,
     run_info,
 )
 from verification.commands.solving import kept_results, solve
 from verification.credibility.alarms import AlarmRecord, counted, write_record
 from verification.running.pool import cores
-from verification.running.result import plain
+from verification.running.records import plain
 from verification.running.store import StoreError, locked, write_atomically
 from verification.running.tasks import case_task
 
@@ -41,14 +44,14 @@ def alarms(
     *,
     count: int = 24,
     seed: int = 1,
-    output: Annotated[Path, Parameter(name=["--output", "-o"])] = Path("reports/alarms"),
-    record: Annotated[bool, Parameter(negative="")] = False,
+    output: Output = Path("reports/alarms"),
+    record: Flag = False,
     records: RecordsFolder = RECORDS,
-    jobs: Annotated[int | None, Parameter(name=["--jobs", "-j"])] = None,
+    jobs: Jobs = None,
     time_limit: float = 600.0,
-    resume: Annotated[bool, Parameter(negative="")] = False,
-    quiet: Annotated[bool, Parameter(name=["--quiet", "-q"], negative="")] = False,
-    as_json: Annotated[bool, Parameter(name="--json", negative="")] = False,
+    resume: Resume = False,
+    quiet: Quiet = False,
+    as_json: AsJson = False,
 ) -> int:
     """Solve clean random problems; count the verdicts that are not AGREES, each a false alarm.
 
@@ -66,23 +69,13 @@ def alarms(
     count
         Number of problems.
     seed
-        Where the random numbers start.
+        Seed of the random numbers.
     output
         Directory of the report, of the results, of the case files.
     record
-        Store what was found as RECORDS/alarms.json, which the credibility page of every report reads.
-    records
-        Directory of the records; in a source checkout that of the package unless given.
-    jobs
-        Problems solved side by side; all cores unless given.
+        Store the record as RECORDS/alarms.json, for the credibility page of every report.
     time_limit
         Seconds one problem may take before it is stopped and counted as alarms.
-    resume
-        Keep the whole results already in the output directory.
-    quiet
-        Print nothing but errors.
-    as_json
-        Print the record as JSON.
     """
     jobs = cores() if jobs is None else jobs
     if jobs < 1 or not time_limit > 0 or count < 1 or seed < 0:
@@ -95,7 +88,8 @@ def alarms(
     if (code := no_gmsh()) is not None:
         return code
 
-    from verification.report import write_report
+    from verification.report.material import Material
+    from verification.report.write import write_report
 
     started = datetime.datetime.now(datetime.UTC)
     try:
@@ -106,13 +100,13 @@ def alarms(
             solved = {r.name: r for r in solve(tasks, jobs, time_limit, quiet or as_json)}
             results = [kept.get(case.name) or solved[case.name] for case in cases]
             info = run_info(f"coatcheck alarms --count {count} --seed {seed}", started, jobs)
-            page = write_report(results, output, info)
+            page = write_report(Material(results, info), output)
             found = counted(results, seed, info)
             stored = write_record(records, found) if record else None
     except (StoreError, OSError) as error:
         return print_error(str(error))
     if as_json:
-        sys.stdout.write(json.dumps(plain(asdict(found)), indent=2) + "\n")
+        print_json(plain(asdict(found)))
     elif not quiet:
         _print(found, page, stored)
     return exit_code(results)
@@ -126,21 +120,18 @@ def _case(seed: int, number: int, output: Path) -> Case:
 
 
 def _print(found: AlarmRecord, page: Path, stored: Path | None) -> None:
-    console = Console()
     if found.alarms:
-        table = Table("problem", "quantity", "line", "between", "verdict", box=None, header_style="bold")
+        table = named_table("problem", "quantity", "line", "between", "verdict")
         for alarm in found.alarms[:MOST_SHOWN]:
             verdict = f"[{STYLE[alarm.outcome]}]{alarm.outcome}[/] {escape(one_line(alarm.reason))}"
             table.add_row(alarm.case, alarm.quantity, alarm.line, ", ".join(alarm.between), verdict)
-        console.print(table)
-        more = len(found.alarms) - MOST_SHOWN
-        if more > 0:
-            console.print(f"... with {more} more in the report", highlight=False)
-    console.print(
-        f"{len(found.alarms)} false alarms in {found.comparisons} comparisons and {found.laws} laws of "
-        f"{found.problems} clean problems, seed {found.seed}; {found.agreeing} problems agree throughout",
-        highlight=False,
+        print_out(table)
+        if (more := len(found.alarms) - MOST_SHOWN) > 0:
+            print_out(f"... with {more} more in the report")
+    print_out(
+        f"{len(found.alarms)} false alarms in {found.comparisons} comparisons and {found.invariants} "
+        f"invariants of {found.problems} clean problems, seed {found.seed}; "
+        f"{found.agreeing} problems agree throughout",
+        escape(f"{found.seconds:.0f} s; report: {page}"),
+        *([escape(f"recorded: {stored}")] if stored is not None else []),
     )
-    console.print(escape(f"{found.seconds:.0f} s; report: {page}"), highlight=False)
-    if stored is not None:
-        console.print(escape(f"recorded: {stored}"), highlight=False)

@@ -1,19 +1,23 @@
-"""coatcheck baseline: the stored numbers that every run is held against."""
+"""coatcheck baseline: the stored numbers that every run is compared with."""
 
 import datetime
-import json
-import sys
 from dataclasses import asdict
 from pathlib import Path
-from typing import Annotated
 
-from cyclopts import Parameter
-from rich.console import Console
 from rich.markup import escape
-from rich.table import Table
 
 from verification.cases.contact import shipped_cases
-from verification.commands.common import BASELINE, BaselineFolder, print_error, refuse_installed
+from verification.commands.common import (
+    BASELINE,
+    AsJson,
+    BaselineFolder,
+    Quiet,
+    named_table,
+    print_error,
+    print_json,
+    print_out,
+    refuse_installed,
+)
 from verification.judging.verdict import Outcome
 from verification.regression.baseline import Baseline, Update, updated
 from verification.regression.record import path_in, read_baseline, write_baseline
@@ -28,9 +32,9 @@ def update(
     *,
     why: str = "",
     baseline: BaselineFolder = BASELINE,
-    quiet: Annotated[bool, Parameter(name=["--quiet", "-q"], negative="")] = False,
+    quiet: Quiet = False,
 ) -> int:
-    """Make a stored default run the baseline; nothing else ever changes it.
+    """Make a stored default run the baseline; no other command changes it.
 
     The run must be whole, hold every shipped case, and agree throughout. Example:
 
@@ -41,11 +45,7 @@ def update(
     run
         Directory of the run, or its report.json.
     why
-        The reason, kept with date, commit and versions in the baseline's history. There is no update without.
-    baseline
-        Directory of the baseline; in a source checkout that of the package unless given.
-    quiet
-        Print nothing but errors.
+        The reason, stored with date, commit and versions in the baseline's history; required.
     """
     if not why.strip():
         return print_error('--why is empty; give the reason: coatcheck baseline update --why "..."')
@@ -63,33 +63,19 @@ def update(
     except StoreError as error:
         return print_error(str(error))
     if not quiet:
-        console = Console()
         changed = made.last.changes
         size = path.stat().st_size / 1e3
-        said = f"{len(made.cases)} cases, {made.last.numbers} numbers, {size:.0f} kB: {path}"
-        console.print(escape(said), highlight=False)
+        print_out(escape(f"{len(made.cases)} cases, {made.last.numbers} numbers, {size:.0f} kB: {path}"))
         for name, (count, change) in changed.items():
             by = "" if change is None else f", by up to {change:.1e} of their scale"
-            console.print(escape(f"{name}: {count} numbers are not what they were{by}"), highlight=False)
+            print_out(escape(f"{name}: {count} numbers changed{by}"))
         if not changed and len(made.history) > 1:
-            console.print("no number changed", highlight=False)
+            print_out("no number changed")
     return 0
 
 
-def show(
-    *,
-    baseline: BaselineFolder = BASELINE,
-    as_json: Annotated[bool, Parameter(name="--json", negative="")] = False,
-) -> int:
-    """Show what the baseline holds and every update it has seen, with its reason.
-
-    Parameters
-    ----------
-    baseline
-        Directory of the baseline; that of the package unless given.
-    as_json
-        Print one JSON object instead of tables.
-    """
+def show(*, baseline: BaselineFolder = BASELINE, as_json: AsJson = False) -> int:
+    """Show the numbers in the baseline, case by case, with every update and its reason."""
     try:
         stored = read_baseline(baseline)
     except StoreError as error:
@@ -99,19 +85,20 @@ def show(
             f'{path_in(baseline)}: there is no baseline; make one with: coatcheck baseline update --why "..."'
         )
     if as_json:
-        content = {
-            "path": str(path_in(baseline)),
-            "cases": {name: sum(n.count for n in found) for name, found in stored.cases.items()},
-            "history": [asdict(update) for update in stored.history],
-        }
-        sys.stdout.write(json.dumps(content, indent=2) + "\n")
-        return 0
-    _print(stored)
+        print_json(
+            {
+                "path": str(path_in(baseline)),
+                "cases": {name: sum(n.count for n in found) for name, found in stored.cases.items()},
+                "history": [asdict(update) for update in stored.history],
+            }
+        )
+    else:
+        _print(stored)
     return 0
 
 
 def _unfit(run: StoredRun) -> str | None:
-    """Why a run cannot be a baseline, in one sentence; None where it can."""
+    """The reason why a run cannot be a baseline; None where it can."""
     names = {result.name for result in run.results}
     lacking = [name for name in shipped_cases() if name not in names]
     if lacking:
@@ -130,17 +117,15 @@ def _now() -> str:
 
 
 def _print(stored: Baseline) -> None:
-    console = Console()
     last = stored.last
-    numbers = Table("case", "profiles", "numbers", box=None, header_style="bold")
+    numbers = named_table("case", "profiles", "numbers")
     for name, found in stored.cases.items():
         numbers.add_row(escape(name), str(len(found)), str(sum(n.count for n in found)))
-    history = Table("when", "commit", "changed", "largest", "why", box=None, header_style="bold")
+    history = named_table("when", "commit", "changed", "largest", "why")
     for item in stored.history:
         history.add_row(item.when, item.commit or "-", *_changed(item), escape(item.why))
-    console.print(numbers, "", history, "")
-    console.print(f"{last.numbers} numbers, on {last.machine}", highlight=False)
-    console.print(", ".join(f"{name} {version}" for name, version in last.versions.items()), highlight=False)
+    print_out(numbers, "", history, "", escape(f"{last.numbers} numbers, on {last.machine}"))
+    print_out(escape(", ".join(f"{name} {version}" for name, version in last.versions.items())))
 
 
 def _changed(item: Update) -> tuple[str, str]:

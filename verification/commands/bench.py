@@ -1,7 +1,5 @@
-"""coatcheck bench: the semi-analytical contact timed beside its peers."""
+"""coatcheck bench: the semi-analytical contact timed beside other codes."""
 
-import json
-import sys
 from dataclasses import asdict
 from typing import Annotated
 
@@ -9,7 +7,7 @@ from cyclopts import Parameter
 from rich.console import Console
 from rich.table import Table
 
-from verification.commands.common import EXIT, print_error
+from verification.commands.common import EXIT, AsJson, Flag, print_error, print_json
 from verification.judging.verdict import Outcome
 
 __all__ = ["bench"]
@@ -26,13 +24,13 @@ def bench(
     ),
     threads: Annotated[tuple[int, ...], Parameter(consume_multiple=True, negative="")] = (1, 2),
     repeats: int = 5,
-    coated: Annotated[bool, Parameter(negative="")] = False,
-    plane: Annotated[bool, Parameter(negative="")] = False,
-    as_json: Annotated[bool, Parameter(name="--json", negative="")] = False,
+    coated: Flag = False,
+    plane: Flag = False,
+    as_json: AsJson = False,
 ) -> int:
-    """Time the semi-analytical contact beside tamaas and aspher, all held to one judge; ratios first.
+    """Time the semi-analytical contact beside tamaas and aspher, one test of residuals for all; ratios first.
 
-    tamaas comes with the extra "bench"; aspher is taken if it is installed (pip install aspher, which builds
+    tamaas comes with the extra "bench"; aspher is used if it is installed (pip install aspher, which builds
     it with CMake, a C++17 compiler and Eigen). The full set takes half an hour:
     coatcheck bench --sizes 128 256 512 1024 2048 --coated --plane
 
@@ -48,8 +46,6 @@ def bench(
         Also count the iterations of coated solids on each of the grids.
     plane
         Also time the six stresses of a plane beside six inverse real FFTs.
-    as_json
-        Print everything measured as JSON.
     """
     if min(sizes) < 16 or max(sizes) > 4096 or min(threads) < 1 or repeats < 1:
         return print_error("--sizes from 16 to 4096, --threads and --repeats from 1")
@@ -72,7 +68,7 @@ def bench(
             "coated": [asdict(r) for r in layered],
             "planes": [asdict(r) for r in planes],
         }
-        sys.stdout.write(json.dumps(content, indent=2) + "\n")
+        print_json(content)
         return 0
     figures = Table("figure", "value", box=None, header_style="bold")
     for name, value in found:

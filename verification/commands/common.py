@@ -1,31 +1,25 @@
-"""What the commands share: exit codes, colours of outcomes, one-sentence complaints, a bar with time left."""
+"""What the commands share: exit codes, colours of outcomes, messages of one line.
+
+The command line imports this for each command, so nothing here needs numpy or rich.
+"""
 
 import datetime
+import json
 import sys
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
+from difflib import get_close_matches
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 from cyclopts import Parameter
-from rich.console import Console
-from rich.progress import (
-    BarColumn,
-    MofNCompleteColumn,
-    Progress,
-    ProgressColumn,
-    TextColumn,
-    TimeElapsedColumn,
-    TimeRemainingColumn,
-)
-from rich.progress import Task as RichTask
-from rich.table import Column
-from rich.text import Text
 
 import verification
-from verification.judging.verdict import Outcome
-from verification.running.pool import cores
-from verification.running.provenance import commit, machine, missing_libraries, versions
-from verification.running.result import CaseResult, RunInfo
+from verification.judging.outcome import Outcome
+
+if TYPE_CHECKING:
+    from rich.table import Table
+
+    from verification.running.result import CaseResult, RunInfo
 
 __all__ = [
     "BAD_INPUT",
@@ -35,24 +29,32 @@ __all__ = [
     "RECORDS",
     "STOPPED",
     "STYLE",
+    "AsJson",
     "BaselineFolder",
+    "Flag",
+    "Jobs",
+    "Output",
+    "Quiet",
     "RecordsFolder",
+    "Resume",
+    "did_you_mean",
     "exit_code",
+    "named_table",
+    "nearest_run",
     "no_gmsh",
     "one_line",
     "print_error",
-    "progress_bar",
+    "print_json",
+    "print_out",
     "refuse_installed",
     "run_info",
     "within_package",
 ]
 
-NARROW = 60  # columns
+UNBROKEN = 100_000  # columns of a file or pipe
 PACKAGE = Path(verification.__file__).parent
 BASELINE = PACKAGE / "regression" / "shipped"
 RECORDS = PACKAGE / "credibility" / "shipped"
-BaselineFolder = Annotated[Path, Parameter(name=["--baseline", "-b"], show_default=False)]
-RecordsFolder = Annotated[Path, Parameter(show_default=False)]
 BAD_INPUT = 2
 STOPPED = 130  # as a shell has it of SIGINT
 DRIFTED = 5  # all agree, but not with the digits of the baseline
@@ -64,8 +66,31 @@ STYLE = {
     Outcome.INCONCLUSIVE: "yellow",
 }
 
+Flag = Annotated[bool, Parameter(negative="")]
+Output = Annotated[Path, Parameter(name=["--output", "-o"])]
+BaselineFolder = Annotated[
+    Path,
+    Parameter(
+        name=["--baseline", "-b"],
+        help="Directory of the baseline; that of the package unless given.",
+        show_default=False,
+    ),
+]
+RecordsFolder = Annotated[
+    Path,
+    Parameter(
+        help="Directory of the credibility records; that of the package unless given.", show_default=False
+    ),
+]
+Jobs = Annotated[
+    int | None, Parameter(name=["--jobs", "-j"], help="Processes side by side; all cores unless given.")
+]
+Resume = Annotated[bool, Parameter(negative="", help="Keep the valid results in the output directory.")]
+Quiet = Annotated[bool, Parameter(name=["--quiet", "-q"], negative="", help="Print nothing but errors.")]
+AsJson = Annotated[bool, Parameter(name="--json", negative="", help="Print JSON instead of text.")]
 
-def exit_code(results: Sequence[CaseResult]) -> int:
+
+def exit_code(results: Sequence["CaseResult"]) -> int:
     """The code of the worst outcome: disagreement before a missing result before inconclusive."""
     found = {result.outcome for result in results}
     for outcome in (Outcome.DISAGREES, Outcome.NO_RESULT, Outcome.INCONCLUSIVE):
@@ -74,20 +99,64 @@ def exit_code(results: Sequence[CaseResult]) -> int:
     return EXIT[Outcome.AGREES] if found else EXIT[Outcome.NO_RESULT]
 
 
-def print_error(sentence: str) -> int:
-    """Say on standard error, in one line, what is wrong; the exit code of bad input."""
-    sys.stderr.write(f"coatcheck: {one_line(sentence)}\n")
+def print_error(message: str) -> int:
+    """Print ``message`` on standard error, in one line. Returns the exit code of bad input."""
+    sys.stderr.write(f"coatcheck: {one_line(message)}\n")
     return BAD_INPUT
 
 
-def one_line(sentence: str, most: int = 1000) -> str:
-    """``sentence`` as a terminal may show it: no control character of a stranger's file gets through."""
-    shown = "".join(c if c.isprintable() else repr(c)[1:-1] for c in sentence)
+def print_json(content: Any) -> None:
+    """Print ``content`` on standard output as JSON."""
+    sys.stdout.write(json.dumps(content, indent=2) + "\n")
+
+
+def did_you_mean(name: str, known: Iterable[str]) -> str:
+    """ "; did you mean ...?" with the names nearest to a mistyped ``name``; "" where none is near."""
+    near = get_close_matches(name.casefold(), list(known), n=2)
+    return f"; did you mean {' or '.join(near)}?" if near else ""
+
+
+def nearest_run(path: Path) -> str:
+    """The run directories that a path of no directory may have meant, as ``did_you_mean``."""
+    if path.exists() or not path.parent.is_dir():
+        return ""
+    runs = {folder.name: str(folder) for folder in path.parent.iterdir() if (folder / "report.json").exists()}
+    return did_you_mean(path.name, runs)
+
+
+def named_table(*heads: str) -> "Table":
+    """A table for ``print_out``; its first column holds names that users type."""
+    from rich.table import Column, Table
+
+    return Table(Column(heads[0], overflow="fold"), *heads[1:], box=None, header_style="bold")
+
+
+def print_out(*items: "Table | str") -> None:
+    """Print tables with lines of markup. Names in a first column are never cut, in a file or pipe no line."""
+    from rich.console import Console
+    from rich.table import Table
+
+    console = Console(highlight=False)
+    if not console.is_terminal:
+        console = Console(highlight=False, width=UNBROKEN)
+    for item in items:
+        if isinstance(item, Table):
+            # The other columns give way first, unless the names fill half of the terminal.
+            longest = max((len(str(cell)) for cell in item.columns[0].cells), default=0)
+            item.columns[0].no_wrap = longest <= console.width / 2
+        console.print(item)
+
+
+def one_line(message: str, most: int = 1000) -> str:
+    """``message`` in one line without control characters, which an untrusted file may hold."""
+    shown = "".join(c if c.isprintable() else repr(c)[1:-1] for c in message)
     return shown if len(shown) <= most else f"{shown[: most - 3]}..."
 
 
 def no_gmsh() -> int | None:
-    """The exit code where gmsh cannot be loaded here, having said what to install; None where it can."""
+    """None where gmsh can be loaded; else prints the packages to install and returns the exit code."""
+    from verification.running.provenance import missing_libraries
+
     if not (lacking := missing_libraries()):
         return None
     print_error(f"gmsh lacks system libraries here; install them with: apt-get install {' '.join(lacking)}")
@@ -96,6 +165,8 @@ def no_gmsh() -> int | None:
 
 def refuse_installed(folder: Path, option: str) -> int | None:
     """The exit code where ``folder`` is the package's own and not of a source checkout, after a message."""
+    from verification.running.provenance import commit
+
     if folder not in (BASELINE, RECORDS) or commit() is not None:
         return None
     return print_error(f"this coatcheck is installed, not a source checkout; name a directory with {option}")
@@ -106,8 +177,12 @@ def within_package(folder: Path) -> str:
     return str(folder.relative_to(PACKAGE.parent) if folder.is_relative_to(PACKAGE) else folder)
 
 
-def run_info(command: str, started: datetime.datetime, jobs: int) -> RunInfo:
-    """What a report says of the run that ends now."""
+def run_info(command: str, started: datetime.datetime, jobs: int) -> "RunInfo":
+    """Command, time, commit, machine and versions of the run that ends now."""
+    from verification.running.pool import cores
+    from verification.running.provenance import commit, machine, versions
+    from verification.running.result import RunInfo
+
     return RunInfo(
         command=command,
         started=started.isoformat(timespec="seconds"),
@@ -116,31 +191,4 @@ def run_info(command: str, started: datetime.datetime, jobs: int) -> RunInfo:
         commit=commit(),
         machine=f"{machine()}, {cores()} cores",
         versions=versions(),
-    )
-
-
-class _Description(ProgressColumn):
-    """What is at work, on one line."""
-
-    def render(self, task: RichTask) -> Text:
-        return Text(task.description, no_wrap=True, overflow="ellipsis")
-
-
-def progress_bar(console: Console, *more: ProgressColumn, silent: bool = False) -> Progress:
-    """A bar that counts, with time gone and left; nothing at all where ``console`` is not a terminal.
-
-    more : columns behind the count.
-    """
-    return Progress(
-        # Words and bar give way where the terminal is narrow; counts and times stay whole.
-        _Description(table_column=Column(no_wrap=False)),
-        *([BarColumn(table_column=Column(no_wrap=False))] if console.width >= NARROW else []),
-        MofNCompleteColumn(),
-        *more,
-        TimeElapsedColumn(),
-        TextColumn("left"),
-        TimeRemainingColumn(),
-        console=console,
-        transient=True,
-        disable=silent or not console.is_terminal,
     )

@@ -1,21 +1,28 @@
 """coatcheck compare: two runs side by side."""
 
-import json
-import sys
 from dataclasses import asdict
 from pathlib import Path
-from typing import Annotated
 
-from cyclopts import Parameter
-from rich.console import Console
 from rich.markup import escape
-from rich.table import Table
 
-from verification.commands.common import DRIFTED, EXIT, STYLE, one_line, print_error
+from verification.commands.common import (
+    DRIFTED,
+    EXIT,
+    STYLE,
+    AsJson,
+    Output,
+    Quiet,
+    named_table,
+    nearest_run,
+    one_line,
+    print_error,
+    print_json,
+    print_out,
+)
 from verification.judging.verdict import Outcome
 from verification.regression.comparison import RunComparison, compare_runs
 from verification.regression.drift import State
-from verification.running.result import plain
+from verification.running.records import plain
 from verification.running.store import StoreError, write_atomically
 from verification.running.stored import read_run
 
@@ -28,71 +35,63 @@ def compare(
     first: Path,
     second: Path,
     *,
-    output: Annotated[Path | None, Parameter(name=["--output", "-o"])] = None,
-    quiet: Annotated[bool, Parameter(name=["--quiet", "-q"], negative="")] = False,
-    as_json: Annotated[bool, Parameter(name="--json", negative="")] = False,
+    output: Output | None = None,
+    quiet: Quiet = False,
+    as_json: AsJson = False,
 ) -> int:
     """Show two runs side by side: verdicts that changed, numbers that drifted, versions, times. Example:
 
         coatcheck compare reports reports/mine --output compare.html
 
-    Exit codes: 0 nothing changed, 5 numbers differ, 1 a comparison that agreed does so no more, 2 bad input.
+    Exit codes: 0 nothing changed, 5 numbers differ, 1 a comparison no longer agrees, 2 bad input.
 
     Parameters
     ----------
     first
         Directory of a run, or its report.json.
     second
-        The run that is held against it.
+        The run that is compared with it.
     output
-        Also write all of it to this HTML file.
-    quiet
-        Print nothing but errors.
-    as_json
-        Print everything as JSON.
+        Also write the comparison to this HTML file.
     """
     try:
         found = compare_runs(read_run(first), read_run(second))
         if output is not None:
-            from verification.report.sections.comparison import comparison_page
+            from verification.report.comparison import comparison_page
 
             write_atomically(output, comparison_page(found).encode("utf-8", errors="replace"))
     except StoreError as error:
-        return print_error(str(error))
+        return print_error(f"{error}{nearest_run(first) or nearest_run(second)}")
     if as_json:
-        content = {**plain(asdict(found)), "drifted": found.drifted, "worse": found.worse}
-        sys.stdout.write(json.dumps(content, indent=2) + "\n")
+        print_json({**plain(asdict(found)), "drifted": found.drifted, "worse": found.worse})
     elif not quiet:
         _print(found)
         if output is not None:
-            Console().print(escape(f"page: {output}"), highlight=False)
+            print_out(escape(f"page: {output}"))
     return EXIT[Outcome.DISAGREES] if found.worse else DRIFTED if found.drifted else EXIT[Outcome.AGREES]
 
 
 def _print(found: RunComparison) -> None:
-    console = Console()
-    table = Table(
-        "case", "state", *State, "largest change", "first s", "second s", box=None, header_style="bold"
-    )
+    states = [state for state in State if any(case.count(state) for case in found.cases)]
+    table = named_table("case", "state", *states, "largest change", "first s", "second s")
     times = {name: (then, now) for name, then, now in found.seconds}
     for case in found.cases:
         colour = "green" if case.state is State.SAME else "yellow"
         seconds = ["-" if s is None else f"{s:.1f}" for s in times.get(case.name, (None, None))]
         largest = "-" if case.change is None else f"{case.change:.1e}"
-        counts = [str(case.count(state) or ".") for state in State]
+        counts = [str(case.count(state) or ".") for state in states]
         table.add_row(escape(case.name), f"[{colour}]{case.state}[/]", *counts, largest, *seconds)
-    console.print(table)
+    print_out(table)
     for change in sorted(found.verdicts, key=lambda c: not c.worse)[:MOST_SHOWN]:
-        said = " to ".join(
+        outcomes = " to ".join(
             "no claim" if o is None else f"[{STYLE[o]}]{o}[/]" for o in (change.before, change.after)
         )
         what = f"{change.case}, {change.quantity} on {change.line}, {' against '.join(change.between)}"
-        console.print(f"{escape(what)}: {said}; {escape(one_line(change.reason))}", highlight=False)
-    more = len(found.verdicts) - MOST_SHOWN
-    if more > 0:
-        console.print(f"... with {more} more, which --output or --json shows", highlight=False)
+        print_out(f"{escape(what)}: {outcomes}; {escape(one_line(change.reason))}")
+    if (more := len(found.verdicts) - MOST_SHOWN) > 0:
+        print_out(f"... with {more} more, which --output or --json shows")
     for name, then, now in found.versions:
-        console.print(escape(f"{name}: {one_line(then)} to {one_line(now)}"), highlight=False)
-    from verification.report.sections.comparison import comparison_sentence
+        print_out(escape(f"{name}: {one_line(then)} to {one_line(now)}"))
+    from verification.report.comparison import comparison_sentence
 
-    console.print(comparison_sentence(found), highlight=False)
+    print_out(comparison_sentence(found))

@@ -1,47 +1,32 @@
 """coatcheck list: the shipped cases with their sources."""
 
-import json
-import sys
-from typing import Annotated
-
-from cyclopts import Parameter
-from rich.console import Console
-from rich.table import Table
+from rich.markup import escape
 
 from verification.cases.contact import Case, read_case, shipped_cases
 from verification.cases.published import PublishedCase, published_cases, read_published
+from verification.commands.common import AsJson, named_table, print_json, print_out
 
 __all__ = ["list_cases"]
 
 
-def list_cases(*, as_json: Annotated[bool, Parameter(name="--json", negative="")] = False) -> int:
-    """List the shipped cases with title and source, then the published results with their year.
-
-    Parameters
-    ----------
-    as_json
-        Print a JSON array instead of tables.
-    """
+def list_cases(*, as_json: AsJson = False) -> int:
+    """List the shipped cases with title and source, then the published results with their year."""
     cases = [read_case(path) for path in shipped_cases().values()]
     published = [read_published(path) for path in published_cases().values()]
     if as_json:
+        keys = ("year", "primary_read")
         rows = [_listed(case) for case in cases]
-        rows += [
-            _listed(p) | {"year": p.citation["year"], "primary_read": p.citation["primary_read"]}
-            for p in published
-        ]
-        sys.stdout.write(json.dumps(rows, indent=2) + "\n")
+        print_json(rows + [_listed(p) | {key: p.citation[key] for key in keys} for p in published])
         return 0
-    table = Table("case", "title", "claims", "source", box=None, header_style="bold")
+    table = named_table("case", "title", "claims", "source")
     for case in cases:
-        table.add_row(case.name, case.title, str(len(case.claims)), case.source)
-    printed = Table("published", "title", "values", "year", "source", box=None, header_style="bold")
+        table.add_row(case.name, escape(case.title), str(len(case.claims)), escape(case.source))
+    results = named_table("published", "title", "values", "year", "source")
     for result in published:
         values = sum(int(item.counted.sum()) for item in result.columns)
-        printed.add_row(result.name, result.title, str(values), str(result.citation["year"]), result.source)
-    Console().print(table)
-    Console().print()
-    Console().print(printed)
+        cells = (result.title, str(values), str(result.citation["year"]), result.source)
+        results.add_row(result.name, *map(escape, cells))
+    print_out(table, "", results)
     return 0
 
 

@@ -1,15 +1,14 @@
 """coatcheck run: solve cases, judge every claim, write the report."""
 
 import datetime
-import json
 import os
 import shlex
-import sys
 import time
 import unicodedata
 from collections import Counter
 from collections.abc import Sequence
 from contextlib import suppress
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import Annotated
@@ -29,12 +28,20 @@ from verification.commands.common import (
     RECORDS,
     STOPPED,
     STYLE,
+    AsJson,
     BaselineFolder,
+    Flag,
+    Jobs,
+    Output,
+    Quiet,
     RecordsFolder,
+    Resume,
+    did_you_mean,
     exit_code,
     no_gmsh,
     one_line,
     print_error,
+    print_json,
     run_info,
     within_package,
 )
@@ -55,16 +62,16 @@ NARROW = 80  # columns
 
 def run(
     *cases: str,
-    output: Annotated[Path, Parameter(name=["--output", "-o"])] = Path("reports"),
-    jobs: Annotated[int | None, Parameter(name=["--jobs", "-j"])] = None,
+    output: Output = Path("reports"),
+    jobs: Jobs = None,
     time_limit: float = 600.0,
     baseline: BaselineFolder = BASELINE,
     records: RecordsFolder = RECORDS,
-    resume: Annotated[bool, Parameter(negative="")] = False,
-    fields: Annotated[bool, Parameter(negative="")] = False,
+    resume: Resume = False,
+    fields: Flag = False,
     verbose: Annotated[bool, Parameter(name=["--verbose", "-v"], negative="")] = False,
-    quiet: Annotated[bool, Parameter(name=["--quiet", "-q"], negative="")] = False,
-    as_json: Annotated[bool, Parameter(name="--json", negative="")] = False,
+    quiet: Quiet = False,
+    as_json: AsJson = False,
 ) -> int:
     """Solve cases by every method and reference, judge every claim, write the report.
 
@@ -83,25 +90,12 @@ def run(
         Names of shipped cases, see coatcheck list; paths of .toml files; "published" for all printed results.
     output
         Directory of the report: report.html, report.json, junit.xml and one file per case.
-    jobs
-        Cases solved side by side; all cores unless given. Each gets its share of the threads.
     time_limit
         Seconds one case may take before it is stopped and reported as having no result.
-    baseline
-        Directory of the baseline that every number is held against; that of the package unless given.
-    records
-        Directory of the records of coatcheck faults and coatcheck alarms, which the credibility page shows;
-        that of the package unless given.
-    resume
-        Keep the whole results already in the output directory that belong to the same case files.
     fields
         Also write the fields of each case, for ParaView and coatcheck view, into the folder fields there.
     verbose
         Say the seconds and iterations of every source as the cases finish.
-    quiet
-        Print nothing but errors.
-    as_json
-        Print one JSON object with the outcome of each case instead of a table.
     """
     jobs = cores() if jobs is None else jobs
     if jobs < 1 or not time_limit > 0:
@@ -115,7 +109,9 @@ def run(
 
     from verification.credibility import accuracy as accuracy_study
     from verification.credibility.accuracy import AccuracyStudy
-    from verification.report.assemble import write
+    from verification.report.material import Material, gather
+    from verification.report.write import write_report
+    from verification.running.fields import read_planes
     from verification.study import formulas as effective_study
     from verification.study.formulas import EffectiveStudy
 
@@ -142,13 +138,16 @@ def run(
             ordered = [kept.get(case.name) or results[case.name] for case in chosen]
             info = run_info(shlex.join(["coatcheck", "run", *cases]), started, jobs)
             beside = regression(ordered, known, within_package(baseline), info, whole=not cases)
-            page = write(ordered, output, info, study, beside, records, tests, formulas)
+            evidence = replace(
+                gather(records), accuracy=study, baseline=beside, self_tests=tests, formulas=formulas
+            )
+            page = write_report(Material(ordered, info, evidence, read_planes(output, ordered)), output)
     except StoreError as error:
         return print_error(str(error))
     except KeyboardInterrupt:
         return _stopped(chosen, output)
     if as_json:
-        sys.stdout.write(json.dumps(_summary(ordered, page, beside, tests), indent=2) + "\n")
+        print_json(_summary(ordered, page, beside, tests))
     elif not quiet:
         _print_table(ordered, page, time.perf_counter() - begin, beside)
     return _code(ordered, beside, tests)
@@ -176,7 +175,8 @@ def _choose(names: Sequence[str]) -> list[Case | PublishedCase]:
             path = Path(name)
             cases.append(read_published(path) if is_published(path) else read_case(path))
         else:
-            raise CaseError(f"{name}: neither a shipped case (see coatcheck list) nor a .toml file")
+            near = did_you_mean(name, [*shipped, *published, "published"])
+            raise CaseError(f"{name}: neither a shipped case (see coatcheck list) nor a .toml file{near}")
     # Names that a file system may take for one and the same.
     plain = Counter(unicodedata.normalize("NFC", case.name).casefold() for case in cases)
     twice = {c.name for c in cases if plain[unicodedata.normalize("NFC", c.name).casefold()] > 1}

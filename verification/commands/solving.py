@@ -6,10 +6,22 @@ from typing import TypeVar
 
 from rich.console import Console
 from rich.markup import escape
+from rich.progress import (
+    BarColumn,
+    MofNCompleteColumn,
+    Progress,
+    ProgressColumn,
+    TextColumn,
+    TimeElapsedColumn,
+    TimeRemainingColumn,
+)
+from rich.progress import Task as RichTask
+from rich.table import Column
+from rich.text import Text
 
 from verification.cases.contact import Case
 from verification.cases.published import PublishedCase
-from verification.commands.common import STYLE, one_line, print_error, progress_bar
+from verification.commands.common import STYLE, one_line, print_error
 from verification.credibility import accuracy as accuracy_study
 from verification.credibility.accuracy import AccuracyStudy
 from verification.running.pool import Task, run_tasks
@@ -17,9 +29,11 @@ from verification.running.result import CaseResult
 from verification.running.store import StoreError
 from verification.running.tasks import kept_result
 
-__all__ = ["kept_results", "kept_study", "solve"]
+__all__ = ["kept_results", "kept_study", "progress_bar", "solve"]
 
 T = TypeVar("T")
+
+NARROW = 60  # columns
 
 
 def kept_results(
@@ -89,3 +103,30 @@ def _sources(result: CaseResult) -> str:
                 text += f"  {source.diagnostics[name]} {name}"
         lines.append(text if source.failure is None else f"{text}  {one_line(source.failure)}")
     return "\n".join(lines)
+
+
+class _Description(ProgressColumn):
+    """What is at work, on one line."""
+
+    def render(self, task: RichTask) -> Text:
+        return Text(task.description, no_wrap=True, overflow="ellipsis")
+
+
+def progress_bar(console: Console, *more: ProgressColumn, silent: bool = False) -> Progress:
+    """A bar that counts, with time gone and left; nothing at all where ``console`` is not a terminal.
+
+    more : columns behind the count.
+    """
+    return Progress(
+        # Words and bar give way where the terminal is narrow; counts and times stay whole.
+        _Description(table_column=Column(no_wrap=False)),
+        *([BarColumn(table_column=Column(no_wrap=False))] if console.width >= NARROW else []),
+        MofNCompleteColumn(),
+        *more,
+        TimeElapsedColumn(),
+        TextColumn("left"),
+        TimeRemainingColumn(),
+        console=console,
+        transient=True,
+        disable=silent or not console.is_terminal,
+    )

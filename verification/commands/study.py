@@ -1,6 +1,5 @@
 """coatcheck study: parameter studies on Dask."""
 
-import json
 import sys
 import time
 from collections.abc import Callable, Iterator
@@ -8,15 +7,27 @@ from contextlib import contextmanager
 from dataclasses import asdict, replace
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING
 
-from cyclopts import App, Parameter
 from rich.console import Console
 from rich.progress import ProgressColumn, Task, TaskID, TextColumn
 from rich.text import Text
 
 from verification.cases.toml import CaseError
-from verification.commands.common import EXIT, STOPPED, no_gmsh, print_error, progress_bar
+from verification.commands.common import (
+    EXIT,
+    STOPPED,
+    AsJson,
+    Jobs,
+    Output,
+    Quiet,
+    did_you_mean,
+    no_gmsh,
+    print_error,
+    print_json,
+    print_out,
+)
+from verification.commands.solving import progress_bar
 from verification.judging.verdict import Outcome
 from verification.running.pool import cores
 from verification.running.provenance import commit, machine
@@ -26,29 +37,24 @@ from verification.study.plan import Study, read_study_file, shipped_studies
 if TYPE_CHECKING:
     from verification.study.engine import Outcome as StudyOutcome
 
-__all__ = ["study", "thickness"]
-
-study = App(
-    name="study", help="Sweep a parameter with both methods behind every number.", help_format="plaintext"
-)
+__all__ = ["thickness"]
 
 
-@study.command
 def thickness(
     plan: str = "default",
     *,
-    output: Annotated[Path, Parameter(name=["--output", "-o"])] = Path("reports/study"),
-    jobs: Annotated[int | None, Parameter(name=["--jobs", "-j"])] = None,
+    output: Output = Path("reports/study"),
+    jobs: Jobs = None,
     scheduler: str | None = None,
     limit: int | None = None,
     cross_check: bool = True,
     figures: bool = True,
-    quiet: Annotated[bool, Parameter(name=["--quiet", "-q"], negative="")] = False,
-    as_json: Annotated[bool, Parameter(name="--json", negative="")] = False,
+    quiet: Quiet = False,
+    as_json: AsJson = False,
 ) -> int:
     """Which thickness? Stresses of a coating against thickness, stiffness and friction, cross-checked.
 
-    A study goes on where it was stopped: whatever is solved is never solved again. Examples:
+    A stopped study resumes where it was stopped; no point is solved twice. Examples:
 
         coatcheck study thickness
         coatcheck study thickness my_study.toml --output reports/mine
@@ -61,8 +67,6 @@ def thickness(
         Name of a shipped study, or the path of a .toml study file.
     output
         Directory of the table, PLAN.parquet, and of the cache.
-    jobs
-        Processes of the local cluster; all cores unless given.
     scheduler
         Address of a running Dask scheduler, in place of a local cluster.
     limit
@@ -71,10 +75,6 @@ def thickness(
         Solve every k-th point by finite elements and by the exact reference too.
     figures
         Draw the table: PLAN.html, and figures/PLAN for print.
-    quiet
-        Print nothing but errors.
-    as_json
-        Print one JSON object with what came of the study instead of a sentence.
     """
     if (jobs is not None and jobs < 1) or (limit is not None and limit < 1):
         return print_error(f"--jobs = {jobs}, --limit = {limit}; both must be positive")
@@ -99,24 +99,22 @@ def thickness(
         return print_error(str(error))
     except KeyboardInterrupt:
         sys.stderr.write(
-            f"\ncoatcheck: stopped; what was solved is in {table_path(output, chosen)}, "
-            "the same command goes on from there\n"
+            f"\ncoatcheck: stopped; solved points are in {table_path(output, chosen)}, "
+            "the same command resumes from there\n"
         )
         return STOPPED
-    for sentence in came.damaged:
-        print_error(f"{sentence.split(';')[0]}; solved again")
+    for message in came.damaged:
+        print_error(f"{message.split(';')[0]}; solved again")
     if as_json:
         content = asdict(came) | {"table": str(came.table), "lost": len(came.lost)}
         content["page"] = None if page is None else str(page)
-        sys.stdout.write(json.dumps(content, indent=2) + "\n")
+        print_json(content)
     elif not quiet:
         seconds = time.perf_counter() - begin
-        Console().print(
+        print_out(
             f"{came.points} points in {seconds:.0f} s: {came.done} solves done, {came.kept} found in the "
             f"cache, {came.failed} of {came.rows} rows failed; table: {came.table}"
-            + ("" if page is None else f"; page: {page}"),
-            highlight=False,
-            soft_wrap=True,
+            + ("" if page is None else f"; page: {page}")
         )
     return EXIT[Outcome.NO_RESULT] if came.failed else EXIT[Outcome.AGREES]
 
@@ -139,7 +137,8 @@ def _choose(plan: str) -> Study:
         return read_study_file(shipped[plan])
     if plan.endswith(".toml") or "/" in plan or Path(plan).exists():
         return read_study_file(Path(plan))
-    raise CaseError(f"{plan}: neither a shipped study ({', '.join(shipped)}) nor a .toml file")
+    near = did_you_mean(plan, shipped)
+    raise CaseError(f"{plan}: neither a shipped study ({', '.join(shipped)}) nor a .toml file{near}")
 
 
 class _Rate(ProgressColumn):
@@ -151,7 +150,7 @@ class _Rate(ProgressColumn):
 
 @contextmanager
 def _bars(silent: bool) -> Iterator[Callable[[str, int, int], None]]:
-    """A bar for the points of each source, with rate and time left; nothing where nobody looks."""
+    """A progress bar for the points of each source with rate and time left, unless ``silent``."""
     console = Console(stderr=True)
     bar = progress_bar(console, TextColumn("points"), _Rate(), silent=silent)
     tasks: dict[str, TaskID] = {}

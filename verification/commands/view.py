@@ -9,14 +9,16 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
-from verification.commands.common import EXIT, print_error
+from verification.cases.contact import shipped_cases
+from verification.commands.common import EXIT, Output, did_you_mean, print_error
 from verification.judging.verdict import Outcome
+from verification.problem.quantity import STRESSES
 from verification.running.fields import read_fields
 from verification.running.store import StoreError, write_atomically
 
 __all__ = ["view"]
 
-QUANTITIES = ("von_mises", "sigma_xx", "sigma_yy", "sigma_zz", "sigma_xy", "sigma_yz", "sigma_xz")
+QUANTITIES = ("von_mises", *STRESSES)
 
 
 def view(
@@ -24,11 +26,11 @@ def view(
     /,
     *,
     quantity: Annotated[str, Parameter(name=["--quantity", "-q"])] = "von_mises",
-    output: Annotated[Path, Parameter(name=["--output", "-o"])] = Path("reports"),
+    output: Output = Path("reports"),
     screenshot: Path | None = None,
     time_limit: float = 60.0,
 ) -> int:
-    """Look at the fields of a case that coatcheck run --fields wrote: finite elements beside semi-analytical.
+    """Show the fields of a case from coatcheck run --fields: finite elements beside semi-analytical.
 
     Parameters
     ----------
@@ -39,9 +41,9 @@ def view(
     output
         Directory of the run.
     screenshot
-        Write a PNG picture there without opening a window; no display is needed.
+        Write this PNG file instead of opening a window; no display is needed.
     time_limit
-        Seconds that the picture may take.
+        Longest time of rendering [s].
     """
     if quantity not in QUANTITIES:
         return print_error(f"--quantity = {quantity}; there are {', '.join(QUANTITIES)}")
@@ -52,7 +54,9 @@ def view(
     try:
         read_fields(output, case)
     except StoreError as error:
-        return print_error(f"{error}; fields are written by: coatcheck run {case} --fields")
+        stored = [path.stem for path in (output / "fields").glob("*.json")]
+        near = "" if case in (cases := shipped_cases()) else did_you_mean(case, [*stored, *cases])
+        return print_error(f"{error}; fields are written by: coatcheck run {case} --fields{near}")
     words = [
         sys.executable,
         "-m",
@@ -91,8 +95,8 @@ def _picture(words: list[str], path: Path, time_limit: float) -> int:
     return 0
 
 
-def _none(sentence: str) -> int:
-    print_error(sentence)
+def _none(message: str) -> int:
+    print_error(message)
     return EXIT[Outcome.NO_RESULT]
 
 

@@ -1,25 +1,25 @@
-"""False alarms: what the verdicts say of random problems in which nothing is wrong.
+"""False alarms: verdicts other than AGREES on random problems that contain no error.
 
-Both methods with every reference solve each problem; whatever does not agree there is an alarm about nothing.
+Both methods and every reference solve each problem.
 """
 
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 from verification.judging.verdict import Outcome
-from verification.running.result import CaseResult, RunInfo, plain
+from verification.running.records import decode, encode
+from verification.running.result import CaseResult, RunInfo
 from verification.running.store import StoreError, read_checked, write_checked
 
 __all__ = ["Alarm", "AlarmRecord", "counted", "path_in", "read_record", "write_record"]
 
-SCHEMA = "coatcheck-alarms/1"
+SCHEMA = "coatcheck-alarms/2"
 
 
 @dataclass(frozen=True)
 class Alarm:
-    """One comparison that does not agree, or law of one source that does not hold, with its case file."""
+    """One comparison that does not agree, or invariant that does not hold, with its case file."""
 
     case: str
     title: str
@@ -33,17 +33,17 @@ class Alarm:
 
 @dataclass(frozen=True)
 class AlarmRecord:
-    """What ``problems`` clean problems of ``seed`` came to, when, with what; seconds of the whole.
+    """The alarms of ``problems`` random problems of ``seed``, with provenance and seconds in total.
 
-    agreeing : problems in which every one of the ``comparisons`` agrees, every one of the ``laws`` holds.
-    smallest_margin : of U - |A - B| over U, the least of all that agree; how near an alarm was.
+    agreeing : problems in which all comparisons agree and all invariants hold.
+    smallest_margin : the least (U - |A - B|)/U of all comparisons that agree.
     """
 
     seed: int
     problems: int
     agreeing: int
     comparisons: int
-    laws: int
+    invariants: int
     alarms: tuple[Alarm, ...]
     smallest_margin: float | None
     started: str
@@ -54,7 +54,7 @@ class AlarmRecord:
 
 
 def counted(results: Sequence[CaseResult], seed: int, info: RunInfo) -> AlarmRecord:
-    """The alarms of clean problems, each of a case without a comparison at all included."""
+    """The alarms in ``results``; a case without any comparison is one."""
     alarms = [
         Alarm(r.name, r.title, c.quantity, c.line, c.between, v.outcome, v.reason, r.text)
         for r in results
@@ -95,14 +95,14 @@ def counted(results: Sequence[CaseResult], seed: int, info: RunInfo) -> AlarmRec
 
 
 def path_in(folder: Path) -> Path:
-    """Where the record lies among those of ``folder``."""
+    """Path of the record in ``folder``."""
     return folder / "alarms.json"
 
 
 def write_record(folder: Path, record: AlarmRecord) -> Path:
     """Store the record in ``folder``, whole or not at all. Raises StoreError."""
     path = path_in(folder)
-    write_checked(path, {"schema": SCHEMA, **plain(asdict(record))})
+    write_checked(path, {"schema": SCHEMA, **encode(record)})
     return path
 
 
@@ -111,14 +111,10 @@ def read_record(folder: Path) -> AlarmRecord | None:
     path = path_in(folder)
     if not path.exists():
         return None
-    data: dict[str, Any] = read_checked(path)
-    if data.pop("schema", None) != SCHEMA:
+    data = read_checked(path)
+    if data.get("schema") != SCHEMA:
         raise StoreError(f"{path}: not a record of false alarms that this version reads; measure it again")
     try:
-        alarms = tuple(
-            Alarm(**{**a, "between": tuple(a["between"]), "outcome": Outcome(a["outcome"])})
-            for a in data.pop("alarms")
-        )
-        return AlarmRecord(alarms=alarms, **data)
-    except (KeyError, TypeError, ValueError) as error:
+        return decode(AlarmRecord, data)
+    except ValueError as error:
         raise StoreError(f"{path}: not a record of false alarms ({error}); measure it again") from None

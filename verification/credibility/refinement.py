@@ -1,7 +1,6 @@
-"""How the error of each method against an exact answer falls with its resolution.
+"""Refinement studies: the error of each method against the exact solution, level by level.
 
-Pure: a problem in, frozen records out. A ladder that stops short keeps the levels it reached and the
-sentence it failed with.
+A study that fails at some level keeps the coarser levels with the message of the failure.
 """
 
 import time
@@ -16,12 +15,25 @@ from numpy.typing import NDArray
 from verification.problem.arrays import FloatArray
 from verification.problem.contact import CoatedContact, Solution
 from verification.problem.profile import lines_of
-from verification.sources.references import integral_equation
+from verification.problem.quantity import QUANTITIES as ALL
+from verification.problem.quantity import SCALARS
+from verification.sources.exact import solve_exactly
+from verification.sources.methods import solve_elements, solve_semianalytic
 
-__all__ = ["QUANTITIES", "Ladder", "Level", "Yardstick", "elements", "ladder", "order_of", "settled"]
+__all__ = [
+    "QUANTITIES",
+    "Level",
+    "Reference",
+    "Refinement",
+    "failure_message",
+    "order_of",
+    "refined_grid",
+    "refined_mesh",
+    "settled",
+]
 
-QUANTITIES = ("p0", "a", "approach", "pressure", "stress")
-# An error within this factor of the smallest of its ladder has stopped falling.
+QUANTITIES = (*(ALL[name].symbol for name in SCALARS), "pressure", "stress")
+# An error within this factor of the smallest of all levels has stopped falling.
 SETTLED = 3.0
 # Between two levels much closer than a doubling, noise looks like an order.
 SPAN = 1.9
@@ -29,7 +41,7 @@ SPAN = 1.9
 
 @dataclass(frozen=True)
 class Level:
-    """One solution: its ``resolution``, what it cost, its error by quantity.
+    """One solution: its ``resolution``, its time [s], its error by quantity.
 
     resolution : patches a side, or the square root of the degrees of freedom of finite elements.
     errors : of p0, a and approach relative; of pressure (L2 over the disc) over p0; of stress over p_h.
@@ -42,10 +54,10 @@ class Level:
 
 
 @dataclass(frozen=True)
-class Ladder:
+class Refinement:
     """Solutions of one problem by one ``method`` in one setting, coarse to fine.
 
-    solid : what the sphere is pressed on, in words.   failure : the sentence the next level failed with.
+    solid : name of what the sphere is pressed on.   failure : message of the level that failed next.
     """
 
     method: str
@@ -68,34 +80,34 @@ class Ladder:
 def settled(error: Sequence[float]) -> int | None:
     """The first level whose error is within a factor ``SETTLED`` of where the fall ends; None without one.
 
-    An error that a finer level exceeds by more than that factor crosses zero by luck and is passed over.
+    An error that a finer level exceeds by more than that factor crosses zero by chance and is passed over.
     """
     found = np.asarray(error, dtype=float)
-    honest = _honest(found)
-    if not honest.any():
+    monotone = _monotone(found)
+    if not monotone.any():
         return None
-    return int(np.argmax(honest & (found <= SETTLED * found[-1])))
+    return int(np.argmax(monotone & (found <= SETTLED * found[-1])))
 
 
 def order_of(resolution: Sequence[float], error: Sequence[float]) -> float | None:
     """Slope s of error ~ resolution^-s by least squares, down to the level where the error is ``settled``.
 
-    Finer levels are left out, for there another knob has taken over, and so is luck. None where the error
-    falls less than by the factor ``SETTLED``, or within a ``SPAN`` of resolution too short to tell.
+    Finer levels are left out, where another numerical parameter dominates. None where the error falls by
+    less than the factor ``SETTLED``, or where the levels span less than the factor ``SPAN``.
     """
     last = settled(error)
     if not last:
         return None
     found = np.asarray(error, dtype=float)[: last + 1]
-    used = _honest(np.asarray(error, dtype=float))[: last + 1]
+    used = _monotone(np.asarray(error, dtype=float))[: last + 1]
     N = np.asarray(resolution, dtype=float)[: last + 1][used]
     if N.size < 2 or not (np.isfinite(N) & (N > 0)).all() or N.max() < SPAN * N.min():
         return None
     return float(-np.polyfit(np.log(N), np.log(found[used]), 1)[0])
 
 
-def _honest(found: FloatArray) -> NDArray[np.bool_]:
-    """Marks the errors that no finer level exceeds by more than ``SETTLED``; none where one is no number."""
+def _monotone(found: FloatArray) -> NDArray[np.bool_]:
+    """Marks the errors that no finer level exceeds by more than ``SETTLED``; none where one is not finite."""
     if found.size < 2 or not np.isfinite(found).all() or found.min() < 0 or found.max() == 0:
         return np.zeros(found.shape, dtype=bool)
     largest_after = np.maximum.accumulate(found[::-1])[::-1]
@@ -103,8 +115,8 @@ def _honest(found: FloatArray) -> NDArray[np.bool_]:
 
 
 @dataclass(frozen=True, eq=False)
-class Yardstick:
-    """The exact answer to ``problem`` at the points where solutions are held against it, evaluated once."""
+class Reference:
+    """The exact solution of ``problem`` at the points of comparison, evaluated once."""
 
     problem: CoatedContact
     exact: Solution
@@ -118,7 +130,7 @@ class Yardstick:
         return r, np.pi / 2 * w * np.sin(phi) * np.cos(phi), self.exact.pressure(r)
 
     @cached_property
-    def _stressed(self) -> list[tuple[FloatArray, FloatArray, int | None, FloatArray]]:
+    def _stresses(self) -> list[tuple[FloatArray, FloatArray, int | None, FloatArray]]:
         """x, z, layer, stress along the axis, inside the layers, and along both sides of each interface."""
         a, deep = self.exact.contact_radius, self.problem.interfaces
         bounds = np.array([0.0, *deep, max([4 * a, *(2 * z for z in deep)])])
@@ -139,19 +151,20 @@ class Yardstick:
         exact, p0 = self.exact, self.exact.peak_pressure
         r, weight, p = self._disc
         # Square patches have eight mirror images of one sector.
-        turn = np.pi / 4 * (np.arange(8) + 0.5) / 8
-        gap = found.pressure(r[:, None] * np.cos(turn), r[:, None] * np.sin(turn)) - p[:, None]
-        worst = [np.abs(found.stress(x, 0.0, z, layer) - s).max() for x, z, layer, s in self._stressed]
-        return {
-            "p0": abs(found.peak_pressure / p0 - 1),
-            "a": abs(found.contact_radius / exact.contact_radius - 1),
-            "approach": abs(found.approach / exact.approach - 1),
-            "pressure": float(np.sqrt(weight @ np.mean(gap**2, axis=1))) / p0,
+        angle = np.pi / 4 * (np.arange(8) + 0.5) / 8
+        error = found.pressure(r[:, None] * np.cos(angle), r[:, None] * np.sin(angle)) - p[:, None]
+        worst = [np.abs(found.stress(x, 0.0, z, layer) - s).max() for x, z, layer, s in self._stresses]
+        scalars = {
+            ALL[q].symbol: abs(ALL[q].value(found, self.problem) / ALL[q].value(exact, self.problem) - 1)
+            for q in SCALARS
+        }
+        return scalars | {
+            "pressure": float(np.sqrt(weight @ np.mean(error**2, axis=1))) / p0,
             "stress": float(np.max(worst)) / self.problem.p_h,
         }
 
 
-def ladder(
+def refined_grid(
     problem: CoatedContact,
     patches: Sequence[int] = (33, 65, 129, 257),
     *,
@@ -159,59 +172,54 @@ def ladder(
     setting: str = "",
     solve: Callable[..., Solution] | None = None,
     **numerics: Any,
-) -> Ladder:
+) -> Refinement:
     """``problem`` by the semi-analytical method at each number of ``patches`` a side.
 
-    Without the method's own estimate of its error, for which it would solve again.
-    numerics : any other keyword of semianalytic.solve.   solve : another solver of the same keywords.
+    The method's own estimate of its error is left out, since it needs further solutions.
+    numerics : any other keyword of semianalytic.solve.   solve : another solver, see ``Source``.
     """
-    import semianalytic
-
     steps = [(f"N = {n}", {"patches": n, **numerics}, float(n)) for n in patches]
-    return _climb(problem, "semianalytic", solid, setting, solve or semianalytic.solve, steps)
+    return _refined(problem, "semianalytic", solid, setting, solve or solve_semianalytic, steps)
 
 
-def elements(
+def refined_mesh(
     problem: CoatedContact,
     order: int,
     quality: Sequence[str] = ("fast", "default"),
     *,
     solid: str = "",
     solve: Callable[..., Solution] | None = None,
-) -> Ladder:
-    """``problem`` by elements of ``order`` on meshes of each ``quality``; ``solve`` as in ``ladder``."""
-    import fem_reference
-
+) -> Refinement:
+    """``problem`` by elements of ``order`` on meshes of each ``quality``; else as ``refined_grid``."""
     steps = [(name, {"order": order, "quality": name}, None) for name in quality]
-    return _climb(problem, "fem_reference", solid, f"order {order}", solve or fem_reference.solve, steps)
+    return _refined(problem, "fem_reference", solid, f"order {order}", solve or solve_elements, steps)
 
 
-def _climb(
+def _refined(
     problem: CoatedContact,
     method: str,
     solid: str,
     setting: str,
     solve: Callable[..., Any],
     steps: Sequence[tuple[str, dict[str, Any], float | None]],
-) -> Ladder:
+) -> Refinement:
     levels: list[Level] = []
     try:
-        keywords: dict[str, Any] = {
-            "radius": problem.radius,
-            "load": problem.load,
-            "coatings": problem.coatings,
-            "substrate": problem.substrate,
-            "estimate_uncertainty": False,
-        }
-        yardstick = Yardstick(problem, integral_equation.solve(**keywords))
+        without = {"estimate_uncertainty": False}
+        reference = Reference(problem, solve_exactly(problem, without))
         for name, numerics, resolution in steps:
             begin = time.perf_counter()
-            found = solve(**keywords, **numerics)
+            found = solve(problem, numerics | without)
             seconds = time.perf_counter() - begin
             if resolution is None:
                 resolution = float(np.sqrt(found.diagnostics.dofs))
-            levels.append(Level(name, resolution, seconds, yardstick.errors(found)))
-    except Exception as error:  # a level that cannot be had is a sentence of the report, not a traceback
-        name = steps[len(levels)][0]
-        return Ladder(method, solid, setting, tuple(levels), f"{name}: {' '.join(str(error).split())[:400]}")
-    return Ladder(method, solid, setting, tuple(levels))
+            levels.append(Level(name, resolution, seconds, reference.errors(found)))
+    except Exception as error:  # a message of the report, not a traceback
+        failure = f"{steps[len(levels)][0]}: {failure_message(error)}"
+        return Refinement(method, solid, setting, tuple(levels), failure)
+    return Refinement(method, solid, setting, tuple(levels))
+
+
+def failure_message(error: Exception) -> str:
+    """The message of ``error`` in one line."""
+    return " ".join(str(error).split())[:400]

@@ -1,4 +1,4 @@
-"""Numerical uncertainty of a quantity from its values on a ladder of ever finer levels.
+"""Numerical uncertainty of a quantity from its values on successively finer levels.
 
 Least squares over four levels or more: phi_i = phi_0 + alpha h_i^p, the fit that explains the data best
 
@@ -22,14 +22,14 @@ from verification.problem.arrays import Array
 __all__ = ["Estimate", "Fit", "convergence_index", "least_squares", "uncertainty"]
 
 
-# Eca and Hoekstra trust a fitted order within these bounds alone.
+# Eca and Hoekstra accept a fitted order within these bounds only.
 LEAST_ORDER, THEORETICAL_ORDER, SLACK = 0.5, 2.0, 0.1
 TRUSTED, SAFE = 1.25, 3.0
 
 
 @dataclass(frozen=True)
 class Fit:
-    """phi(h) = limit + sum of coefficients times powers of h; ``deviation`` is the fit's standard one."""
+    """phi(h) = limit + sum of coefficients times powers of h, with the standard ``deviation`` of the fit."""
 
     limit: float
     coefficients: tuple[float, ...]
@@ -44,9 +44,9 @@ class Fit:
 
 @dataclass(frozen=True)
 class Estimate:
-    """Uncertainty of the finest value of a ladder, in its unit.
+    """Uncertainty of the value on the finest level, in its unit.
 
-    order : observed, None where none is to be believed.   limit : the value at step 0 that the fit points to.
+    order : observed, None where it is not credible.   limit : value extrapolated to step 0.
     method : "least squares", "three levels" or "two levels".
     """
 
@@ -57,7 +57,7 @@ class Estimate:
 
 
 def uncertainty(h: Sequence[float], phi: Sequence[float], order: float = THEORETICAL_ORDER) -> Estimate:
-    """The best estimate that the number of levels allows: least squares from four on, else the index."""
+    """Least squares from four levels on, the grid convergence index for fewer."""
     return least_squares(h, phi, order) if len(phi) >= 4 else convergence_index(h, phi, order)
 
 
@@ -65,22 +65,22 @@ def least_squares(h: Sequence[float], phi: Sequence[float], order: float = THEOR
     """Eca and Hoekstra's uncertainty of the value on the finest level.
 
     h : steps, any order, at least four different ones, over any unit.   phi : the values there.
-    order : theoretical, 2 in the source; a fitted order above it by more than 0.1 is not believed.
+    order : theoretical, 2 in the source; a fitted order above it by more than 0.1 is rejected.
     Raises ValueError for fewer levels, steps that are not positive, values that are not finite.
     """
     steps, values = _checked(h, phi, least=4)
-    spread = float(np.ptp(values)) / (values.size - 1)
+    data_range = float(np.ptp(values)) / (values.size - 1)
     size = float(np.abs(values).max())
-    if spread <= np.finfo(float).eps * size:
+    if data_range <= np.finfo(float).eps * size:
         return Estimate(float(np.finfo(float).eps * size), None, float(values[0]), "least squares")
     fit, trusted = _best(steps, values, order)
     finest = float(steps[0])
     epsilon = abs(fit(finest) - fit.limit)
     missed = abs(float(values[0]) - fit(finest))
-    if fit.deviation < spread:
+    if fit.deviation < data_range:
         found = (TRUSTED if trusted else SAFE) * epsilon + fit.deviation + missed
     else:
-        found = SAFE * fit.deviation / spread * (epsilon + fit.deviation + missed)
+        found = SAFE * fit.deviation / data_range * (epsilon + fit.deviation + missed)
     return Estimate(found, fit.powers[0] if trusted else None, fit.limit, "least squares")
 
 
@@ -100,7 +100,7 @@ def convergence_index(h: Sequence[float], phi: Sequence[float], order: float = T
         return Estimate(SAFE * error, None, limit, "two levels")
     before = float(values[2] - values[1])
     if change == 0 or before / change <= 0:
-        # alternating or at rest: no order is seen, so the larger change stands for the error itself
+        # alternating or constant: no order is observed, so the larger change is taken as the error
         return Estimate(SAFE * max(abs(change), abs(before)), None, float(values[0]), "three levels")
     observed = _order_of_three(steps, change, before)
     trusted = LEAST_ORDER <= observed <= order + SLACK
@@ -116,9 +116,7 @@ def _checked(h: Sequence[float], phi: Sequence[float], least: int) -> tuple[Arra
     """Steps and values, finest first."""
     steps, values = np.asarray(h, dtype=float), np.asarray(phi, dtype=float)
     if steps.ndim != 1 or steps.shape != values.shape:
-        raise ValueError(
-            f"{steps.shape} steps and {values.shape} values; a ladder has one value at each step"
-        )
+        raise ValueError(f"{steps.shape} steps and {values.shape} values; give one value for each step")
     if np.unique(steps).size < max(least, steps.size):
         raise ValueError(f"{np.unique(steps).size} different steps; give at least {least}, each once")
     if not (np.isfinite(steps).all() and (steps > 0).all() and np.isfinite(values).all()):
@@ -128,7 +126,7 @@ def _checked(h: Sequence[float], phi: Sequence[float], least: int) -> tuple[Arra
 
 
 def _best(steps: Array, values: Array, order: float) -> tuple[Fit, bool]:
-    """The fit by the source's rules, and whether its order is one to be trusted."""
+    """The fit by the source's rules, and whether its order is credible."""
     free = min((_free(steps, values, weighted) for weighted in (False, True)), key=lambda fit: fit.deviation)
     p = free.powers[0]
     if LEAST_ORDER <= p <= order + SLACK:
@@ -141,7 +139,7 @@ def _best(steps: Array, values: Array, order: float) -> tuple[Fit, bool]:
 
 
 def _free(steps: Array, values: Array, weighted: bool) -> Fit:
-    """The order fitted too, within an eighth and eight."""
+    """Fit of the order too, between 1/8 and 8."""
     found = minimize_scalar(
         lambda p: _linear(steps, values, (float(p),), weighted).deviation,
         bounds=(0.125, 8.0),
@@ -152,7 +150,7 @@ def _free(steps: Array, values: Array, weighted: bool) -> Fit:
 
 
 def _linear(steps: Array, values: Array, powers: tuple[float, ...], weighted: bool, fitted: int = 0) -> Fit:
-    """Fit with given powers; weights 1/h where ``weighted``.  fitted : unknowns but for the linear ones."""
+    """Fit with given powers; weights 1/h where ``weighted``.  fitted : number of nonlinear unknowns."""
     weight = 1 / steps if weighted else np.ones_like(steps)
     weight = weight / weight.sum()
     A = np.stack([np.ones_like(steps), *(steps**p for p in powers)], axis=1)
@@ -165,7 +163,7 @@ def _linear(steps: Array, values: Array, powers: tuple[float, ...], weighted: bo
 
 
 def _order_of_three(steps: Array, change: float, before: float) -> float:
-    """p of (h_3^p - h_2^p)/(h_2^p - h_1^p) = before/change, within an eighth and eight, by bisection."""
+    """p of (h_3^p - h_2^p)/(h_2^p - h_1^p) = before/change, between 1/8 and 8, by bisection."""
     low, high = 0.125, 8.0
 
     def ratio(p: float) -> float:

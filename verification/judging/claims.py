@@ -2,17 +2,11 @@
 
 from verification.judging.verdict import Claim
 from verification.problem.contact import CoatedContact
-from verification.problem.profile import SCALARS, Line, lines_of
-from verification.sources.registry import METHODS
+from verification.problem.profile import Line, lines_of
+from verification.problem.quantity import IN_PLANE, QUANTITIES, SCALARS
+from verification.sources.registry import pairs_of, sources_of
 
-__all__ = ["CAPS", "EDGE", "LINE_CAP", "sources_of", "standard_claims"]
-
-
-# Caps as fractions of the scale of each comparison: the value itself for the scalars, p_h for the lines.
-CAPS = {"peak_pressure": 1e-3, "contact_radius": 5e-3, "approach": 1e-3}
-
-
-LINE_CAP = 5e-3
+__all__ = ["EDGE", "standard_claims"]
 
 
 # The pressure falls to zero with a vertical tangent, so no method has a meaningful value within a few
@@ -20,27 +14,23 @@ LINE_CAP = 5e-3
 EDGE = 0.05
 
 
-def sources_of(problem: CoatedContact) -> tuple[str, ...]:
-    """Whatever speaks about a problem: both methods, then every reference that holds for it."""
-    closed = ("hamilton" if problem.friction else "hertz",) if problem.homogeneous else ()
-    return (*METHODS, "integral_equation", *closed)
-
-
 def standard_claims(problem: CoatedContact) -> tuple[Claim, ...]:
-    """Every quantity on every line, method against method, then against every reference."""
-    sources = sources_of(problem)
-    pairs = [METHODS, *((method, reference) for reference in sources[2:] for method in METHODS)]
-    pairs += [("integral_equation", closed) for closed in sources[3:]]
-    claims = [
-        Claim(name, "contact", pair, CAPS[name], "scalars of the contact, from one number each")
-        for pair in pairs
-        for name in SCALARS
-    ]
+    """Every quantity on every line, for every pair of the sources that support ``problem``."""
+    pairs = pairs_of(sources_of(problem))
+    why = "scalars of the contact, from one number each"
+    claims = [Claim(name, "contact", pair, QUANTITIES[name].cap, why) for pair in pairs for name in SCALARS]
     for line in lines_of(problem):
         for quantity in _quantities(line, problem):
             edge = EDGE if line.name == "surface" else 0.0
             claims += [
-                Claim(quantity, line.name, pair, LINE_CAP, "the stress a coating cracks or peels by", edge)
+                Claim(
+                    quantity,
+                    line.name,
+                    pair,
+                    QUANTITIES[quantity].cap,
+                    "the stress a coating cracks or peels by",
+                    edge,
+                )
                 for pair in pairs
             ]
     return tuple(claims)
@@ -52,4 +42,4 @@ def _quantities(line: Line, problem: CoatedContact) -> tuple[str, ...]:
         return ("pressure", "sigma_xx", "sigma_yy")
     if line.name == "axis":
         return ("sigma_xx", "sigma_zz", *(("sigma_xz",) if problem.friction else ()))
-    return ("sigma_xx", "sigma_yy", "sigma_zz", "sigma_xz")
+    return tuple(IN_PLANE)

@@ -1,4 +1,4 @@
-"""One invariant of one solution with the bound that decides it."""
+"""An invariant of one solution, decided by a bound."""
 
 from dataclasses import dataclass
 
@@ -6,13 +6,14 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from verification.judging.verdict import Outcome
+from verification.problem.contact import CoatedContact
 
-__all__ = ["CAP", "ROUNDING", "Invariant", "absent", "decide"]
+__all__ = ["CAP", "ROUNDING", "Invariant", "absent", "decide", "failed", "layer_name"]
 
 
 # A field is a sum of some thousand terms, each good to one unit in the last place.
 ROUNDING = 4096 * float(np.finfo(float).eps)
-# Of p_h, like the cap on a comparison of stresses: a law checked no closer than this is not checked.
+# Of p_h, as in comparisons of stresses: with a larger bound an invariant counts as not checked.
 CAP = 5e-3
 
 
@@ -20,7 +21,7 @@ CAP = 5e-3
 class Invariant:
     """``name`` holds for ``source`` where ``value`` does not exceed ``bound``, both dimensionless.
 
-    value, bound : at the point that decides; None where there is no such number.
+    value, bound : at the deciding point; None where there is no such number.
     message : the law, the residual, the bound.
     """
 
@@ -33,22 +34,22 @@ class Invariant:
 
     @property
     def share(self) -> float | None:
-        """value / bound; beyond 1 the law is broken."""
+        """value / bound; beyond 1 the invariant is violated."""
         return None if self.value is None or not self.bound else self.value / self.bound
 
     @property
     def margin(self) -> float | None:
-        """bound - value; negative where the law is broken."""
+        """bound - value; negative where the invariant is violated."""
         return None if self.value is None or self.bound is None else self.bound - self.value
 
 
 def decide(
     name: str, source: str, law: str, residual: ArrayLike, bound: ArrayLike | None, cap: float = CAP
 ) -> Invariant:
-    """The invariant from its ``residual`` at any points and the ``bound`` at each, over one scale.
+    """The invariant ``law`` from its ``residual`` at any points and the ``bound`` at each, dimensionless.
 
-    Decided where the residual takes the largest share of its bound. A residual or bound that is no number
-    is NO_RESULT; a bound beyond ``cap``, or None since nothing is stated, leaves it INCONCLUSIVE.
+    The point with the largest |residual|/bound decides. A residual or bound that is not finite is NO_RESULT;
+    a bound above ``cap``, or None where no uncertainty is stated, is INCONCLUSIVE.
     """
     r = np.abs(np.asarray(residual, dtype=float)).ravel()
     if r.size == 0 or not np.isfinite(r).all():
@@ -56,22 +57,32 @@ def decide(
         return absent(name, source, f"{law}: not finite at {lost} of {r.size} points")
     if bound is None:
         worst = float(r.max())
-        said = f"{law}: off by {worst:.1e}; no uncertainty is stated that would bound it"
-        return Invariant(name, source, worst, None, Outcome.INCONCLUSIVE, said)
+        message = f"{law}: residual {worst:.1e}; no uncertainty is stated to bound it"
+        return Invariant(name, source, worst, None, Outcome.INCONCLUSIVE, message)
     U = np.broadcast_to(np.asarray(bound, dtype=float), np.shape(residual)).ravel() + ROUNDING
     if not np.isfinite(U).all() or U.min() < 0:
-        return absent(name, source, f"{law}: the uncertainty it is held against is not a number everywhere")
+        return absent(name, source, f"{law}: the bound is not finite everywhere")
     at = int(np.argmax(r / U))
     value, allowed = float(r[at]), float(U[at])
-    said = f"{law}: off by {value:.1e} where {allowed:.1e} is allowed"
+    message = f"{law}: residual {value:.1e}, bound {allowed:.1e}"
     if value > allowed:
-        return Invariant(name, source, value, allowed, Outcome.DISAGREES, said)
+        return Invariant(name, source, value, allowed, Outcome.DISAGREES, message)
     if U.max() > cap:
-        said = f"{law}: bounded by {U.max():.1e} only, beyond the cap {cap:.1e}"
-        return Invariant(name, source, float(r[U.argmax()]), float(U.max()), Outcome.INCONCLUSIVE, said)
-    return Invariant(name, source, value, allowed, Outcome.AGREES, said)
+        message = f"{law}: bound {U.max():.1e} exceeds the cap {cap:.1e}"
+        return Invariant(name, source, float(r[U.argmax()]), float(U.max()), Outcome.INCONCLUSIVE, message)
+    return Invariant(name, source, value, allowed, Outcome.AGREES, message)
 
 
 def absent(name: str, source: str, reason: str) -> Invariant:
-    """An invariant that came to nothing."""
+    """An invariant without a result, for ``reason``."""
     return Invariant(name, source, None, None, Outcome.NO_RESULT, reason)
+
+
+def failed(name: str, source: str, error: Exception) -> Invariant:
+    """An invariant whose evaluation raised ``error``."""
+    return absent(name, source, f"{type(error).__name__}: {' '.join(str(error).split())[:300]}")
+
+
+def layer_name(layer: int, problem: CoatedContact) -> str:
+    """ "coating 1", "coating 2", ... or "substrate"."""
+    return f"coating {layer + 1}" if layer < len(problem.coatings) else "substrate"

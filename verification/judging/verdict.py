@@ -6,23 +6,14 @@ The cap turns vague agreement into INCONCLUSIVE: without it a bad grid, having a
 """
 
 from dataclasses import dataclass
-from enum import StrEnum
 
 import numpy as np
 from numpy.typing import NDArray
 
+from verification.judging.outcome import Outcome
 from verification.problem.profile import Profile
 
 __all__ = ["Claim", "Comparison", "Outcome", "Verdict", "compare", "judge"]
-
-
-class Outcome(StrEnum):
-    """What a comparison came to; only AGREES passes."""
-
-    AGREES = "AGREES"
-    DISAGREES = "DISAGREES"
-    INCONCLUSIVE = "INCONCLUSIVE"
-    NO_RESULT = "NO_RESULT"
 
 
 @dataclass(frozen=True)

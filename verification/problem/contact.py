@@ -1,17 +1,24 @@
-"""The physical problem: a rigid sphere pressed on a coated elastic half-space.
+"""The physical problem: a rigid sphere in contact with a coated elastic half-space.
 
 Origin at first contact, ``x`` along sliding, ``z`` into the solid, surface at z = 0. Tension positive,
 pressure and load positive in compression. SI units.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from math import isfinite, pi
 from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-__all__ = ["CoatedContact", "NotClaimed", "PrescribedLoad", "Solution"]
+__all__ = [
+    "CoatedContact",
+    "NotClaimed",
+    "PrescribedLoad",
+    "Solution",
+    "keywords",
+    "stress_with_uncertainty",
+]
 
 
 @dataclass(frozen=True)
@@ -21,7 +28,7 @@ class CoatedContact:
     coatings : ((E [Pa], nu, thickness [m]), ...) from the surface down; () is the uncoated solid.
     substrate : (E [Pa], nu).   friction : f in q = f p, traction on the solid in +x.
 
-    Raises ValueError with one sentence naming the quantity and its value.
+    Raises ValueError with a message naming the quantity and its value.
     """
 
     radius: float
@@ -66,13 +73,18 @@ class CoatedContact:
         """True where every layer has the substrate's moduli, so that Hertz holds."""
         return all((E, nu) == self.substrate for E, nu, _ in self.coatings)
 
+    def under_disc(self, pressure: float, load_radius: float) -> "PrescribedLoad":
+        """The same solid, friction included, under ``pressure`` [Pa] on a disc of ``load_radius`` [m]."""
+        shared = {f.name for f in fields(PrescribedLoad)} & {f.name for f in fields(self)}
+        return PrescribedLoad(pressure, load_radius, **{name: getattr(self, name) for name in shared})
+
 
 @dataclass(frozen=True)
 class PrescribedLoad:
     """Uniform ``pressure`` [Pa] on a disc of ``load_radius`` [m], on ``coatings`` bonded to ``substrate``.
 
-    The others as in CoatedContact.
-    Raises ValueError with one sentence naming the quantity and its value.
+    coatings, substrate, friction as in CoatedContact.
+    Raises ValueError with a message naming the quantity and its value.
     """
 
     pressure: float
@@ -87,14 +99,19 @@ class PrescribedLoad:
         _require_solid(self.coatings, self.substrate, self.friction)
 
 
+def keywords(problem: CoatedContact | PrescribedLoad) -> dict[str, Any]:
+    """The fields of ``problem`` by name, as keywords of a solver."""
+    return {f.name: getattr(problem, f.name) for f in fields(problem)}
+
+
 class NotClaimed(ValueError):
-    """A source was asked for a field it makes no claim about, which is not a failure of it."""
+    """A source does not give the field that was requested; this is no failure of it."""
 
 
 class Solution(Protocol):
-    """What both methods and the exact reference return; see each method for its own record.
+    """Solution that both methods and the references return; see each method for its own record.
 
-    A reference without displacements raises NotClaimed when asked for them.
+    ``displacement`` of a reference without displacements raises NotClaimed.
     """
 
     @property
@@ -120,6 +137,23 @@ class Solution(Protocol):
     ) -> NDArray[np.float64]: ...
 
 
+def stress_with_uncertainty(
+    solution: Solution, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None
+) -> tuple[NDArray[np.float64], NDArray[np.float64] | None]:
+    """Stress and its uncertainty [Pa] at points, (3, 3) + points; None where the solution states none.
+
+    A solution with a method of this name evaluates its stress once for both.
+    """
+    if solution.uncertainty is None:
+        return solution.stress(x, y, z, layer=layer), None
+    # Looked up in the type: a wrapper that changes ``stress`` alone must not be passed over.
+    both = getattr(type(solution), "stress_with_uncertainty", None)
+    if both is not None:
+        sigma, U = both(solution, x, y, z, layer=layer)
+        return sigma, U
+    return solution.stress(x, y, z, layer=layer), solution.stress_uncertainty(x, y, z, layer=layer)
+
+
 def _require_solid(
     coatings: tuple[tuple[float, float, float], ...], substrate: tuple[float, float], friction: float
 ) -> None:
@@ -139,6 +173,6 @@ def _require_positive(name: str, value: float) -> None:
 
 
 def _require_poisson(name: str, nu: float) -> None:
-    # nu = 1/2 belongs to the physics; a method that cannot have it says so itself.
+    # nu = 1/2 is physical; a method that does not support it raises its own error.
     if not -1 < nu <= 0.5:
         raise ValueError(f"{name} = {nu:g}; an isotropic solid has -1 < nu <= 0.5")

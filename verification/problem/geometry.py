@@ -23,7 +23,5 @@ def layer_at(z: Array, coatings: Coatings, layer: int | None) -> NDArray[np.int_
         raise ValueError(f"layer = {layer}; this solid has layers 0 to {len(coatings)}")
     end = np.inf if layer == len(coatings) else bounds[layer + 1]
     if np.any(z < bounds[layer] - slack) or np.any(z > end + slack):
-        raise ValueError(
-            f"layer = {layer} spans {bounds[layer]:g} to {end:g} m, not every z asked for lies in it"
-        )
+        raise ValueError(f"layer = {layer} spans {bounds[layer]:g} to {end:g} m, not every z lies in it")
     return np.full(z.shape, layer)

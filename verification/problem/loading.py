@@ -1,29 +1,22 @@
-"""A loading curve: a sphere pressed to given contact radii or approaches."""
+"""A loading curve: a sphere in contact at given contact radii or approaches."""
 
 from dataclasses import dataclass
 
 from verification.problem.arrays import Coatings
 from verification.problem.contact import CoatedContact, PrescribedLoad
 
-__all__ = ["CONTROLS", "CURVES", "PUNCH", "LoadingCurve", "Problem"]
+__all__ = ["CONTROLS", "PUNCH", "LoadingCurve", "Problem"]
 
 CONTROLS = ("contact_radius", "approach")
-
-
-# What may be printed over the control: W, delta, a, kappa = dW/d delta / 2 a E1*, and the ratio of a power
-# series to W or to kappa (see ``Loading.quantity``).
-CURVES = ("load", "approach", "contact_radius", "kappa", "series_over_load", "series_over_kappa")
-
-
-PUNCH = ("kappa", "series_over_kappa")  # of these, what needs S
+PUNCH = ("kappa", "series_over_kappa")  # quantities that need the stiffness S
 
 
 @dataclass(frozen=True)
 class LoadingCurve:
-    """Rigid sphere of ``radius`` [m], pressed until ``control``, contact_radius or approach, is ``at`` [m].
+    """Rigid sphere of ``radius`` [m] where ``control``, contact_radius or approach, equals each ``at`` [m].
 
-    coatings, substrate as in CoatedContact.   punch : its stiffness is asked for.
-    Raises ValueError with one sentence.
+    coatings, substrate as in CoatedContact.   punch : whether its stiffness is required.
+    Raises ValueError.
     """
 
     radius: float
@@ -42,12 +35,12 @@ class LoadingCurve:
 
     @property
     def top(self) -> tuple[float, float]:
-        """(E, nu) of the layer that is touched."""
+        """(E, nu) of the uppermost layer."""
         return self.coatings[0][:2] if self.coatings else self.substrate
 
     @property
     def E_star(self) -> float:
-        """E1/(1 - nu1^2) [Pa] of the layer that is touched."""
+        """E1/(1 - nu1^2) [Pa] of the uppermost layer."""
         E, nu = self.top
         return E / (1 - nu**2)
 

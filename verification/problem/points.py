@@ -13,8 +13,9 @@ __all__ = ["Points"]
 
 @dataclass(frozen=True, eq=False)
 class Points:
-    """Points x, y, z [m] in ``layer`` each; ``unit`` and its SI value name lines as the source does.
+    """Points x, y, z [m] with the ``layer`` of each.
 
+    unit, in_si : unit of the source with its SI value, for names of lines.
     control : of a loading curve, whose values x are.
     """
 
@@ -42,19 +43,19 @@ class Points:
 
     @classmethod
     def origin(cls, count: int) -> "Points":
-        """The place of a number that belongs to the contact as a whole."""
+        """The point (0, 0, 0) for a number of the contact as a whole."""
         zero = np.zeros(count)
         return cls(zero, zero, zero, np.zeros(count, dtype=int), "m", 1.0)
 
     @classmethod
     def on_curve(cls, control: str, value: Array, unit: str, in_si: float) -> "Points":
-        """Points of a loading curve, by what controls it [m]."""
+        """Points of a loading curve by the value of its control [m]."""
         zero = np.zeros(value.shape)
         return cls(value, zero, zero, np.zeros(value.shape, dtype=int), unit, in_si, control)
 
     @property
     def along(self) -> Array:
-        """The coordinate that runs: z, or x where all lie at one depth, or the control of a curve [m]."""
+        """The coordinate that varies: z, or x where all lie at one depth, or the control of a curve [m]."""
         return self.x if self._at_one_depth or self.control else self.z
 
     @property
@@ -88,6 +89,6 @@ class Points:
         return Points(x, y, z, layer, self.unit, self.in_si, self.control)
 
     def _place(self, *fixed: tuple[str, Array]) -> str:
-        said = [f"{name} = {float(v[0]) / self.in_si:.6g} {self.unit}" for name, v in fixed if v[0] != 0]
+        named = [f"{name} = {float(v[0]) / self.in_si:.6g} {self.unit}" for name, v in fixed if v[0] != 0]
         zero = "surface" if fixed[-1][0] == "z" else "axis"
-        return ", ".join(said) or zero
+        return ", ".join(named) or zero

@@ -1,7 +1,7 @@
-"""A profile: one quantity along one line of the plane y = 0, whatever its source.
+"""A profile: one quantity along one line of the plane y = 0.
 
-Profiles are the only currency of comparison: a method, a closed form or a printed table all become
-one, so that a comparison never asks where a number came from.
+Methods, closed forms and published tables are all compared as profiles, so that a comparison does not depend
+on the kind of its sources.
 """
 
 import re
@@ -10,10 +10,7 @@ from dataclasses import dataclass
 from verification.problem.arrays import Array
 from verification.problem.contact import CoatedContact
 
-__all__ = ["SCALARS", "STRESSES", "Line", "Profile", "line_of", "lines_of"]
-
-SCALARS = ("peak_pressure", "contact_radius", "approach")
-STRESSES = {"sigma_xx": (0, 0), "sigma_yy": (1, 1), "sigma_zz": (2, 2), "sigma_xz": (0, 2)}
+__all__ = ["Line", "Profile", "line_of", "lines_of"]
 
 _INTERFACE = re.compile(r"interface ([1-9]\d*), (upper|lower) side")
 
@@ -22,7 +19,7 @@ _INTERFACE = re.compile(r"interface ([1-9]\d*), (upper|lower) side")
 class Profile:
     """``value`` of ``quantity`` at ``position`` [m] along ``line``, in SI units.
 
-    uncertainty : absolute, shape of ``value``; None is "not stated", 0 is "exact".
+    uncertainty : absolute, shape of ``value``; None where it is not stated, 0 of an exact value.
     ``line`` "contact" holds the scalars of the contact, at position 0.
     """
 

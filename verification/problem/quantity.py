@@ -1,43 +1,132 @@
-"""Quantities: symbol, kind and unit of every number that a source can give."""
+"""Registry of the quantities that a source can give: symbol, kind, unit, scale, cap, place of each."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 
 from verification.problem.arrays import Array
-from verification.problem.loading import CURVES
 
-__all__ = ["COMPONENTS", "EXTREMES", "POINTWISE", "QUANTITIES", "SCALAR", "von_mises"]
+__all__ = [
+    "CURVES",
+    "EXTREMES",
+    "IN_PLANE",
+    "POINTWISE",
+    "QUANTITIES",
+    "SCALARS",
+    "STRESSES",
+    "Quantity",
+    "unit_of",
+    "von_mises",
+]
 
-COMPONENTS = {"sigma_xx": (0, 0), "sigma_yy": (1, 1), "sigma_zz": (2, 2), "sigma_xz": (0, 2)}
 
+@dataclass(frozen=True)
+class Quantity:
+    """One quantity that cases, tables and figures name.
 
-def von_mises(sigma: Array) -> Array:
-    """Von Mises stress in the plane y = 0 from its four stresses xx, yy, zz, xz (4, ...), [Pa].
-
-    sigma_vM^2 = ((xx - yy)^2 + (yy - zz)^2 + (zz - xx)^2) / 2 + 3 xz^2
+    kind : scalar, curve, pressure, stress, strain or displacement.
+    sampled : "contact" (one number of a contact), "axis" (the largest on the axis), "curve" (of a loading
+    curve), "points" (any points of the solid).
+    symbol, tex : in text and in formulas.   meaning : in words, where the symbol does not say it.
+    unit : SI, "1" for none.   scale : property of CoatedContact that values are divided by.
+    cap : largest admissible uncertainty, over the value of a scalar, over p_h of any other.
+    component : of a stress or strain tensor.
+    derived : (solution, problem) -> value [SI], of a scalar that follows from the others of the contact.
     """
-    xx, yy, zz, xz = sigma
-    return np.sqrt(0.5 * ((xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2) + 3 * xz**2)
+
+    name: str
+    kind: str
+    sampled: tuple[str, ...]
+    symbol: str
+    tex: str
+    unit: str
+    scale: str = "p_h"
+    cap: float = 5e-3
+    component: tuple[int, int] | None = None
+    meaning: str = ""
+    derived: Callable[[Any, Any], float] | None = None
+
+    def value(self, solution: Any, problem: Any) -> float:
+        """The scalar of a ``solution`` of ``problem`` [SI]."""
+        return float(self.derived(solution, problem) if self.derived else getattr(solution, self.name))
+
+    def uncertainty(self, solution: Any, problem: Any) -> float | None:
+        """Its uncertainty [SI], of a derived scalar sum_i |df/ds_i| U_i; None where none is stated."""
+        stated = solution.uncertainty
+        if stated is None:
+            return None
+        if self.derived is None:
+            return float(getattr(stated, self.name))
+        known = {name: float(getattr(solution, name)) for name in SCALARS if not QUANTITIES[name].derived}
+        middle = self.derived(SimpleNamespace(**known), problem)
+        moved = (known | {name: value + getattr(stated, name)} for name, value in known.items())
+        return float(sum(abs(self.derived(SimpleNamespace(**one), problem) - middle) for one in moved))
 
 
-SCALAR = ("peak_pressure", "contact_radius", "approach")
+def _tensor(kind: str, name: str, tex: str, unit: str, components: Sequence[str]) -> list[Quantity]:
+    return [
+        Quantity(f"{name}_{c}", kind, ("points",), f"{name}_{c}", f"{tex}_{{{c}}}", unit, component=place)
+        for c in components
+        for place in [("xyz".index(c[0]), "xyz".index(c[1]))]
+    ]
 
 
-_COMPONENT = {f"{'xyz'[i]}{'xyz'[j]}": (i, j) for i, j in ((0, 0), (1, 1), (2, 2), (1, 2), (0, 2), (0, 1))}
+_AXIS, _CONTACT, _CURVE, _POINTS = ("axis",), ("contact",), ("curve",), ("points",)
+_BOTH = (*_CONTACT, *_CURVE)
+_SHEAR, _MISES = "largest shear on the axis", "largest von Mises stress on the axis"
+_PUNCH = "stiffness of the flat punch over 2 a E1*"
+_LOADS, _STIFFNESSES = "load by the formula over W", "stiffness by the formula over that of the flat punch"
+
+# In the order of columns, rows, claims.
+QUANTITIES: dict[str, Quantity] = {
+    quantity.name: quantity
+    for quantity in (
+        Quantity("peak_pressure", "scalar", _CONTACT, "p0", "p_0", "Pa", "p_h", 1e-3),
+        Quantity("contact_radius", "scalar", _BOTH, "a", "a", "m", "a_h", 5e-3),
+        Quantity("approach", "scalar", _BOTH, "approach", r"\delta", "m", "delta_h", 1e-3),
+        Quantity("tau_max", "scalar", _AXIS, "tau_max", r"\tau_{max}", "Pa", meaning=_SHEAR),
+        Quantity("von_mises_max", "scalar", _AXIS, "von_mises_max", r"\sigma_{vM}", "Pa", meaning=_MISES),
+        Quantity("load", "curve", _CURVE, "W", "W", "N"),
+        Quantity("kappa", "curve", _CURVE, "kappa", r"\kappa", "1", meaning=_PUNCH),
+        Quantity("series_over_load", "curve", _CURVE, "series / W", "", "1", meaning=_LOADS),
+        Quantity("series_over_kappa", "curve", _CURVE, "series / kappa", "", "1", meaning=_STIFFNESSES),
+        Quantity("pressure", "pressure", _POINTS, "p", "p", "Pa"),
+        *_tensor("stress", "sigma", r"\sigma", "Pa", ("xx", "yy", "zz", "xz", "xy", "yz")),
+        Quantity("sigma_kk", "stress", _POINTS, "sigma_kk", r"\sigma_{kk}", "Pa"),
+        Quantity("sigma_zz - sigma_xx", "stress", _POINTS, "sigma_zz - sigma_xx", "", "Pa"),
+        *_tensor("strain", "eps", r"\varepsilon", "1", ("xx", "yy", "zz")),
+        *(Quantity(f"u_{c}", "displacement", _POINTS, f"u_{c}", f"u_{c}", "m") for c in "xyz"),
+    )
+}
 
 
-# On the axis, where both principal shears are equal.
-EXTREMES = ("tau_max", "von_mises_max")
+def _names(kind: str = "", sampled: str = "") -> tuple[str, ...]:
+    return tuple(
+        q.name for q in QUANTITIES.values() if kind in ("", q.kind) and (not sampled or sampled in q.sampled)
+    )
 
 
+SCALARS = _names("scalar", "contact")
+EXTREMES = _names("scalar", "axis")
+CURVES = _names(sampled="curve")
+STRESSES = {q.name: q.component for q in QUANTITIES.values() if q.kind == "stress" and q.component}
+IN_PLANE = {name: component for name, component in STRESSES.items() if name not in ("sigma_xy", "sigma_yz")}
 POINTWISE = ("stress", "strain")  # kinds made of the stress at each point; the pressure aside
 
 
-# Every quantity by the kind of number it is.
-QUANTITIES = (
-    {name: "curve" for name in CURVES}
-    | {name: "scalar" for name in SCALAR + EXTREMES}
-    | {"pressure": "pressure", "sigma_kk": "stress", "sigma_zz - sigma_xx": "stress"}
-    | {f"sigma_{c}": "stress" for c in _COMPONENT}
-    | {f"eps_{c}": "strain" for c in ("xx", "yy", "zz")}
-    | {f"u_{c}": "displacement" for c in "xyz"}
-)
+def unit_of(name: str) -> str:
+    """SI unit of a quantity; "Pa" for any other name, which is that of a stress."""
+    return QUANTITIES[name].unit if name in QUANTITIES else "Pa"
+
+
+def von_mises(sigma: Array | Sequence[Array]) -> Array:
+    """Von Mises stress from stresses in the order of ``STRESSES``, (6, ...), or ``IN_PLANE``, (4, ...); [Pa].
+
+    sigma_vM^2 = ((xx - yy)^2 + (yy - zz)^2 + (zz - xx)^2) / 2 + 3 (xz^2 + xy^2 + yz^2)
+    """
+    xx, yy, zz, *shear = sigma
+    square = 0.5 * ((xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2) + 3 * sum(s**2 for s in shear)
+    return np.sqrt(square)

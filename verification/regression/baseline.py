@@ -1,4 +1,4 @@
-"""The stored baseline that every run is held against: which numbers, since when, why."""
+"""The baseline that every run is compared with: its numbers, their date, the reason of each update."""
 
 import hashlib
 from collections.abc import Mapping, Sequence
@@ -6,7 +6,8 @@ from dataclasses import asdict, dataclass
 from typing import Any
 
 from verification.regression.drift import POINTS, Drift, Numbers, State, drift, measured
-from verification.running.result import CaseResult, RunInfo, plain
+from verification.running.records import plain
+from verification.running.result import CaseResult, RunInfo
 
 __all__ = [
     "Baseline",
@@ -27,12 +28,12 @@ __all__ = [
 
 @dataclass(frozen=True)
 class CaseDrift:
-    """What became of one case, profile by profile; ``said`` where it concerns the case as a whole."""
+    """Changes of one case, profile by profile; ``message`` concerns the case as a whole."""
 
     name: str
     title: str
     drifts: tuple[Drift, ...]
-    said: str = ""
+    message: str = ""
 
     @property
     def state(self) -> State:
@@ -46,7 +47,7 @@ class CaseDrift:
         return max((d.change for d in self.drifts if d.change is not None), default=None)
 
     def count(self, state: State) -> int:
-        """How many numbers came to ``state``."""
+        """Number of numbers in ``state``."""
         return sum(
             d.moved if state is State.DRIFTED else d.count - d.moved
             for d in self.drifts
@@ -56,9 +57,9 @@ class CaseDrift:
 
 @dataclass(frozen=True)
 class Update:
-    """One recorded change of the baseline: its reason in words, the run it was taken from.
+    """One update of the baseline: its reason, the run it was made from.
 
-    changes : by case, how many numbers were not what they had been, with their largest change over scale.
+    changes : by case, how many numbers changed, with the largest change over its scale.
     """
 
     why: str
@@ -72,7 +73,7 @@ class Update:
 
 @dataclass(frozen=True, eq=False)
 class Baseline:
-    """The numbers of every case, the digest of its file, every update from the first to the last."""
+    """The numbers of every case, the digest of its file, every update from first to last."""
 
     cases: Mapping[str, tuple[Numbers, ...]]
     digests: Mapping[str, str]
@@ -80,15 +81,15 @@ class Baseline:
 
     @property
     def last(self) -> Update:
-        """The update that the present numbers come from."""
+        """The update that wrote the present numbers."""
         return self.history[-1]
 
 
 @dataclass(frozen=True)
 class Regression:
-    """A run held against the baseline in ``folder``; ``update`` is None where there was none to hold it to.
+    """Comparison of a run with the baseline in ``folder``; ``update`` is None where there is no baseline.
 
-    other_versions : (name, then, now) of what the digits may come from.
+    other_versions : (name, then, now) of the machine and each package that differs.
     """
 
     folder: str
@@ -98,25 +99,25 @@ class Regression:
 
     @property
     def drifted(self) -> bool:
-        """True where a number of the baseline is not what it was, or not there."""
+        """True where a number of the baseline changed or is missing."""
         return any(case.state in (State.DRIFTED, State.GONE) for case in self.cases)
 
     @property
     def unexplained(self) -> bool:
-        """True where it drifted on the very machine and versions of the baseline: the code did it."""
+        """True where it drifted on the machine with the versions of the baseline: the code has changed."""
         return self.drifted and not self.other_versions
 
     def of(self, name: str) -> CaseDrift | None:
-        """What became of the case ``name``."""
+        """The changes of the case ``name``, None where it was not compared."""
         return next((case for case in self.cases if case.name == name), None)
 
 
 def against(
     results: Sequence[CaseResult], baseline: Baseline, *, whole: bool, points: int = POINTS
 ) -> tuple[CaseDrift, ...]:
-    """What became of every case; where the run is ``whole``, cases it lacks are gone.
+    """The changes of every case; cases that a ``whole`` run lacks are gone.
 
-    points : as the baseline was ``measured`` with.
+    points : that the baseline was ``measured`` with.
     """
     found = [case_drift(result, baseline, points) for result in results]
     names = {result.name for result in results}
@@ -128,7 +129,7 @@ def against(
 
 
 def case_drift(result: CaseResult, baseline: Baseline, points: int = POINTS) -> CaseDrift:
-    """What became of one case since ``baseline``."""
+    """The changes of one case since ``baseline``."""
     now = {numbers.key: numbers for numbers in measured(result, points)}
     stored = baseline.cases.get(result.name)
     if stored is None:
@@ -144,7 +145,7 @@ def case_drift(result: CaseResult, baseline: Baseline, points: int = POINTS) -> 
 def regression(
     results: Sequence[CaseResult], baseline: Baseline | None, folder: str, info: RunInfo, *, whole: bool
 ) -> Regression:
-    """The run ``info`` with its ``results`` held against ``baseline``, which lies in ``folder``."""
+    """Compare the ``results`` of the run ``info`` with ``baseline`` from ``folder``."""
     if baseline is None:
         return Regression(folder, None, ())
     then = baseline.last
@@ -156,12 +157,12 @@ def regression(
 
 
 def regression_json(found: Regression) -> dict[str, Any]:
-    """A run beside its baseline as strict JSON: counts by case, then each profile that is not the same."""
+    """The comparison as strict JSON: counts by case, every profile that changed."""
     cases = [
         {
             "name": case.name,
             "state": case.state,
-            "said": case.said,
+            "message": case.message,
             "change": case.change,
             **{state: case.count(state) for state in State},
             "profiles": [asdict(drift) for drift in case.drifts if drift.state is not State.SAME],
@@ -184,7 +185,7 @@ def regression_json(found: Regression) -> dict[str, Any]:
 def updated(
     old: Baseline | None, results: Sequence[CaseResult], info: RunInfo, why: str, when: str
 ) -> Baseline:
-    """The baseline of ``results`` of the run ``info``, with one line more of history than ``old``."""
+    """The baseline of the ``results`` of the run ``info``, one update more than ``old``."""
     cases = {result.name: measured(result) for result in results}
     changes: dict[str, tuple[int, float | None]] = {}
     for case in against(results, old, whole=True) if old is not None else ():
@@ -206,5 +207,5 @@ def _new(now: Numbers) -> Drift:
 
 
 def digest(text: str) -> str:
-    """What a case file is known by."""
+    """Digest that identifies a case file, 16 hexadecimal digits."""
     return hashlib.sha256(text.encode("utf-8", errors="replace")).hexdigest()[:16]

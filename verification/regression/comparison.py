@@ -1,4 +1,4 @@
-"""Two runs held against each other: verdicts, numbers, versions, times."""
+"""Comparison of two runs: verdicts, numbers, versions, times."""
 
 from dataclasses import dataclass
 
@@ -10,12 +10,12 @@ from verification.running.stored import StoredRun
 
 __all__ = ["RunComparison", "VerdictChange", "compare_runs"]
 
-EVERY = 1_000_000  # points of a profile
+EVERY = 1_000_000  # more points than a profile has
 
 
 @dataclass(frozen=True)
 class VerdictChange:
-    """A claim of a case of both runs whose outcome is not what it was; None where one does not make it."""
+    """A claim whose outcome differs between two runs; None where a run does not make it."""
 
     case: str
     quantity: str
@@ -27,20 +27,20 @@ class VerdictChange:
 
     @property
     def worse(self) -> bool:
-        """True where a comparison that agreed does so no more."""
+        """True where a comparison that agreed no longer does."""
         return self.before is Outcome.AGREES and self.after is not Outcome.AGREES
 
 
 @dataclass(frozen=True)
 class RunComparison:
-    """What changed from one run to another.
+    """Differences of the second run from the first.
 
-    cases : every point of every profile of the second run against the first.
-    versions : (name, then, now) where they differ, with command, commit, machine.
+    cases : changes at every point of every profile.   versions : (name, then, now) that differ, with command,
+    commit, machine.
     seconds : (case, then, now), None where a run lacks the case.
     """
 
-    places: tuple[str, str]
+    paths: tuple[str, str]
     started: tuple[str, str]
     cases: tuple[CaseDrift, ...]
     verdicts: tuple[VerdictChange, ...]
@@ -49,17 +49,17 @@ class RunComparison:
 
     @property
     def drifted(self) -> bool:
-        """True where a number is not what it was, not there, or new."""
+        """True where a number changed, is missing or is new."""
         return any(case.state is not State.SAME for case in self.cases)
 
     @property
     def worse(self) -> bool:
-        """True where a comparison that agreed does so no more."""
+        """True where a comparison that agreed no longer does."""
         return any(change.worse for change in self.verdicts)
 
 
 def compare_runs(a: StoredRun, b: StoredRun) -> RunComparison:
-    """What changed from run ``a`` to run ``b``, at every point of every profile."""
+    """Differences of run ``b`` from run ``a``, at every point of every profile."""
     update = Update("", a.info.started, a.info.commit, a.info.machine, a.info.versions, 0, {})
     first = Baseline(
         {result.name: measured(result, EVERY) for result in a.results},

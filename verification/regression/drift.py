@@ -1,13 +1,12 @@
-"""One profile held against what it was, number by number.
+"""Change of one profile since the baseline, number by number.
 
     |now - then| <= 1e-8 scale
 
-scale is the largest magnitude of the profile the number belongs to, so that a number near zero is not asked
-for digits it does not have; a profile that is all but zero (a shear that symmetry forbids) takes a
-thousandth of the largest profile of its source and kind instead. Of each profile are kept 17 points over
-its whole length, its root mean square, into which every point enters, and its largest stated uncertainty:
-the size of an uncertainty is that of a remainder, differs twofold between processors, and drifts where it
-leaves a factor of four.
+scale is the largest magnitude of the profile, so that a number near zero needs no digits that it does not
+have; of a profile that vanishes (a shear that symmetry forbids) it is a thousandth of the largest profile of
+the same source and kind. A profile is represented by 17 points over its whole length, its root mean square,
+which depends on every point, and its largest stated uncertainty. An uncertainty is the size of a remainder
+and differs twofold between processors: it has drifted where it changed more than fourfold.
 """
 
 from dataclasses import dataclass
@@ -26,12 +25,12 @@ RELATIVE = 1e-8
 POINTS = 17
 FAINT = 1e-3
 FACTOR = 4.0
-# Points further from where they were, over the length of the line, have values of their own.
+# Where points moved further, over the length of the line, their values are not compared.
 SHIFT = 1e-6
 
 
 class State(StrEnum):
-    """What became of a number since the baseline; the worst comes first."""
+    """State of a number since the baseline, the worst first."""
 
     DRIFTED = "drifted"
     GONE = "gone"
@@ -41,11 +40,10 @@ class State(StrEnum):
 
 @dataclass(frozen=True, eq=False)
 class Numbers:
-    """What is kept of one profile, in SI units.
+    """The stored numbers of one profile, in SI units.
 
-    scale : what a change of ``value`` is measured by.   rms : root mean square over all ``size`` points,
-    a number of its own where not all of them are kept.
-    uncertainty : the largest that is stated, None where there is none.
+    scale : divisor of a change of ``value``.   rms : root mean square over all ``size`` points, compared
+    where not all of them are stored.   uncertainty : the largest stated one, None where there is none.
     """
 
     source: str
@@ -60,26 +58,26 @@ class Numbers:
 
     @property
     def key(self) -> tuple[str, str, str]:
-        """What it is: source, quantity, line."""
+        """Source, quantity, line."""
         return self.source, self.quantity, self.line
 
     @property
     def count(self) -> int:
-        """How many numbers these are: the values, the root mean square, the uncertainty."""
+        """Number of values, with root mean square and uncertainty."""
         return self.value.size + self.thinned + (self.uncertainty is not None)
 
     @property
     def thinned(self) -> bool:
-        """True where the profile has more points than are kept."""
+        """True where the profile has more points than are stored."""
         return self.size > self.value.size
 
 
 @dataclass(frozen=True)
 class Drift:
-    """What became of one profile: ``count`` numbers, of which ``moved`` are not what they were.
+    """Change of one profile: of its ``count`` numbers ``moved`` have changed.
 
     change : the largest change of a value over its scale, None where there are not two values.
-    said : what happened, in words; empty where nothing did.
+    message : what changed, empty where nothing did.
     """
 
     source: str
@@ -89,11 +87,11 @@ class Drift:
     count: int
     moved: int = 0
     change: float | None = None
-    said: str = ""
+    message: str = ""
 
 
 def measured(result: CaseResult, points: int = POINTS) -> tuple[Numbers, ...]:
-    """The numbers of a result that enter a baseline: of each profile ``points`` values at most."""
+    """The numbers of a result that a baseline stores: of each profile at most ``points`` values."""
     largest: dict[tuple[str, str], float] = {}
     for profile in result.profiles:
         kind = (profile.source, _kind(profile))
@@ -106,33 +104,33 @@ def measured(result: CaseResult, points: int = POINTS) -> tuple[Numbers, ...]:
 
 
 def drift(then: Numbers, now: Numbers) -> Drift:
-    """What became of one profile."""
+    """The change of one profile."""
     if now.size != then.size or now.value.shape != then.value.shape:
-        said = f"sampled at {now.size} points instead of {then.size}"
-        return Drift(*then.key, State.DRIFTED, then.count, then.count, None, said)
+        message = f"sampled at {now.size} points instead of {then.size}"
+        return Drift(*then.key, State.DRIFTED, then.count, then.count, None, message)
     scale = max(then.scale, np.finfo(float).tiny)
     before, after = then.value, now.value
     if then.thinned:
         before, after = np.append(before, then.rms), np.append(after, now.rms)
     change = np.where(np.isnan(before) & np.isnan(after), 0.0, np.abs(after - before) / scale)
-    moved = ~(change <= RELATIVE)  # a NaN that was a number has changed, too
-    words = []
+    moved = ~(change <= RELATIVE)  # a number that became NaN has changed
+    messages = []
     reach = max(_size(then.position), np.finfo(float).tiny)
     shift = float(np.abs(now.position - then.position).max()) / reach
     if not shift <= RELATIVE:
-        words.append(f"its points moved by {shift:.1e} of the line")
+        messages.append(f"its points moved by {shift:.1e} of the line")
         moved[:] = True
     if moved.any() and shift <= RELATIVE:
-        words.append(f"{int(moved.sum())} of {moved.size} values changed")
-    spread = _spread_changed(then, now, scale)
-    if spread:
-        words.append(spread)
-    count = int(moved.sum()) + bool(spread)
+        messages.append(f"{int(moved.sum())} of {moved.size} values changed")
+    uncertainty = _uncertainty_change(then, now, scale)
+    if uncertainty:
+        messages.append(uncertainty)
+    count = int(moved.sum()) + bool(uncertainty)
     largest: float | None = float(change.max()) if np.isfinite(change).all() else float("inf")
     if not shift <= SHIFT:
         largest = None
     state = State.DRIFTED if count else State.SAME
-    return Drift(*then.key, state, then.count, count, largest, "; ".join(words))
+    return Drift(*then.key, state, then.count, count, largest, "; ".join(messages))
 
 
 def _numbers(profile: Profile, faint: float, points: int) -> Numbers:
@@ -153,19 +151,24 @@ def _numbers(profile: Profile, faint: float, points: int) -> Numbers:
 
 
 def _kind(profile: Profile) -> str:
-    return QUANTITIES.get(profile.quantity, profile.quantity)
+    name = profile.quantity
+    return QUANTITIES[name].kind if name in QUANTITIES else name
 
 
 def _size(values: Array) -> float:
-    """The largest magnitude of what is finite."""
+    """Largest finite magnitude."""
     return float(np.abs(values[np.isfinite(values)]).max(initial=0.0))
 
 
-def _spread_changed(then: Numbers, now: Numbers, scale: float) -> str:
-    """In words how the stated uncertainty changed; empty where it did not, or is below all that counts."""
+def _uncertainty_change(then: Numbers, now: Numbers, scale: float) -> str:
+    """Message on the change of the stated uncertainty; empty where it is below what counts."""
     if then.uncertainty is None or now.uncertainty is None:
         same = then.uncertainty is now.uncertainty
-        return "" if same else "states an uncertainty, or none, other than before"
+        return "" if same else "only one of the two states an uncertainty"
     before, after = (max(u, RELATIVE * scale) for u in (then.uncertainty, now.uncertainty))
     ratio = after / before
-    return "" if 1 / FACTOR <= ratio <= FACTOR else f"its stated uncertainty is {ratio:.2g} times what it was"
+    return (
+        ""
+        if 1 / FACTOR <= ratio <= FACTOR
+        else f"its stated uncertainty is {ratio:.2g} times that of the baseline"
+    )

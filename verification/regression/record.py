@@ -1,15 +1,14 @@
 """The baseline as one checked file, its numbers to twelve digits."""
 
-from dataclasses import asdict
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from verification.problem.arrays import Array
 from verification.regression.baseline import Baseline, Update
 from verification.regression.drift import Numbers
-from verification.running.result import plain
+from verification.running.records import decode, encode
 from verification.running.store import StoreError, read_checked, write_checked
 
 __all__ = ["path_in", "read_baseline", "write_baseline"]
@@ -17,8 +16,36 @@ __all__ = ["path_in", "read_baseline", "write_baseline"]
 SCHEMA = "coatcheck-baseline/1"
 
 
+@dataclass(frozen=True, eq=False)
+class _Profile:
+    """``Numbers`` without its points, which all profiles of a line share; U is the uncertainty."""
+
+    source: str
+    quantity: str
+    line: str
+    size: int
+    scale: float
+    rms: float
+    U: float | None
+    value: Array
+
+
+@dataclass(frozen=True, eq=False)
+class _Case:
+    digest: str
+    lines: dict[str, Array]
+    profiles: tuple[_Profile, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class _File:
+    schema: str
+    cases: dict[str, _Case]
+    history: tuple[Update, ...]
+
+
 def path_in(folder: Path) -> Path:
-    """Where the baseline of ``folder`` lies."""
+    """Path of the baseline in ``folder``."""
     return folder / "baseline.json"
 
 
@@ -26,16 +53,14 @@ def write_baseline(folder: Path, baseline: Baseline) -> Path:
     """Store the baseline in ``folder``, whole or not at all, to twelve digits. Raises StoreError."""
     path = path_in(folder)
     cases = {
-        name: {
-            "digest": baseline.digests[name],
-            # Every profile of a line has the same points.
-            "lines": {n.line: _row(n.position, float(np.abs(n.position).max())) for n in found},
-            "profiles": [_profile(n) for n in found],
-        }
+        name: _Case(
+            baseline.digests[name],
+            {n.line: _rounded(n.position, float(np.abs(n.position).max())) for n in found},
+            tuple(_stored(n) for n in found),
+        )
         for name, found in baseline.cases.items()
     }
-    history = [asdict(update) for update in baseline.history]
-    write_checked(path, plain({"schema": SCHEMA, "cases": cases, "history": history}))
+    write_checked(path, encode(_File(SCHEMA, cases, baseline.history)))
     return path
 
 
@@ -48,54 +73,30 @@ def read_baseline(folder: Path) -> Baseline | None:
     if data.get("schema") != SCHEMA:
         raise StoreError(f"{path}: schema = {data.get('schema')!r}; this version reads {SCHEMA!r}")
     try:
-        return Baseline(
-            {
-                name: tuple(_numbers(p, case["lines"][p["line"]]) for p in case["profiles"])
-                for name, case in data["cases"].items()
-            },
-            {name: str(case["digest"]) for name, case in data["cases"].items()},
-            tuple(
-                Update(**{**u, "changes": {n: (int(k), c) for n, (k, c) in u["changes"].items()}})
-                for u in data["history"]
-            ),
-        )
-    except (KeyError, TypeError, ValueError) as error:
+        file = decode(_File, data)
+        numbers = {name: tuple(_numbers(p, c) for p in c.profiles) for name, c in file.cases.items()}
+    except (KeyError, ValueError) as error:
         raise StoreError(f"{path}: not a baseline ({error}); restore it or update it") from None
+    return Baseline(numbers, {name: case.digest for name, case in file.cases.items()}, file.history)
 
 
-def _profile(numbers: Numbers) -> dict[str, Any]:
-    return {
-        "source": numbers.source,
-        "quantity": numbers.quantity,
-        "line": numbers.line,
-        "size": numbers.size,
-        "scale": _shortened(numbers.scale, numbers.scale),
-        "rms": _shortened(numbers.rms, numbers.scale),
-        "U": None if numbers.uncertainty is None else float(f"{numbers.uncertainty:.3g}"),
-        "value": _row(numbers.value, numbers.scale),
-    }
+def _stored(n: Numbers) -> _Profile:
+    uncertainty = None if n.uncertainty is None else float(f"{n.uncertainty:.3g}")
+    scale, rms = _rounded(np.array([n.scale, n.rms]), n.scale).tolist()
+    return _Profile(n.source, n.quantity, n.line, n.size, scale, rms, uncertainty, _rounded(n.value, n.scale))
 
 
-def _numbers(data: dict[str, Any], position: list[Any]) -> Numbers:
-    return Numbers(
-        str(data["source"]),
-        str(data["quantity"]),
-        str(data["line"]),
-        np.array([float(x) for x in position]),
-        np.array([float(v) for v in data["value"]]),
-        float(data["scale"]),
-        float(data["rms"]),
-        int(data["size"]),
-        None if data["U"] is None else float(data["U"]),
-    )
+def _numbers(p: _Profile, case: _Case) -> Numbers:
+    position = case.lines[p.line]
+    return Numbers(p.source, p.quantity, p.line, position, p.value, p.scale, p.rms, p.size, p.U)
 
 
-def _row(values: NDArray[np.float64], scale: float) -> list[float]:
-    return [_shortened(value, scale) for value in values.tolist()]
+def _rounded(values: Array, scale: float) -> Array:
+    """``values`` to twelve digits of ``scale``, smaller ones as zero."""
+    return np.array([_to_twelve_digits(value, scale) for value in values.tolist()])
 
 
-def _shortened(value: float, scale: float) -> float:
-    """``value`` to twelve digits of ``scale``: what lies below is never looked at."""
+def _to_twelve_digits(value: float, scale: float) -> float:
     if abs(value) <= 1e-12 * scale:
         return 0.0
     if not np.isfinite(value):

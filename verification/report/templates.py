@@ -45,10 +45,5 @@ def render_sections(
     facts : (name, value) pairs under the ``summary``, the first of which also heads the window.
     """
     return rendered(
-        "sections.html",
-        brand=brand,
-        summary=summary,
-        facts=facts,
-        sections=sections,
-        footer=footer,
+        "sections.html", brand=brand, summary=summary, facts=facts, sections=sections, footer=footer
     )

@@ -12,9 +12,11 @@ from verification.judging.verdict import Claim, Outcome, Verdict, compare, judge
 from verification.problem.arrays import Array
 from verification.problem.contact import CoatedContact, Solution
 from verification.problem.profile import Line, Profile
+from verification.problem.quantity import QUANTITIES, SCALARS
 from verification.running.result import CaseResult, SourceResult, describe, diagnostics_of, sentence
 from verification.sampling.lines import sample, sample_contact
-from verification.sources.contact import Solver, solvers
+from verification.sources.registry import solvers
+from verification.sources.source import Solver
 
 __all__ = ["Solved", "decide", "failed", "judge_case", "run", "solve_case"]
 
@@ -50,9 +52,9 @@ def solve_case(case: Case, available: Mapping[str, Solver] | None = None) -> Sol
         begin = time.perf_counter()
         try:
             solution = available[source](case.problem, case.numerics.get(source, {}))
-            for name in ("contact_radius", "approach", "peak_pressure"):
-                if not np.isfinite(getattr(solution, name)):
-                    raise ValueError(f"{name} = {getattr(solution, name)}; the solution is not finite")
+            for name in SCALARS:
+                if not np.isfinite(value := QUANTITIES[name].value(solution, case.problem)):
+                    raise ValueError(f"{name} = {value}; the solution is not finite")
         except Exception as error:  # a failed solve is a row of the report, whatever went wrong
             outcomes[source] = SourceResult(source, time.perf_counter() - begin, sentence(error))
             continue
@@ -78,7 +80,7 @@ def judge_case(case: Case, solved: Solved, *, invariants: bool = True) -> CaseRe
     for source, solution in solutions.items():
         begin = time.perf_counter()
         try:
-            found = list(sample_contact(solution, source))
+            found = list(sample_contact(solution, source, case.problem))
             for line in case.lines:
                 found += sample(solution, source, line, places[line])
         except Exception as error:  # as above: stresses that cannot be had are a sentence, not a traceback

@@ -1,22 +1,77 @@
-"""Fields of a case as files for ParaView: the finite element mesh, boxes of the semi-analytical method.
+"""Stored stresses of a case: the plane y = 0 for the report, files for ParaView.
 
-Every file carries the case file it came from; their checksums stand in a file beside them that checks itself.
+Every file carries the case file it came from. Those for ParaView, the finite element mesh and boxes of the
+semi-analytical method, have their checksums in a file beside them that checks itself.
 """
 
 import hashlib
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping
+from contextlib import suppress
+from dataclasses import dataclass, replace
 from pathlib import Path
+
+import numpy as np
 
 from verification.cases.contact import Case
 from verification.problem.contact import Solution
+from verification.running.records import decode, encode
+from verification.running.result import CaseResult
 from verification.running.store import MAX_BYTES, StoreError, read_checked, write_atomically, write_checked
-from verification.sampling.vtk import _box_files, _mesh_file
+from verification.sampling.plane import Plane
+from verification.sampling.vtk import WRITERS
+from verification.sources.registry import SOURCES
 
-__all__ = ["Fields", "fields_path", "read_fields", "write_fields"]
-
+__all__ = [
+    "Fields",
+    "fields_path",
+    "plane_path",
+    "read_fields",
+    "read_plane",
+    "read_planes",
+    "write_fields",
+    "write_plane",
+]
 
 SCHEMA = "coatcheck-fields/1"
+PLANE = "coatcheck-plane/2"
+
+
+def plane_path(folder: Path, name: str) -> Path:
+    """Where the plane of the case called ``name`` lies in a run directory."""
+    return folder / "planes" / f"{name}.json"
+
+
+def write_plane(path: Path, plane: Plane, case_file: str) -> None:
+    """Store ``plane`` with the case file it came from; nine digits, a billionth of the largest stress."""
+    peaks = [float(np.max(np.abs(s))) for some in plane.stress.values() for s in some]
+    largest = max((peak for peak in peaks if np.isfinite(peak)), default=0.0)
+    digits = 0 if not largest > 0 else 9 - int(np.ceil(np.log10(largest)))
+    stress = {name: tuple(np.round(s, digits) for s in some) for name, some in plane.stress.items()}
+    content = {"schema": PLANE, "case_file": case_file, "plane": encode(replace(plane, stress=stress))}
+    write_checked(path, content)
+
+
+def read_plane(path: Path, case_file: str) -> Plane:
+    """The plane stored at ``path``.
+
+    Raises StoreError where it is missing, damaged or of another case file.
+    """
+    data = read_checked(path)
+    if (data.get("schema"), data.get("case_file")) != (PLANE, case_file):
+        raise StoreError(f"{path}: of another case file or version of this program; run the case again")
+    try:
+        return decode(Plane, data.get("plane"))
+    except ValueError:
+        raise StoreError(f"{path}: not a whole plane; it is damaged, run the case again") from None
+
+
+def read_planes(folder: Path, results: Iterable[CaseResult]) -> dict[str, Plane]:
+    """The planes that a run directory holds of ``results``, by name of the case."""
+    found = {}
+    for result in results:
+        with suppress(StoreError):  # a case without a result, or published, has no plane
+            found[result.name] = read_plane(plane_path(folder, result.name), result.text)
+    return found
 
 
 @dataclass(frozen=True)
@@ -48,10 +103,10 @@ def write_fields(case: Case, solutions: Mapping[str, Solution], folder: Path) ->
     path = fields_path(folder, case.name)
     written: dict[str, bytes] = {}
     failures: dict[str, str] = {}
-    for source, make in (("fem_reference", _mesh_file), ("semianalytic", _box_files)):
-        if source in solutions:
+    for source, solution in solutions.items():
+        if SOURCES[source].fields:
             try:
-                written |= make(case, solutions[source])
+                written |= WRITERS[SOURCES[source].fields](case, solution)
             except Exception as error:  # fields are wanted besides; they cost no result
                 failures[source] = f"{type(error).__name__}: {' '.join(str(error).split())[:300]}"
     for name, data in written.items():

@@ -1,16 +1,28 @@
-"""A module run as a process that ends with its parent, the first to go where memory ends.
+"""A process that imports what tasks need once, then forks a child for each task.
 
-python -m verification.running.guard LIFELINE MODULE WORDS... runs ``python -m MODULE WORDS...``.
-LIFELINE is the number of an open pipe whose other end the parent holds for as long as it lives.
+python -m verification.running.guard reads a request a line on standard input,
+
+    {"command": ["MODULE:FUNCTION", WORDS...], "more": BOOL}
+
+and calls ``FUNCTION(*WORDS)`` in a child. On standard output the child answers "taken PID" and, where more is
+to come, "done PID" before it reads the next request. When the child is gone, "ended PID CODE" is answered,
+with a negative CODE for a signal.
+
+A child that crashes, hangs or runs out of memory takes nothing else with it. All end with the parent, and
+before it where memory ends.
 """
 
+import json
 import os
-import runpy
+import select
 import signal
 import sys
 import threading
+import warnings
 from contextlib import suppress
+from importlib import import_module
 from pathlib import Path
+from typing import BinaryIO, NoReturn
 
 from verification.running.store import StoreError
 
@@ -19,29 +31,79 @@ __all__ = ["UNWRITABLE", "main"]
 UNWRITABLE = 74  # exit code of a process that could not write its result, EX_IOERR of sysexits.h
 
 
-def main(lifeline: int, module: str, *words: str) -> None:
-    """Run ``module``; what goes wrong is one line on standard error."""
-    threading.Thread(target=_end_with_parent, args=(lifeline,), daemon=True).start()
-    _first_to_go()
-    sys.argv = [module, *words]
+def main() -> None:
+    """Serve requests until standard input ends."""
+    requests, replies = os.fdopen(os.dup(0), "rb"), os.dup(1)
+    null = os.open(os.devnull, os.O_RDWR)
+    os.dup2(null, 0)
+    os.dup2(null, 1)
+    _first_candidate_when_memory_ends()
+    for line in requests:
+        _import_once(json.loads(line)["command"][0])
+        with warnings.catch_warnings():
+            # The only other threads are idle ones of BLAS, which ends them before a fork.
+            warnings.simplefilter("ignore", DeprecationWarning)
+            child = os.fork()
+        if child == 0:
+            _serve(line, requests, replies)
+        with suppress(OSError):
+            os.setpgid(child, child)
+        code = os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])
+        with suppress(OSError):
+            os.killpg(child, signal.SIGKILL)  # whatever it started
+        _reply(replies, f"ended {child} {code}")
+
+
+def _import_once(place: str) -> None:
+    """Import the module of ``place`` ahead of the fork; a foreign one, or one that fails, is the child's."""
+    module = place.partition(":")[0]
+    if module.startswith("verification."):
+        with suppress(Exception):
+            import_module(module)
+
+
+def _serve(line: bytes, requests: BinaryIO, replies: int) -> NoReturn:
+    """Run the request ``line``, then those that share the process with it; never returns."""
+    code = 1
     try:
-        runpy.run_module(module, run_name="__main__", alter_sys=True)
+        os.setpgid(0, 0)
+        threading.Thread(target=_end_with_parent, args=(requests.fileno(),), daemon=True).start()
+        while True:
+            _reply(replies, f"taken {os.getpid()}")
+            request = json.loads(line)
+            code = _run(*request["command"])
+            if code or not request["more"]:
+                break
+            _reply(replies, f"done {os.getpid()}")
+            line = requests.readline()
+    finally:
+        sys.stderr.flush()
+        os._exit(code)
+
+
+def _run(place: str, *words: str) -> int:
+    """Exit code of the function at ``place``; what goes wrong is one line on standard error."""
+    module, _, function = place.partition(":")
+    try:
+        getattr(import_module(module), function)(*words)
     except StoreError as error:
-        _leave(UNWRITABLE, str(error))
+        return _failed(UNWRITABLE, str(error))
     except MemoryError as error:
-        _leave(1, f"out of memory ({_line(error)}); run fewer --jobs or coarsen the case")
+        return _failed(1, f"out of memory ({_line(error)}); run fewer --jobs or coarsen the case")
     except Exception as error:
-        _leave(1, f"{type(error).__name__}: {_line(error)}")
+        return _failed(1, f"{type(error).__name__}: {_line(error)}")
+    return 0
 
 
-def _end_with_parent(lifeline: int) -> None:
-    # Nothing is ever written into the pipe, so reading returns when the parent is gone, however it went.
-    with suppress(OSError):
-        os.read(lifeline, 1)
+def _end_with_parent(requests: int) -> None:
+    # Without an event asked for, poll returns when the other end is closed: the parent is gone, however.
+    end = select.poll()
+    end.register(requests, 0)
+    end.poll()
     os.killpg(0, signal.SIGKILL)
 
 
-def _first_to_go() -> None:
+def _first_candidate_when_memory_ends() -> None:
     # No limit of its own on memory: the sparse factorisation asks for four times what it then touches, so one
     # that stopped a runaway would refuse good cases. Where memory ends the kernel takes this process before
     # the one that writes the report.
@@ -49,14 +111,20 @@ def _first_to_go() -> None:
         Path("/proc/self/oom_score_adj").write_text("1000")
 
 
+def _reply(replies: int, text: str) -> None:
+    # A parent that is gone reads nothing; standard input ends next.
+    with suppress(BrokenPipeError):
+        os.write(replies, f"{text}\n".encode())
+
+
 def _line(error: BaseException) -> str:
     return " ".join(str(error).split())[:500] or "no message"
 
 
-def _leave(code: int, sentence: str) -> None:
-    sys.stderr.write(sentence + "\n")
-    sys.exit(code)
+def _failed(code: int, message: str) -> int:
+    sys.stderr.write(message + "\n")
+    return code
 
 
 if __name__ == "__main__":
-    main(int(sys.argv[1]), *sys.argv[2:])
+    main()

@@ -1,13 +1,16 @@
-"""A pool of subprocesses: tasks side by side, each with a time limit."""
+"""A pool of processes: tasks side by side, each with a time limit."""
 
 import io
+import json
 import os
+import select
 import signal
 import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections import deque
+from collections.abc import Callable, Hashable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
@@ -16,17 +19,12 @@ from typing import IO, Any, Generic, TypeVar
 from verification.running.guard import UNWRITABLE
 from verification.running.store import StoreError, read_checked
 
-__all__ = ["POLL", "THREAD_VARIABLES", "T", "T_co", "Task", "cores", "run_tasks"]
+__all__ = ["THREAD_VARIABLES", "T", "T_co", "Task", "cores", "run_tasks"]
 
 T = TypeVar("T")
-
-
 T_co = TypeVar("T_co", covariant=True)
 
-
 THREAD_VARIABLES = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "DUCC0_NUM_THREADS")
-
-
 POLL = 0.05  # s
 
 
@@ -37,10 +35,13 @@ def cores() -> int:
 
 @dataclass(frozen=True)
 class Task(Generic[T_co]):
-    """Work for a process of its own, ``python -m`` and ``command``, that leaves a checked file at ``path``.
+    """Work for another process: ("MODULE:FUNCTION", WORDS...) leaves a checked file at ``path``.
 
-    question : its standard input.   read : from what the file holds to the result.
+    read : from what the file holds to the result.
     failed : the result of a process that left none, from the reason and its seconds.
+    cost : estimate, of any unit; the costliest tasks start first.
+    together : tasks of equal value other than None run one after the other in one process, so that they can
+        share what they compute. Where one fails, the next starts in a process of its own.
     """
 
     name: str
@@ -48,7 +49,8 @@ class Task(Generic[T_co]):
     path: Path
     read: Callable[[dict[str, Any]], T_co]
     failed: Callable[[str, float], T_co]
-    question: bytes = b""
+    cost: float = 0.0
+    together: Hashable = None
 
 
 def run_tasks(
@@ -61,89 +63,165 @@ def run_tasks(
 ) -> list[T]:
     """Run ``tasks`` on ``jobs`` processes, each of a name of its own; results in their order.
 
-    A process that fails, hangs beyond ``time_limit`` [s] or dies leaves what its task makes of the reason,
-    and the file of an earlier run as it was. Raises StoreError where results cannot be written.
+    A task that fails, hangs beyond ``time_limit`` [s] or dies leaves what ``failed`` makes of the reason, and
+    the file of an earlier run as it was. Raises StoreError where results cannot be written.
     """
     threads = max(1, cores() // jobs)
-    waiting = list(enumerate(tasks))
-    running: dict[int, _Job[T]] = {}
+    waiting = _ordered(tasks)
     results: dict[int, T] = {}
-    with _lifeline() as lifeline, _reaped(running):
-        while waiting or running:
-            while waiting and len(running) < jobs:
-                number, task = waiting.pop(0)
-                running[number] = _Job(task, threads, lifeline)
-                started(task.name)
-            time.sleep(POLL)
-            for number, job in list(running.items()):
-                result = job.poll(time_limit)
-                if result is not None:
-                    del running[number]
+    with _ended([_Slot[T](threads) for _ in range(min(jobs, len(waiting)))]) as slots:
+        while len(results) < len(tasks):
+            for slot in slots:
+                if slot.task is None and (slot.owed or waiting):
+                    slot.owed = slot.owed or waiting.popleft()
+                    started(slot.start().name)
+            select.select([end for slot in slots if (end := slot.replies) is not None], [], [], POLL)
+            for slot in slots:
+                if (found := slot.poll(time_limit)) is not None:
+                    number, name, result = found
                     results[number] = result
-                    finished(job.task.name, result)
+                    finished(name, result)
     return [results[number] for number in range(len(tasks))]
 
 
-class _Job(Generic[T]):
-    def __init__(self, task: Task[T], threads: int, lifeline: int) -> None:
-        self.task, self.begin = task, time.monotonic()
-        self.earlier = _identity(task.path)
+Group = deque[tuple[int, Task[T]]]  # tasks of one process, each with its number
+
+
+def _ordered(tasks: Sequence[Task[T]]) -> deque[Group[T]]:
+    """Tasks by process, the costliest first: a long one that starts last would be waited for alone."""
+    groups: dict[Hashable, Group[T]] = {}
+    for number, task in enumerate(tasks):
+        key = (number, None) if task.together is None else task.together
+        groups.setdefault(key, deque()).append((number, task))
+    return deque(sorted(groups.values(), key=lambda group: -sum(task.cost for _, task in group)))
+
+
+class _Slot(Generic[T]):
+    """One of the processes, its ``task`` at work, those still ``owed`` of its group."""
+
+    def __init__(self, threads: int) -> None:
+        self.threads = threads
+        self.owed: Group[T] = deque()
+        self.task: Task[T] | None = None
+        self.number = -1
         self.process: subprocess.Popen[bytes] | None = None
-        self.refused = ""
-        self.said: IO[bytes] = io.BytesIO()
+        self.errors: IO[bytes] = io.BytesIO()
+
+    @property
+    def replies(self) -> int | None:
+        """Where the process answers; None where it does not run."""
+        return None if self.process is None else _pipe(self.process.stdout).fileno()
+
+    def start(self) -> Task[T]:
+        """Begin the next task that is owed."""
+        self.number, self.task = self.owed.popleft()
+        self.begin, self.earlier = time.monotonic(), _identity(self.task.path)
+        self.taken, self.refused = False, ""
         try:
-            self.said = tempfile.TemporaryFile()  # noqa: SIM115 - lives as long as the process
-            with tempfile.TemporaryFile() as question:
-                question.write(task.question)
-                question.seek(0)
-                self.process = subprocess.Popen(
-                    [sys.executable, "-m", "verification.running.guard", str(lifeline), *task.command],
-                    stdin=question,
-                    stdout=subprocess.DEVNULL,
-                    stderr=self.said,
-                    # Tasks run side by side, so each may use its share of the cores, no more.
-                    env=os.environ | dict.fromkeys(THREAD_VARIABLES, str(threads)),
-                    start_new_session=True,
-                    pass_fds=(lifeline,),
-                )
+            process = self.process or self._launch()
+            self.errors.seek(0)
+            self.errors.truncate()
+            request = {"command": self.task.command, "more": bool(self.owed)}
+            with suppress(BrokenPipeError):  # it has died, as its end of file will tell
+                _pipe(process.stdin).write(json.dumps(request).encode() + b"\n")
         except OSError as error:
-            self.said.close()
-            self.refused = f"its process could not be started ({error.strerror}); free memory and space"
-
-    def poll(self, time_limit: float) -> T | None:
-        seconds = time.monotonic() - self.begin
-        if self.process is None:
-            return self.task.failed(self.refused, seconds)
-        code = self.process.poll()
-        if code is None:
-            if seconds < time_limit:
-                return None
             self.stop()
-            return self.task.failed(
-                f"not finished after {seconds:.0f} s; raise --time-limit or coarsen the case", seconds
-            )
-        self.stop(close=False)
-        with self.said:
-            if code == UNWRITABLE:
-                raise StoreError(_last_words(self.said))
-            if code != 0:
-                return self.task.failed(f"its process {_death(code, self.said)}", seconds)
-        if _identity(self.task.path) == self.earlier:
-            return self.task.failed("its process left no result; run the case alone", seconds)
-        try:
-            return self.task.read(read_checked(self.task.path))
-        except (StoreError, ValueError, KeyError, TypeError, AttributeError) as error:
-            return self.task.failed(" ".join(str(error).split()), seconds)
+            self.refused = f"its process could not be started ({error.strerror}); free memory and space"
+        return self.task
 
-    def stop(self, *, close: bool = True) -> None:
+    def _launch(self) -> subprocess.Popen[bytes]:
+        self.errors = tempfile.TemporaryFile()  # noqa: SIM115 - lives as long as the process
+        self.process = subprocess.Popen(
+            [sys.executable, "-m", "verification.running.guard"],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=self.errors,
+            # Tasks run side by side, so each may use its share of the cores, no more.
+            env=os.environ | dict.fromkeys(THREAD_VARIABLES, str(self.threads)),
+            bufsize=0,
+            start_new_session=True,
+        )
+        self.unread, self.child = b"", 0
+        return self.process
+
+    def poll(self, time_limit: float) -> tuple[int, str, T] | None:
+        """Number, name and result of a task that has ended; None while none has."""
+        if self.task is None:
+            return None
+        task, seconds = self.task, time.monotonic() - self.begin
+        code = None if self.refused else self._code()
+        if code is None and not self.refused and seconds < time_limit:
+            return None
+        result = self._result(task, code, seconds)
+        self.task = None
+        return self.number, task.name, result
+
+    def _result(self, task: Task[T], code: int | None, seconds: float) -> T:
+        if self.refused:
+            return task.failed(self.refused, seconds)
+        if code is None:
+            self.stop()
+            limit = f"not finished after {seconds:.0f} s; raise --time-limit or coarsen the case"
+            return task.failed(limit, seconds)
+        if code == UNWRITABLE:
+            raise StoreError(_last_line(self.errors))
+        if code != 0:
+            return task.failed(f"its process {_death(code, self.errors)}", seconds)
+        if _identity(task.path) == self.earlier:
+            return task.failed("its process left no result; run the case alone", seconds)
+        try:
+            return task.read(read_checked(task.path))
+        except (StoreError, ValueError, KeyError, TypeError, AttributeError) as error:
+            return task.failed(" ".join(str(error).split()), seconds)
+
+    def _code(self) -> int | None:
+        """Exit code of the task at work, negative for a signal; None while it runs."""
+        assert self.process is not None
+        replies = _pipe(self.process.stdout)
+        ready = bool(select.select([replies], [], [], 0)[0])
+        more = replies.read(4096) if ready else b""
+        *lines, self.unread = (self.unread + more).split(b"\n")
+        code = None
+        for line in lines:
+            kind, child, *ended = line.split()
+            if kind == b"taken":
+                self.child, self.taken = int(child), True
+            elif kind == b"done":
+                code = 0
+            else:
+                # A child that dies between two tasks has not taken the second, which another child takes.
+                code = int(ended[0]) if self.taken else None
+                self.child = 0
+        if code is None and ready and not more:
+            code = self.process.wait()
+            self.stop()
+        return code
+
+    def stop(self) -> None:
         """End the process with all that it started."""
         if self.process is None:
             return
-        with suppress(OSError):
-            os.killpg(self.process.pid, signal.SIGKILL)
-        self.process.wait()
-        if close:
-            self.said.close()
+        for group in filter(None, (self.child, self.process.pid)):
+            with suppress(OSError):
+                os.killpg(group, signal.SIGKILL)
+        with self.process:  # closes its pipes, waits
+            self.process = None
+
+
+def _pipe(end: IO[bytes] | None) -> IO[bytes]:
+    assert end is not None
+    return end
+
+
+@contextmanager
+def _ended(slots: list[_Slot[T]]) -> Iterator[list[_Slot[T]]]:
+    """No process outlives the run, however it ends."""
+    try:
+        yield slots
+    finally:
+        for slot in slots:
+            slot.stop()
+            slot.errors.close()
 
 
 def _identity(path: Path) -> tuple[int, int] | None:
@@ -155,36 +233,15 @@ def _identity(path: Path) -> tuple[int, int] | None:
     return found.st_ino, found.st_mtime_ns
 
 
-def _death(code: int, said: IO[bytes]) -> str:
+def _death(code: int, errors: IO[bytes]) -> str:
     if code == -9:
         return "was killed (signal 9), most likely for want of memory; run fewer --jobs"
     if code < 0:
         return f"crashed with signal {-code}; run the case alone to see whether it repeats"
-    return f"ended with code {code}: {_last_words(said)}"
+    return f"ended with code {code}: {_last_line(errors)}"
 
 
-def _last_words(said: IO[bytes]) -> str:
-    said.seek(max(0, said.seek(0, os.SEEK_END) - 2000))
-    last = said.read().decode(errors="replace").strip().splitlines()
-    return last[-1] if last else "no message"
-
-
-@contextmanager
-def _lifeline() -> Iterator[int]:
-    """A pipe that processes listen to: closed when this process ends, even by kill -9."""
-    listen, held = os.pipe()
-    try:
-        yield listen
-    finally:
-        os.close(listen)
-        os.close(held)
-
-
-@contextmanager
-def _reaped(running: dict[int, _Job[T]]) -> Iterator[None]:
-    """No process outlives the run, however it ends."""
-    try:
-        yield
-    finally:
-        for job in running.values():
-            job.stop()
+def _last_line(errors: IO[bytes]) -> str:
+    errors.seek(max(0, errors.seek(0, os.SEEK_END) - 2000))
+    lines = errors.read().decode(errors="replace").strip().splitlines()
+    return lines[-1] if lines else "no message"

@@ -9,16 +9,22 @@ from verification.cases.columns import PublishedColumn
 from verification.cases.published import PublishedCase
 from verification.judging.verdict import Outcome, Verdict, compare, judge
 from verification.problem.contact import Solution
+from verification.problem.loading import Problem
 from verification.problem.profile import Profile
 from verification.problem.quantity import POINTWISE, QUANTITIES
 from verification.running.result import CaseResult, SourceResult, describe, diagnostics_of, sentence
 from verification.sampling.memo import tabulated
 from verification.sampling.points import values
 from verification.sources.loading import Loading
-from verification.sources.published import Solver, solvers
-from verification.sources.registry import METHODS, PUBLISHED
+from verification.sources.registry import CLOSED, METHODS, PUBLISHED, solvers
+from verification.sources.source import Solver
 
-__all__ = ["failed", "run"]
+__all__ = ["failed", "published_solvers", "run"]
+
+
+def published_solvers(problem: Problem) -> dict[str, Solver]:
+    """Solvers of a published ``problem``: the methods, and the exact reference where it supports it."""
+    return {name: solve for name, solve in solvers(problem).items() if name not in CLOSED}
 
 
 def run(case: PublishedCase, available: Mapping[str, Solver] | None = None) -> CaseResult:
@@ -28,7 +34,7 @@ def run(case: PublishedCase, available: Mapping[str, Solver] | None = None) -> C
     A source that fails leaves its sentence and NO_RESULT on each of its claims.
     """
     started = time.perf_counter()
-    available = solvers() if available is None else available
+    available = published_solvers(case.problem) if available is None else available
     outcomes: dict[str, SourceResult] = {}
     profiles = {(p.profile.quantity, p.profile.line, PUBLISHED): p.profile for p in case.columns}
     for source, solve in available.items():
@@ -36,7 +42,7 @@ def run(case: PublishedCase, available: Mapping[str, Solver] | None = None) -> C
         try:
             solution = solve(case.problem)
             if not isinstance(solution, Loading):
-                asked_of = [i.at for i in case.columns if QUANTITIES[i.profile.quantity] in POINTWISE]
+                asked_of = [i.at for i in case.columns if QUANTITIES[i.profile.quantity].kind in POINTWISE]
                 solution = tabulated(solution, asked_of)
             asked = {(c.quantity, c.line) for c in case.claims if source in c.between}
             found = [

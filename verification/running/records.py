@@ -5,7 +5,6 @@ from functools import cache
 from typing import Any, TypeVar
 
 import numpy as np
-from pydantic import TypeAdapter, ValidationError
 
 __all__ = ["decode", "encode", "plain"]
 
@@ -22,9 +21,11 @@ def decode(kind: type[T], content: Any) -> T:
 
     The content may be untrusted: every part is converted to its type, nothing in it is looked up or called.
     """
+    from pydantic import ValidationError
+
     try:
-        adapter: TypeAdapter[T] = _adapter(kind)  # type: ignore[arg-type]
-        return adapter.validate_python(content)
+        found: T = _adapter(kind).validate_python(content)  # type: ignore[arg-type]
+        return found
     except ValidationError as error:
         first = error.errors(include_url=False)[0]
         where = ".".join(map(str, first["loc"]))
@@ -34,7 +35,9 @@ def decode(kind: type[T], content: Any) -> T:
 
 
 @cache
-def _adapter(kind: Any) -> TypeAdapter[Any]:
+def _adapter(kind: Any) -> Any:
+    from pydantic import TypeAdapter
+
     return TypeAdapter(kind)
 
 
@@ -43,7 +46,8 @@ def plain(value: Any) -> Any:
     if isinstance(value, dict):
         return {str(key): plain(item) for key, item in value.items()}
     if isinstance(value, np.ndarray):
-        return plain(value.tolist())
+        finite = value.dtype.kind in "biuf" and np.isfinite(value).all()
+        return value.tolist() if finite else plain(value.tolist())
     if isinstance(value, list | tuple):
         return [plain(item) for item in value]
     if isinstance(value, np.generic):

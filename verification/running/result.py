@@ -3,13 +3,12 @@
 from dataclasses import asdict, dataclass, field, is_dataclass
 from typing import Any
 
-import numpy as np
-
 from verification.judging.invariants import Invariant
 from verification.judging.verdict import Claim, Outcome, Verdict
 from verification.problem.contact import CoatedContact, PrescribedLoad
 from verification.problem.loading import LoadingCurve
 from verification.problem.profile import Profile
+from verification.running.records import decode, encode
 
 __all__ = [
     "SCHEMA",
@@ -19,7 +18,6 @@ __all__ = [
     "describe",
     "diagnostics_of",
     "from_json",
-    "plain",
     "sentence",
     "to_json",
 ]
@@ -95,108 +93,32 @@ class RunInfo:
 
 
 def to_json(result: CaseResult) -> dict[str, Any]:
-    """Plain dictionaries, lists, numbers and text; NaN and infinity become text, so the JSON is strict."""
-    return {
-        "schema": SCHEMA,
-        "name": result.name,
-        "title": result.title,
-        "source": result.source,
-        "outcome": result.outcome,
-        "seconds": result.seconds,
-        "problem": plain(result.problem),
-        "sources": [plain(vars(source)) for source in result.sources],
-        "verdicts": [
-            {"claim": plain(vars(claim)), "verdict": plain(vars(verdict))}
-            for claim, verdict in result.verdicts
-        ],
-        "profiles": [plain(vars(profile)) for profile in result.profiles],
-        "case_file": result.text,
-        "published": plain(result.published),
-        "invariants": [plain(vars(invariant)) for invariant in result.invariants],
-    }
+    """``result`` as strict JSON, with its outcome."""
+    data = encode(result)
+    verdicts = [{"claim": claim, "verdict": verdict} for claim, verdict in data["verdicts"]]
+    data |= {"verdicts": verdicts, "case_file": data.pop("text")}
+    return {"schema": SCHEMA, "outcome": result.outcome} | data
 
 
 def from_json(data: dict[str, Any]) -> CaseResult:
-    """The inverse of ``to_json``. Raises ValueError for another schema or a part that is not what it states.
+    """The inverse of ``to_json``; the data may be untrusted.
 
-    The data may be a stranger's: every part is brought to its type, nothing in it is looked up or called.
+    Raises ValueError for another schema, a part that is not of its type, a profile whose arrays differ in
+    size.
     """
     if data.get("schema") != SCHEMA:
         raise ValueError(
             f"schema = {data.get('schema')!r}; this version reads {SCHEMA!r}, run the case again"
         )
     try:
-        return CaseResult(
-            name=str(data["name"]),
-            title=str(data["title"]),
-            source=str(data["source"]),
-            problem=dict(data["problem"]),
-            sources=tuple(
-                SourceResult(
-                    str(s["source"]),
-                    float(s["seconds"]),
-                    None if s["failure"] is None else str(s["failure"]),
-                    dict(s["diagnostics"]),
-                    tuple((str(q), str(k), float(v)) for q, k, v in s["budget"]),
-                )
-                for s in data["sources"]
-            ),
-            profiles=tuple(_profile(p) for p in data["profiles"]),
-            verdicts=tuple((_claim(v["claim"]), _verdict(v["verdict"])) for v in data["verdicts"]),
-            seconds=float(data["seconds"]),
-            text=str(data["case_file"]),
-            published=dict(data.get("published", {})),
-            invariants=tuple(_invariant(row) for row in data["invariants"]),
-        )
-    except (KeyError, TypeError, AttributeError, OverflowError) as error:
+        verdicts = [(item["claim"], item["verdict"]) for item in data["verdicts"]]
+        result = decode(CaseResult, data | {"verdicts": verdicts, "text": data["case_file"]})
+    except (KeyError, TypeError) as error:
         raise ValueError(f"not a result of this program ({error!r}); run the case again") from None
-
-
-def _profile(p: dict[str, Any]) -> Profile:
-    position, value = _array(p["position"]), _array(p["value"])
-    spread = None if p["uncertainty"] is None else _array(p["uncertainty"])
-    if position.shape != value.shape or (spread is not None and spread.shape != value.shape):
-        raise ValueError(f"profile of {p['quantity']} on {p['line']}: as many values as positions are needed")
-    return Profile(str(p["quantity"]), str(p["line"]), position, value, str(p["source"]), spread)
-
-
-def _claim(c: dict[str, Any]) -> Claim:
-    first, second = c["between"]
-    texts = {key: str(c[key]) for key in ("quantity", "line", "why")}
-    return Claim(**texts, between=(str(first), str(second)), cap=float(c["cap"]), edge=float(c["edge"]))
-
-
-def _verdict(v: dict[str, Any]) -> Verdict:
-    keys = ("difference", "uncertainty", "margin", "worst")
-    figures = {key: None if v[key] is None else float(v[key]) for key in keys}
-    return Verdict(Outcome(v["outcome"]), str(v["reason"]), **figures)
-
-
-def _invariant(row: dict[str, Any]) -> Invariant:
-    name, source, said = (str(row[key]) for key in ("name", "source", "message"))
-    value, bound = (None if row[key] is None else float(row[key]) for key in ("value", "bound"))
-    return Invariant(name, source, value, bound, Outcome(row["outcome"]), said)
-
-
-def plain(value: Any) -> Any:
-    """``value`` as strict JSON takes it: containers and numbers of Python, NaN and infinity as text."""
-    if isinstance(value, dict):
-        return {str(key): plain(item) for key, item in value.items()}
-    if isinstance(value, np.ndarray):
-        return plain(value.tolist())
-    if isinstance(value, list | tuple):
-        return [plain(item) for item in value]
-    if isinstance(value, np.generic):
-        return plain(value.item())
-    if isinstance(value, float) and not np.isfinite(value):
-        return repr(value)
-    if value is None or isinstance(value, bool | int | float | str):
-        return value
-    return str(value)
-
-
-def _array(values: list[Any]) -> np.ndarray:
-    return np.array([float(value) for value in values])
+    for p in result.profiles:
+        if any(found is not None and found.shape != p.position.shape for found in (p.value, p.uncertainty)):
+            raise ValueError(f"profile of {p.quantity} on {p.line}: as many values as positions are needed")
+    return result
 
 
 def describe(problem: CoatedContact | PrescribedLoad | LoadingCurve) -> dict[str, Any]:

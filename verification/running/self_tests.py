@@ -8,6 +8,8 @@ every run makes them.
 import tempfile
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
+from itertools import combinations
+from math import comb
 from pathlib import Path
 from typing import Any
 
@@ -24,11 +26,13 @@ from verification.problem.contact import CoatedContact, PrescribedLoad
 from verification.problem.profile import Profile, lines_of
 from verification.running.contact import judge_case, solve_case
 from verification.running.provenance import fingerprint
-from verification.running.result import CaseResult, describe, from_json, plain, to_json
+from verification.running.records import plain
+from verification.running.result import CaseResult, describe, from_json, to_json
 from verification.running.store import StoreError, read_checked, write_checked
 from verification.running.tasks import kept_result, result_path
 from verification.sampling.lines import sample, sample_contact
 from verification.sources.references.hertz import Hertz, HertzUncertainty
+from verification.sources.registry import REFERENCES, sources_of
 
 __all__ = ["SelfTest", "self_tests"]
 
@@ -106,7 +110,7 @@ def _of_printed_table() -> Answers:
 def _of_sampling() -> Answers:
     problem = CoatedContact(1e-2, 40.0, ((6e11, 0.25, 5e-5),), (3e11, 0.0), 0.25)
     solution = _Labelled()
-    scalars = {p.quantity: p for p in sample_contact(solution, "known")}  # type: ignore[arg-type]
+    scalars = {p.quantity: p for p in sample_contact(solution, "known", problem)}  # type: ignore[arg-type]
     for name, value, U in (
         ("peak_pressure", 3e9, 2e6),
         ("contact_radius", 1e-4, 3e-9),
@@ -180,12 +184,14 @@ def _of_points() -> Answers:
 def _of_runs() -> Answers:
     """Whole runs of an uncoated case by closed forms that stand in for the methods."""
 
+    bare = CoatedContact(1e-2, 40.0, (), (3e11, 0.3))
+    references = tuple(name for name in sources_of(bare) if name in REFERENCES)
+
     def came_to(**methods: Any) -> tuple[Outcome, CaseResult]:
-        problem = CoatedContact(1e-2, 40.0, (), (3e11, 0.3))
-        claims = tuple(replace(claim, cap=0.01) for claim in standard_claims(problem))
-        case = Case("known", "known", problem, claims)
+        claims = tuple(replace(claim, cap=0.01) for claim in standard_claims(bare))
+        case = Case("known", "known", bare, claims)
         hertz = Hertz(1e-2, 40.0, 3e11, 0.3)
-        said = {name: (lambda p, _, s=hertz: s) for name in ("integral_equation", "hertz")}
+        said = {name: (lambda p, _, s=hertz: s) for name in references}
         made = {name: (lambda p, _, s=solution: s) for name, solution in methods.items()}
         # without the invariants, which look at each method by itself
         result = judge_case(case, solve_case(case, made | said), invariants=False)
@@ -194,7 +200,8 @@ def _of_runs() -> Answers:
     true, loaded = _Stated(1e-2, 40.0, 3e11, 0.3), _Stated(1e-2, 40.2, 3e11, 0.3)
     outcome, result = came_to(semianalytic=true, fem_reference=true)
     yield "two honest methods", outcome, Outcome.AGREES
-    yield "pairs compared", len({claim.between for claim, _ in result.verdicts}), 6
+    sources = len(references) + 2
+    yield "pairs compared", len({claim.between for claim, _ in result.verdicts}), comb(sources, 2)
     yield (
         "a load off by half a per cent",
         came_to(semianalytic=loaded, fem_reference=true)[0],
@@ -204,7 +211,7 @@ def _of_runs() -> Answers:
     both, result = came_to(semianalytic=loaded, fem_reference=loaded)
     yield "the same in both", both, Outcome.DISAGREES
     agreeing = {c.between for c, v in result.verdicts if v.outcome is Outcome.AGREES and c.line == "contact"}
-    still = {("semianalytic", "fem_reference"), ("integral_equation", "hertz")}
+    still = {("semianalytic", "fem_reference"), *combinations(references, 2)}
     yield "pairs that still agree", agreeing, still
     nowhere = came_to(semianalytic=true, fem_reference=_Failing(1e-2, 40.0, 3e11, 0.3))[0]
     yield "a method without stresses", nowhere, Outcome.NO_RESULT

@@ -3,8 +3,8 @@
 import json
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
+from verification.running.records import decode
 from verification.running.result import CaseResult, RunInfo, from_json, to_json
 from verification.running.store import MAX_BYTES, StoreError, read_bounded, read_checked
 
@@ -36,22 +36,10 @@ def read_run(place: Path) -> StoredRun:
         raise StoreError(f"{error}; give the directory of a run, or its report.json") from None
     try:
         data = json.loads(raw)
-        return StoredRun(path, _info(data["run"]), tuple(from_json(case) for case in data["cases"]))
+        return StoredRun(path, decode(RunInfo, data["run"]), tuple(from_json(case) for case in data["cases"]))
     except (ValueError, KeyError, TypeError, AttributeError, OverflowError, RecursionError) as error:
         said = " ".join(str(error).split())[:120]
         raise StoreError(f"{path}: not a report of this program ({said}); run the cases again") from None
-
-
-def _info(run: dict[str, Any]) -> RunInfo:
-    """Every part brought to its type: the report may be a stranger's."""
-    texts = {name: str(run[name]) for name in ("command", "started", "machine")}
-    return RunInfo(
-        **texts,
-        seconds=float(run["seconds"]),
-        jobs=int(run["jobs"]),
-        commit=None if run["commit"] is None else str(run["commit"]),
-        versions={str(name): str(version) for name, version in run["versions"].items()},
-    )
 
 
 def confirm(run: StoredRun) -> None:

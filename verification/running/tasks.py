@@ -1,10 +1,8 @@
-"""Tasks side by side, each in a process of its own with a time limit.
-
-A process ends with this one however that ends, and before it where memory ends: see ``confined``.
-"""
+"""Cases as tasks of the pool, and their results stored by an earlier run."""
 
 import os
 from collections.abc import Sequence
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -14,11 +12,11 @@ from verification.cases.published import PublishedCase
 from verification.judging.verdict import Outcome
 from verification.running import published
 from verification.running.contact import failed
-from verification.running.fields import read_fields
-from verification.running.planes import plane_path, read_plane
+from verification.running.fields import plane_path, read_fields, read_plane
 from verification.running.pool import Task, run_tasks
 from verification.running.provenance import fingerprint
-from verification.running.result import CaseResult, describe, from_json, plain
+from verification.running.records import plain
+from verification.running.result import CaseResult, describe, from_json
 from verification.running.store import StoreError, read_checked
 
 __all__ = ["case_task", "kept_result", "published_task", "result_path", "run_cases"]
@@ -30,19 +28,42 @@ def result_path(folder: Path, case: Case | PublishedCase) -> Path:
 
 
 def case_task(case: Case, folder: Path, *, fields: bool = False) -> Task[CaseResult]:
-    """Solving ``case`` with its result stored under ``folder``, and its ``fields`` where they are wanted."""
+    """Solving ``case`` with its result stored under ``folder``, and its ``fields`` where they are wanted.
+
+    Cases that differ in friction alone share a process, and so the solution without friction.
+    """
     path = result_path(folder, case)
-    words = ["verification.running.worker", case.name, str(path), str(plane_path(folder, case.name))]
-    if fields:
-        words.append(str(folder))
-    return Task(case.name, tuple(words), path, partial(_of, case), partial(failed, case), case.text.encode())
+    words = ["verification.running.worker:contact", case.name, case.text, str(path)]
+    words += [str(plane_path(folder, case.name))] + ([str(folder)] if fields else [])
+    return Task(
+        case.name,
+        tuple(words),
+        path,
+        partial(_of, case),
+        partial(failed, case),
+        cost=cost(case),
+        together=repr((replace(case.problem, friction=0.0), sorted(case.numerics.items()))),
+    )
+
+
+def cost(case: Case) -> float:
+    """Estimated time over that of an uncoated contact at rest.
+
+    Layers, the harmonic of sliding, further solves, the finer grid under a thin first coating.
+    """
+    problem = case.problem
+    layers = 1 + 0.3 * len(problem.coatings)
+    solves = 1 + bool(problem.friction) + 4 * case.resolve
+    finest = [numerics["patches"] / 257 for numerics in case.numerics.values() if "patches" in numerics]
+    thin = [0.1 * problem.a_h / thickness for _, _, thickness in problem.coatings[:1]]
+    return layers * solves * min(max([1.0, *finest, *thin]), 2.0) ** 2
 
 
 def published_task(case: PublishedCase, folder: Path) -> Task[CaseResult]:
-    """Holding both methods against what ``case`` printed, its result stored under ``folder``."""
+    """Comparing both methods with the results published in ``case``, its result stored under ``folder``."""
     path = result_path(folder, case)
-    words = ("verification.running.published_worker", str(case.path), str(path))
-    return Task(case.name, words, path, partial(_of, case), partial(published.failed, case))
+    words = ("verification.running.worker:published", str(case.path), str(path))
+    return Task(case.name, words, path, partial(_of, case), partial(published.failed, case), cost=1.0)
 
 
 def _of(case: Case | PublishedCase, data: dict[str, Any]) -> CaseResult:

@@ -1,28 +1,38 @@
-"""A process of its own for one case: the case file on standard input, its results into checked files.
+"""Tasks of the pool: a case is solved, judged and stored, each of its files checked.
 
-python -m verification.running.worker NAME RESULT.json PLANE.json [DIRECTORY] < case.toml
+Cases of one process share the normal contact where they differ in friction alone.
 """
 
-import sys
+from functools import cache
+from importlib import import_module
 from pathlib import Path
 
 from verification.cases.contact import parse_case
+from verification.cases.published import read_published
+from verification.running import published as published_run
 from verification.running.contact import judge_case, solve_case
-from verification.running.fields import write_fields
-from verification.running.planes import write_plane
+from verification.running.fields import write_fields, write_plane
 from verification.running.provenance import fingerprint
 from verification.running.result import to_json
 from verification.running.store import write_checked
 from verification.sampling.plane import sample_plane
+from verification.sources.methods import sharing_pressure
+from verification.sources.registry import METHODS, SOURCES, solvers
+from verification.sources.source import Solver
+
+__all__ = ["contact", "published"]
+
+for _method in METHODS:  # once for all cases, see ``guard``
+    import_module(SOURCES[_method].package)
 
 
-def main(name: str, path: str, plane: str, directory: str | None = None) -> None:
-    """Solve the case named ``name``; store what is drawn of it at ``plane``, its result at ``path``.
+def contact(name: str, text: str, path: str, plane: str, directory: str | None = None) -> None:
+    """Solve the case file ``text``; store the stresses drawn of it at ``plane``, its result at ``path``.
 
     directory : of the run, where the fields are written too.
     """
-    case = parse_case(sys.stdin.buffer.read(), Path(f"{name}.toml"))
-    solved = solve_case(case)
+    case = parse_case(text.encode(), Path(f"{name}.toml"))
+    solved = solve_case(case, _solvers())
     result = judge_case(case, solved)
     # The result comes last: where it lies, all that belongs to it does.
     write_plane(Path(plane), sample_plane(case.problem.interfaces, solved.solutions), case.text)
@@ -31,5 +41,12 @@ def main(name: str, path: str, plane: str, directory: str | None = None) -> None
     write_checked(Path(path), to_json(result) | {"made_by": fingerprint()})
 
 
-if __name__ == "__main__":
-    main(*sys.argv[1:])
+def published(file: str, path: str) -> None:
+    """Solve the published case of ``file`` and store its result at ``path``."""
+    result = published_run.run(read_published(Path(file)))
+    write_checked(Path(path), to_json(result) | {"made_by": fingerprint()})
+
+
+@cache
+def _solvers() -> dict[str, Solver]:
+    return {name: sharing_pressure(solve) for name, solve in solvers().items()}

@@ -3,27 +3,22 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from verification.problem.contact import Solution
-from verification.problem.profile import SCALARS, STRESSES, Line, Profile
+from verification.problem.contact import CoatedContact, Solution, stress_with_uncertainty
+from verification.problem.profile import Line, Profile
+from verification.problem.quantity import IN_PLANE, QUANTITIES, SCALARS
 
 __all__ = ["sample", "sample_contact"]
 
 
-def sample_contact(solution: Solution, source: str) -> tuple[Profile, ...]:
-    """Peak pressure [Pa], contact radius [m] and approach [m] as profiles of one point."""
-    origin = np.zeros(1)
-    stated = solution.uncertainty
-    return tuple(
-        Profile(
-            name,
-            "contact",
-            origin,
-            np.array([getattr(solution, name)], dtype=float),
-            source,
-            None if stated is None else np.array([getattr(stated, name)], dtype=float),
-        )
-        for name in SCALARS
-    )
+def sample_contact(solution: Solution, source: str, problem: CoatedContact) -> tuple[Profile, ...]:
+    """Every scalar of the contact as a profile of one point [SI]."""
+    found = []
+    for name in SCALARS:
+        value = np.array([QUANTITIES[name].value(solution, problem)])
+        stated = QUANTITIES[name].uncertainty(solution, problem)
+        spread = None if stated is None else np.array([stated])
+        found.append(Profile(name, "contact", np.zeros(1), value, source, spread))
+    return tuple(found)
 
 
 def sample(solution: Solution, source: str, line: Line, position: NDArray[np.float64]) -> tuple[Profile, ...]:
@@ -45,14 +40,8 @@ def sample(solution: Solution, source: str, line: Line, position: NDArray[np.flo
                 solution.pressure_uncertainty(x) if stated else None,
             )
         )
-    # asked of the type: a stand-in that answers for ``stress`` alone is asked for ``stress``
-    both = getattr(type(solution), "stress_with_uncertainty", None)
-    if stated and both is not None:
-        sigma, spread = both(solution, x, 0.0, z, layer=line.layer)
-    else:
-        sigma = solution.stress(x, 0.0, z, layer=line.layer)
-        spread = solution.stress_uncertainty(x, 0.0, z, layer=line.layer) if stated else None
-    for name, component in STRESSES.items():
+    sigma, spread = stress_with_uncertainty(solution, x, 0.0, z, layer=line.layer)
+    for name, component in IN_PLANE.items():
         profiles.append(
             Profile(
                 name,

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from verification.problem.arrays import Array
-from verification.problem.contact import Solution
+from verification.problem.contact import Solution, stress_with_uncertainty
 from verification.problem.points import Points
 
 __all__ = ["Tabulated", "tabulated"]
@@ -67,7 +67,7 @@ def tabulated(solution: Solution, points: Sequence[Points]) -> Tabulated:
     spread: dict[int, Array] = {}
     for layer, known in places.items():
         x, y, z = np.array(list(known)).T
-        sigma[layer] = solution.stress(x, y, z, layer=layer)
-        if solution.uncertainty is not None:
-            spread[layer] = solution.stress_uncertainty(x, y, z, layer=layer)
+        sigma[layer], U = stress_with_uncertainty(solution, x, y, z, layer=layer)
+        if U is not None:
+            spread[layer] = U
     return Tabulated(solution, places, sigma, spread)

@@ -14,12 +14,12 @@ from numpy.typing import NDArray
 
 from verification.problem.arrays import Array
 from verification.problem.contact import Solution
-from verification.problem.quantity import COMPONENTS
+from verification.problem.quantity import IN_PLANE
+from verification.sources.registry import METHODS
 
 __all__ = ["Plane", "depths_of", "sample_plane"]
 
 
-DRAWN = ("semianalytic", "fem_reference")
 WIDTH = 2.0  # half width over the contact radius, where the grid of the semi-analytical method goes as far
 DEPTH = 1.5  # over the contact radius; at least 1.3 times the deepest interface, up to DEEPEST
 DEEPEST = 3.0
@@ -35,7 +35,7 @@ EDGE = 0.06  # of a: so close to the contact edge no node is left out
 class Plane:
     """Stresses at x [m], (nx,), and the depths z [m] of each layer, (nz,), both sides of its interfaces.
 
-    stress : by source, for each layer the ``COMPONENTS`` [Pa], (4, nz, nx); sigma_xy = sigma_yz = 0 there.
+    stress : by source, for each layer the stresses ``IN_PLANE`` [Pa], (4, nz, nx); the others are 0.
     failures : by source the sentence of one whose stresses could not be had.   radius : contact radius [m].
     """
 
@@ -51,7 +51,7 @@ def sample_plane(interfaces: tuple[float, ...], solutions: Mapping[str, Solution
 
     interfaces : depths [m] from the surface down.
     """
-    methods = {name: solutions[name] for name in DRAWN if name in solutions}
+    methods = {name: solutions[name] for name in METHODS if name in solutions}
     if not methods:
         return Plane(np.zeros(0), (), 0.0, {}, {})
     first = next(iter(methods.values()))
@@ -80,7 +80,7 @@ def _layer(solution: Any, x: Array, every: NDArray[np.int_], z: Array, layer: in
         sigma = np.stack(planes, axis=2)
     else:
         sigma = solution.stress(x[None, :], 0.0, z[:, None], layer=layer)
-    return np.array([sigma[component] for component in COMPONENTS.values()])
+    return np.array([sigma[component] for component in IN_PLANE.values()])
 
 
 def _columns(solution: Any) -> tuple[Array, NDArray[np.int_]]:

@@ -5,10 +5,10 @@ from typing import cast
 import numpy as np
 
 from verification.problem.arrays import Array
-from verification.problem.contact import CoatedContact, PrescribedLoad, Solution
+from verification.problem.contact import CoatedContact, PrescribedLoad, Solution, stress_with_uncertainty
 from verification.problem.loading import LoadingCurve
 from verification.problem.points import Points
-from verification.problem.quantity import _COMPONENT, EXTREMES, QUANTITIES
+from verification.problem.quantity import EXTREMES, QUANTITIES
 from verification.sources.loading import Loading
 
 __all__ = ["values"]
@@ -35,13 +35,15 @@ def values(
     if quantity in EXTREMES:
         top, wide = _extreme(solution, quantity)
         return np.full(at.x.shape, top), None if wide is None else np.full(at.x.shape, wide)
-    if QUANTITIES[quantity] == "scalar":
-        value = np.full(at.x.shape, float(getattr(solution, quantity)))
-        return value, None if stated is None else np.full(at.x.shape, float(getattr(stated, quantity)))
+    record = QUANTITIES[quantity]
+    if record.kind == "scalar":
+        wide = record.uncertainty(solution, problem)
+        value = np.full(at.x.shape, record.value(solution, problem))
+        return value, None if wide is None else np.full(at.x.shape, wide)
     if quantity == "pressure":
         p = solution.pressure(at.x, at.y)
         return p, None if stated is None else solution.pressure_uncertainty(at.x, at.y)
-    if QUANTITIES[quantity] == "displacement":
+    if record.kind == "displacement":
         i = "xyz".index(quantity[-1])
         u = solution.displacement(at.x, at.y, at.z)[i]
         if hasattr(solution, "displacement_uncertainty"):
@@ -53,9 +55,9 @@ def values(
         here = at.layer == layer
         place = (at.x[here], at.y[here], at.z[here])
         weight = _weights(quantity, *moduli[layer])
-        value[here] = np.einsum("ij,ij...->...", weight, solution.stress(*place, layer=layer))
-        if stated is not None:
-            U = solution.stress_uncertainty(*place, layer=layer)
+        sigma, U = stress_with_uncertainty(solution, *place, layer=layer)
+        value[here] = np.einsum("ij,ij...->...", weight, sigma)
+        if U is not None:
             spread[here] = np.einsum("ij,ij...->...", np.abs(weight), U)
     return value, None if stated is None else spread
 
@@ -81,7 +83,7 @@ def _weights(quantity: str, E: float, nu: float) -> Array:
         return np.eye(3)
     if quantity == "sigma_zz - sigma_xx":
         return np.diag([-1.0, 0.0, 1.0])
-    kind, component = quantity.split("_")
+    record = QUANTITIES[quantity]
     weight = np.zeros((3, 3))
-    weight[_COMPONENT[component]] = 1.0
-    return weight if kind == "sigma" else ((1 + nu) * weight - nu * np.eye(3)) / E
+    weight[record.component] = 1.0
+    return weight if record.kind == "stress" else ((1 + nu) * weight - nu * np.eye(3)) / E

@@ -10,11 +10,10 @@ from numpy.typing import NDArray
 
 from verification.cases.contact import Case
 from verification.problem.arrays import Array
+from verification.problem.quantity import STRESSES, von_mises
 from verification.sampling.plane import depths_of
 
-__all__ = ["EVERY", "LEVELS", "NAMES"]
-
-NAMES = {"xx": (0, 0), "yy": (1, 1), "zz": (2, 2), "xy": (0, 1), "yz": (1, 2), "xz": (0, 2)}
+__all__ = ["EVERY", "LEVELS", "WRITERS"]
 
 
 EVERY = 4  # of the patch centres along a side of the box
@@ -51,9 +50,10 @@ def _box_files(case: Case, solution: Any) -> dict[str, bytes]:
         )
         grid = pv.RectilinearGrid(x, x, z)
         # Points run along x first, then y, then z.
-        for name, (i, j) in NAMES.items():
-            grid.point_data[f"sigma_{name} [Pa]"] = sigma[i, j].ravel(order="F")
-        grid.point_data["von_mises [Pa]"] = _von_mises(sigma).ravel(order="F")
+        stresses = {name: sigma[component].ravel(order="F") for name, component in STRESSES.items()}
+        for name, values in stresses.items():
+            grid.point_data[f"{name} [Pa]"] = values
+        grid.point_data["von_mises [Pa]"] = von_mises(list(stresses.values()))
         grid.point_data["displacement [m]"] = np.stack([c.ravel(order="F") for c in u], axis=1)
         grid.cell_data["layer"] = np.full(grid.n_cells, layer, dtype=np.int32)
         file = f"{case.name}-semi-layer-{layer}.vtr"
@@ -76,13 +76,6 @@ def _stress(solution: Any, x: Array, every: NDArray[np.int_], z: float, layer: i
     return solution.stress_plane(z, layer)[:, :, every[:, None], every]
 
 
-def _von_mises(sigma: Array) -> Array:
-    """Von Mises stress of tensors (3, 3, ...): sqrt(3/2 s:s) of the deviator s."""
-    mean = np.einsum("ii...->...", sigma) / 3
-    square = np.einsum("ij...,ij...->...", sigma, sigma) - 3 * mean**2
-    return np.sqrt(1.5 * np.maximum(square, 0.0))
-
-
 def _saved(grid: Any, file: str, case: Case, method: str, radius: float) -> bytes:
     """The bytes of the file that VTK writes of ``grid``, with the case file inside."""
     import pyvista as pv
@@ -103,3 +96,7 @@ def _saved(grid: Any, file: str, case: Case, method: str, radius: float) -> byte
         path = Path(folder) / file
         grid.save(path)
         return path.read_bytes()
+
+
+# By ``Source.fields``.
+WRITERS = {"mesh": _mesh_file, "boxes": _box_files}

@@ -1,12 +1,12 @@
-"""A sphere pressed deeper and deeper: its load, approach, contact radius, stiffness at points of that way.
+"""Loading curve of a sphere: load, approach, contact radius, stiffness at given points.
 
-The sphere's dW/d delta is the stiffness of a flat punch of the contact radius, 2 a E1* kappa, whatever the
-layers are: Pharr, Oliver and Brotzen, J. Mater. Res. 7 (1992) 613-617. So a solver of spheres speaks of flat
-punches too.
+The sphere's dW/d delta is the stiffness of a flat punch of the contact radius, 2 a E1* kappa, for any
+layers: Pharr, Oliver and Brotzen, J. Mater. Res. 7 (1992) 613-617. A solver of spheres therefore gives the
+stiffness of flat punches too.
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import exp, log, sqrt
 
 import numpy as np
@@ -15,14 +15,14 @@ from scipy.optimize import brentq
 from verification.problem.arrays import Array
 from verification.problem.contact import CoatedContact, Solution
 from verification.problem.loading import LoadingCurve
-from verification.sources.limits import eased
+from verification.sources.extrapolation import short_of_limit
 from verification.sources.references.flat_punch import Pressed, pressed
 
 __all__ = ["Loading", "exact_loading", "loading"]
 
 
-# Step in log W of a difference quotient: rounding and uncertainty of the approach ask for a longer one, the
-# bend of the curve for a shorter one. At 1 % both leave some 1e-5.
+# Step in log W of a difference quotient. Rounding and the uncertainty of the approach require a longer step,
+# the curvature a shorter one; at 1 % both errors are about 1e-5.
 STEP = 0.01
 
 
@@ -35,30 +35,30 @@ class LoadingDiagnostics:
 
 @dataclass(frozen=True, eq=False)
 class Loading:
-    """States (W, delta, a, S) near the points asked for, columns of ``state``, with their ``spread`` [SI]."""
+    """States (W, delta, a, S) near the points, columns of ``state``, with their ``uncertainties`` [SI]."""
 
     problem: LoadingCurve
     state: Array
-    spread: Array
+    uncertainties: Array
     diagnostics: LoadingDiagnostics
     uncertainty: None = None
 
     def quantity(self, name: str, at: Array, series: tuple[float, ...] = ()) -> tuple[Array, Array]:
-        """One of ``CURVES`` with its uncertainty [SI] where the control is ``at``, which the problem names.
+        """One of ``CURVES`` with its uncertainty [SI] where the control equals ``at``, points of the problem.
 
         series_over_load  : (4/3) E1* sqrt(R) delta^1.5 (1 + c1 X + c2 X^2 + ..) / W,  X = sqrt(R delta)/h
         series_over_kappa : (1 + c1 X + c2 X^2 + ..) / kappa,  X = a/h
 
-        A state misses the point by what the load carried to it is off; the curve through the neighbouring
-        states takes it there, and what it is moved by counts as uncertain.
+        A state misses its point by the error of the load estimated for it. The value is moved to the point
+        along the curve through the neighbouring states; the shift is part of the uncertainty.
         """
         value = self._of(name, self.state, series)
-        spread = np.zeros(value.shape)
+        uncertainty = np.zeros(value.shape)
         for j in range(4):
             moved = self.state.copy()
             moved[:, j] *= 1 + 1e-6
             slope = (self._of(name, moved, series) / value - 1) / 1e-6
-            spread += np.abs(slope * self.spread[:, j] / self.state[:, j])
+            uncertainty += np.abs(slope * self.uncertainties[:, j] / self.state[:, j])
         column = 2 if self.problem.control == "contact_radius" else 1
         control = self.state[:, column]
         miss = np.log(np.array(self.problem.at) / control)
@@ -66,10 +66,10 @@ class Loading:
         if control.size > 1:
             order = np.argsort(control)
             power[order] = np.gradient(np.log(value[order]), np.log(control[order]))
-        spread += np.abs(power) * (self.spread[:, column] / control + np.abs(miss))
+        uncertainty += np.abs(power) * (self.uncertainties[:, column] / control + np.abs(miss))
         value = value * np.exp(power * miss)
         rows = [self.problem.at.index(float(x)) for x in at]
-        return value[rows], (spread * value)[rows]
+        return value[rows], (uncertainty * value)[rows]
 
     def _of(self, name: str, state: Array, series: tuple[float, ...]) -> Array:
         W, delta, a, S = state.T
@@ -90,7 +90,7 @@ def pressed_at(problem: LoadingCurve, at: float) -> tuple[float, Pressed]:
     if problem.control == "contact_radius":
         return at, pressed(at, *layers)
     wanted = at * problem.radius
-    # Hertz has delta R = a^2; a layer on a stiff base goes down to a^2/4, one on a soft base far above.
+    # Hertz has delta R = a^2; a layer on a stiff base down to a^2/4, one on a soft base far more.
     span = (log(sqrt(wanted) / 30), log(sqrt(wanted) * 30))
     a = exp(brentq(lambda s: log(pressed(exp(s), *layers).approach / wanted), *span))
     return a, pressed(a, *layers)
@@ -101,8 +101,7 @@ def loading(
 ) -> Loading:
     """The curve by a solver of one contact under a load; S from three loads where its solution states none.
 
-    limits : carry nu = 1/2 and a base as good as rigid on from what the solver can have, as
-    ``limits.towards_limits`` does.
+    limits : extrapolate to nu = 1/2 and to a rigid base, see ``extrapolation``.
     """
     found, count = [], 0
 
@@ -117,21 +116,21 @@ def loading(
 
     for at in problem.at:
         contact = problem.contact(pressed_at(problem, at)[1].load / problem.radius)
-        if not limits or eased(contact, 1) == contact:
+        if not limits or short_of_limit(contact, 1) == contact:
             found.append(state(contact))
             continue
-        (near, U), (further, V) = (state(eased(contact, t)) for t in (1, 2))
+        (near, U), (further, V) = (state(short_of_limit(contact, t)) for t in (1, 2))
         if not _incompressible(contact):
-            # A base in series with the layer: what is linear in its compliance leaves out the square of what
-            # it takes away. Twice that for both ends of the step.
+            # A base in series with the layer: extrapolation linear in its compliance neglects the square of
+            # its contribution; twice that for both ends of the step.
             found.append((2 * near - further, 2 * U + V + 2 * (near - further) ** 2 / near))
             continue
-        third, T = state(eased(contact, 3))
-        # A parabola through all three, as uncertain as if it were the straight line through two.
+        third, T = state(short_of_limit(contact, 3))
+        # Parabola through all three points, with the uncertainty of the straight line through two.
         bend = near - 2 * further + third
         found.append((2 * near - further + bend, 3 * U + 3 * V + T + np.abs(bend)))
-    states, spreads = (np.array(column) for column in zip(*found, strict=True))
-    return Loading(problem, states, spreads, LoadingDiagnostics(count))
+    states, uncertainties = (np.array(column) for column in zip(*found, strict=True))
+    return Loading(problem, states, uncertainties, LoadingDiagnostics(count))
 
 
 def _incompressible(contact: CoatedContact) -> bool:
@@ -139,15 +138,15 @@ def _incompressible(contact: CoatedContact) -> bool:
 
 
 def exact_loading(problem: LoadingCurve) -> Loading:
-    """The curve by the integral equation; uncertain by what fewer nodes and a shorter tail change."""
-    rows, spread = [], []
+    """The curve by the integral equation; its uncertainty is the change by fewer nodes and a shorter tail."""
+    rows, uncertainty = [], []
     for at in problem.at:
         a, fine = pressed_at(problem, at)
         coarse = pressed(a, problem.coatings, problem.substrate, nodes=45, tail=30.0)
         state, other = (_exact_state(problem, a, one) for one in (fine, coarse))
         rows.append(state)
-        spread.append(2 * np.abs(state - other) + 1e-12 * state)
-    return Loading(problem, np.array(rows), np.array(spread), LoadingDiagnostics(2 * len(rows)))
+        uncertainty.append(2 * np.abs(state - other) + 1e-12 * state)
+    return Loading(problem, np.array(rows), np.array(uncertainty), LoadingDiagnostics(2 * len(rows)))
 
 
 def _exact_state(problem: LoadingCurve, a: float, one: Pressed) -> Array:
@@ -167,19 +166,18 @@ def _three(
     contact: CoatedContact, middle: Solution, solve: Callable[[CoatedContact], Solution]
 ) -> tuple[Array, Array]:
     """State with S = (W/delta) d log W / d log delta from a load above and one below."""
-    low, high = (
-        solve(CoatedContact(contact.radius, contact.load * exp(s), contact.coatings, contact.substrate))
-        for s in (-STEP, STEP)
-    )
+    low, high = (solve(replace(contact, load=contact.load * exp(s))) for s in (-STEP, STEP))
     x = np.log([low.approach, middle.approach, high.approach])
     m = 2 * STEP / (x[2] - x[0])
-    # The second derivative of log W; the third, which the quotient leaves out, is no larger.
+    # The second derivative of log W; the third, which the quotient neglects, is no larger.
     bend = abs(STEP / (x[2] - x[1]) - STEP / (x[1] - x[0])) / (x[2] - x[0]) * 2
     noise = sum(one.uncertainty.approach / one.approach for one in (low, high)) / (x[2] - x[0])
-    state, spread = _one(contact, middle)
+    state, uncertainty = _one(contact, middle)
     state[3] = m * contact.load / middle.approach
-    spread[3] = state[3] * (noise + bend / m * (0.5 * (x[2] - x[0])) ** 2 + spread[1] / middle.approach)
-    return state, spread
+    uncertainty[3] = state[3] * (
+        noise + bend / m * (0.5 * (x[2] - x[0])) ** 2 + uncertainty[1] / middle.approach
+    )
+    return state, uncertainty
 
 
 def _series(X: Array, coefficients: tuple[float, ...]) -> Array:

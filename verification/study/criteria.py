@@ -1,10 +1,10 @@
-"""Which thickness is preferable: a stress of each failure mode held against a strength.
+"""Preferable thickness: the stress of each failure mode compared with a strength.
 
     utilisation u_i(h) = safety * stress_i(h) / strength_i,   governing mode: the largest u_i
 
-A thickness is admissible where every u_i, its stress raised by its own numerical uncertainty, is at most 1;
-the preferable one has the smallest largest u_i. Without strengths the criterion is the smallest largest of a
-few stresses over p_h, as if their strengths were equal.
+A thickness is admissible where every u_i, computed with its stress plus numerical uncertainty, is at most 1;
+the preferable one minimises the largest u_i. Without strengths the criterion is the least maximum of a few
+stresses over p_h, which is the same with equal strengths.
 """
 
 from dataclasses import dataclass
@@ -23,7 +23,7 @@ from verification.study.quantities import Stress
 __all__ = ["MODES", "Criteria", "Judged", "judged"]
 
 
-# What each stress of a study breaks.
+# Failure mode of each stress.
 MODES = {
     "sigma_xx_surface": "the coating cracks at its surface",
     "sigma_xx_base": "the coating cracks at its base",
@@ -33,14 +33,14 @@ MODES = {
     "von_mises_coating": "the coating yields",
     "von_mises_substrate": "the substrate yields",
 }
-PLACES = 4001  # on which a curve is read between its points
+SAMPLES = 4001  # of an interpolated curve
 
 
 class Criteria(Strict):
     """The table ``[criteria]`` of a study file.
 
-    strength : what each stress must stay below [Pa].   safety : factor on every stress.
-    minimise : without strengths, the stresses whose largest is to be smallest.
+    strength : upper limit of each stress [Pa].   safety : factor on every stress.
+    minimise : without strengths, the stresses whose maximum is minimised.
     """
 
     strength: Annotated[dict[Stress, Annotated[float, Field(gt=0)]], Field(min_length=1)] | None = None
@@ -54,13 +54,13 @@ class Criteria(Strict):
         return self
 
     def strengths(self, p_h: float) -> dict[str, float]:
-        """Strength [Pa] of every mode that is judged; ``p_h`` [Pa] for all where none is given."""
+        """Strength [Pa] of every mode in the criterion; ``p_h`` [Pa] for all where none is given."""
         if self.strength is not None:
             return {mode: self.strength[mode] for mode in MODES if mode in self.strength}
         chosen = self.minimise or ["sigma_xx_surface", "sigma_xx_base", "sigma_xz_interface"]
         return {mode: p_h for mode in MODES if mode in chosen}
 
-    def sentence(self) -> str:
+    def description(self) -> str:
         """The criterion in words."""
         if self.strength is None:
             names = ", ".join(self.strengths(1.0))
@@ -75,13 +75,13 @@ class Criteria(Strict):
 
 @dataclass(frozen=True, eq=False)
 class Judged:
-    """What a criterion says of one curve; thicknesses over a_h.
+    """A criterion evaluated on one curve; thicknesses over a_h.
 
-    modes : of those judged.   utilisation : (modes, points of the curve).   limited : strengths were given.
-    h, largest, governing : dense places, the largest utilisation there, the number of its mode.
+    modes : of the criterion.   utilisation : (modes, points of the curve).   limited : strengths were given.
+    h, largest, governing : dense samples, the largest utilisation there, the number of its mode.
     admissible : ranges of h.   preferable : (h, largest utilisation, mode).
-    reading : what reading between the points may be wrong by: largest change of a utilisation, at points
-    left out one by one, as a fraction of the largest utilisation.
+    interpolation_error : largest change of a utilisation at points left out one by one, over the largest
+    utilisation.
     """
 
     curve: Curve
@@ -93,11 +93,11 @@ class Judged:
     governing: NDArray[np.int_]
     admissible: tuple[tuple[float, float], ...]
     preferable: tuple[float, float, str]
-    reading: float
+    interpolation_error: float
 
 
 def judged(curve: Curve, criteria: Criteria) -> Judged:
-    """Hold ``curve`` against ``criteria``. Between its points it is read by monotone cubics in log h.
+    """Evaluate ``criteria`` on ``curve``, interpolated by monotone cubics in log h.
 
     Raises ValueError for a curve of fewer than two points.
     """
@@ -106,15 +106,15 @@ def judged(curve: Curve, criteria: Criteria) -> Judged:
     strengths = criteria.strengths(curve.p_h)
     scale = {mode: criteria.safety * curve.p_h / value for mode, value in strengths.items()}
     used = np.array([scale[mode] * curve.stress[mode] for mode in strengths])
-    sure = np.array(
+    bound = np.array(
         [scale[mode] * (curve.stress[mode] + np.nan_to_num(curve.uncertainty[mode])) for mode in strengths]
     )
     s = np.log(curve.h)
-    h = np.geomspace(curve.h[0], curve.h[-1], PLACES)
+    h = np.geomspace(curve.h[0], curve.h[-1], SAMPLES)
     h[0], h[-1] = curve.h[0], curve.h[-1]
-    read = PchipInterpolator(s, used, axis=1)(np.log(h))
-    largest = read.max(axis=0)
-    governing = read.argmax(axis=0)
+    interpolated = PchipInterpolator(s, used, axis=1)(np.log(h))
+    largest = interpolated.max(axis=0)
+    governing = interpolated.argmax(axis=0)
     best = int(largest.argmin())
     modes = tuple(strengths)
     return Judged(
@@ -125,14 +125,14 @@ def judged(curve: Curve, criteria: Criteria) -> Judged:
         h,
         largest,
         governing,
-        _ranges(h, PchipInterpolator(s, sure, axis=1)(np.log(h)).max(axis=0)),
+        _ranges(h, PchipInterpolator(s, bound, axis=1)(np.log(h)).max(axis=0)),
         (float(h[best]), float(largest[best]), modes[governing[best]]),
-        _reading(s, used),
+        _interpolation_error(s, used),
     )
 
 
 def _ranges(h: Array, largest: Array) -> tuple[tuple[float, float], ...]:
-    """Where ``largest`` is at most 1, the ends found by straight lines between dense places."""
+    """Ranges where ``largest`` is at most 1, their ends by linear interpolation between samples."""
     inside = largest <= 1
     ranges = []
     starts = np.flatnonzero(inside & ~np.append(False, inside[:-1]))
@@ -148,16 +148,16 @@ def _crossing(h0: float, h1: float, u0: float, u1: float) -> float:
     return h0 + (h1 - h0) * (1 - u0) / (u1 - u0)
 
 
-def _reading(s: Array, used: Array) -> float:
-    """Largest error of reading the curve at an inner point from the others, over the largest utilisation.
+def _interpolation_error(s: Array, used: Array) -> float:
+    """Largest error of interpolating an inner point from the others, over the largest utilisation.
 
-    With a point left out its gap is twice as wide, so this is more than the error of the whole curve.
+    A point left out doubles the interval, so this exceeds the error of the whole curve.
     """
     if s.size < 4:
         return float("nan")
     worst = 0.0
     for i in range(1, s.size - 1):
         others = np.arange(s.size) != i
-        read = PchipInterpolator(s[others], used[:, others], axis=1)(s[i])
-        worst = max(worst, float(np.abs(read - used[:, i]).max()))
+        interpolated = PchipInterpolator(s[others], used[:, others], axis=1)(s[i])
+        worst = max(worst, float(np.abs(interpolated - used[:, i]).max()))
     return worst / float(np.abs(used).max() or 1.0)

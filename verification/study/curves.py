@@ -1,6 +1,6 @@
-"""The table of a study as curves over the thickness.
+"""The table of a study as curves over the thickness, one for each modulus and friction.
 
-A curve is one modulus with one friction; the other sources' rows are marks beside it.
+The rows of the other sources are marks beside the curve.
 """
 
 from collections.abc import Mapping
@@ -19,12 +19,12 @@ __all__ = ["Curve", "Difference", "curves", "differences"]
 
 @dataclass(frozen=True, eq=False)
 class Curve:
-    """Everything over ``h``, the thickness over a_h, in increasing order; p_h [Pa], a_h and delta_h [m].
+    """Quantities over ``h``, the thickness over a_h, in increasing order; p_h [Pa], a_h and delta_h [m].
 
-    stress, uncertainty : each of QUANTITIES over p_h.   x, z : their places over a_h.
+    stress, uncertainty : each of QUANTITIES over p_h.   x, z : their positions over a_h.
     scalar : peak_pressure, contact_radius, approach over p_h, a_h, delta_h.
     marks : by source, by quantity the (h, value) of cross-checked points.
-    failures : (h, sentence) of points that could not be solved.
+    failures : (h, message) of points that could not be solved.
     """
 
     ratio: float
@@ -47,7 +47,7 @@ class Curve:
         return f"E1/E2 = {self.ratio:.4g}, f = {self.friction:g}"
 
     def extremes(self, quantity: str) -> tuple[tuple[float, float], tuple[float, float]]:
-        """(h, value) of the smallest and of the largest value among the solved points."""
+        """(h, value) of the smallest and of the largest value of the solved points."""
         value = self.stress.get(quantity, self.scalar.get(quantity))
         assert value is not None
         low, high = int(value.argmin()), int(value.argmax())
@@ -56,9 +56,10 @@ class Curve:
 
 @dataclass(frozen=True)
 class Difference:
-    """How far ``source`` is from the semi-analytical method in ``quantity`` at its worst point.
+    """Largest difference of ``source`` from the semi-analytical method in ``quantity``.
 
-    largest : |difference| over p_h, a_h or delta_h.   stated : sum of the uncertainties there, over the same.
+    largest : |difference| over p_h, a_h or delta_h.   stated : sum of the uncertainties at that point, over
+    the same.
     """
 
     source: str
@@ -78,7 +79,7 @@ def curves(columns: Mapping[str, NDArray[Any]]) -> tuple[Curve, ...]:
 
 
 def differences(columns: Mapping[str, NDArray[Any]]) -> tuple[Difference, ...]:
-    """The worst difference of each other source, by quantity; a source that solved nothing is absent."""
+    """The largest difference of each other source by quantity; a source that solved nothing is absent."""
     first = {
         int(p): i
         for i, (p, source, status) in enumerate(
@@ -95,16 +96,16 @@ def differences(columns: Mapping[str, NDArray[Any]]) -> tuple[Difference, ...]:
         beside = np.array([first[int(p)] for p in columns["point"][here]])
         for quantity, scale in [*((q, "p_h") for q in QUANTITIES), *SCALARS.items()]:
             over = columns[scale][here]
-            gap = np.abs(columns[quantity][here] - columns[quantity][beside]) / over
-            spread = columns[f"{quantity}_uncertainty"]
-            i = int(np.nanargmax(gap))
+            difference = np.abs(columns[quantity][here] - columns[quantity][beside]) / over
+            uncertainty = columns[f"{quantity}_uncertainty"]
+            i = int(np.nanargmax(difference))
             found.append(
                 Difference(
                     source,
                     quantity,
                     here.size,
-                    float(gap[i]),
-                    float((spread[here[i]] + spread[beside[i]]) / over[i]),
+                    float(difference[i]),
+                    float((uncertainty[here[i]] + uncertainty[beside[i]]) / over[i]),
                     float(columns["modulus_ratio"][here[i]]),
                     float(columns["thickness_over_a_h"][here[i]]),
                     float(columns["friction"][here[i]]),

@@ -1,9 +1,9 @@
 """A study from its plan to its table, on Dask.
 
-One process, the client, holds the plan, the cache, the table; workers only answer requests, so they need the
-package and nothing else. Solves go out in a window that slides, so that memory does not grow with the study.
-An answer is stored before it counts; the table is written anew, whole, from what is stored, in the order of
-the points: it is the same whatever the order of the answers, however often the study was killed.
+The client process holds plan, cache and table; workers answer requests and need only the package. A bounded
+number of solves is submitted at a time, so that memory does not grow with the study. An answer is stored
+before it is counted, and the table is written whole from the stored answers in the order of the points, so
+that it depends neither on the order of the answers nor on interruptions.
 """
 
 import gc
@@ -30,14 +30,14 @@ from verification.study.table import SOURCES, write_table
 
 __all__ = ["Outcome", "SchedulerError", "connected", "run_study", "table_path"]
 
-WINDOW = 3  # solves out at a time for each thread of the cluster
-DIED = "every worker it was sent to died, most likely for want of memory; run fewer --jobs"
+WINDOW = 3  # solves submitted at a time for each thread of the cluster
+DIED = "every worker that it was submitted to was killed, most likely for lack of memory; use fewer --jobs"
 LOGGERS = ("distributed", "distributed.client", "tornado", "tornado.application")
-PATIENCE = 60.0  # s to wait for the first worker
+WAIT = 60.0  # s, for the first worker
 PAUSE = 5.0  # s between two writings of the table
-SHARE = 0.02  # of the time may go into writing the table while it grows
-# With Dask's own setting every array freed goes back to the system, and a third of the time into asking anew;
-# what is kept between solves here is bounded all the same.
+SHARE = 0.02  # of the time, at most, is spent on writing the table while it grows
+# With Dask's own setting every freed array is returned to the system, and a third of the time is spent on
+# allocating anew; the memory kept between solves here is bounded too.
 MALLOC = {"MALLOC_ARENA_MAX": 1, "MALLOC_MMAP_THRESHOLD_": 2**25, "MALLOC_TRIM_THRESHOLD_": 2**26}
 
 Report = Callable[[str, int, int], None]  # source, points done, points in all
@@ -49,11 +49,11 @@ class SchedulerError(Exception):
 
 @dataclass(frozen=True)
 class Outcome:
-    """What a run of a study came to.
+    """Outcome of a run of a study.
 
     done, kept : solves answered by this run, found in the cache.
-    damaged : sentences on stored answers that were not whole.   failed : rows with a failure.
-    lost : sentence, by key, on each solve that no worker could answer.
+    damaged : messages on damaged stored answers.   failed : rows with a failure.
+    lost : message, by key, on each solve that no worker could answer.
     """
 
     table: Path
@@ -69,7 +69,7 @@ class Outcome:
 
 
 def table_path(folder: Path, study: Study) -> Path:
-    """Where the table of ``study`` lies in a run directory."""
+    """Path of the table of ``study`` in a run directory."""
     return folder / f"{study.name}.parquet"
 
 
@@ -82,29 +82,29 @@ def connected(scheduler: str | None, jobs: int | None) -> Iterator[Any]:
     import dask
     from distributed import Client, LocalCluster
 
-    # A client of an earlier study that is thrown away while a new one starts would wait for it forever.
+    # A client of an earlier study that is collected while a new one starts would wait for it forever.
     gc.collect()
     if scheduler is not None:
-        with _hushed():
+        with _silent_logs():
             try:
                 client = Client(scheduler, timeout="5s", set_as_default=False)
             except (OSError, ValueError, TimeoutError) as error:
-                said = " ".join(str(error).split())[:200]
+                message = " ".join(str(error).split())[:200]
                 raise SchedulerError(
-                    f"--scheduler {scheduler}: {said}; start one with: dask scheduler"
+                    f"--scheduler {scheduler}: {message}; start one with: dask scheduler"
                 ) from None
             with client:
                 yield client
         return
     environment = {
         "distributed.nanny.pre-spawn-environ": MALLOC | dict.fromkeys(THREAD_VARIABLES, 1),
-        # It keeps what it saw for an hour, 1 MB a solve, and takes a quarter of the time.
+        # It stores an hour of profiles, 1 MB a solve, and takes a quarter of the time.
         "distributed.worker.profile.enabled": False,
         "distributed.admin.log-length": 100,
         "logging": {"distributed": "critical", "tornado": "critical"},
     }
-    with _hushed(), dask.config.set(environment):
-        with _deaf():
+    with _silent_logs(), dask.config.set(environment):
+        with _interrupt_ignored():
             cluster = LocalCluster(
                 n_workers=jobs or cores(),
                 threads_per_worker=1,
@@ -119,8 +119,8 @@ def connected(scheduler: str | None, jobs: int | None) -> Iterator[Any]:
 
 
 @contextmanager
-def _deaf() -> Iterator[None]:
-    """Processes started here do not hear Ctrl-C, which a terminal sends to all; the client acts on it."""
+def _interrupt_ignored() -> Iterator[None]:
+    """Processes started here ignore Ctrl-C, which a terminal sends to all; the client acts on it."""
     if threading.current_thread() is not threading.main_thread():
         yield
         return
@@ -132,8 +132,8 @@ def _deaf() -> Iterator[None]:
 
 
 @contextmanager
-def _hushed() -> Iterator[None]:
-    """Dask's loggers silent: what goes wrong with a worker is said by the study, once."""
+def _silent_logs() -> Iterator[None]:
+    """Dask's loggers silent: the study reports failures of workers itself."""
     loggers = [logging.getLogger(name) for name in LOGGERS]
     levels = [logger.level for logger in loggers]
     for logger in loggers:
@@ -154,12 +154,12 @@ def run_study(
     report: Report = lambda source, done, total: None,
     solve: Callable[[dict[str, Any]], dict[str, Any]] = answer,
 ) -> Outcome:
-    """Solve whatever of ``study`` is not in the cache under ``folder``, write its table.
+    """Solve the part of ``study`` that is not in the cache under ``folder`` and write its table.
 
-    client : opens a client of a Dask cluster, a context; asked only where there is something to solve.
+    client : opens a client of a Dask cluster, a context; called only where there is something to solve.
     limit : only the first so many points.   solve : answers a request in place of ``point.answer``.
     Raises StoreError where ``folder`` cannot be written or another run holds it, SchedulerError where the
-    cluster fails, KeyboardInterrupt after writing the table of what is done.
+    cluster fails, KeyboardInterrupt after writing the table of the stored answers.
     """
     with locked(folder):
         run = _Run(study, folder, limit, report)
@@ -176,18 +176,18 @@ def run_study(
 
 
 def _threads(client: Any) -> int:
-    """How many solves the cluster works on at a time; waits for its first worker."""
+    """Number of threads of the cluster, after its first worker has joined."""
     try:
-        client.wait_for_workers(1, timeout=PATIENCE)
+        client.wait_for_workers(1, timeout=WAIT)
     except TimeoutError:
         raise SchedulerError(
-            f"no worker joined the scheduler within {PATIENCE:.0f} s; start one with: dask worker ADDRESS"
+            f"no worker joined the scheduler within {WAIT:.0f} s; start one with: dask worker ADDRESS"
         ) from None
     return sum(client.nthreads().values())
 
 
 class _Run:
-    """The state of one run: what was asked for, what came of it."""
+    """State of one run."""
 
     def __init__(self, study: Study, folder: Path, limit: int | None, report: Report) -> None:
         self.study, self.limit, self.report = study, limit, report
@@ -198,7 +198,7 @@ class _Run:
         self.damaged: list[str] = []
         self.lost: dict[str, str] = {}
         self.complete = False
-        self.asked: set[bytes] = set()
+        self.requested: set[bytes] = set()
         self.total = dict.fromkeys(SOURCES, 0)
         self.finished = dict.fromkeys(SOURCES, 0)
         for one in self.solves():
@@ -210,73 +210,75 @@ class _Run:
         self.begin = self.written = time.perf_counter()
 
     def outcome(self) -> Outcome:
-        """What the run came to so far."""
+        """Outcome of the run so far."""
         seconds = time.perf_counter() - self.begin
         counts = (self.points, self.rows, self.failed, self.done, self.kept)
         return Outcome(self.table, *counts, tuple(self.damaged), dict(self.lost), self.complete, seconds)
 
     def solves(self) -> Iterator[Solve]:
-        """The solves of the points asked for, in the order of the table."""
+        """The solves of the requested points, in the order of the table."""
         for one in self.study.solves():
             if one.first >= self.points:
                 return
             yield one
 
     def covered(self, one: Solve) -> int:
-        """How many of the points asked for a solve speaks for."""
+        """Number of requested points that a solve covers."""
         return min(len(self.study.frictions), self.points - one.first)
 
     def missing(self) -> Iterator[Solve]:
-        """The distinct solves that the cache cannot answer: first the curves, then their checks."""
+        """The distinct solves that are not in the cache: first the curves, then their checks."""
         for source in SOURCES:
             for one in self.solves():
                 if one.source != source:
                     continue
                 key = solve_key(one.request)
                 digest = bytes.fromhex(key)
-                if digest in self.asked or self._stored(key, one):
+                if digest in self.requested or self._stored(key, one):
                     self.count(one)
                     continue
-                self.asked.add(digest)
+                self.requested.add(digest)
                 yield one
 
     def solve(self, waiting: Iterator[Solve], client: Any, function: Callable[..., Any]) -> None:
-        """Keep a window of solves out until none is left; store each answer as it arrives."""
+        """Keep a bounded number of solves submitted until none is left; store each answer."""
         from distributed import as_completed
 
         threads = _threads(client)
-        out: dict[Any, tuple[Solve, str]] = {}
+        pending: dict[Any, tuple[Solve, str]] = {}
 
         def send(one: Solve) -> Any:
             key = solve_key(one.request)
             self._note("sent", key, one.source)
             future = client.submit(function, one.request, key=f"{one.source}-{key}", pure=False)
-            out[future] = (one, key)
+            pending[future] = (one, key)
             return future
 
         arriving = as_completed([send(one) for one in islice(waiting, WINDOW * threads)], loop=client.loop)
         try:
             for future in arriving:
-                one, key = out.pop(future)
+                one, key = pending.pop(future)
                 self._take(one, key, future)
                 future.release()
                 following = next(waiting, None)
                 if following is not None:
                     arriving.add(send(following))
-                if not out:
+                if not pending:
                     break
         finally:
-            if out and client.status == "running":
-                client.cancel(list(out), force=True)
+            if pending and client.status == "running":
+                client.cancel(list(pending), force=True)
 
     def _take(self, one: Solve, key: str, future: Any) -> None:
         if future.cancelled():
-            raise SchedulerError("the scheduler is gone; what was solved is kept, the same command goes on")
+            raise SchedulerError(
+                "the scheduler is lost; the answers are stored, and the same command continues"
+            )
         error = future.exception()
         if error is not None:
-            # A solver's failure is an answer; this is a worker's: it is not stored, the next run tries again.
-            died = type(error).__name__ == "KilledWorker"
-            self.lost[key] = DIED if died else sentence(error)
+            # A solver's failure is an answer; a worker's is not stored, so that the next run solves again.
+            killed = type(error).__name__ == "KilledWorker"
+            self.lost[key] = DIED if killed else sentence(error)
             self._note("lost", key, one.source)
             self.count(one)
             return
@@ -290,7 +292,7 @@ class _Run:
         self._note("stored", key, one.source, seconds=found["seconds"], memory=found.get("memory", 0))
         self.done += 1
         self.count(one)
-        self._write_now_and_then()
+        self._write_at_intervals()
 
     def _stored(self, key: str, one: Solve) -> bool:
         if not self.cache.has(key):
@@ -304,7 +306,7 @@ class _Run:
         return True
 
     def count(self, one: Solve) -> None:
-        """Report the points that a finished solve speaks for."""
+        """Report the points that a finished solve covers."""
         self.finished[one.source] += self.covered(one)
         self.report(one.source, self.finished[one.source], self.total[one.source])
 
@@ -315,7 +317,7 @@ class _Run:
         with self.ledger.open("a") as file:
             file.write(json.dumps(line) + "\n")
 
-    def _write_now_and_then(self) -> None:
+    def _write_at_intervals(self) -> None:
         now = time.perf_counter()
         if now - self.written > PAUSE and self.spent < SHARE * (now - self.begin):
             self.write_table()
@@ -344,9 +346,9 @@ class _Run:
     def _rows_of(self, one: Solve) -> list[dict[str, Any]]:
         key = solve_key(one.request)
         if key in self.lost:
-            sentence = self.lost[key]
             failed = [
-                {"friction": f, "status": "failed", "failure": sentence} for f in one.request["frictions"]
+                {"friction": f, "status": "failed", "failure": self.lost[key]}
+                for f in one.request["frictions"]
             ]
             found: dict[str, Any] = {"rows": failed, "seconds": 0.0, "versions": {}}
         else:

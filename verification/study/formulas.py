@@ -1,11 +1,7 @@
-"""How far formulas are from the exact answer: effective moduli, thin and thick limits, moduli side by side.
+"""Error of formulas against the exact solution: effective moduli, limits of thickness, a family of moduli."""
 
-python -m verification.study.formulas RESULT.json
-"""
-
-import sys
 import time
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -16,12 +12,11 @@ from verification.problem.arrays import Array
 from verification.problem.contact import CoatedContact
 from verification.problem.profile import lines_of
 from verification.running.pool import Task
+from verification.running.records import decode, encode
 from verification.running.result import CaseResult, SourceResult, describe
-from verification.running.result import from_json as case_from_json
-from verification.running.result import to_json as case_to_json
 from verification.running.store import write_checked
 from verification.sampling.lines import sample, sample_contact
-from verification.sources.references import integral_equation
+from verification.sources.exact import solve_exactly
 from verification.sources.references.effective_modulus import (
     FORMULAS,
     I0,
@@ -32,12 +27,13 @@ from verification.sources.references.effective_modulus import (
 )
 from verification.sources.references.flat_punch import pressed
 from verification.sources.references.layer_limits import spring_bed, squeezed_film, thick
+from verification.sources.registry import EXACT
 
 __all__ = ["EffectiveStudy", "Limit", "from_json", "measure", "task", "to_json"]
 
 Rows = tuple[tuple[float, ...], ...]
 
-SCHEMA = "coatcheck-effective/1"
+SCHEMA = "coatcheck-effective/2"
 NU = 0.3  # of film and substrate on the map
 RIGID = (1e9, 0.3)  # under a layer of 1 Pa
 # Fewer nodes than usual: 1e-8 of kappa on the map.
@@ -50,7 +46,7 @@ FRICTION = (0.0, 0.25)
 class Limit:
     """One curve of a limit: exact over limit, less 1, over a/h.
 
-    panel : the law held against the exact answer.   name : the solid.
+    panel : the quantity and the limit.   name : the solid.
     """
 
     panel: str
@@ -63,8 +59,8 @@ class Limit:
 class EffectiveStudy:
     """E_eff/E2* over ``ratio`` = E1/E2 (rows) and ``thickness`` = h/a, exact and by each of ``formulas``.
 
-    weights : largest departure of Gao's I0 and I1 from the exact first derivatives.
-    refitted : E1/E2, x0 of Perriot and Barthel, x0 and n fitted to the exact answer, a row for each ratio.
+    weights : largest error of Gao's I0 and I1 against the exact first derivatives.
+    refitted : E1/E2, x0 of Perriot and Barthel, x0 and n fitted to the exact solution, a row for each ratio.
     family : contacts of O'Sullivan and King's configuration by the exact reference.
     """
 
@@ -73,7 +69,7 @@ class EffectiveStudy:
     exact: Rows = ()
     formulas: tuple[tuple[str, Rows], ...] = ()
     limits: tuple[Limit, ...] = ()
-    weights: tuple[float, float] = (float("nan"), float("nan"))
+    weights: tuple[float, ...] = ()
     refitted: tuple[tuple[float, ...], ...] = ()
     family: tuple[CaseResult, ...] = ()
     seconds: float = 0.0
@@ -106,12 +102,12 @@ def measure(points: int = 21) -> EffectiveStudy:
 
 
 def _effective(ratio: float, nu: float, h: float, base: float = NU) -> float:
-    """E_eff = S/2a at a = 1 of a film of modulus ``ratio`` on a substrate of 1."""
+    """E_eff = S/2a at a = 1 of a film of modulus ``ratio`` on a substrate of modulus 1."""
     return ratio / (1 - nu**2) * pressed(1.0, ((ratio, nu, h),), (1.0, base), NODES, TAIL).kappa
 
 
 def _weights() -> tuple[float, float]:
-    """Gao's I0 and I1 against differences of the exact stiffness around the homogeneous solid."""
+    """Error of Gao's I0 and I1 against differences of the exact stiffness about the homogeneous solid."""
     step, first, second = 1e-4, [], []
     for nu in (0.0, NU):
         for h in (0.2, 1.0, 4.0):
@@ -132,8 +128,8 @@ def _stiffness(nu1: float, nu2: float, h: float) -> float:
 
 
 def _perriot_barthel(ratio: Array, thickness: Array, exact: Array) -> tuple[Array, Rows]:
-    """Their map with the n between their bounds that leaves the smallest departure for each ratio; and, for
-    each ratio, E1/E2, their x0, then x0 and n fitted to the exact answer by least squares."""
+    """Their map, for each ratio with the n within their bounds of the smallest error; for each ratio E1/E2,
+    their x0, then x0 and n fitted to the exact solution by least squares."""
     table, fits = np.empty_like(exact), []
     for i, r in enumerate(ratio.tolist()):
         film, base = (r, NU), (1.0, NU)
@@ -189,29 +185,22 @@ def _member(ratio: float, friction: float) -> CaseResult:
     """The configuration of O'Sullivan and King by the exact reference: h = a_h, nu = 0.3."""
     started = time.perf_counter()
     bare = CoatedContact(10e-3, 20.0, (), (210e9, 0.3), friction)
-    problem = CoatedContact(10e-3, 20.0, ((ratio * 210e9, 0.3, bare.a_h),), (210e9, 0.3), friction)
-    found = integral_equation.solve(
-        radius=problem.radius,
-        load=problem.load,
-        coatings=problem.coatings,
-        substrate=problem.substrate,
-        friction=friction,
-        estimate_uncertainty=False,
-    )
+    problem = replace(bare, coatings=((ratio * 210e9, 0.3, bare.a_h),))
+    found = solve_exactly(problem, {"estimate_uncertainty": False})
     x, z = (
         2.5 * bare.a_h * np.linspace(-1 if friction else 0, 1, 101),
         4 * bare.a_h * np.linspace(0.005, 1, 60) ** 1.5,
     )
-    profiles = list(sample_contact(found, "integral_equation"))
+    profiles = list(sample_contact(found, EXACT[0], problem))
     for line in lines_of(problem):
-        profiles += sample(found, "integral_equation", line, z if line.depth is None else x)
+        profiles += sample(found, EXACT[0], line, z if line.depth is None else x)
     seconds = time.perf_counter() - started
     return CaseResult(
         name=f"exact-{ratio:g}-{friction:g}",
         title=f"E1/E2 = {ratio:g}, h = a_h, f = {friction:g}",
         source="configuration of E. J. O'Sullivan and R. B. King, J. Tribol. 110 (1988) 235-240",
         problem=describe(problem),
-        sources=(SourceResult("integral_equation", seconds, None),),
+        sources=(SourceResult(EXACT[0], seconds, None),),
         profiles=tuple(profiles),
         verdicts=(),
         seconds=seconds,
@@ -226,57 +215,26 @@ def _rows(table: Array) -> Rows:
 def task(folder: Path) -> Task[EffectiveStudy]:
     """The study as a task beside the cases of a run."""
     path = folder / "effective-modulus.json"
-    command = ("verification.study.formulas", str(path))
-    return Task(
-        "effective moduli",
-        command,
-        path,
-        from_json,
-        lambda reason, s: EffectiveStudy(failure=reason, seconds=s),
-    )
+    command = ("verification.study.formulas:main", str(path))
+    return Task("effective moduli", command, path, from_json, _failed)
+
+
+def _failed(reason: str, seconds: float) -> EffectiveStudy:
+    return EffectiveStudy(failure=reason, seconds=seconds)
 
 
 def to_json(study: EffectiveStudy) -> dict[str, Any]:
-    """Plain dictionaries, lists, numbers and text."""
-    data = {name: value for name, value in vars(study).items() if name not in ("family", "limits")}
-    limits = [asdict(limit) for limit in study.limits]
-    return {"schema": SCHEMA, **data, "limits": limits, "family": [case_to_json(one) for one in study.family]}
+    """The study as strict JSON."""
+    return {"schema": SCHEMA, **encode(study)}
 
 
 def from_json(data: dict[str, Any]) -> EffectiveStudy:
-    """The inverse of ``to_json``. Raises ValueError where the schema is another one."""
+    """The inverse of ``to_json``. Raises ValueError for another schema or a field that does not fit."""
     if data.get("schema") != SCHEMA:
         raise ValueError(f"schema = {data.get('schema')!r}; this version reads {SCHEMA!r}, run it again")
-
-    def rows(table: Any) -> Rows:
-        return tuple(tuple(float(v) for v in row) for row in table)
-
-    return EffectiveStudy(
-        ratio=tuple(map(float, data["ratio"])),
-        thickness=tuple(map(float, data["thickness"])),
-        exact=rows(data["exact"]),
-        formulas=tuple((str(name), rows(table)) for name, table in data["formulas"]),
-        limits=tuple(
-            Limit(
-                one["panel"],
-                one["name"],
-                tuple(map(float, one["a_over_h"])),
-                tuple(map(float, one["excess"])),
-            )
-            for one in data["limits"]
-        ),
-        weights=(float(data["weights"][0]), float(data["weights"][1])),
-        refitted=rows(data["refitted"]),
-        family=tuple(case_from_json(one) for one in data["family"]),
-        seconds=float(data["seconds"]),
-        failure=str(data["failure"]),
-    )
+    return decode(EffectiveStudy, data)
 
 
 def main(path: str) -> None:
     """Measure and store at ``path``."""
     write_checked(Path(path), to_json(measure()))
-
-
-if __name__ == "__main__":
-    main(*sys.argv[1:])

@@ -1,7 +1,7 @@
-"""The plan of a study: what its TOML file asks for, solve by solve.
+"""The plan of a study: its TOML file as a sequence of solves.
 
-The thicknesses of a range {from, to, count} crowd around its geometric middle, where the stresses turn from
-those of the bare substrate to those of the bulk coating:
+The thicknesses of a range {from, to, count} are denser about its geometric middle, where the stresses change
+from those of the bare substrate to those of the bulk coating:
 
     h = sqrt(from to) (to/from)^((3 t + 2 t^3)/10),   t = -1 .. 1 in equal steps
 
@@ -30,9 +30,9 @@ MOST_POINTS = 1_000_000
 
 @dataclass(frozen=True)
 class Solve:
-    """One contact solved by one source; it speaks for every friction of the study.
+    """One contact solved by one source; it covers every friction of the study.
 
-    first : number of the point of its first friction.  request : what ``point.answer`` takes.
+    first : number of the point of its first friction.  request : argument of ``point.answer``.
     """
 
     first: int
@@ -47,8 +47,8 @@ class Solve:
 class Study:
     """A sphere on coatings of every modulus [Pa] and thickness [m], at every friction; SI.
 
-    cross_check : every such point is also solved by the other sources; 0 none.
-    numerics : each source's own keywords.  criteria : what is held against the curves.  text : the file.
+    cross_check : every point whose number is a multiple is also solved by the other sources; 0 none.
+    numerics : each source's own keywords.  criteria : of the preferable thickness.  text : the file.
     """
 
     name: str
@@ -67,7 +67,7 @@ class Study:
 
     @property
     def points(self) -> int:
-        """Number of points; they count through frictions, then thicknesses, then moduli."""
+        """Number of points; friction varies fastest, then thickness, then modulus."""
         return len(self.moduli) * len(self.thicknesses) * len(self.frictions)
 
     def solves(self) -> Iterator[Solve]:
@@ -135,7 +135,7 @@ Positive = Annotated[float, Field(gt=0)]
 Values = Annotated[list[Positive], Field(min_length=1, max_length=100_000)]
 
 
-# Told apart by what stands there, so that a complaint speaks of one of them only.
+# Discriminated by type, so that an error message concerns one of them only.
 Sweep = Annotated[
     Annotated[Values, Tag("list")] | Annotated[_Range, Tag("range")],
     Discriminator(lambda given: "range" if isinstance(given, dict | _Range) else "list"),
@@ -179,12 +179,12 @@ class _StudyFile(Strict):
 
 
 def read_study_file(path: Path) -> Study:
-    """Read and check one study file. Raises CaseError: one sentence with file and key."""
+    """Read and check one study file. Raises CaseError, whose message names file and key."""
     return parse_study(read_bounded(path, "study", "one sweep"), path)
 
 
 def parse_study(raw: bytes, path: Path) -> Study:
-    """Check the content of a study file; ``path`` names it in complaints. Raises CaseError."""
+    """Check the content of a study file; ``path`` names it in messages. Raises CaseError."""
     text, checked = read_toml(raw, path, _StudyFile)
     p, sweep = checked.problem, checked.sweep
     try:
@@ -207,11 +207,11 @@ def parse_study(raw: bytes, path: Path) -> Study:
         if not 1e-2 <= h / bare.a_h <= 1e2:
             raise CaseError(
                 f"{path}: sweep.{key}: value {i + 1} is {h / bare.a_h:.3g} a_h, with a_h = {bare.a_h:.3g} m; "
-                "a study is made for 0.01 to 100"
+                "a study supports 0.01 to 100"
             )
     for E in moduli:
         if not 1e-3 <= E / p.substrate.E <= 1e3:
-            raise CaseError(f"{path}: E1/E2 = {E / p.substrate.E:.3g}; a study is made for 1e-3 to 1e3")
+            raise CaseError(f"{path}: E1/E2 = {E / p.substrate.E:.3g}; a study supports 1e-3 to 1e3")
     study = Study(
         name=path.stem,
         title=checked.title,
@@ -224,8 +224,9 @@ def parse_study(raw: bytes, path: Path) -> Study:
         frictions=tuple(sweep.friction),
         cross_check=sweep.cross_check,
         numerics={
-            "semianalytic": checked.semianalytic.model_dump(exclude_none=True),
-            "fem_reference": checked.fem_reference.model_dump(exclude_none=True),
+            source: getattr(checked, source).model_dump(exclude_none=True)
+            for source in SOURCES
+            if source in _StudyFile.model_fields
         },
         criteria=checked.criteria,
         text=text,

@@ -1,11 +1,11 @@
 """The stress of a solution along x at one depth, as a function of friction.
 
-The pressure does not depend on f (Goodman) and stress is linear in it, so that one solution at friction g
-speaks for every f:
+The pressure does not depend on f (Goodman) and stress is linear in f, so that one solution at friction g
+gives the stress at every f:
 
     sigma = sigma_n + f sigma_t
 
-In the plane y = 0 the two parts have opposite parity in x, which tells them apart from the values at x, -x.
+In the plane y = 0 the two parts have opposite parity in x, so that the values at x and -x determine both.
 Between the samples both are quintic splines. At the contact edge the surface stress has a cusp: sigma_n is
 smooth outside r = a and has the root of the pressure inside; sigma_t is smooth inside and has a root outside.
 Its value at r = a is therefore the limit of sigma_n from outside with that of sigma_t from inside, for every
@@ -20,24 +20,24 @@ from numpy.typing import NDArray
 from scipy.interpolate import make_interp_spline
 
 from verification.problem.arrays import Array
-from verification.problem.contact import Solution
+from verification.problem.contact import Solution, stress_with_uncertainty
 
 __all__ = ["XX", "XZ", "YY", "ZZ", "Parts", "Plane", "crowded", "plane", "stress_at", "surface"]
 
 Curve = Callable[[Array], Array]
 
 XX, YY, ZZ, XZ = range(4)
-# what x -> -x does to the response to p; that to q has the opposite sign
+# factor of the response to p under x -> -x; that to q has the opposite sign
 PARITY = np.array([1.0, 1.0, 1.0, -1.0])
-SKIP = 0.02  # of a; nearer to the contact edge no method is asked for a surface stress
-WINDOW, BESIDE = 0.05, 8  # of a, samples in it: the strip from which a limit at the edge is drawn
+SKIP = 0.02  # of a; nearer to the contact edge no method is evaluated at the surface
+WINDOW, BESIDE = 0.05, 8  # of a, samples in it: the strip from which the limit at the edge is extrapolated
 LEAST = 33  # samples of a plane; below, the semi-analytical method sums point by point, which takes longer
 MIRRORED = 5  # samples repeated beyond x = 0, so that the splines know the parity
 
 
 @dataclass(frozen=True)
 class Parts:
-    """What p and what q = p cause, from ``solution`` at ``friction`` g > 0, or 0 where nothing slides."""
+    """Stress due to p and due to q = p, from ``solution`` at ``friction`` g > 0, or 0 without sliding."""
 
     solution: Solution
     friction: float
@@ -48,33 +48,24 @@ class Parts:
         The uncertainty is the solution's own, NaN where it has none.
         """
         x = np.stack([r, -r]) if self.friction else r[None, :]
-        sigma, spread = self._sampled(x, z, layer)
+        sigma, bound = self._sampled(x, z, layer)
         if not self.friction:
-            return sigma[:, 0], np.zeros_like(sigma[:, 0]), np.stack([spread[:, 0]] * 2)
+            return sigma[:, 0], np.zeros_like(sigma[:, 0]), np.stack([bound[:, 0]] * 2)
         right, left = sigma[:, 0], sigma[:, 1] * PARITY[:, None]
-        return (right + left) / 2, (right - left) / (2 * self.friction), np.moveaxis(spread, 1, 0)
+        return (right + left) / 2, (right - left) / (2 * self.friction), np.moveaxis(bound, 1, 0)
 
-    def uncertainty(self, spread: Array, friction: Array | float) -> Array:
+    def uncertainty(self, bound: Array, friction: Array | float) -> Array:
         """That of sigma_n + f sigma_t at x, (4, n), from those at x and -x, (2, 4, n).
 
         sigma(x) = (g + f)/2g S(x) +- (g - f)/2g S(-x), S the stress at friction g.
         """
         here = (1 + friction / self.friction) / 2 if self.friction else 1.0
-        return here * spread[0] + np.abs(1 - here) * spread[1]
+        return here * bound[0] + np.abs(1 - here) * bound[1]
 
     def _sampled(self, x: Array, z: float, layer: int) -> tuple[Array, Array]:
-        stated = self.solution.uncertainty is not None
-        both = getattr(type(self.solution), "stress_with_uncertainty", None)
-        if stated and both is not None:
-            sigma, spread = both(self.solution, x, 0.0, z, layer=layer)
-        else:
-            sigma = self.solution.stress(x, 0.0, z, layer=layer)
-            spread = (
-                self.solution.stress_uncertainty(x, 0.0, z, layer=layer)
-                if stated
-                else np.full_like(sigma, np.nan)
-            )
-        return _components(sigma), _components(spread)
+        sigma, U = stress_with_uncertainty(self.solution, x, 0.0, z, layer=layer)
+        bound = np.full_like(sigma, np.nan) if U is None else U
+        return _components(sigma), _components(bound)
 
 
 def _components(sigma: Array) -> Array:
@@ -86,8 +77,8 @@ class Plane:
     """Stress at one depth in one layer as a function of x and f.
 
     knots : radii [m] of the samples.   fine, coarse : sigma_n and sigma_t over r, (4,) + shape of r, from all
-    the samples and from every other one.   spread : uncertainty at knots and -knots, (2, 4, knots).
-    edge : what the limits at r = ``edge_radius`` may be wrong by, of sigma_n and sigma_t, (2, 4).
+    the samples and from every other one.   bound : uncertainty at knots and -knots, (2, 4, knots).
+    edge : uncertainty of the limits at r = ``edge_radius``, of sigma_n and sigma_t, (2, 4).
     """
 
     parts: Parts
@@ -96,7 +87,7 @@ class Plane:
     knots: Array
     fine: tuple[Curve, Curve]
     coarse: tuple[Curve, Curve]
-    spread: Array
+    bound: Array
     edge: Array
     edge_radius: float
 
@@ -105,14 +96,16 @@ class Plane:
         return _signed(self.fine, x, friction)
 
     def uncertainty(self, x: float, friction: float) -> Array:
-        """Of the stresses at ``x`` [Pa]: the solution's, with an eighth of what half the samples miss."""
+        """Uncertainty [Pa] at ``x``: that of the solution plus 1/8 of the error with half the samples."""
         i = int(np.clip(np.searchsorted(self.knots, abs(x)), 1, self.knots.size - 1))
-        beside = self.spread[:, :, i - 1 : i + 1].max(axis=2)
+        beside = self.bound[:, :, i - 1 : i + 1].max(axis=2)
         stated = self.parts.uncertainty(beside if x >= 0 else beside[::-1], friction)
         at = np.array([x])
-        missed = np.abs(_signed(self.fine, at, friction) - _signed(self.coarse, at, friction))[:, 0] / 8
+        interpolation = (
+            np.abs(_signed(self.fine, at, friction) - _signed(self.coarse, at, friction))[:, 0] / 8
+        )
         near = self.edge_radius * SKIP >= abs(abs(x) - self.edge_radius) * (1 - 1e-9)
-        return stated + missed + (self.edge[0] + friction * self.edge[1] if near else 0.0)
+        return stated + interpolation + (self.edge[0] + friction * self.edge[1] if near else 0.0)
 
 
 def _signed(curves: tuple[Curve, Curve], x: Array, friction: float) -> Array:
@@ -125,13 +118,13 @@ def _signed(curves: tuple[Curve, Curve], x: Array, friction: float) -> Array:
 def stress_at(parts: Parts, x: float, z: float, layer: int, friction: float) -> tuple[Array, Array]:
     """xx, yy, zz, xz [Pa] at one point (x, 0, z), (4,), with their uncertainty: the solution's own."""
     r = np.array([abs(x)])
-    normal, tangential, spread = parts(r, z, layer)
+    normal, tangential, bound = parts(r, z, layer)
     stress = _signed((lambda _: normal, lambda _: tangential), np.array([x]), friction)[:, 0]
-    return stress, parts.uncertainty(spread if x >= 0 else spread[::-1], friction)[:, 0]
+    return stress, parts.uncertainty(bound if x >= 0 else bound[::-1], friction)[:, 0]
 
 
 def crowded(a: float, width: float, reach: float) -> Array:
-    """Radii [m] from 0 to a + ``reach`` that crowd at r = a, ``width``/6 apart there, as a sinh does."""
+    """Radii [m] from 0 to a + ``reach`` as a sinh, densest at r = a, ``width``/6 apart there."""
     low, high = np.arcsinh(-a / width), np.arcsinh(reach / width)
     count = max(LEAST, int(np.ceil((high - low) / 0.16)) + 1)
     r = a + width * np.sinh(np.linspace(low, high, count))
@@ -141,14 +134,14 @@ def crowded(a: float, width: float, reach: float) -> Array:
 
 def plane(parts: Parts, knots: Array, z: float, layer: int) -> Plane:
     """The plane at depth ``z`` > 0 of ``layer``, sampled at ``knots``."""
-    normal, tangential, spread = parts(knots, z, layer)
+    normal, tangential, bound = parts(knots, z, layer)
 
     def curves(keep: NDArray[np.int_]) -> tuple[Curve, Curve]:
         r = knots[keep]
         return _spline(r, normal[:, keep], PARITY), _spline(r, tangential[:, keep], -PARITY)
 
     fine, coarse = curves(np.arange(knots.size)), curves(_every_other(knots.size))
-    return Plane(parts, z, layer, knots, fine, coarse, spread, np.zeros((2, 4)), 0.0)
+    return Plane(parts, z, layer, knots, fine, coarse, bound, np.zeros((2, 4)), 0.0)
 
 
 def surface(parts: Parts, a: float, h: float, reach: float) -> Plane:
@@ -164,8 +157,8 @@ def surface(parts: Parts, a: float, h: float, reach: float) -> Plane:
     eta = np.append(np.arccosh(1 + strip[:-1]), eta)
     inside, outside = theta.size, eta.size
     r = np.concatenate([a * np.sin(theta), a * np.cosh(eta)])
-    normal, tangential, spread = parts(r, 0.0, 0)
-    # The thinner the coating, the faster the stress bends within the strip.
+    normal, tangential, bound = parts(r, 0.0, 0)
+    # The thinner the coating, the larger the curvature of the stress within the strip.
     degree = 3 + int(h < 0.25 * a) + int(h < 0.08 * a)
     edge_n, error_n = _limit(strip, normal[:, inside : inside + BESIDE], degree)
     edge_t, error_t = _limit(strip, tangential[:, inside - 1 : inside - 1 - BESIDE : -1], degree)
@@ -182,11 +175,11 @@ def surface(parts: Parts, a: float, h: float, reach: float) -> Plane:
         return joined(normal, edge_n, PARITY, keep), joined(tangential, edge_t, -PARITY, keep)
 
     knots = np.insert(r, inside, a)
-    # The edge has no uncertainty of its own: the larger one of its two sides.
-    beside = spread[:, :, inside - 1 : inside + 1].max(axis=2, keepdims=True)
-    spread = np.concatenate([spread[:, :, :inside], beside, spread[:, :, inside:]], axis=2)
+    # The edge takes the larger uncertainty of its two sides.
+    beside = bound[:, :, inside - 1 : inside + 1].max(axis=2, keepdims=True)
+    bound = np.concatenate([bound[:, :, :inside], beside, bound[:, :, inside:]], axis=2)
     return Plane(
-        parts, 0.0, 0, knots, curves(np.arange), curves(_every_other), spread, np.stack([error_n, error_t]), a
+        parts, 0.0, 0, knots, curves(np.arange), curves(_every_other), bound, np.stack([error_n, error_t]), a
     )
 
 
@@ -205,13 +198,13 @@ class _Joined:
 
 
 def _limit(distance: Array, values: Array, degree: int) -> tuple[Array, Array]:
-    """Values at distance 0 of a smooth function known beyond, with what the last ``degree`` changes in it."""
+    """Extrapolation of a smooth function to distance 0, with the change by the last ``degree``."""
     fits = [np.polynomial.polynomial.polyfit(distance, values.T, n)[0] for n in (degree, degree - 1)]
     return fits[0], np.abs(fits[0] - fits[1])
 
 
 def _spline(at: Array, values: Array, parity: Array | None) -> Curve:
-    """Quintic spline through ``values`` (4, n); across 0 of known parity where one is given."""
+    """Quintic spline through ``values`` (4, n); continued across 0 by ``parity`` where given."""
     if parity is not None:
         m = min(MIRRORED, at.size - 1)
         at = np.concatenate([-at[m:0:-1], at])
@@ -220,5 +213,5 @@ def _spline(at: Array, values: Array, parity: Array | None) -> Curve:
 
 
 def _every_other(n: int) -> NDArray[np.int_]:
-    """Every other of n samples, both ends among them."""
+    """Numbers of every other of n samples with both ends."""
     return np.unique(np.append(np.arange(0, n, 2), n - 1))

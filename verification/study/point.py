@@ -1,7 +1,7 @@
 """One solve of a study: from its plain request to the rows of all its frictions.
 
-Requests and answers are plain dictionaries, lists, numbers and text, so that any process that has the package
-can answer: a worker on another machine, a test in its own.
+Requests and answers are plain dictionaries, lists, numbers and text, so that any process with the package can
+answer.
 """
 
 import json
@@ -13,9 +13,10 @@ from typing import Any
 from threadpoolctl import threadpool_limits
 
 from verification.problem.contact import CoatedContact
+from verification.problem.quantity import QUANTITIES
 from verification.running.provenance import versions
 from verification.running.result import sentence
-from verification.sources.contact import solvers
+from verification.sources.registry import SOURCES
 from verification.study.cache import code_version
 from verification.study.quantities import quantities
 from verification.study.table import SCALARS
@@ -28,17 +29,19 @@ def answer(request: Mapping[str, Any]) -> dict[str, Any]:
 
     request : source, numerics (its own keywords), frictions, radius, load, coating (E, nu, thickness),
     substrate (E, nu).  Returns {"rows": [one dictionary a friction], "seconds", "versions", "code",
-    "memory" [bytes]}; a solve that fails leaves its sentence in every row.
+    "memory" [bytes]}; a solve that fails leaves its message in every row.
     """
     begin = time.perf_counter()
     frictions = [float(f) for f in request["frictions"]]
-    # The pressure does not depend on friction, stresses are linear in it: friction 1 speaks for every other.
+    # The pressure does not depend on friction, stresses are linear in it: friction 1 gives every other.
     problem = problem_of(request, 1.0 if any(frictions) else 0.0)
     try:
-        with threadpool_limits(1):  # the order in which threads add would show in the last digit
-            solution = solvers()[request["source"]](problem, request["numerics"])
+        with threadpool_limits(1):  # the order of sums over threads changes the last digit
+            solve = SOURCES[request["source"]].solve
+            assert solve is not None
+            solution = solve(problem, request["numerics"])
             rows = _rows(solution, problem, frictions)
-    except Exception as error:  # a point that fails is a row with its sentence, whatever went wrong
+    except Exception as error:  # a point that fails is a row with its message
         rows = [{"friction": f, "status": "failed", "failure": sentence(error)} for f in frictions]
     return {
         "rows": rows,
@@ -50,7 +53,7 @@ def answer(request: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def peak_memory() -> int:
-    """The most memory that this process has held so far [bytes]; 0 where the system does not tell."""
+    """Peak resident memory of this process [bytes]; 0 where the system does not provide it."""
     try:
         import resource
     except ImportError:
@@ -60,7 +63,7 @@ def peak_memory() -> int:
 
 
 def problem_of(request: Mapping[str, Any], friction: float) -> CoatedContact:
-    """The contact that ``request`` asks about, at ``friction``."""
+    """The contact of ``request`` at ``friction``."""
     E1, nu1, thickness = request["coating"]
     E2, nu2 = request["substrate"]
     return CoatedContact(request["radius"], request["load"], ((E1, nu1, thickness),), (E2, nu2), friction)
@@ -69,7 +72,7 @@ def problem_of(request: Mapping[str, Any], friction: float) -> CoatedContact:
 def table_rows(
     first: int, key: str, request: Mapping[str, Any], found: Mapping[str, Any]
 ) -> list[dict[str, Any]]:
-    """The rows of the table that an answer ``found`` stands for; its first friction is point ``first``."""
+    """The rows of the answer ``found`` to ``request``; its first friction is point ``first``."""
     E1, nu1, thickness = request["coating"]
     E2, nu2 = request["substrate"]
     bare = problem_of(request, 0.0)
@@ -98,12 +101,13 @@ def table_rows(
 def _rows(solution: Any, problem: CoatedContact, frictions: list[float]) -> list[dict[str, Any]]:
     common: dict[str, Any] = {}
     for name, scale in SCALARS.items():
-        value = float(getattr(solution, name))
+        value = QUANTITIES[name].value(solution, problem)
         if not 0 < value < float("inf"):
             raise ValueError(f"{name} = {value:g}; the solution is no contact")
         common |= {name: value, f"{name}_over_{scale}": value / getattr(problem, scale)}
-        if solution.uncertainty is not None:
-            common[f"{name}_uncertainty"] = float(getattr(solution.uncertainty, name))
+        spread = QUANTITIES[name].uncertainty(solution, problem)
+        if spread is not None:
+            common[f"{name}_uncertainty"] = spread
     rows = []
     for f, located in quantities(solution, problem, frictions).items():
         row: dict[str, Any] = {"friction": f, "status": "solved", "failure": None, **common}

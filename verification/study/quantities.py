@@ -1,8 +1,8 @@
-"""The largest stresses of a coated contact with their places.
+"""The largest stresses of a coated contact with their positions.
 
-Each is the largest value along a line, or in a layer, of the functions in ``planes``: found among places a
-sixteenth of a sample apart, then refined. The von Mises stress inside a layer is looked for between a ladder
-of depths, then evaluated by the solution itself at the place found.
+Each is the maximum along a line, or in a layer, of the functions in ``planes``: found on 16 points for each
+sample, then refined. The maximum of the von Mises stress inside a layer is located by interpolation between
+depths, then evaluated by the solution itself.
 """
 
 from collections.abc import Callable, Sequence
@@ -22,7 +22,7 @@ __all__ = ["QUANTITIES", "Located", "Stress", "quantities"]
 
 Measure = Callable[[Array], Array]
 
-# The stresses of a study [Pa], each with its place, in the order of the columns.
+# The stresses of a study [Pa] in the order of the columns.
 Stress = Literal[
     "sigma_xx_surface",
     "sigma_xx_base",
@@ -33,7 +33,7 @@ Stress = Literal[
     "von_mises_substrate",
 ]
 QUANTITIES: tuple[str, ...] = get_args(Stress)
-DENSE = 16  # places tried between two samples of a line
+DENSE = 16  # points between two samples of a line
 FINE = 8  # between two samples of a layer, each way
 
 
@@ -53,12 +53,12 @@ def quantities(
     """Every stress of ``QUANTITIES`` at each friction, from one ``solution``.
 
     solution : of ``problem``, which has one coating, at friction 1, or at 0 where no other is asked for.
-    A tensile stress that is nowhere above zero has value 0 and no place (NaN). Without friction, where both
-    signs of x are alike, the place is on the trailing side.
-    Raises ValueError where friction is asked of a solution that has none, or what ``solution.stress`` raises.
+    A tensile stress that is nowhere positive has value 0 and position NaN. Without friction, where the field
+    is symmetric in x, the position is on the trailing side.
+    Raises ValueError where a friction is given and the solution has none, or what ``solution.stress`` raises.
     """
     if any(frictions) and not problem.friction:
-        raise ValueError("friction is asked of a solution without; solve with friction=1")
+        raise ValueError("the solution has no friction; solve with friction=1")
     parts = Parts(solution, problem.friction)
     a, h = float(solution.contact_radius), problem.interfaces[0]
     knots = crowded(a, 0.5 * min(a, h), a + 2.5 * h)
@@ -86,7 +86,7 @@ def quantities(
 
 
 def _depths(top: float, bottom: float, width: float) -> Array:
-    """Depths from ``top`` to ``bottom`` that crowd at the top, where the field bends."""
+    """Depths from ``top`` to ``bottom``, densest at the top."""
     end = np.arcsinh((bottom - top) / width)
     z = top + width * np.sinh(np.linspace(0, end, 5 + int(2 * end)))
     z[0], z[-1] = top, bottom
@@ -124,34 +124,34 @@ def _between(parts: Parts, planes: Sequence[Plane], knots: Array, friction: floa
         return []
     at_z = _vertex(z[i - 1 : i + 2], value[i - 1 : i + 2, j])
     at_x = _vertex(x[j - 1 : j + 2], value[i, j - 1 : j + 2])
-    stress_there, spread = stress_at(parts, at_x, at_z, planes[1].layer, friction)
+    stress_there, bound = stress_at(parts, at_x, at_z, planes[1].layer, friction)
     best = float(von_mises(stress_there))
-    missed = abs(best - float(value[i, j]))  # by the interpolation, which may have led to the wrong place
-    return [Located(best, _propagated(von_mises, stress_there, spread) + missed, at_x, at_z)]
+    interpolation = abs(best - float(value[i, j]))  # which may have located another point than the maximum
+    return [Located(best, _propagated(von_mises, stress_there, bound) + interpolation, at_x, at_z)]
 
 
 def _both_sides(knots: Array, fine: int) -> Array:
-    """Places from -knots[-1] to knots[-1], the trailing side first, ``fine`` between two knots."""
+    """Points from -knots[-1] to knots[-1], the trailing side first, ``fine`` between two knots."""
     r = np.append((knots[:-1, None] + np.diff(knots)[:, None] * np.arange(fine) / fine).ravel(), knots[-1])
     return np.concatenate([-r[:0:-1], r])
 
 
-def _propagated(measure: Measure, s: Array, spread: Array) -> float:
-    """Uncertainty of a measure from those of the four stresses, every one to its worse side."""
+def _propagated(measure: Measure, s: Array, bound: Array) -> float:
+    """Uncertainty of a measure from those of the four stresses, added in magnitude."""
     value = float(measure(s))
-    return float(sum(np.abs(measure(s + step) - value) for step in np.diag(spread)))
+    return float(sum(np.abs(measure(s + step) - value) for step in np.diag(bound)))
 
 
 def _tensile(found: Located) -> Located:
-    """Compression is no tension: 0, uncertain by what the bound reaches above it."""
+    """``found``, or 0 for compression, with the part of the uncertainty that exceeds 0."""
     if found.value > 0:
         return found
-    reaches = float(np.maximum(0.0, found.uncertainty + found.value))  # NaN where no bound is stated
-    return Located(0.0, reaches, float("nan"), float("nan"))
+    excess = float(np.maximum(0.0, found.uncertainty + found.value))  # NaN where no bound is stated
+    return Located(0.0, excess, float("nan"), float("nan"))
 
 
 def _vertex(x: Array, y: Array) -> float:
-    """Where the parabola through three points is largest, within their span."""
+    """Position of the maximum of the parabola through three points, within their interval."""
     c = np.polyfit(x - x[1], y, 2)
     if c[0] >= 0:
         return float(x[1])

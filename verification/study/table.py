@@ -2,14 +2,14 @@
 
 Columns, in SI units unless they say "over":
 
-    point, source, status ("solved" or "failed"), failure (the sentence, null where there is none)
+    point, source, status ("solved" or "failed"), failure (the message, null where there is none)
     radius, load, coating_E, coating_nu, thickness, substrate_E, substrate_nu, friction       the input
     modulus_ratio (E1/E2), thickness_over_a_h; a_h, p_h, delta_h of the bare substrate
     peak_pressure, contact_radius, approach: X, X_over_p_h | a_h | delta_h, X_uncertainty
     each stress of QUANTITIES: X, X_over_p_h, X_uncertainty, X_x, X_x_over_a_h, X_z, X_z_over_a_h
     numerics, versions (JSON), key (of the stored solve), seconds (of that solve, which its frictions share)
 
-A number that is not known is null: all of a failed point, the place of a tension that does not exist.
+An unknown number is null: all of a failed point, the position of a tension that does not exist.
 """
 
 import io
@@ -23,15 +23,18 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 from numpy.typing import NDArray
 
+from verification.problem.quantity import QUANTITIES as ALL
+from verification.problem.quantity import SCALARS as CONTACT_SCALARS
 from verification.running.store import StoreError, write_atomically
+from verification.sources.registry import EXACT, METHODS
 from verification.study.quantities import QUANTITIES
 
 __all__ = ["COLUMNS", "SCALARS", "SOURCES", "read_columns", "read_study", "write_table"]
 
-# The first speaks for every point, the others for those that are cross-checked.
-SOURCES = ("semianalytic", "fem_reference", "integral_equation")
+# The first solves every point, the others those that are cross-checked.
+SOURCES = (*METHODS, *EXACT)
 # Each scalar of the contact with the scale of the bare substrate that it is given over.
-SCALARS = {"peak_pressure": "p_h", "contact_radius": "a_h", "approach": "delta_h"}
+SCALARS = {name: ALL[name].scale for name in CONTACT_SCALARS}
 
 _INPUT = (
     *("radius", "load", "coating_E", "coating_nu", "thickness", "substrate_E", "substrate_nu", "friction"),
@@ -64,7 +67,7 @@ GROUP = 1024  # rows held at once
 def write_table(path: Path, rows: Iterable[Mapping[str, Any]], study: Mapping[str, Any]) -> int:
     """Write ``rows``, in their order, whole or not at all; their number. Raises StoreError.
 
-    study : what is kept beside the rows, plain JSON.  A column that a row lacks is null.
+    study : stored with the rows, plain JSON.  A column that a row lacks is null.
     """
     schema = COLUMNS.with_metadata({"coatcheck_study": json.dumps(study, sort_keys=True)})
     content = io.BytesIO()
@@ -94,7 +97,7 @@ def read_columns(path: Path) -> dict[str, NDArray[Any]]:
 
 
 def read_study(path: Path) -> dict[str, Any]:
-    """What was kept beside the rows. Raises StoreError."""
+    """The content stored with the rows. Raises StoreError."""
     metadata = _read(path, pq.read_schema).metadata or {}
     if b"coatcheck_study" not in metadata:
         raise StoreError(f"{path}: not the table of a study; give the .parquet that coatcheck study wrote")

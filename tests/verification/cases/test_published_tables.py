@@ -107,7 +107,7 @@ def test_rows_marked_as_misprints_stay_but_do_not_count(files):
         (CSV.replace("90.25", ""), r"t\.csv, line 4, column s: '' is not a finite number"),
         (CSV.replace("\n0,", "\nzero,"), r"t\.csv, line 3, column depth: 'zero'"),
         (CSV.replace(",s,", ",t,"), r"t\.csv: has no column 's'; it has depth, t, w, flag"),
-        (CSV.replace(",s,", ",w,"), r"t\.csv: column names must be there and differ"),
+        (CSV.replace(",s,", ",w,"), r"t\.csv: column names must be given and differ"),
         (CSV.replace("90.25,", ""), r"t\.csv, line 4: 3 cells under 4 columns"),
         ("# nothing but notes\n", r"t\.csv: no columns in it"),
         ("depth,s,w,flag\n", r"t\.csv: no rows in it"),
@@ -130,7 +130,7 @@ def test_malformed_table_is_refused_with_file_row_and_column(files, csv, said):
         ('file = "t.csv"', 'file = "../t.csv"', r"disc\.toml: table\.0\.file"),
         ('file = "t.csv"', 'file = "u.csv"', r"u\.csv: cannot be read"),
         ("pressure = 0.1", "radius = 0.1", r"disc\.toml: problem needs pressure and load_radius"),
-        ('at = { z = "depth", unit = "in" }', "", r"disc\.toml: table\.0\.column\.0: says nowhere"),
+        ('at = { z = "depth", unit = "in" }', "", r"disc\.toml: table\.0\.column\.0: has no positions"),
         ("nu = 0.4,", "nu = 0.7,", r"disc\.toml: problem\.coatings\.0\.nu"),
     ],
 )

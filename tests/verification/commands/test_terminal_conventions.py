@@ -1,21 +1,32 @@
 """The command line as people expect it: examples, exit codes, completion, plain pipes, a stop that keeps."""
 
+import io
 import json
-import os
+import re
 import shutil
 import signal
 import subprocess
+import sys
 import time
 from dataclasses import replace
+from functools import partial
 
 import pytest
 from quick_case import COMMAND, QUICK, coatcheck
+from rich.console import Console
 from synthetic_results import INFO, contact, result_of
 
+from verification.cases.contact import shipped_cases
+from verification.cases.published import published_cases
+from verification.commands import common
+from verification.commands.compare import compare
+from verification.commands.list_cases import list_cases
+from verification.report.material import Material
 from verification.report.pdf import NoBrowser, browser, printed
 from verification.report.write import report_json
 from verification.running.result import to_json
 from verification.running.store import write_checked
+from verification.running.stored import read_run
 
 COMMANDS = (
     "run",
@@ -53,7 +64,7 @@ def stored(tmp_path):
     ]
     for result in results:
         write_checked(tmp_path / "run" / "cases" / f"{result.name}.json", to_json(result))
-    (tmp_path / "run" / "report.json").write_text(report_json(results, INFO))
+    (tmp_path / "run" / "report.json").write_text(report_json(Material(results, INFO)))
     return tmp_path / "run"
 
 
@@ -127,9 +138,82 @@ def test_the_table_stands_in_a_narrow_terminal(stored, capsys, monkeypatch, widt
     assert not any("\N{HORIZONTAL ELLIPSIS}" in line for line in table)
 
 
-def test_what_is_piped_has_no_colours(tmp_path):
+def test_names_are_whole_in_a_pipe(tmp_path):
+    names = [*shipped_cases(), *published_cases()]
+    listed = coatcheck("list", cwd=tmp_path)
+    lines = listed.stdout.splitlines()
+    assert [line.split()[0] for line in lines if line.strip() and line.split()[0] in names] == names
+    # Two heads and a line between the tables: no row is folded.
+    assert len(lines) == len(names) + 3
+    assert "…" not in listed.stdout
+
+
+@pytest.fixture
+def screen(monkeypatch):
+    """A terminal of the given width, whose text a call returns without its colours."""
+    written = io.StringIO()
+
+    def of_width(width):
+        monkeypatch.setattr(
+            "rich.console.Console", partial(Console, file=written, force_terminal=True, width=width)
+        )
+        return lambda: re.sub(r"\x1b\[[0-9;]*m", "", written.getvalue())
+
+    return of_width
+
+
+@pytest.mark.parametrize("width", [80, 120])
+def test_names_are_whole_in_a_terminal(stored, screen, width):
+    shown = screen(width)
+    name = "16_ratio_quarter_sliding_of_mine"
+    results = [replace(result, name=name) for result in read_run(stored).results[:1]]
+    (stored / "report.json").write_text(report_json(Material(results, INFO)))
+    assert list_cases() == 0
+    assert compare(stored, stored) == 0
+    assert [n for n in [name, *shipped_cases(), *published_cases()] if n not in shown()] == []
+    assert max(map(len, shown().splitlines())) <= width
+
+
+def test_a_name_wider_than_half_the_terminal_is_folded_not_cut(screen):
+    shown = screen(30)
+    table = common.named_table("case", "title")
+    table.add_row("16_ratio_quarter_sliding", "Compliant coating, sliding")
+    common.print_out(table)
+    letters = [line[1:16].split(" ")[0] for line in shown().splitlines()[1:]]
+    assert "16_ratio_quarter_sliding" in "".join(letters)
+
+
+@pytest.mark.parametrize(
+    ("words", "nearest"),
+    [
+        ("run 05_ratio4", "05_ratio_4"),
+        ("run Publishd", "published"),
+        ("run hertz", "hertz_1882"),
+        ("view 05_ratio_5", "05_ratio_4"),
+        ("faults kapsign", "kap_sign"),
+        ("faults --group stres", "stress"),
+        ("study thickness silver_on_stel", "silver_on_steel"),
+        ("report rum", "run"),
+        ("compare run rum", "run"),
+    ],
+)
+def test_a_mistyped_name_is_answered_with_the_nearest(stored, capsys, monkeypatch, words, nearest):
+    monkeypatch.chdir(stored.parent)
+    code, _, error = asked(capsys, *words.split())
+    assert code == 2
+    assert len(error.splitlines()) == 1
+    assert f"did you mean {nearest}" in error
+
+
+def test_a_name_like_no_other_gets_no_suggestion(capsys):
+    code, _, error = asked(capsys, "run", "zzz")
+    assert (code, "did you mean" in error) == (2, False)
+
+
+def test_what_is_piped_has_no_colours(tmp_path, monkeypatch):
+    monkeypatch.setenv("TERM", "xterm-256color")
     (tmp_path / "quick.toml").write_text(QUICK)
-    done = coatcheck("run", "quick.toml", "-v", cwd=tmp_path, env=os.environ | {"TERM": "xterm-256color"})
+    done = coatcheck("run", "quick.toml", "-v", cwd=tmp_path)
     assert done.returncode == 0, done.stderr
     assert "\x1b" not in done.stdout + done.stderr
     # Verbose: every source with its seconds.
@@ -139,7 +223,7 @@ def test_what_is_piped_has_no_colours(tmp_path):
 
 def test_ctrl_c_keeps_what_was_done_and_says_so(tmp_path):
     (tmp_path / "quick.toml").write_text(QUICK)
-    words = ["run", "quick.toml", "05_ratio_4", "--jobs", "1", "--output", "out"]
+    words = ["run", "quick.toml", "05_ratio_4", "--jobs", "2", "--output", "out"]
     process = subprocess.Popen(
         [*COMMAND, *words],
         cwd=tmp_path,
@@ -238,3 +322,19 @@ def test_a_page_is_printed(tmp_path):
     data = printed(page, tmp_path / "page.pdf", 120.0).read_bytes()
     assert data.startswith(b"%PDF-")
     assert data.rstrip().endswith(b"%%EOF")
+
+
+@pytest.mark.parametrize(
+    ("command", "unused"),
+    [
+        ("--help", ("numpy", "scipy", "pydantic", "matplotlib", "dask", "fem_reference", "semianalytic")),
+        ("list", ("scipy", "matplotlib", "dask", "gmsh", "pyvista", "fem_reference", "semianalytic")),
+    ],
+)
+def test_commands_that_solve_nothing_load_no_solver(command, unused):
+    text = f"import sys; sys.argv = ['coatcheck', {command!r}]\nfrom verification.cli import main\n"
+    text += "try: main()\nexcept SystemExit: print('loaded', *sys.modules)"
+    done = subprocess.run([sys.executable, "-c", text], capture_output=True, text=True, check=True)
+    loaded = set(done.stdout.splitlines()[-1].split()[1:])
+    assert "verification.cli" in loaded
+    assert not loaded & set(unused)

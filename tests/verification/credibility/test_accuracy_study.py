@@ -11,10 +11,11 @@ from synthetic_study import study
 from verification.commands import run as command
 from verification.credibility import accuracy as accuracy_study
 from verification.credibility.accuracy import BARE, COATED, STEEL, AccuracyStudy, from_json, to_json
-from verification.credibility.refinement import QUANTITIES, elements, ladder, order_of, settled
+from verification.credibility.refinement import QUANTITIES, order_of, refined_grid, refined_mesh, settled
 from verification.judging.invariants.influence import conversion_errors
 from verification.running.pool import Task, run_tasks
 from verification.running.store import StoreError, write_checked
+from verification.sources.methods import solve_semianalytic
 from verification.sources.references.patch import over_square, surface_coefficient
 
 PLACES = [(0, 0), (1, 0), (1, 1), (3, 2), (20, 0), (64, 64)]
@@ -107,7 +108,7 @@ def test_uncoated_split_conversion_is_loves_rectangle():
 
 @pytest.fixture(scope="module")
 def staircase():
-    return ladder(COATED, (33, 65, 129), setting="staircase", edge_rounds=0)
+    return refined_grid(COATED, (33, 65, 129), setting="staircase", edge_rounds=0)
 
 
 def test_staircase_edge_leaves_the_pressure_at_first_order(staircase):
@@ -118,7 +119,7 @@ def test_staircase_edge_leaves_the_pressure_at_first_order(staircase):
 
 
 def test_corrected_edge_beats_the_staircase_on_the_same_grid(staircase):
-    corrected = ladder(COATED, (65, 129))
+    corrected = refined_grid(COATED, (65, 129))
     assert corrected.failure is None
     for mine, theirs in zip(corrected.levels, staircase.levels[1:], strict=True):
         assert mine.resolution == theirs.resolution
@@ -127,7 +128,7 @@ def test_corrected_edge_beats_the_staircase_on_the_same_grid(staircase):
 
 
 def test_elements_of_higher_order_are_closer_on_the_same_mesh():
-    found = [elements(COATED, order, ("fast",)) for order in (2, 3, 4)]
+    found = [refined_mesh(COATED, order, ("fast",)) for order in (2, 3, 4)]
     assert [one.failure for one in found] == [None] * 3
     for low, high in pairwise(found):
         for quantity in QUANTITIES:
@@ -137,12 +138,12 @@ def test_elements_of_higher_order_are_closer_on_the_same_mesh():
 def test_level_that_fails_is_a_sentence_and_the_coarser_ones_stay():
     import semianalytic
 
-    def stops(*, patches, **others):
-        if patches > 33:
+    def stops(problem, numerics):
+        if numerics["patches"] > 33:
             raise semianalytic.NotConverged("not settled after 3 iterations;\n raise max_iterations")
-        return semianalytic.solve(patches=patches, **others)
+        return solve_semianalytic(problem, numerics)
 
-    found = ladder(BARE, (33, 65, 129), solve=stops)
+    found = refined_grid(BARE, (33, 65, 129), solve=stops)
     assert [level.name for level in found.levels] == ["N = 33"]
     assert found.failure == "N = 65: not settled after 3 iterations; raise max_iterations"
 
@@ -152,12 +153,12 @@ def test_study_goes_on_where_a_part_of_it_fails(monkeypatch):
     def broken(*_, **__):
         raise ValueError("no grid fits")
 
-    good = ladder(BARE, (33,))
+    good = refined_grid(BARE, (33,))
     monkeypatch.setattr(accuracy_study, "ladder", lambda *_, **__: good)
     monkeypatch.setattr(accuracy_study, "elements", lambda *_, **__: replace(good, failure="fine: no mesh"))
     monkeypatch.setattr(accuracy_study, "conversion_errors", broken)
     found = accuracy_study.measure()
-    assert len(found.ladders) == 8
+    assert len(found.refinements) == 8
     assert found.conversions == ()
     assert found.failures[-1].endswith("no grid fits")
     assert len(found.failures) == 4
@@ -166,6 +167,17 @@ def test_study_goes_on_where_a_part_of_it_fails(monkeypatch):
 def test_order_of_a_power_law_is_its_exponent():
     N = [10.0, 20.0, 40.0, 80.0]
     assert order_of(N, [7 * n**-2.5 for n in N]) == pytest.approx(2.5, abs=1e-12)
+
+
+def test_a_refinement_study_keeps_the_friction_of_its_problem():
+    given = []
+
+    def solver(problem, numerics):
+        given.append(problem)
+        raise ValueError("no more than the problem is needed")
+
+    refined_grid(replace(COATED, friction=0.25), (33,), solve=solver)
+    assert given[0].friction == 0.25
 
 
 def test_order_ends_where_another_knob_takes_over():
@@ -192,14 +204,16 @@ def test_where_nothing_falls_there_is_no_order(errors):
 
 def test_study_survives_strict_json_to_the_last_bit():
     spoiled = study("conversions: no grid fits")
-    level = replace(spoiled.ladders[0].levels[0], errors=dict.fromkeys(QUANTITIES, float("nan")))
-    spoiled = replace(spoiled, ladders=(replace(spoiled.ladders[0], levels=(level,)), *spoiled.ladders[1:]))
+    level = replace(spoiled.refinements[0].levels[0], errors=dict.fromkeys(QUANTITIES, float("nan")))
+    spoiled = replace(
+        spoiled, refinements=(replace(spoiled.refinements[0], levels=(level,)), *spoiled.refinements[1:])
+    )
     text = json.dumps(to_json(spoiled), allow_nan=False)
     back = from_json(json.loads(text))
     assert json.dumps(to_json(back), allow_nan=False) == text
-    assert back.ladders[1:] == spoiled.ladders[1:]
+    assert back.refinements[1:] == spoiled.refinements[1:]
     assert back.conversions == spoiled.conversions
-    assert np.isnan(back.ladders[0].levels[0].errors["p0"])
+    assert np.isnan(back.refinements[0].levels[0].errors["p0"])
     with pytest.raises(ValueError, match="schema"):
         from_json(json.loads(text) | {"schema": "coatcheck-accuracy/0"})
 
@@ -229,7 +243,7 @@ def test_process_that_dies_leaves_its_reason(tmp_path):
     task = accuracy_study.task(tmp_path)
     broken = Task(task.name, ("verification.no_such_module",), task.path, task.read, task.failed)
     (found,) = run_tasks([broken], jobs=1, time_limit=60)
-    assert found.ladders == ()
+    assert found.refinements == ()
     assert "ended with code 1" in found.failures[0]
     (found,) = run_tasks([task], jobs=1, time_limit=0.05)
     assert "not finished after" in found.failures[0]
@@ -252,12 +266,13 @@ def test_study_that_fails_is_a_sentence_of_the_report_and_no_verdict(one_case, t
     whole = accuracy_study.task
 
     def broken(folder):
-        return replace(whole(folder), command=("verification.no_such_module",))
+        return replace(whole(folder), command=("verification.no_such_module:main",))
 
     monkeypatch.setattr(accuracy_study, "task", broken)
     assert command.run(output=tmp_path / "all", **one_case) == 0
     page = (tmp_path / "all" / "report.html").read_text()
-    assert "No module named verification.no_such_module" in page
+    assert "No module named" in page
+    assert "verification.no_such_module" in page
     report = json.loads((tmp_path / "all" / "report.json").read_text())
     assert report["accuracy"]["failures"]
     assert [c["outcome"] for c in report["cases"]] == ["AGREES"]

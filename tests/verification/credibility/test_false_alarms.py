@@ -1,12 +1,12 @@
 """Random problems: the same everywhere, valid, as wide as they are said to be; what counts as an alarm."""
 
 import json
-import subprocess
-import sys
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 import pytest
+from quick_case import coatcheck
 from synthetic_results import INFO, STEEL, contact, crashed, result_of
 
 from verification.cases.contact import Case, parse_case
@@ -25,7 +25,6 @@ from verification.judging.verdict import Outcome
 from verification.running.store import StoreError
 
 E, NU = STEEL
-COMMAND = [sys.executable, "-m", "verification.cli"]
 
 
 def drawn(seed: int, number: int) -> Case:
@@ -128,9 +127,7 @@ def test_a_record_comes_back_whole_or_not_at_all(tmp_path):
     "words", [["--count", "0"], ["--seed", "-1"], ["--jobs", "0"], ["--time-limit", "0"]]
 )
 def test_bad_options_are_one_sentence_and_nothing_written(tmp_path, words):
-    done = subprocess.run(
-        [*COMMAND, "alarms", *words], cwd=tmp_path, capture_output=True, text=True, timeout=120
-    )
+    done = coatcheck("alarms", *words, cwd=tmp_path)
     assert done.returncode == 2
     assert words[0] in done.stderr
     assert len(done.stderr.strip().splitlines()) == 1
@@ -139,15 +136,7 @@ def test_bad_options_are_one_sentence_and_nothing_written(tmp_path, words):
 
 @pytest.mark.slow
 def test_the_command_records_what_it_found(tmp_path):
-    def alarms(*words: str) -> subprocess.CompletedProcess[str]:
-        return subprocess.run(
-            [*COMMAND, "alarms", "--count", "2", "--seed", "1", *words],
-            cwd=tmp_path,
-            capture_output=True,
-            text=True,
-            timeout=600,
-        )
-
+    alarms = partial(coatcheck, "alarms", "--count", "2", "--seed", "1", cwd=tmp_path)
     done = alarms("--record", "--records", "records", "--json")
     assert done.returncode == 0, done.stdout
     record = read_record(tmp_path / "records")

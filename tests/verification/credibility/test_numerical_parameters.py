@@ -6,11 +6,14 @@ import numpy as np
 import pytest
 
 from verification.credibility.accuracy import BARE, COATED
-from verification.credibility.parameters import KNOBS, Knob, stated, study, turn
+from verification.credibility.parameters import PARAMETERS, stated, study, sweep
 from verification.sources.references.hertz import Hertz
+from verification.sources.source import NumericalParameter
 
 EXACT = Hertz(BARE.radius, BARE.load, *BARE.substrate)
-KNOB = Knob("semianalytic", "patch size", tuple((f"N = {n}", {"patches": n}, 1 / n) for n in (8, 16, 32, 64)))
+KNOB = NumericalParameter(
+    "semianalytic", "patch size", tuple((f"N = {n}", {"patches": n}, 1 / n) for n in (8, 16, 32, 64))
+)
 
 
 class Off:
@@ -38,14 +41,15 @@ class Off:
         return np.full((3, 3, *np.shape(x)), self._times * self._e * BARE.p_h)
 
 
-def off(patches=64, times=3.0, estimate_uncertainty=True, **_):
+def off(_, numerics=None, times=3.0):
+    patches = (numerics or {}).get("patches", 64)
     if patches > 64:
         raise ValueError("too fine for this machine; take fewer patches")
     return Off(patches, times)
 
 
 def test_ladder_of_a_second_order_method_gives_its_order_and_brackets_its_error():
-    ladder = turn(BARE, KNOB, BARE.a_h, off)
+    ladder = sweep(BARE, KNOB, BARE.a_h, off)
     assert ladder.failure is None
     assert len(ladder.values) == 8
     for name in ladder.values:
@@ -56,10 +60,10 @@ def test_ladder_of_a_second_order_method_gives_its_order_and_brackets_its_error(
 
 def test_level_that_fails_ends_the_ladder_with_its_sentence():
     longer = replace(KNOB, levels=(*KNOB.levels, ("N = 128", {"patches": 128}, 1 / 128)))
-    ladder = turn(BARE, longer, BARE.a_h, off)
+    ladder = sweep(BARE, longer, BARE.a_h, off)
     assert ladder.levels == ("N = 8", "N = 16", "N = 32", "N = 64")
     assert ladder.failure == "N = 128: too fine for this machine; take fewer patches"
-    none = turn(BARE, replace(KNOB, levels=longer.levels[4:]), BARE.a_h, off)
+    none = sweep(BARE, replace(KNOB, levels=longer.levels[4:]), BARE.a_h, off)
     assert none.estimate("p0") is None
 
 
@@ -72,8 +76,8 @@ def test_stated_uncertainty_stands_beside_the_true_error_on_one_scale():
 
 
 def test_every_knob_but_the_order_of_elements_has_four_levels_or_more():
-    assert {knob.name for knob in KNOBS if len(knob.levels) < 4} == {"element order"}
-    assert all(np.all(np.diff([step for *_, step in knob.levels]) < 0) for knob in KNOBS)
+    assert {knob.name for knob in PARAMETERS if len(knob.levels) < 4} == {"element order"}
+    assert all(np.all(np.diff([step for *_, step in knob.levels]) < 0) for knob in PARAMETERS)
 
 
 @pytest.mark.slow
@@ -94,7 +98,7 @@ def test_stated_and_fitted_uncertainties_hold_the_true_error(problem):
             name: sum(
                 ladder.estimate(name).uncertainty
                 for ladder in ladders
-                if ladder.method == one.method and ladder.knob != "element order"
+                if ladder.method == one.method and ladder.parameter != "element order"
             )
             for name in one.error
         }

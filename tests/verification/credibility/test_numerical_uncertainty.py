@@ -106,7 +106,7 @@ def test_number_of_levels_chooses_the_method():
 @pytest.mark.parametrize(
     ("h", "phi", "said"),
     [
-        (STEPS, (1.0, 2.0, 3.0), "one value at each step"),
+        (STEPS, (1.0, 2.0, 3.0), "one value for each step"),
         ((1.0, 1.0, 2.0, 4.0), (1.0, 1.0, 2.0, 4.0), "3 different steps"),
         ((1.0, 2.0, 3.0), (1.0, 2.0, 3.0), "at least 4"),
         ((0.0, 1.0, 2.0, 4.0), (1.0, 1.0, 2.0, 4.0), "positive"),

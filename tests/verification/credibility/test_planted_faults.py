@@ -1,6 +1,7 @@
 """Planted faults: the catalogue is whole, plants leave no trace, trials see what they must."""
 
 import sys
+import tomllib
 from dataclasses import replace
 
 import numpy as np
@@ -9,10 +10,10 @@ import pytest
 from verification.cases.contact import read_case, shipped_cases
 from verification.commands.faults import faults
 from verification.credibility.faults import campaign
-from verification.credibility.faults.catalogue import BLANKS, FAULTS, GROUPS, chosen
+from verification.credibility.faults.catalogue import CONTROLS, FAULTS, GROUPS, chosen
 from verification.credibility.faults.checks import Check
 from verification.credibility.faults.planting import Constant, Edit, Fault, PlantError, planted
-from verification.credibility.faults.record import Catch, Record, from_json, row_of, to_json
+from verification.credibility.faults.record import Catch, Record, from_json, read_record, row_of, to_json
 from verification.credibility.faults.trial import Trial, clean_path, try_fault
 from verification.judging.verdict import Outcome
 from verification.report.credibility.faults import faults_page
@@ -20,8 +21,8 @@ from verification.running import contact as running
 from verification.running.result import from_json as result_from_json
 from verification.running.result import to_json as result_to_json
 from verification.running.store import read_checked, write_checked
-from verification.sources import contact as sources_of_contacts
-from verification.sources.references.hertz import Hertz
+from verification.sources import registry
+from verification.sources.references.hertz import Hertz, HertzContact
 
 # What issue after issue of such codes has been about, each by the fault that stands for it.
 NAMED = {
@@ -64,7 +65,7 @@ NAMED = {
     "units slipped": "units_slipped_case",
     "U inflated tenfold": "u_inflated_in_the_judge",
 }
-ALL = tuple((FAULTS | BLANKS).values())
+ALL = tuple((FAULTS | CONTROLS).values())
 
 
 def test_the_catalogue_holds_every_fault_that_was_asked_for():
@@ -75,19 +76,23 @@ def test_the_catalogue_holds_every_fault_that_was_asked_for():
 
 @pytest.mark.parametrize("fault", FAULTS.values(), ids=lambda fault: fault.name)
 def test_a_fault_says_what_is_wrong_where_it_sits_what_should_catch_it(fault):
-    assert len(fault.sentence.split()) > 2
-    assert not fault.sentence.endswith(".")
+    assert len(fault.description.split()) > 2
+    assert not fault.description.endswith(".")
     assert fault.changes
-    assert fault.expected
+    assert fault.predicted
     assert set(fault.cases) <= set(shipped_cases())
-    assert fault.where in (*sources_of_contacts.solvers(), "harness", "published")
+    assert fault.where in (*registry.solvers(), "harness", "published")
 
 
 def test_names_are_unique_across_the_groups():
-    from verification.credibility.faults import catalogue
+    from verification.credibility.faults.catalogue import LISTS
 
-    names = [fault.name for module in catalogue._MODULES for fault in module.FAULTS]
-    assert len(names) == len(set(names)) == len(FAULTS)
+    names = [
+        entry["name"]
+        for path in LISTS.glob("*.toml")
+        for entry in tomllib.loads(path.read_text(encoding="utf-8"))["fault"]
+    ]
+    assert len(names) == len(set(names)) == len(FAULTS) + len(CONTROLS)
 
 
 def _targets(fault):
@@ -110,10 +115,10 @@ def test_a_plant_fits_the_source_and_leaves_no_trace(fault):
 
 def test_a_plant_is_taken_out_when_the_trial_fails():
     fault = FAULTS["hertz_exponent"]
-    original = vars(Hertz)["contact_radius"]
+    original = vars(HertzContact)["contact_radius"]
     with pytest.raises(RuntimeError), planted(fault.changes):
         raise RuntimeError("a trial that fails")
-    assert vars(Hertz)["contact_radius"] is original
+    assert vars(HertzContact)["contact_radius"] is original
 
 
 def test_a_function_imported_by_name_is_exchanged_there_too():
@@ -127,8 +132,9 @@ def test_a_function_imported_by_name_is_exchanged_there_too():
 
 
 def test_two_edits_of_one_function_both_take():
-    first = Edit("verification.sources.references.hertz:Hertz.approach", "self.radius", "(2 * self.radius)")
-    second = Edit("verification.sources.references.hertz:Hertz.approach", "**2 /", "**3 /")
+    approach = "verification.sources.references.hertz:HertzContact.approach"
+    first = Edit(approach, "self.radius", "(2 * self.radius)")
+    second = Edit(approach, "**2 /", "**3 /")
     hertz = Hertz(1e-2, 20.0, 210e9, 0.3)
     a = hertz.contact_radius
     with planted((first, second)):
@@ -139,7 +145,7 @@ def test_two_edits_of_one_function_both_take():
 @pytest.mark.parametrize(
     ("change", "said"),
     [
-        (Edit("verification.judging.verdict:judge", "words that are not there", ""), "stands there 0 times"),
+        (Edit("verification.judging.verdict:judge", "words that are not there", ""), "occurs there 0 times"),
         (Edit("verification.judging.verdict:judge", "judged", ""), "times, not once"),
         (Edit("verification.judging.verdict:no_such_function", "a", "b"), "no such function"),
         (Constant("fem_reference.estimate:SAFETY", 3.0), "nothing would be planted"),
@@ -157,7 +163,7 @@ def test_a_fault_that_no_longer_fits_the_source_is_refused(change, said):
 def test_a_fault_of_the_harness_is_caught_by_the_self_test_named_for_it(name, part, tmp_path):
     row = row_of(FAULTS[name], try_fault(FAULTS[name], tmp_path))
     assert row.catch is Catch.DISAGREES
-    assert row.as_expected
+    assert row.as_predicted
     assert part in row.by
     assert row.change >= 1
 
@@ -167,7 +173,7 @@ def clean(tmp_path_factory):
     """A clean run of the uncoated case in which the exact reference stands in for both methods."""
     folder = tmp_path_factory.mktemp("clean")
     case = read_case(shipped_cases()["01_uncoated_steel"])
-    known = sources_of_contacts.solvers()
+    known = registry.solvers()
     exact = known["integral_equation"]
     sources = {"semianalytic": exact, "fem_reference": exact} | {
         name: known[name] for name in ("integral_equation", "hertz")
@@ -180,7 +186,7 @@ def test_a_wrong_exponent_in_hertz_is_caught_by_the_comparisons_with_hertz(clean
     fault = FAULTS["hertz_exponent"]
     row = row_of(fault, try_fault(fault, clean))
     assert row.catch is Catch.DISAGREES
-    assert row.as_expected
+    assert row.as_predicted
     assert row.columns["bare, closed form"].disagree > 20
     assert row.columns["self-tests"].disagree > 0
     assert row.change > 1
@@ -204,7 +210,7 @@ def test_an_absolute_uncertainty_read_as_relative_is_caught(clean):
     fault = FAULTS["absolute_for_relative"]
     row = row_of(fault, try_fault(fault, clean))
     assert row.catch is Catch.DISAGREES
-    assert row.as_expected
+    assert row.as_predicted
 
 
 def test_a_crash_alone_does_not_count_as_caught():
@@ -215,7 +221,7 @@ def test_a_crash_alone_does_not_count_as_caught():
     row = row_of(fault, Trial(fault.name, (lost,), 1.0, "approach"))
     assert row.catch is Catch.NO_RESULT
     assert not row.caught
-    assert not row.as_expected
+    assert not row.as_predicted
 
 
 def test_a_check_that_fails_without_the_fault_is_no_evidence(clean, tmp_path):
@@ -227,10 +233,10 @@ def test_a_check_that_fails_without_the_fault_is_no_evidence(clean, tmp_path):
     fault = FAULTS["hertz_exponent"]
     whole, without = try_fault(fault, clean), try_fault(fault, tmp_path)
     assert len(without.checks) == len(whole.checks) - 1
-    assert len(without.already) == 1
-    assert claim.quantity in without.already[0]
+    assert len(without.failing_clean) == 1
+    assert claim.quantity in without.failing_clean[0]
     record = _record(without)
-    assert record.already == without.already
+    assert record.failing_clean == without.failing_clean
     assert not record.passed
 
 
@@ -253,17 +259,17 @@ def _trial(name: str, outcome: Outcome = Outcome.DISAGREES, change: float = 0.1)
 
 
 def test_a_record_is_read_as_it_was_written():
-    record = _record(_trial("kap_sign"), _trial("load_off", Outcome.AGREES), Trial("blank_printed"))
+    record = _record(_trial("kap_sign"), _trial("load_off", Outcome.AGREES), Trial("control_published"))
     assert from_json(to_json(record)) == record
     with pytest.raises(ValueError, match="schema"):
         from_json(to_json(record) | {"schema": "another"})
 
 
 def test_a_record_passes_only_where_enough_is_caught_and_nothing_is_left_unsaid():
-    assert _record(_trial("kap_sign"), Trial("blank_printed", change=0.0)).passed
+    assert _record(_trial("kap_sign"), Trial("control_published", change=0.0)).passed
     assert not _record(_trial("kap_sign"), _trial("kap_x2_dropped", Outcome.AGREES)).passed
     assert not _record(_trial("kap_sign", change=0.0)).passed
-    assert not _record(_trial("kap_sign"), _trial("blank_printed")).passed
+    assert not _record(_trial("kap_sign"), _trial("control_published")).passed
     many = [_trial(name) for name in FAULTS if name != "kap_sign"]
     lost = _record(*many, _trial("kap_sign", Outcome.AGREES))
     assert lost.share > 0.95
@@ -280,7 +286,7 @@ def test_the_page_shows_every_fault_and_escapes_what_checks_say():
     assert "as &lt;it&gt; is" in page
     assert "<it>" not in page
     assert "http://" not in page.replace("http://www.w3.org", "")
-    assert "1 of 3 planted faults are caught" in page
+    assert "1 of 3 planted faults are detected" in page
 
 
 @pytest.mark.parametrize(
@@ -303,9 +309,9 @@ def test_a_wrong_question_is_bad_input_and_writes_nothing(arguments, tmp_path, c
 def test_the_command_tries_resumes_and_writes_matrix_and_page(tmp_path, capsys):
     assert faults("sides_swapped", output=tmp_path, jobs=1) == 0
     assert "1 of 1 faults caught" in capsys.readouterr().out.replace("\n", " ")
-    record = campaign.read_record(tmp_path / campaign.RECORD)
+    record = read_record(tmp_path / campaign.RECORD)
     assert record is not None
-    assert record.rows[0].as_expected
+    assert record.rows[0].as_predicted
     assert (tmp_path / "faults.html").read_text().startswith("<!DOCTYPE html>")
     stamp = (tmp_path / "trials" / "sides_swapped.json").stat().st_mtime_ns
     assert faults("sides_swapped", output=tmp_path, jobs=1, resume=True, quiet=True) == 0
@@ -315,13 +321,13 @@ def test_the_command_tries_resumes_and_writes_matrix_and_page(tmp_path, capsys):
 def test_groups_and_names_choose_their_faults():
     assert {fault.group for fault in chosen((), "frf")} == {"frf"}
     assert [fault.name for fault in chosen(("kap_sign", "kap_sign"), None)] == ["kap_sign"]
-    assert len(chosen((), None)) == len(FAULTS) + len(BLANKS)
+    assert len(chosen((), None)) == len(FAULTS) + len(CONTROLS)
 
 
 @pytest.mark.slow
 def test_nineteen_of_twenty_faults_are_caught_and_every_survivor_is_explained(tmp_path):
     assert faults(output=tmp_path, quiet=True) == 0
-    record = campaign.read_record(tmp_path / campaign.RECORD)
+    record = read_record(tmp_path / campaign.RECORD)
     assert record is not None
     assert record.share >= 0.95
     assert np.isfinite(record.core_seconds)

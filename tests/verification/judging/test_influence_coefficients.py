@@ -6,7 +6,7 @@ import semianalytic
 from verification.cases.contact import read_case, shipped_cases
 from verification.credibility.faults.planting import Edit, planted
 from verification.judging.invariants import check
-from verification.judging.invariants.coefficients import influence_coefficients
+from verification.judging.invariants.influence import influence_coefficients
 from verification.judging.verdict import Outcome
 from verification.problem.contact import CoatedContact
 

@@ -229,13 +229,13 @@ def test_error_of_differences_lies_within_its_bound_and_a_polynomial_has_none():
     assert np.abs(slope[..., 0] - true).max() < 1e-9
 
 
-def test_spread_of_uncertain_values_bounds_the_gradient_of_any_error_within_it():
+def test_propagated_uncertainty_bounds_the_gradient_of_any_error_within_it():
     random = np.random.default_rng(1)
     stencil = Stencil(np.array([[0.3, 1.0], [0.4, 1.0], [0.5, 2.0]]), np.full((3, 2), 0.02))
     U = random.uniform(0, 1, (4, stencil.points.shape[1]))
     for _ in range(20):
         slope, _ = stencil.gradient(U * random.uniform(-1, 1, U.shape))
-        assert (np.abs(slope) <= stencil.spread(U)).all()
+        assert (np.abs(slope) <= stencil.propagated(U)).all()
 
 
 def test_base_of_a_thick_coating_sinks_as_the_exact_solution_says():
@@ -259,7 +259,7 @@ def test_thin_coating_changes_the_approach_by_the_first_order_of_perturbation():
 @pytest.mark.slow
 def test_invariants_between_solutions_hold_for_both_methods():
     from verification.judging.invariants import resolved
-    from verification.sources.contact import solvers
+    from verification.sources.registry import solvers
 
     found = resolved(SLIDING, solvers())
     assert len(found) == 10

@@ -21,6 +21,7 @@ from verification.regression.baseline import (
 )
 from verification.regression.drift import State, measured
 from verification.regression.record import path_in, read_baseline, write_baseline
+from verification.report.material import Material
 from verification.report.write import report_json
 from verification.running.result import CaseResult, to_json
 from verification.running.store import StoreError, write_checked
@@ -125,10 +126,10 @@ def test_points_that_moved_are_said_to_have_moved():
     found = case_drift(replace(RESULT, profiles=profiles), baseline_of(RESULT))
     bad = [d for d in found.drifts if d.state is State.DRIFTED]
     assert {d.line for d in bad} == {"surface"}
-    assert all("points moved by 1.0e-04" in d.said and d.change is None for d in bad)
+    assert all("points moved by 1.0e-04" in d.message and d.change is None for d in bad)
     coarser = result_of(contact((2 * E, NU, 1.0)), points=65)
-    said = {d.said for d in case_drift(coarser, baseline_of(RESULT)).drifts if d.line != "contact"}
-    assert said == {"sampled at 65 points instead of 129"}
+    messages = {d.message for d in case_drift(coarser, baseline_of(RESULT)).drifts if d.line != "contact"}
+    assert messages == {"sampled at 65 points instead of 129"}
 
 
 def test_cases_and_sources_come_and_go():
@@ -166,7 +167,7 @@ def test_another_case_file_and_other_versions_are_said():
         replace(INFO, versions=INFO.versions | {"numpy": "9.9"}, machine="abacus"),
         whole=True,
     )
-    assert found.cases[0].said == "its case file was changed"
+    assert found.cases[0].message == "its case file was changed"
     assert found.other_versions == (("machine", INFO.machine, "abacus"), ("numpy", "2.4.0", "9.9"))
 
 
@@ -204,7 +205,7 @@ def test_a_damaged_baseline_is_one_sentence_that_names_it(tmp_path):
 def run_directory(folder: Path, results: list[CaseResult]) -> None:
     """What a run leaves: the report with a checked file beside it for each case."""
     folder.mkdir()
-    (folder / "report.json").write_text(report_json(results, INFO))
+    (folder / "report.json").write_text(report_json(Material(results, INFO)))
     for result in results:
         write_checked(folder / "cases" / f"{result.name}.json", to_json(result))
 

@@ -1,27 +1,27 @@
 """Two runs side by side: what is told of verdicts, numbers, versions, times."""
 
 import json
-import subprocess
-import sys
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 import pytest
 from headless import browser, page
+from quick_case import coatcheck
 from synthetic_results import INFO, STEEL, contact, result_of
 
 from verification.judging.verdict import Outcome
 from verification.regression.comparison import compare_runs
 from verification.regression.drift import State
-from verification.report.sections.comparison import comparison_page, comparison_sentence
+from verification.report.comparison import comparison_page, comparison_sentence
+from verification.report.material import Material
 from verification.report.write import report_json
 from verification.running.result import CaseResult, RunInfo
 from verification.running.store import StoreError
 from verification.running.stored import StoredRun, read_run
 
 E, NU = STEEL
-COMMAND = [sys.executable, "-m", "verification.cli"]
 GOOD = result_of(contact((2 * E, NU, 1.0)), name="stiff", points=33)
 WRONG = result_of(
     contact((2 * E, NU, 1.0)),
@@ -38,7 +38,7 @@ def run_of(*results: CaseResult, info: RunInfo = INFO) -> StoredRun:
 
 def write(folder: Path, *results: CaseResult, info: RunInfo = INFO) -> None:
     folder.mkdir(parents=True)
-    (folder / "report.json").write_text(report_json(results, info))
+    (folder / "report.json").write_text(report_json(Material(results, info)))
 
 
 def test_a_run_beside_itself_shows_nothing():
@@ -124,21 +124,16 @@ def test_a_run_comes_back_from_its_report(tmp_path):
 def test_the_command_says_it_by_code_by_words_and_as_a_page(tmp_path):
     write(tmp_path / "a", GOOD)
     write(tmp_path / "b", WRONG)
-
-    def coatcheck(*words: str) -> subprocess.CompletedProcess[str]:
-        return subprocess.run(
-            [*COMMAND, "compare", *words], cwd=tmp_path, capture_output=True, text=True, timeout=120
-        )
-
-    assert coatcheck("a", "a").returncode == 0
-    worse = coatcheck("a", "b", "--output", "pages/c.html")
+    compare = partial(coatcheck, "compare", cwd=tmp_path)
+    assert compare("a", "a").returncode == 0
+    worse = compare("a", "b", "--output", "pages/c.html")
     assert worse.returncode == 1
     assert "AGREES to DISAGREES" in " ".join(worse.stdout.split())
     assert (tmp_path / "pages" / "c.html").read_text().startswith("<!DOCTYPE html>")
-    back = coatcheck("b", "a", "--json")
+    back = compare("b", "a", "--json")
     assert back.returncode == 5
     assert json.loads(back.stdout)["worse"] is False
-    gone = coatcheck("a", "c")
+    gone = compare("a", "c")
     assert gone.returncode == 2
     assert "c: cannot be read" in gone.stderr
     assert len(gone.stderr.strip().splitlines()) == 1

@@ -12,15 +12,25 @@ from synthetic_study import conversion, elements, falling, study
 from verification.credibility.accuracy import CORRECTED, PLAIN, STAIRCASE, failed
 from verification.credibility.refinement import QUANTITIES
 from verification.report.figures.loglog import Trail, decades, draw_loglog
+from verification.report.material import Evidence, Material
 from verification.report.page import render
-from verification.report.sections.refinement import convergence_sections
-from verification.report.tables.labels import Style
+from verification.report.sections.refinement import finite_element_section, semianalytic_section
 from verification.report.tables.numbers import factor
+from verification.sources.source import Style
+
+
+def material(found, results=()) -> Material:
+    return Material(list(results), INFO, Evidence(accuracy=found))
+
+
+def convergence_sections(found):
+    made = (make(material(found)) for make in (semianalytic_section, finite_element_section))
+    return [section for section in made if section is not None]
 
 
 @pytest.fixture(scope="module")
 def page():
-    return render([result_of(contact(), points=11)], INFO, study())
+    return render(material(study(), [result_of(contact(), points=11)]))
 
 
 def text_of(sections) -> str:
@@ -34,7 +44,7 @@ def test_sections_stand_between_the_accuracy_and_the_times(page):
 
 
 def test_without_a_study_there_is_no_section():
-    assert 'id="semi-analytical-accuracy"' not in render([result_of(contact(), points=11)], INFO)
+    assert 'id="semi-analytical-accuracy"' not in render(Material([result_of(contact(), points=11)], INFO))
 
 
 def test_every_quantity_has_a_figure_with_every_curve(page):
@@ -60,20 +70,22 @@ def test_slopes_are_written_beside_the_curves(page):
 def test_words_come_from_the_numbers():
     said = text_of(convergence_sections(study()))
     assert f"pressure {33.0**-4:.1e} → 1.0e-7".replace("e-0", "e-") in said
-    assert "from N = 65 on: there another knob rules" in said
+    assert "from N = 65 on: another numerical parameter dominates there" in said
     assert "converges at order 1.0, to 3.9e-3 at N = 257" in said
     assert "a factor of 39000" in said
-    assert "does not bring down p0, a, approach, pressure and stress" in said
-    assert "off by 0.4 % at the loaded patch" in said
+    assert "does not reduce p0, a, approach, pressure and stress" in said
+    assert "an error of 0.4 % at the loaded patch" in said
     assert "2.0e-9 " not in said
     assert "2.0e-12 of the largest coefficient" in said
-    assert "2.0e9 times as far off" in said
+    assert "2.0e9 times as large" in said
     assert "Order 4 gains over order 2 factors of 40000 in p0" in said
-    other = replace(study(), ladders=(falling(CORRECTED, 2.0), falling(STAIRCASE, 0.1), falling(PLAIN, 3.0)))
+    other = replace(
+        study(), refinements=(falling(CORRECTED, 2.0), falling(STAIRCASE, 0.1), falling(PLAIN, 3.0))
+    )
     said = text_of(convergence_sections(other))
     assert "does not converge" in said
-    assert "knob" not in said
-    assert "does not bring down" not in said
+    assert "numerical parameter" not in said
+    assert "does not reduce" not in said
 
 
 def test_numbers_stand_in_tables(page):
@@ -87,7 +99,7 @@ def test_what_failed_is_said_in_its_section():
     grid, element = convergence_sections(broken)
     assert grid.failures == ("semianalytic: no grid fits",)
     assert element.failures == ("fem_reference, coated, order 3, default: no mesh",)
-    document = Document(render([], INFO, broken))
+    document = Document(render(material(broken)))
     assert len([a for a in document.all("p") if a.get("class") == "failure"]) == 2
 
 
@@ -95,18 +107,18 @@ def test_study_that_died_is_its_reason_alone():
     (section,) = convergence_sections(failed("its process was killed", 3.0))
     assert section.failures == ("its process was killed",)
     assert section.parts == []
-    assert "its process was killed" in Document(render([], INFO, failed("its process was killed", 3.0))).text(
+    assert "its process was killed" in Document(render(material(failed("its process was killed", 3.0)))).text(
         "p"
     )
 
 
 def test_part_that_is_missing_leaves_the_others():
     whole = study()
-    bare = replace(whole.ladders[0], levels=(), failure="N = 33: no grid fits")
-    for ladders in ((bare,), (bare, *whole.ladders[1:]), (bare, elements(3)), whole.ladders[1:2]):
-        Document(render([], INFO, replace(whole, ladders=ladders)))
+    bare = replace(whole.refinements[0], levels=(), failure="N = 33: no grid fits")
+    for ladders in ((bare,), (bare, *whole.refinements[1:]), (bare, elements(3)), whole.refinements[1:2]):
+        Document(render(material(replace(whole, refinements=ladders))))
     for conversions in ((), whole.conversions[:1], whole.conversions[1:2], (conversion("new", 4, 1, 1.0),)):
-        Document(render([], INFO, replace(whole, conversions=conversions)))
+        Document(render(material(replace(whole, conversions=conversions))))
 
 
 def test_no_number_whatever_keeps_a_report_from_being_written():
@@ -127,25 +139,25 @@ def test_no_number_whatever_keeps_a_report_from_being_written():
                     for level in one.levels
                 ),
             )
-            for one in whole.ladders
+            for one in whole.refinements
         )
         conversions = tuple(
             replace(one, error=tuple(float(random.choice(odd)) for _ in one.error), largest=float("nan"))
             for one in whole.conversions
         )
-        Document(render([], INFO, replace(whole, ladders=ladders, conversions=conversions)))
+        Document(render(material(replace(whole, refinements=ladders, conversions=conversions))))
 
 
 def test_words_from_strangers_stay_words():
     evil = "<script>alert(1)</script>{{7*7}}"
     bad = replace(falling(evil, 2.0, solid=evil), failure=evil)
-    document = Document(render([], INFO, replace(study(evil), ladders=(bad,))))
+    document = Document(render(material(replace(study(evil), refinements=(bad,)))))
     assert len(document.all("script")) == 1
     assert " ".join(text for _, text in document.texts).count(evil) >= 3
 
 
 def test_sections_cost_little(page):
-    assert len(page.encode()) - len(render([result_of(contact(), points=11)], INFO).encode()) < 2e5
+    assert len(page.encode()) - len(render(Material([result_of(contact(), points=11)], INFO)).encode()) < 2e5
 
 
 def test_scales_hold_every_point_off_the_frame():
@@ -165,7 +177,13 @@ def test_scales_hold_every_point_off_the_frame():
 
 @pytest.mark.parametrize(
     ("worse", "better", "said"),
-    [(3.25, 1, "3.2"), (4567, 1, "4600"), (1, 1e-9, "1.0e9"), (1, 0, "untold"), (float("nan"), 1, "untold")],
+    [
+        (3.25, 1, "3.2"),
+        (4567, 1, "4600"),
+        (1, 1e-9, "1.0e9"),
+        (1, 0, "undefined"),
+        (float("nan"), 1, "undefined"),
+    ],
 )
 def test_factor_has_two_digits(worse, better, said):
     assert factor(worse, better) == said

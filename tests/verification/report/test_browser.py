@@ -5,7 +5,8 @@ from headless import Page, browser, page
 from synthetic_results import INFO, showcase
 from synthetic_study import study
 
-from verification.report import write_report
+from verification.report.material import Evidence, Material
+from verification.report.write import write_report
 from verification.sampling.plane import sample_plane
 from verification.sources.references.hertz import Hertz
 
@@ -23,7 +24,9 @@ def report(tmp_path_factory):
     hertz = Hertz(problem["radius"], problem["load"], *problem["substrate"])
     plane = sample_plane(tuple(problem["interfaces"]), {"semianalytic": hertz, "fem_reference": hertz})
     failed = "order 3: the mesh has no triangles"
-    return write_report(results, folder, INFO, study(failed), planes={results[0].name: plane})
+    return write_report(
+        Material(results, INFO, Evidence(accuracy=study(failed)), {results[0].name: plane}), folder
+    )
 
 
 @pytest.fixture(scope="module")

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from synthetic_results import INFO, contact, result_of
 
+from verification.report.material import Material
 from verification.report.page import render
 from verification.report.sections.family import family_section
 
@@ -61,5 +62,5 @@ def test_no_number_keeps_the_page_from_being_written(frictionless):
         )
         for result in frictionless
     ]
-    assert "Pressure and stress against the coating" in render(spoilt, INFO)
+    assert "Pressure and stress against the coating" in render(Material(spoilt, INFO))
     assert family_section([replace(result, problem={}) for result in frictionless]) is None

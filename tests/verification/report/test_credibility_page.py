@@ -6,13 +6,16 @@ import pytest
 from synthetic_results import INFO, STEEL, contact, result_of
 from synthetic_study import study
 
-from verification.credibility.alarms import counted, write_record
+from verification.credibility import alarms
+from verification.credibility.alarms import counted
 from verification.credibility.faults import campaign
-from verification.credibility.faults.record import Catch, Record, Row
+from verification.credibility.faults.record import Catch, Record, Row, write_record
 from verification.credibility.independence import PARTS, imports_of, parts, shared
 from verification.regression.baseline import regression
-from verification.report.credibility.evidence import Evidence, gather
-from verification.report.credibility.section import credibility_section, figures
+from verification.report.credibility import statement
+from verification.report.credibility.faults import faults_section
+from verification.report.credibility.statement import figures
+from verification.report.material import Evidence, Material, gather
 from verification.report.page import render
 from verification.report.tables.cells import Part, Section
 from verification.running.result import CaseResult
@@ -30,7 +33,7 @@ STEPS = (
     "5. Independence of the two methods",
     "6. Fault detection",
     "7. False alarms",
-    "8. What is not claimed",
+    "8. Not claimed",
 )
 
 
@@ -40,7 +43,9 @@ def evidence(tmp_path_factory) -> Evidence:
 
 
 def section(evidence: Evidence, results: list[CaseResult] = RESULTS, **more) -> Section:
-    return credibility_section(results, INFO, more.get("study"), evidence, more.get("baseline"))
+    found = statement.section(Material(results, INFO, replace(evidence, **more)))
+    assert found is not None
+    return found
 
 
 def part(found: Section, title: str) -> Part:
@@ -80,7 +85,7 @@ def test_figures_of_a_record_carry_date_and_commit(evidence, tmp_path):
     vague = result_of(contact((E / 2, NU, 1.0)), name="vague", points=33, errors={"semianalytic": 4e-3})
     info = replace(INFO, started="2026-10-09T08:00:00+00:00", commit="c0ffee123456")
     record = counted([RESULTS[0], vague], 1, info)
-    write_record(tmp_path, record)
+    alarms.write_record(tmp_path, record)
     known = gather(tmp_path)
     assert known.alarms == record
     text = said(part(section(known), STEPS[6]))
@@ -103,18 +108,19 @@ def test_the_fault_score_and_its_survivors_come_from_the_record(tmp_path):
         )
 
     rows = [row(f"fault_{n}", Catch.DISAGREES) for n in range(19)]
-    rows.append(row("shy", Catch.SURVIVED, reason="no case sees it", cure="a thicker film would"))
+    rows.append(row("shy", Catch.SURVIVED, reason="no case sees it", remedy="a thicker film would"))
     record = Record(
         tuple(rows), (), "2026-10-09T08:00:00+00:00", 60.0, 90.0, "c0ffee123456", "m", dict(INFO.versions)
     )
-    campaign.write_record(tmp_path / campaign.RECORD, record)
+    write_record(tmp_path / campaign.RECORD, record)
     found = gather(tmp_path)
     assert found.failures == ()
     text = said(part(section(found), STEPS[5]))
-    assert "19 of 20 planted faults are caught, 95 %; 19 of them by the comparison named beforehand" in text
+    assert "19 of 20 planted faults are detected, 95 %; 19 of them by the predicted check" in text
     assert "Measured 2026-10-09, c0ffee123456" in text
+    survivors = " ".join(said(one) for one in faults_section(found.faults).parts)
     for words in ("shy is wrong", "no case sees it", "a thicker film would"):
-        assert words in text
+        assert words in survivors
 
 
 def test_a_damaged_record_is_named_and_its_figure_is_not_measured(tmp_path):
@@ -125,7 +131,7 @@ def test_a_damaged_record_is_named_and_its_figure_is_not_measured(tmp_path):
 
 
 def test_figures_of_this_run_follow_its_results(evidence):
-    good = section(evidence, study=study())
+    good = section(evidence, accuracy=study())
     total = sum(len(r.verdicts) for r in RESULTS)
     assert f"{total} of {total} comparisons of this run agree" in part(good, STEPS[3]).text
     assert "100 %" in part(good, STEPS[2]).text
@@ -146,7 +152,7 @@ def test_figures_of_this_run_follow_its_results(evidence):
 def test_regression_has_its_row(evidence):
     none = section(evidence, baseline=regression(RESULTS, None, "somewhere", INFO, whole=True))
     glance = {row.head.text: row.cells[0].text for row in none.parts[0].tables[0].rows}
-    assert glance["Regression"] == "There is no baseline in somewhere, so this run was held against none."
+    assert glance["Regression"] == "There is no baseline in somewhere, so this run was not compared."
 
 
 def test_the_methods_share_numpy_and_none_of_scipy():
@@ -180,14 +186,14 @@ def test_an_import_across_the_border_is_found(tmp_path, monkeypatch):
     with pytest.raises(ValueError, match="no_such_package"):
         imports_of("no_such_package")
     broken = section(Evidence(parts=(found, found)))
-    assert "2 imports break the contract" not in said(part(broken, STEPS[4]))
-    assert "4 imports break the contract" in said(part(broken, STEPS[4]))
+    assert "2 imports are forbidden" not in said(part(broken, STEPS[4]))
+    assert "4 imports are forbidden" in said(part(broken, STEPS[4]))
 
 
 def test_the_page_takes_the_section_and_escapes_it(evidence, tmp_path):
     bad = result_of(contact((E / 2, NU, 1.0)), name="vague", points=9, errors={"semianalytic": 4e-3})
-    write_record(tmp_path, counted([replace(bad, title="<script>alert(1)</script>")], 1, INFO))
-    text = render(RESULTS[:1], INFO, extra=[section(gather(tmp_path))])
+    alarms.write_record(tmp_path, counted([replace(bad, title="<script>alert(1)</script>")], 1, INFO))
+    text = render(Material(RESULTS[:1], INFO, gather(tmp_path)))
     assert '<section class="run" id="credibility">' in text
     for title in STEPS:
         assert f"<h3>{title}</h3>" in text

@@ -9,9 +9,12 @@ import pytest
 from synthetic_results import INFO, STEEL, contact, result_of, showcase
 
 from verification.judging.verdict import Outcome
-from verification.report import write, write_report
+from verification.report import write
 from verification.report.junit import junit_xml
+from verification.report.material import Material
+from verification.report.write import write_report
 from verification.running.result import SCHEMA, CaseResult, SourceResult, from_json
+from verification.running.store import StoreError
 
 NAMES = {"report.html", "report.json", "junit.xml"}
 
@@ -24,14 +27,14 @@ def results():
 
 
 def test_a_report_is_three_files_and_nothing_else(tmp_path, results):
-    page = write_report(results, tmp_path / "new" / "folder", INFO)
+    page = write_report(Material(results, INFO), tmp_path / "new" / "folder")
     assert page == tmp_path / "new" / "folder" / "report.html"
     assert {path.name for path in page.parent.iterdir()} == NAMES
     assert all(path.stat().st_size > 100 for path in page.parent.iterdir())
 
 
 def test_an_earlier_report_survives_whatever_goes_wrong(tmp_path, results, monkeypatch):
-    write_report([], tmp_path, INFO)
+    write_report(Material([], INFO), tmp_path)
     before = {path.name: path.read_bytes() for path in tmp_path.iterdir()}
 
     def full(_):
@@ -39,35 +42,35 @@ def test_an_earlier_report_survives_whatever_goes_wrong(tmp_path, results, monke
 
     with monkeypatch.context() as patched:
         patched.setattr(write.os, "fsync", full)
-        with pytest.raises(OSError, match="No space left"):
-            write_report(results, tmp_path, INFO)
+        with pytest.raises(StoreError, match="No space left"):
+            write_report(Material(results, INFO), tmp_path)
     with monkeypatch.context() as patched:
-        patched.setattr(write, "render", lambda *_: 1 / 0)
+        patched.setattr(write, "render", lambda _: 1 / 0)
         with pytest.raises(ZeroDivisionError):
-            write_report(results, tmp_path, INFO)
+            write_report(Material(results, INFO), tmp_path)
     assert {path.name: path.read_bytes() for path in tmp_path.iterdir()} == before
 
 
 def test_a_title_that_is_no_text_costs_no_report(tmp_path):
     # Lone surrogates are legal in JSON, so they can come back from a stored result.
-    write_report([result_of(contact(), title="half \ud800 pair", points=11)], tmp_path, INFO)
+    write_report(Material([result_of(contact(), title="half \ud800 pair", points=11)], INFO), tmp_path)
     assert "half ? pair" in (tmp_path / "report.html").read_text(encoding="utf-8")
 
 
 def test_a_name_from_a_stranger_is_no_path(tmp_path):
     folder = tmp_path / "out"
-    write_report([result_of(contact(), name="../../evil", points=11)], folder, INFO)
+    write_report(Material([result_of(contact(), name="../../evil", points=11)], INFO), folder)
     assert {path.name for path in tmp_path.iterdir()} == {"out"}
     assert {path.name for path in folder.iterdir()} == NAMES
 
 
 def test_report_files_can_be_read_by_others(tmp_path):
-    page = write_report([], tmp_path, INFO)
+    page = write_report(Material([], INFO), tmp_path)
     assert oct(os.stat(page).st_mode & 0o777) == "0o644"
 
 
 def test_json_is_strict_versioned_and_complete(tmp_path, results):
-    write_report(results, tmp_path, INFO)
+    write_report(Material(results, INFO), tmp_path)
     text = (tmp_path / "report.json").read_text()
 
     def refuse(word):

@@ -11,15 +11,16 @@ from synthetic_study import study
 
 from verification.credibility.accuracy import from_json as study_from_json
 from verification.credibility.accuracy import to_json as study_to_json
-from verification.credibility.parameters import KnobLadder, Stated
+from verification.credibility.parameters import Stated, Sweep
 from verification.judging.invariants import Invariant
 from verification.judging.verdict import Outcome
 from verification.report.junit import junit_xml
+from verification.report.material import Material
 from verification.report.page import render
 from verification.report.sections.accuracy import coverage_table
-from verification.report.sections.invariants import invariant_cell, invariant_section, invariant_table
-from verification.report.sections.parameters import knob_section
-from verification.report.tables.case import dominating_knob
+from verification.report.sections.invariants import invariant_cell, invariant_table, section
+from verification.report.sections.parameters import parameter_section
+from verification.report.tables.case import dominating_parameter
 from verification.running.result import from_json, to_json
 
 HOLDS = Invariant("load balance", "semianalytic", 1e-7, 1e-5, Outcome.AGREES, "int p dA = W: off by 1e-07")
@@ -81,26 +82,26 @@ def test_table_begins_with_what_is_broken_then_with_the_closest_to_its_bound(sli
 
 
 def test_section_gathers_the_layers_of_a_law_over_all_cases(sound, slipped):
-    section = invariant_section([sound, slipped], {0: "a", 1: "b"})
-    assert "4 of 6 invariants hold over 2 cases" in section.parts[0].text
-    rows = {row.head.text: row for row in section.parts[0].tables[0].rows}
+    found = section(Material([sound, slipped], INFO))
+    assert "4 of 6 invariants hold over 2 cases" in found.parts[0].text
+    rows = {row.head.text: row for row in found.parts[0].tables[0].rows}
     assert set(rows) == {"load balance", "equilibrium", "sphere"}
     held = next(cell for cell in rows["equilibrium"].cells if cell.text)
-    assert (held.text, held.href) == ("2 of 3", "#b-invariants")
-    assert invariant_section([replace(sound, invariants=())], {0: "a"}) is None
+    assert (held.text, held.href) == ("2 of 3", "#case-stiff-coating--2-invariants")
+    assert section(Material([replace(sound, invariants=())], INFO)) is None
 
 
 def test_page_says_what_is_broken_before_the_problem(slipped):
-    page = render([slipped], INFO)
+    page = render(Material([slipped], INFO))
     assert "2 of 4 invariants do not hold" in page
     assert page.index("Invariants that do not hold") < page.index("<h3>Problem</h3>")
     assert 'id="case-stiff-coating-invariants"' in page
 
 
-def test_dominating_knob_is_the_largest_share_of_the_less_certain_side():
+def test_dominating_parameter_is_the_largest_share_of_the_less_certain_side():
     result = result_of(contact((2 * STEEL[0], 0.3, 1.0)), points=31)
     found = {
-        (claim.quantity, claim.line): dominating_knob(result, claim, verdict)
+        (claim.quantity, claim.line): dominating_parameter(result, claim, verdict)
         for claim, verdict in result.verdicts
         if claim.between == ("semianalytic", "integral_equation")
     }
@@ -109,45 +110,47 @@ def test_dominating_knob_is_the_largest_share_of_the_less_certain_side():
     claim, verdict = result.verdicts[0]
     rows = tuple(("peak_pressure", knob, value) for knob, value in (("size", 1e3), ("domain", 1e9)))
     sources = tuple(replace(s, budget=rows) for s in result.sources)
-    assert dominating_knob(replace(result, sources=sources), claim, verdict) == "semi-analytical: domain"
+    assert dominating_parameter(replace(result, sources=sources), claim, verdict) == "semi-analytical: domain"
 
 
 def test_coverage_counts_the_quantities_whose_error_lies_within_what_is_stated():
     problem = contact((2 * STEEL[0], 0.3, 1.0))
     honest = result_of(problem, points=31)
     table = coverage_table([honest])
-    assert [row.cells[1].text for row in table.rows] == ["100.0 %", "100.0 %"]
+    assert [row.cells[2].text for row in table.rows] == ["100.0 %"] * 4
     bold = result_of(problem, points=31, stated={"semianalytic": 0.1})
-    ours, theirs = coverage_table([bold]).rows
-    assert ours.cells[1].css == "flag disagrees"
-    assert float(ours.cells[2].text) > 1 > float(theirs.cells[2].text)
-    assert theirs.cells[1].text == "100.0 %"
+    *ours, scalars, lines = coverage_table([bold]).rows
+    for mine, theirs in zip(ours, (scalars, lines), strict=True):
+        assert mine.cells[0].text == theirs.cells[0].text
+        assert mine.cells[2].css == "flag disagrees"
+        assert float(mine.cells[3].text) > 1 > float(theirs.cells[3].text)
+        assert theirs.cells[2].text == "100.0 %"
 
 
 def knobs():
     steps = (8.0, 4.0, 2.0, 1.0)
     values = {"p0": tuple(1 + 1e-3 * h**2 for h in steps), "a": tuple(1 + 1e-5 * h for h in steps)}
-    ladder = KnobLadder("semianalytic", "coated", "patch size", 2.0, tuple("abcd"), steps, values)
+    ladder = Sweep("semianalytic", "coated", "patch size", 2.0, tuple("abcd"), steps, values)
     stated = Stated("semianalytic", "coated", {"p0": 5e-4, "a": 1e-4}, (), {"p0": 1e-3, "a": 1e-5})
     return (ladder,), (stated,)
 
 
-def test_knob_section_marks_a_stated_uncertainty_below_the_true_error():
-    section = knob_section(*knobs())
+def test_parameter_section_marks_a_stated_uncertainty_below_the_true_error():
+    section = parameter_section(*knobs())
     totals, orders = section.parts[0].tables
     p0, a = totals.rows
     assert [cell.css for cell in p0.cells[1:3]] == ["flag disagrees", "flag agrees"]
     assert [cell.css for cell in a.cells[1:3]] == ["flag agrees", "flag agrees"]
     assert p0.cells[2].sort == pytest.approx(1.25e-3, rel=1e-3)
     assert [row.cells[0].text for row in orders.rows] == ["2", "1"]
-    assert "holds the true error in 1 of 2 quantities, the sum of the fitted ladders in 2" in (
+    assert "covers the true error in 1 of 2 quantities, the sum of the fitted uncertainties in 2" in (
         section.parts[0].text
     )
 
 
 def test_knobs_survive_the_file_of_the_accuracy_study():
     ladders, stated = knobs()
-    whole = replace(study(), knobs=ladders, stated=stated)
+    whole = replace(study(), sweeps=ladders, stated=stated)
     back = study_from_json(json.loads(json.dumps(study_to_json(whole), allow_nan=False)))
     assert back == whole
-    assert np.isclose(back.knobs[0].estimate("a").uncertainty, 1.25e-5)
+    assert np.isclose(back.sweeps[0].estimate("a").uncertainty, 1.25e-5)

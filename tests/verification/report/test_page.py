@@ -12,10 +12,10 @@ from html_document import Document
 from synthetic_results import INFO, STEEL, contact, crashed, result_of, showcase
 
 from verification.judging.verdict import Outcome
+from verification.report.material import Material
 from verification.report.page import render
 from verification.report.tables import labels as names
 from verification.running.result import CaseResult, RunInfo, from_json, to_json
-from verification.sources import registry
 
 
 @pytest.fixture(scope="module")
@@ -25,7 +25,7 @@ def results() -> list[CaseResult]:
 
 @pytest.fixture(scope="module")
 def page(results) -> str:
-    return render(results, INFO)
+    return render(Material(results, INFO))
 
 
 @pytest.fixture(scope="module")
@@ -34,7 +34,7 @@ def document(page) -> Document:
 
 
 def rendered(*results: CaseResult) -> Document:
-    return Document(render(results, INFO))
+    return Document(render(Material(results, INFO)))
 
 
 def test_the_page_needs_nothing_but_itself(page, document):
@@ -92,7 +92,7 @@ def test_words_from_strangers_stay_words():
         problem, name=evil, title=evil, failures={"fem_reference": evil}, text=evil + "\n</pre></article>"
     )
     info = RunInfo(evil, evil, 1.0, 1, evil, evil, {evil: evil})
-    document = Document(render([result], info))
+    document = Document(render(Material([result], info)))
     assert len(document.all("script")) == 1
     assert document.all("img") == []
     assert not any(name.startswith("on") for _, attributes in document.elements for name in attributes)
@@ -174,7 +174,7 @@ def test_the_report_of_stored_results_is_the_report_of_fresh_ones(results):
     # One with NaN, one with uncertainties not stated, one that crashed.
     fresh = results[-3:]
     stored = [from_json(to_json(result)) for result in fresh]
-    assert render(stored, INFO) == render(fresh, INFO)
+    assert render(Material(stored, INFO)) == render(Material(fresh, INFO))
 
 
 def test_no_case_at_all_still_gives_a_page():
@@ -194,10 +194,6 @@ def test_problem_is_told_in_real_units():
     # Hertz on the bare steel: a = (3 W R / 4 E*)^(1/3), E* = 210e9/0.91.
     for text in ("10 mm", "20 N", "86.62 µm", "1.273 GPa", "750.4 nm", "420 GPa"):
         assert text in said
-
-
-def test_the_report_knows_the_methods_that_cases_know():
-    assert names.METHODS == registry.METHODS
 
 
 def test_no_number_whatever_keeps_a_report_from_being_written(results):

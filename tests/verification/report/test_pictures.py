@@ -10,6 +10,7 @@ from synthetic_results import INFO, STEEL, contact, result_of
 
 from verification.report.figures.fields import pictures
 from verification.report.figures.raster import Frame, Scale, coloured, rasterised
+from verification.report.material import Material
 from verification.report.page import render
 from verification.sampling.plane import Plane, sample_plane
 from verification.sources.references.hertz import Hertz
@@ -83,7 +84,7 @@ def test_a_field_that_is_not_finite_still_gives_a_page(plane, bad):
     sigma = plane.stress["fem_reference"][0].copy()
     sigma[:, 3, 3] = bad
     spoiled = Plane(plane.x, plane.depths, plane.radius, {**plane.stress, "fem_reference": (sigma,)}, {})
-    text = render([RESULT], INFO, planes={"bare": spoiled})
+    text = render(Material([RESULT], INFO, planes={"bare": spoiled}))
     assert 'class="figure field"' in text
 
 
@@ -97,7 +98,7 @@ def test_a_method_without_a_picture_is_said_and_no_plane_is_no_picture(plane):
     )
     found = pictures(RESULT, alone)
     assert found.across == 1
-    text = render([RESULT], INFO, planes={"bare": alone})
+    text = render(Material([RESULT], INFO, planes={"bare": alone}))
     assert "No picture by semi-analytical:</strong> no &lt;b&gt;" in text
     assert pictures(RESULT, None) is None
     assert pictures(RESULT, Plane(np.zeros(0), (), 0.0, {}, {})) is None

@@ -2,21 +2,21 @@
 
 import json
 import re
-import subprocess
-import sys
 from dataclasses import replace
 from pathlib import Path
 from xml.etree import ElementTree
 
 import pytest
+from quick_case import coatcheck
 
 from verification.cases.published import published_cases, read_published
 from verification.report.junit import junit_xml
+from verification.report.material import Material
 from verification.report.page import render
 from verification.running.published import failed, run
 from verification.running.result import RunInfo, from_json
 from verification.running.store import read_checked
-from verification.sources.published import solvers
+from verification.sources.registry import solvers
 
 SHIPPED = published_cases()
 INFO = RunInfo("coatcheck run published", "2026-01-01T00:00:00+00:00", 1.0, 1, None, "a machine", {})
@@ -32,7 +32,7 @@ def results():
 
 @pytest.fixture(scope="module")
 def page(results):
-    return render(results, INFO)
+    return render(Material(results, INFO))
 
 
 def rows_of(page, anchor):
@@ -83,13 +83,13 @@ def test_a_value_that_is_not_met_is_marked(results):
     profiles = tuple(
         replace(p, value=p.value * 1.001) if p.source == "fem_reference" else p for p in wrong.profiles
     )
-    rows = rows_of(render([replace(wrong, profiles=profiles)], INFO), "jones-1962")
+    rows = rows_of(render(Material([replace(wrong, profiles=profiles)], INFO)), "jones-1962")
     assert sum(row.endswith("✗") for row in rows) == 2
 
 
 def test_a_failed_source_still_has_its_page():
     case = read_published(SHIPPED["jones_1962"])
-    page = render([failed(case, "its process <died>", 1.0)], INFO)
+    page = render(Material([failed(case, "its process <died>", 1.0)], INFO))
     assert "its process &lt;died&gt;" in page
     assert "0 of 2" in page
 
@@ -103,15 +103,15 @@ def test_command_line_runs_a_table_of_ones_own(tmp_path):
     (tmp_path / "mine.toml").write_text(SHIPPED["jones_1962"].read_text().replace("nu = 0.5", "nu = 0.3"))
     table = "factor,meaning,table_memory\nZZ1,a,0.5\nZZ1-RR1,b,1.0\n"
     (tmp_path / "jones_1962_three_layer.csv").write_text(table)
-    words = [sys.executable, "-m", "verification.cli", "run", "mine.toml", "-o", "out", "--json"]
-    done = subprocess.run(words, cwd=tmp_path, capture_output=True, text=True, timeout=300, check=False)
+    words = ("run", "mine.toml", "-o", "out", "--json")
+    done = coatcheck(*words, cwd=tmp_path)
     # The numbers are made up, so they must disagree.
     assert done.returncode == 1, done.stderr
     assert json.loads(done.stdout)["cases"]["mine"]["outcome"] == "DISAGREES"
     result = from_json(read_checked(tmp_path / "out" / "cases" / "mine.json"))
     assert result.published["columns"][0]["text"] == ["0.5"]
     (tmp_path / "jones_1962_three_layer.csv").write_text(table.replace("1.0", "one"))
-    done = subprocess.run(words, cwd=tmp_path, capture_output=True, text=True, timeout=60, check=False)
+    done = coatcheck(*words, cwd=tmp_path)
     assert done.returncode == 2
     said = "jones_1962_three_layer.csv, line 3, column table_memory: 'one' is not a finite number"
     assert done.stderr.strip() == f"coatcheck: {said}"

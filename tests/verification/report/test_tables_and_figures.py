@@ -19,7 +19,7 @@ from verification.report.sections.accuracy import accuracies, accuracy_sentence
 from verification.report.tables.case import budget_table, contact_table, verdict_table
 from verification.report.tables.csv import embedded, line_csv
 from verification.report.tables.labels import OUTCOMES, pair_style, source_style
-from verification.report.tables.lookup import baseline, contact_radius, difference, judged
+from verification.report.tables.lookup import contact_radius, difference, judged, reference_source
 from verification.report.tables.matrix import verdict_matrix
 from verification.report.tables.numbers import engineering, scientific, seconds, with_uncertainty
 
@@ -71,16 +71,19 @@ def test_fractions_and_times_are_short():
 
 
 def test_the_best_reference_is_the_last_exact_one_that_gave_a_result():
-    assert baseline(result_of(contact(), points=11)) == "hertz"
-    assert baseline(result_of(COATED, points=11)) == "integral_equation"
-    assert baseline(result_of(COATED, failures={"integral_equation": "no"}, points=11)) == "fem_reference"
+    assert reference_source(result_of(contact(), points=11)) == "hertz"
+    assert reference_source(result_of(COATED, points=11)) == "integral_equation"
+    assert (
+        reference_source(result_of(COATED, failures={"integral_equation": "no"}, points=11))
+        == "fem_reference"
+    )
     everything = dict.fromkeys(("semianalytic", "fem_reference", "integral_equation"), "no")
-    assert baseline(result_of(COATED, failures=everything, points=11)) is None
+    assert reference_source(result_of(COATED, failures=everything, points=11)) is None
 
 
 def test_the_worst_verdict_of_a_group_decides_its_cell():
     result = result_of(COATED, spoil={("sigma_yy", "surface", "fem_reference"): 9 * COATED.p_h}, points=31)
-    (row,) = verdict_matrix([result], {0: "case-x"}).rows
+    (row,) = verdict_matrix([result], {result: "case-x"}).rows
     cells = {(cell.css.split()[1], cell.text[0], cell.href) for cell in row.cells if "verdict" in cell.css}
     assert ("disagrees", "D", "#case-x-surface") in cells
     assert row.cells[0].text.startswith("D")
@@ -129,10 +132,10 @@ def test_accuracy_tells_an_honest_estimate_from_a_vain_one():
     # A method that states a fifth of its error cannot be honest about the largest one.
     vain = result_of(COATED, stated={"fem_reference": 0.2}, points=31)
     silent = result_of(COATED, stated={"fem_reference": None}, points=31)
-    assert all(item.brackets for item in accuracies(honest))
+    assert all(item.covered for item in accuracies(honest))
     fem = [item for item in accuracies(vain) if item.source == "fem_reference" and item.line != "contact"]
     assert fem
-    assert not any(item.brackets for item in fem)
+    assert not any(item.covered for item in fem)
     assert all(item.css == "disagrees" for item in fem)
     assert "(100.0 %)" in accuracy_sentence([honest], "fem_reference")
     assert "none is stated" in accuracy_sentence([silent], "fem_reference")

@@ -11,9 +11,9 @@ import fem_reference
 import semianalytic
 from verification.cases.contact import parse_case
 from verification.commands.view import _picture, view
+from verification.problem.quantity import STRESSES
 from verification.running.fields import read_fields, write_fields
 from verification.running.store import StoreError
-from verification.sampling.vtk import NAMES
 
 pv = pytest.importorskip("pyvista")
 
@@ -29,7 +29,7 @@ E = 420e9
 nu = 0.25
 thickness = 40e-6
 """
-FIELDS = {"displacement [m]", "von_mises [Pa]", *(f"sigma_{name} [Pa]" for name in NAMES)}
+FIELDS = {"displacement [m]", "von_mises [Pa]", *(f"{name} [Pa]" for name in STRESSES)}
 
 
 @pytest.fixture(scope="module")
@@ -66,10 +66,8 @@ def test_the_mesh_carries_the_stresses_of_its_own_side(case, folder, solutions):
         cells = grid.extract_cells(np.flatnonzero(grid.cell_data["layer"] == layer))
         mine = np.isin(np.arange(grid.n_points), cells.point_data["vtkOriginalPointIds"]) & near
         sigma = solutions["fem_reference"].stress(x[mine], 0.0, z[mine], layer=layer)
-        for name, component in NAMES.items():
-            np.testing.assert_allclose(
-                grid.point_data[f"sigma_{name} [Pa]"][mine], sigma[component], atol=1e-3
-            )
+        for name, component in STRESSES.items():
+            np.testing.assert_allclose(grid.point_data[f"{name} [Pa]"][mine], sigma[component], atol=1e-3)
         u = solutions["fem_reference"].displacement(x[mine], 0.0, z[mine])
         np.testing.assert_allclose(grid.point_data["displacement [m]"][mine], u.T, atol=1e-18)
 
@@ -87,8 +85,8 @@ def test_the_boxes_carry_stress_and_displacement_layer_by_layer(case, folder, so
         some = np.random.default_rng(layer).choice(deep, 60, replace=False)
         sigma = solution.stress(x[some], y[some], z[some], layer=layer)
         u = solution.displacement(x[some], y[some], z[some])
-        for name, component in NAMES.items():
-            given = grid.point_data[f"sigma_{name} [Pa]"][some]
+        for name, component in STRESSES.items():
+            given = grid.point_data[f"{name} [Pa]"][some]
             np.testing.assert_allclose(given, sigma[component], atol=2e-4 * p0)
         given = grid.point_data["displacement [m]"][some]
         np.testing.assert_allclose(given, u.T, atol=1e-9 * solution.approach)

@@ -12,9 +12,8 @@ from verification.problem.points import Points
 from verification.running.published import failed, run
 from verification.running.result import from_json, to_json
 from verification.sampling.points import values
-from verification.sources.limits import towards_limits
-from verification.sources.published import solvers
-from verification.sources.registry import PUBLISHED
+from verification.sources.extrapolation import extrapolated
+from verification.sources.registry import PUBLISHED, solvers
 
 SHIPPED = published_cases()
 DISC = PrescribedLoad(1e6, 0.1, (), (1e9, 0.3))
@@ -126,7 +125,7 @@ def test_result_survives_json(disc):
 def test_incompressible_solid_is_reached_by_extrapolation():
     soft = replace(DISC, substrate=(1e9, 0.5))
     quick = solvers()["semianalytic"]
-    carried, direct = towards_limits(soft, quick), quick(soft)
+    carried, direct = extrapolated(soft, quick), quick(soft)
     z = np.array([0.03, 0.1, 0.3])
     gap = np.abs(carried.stress(0.0, 0.0, z) - direct.stress(0.0, 0.0, z))
     assert (gap <= carried.stress_uncertainty(0.0, 0.0, z)).all()
@@ -134,13 +133,13 @@ def test_incompressible_solid_is_reached_by_extrapolation():
     assert gap.max() <= 1e-6 * DISC.pressure
     assert carried.approach == pytest.approx(direct.approach, rel=1e-5)
     assert carried.uncertainty.approach >= abs(carried.approach - direct.approach)
-    assert towards_limits(DISC, lambda problem: problem) is DISC
+    assert extrapolated(DISC, lambda problem: problem) is DISC
 
 
 def test_rigid_base_is_reached_by_extrapolation():
     quick = solvers()["semianalytic"]
     rigid = PrescribedLoad(1e6, 0.1, ((1e9, 0.3, 0.1),), (1e15, 0.3))
-    carried, direct = towards_limits(rigid, quick), quick(rigid)
+    carried, direct = extrapolated(rigid, quick), quick(rigid)
     spread = carried.uncertainty.approach
     assert abs(carried.approach - direct.approach) <= spread <= 1e-3 * direct.approach
     # A base of 1e4 alone is further off by orders than the line through two of them.

@@ -1,4 +1,4 @@
-"""Published curves of a sphere pressed deeper and deeper: read, refused where malformed, met or not."""
+"""Published loading curves: read, refused where malformed, met or not."""
 
 import numpy as np
 import pytest
@@ -7,11 +7,11 @@ from verification.cases.published import published_cases, read_published
 from verification.cases.toml import CaseError
 from verification.judging.verdict import Outcome
 from verification.problem.loading import LoadingCurve
+from verification.report.material import Material
 from verification.report.page import render
 from verification.running.published import run
 from verification.running.result import RunInfo, from_json, to_json
-from verification.sources.published import solvers
-from verification.sources.registry import REFERENCE
+from verification.sources.registry import EXACT, solvers
 
 SHIPPED = published_cases()
 INFO = RunInfo("coatcheck run published", "2026-01-01T00:00:00+00:00", 1.0, 1, None, "a machine", {})
@@ -72,17 +72,17 @@ def test_a_sphere_without_a_load_is_a_loading_curve(files):
 
 
 def test_only_what_counts_is_judged_and_all_of_it_is_shown(files):
-    exact = {REFERENCE: solvers()[REFERENCE]}
+    exact = {"integral_equation": solvers()["integral_equation"]}
     result = run(files(), exact)
-    judged = {c.line.rsplit(" ", 1)[1]: v.outcome for c, v in result.verdicts if REFERENCE in c.between}
+    judged = {c.line.rsplit(" ", 1)[1]: v.outcome for c, v in result.verdicts if EXACT[0] in c.between}
     assert judged["k"] is Outcome.AGREES
     assert judged["s"] is Outcome.AGREES
     assert from_json(to_json(result)).problem["control"] == "contact_radius"
-    page = render([result], INFO)
+    page = render(Material([result], INFO))
     assert "superseded, not counted" in page
     assert "stiffness of the flat punch over 2 a E1*" in page
     wrong = run(files(csv=CSV.replace("2.483525", "2.483535")), exact)
-    judged = {c.line.rsplit(" ", 1)[1]: v.outcome for c, v in wrong.verdicts if REFERENCE in c.between}
+    judged = {c.line.rsplit(" ", 1)[1]: v.outcome for c, v in wrong.verdicts if EXACT[0] in c.between}
     assert judged["k"] is Outcome.DISAGREES
 
 
@@ -104,7 +104,7 @@ def test_only_what_counts_is_judged_and_all_of_it_is_shown(files):
         ("relative = 0.1", "relative = -0.1", r"curve\.toml: table\.0\.column\.2\.relative"),
         ("radius = 10.0\n", "radius = 10.0\nfriction = 0.1\n", "friction belongs to"),
         ("radius = 10.0\n", "load = 10.0\n", "needs pressure and load_radius"),
-        ('at = { contact_radius = "a", unit = "h" }', "", "says nowhere where its values are"),
+        ('at = { contact_radius = "a", unit = "h" }', "", "has no positions"),
     ],
 )
 def test_malformed_curves_are_refused_with_file_and_key(files, old, new, said):
@@ -122,7 +122,7 @@ def test_points_without_meaning_are_refused(files, a):
 def test_one_case_has_one_control(files):
     second = TOML.replace("kappa", "load").split("[[table]]")[1].replace("contact_radius", "approach")
     second = second.replace("series_over_load", "load")
-    with pytest.raises(CaseError, match="has to say where every value of a loading curve is"):
+    with pytest.raises(CaseError, match="for every value of a loading curve"):
         files(TOML + "\n[[table]]" + second)
 
 
@@ -130,9 +130,9 @@ def test_one_case_has_one_control(files):
     "name", [n for n in SHIPPED if isinstance(read_published(SHIPPED[n]).problem, LoadingCurve)]
 )
 def test_exact_reference_meets_every_shipped_curve(name):
-    result = run(read_published(SHIPPED[name]), {REFERENCE: solvers()[REFERENCE]})
+    result = run(read_published(SHIPPED[name]), {"integral_equation": solvers()["integral_equation"]})
     reasons = [
-        v.reason for c, v in result.verdicts if REFERENCE in c.between and v.outcome is not Outcome.AGREES
+        v.reason for c, v in result.verdicts if EXACT[0] in c.between and v.outcome is not Outcome.AGREES
     ]
     assert reasons == []
 

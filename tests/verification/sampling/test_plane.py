@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from verification.problem.quantity import COMPONENTS, von_mises
-from verification.running.planes import read_plane, write_plane
+from verification.problem.quantity import IN_PLANE, von_mises
+from verification.running.fields import read_plane, write_plane
 from verification.running.store import StoreError
 from verification.sampling.plane import Plane, depths_of, sample_plane
 from verification.sources.references.hertz import Hertz
@@ -30,7 +30,7 @@ def test_stresses_are_those_of_the_solution(plane):
     assert list(plane.stress) == ["fem_reference"]
     (sigma,), (z,) = plane.stress["fem_reference"], plane.depths
     expected = STEEL.stress(plane.x[None, :], 0.0, z[:, None])
-    for number, component in enumerate(COMPONENTS.values()):
+    for number, component in enumerate(IN_PLANE.values()):
         np.testing.assert_array_equal(sigma[number], expected[component])
     assert z[0] == 0
     assert np.abs(plane.x).max() > STEEL.contact_radius

@@ -10,11 +10,11 @@ from verification.judging.claims import sources_of
 from verification.judging.verdict import Outcome
 from verification.problem.contact import CoatedContact
 from verification.running.contact import run
-from verification.sources.contact import solvers
 from verification.sources.references.axisymmetric_pressure import AbelPressure
 from verification.sources.references.hamilton import Hamilton
 from verification.sources.references.hankel import HankelField
 from verification.sources.references.hertz import Hertz
+from verification.sources.registry import solvers
 
 
 @pytest.fixture

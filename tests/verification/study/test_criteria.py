@@ -5,7 +5,8 @@ import pytest
 import study_table
 
 from verification.cases.toml import CaseError
-from verification.report.study.summary import agreement_sentences, curve_sentences, preference_sentences
+from verification.report.study.recommendation import recommendation_sentences
+from verification.report.study.summary import agreement_sentences, main_sentences
 from verification.study.criteria import Criteria, judged
 from verification.study.curves import curves, differences
 from verification.study.plan import parse_study
@@ -60,7 +61,8 @@ def test_safety_narrows_the_range_as_a_weaker_material_would(found):
 def test_nothing_is_admissible_where_every_thickness_breaks(found):
     judgement = judged(found[3], Criteria(strength={"sigma_xx_surface": 1e6}))
     assert judgement.admissible == ()
-    assert "No thickness of the sweep is admissible" in preference_sentences([judgement])[0]
+    (text,) = recommendation_sentences([judgement])
+    assert "no thickness of the sweep is admissible" in text
 
 
 def test_the_governing_mode_is_the_one_closest_to_its_strength(found):
@@ -81,7 +83,7 @@ def test_reading_error_bounds_what_a_curve_read_between_its_points_is_off_by(fou
     judgement = judged(found[3], Criteria(minimise=["sigma_xx_surface"]))
     exact = study_table.stress("sigma_xx_surface", 2.0, judgement.h, 0.25)
     error = np.abs(judgement.largest - exact).max() / judgement.utilisation.max()
-    assert 0 < error < judgement.reading
+    assert 0 < error < judgement.interpolation_error
 
 
 def test_uncertain_stress_shrinks_what_is_surely_admissible(found):
@@ -107,7 +109,7 @@ def test_differences_name_the_worst_point(tmp_path):
 
 
 def test_sentences_say_which_way_a_stress_runs(found):
-    sentences = dict(zip(study_table.QUANTITIES, curve_sentences(found), strict=True))
+    sentences = dict(zip(study_table.QUANTITIES, main_sentences(found)[:-1], strict=True))
     assert "has a minimum of" in sentences["sigma_xx_surface"]
     assert "falls from" in sentences["von_mises_substrate"]
     assert "a factor of 3.50" in sentences["sigma_xx_surface"]

@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from verification.report.material import Evidence, Material
 from verification.report.page import render
-from verification.report.sections.effective import effective_sections
 from verification.running.result import RunInfo
 from verification.running.store import read_checked
 from verification.sources.references.effective_modulus import (
@@ -105,6 +105,16 @@ def test_the_study_survives_json(study, tmp_path):
         from_json(to_json(study) | {"schema": "other"})
 
 
+def test_a_weight_that_is_not_a_number_does_not_end_the_study(study, tmp_path, monkeypatch):
+    spoiled = replace(study, weights=(float("nan"), 1e-9))
+    monkeypatch.setattr(effective_study, "measure", lambda: spoiled)
+    effective_study.main(str(tmp_path / "study.json"))
+    back = from_json(read_checked(tmp_path / "study.json"))
+    assert np.array_equal(back.weights, spoiled.weights, equal_nan=True)
+    assert "not finite" in render(Material([], INFO, Evidence(formulas=back)))
+    assert from_json(to_json(EffectiveStudy())) == EffectiveStudy()
+
+
 def test_it_runs_in_a_process_of_its_own(tmp_path, monkeypatch, study):
     monkeypatch.setattr(effective_study, "measure", lambda: study)
     task = effective_study.task(tmp_path)
@@ -114,10 +124,10 @@ def test_it_runs_in_a_process_of_its_own(tmp_path, monkeypatch, study):
 
 
 def test_page_shows_maps_limits_and_moduli_side_by_side(study):
-    page = render([], INFO, None, effective_sections(study))
+    page = render(Material([], INFO, Evidence(formulas=study)))
     for name, _ in study.formulas:
         assert name in page
     assert "sliding with f = 0.25, for E1/E2 = 0.25, 0.5, 1, 2, 4" in page
     assert page.count("Numbers as CSV") >= 4
     failed = replace(EffectiveStudy(), failure="its process <died>")
-    assert "its process &lt;died&gt;" in render([], INFO, None, effective_sections(failed))
+    assert "its process &lt;died&gt;" in render(Material([], INFO, Evidence(formulas=failed)))

@@ -1,19 +1,21 @@
-"""All the trials of a run of ``coatcheck faults``: what has to be solved clean first, then fault by fault."""
+"""All trials of a run of ``coatcheck faults``: the clean cases they need, then one process for each fault."""
 
+import time
 from collections.abc import Sequence
-from dataclasses import asdict
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import Any
 
 from verification.cases.contact import Case, read_case, shipped_cases
-from verification.credibility.faults.catalogue import BLANKS, FAULTS
+from verification.credibility.faults.catalogue import CONTROLS, FAULTS
 from verification.credibility.faults.planting import Fault
-from verification.credibility.faults.record import SCHEMA, Record, from_json, row_of, to_json
-from verification.credibility.faults.trial import Trial, trial_from_json
+from verification.credibility.faults.record import Record, row_of
+from verification.credibility.faults.trial import Trial, try_fault
 from verification.running.pool import Task
 from verification.running.provenance import fingerprint
-from verification.running.result import CaseResult, plain
+from verification.running.records import decode, encode
+from verification.running.result import CaseResult
 from verification.running.store import StoreError, read_checked, write_checked
 
 __all__ = [
@@ -21,36 +23,34 @@ __all__ = [
     "clean_cases",
     "clean_folder",
     "cost",
+    "failed_source",
     "kept_trial",
-    "read_record",
     "record_of",
     "trial_task",
-    "unfit",
-    "write_record",
 ]
 
 RECORD = "faults.json"  # its name in a folder of records
 
 
 def clean_folder(output: Path) -> Path:
-    """Where the clean runs of the cases lie."""
+    """Folder of the clean runs of the cases."""
     return output / "clean"
 
 
 def clean_cases(faults: Sequence[Fault]) -> list[Case]:
-    """Every case that the faults are tried on; all of them have to be solved without a fault first."""
+    """The cases of all trials, which have to be solved without a fault first."""
     shipped = shipped_cases()
     return [read_case(shipped[name]) for name in sorted({name for fault in faults for name in fault.cases})]
 
 
 def cost(fault: Fault) -> float:
-    """About what a trial takes, in units of a semi-analytical solution."""
+    """Approximate cost of a trial in semi-analytical solutions."""
     share = {"semianalytic": 1.0, "fem_reference": 3.0}
     return len(fault.cases) * sum(share.get(name, 0.2) for name in fault.solve or (fault.where,))
 
 
-def unfit(clean: Sequence[CaseResult]) -> str:
-    """Why no fault can be tried: a source of a clean run that failed; empty where none did."""
+def failed_source(clean: Sequence[CaseResult]) -> str:
+    """Message on a source that fails without any fault, so that no trial is possible; empty without one."""
     for result in clean:
         for source in result.sources:
             if source.failure is not None:
@@ -61,17 +61,22 @@ def unfit(clean: Sequence[CaseResult]) -> str:
 def trial_task(fault: Fault, output: Path) -> Task[Trial]:
     """The trial of ``fault`` in a process of its own."""
     path = _path(fault, output)
-    words = ("verification.credibility.faults.worker", fault.name, str(clean_folder(output)), str(path))
+    words = (
+        "verification.credibility.faults.campaign:main",
+        fault.name,
+        str(clean_folder(output)),
+        str(path),
+    )
     return Task(fault.name, words, path, _trial, partial(_failed, fault))
 
 
 def kept_trial(fault: Fault, output: Path) -> Trial | None:
-    """The trial of an earlier run that still stands: the same fault, by the same code; None without one."""
+    """The trial of an earlier run of the same fault by the same code; None without one."""
     try:
         data = read_checked(_path(fault, output))
     except StoreError:
         return None
-    same = data.get("fault") == plain(asdict(fault)) and data.get("made_by") == fingerprint()
+    same = data.get("fault") == encode(fault) and data.get("made_by") == fingerprint()
     return _trial(data) if same else None
 
 
@@ -84,35 +89,19 @@ def record_of(
     machine: str,
     versions: dict[str, str],
 ) -> Record:
-    """The record of all ``trials``, blanks apart."""
-    rows = [(trial.fault, row_of((FAULTS | BLANKS)[trial.fault], trial)) for trial in trials]
+    """The record of all ``trials``, controls apart."""
+    rows = [(trial.fault, row_of((FAULTS | CONTROLS)[trial.fault], trial)) for trial in trials]
     return Record(
         rows=tuple(row for name, row in rows if name in FAULTS),
-        blanks=tuple(row for name, row in rows if name in BLANKS),
+        controls=tuple(row for name, row in rows if name in CONTROLS),
         started=started,
         seconds=seconds,
         core_seconds=sum(trial.seconds for trial in trials),
         commit=commit,
         machine=machine,
         versions=versions,
-        already=tuple(sorted({said for trial in trials for said in trial.already})),
+        failing_clean=tuple(sorted({message for trial in trials for message in trial.failing_clean})),
     )
-
-
-def write_record(path: Path, record: Record) -> None:
-    """Store ``record`` as a checked file. Raises StoreError where it cannot be written."""
-    write_checked(path, to_json(record))
-
-
-def read_record(path: Path) -> Record | None:
-    """The record stored at ``path``; None where there is none. Raises StoreError where it is damaged."""
-    if not path.exists():
-        return None
-    data = read_checked(path)
-    try:
-        return from_json(data)
-    except (ValueError, KeyError, TypeError, AttributeError) as error:
-        raise StoreError(f"{path}: not a record of {SCHEMA} ({error}); run coatcheck faults again") from None
 
 
 def _path(fault: Fault, output: Path) -> Path:
@@ -120,8 +109,17 @@ def _path(fault: Fault, output: Path) -> Path:
 
 
 def _trial(data: dict[str, Any]) -> Trial:
-    return trial_from_json(data["trial"])
+    return decode(Trial, data["trial"])
 
 
 def _failed(fault: Fault, reason: str, seconds: float) -> Trial:
     return Trial(fault.name, seconds=seconds, failure=reason)
+
+
+def main(name: str, clean: str, path: str) -> None:
+    """Try the fault named ``name`` against the clean run in ``clean`` and store its trial at ``path``."""
+    made_by = fingerprint()  # before anything is planted
+    fault = (FAULTS | CONTROLS)[name]
+    trial = try_fault(fault, Path(clean))
+    trial = replace(trial, seconds=time.process_time())  # of this process
+    write_checked(Path(path), {"made_by": made_by, "fault": encode(fault), "trial": encode(trial)})

@@ -1,4 +1,4 @@
-"""One check of the default run with what it came to."""
+"""One check of the default run with its outcome."""
 
 from dataclasses import dataclass
 
@@ -6,27 +6,27 @@ from verification.judging.invariants import Invariant
 from verification.judging.verdict import Claim, Outcome, Verdict
 from verification.regression.baseline import Drift
 from verification.running.self_tests import SelfTest
+from verification.sources.registry import CLOSED, EXACT
 
 __all__ = ["COLUMNS", "Check", "of_baseline", "of_claim", "of_invariant", "of_self_test"]
 
-CLOSED = ("hertz", "hamilton")
-# What a matrix of faults shows side by side: (title, what it holds against what).
+# The columns of the matrix of faults: title and what is compared.
 COLUMNS = {
     "bare, closed form": "uncoated cases, Hertz or Hamilton on one side",
     "bare, exact": "uncoated cases, the integral equation on one side, no closed form on the other",
     "bare, methods": "uncoated cases, method against method",
     "coated, exact": "coated cases, the integral equation on one side",
     "coated, methods": "coated cases, method against method",
-    "invariants": "laws that one solution must obey by itself",
-    "printed": "tables that others printed (coatcheck run published)",
-    "self-tests": "known answers put to the harness itself",
-    "baseline": "numbers that are not what they were; this alone counts only where nothing else can know",
+    "invariants": "invariants that one solution must satisfy by itself",
+    "published": "tables published by others (coatcheck run published)",
+    "self-tests": "known answers of the harness itself",
+    "baseline": "numbers that changed; counted only where no other check can detect the fault",
 }
 
 
 @dataclass(frozen=True)
 class Check:
-    """``name`` is the quantity, invariant, or self-test; ``detail`` says on which line, of which sources."""
+    """``name`` is the quantity, invariant or self-test; ``detail`` its line and sources."""
 
     column: str
     name: str
@@ -41,24 +41,22 @@ class Check:
 
     @property
     def key(self) -> tuple[str, str, str, str]:
-        """What tells it from every other check."""
+        """What identifies the check."""
         return self.column, self.name, self.case, self.detail
 
     @property
-    def said(self) -> str:
-        """The check with its reason, in one sentence."""
+    def message(self) -> str:
+        """The check with its reason."""
         return f"{self.name} ({', '.join(filter(None, (self.detail, self.case)))}): {self.reason}"[:400]
 
 
 def of_claim(claim: Claim, verdict: Verdict, case: str, coated: bool, kind: str = "") -> Check:
-    """A comparison; ``kind`` "printed" where one side is a printed table."""
+    """A comparison; ``kind`` "published" where one side is a published table."""
     if kind:
         column = kind
     else:
         sides = set(claim.between)
-        other = (
-            "closed form" if sides & set(CLOSED) else "exact" if "integral_equation" in sides else "methods"
-        )
+        other = "closed form" if sides & set(CLOSED) else "exact" if sides & set(EXACT) else "methods"
         column = f"{'coated' if coated else 'bare'}, {other}"
     detail = f"{claim.line}, {' against '.join(claim.between)}"
     return Check(column, claim.quantity, case, detail, verdict.outcome, verdict.reason)
@@ -72,10 +70,10 @@ def of_invariant(row: Invariant, case: str) -> Check:
 
 
 def of_baseline(row: Drift, case: str, same: bool) -> Check:
-    """A profile held against the baseline."""
+    """A profile compared with the baseline."""
     outcome = Outcome.AGREES if same else Outcome.DISAGREES
     detail = f"{row.quantity} on {row.line}, {row.source}"
-    return Check("baseline", "baseline", case, detail, outcome, row.said)
+    return Check("baseline", "baseline", case, detail, outcome, row.message)
 
 
 def of_self_test(test: SelfTest) -> Check:

@@ -1,8 +1,8 @@
-"""A planted fault: a few words of a function, or a constant, exchanged while a trial runs.
+"""Planted faults: part of a function, or a constant, replaced while a trial runs.
 
-The source on disk is never touched. The text of the function concerned is taken from the running code, the
-words are exchanged, the result is compiled in the module of the original and put in its place wherever that
-was imported by name; leaving the context puts the originals back.
+The source on disk is never changed. The text of the function is taken from the running code, edited, compiled
+in the module of the original and put in its place wherever that was imported by name; leaving the context
+restores the originals.
 """
 
 import inspect
@@ -17,20 +17,22 @@ from importlib import import_module
 from types import ModuleType
 from typing import Any
 
+from verification.sources.registry import METHODS, SOURCES
+
 __all__ = ["PACKAGES", "Constant", "Edit", "Fault", "PlantError", "planted"]
 
-PACKAGES = ("semianalytic", "fem_reference", "verification")
+PACKAGES = (*(SOURCES[name].package for name in METHODS), "verification")
 
 
 class PlantError(Exception):
-    """A fault that no longer fits the source; the message names the function and the words."""
+    """A fault that no longer fits the source; the message names the function and the text."""
 
 
 @dataclass(frozen=True)
 class Edit:
     """In the function ``target``, "module:function" or "module:Class.method", ``old`` becomes ``new``.
 
-    ``old`` must stand there exactly once, so that a source that moves on is noticed.
+    ``old`` must occur exactly once, so that a change of the source is noticed.
     """
 
     target: str
@@ -48,29 +50,31 @@ class Constant:
 
 @dataclass(frozen=True)
 class Fault:
-    """One mistake, named, with one ``sentence`` on what is wrong.
+    """One mistake with a ``description`` of what is wrong.
 
-    where : the source it sits in, "harness", or "published" for the reading of printed tables.
-    changes : what is exchanged.   expected : names of the quantities, invariants, tables or self-tests of
-    which one at least should catch it, said before it was tried.
-    cases : of the default run, tried with it.   solve : sources solved anew under the fault, all others
-    stand as the clean run left them.   published : printed cases tried with it.
+    where : the faulty source, "harness", or "published" for the reader of published tables.
+    predicted : names of the quantities, invariants, tables or self-tests of which at least one should catch
+    it, stated before the first trial.   cases : of the default run, in the trial.   solve : sources solved
+    under the fault, the others are taken from the clean run.   published : published cases in the trial.
+    reason, remedy : of a fault that no check catches, why not and which check would.
     """
 
     name: str
     group: str
-    sentence: str
+    description: str
     where: str
-    changes: tuple[Edit | Constant, ...]
-    expected: tuple[str, ...]
+    changes: tuple[Edit | Constant, ...] = ()
+    predicted: tuple[str, ...] = ()
     cases: tuple[str, ...] = ()
     solve: tuple[str, ...] = ()
     published: tuple[str, ...] = ()
+    reason: str = ""
+    remedy: str = ""
 
 
 @contextmanager
 def planted(changes: tuple[Edit | Constant, ...]) -> Iterator[None]:
-    """The running code with ``changes`` in it. Raises PlantError where one does not fit."""
+    """Context in which the running code has ``changes``. Raises PlantError where one does not fit."""
     with ExitStack() as stack:
         for change in changes:
             stack.enter_context(_edited(change) if isinstance(change, Edit) else _constant(change))
@@ -97,7 +101,7 @@ def _edited(change: Edit) -> Iterator[None]:
     changed = _changed(original, name, change)
     places: list[tuple[Any, str]] = [(owner, name)]
     if isinstance(owner, ModuleType):
-        # Functions are imported by name, so every module that holds this one must hold the other.
+        # Functions are imported by name, so the function is replaced in every module that holds it.
         places = [
             (module, known)
             for key, module in list(sys.modules.items())
@@ -130,7 +134,7 @@ def _held(owner: Any, name: str, target: str) -> Any:
 
 
 def _changed(original: Any, name: str, change: Edit) -> Any:
-    """The function, method or property with the words exchanged, compiled in its own module."""
+    """The function, method or property with the edit, compiled in its own module."""
     function = original
     if isinstance(function, property):
         function = function.fget
@@ -143,18 +147,18 @@ def _changed(original: Any, name: str, change: Edit) -> Any:
     count = text.count(change.old)
     if count != 1:
         raise PlantError(
-            f"{change.target}: {change.old!r} stands there {count} times, not once; "
+            f"{change.target}: {change.old!r} occurs there {count} times, not once; "
             "the fault no longer fits the source"
         )
     module = sys.modules[function.__module__]
-    # A property compiled again stays one, for its decorator is part of the text.
+    # A compiled property remains one, since its decorator is part of the text.
     made: dict[str, Any] = {}
-    # Kept where inspect looks, so that a second edit finds the words of the first.
+    # Kept where inspect looks, so that a second edit finds the text of the first.
     name_of_file = f"<{change.target}, {change.new!r} planted>"
     lines = text.replace(change.old, change.new).splitlines(keepends=True)
     linecache.cache[name_of_file] = (len(text), None, lines, name_of_file)
     code = compile("".join(lines), name_of_file, "exec")
-    exec(code, vars(module), made)  # our own source, with words from our own catalogue
+    exec(code, vars(module), made)  # text from this package only
     changed = made[name]
     if isinstance(changed, cached_property):
         changed.__set_name__(type(name, (), {}), name)

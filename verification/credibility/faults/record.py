@@ -1,26 +1,39 @@
-"""The trials of planted faults as one record: who caught what, the score, its exact JSON form."""
+"""Record of all trials of planted faults: detections, score, file."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import StrEnum
+from pathlib import Path
 from typing import Any
 
 from verification.credibility.faults.checks import COLUMNS, Check
 from verification.credibility.faults.planting import Fault
-from verification.credibility.faults.survivors import SURVIVORS
 from verification.credibility.faults.trial import Trial
 from verification.judging.verdict import Outcome
-from verification.running.result import plain
+from verification.running.records import decode, encode, plain
+from verification.running.store import StoreError, read_checked, write_checked
 
-__all__ = ["PASS_SHARE", "SCHEMA", "Catch", "Record", "Row", "Seen", "from_json", "row_of", "to_json"]
+__all__ = [
+    "PASS_SHARE",
+    "SCHEMA",
+    "Catch",
+    "Record",
+    "Row",
+    "Tally",
+    "from_json",
+    "read_record",
+    "row_of",
+    "to_json",
+    "write_record",
+]
 
-SCHEMA = "coatcheck-faults/1"
+SCHEMA = "coatcheck-faults/2"
 PASS_SHARE = 0.95
-SMALLEST_CHANGE = 1e-12  # of its scale; less is rounding, so that nothing was planted
+SMALLEST_CHANGE = 1e-12  # of its scale; a smaller change is rounding
 
 
 class Catch(StrEnum):
-    """How a fault was noticed; the first three count as caught."""
+    """Detection of a fault; the first three count as caught."""
 
     DISAGREES = "caught"
     INCONCLUSIVE = "inconclusive"
@@ -34,42 +47,42 @@ CAUGHT = (Catch.DISAGREES, Catch.INCONCLUSIVE, Catch.DRIFTED)
 
 
 @dataclass(frozen=True)
-class Seen:
-    """What the checks of one column made of a fault: how many were made, how many came to each outcome.
+class Tally:
+    """Checks of one column in a trial: how many were made, how many had each outcome.
 
-    said : the check that speaks loudest, with its reason; empty where all passed.
+    message : that of the worst check; empty where all passed.
     """
 
     made: int
     disagree: int
     inconclusive: int
     no_result: int
-    said: str = ""
+    message: str = ""
 
 
 @dataclass(frozen=True)
 class Row:
-    """One fault with what every column of checks made of it.
+    """One fault with the outcomes of its checks, column by column.
 
-    as_expected : True where a check caught it that was named for it before it was tried; by : its words.
-    change : see Trial.   reason, cure : of a survivor, why it survives, what would catch it.
+    as_predicted : True where a check that was predicted caught it.   by : message of the check that did.
+    change : see Trial.   reason, remedy : of a survivor, why it survives and what would catch it.
     """
 
     name: str
     group: str
-    sentence: str
+    description: str
     where: str
     catch: Catch
-    as_expected: bool
+    as_predicted: bool
     by: str
-    columns: dict[str, Seen]
+    columns: dict[str, Tally]
     change: float
     changed: str
     seconds: float
     cases: tuple[str, ...]
     failure: str = ""
     reason: str = ""
-    cure: str = ""
+    remedy: str = ""
 
     @property
     def caught(self) -> bool:
@@ -78,33 +91,33 @@ class Row:
 
 @dataclass(frozen=True)
 class Record:
-    """All trials of one run of ``coatcheck faults``, with when, where, by which versions it was made.
+    """All trials of one run of ``coatcheck faults``, with provenance.
 
-    blanks : the trials in which nothing was planted.   already : checks that no trial could count, for they
-    do not pass without a fault either.   seconds : of the clock; core_seconds : of all trials.
+    controls : trials in which nothing was planted.   failing_clean : checks that do not pass without a fault
+    either, so that no trial counts them.   seconds : elapsed; core_seconds : of all trials.
     """
 
     rows: tuple[Row, ...]
-    blanks: tuple[Row, ...]
+    controls: tuple[Row, ...]
     started: str
     seconds: float
     core_seconds: float
     commit: str | None
     machine: str
     versions: dict[str, str]
-    already: tuple[str, ...] = ()
+    failing_clean: tuple[str, ...] = ()
 
     @property
     def caught(self) -> int:
         return sum(row.caught for row in self.rows)
 
     @property
-    def as_expected(self) -> int:
-        return sum(row.as_expected for row in self.rows)
+    def as_predicted(self) -> int:
+        return sum(row.as_predicted for row in self.rows)
 
     @property
     def share(self) -> float:
-        """Of the faults that were caught, 0 to 1."""
+        """Share of the faults that were caught."""
         return self.caught / len(self.rows) if self.rows else 1.0
 
     @property
@@ -113,23 +126,23 @@ class Record:
 
     @property
     def unexplained(self) -> tuple[Row, ...]:
-        """Survivors of which nobody has said why."""
-        return tuple(row for row in self.survivors if not (row.reason and row.cure))
+        """Survivors without a reason on record."""
+        return tuple(row for row in self.survivors if not (row.reason and row.remedy))
 
     @property
     def idle(self) -> tuple[Row, ...]:
-        """Faults that changed no number: nothing was tried."""
+        """Faults that changed no number."""
         return tuple(row for row in self.rows if not row.change > SMALLEST_CHANGE and not row.failure)
 
     @property
     def alarms(self) -> tuple[Row, ...]:
-        """Trials that caught something though nothing was planted."""
-        return tuple(row for row in self.blanks if row.catch is not Catch.SURVIVED)
+        """Controls in which a check failed."""
+        return tuple(row for row in self.controls if row.catch is not Catch.SURVIVED)
 
     @property
     def passed(self) -> bool:
-        """True where enough is caught, each survivor explained, each fault real, nothing amiss without."""
-        silent = not (self.unexplained or self.idle or self.alarms or self.already)
+        """True where enough is caught, survivors have a reason, faults change numbers and controls pass."""
+        silent = not (self.unexplained or self.idle or self.alarms or self.failing_clean)
         return self.share >= PASS_SHARE and silent
 
 
@@ -139,118 +152,101 @@ def row_of(fault: Fault, trial: Trial) -> Row:
     for column in COLUMNS:
         checks = [check for check in trial.checks if check.column == column]
         if checks:
-            columns[column] = _seen(checks)
+            columns[column] = _tally(checks)
     bad = [check for check in trial.checks if not check.passed]
     decided = [c for c in bad if c.outcome in (Outcome.DISAGREES, Outcome.INCONCLUSIVE)]
-    named = [c for c in decided if c.name in fault.expected]
-    reason, cure = SURVIVORS.get(fault.name, ("", ""))
+    predicted = [c for c in decided if c.name in fault.predicted]
     catch = _catch(bad, fault, trial)
     return Row(
         fault.name,
         fault.group,
-        fault.sentence,
+        fault.description,
         fault.where,
         catch,
-        bool(named),
-        _loudest(named or decided or bad),
+        bool(predicted),
+        _worst_message(predicted or decided or bad),
         columns,
         trial.change,
         trial.changed,
         trial.seconds,
         (*fault.cases, *fault.published),
         trial.failure or "",
-        "" if catch in CAUGHT else reason,
-        "" if catch in CAUGHT else cure,
+        "" if catch in CAUGHT else fault.reason,
+        "" if catch in CAUGHT else fault.remedy,
     )
 
 
 def _catch(bad: Sequence[Check], fault: Fault, trial: Trial) -> Catch:
     if trial.failure is not None:
         return Catch.NOT_TRIED
-    # That a number is not what it was says no more than that; it counts where nothing else can know.
-    of_itself = [check for check in bad if check.column != "baseline"]
+    # A changed number is not in itself an error; it counts where no other check can detect the fault.
+    own = [check for check in bad if check.column != "baseline"]
     for outcome, catch in (
         (Outcome.DISAGREES, Catch.DISAGREES),
         (Outcome.INCONCLUSIVE, Catch.INCONCLUSIVE),
     ):
-        if any(check.outcome is outcome for check in of_itself):
+        if any(check.outcome is outcome for check in own):
             return catch
-    if "baseline" in fault.expected and len(of_itself) < len(bad):
+    if "baseline" in fault.predicted and len(own) < len(bad):
         return Catch.DRIFTED
-    return Catch.NO_RESULT if of_itself else Catch.SURVIVED
+    return Catch.NO_RESULT if own else Catch.SURVIVED
 
 
-def _seen(checks: Sequence[Check]) -> Seen:
+def _tally(checks: Sequence[Check]) -> Tally:
     def count(outcome: Outcome) -> int:
         return sum(check.outcome is outcome for check in checks)
 
     bad = [check for check in checks if not check.passed]
-    return Seen(
+    return Tally(
         len(checks),
         count(Outcome.DISAGREES),
         count(Outcome.INCONCLUSIVE),
         count(Outcome.NO_RESULT),
-        _loudest(bad),
+        _worst_message(bad),
     )
 
 
-def _loudest(bad: Sequence[Check]) -> str:
-    """The check that says most: a disagreement first, of those the one listed first."""
+def _worst_message(bad: Sequence[Check]) -> str:
+    """Message of the worst check: the first disagreement, then the first inconclusive, then no result."""
     for outcome in (Outcome.DISAGREES, Outcome.INCONCLUSIVE, Outcome.NO_RESULT):
         for check in bad:
             if check.outcome is outcome:
-                return check.said
+                return check.message
     return ""
 
 
 def to_json(record: Record) -> dict[str, Any]:
-    """The record as strict JSON."""
-    return {
-        "schema": SCHEMA,
-        **{name: plain(value) for name, value in vars(record).items() if name not in ("rows", "blanks")},
-        "score": {
-            "faults": len(record.rows),
-            "caught": record.caught,
-            "as_expected": record.as_expected,
-            "share": record.share,
-            "by": {catch: sum(row.catch is catch for row in record.rows) for catch in Catch},
-            "blanks": len(record.blanks),
-            "alarms": len(record.alarms),
-            "passed": record.passed,
-        },
-        "rows": [_row_to_json(row) for row in record.rows],
-        "blanks": [_row_to_json(row) for row in record.blanks],
+    """The record with its score as strict JSON."""
+    score = {
+        "faults": len(record.rows),
+        "caught": record.caught,
+        "as_predicted": record.as_predicted,
+        "share": record.share,
+        "by": {catch: sum(row.catch is catch for row in record.rows) for catch in Catch},
+        "controls": len(record.controls),
+        "alarms": len(record.alarms),
+        "passed": record.passed,
     }
-
-
-def _row_to_json(row: Row) -> dict[str, Any]:
-    columns = {name: plain(vars(seen)) for name, seen in row.columns.items()}
-    return plain(vars(row)) | {"columns": columns}
+    return {"schema": SCHEMA, **encode(record), "score": plain(score)}
 
 
 def from_json(data: dict[str, Any]) -> Record:
-    """The inverse of ``to_json``. Raises ValueError where the schema is another one."""
+    """The inverse of ``to_json``. Raises ValueError for another schema or a field that does not fit."""
     if data.get("schema") != SCHEMA:
-        raise ValueError(f"schema = {data.get('schema')!r}; this version reads {SCHEMA!r}, try again")
-    return Record(
-        rows=tuple(_row_from_json(row) for row in data["rows"]),
-        blanks=tuple(_row_from_json(row) for row in data["blanks"]),
-        started=str(data["started"]),
-        seconds=float(data["seconds"]),
-        core_seconds=float(data["core_seconds"]),
-        commit=data["commit"],
-        machine=str(data["machine"]),
-        versions=dict(data["versions"]),
-        already=tuple(data["already"]),
-    )
+        raise ValueError(f"schema = {data.get('schema')!r}; this version reads {SCHEMA!r}")
+    return decode(Record, data)
 
 
-def _row_from_json(data: dict[str, Any]) -> Row:
-    made = {
-        **data,
-        "catch": Catch(data["catch"]),
-        "cases": tuple(data["cases"]),
-        "change": float(data["change"]),
-        "columns": {name: Seen(**seen) for name, seen in data["columns"].items()},
-    }
-    return Row(**made)
+def write_record(path: Path, record: Record) -> None:
+    """Store ``record`` as a checked file. Raises StoreError where it cannot be written."""
+    write_checked(path, to_json(record))
+
+
+def read_record(path: Path) -> Record | None:
+    """The record stored at ``path``; None where there is none. Raises StoreError where it is damaged."""
+    if not path.exists():
+        return None
+    try:
+        return from_json(read_checked(path))
+    except ValueError as error:
+        raise StoreError(f"{path}: not a record of {SCHEMA} ({error}); run coatcheck faults again") from None

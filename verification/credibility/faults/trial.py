@@ -2,9 +2,8 @@
 
 import time
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, replace
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -13,30 +12,30 @@ from verification.cases.published import PublishedCase, published_cases, read_pu
 from verification.credibility.faults.checks import Check, of_baseline, of_claim, of_invariant, of_self_test
 from verification.credibility.faults.planting import Fault, planted
 from verification.judging.invariants import check as invariants_of
-from verification.judging.verdict import Outcome
 from verification.problem.contact import Solution
 from verification.problem.profile import Profile
 from verification.regression.baseline import State, drift, measured
 from verification.running import contact as run
-from verification.running import published as printed_run
-from verification.running.result import CaseResult, SourceResult, from_json, plain
+from verification.running import published as published_run
+from verification.running.result import CaseResult, SourceResult, from_json
 from verification.running.self_tests import self_tests
 from verification.running.store import read_checked
 from verification.sampling.lines import sample, sample_contact
+from verification.sources.registry import METHODS
 
-__all__ = ["Trial", "clean_path", "trial_from_json", "trial_to_json", "try_fault"]
+__all__ = ["Trial", "clean_path", "try_fault"]
 
 Profiles = dict[tuple[str, str, str], Profile]
-METHODS_FOR_PRINT = ("semianalytic",)  # reading print is tried with the faster of the two
+FOR_PUBLISHED = METHODS[:1]  # published tables are compared with the faster method only
 
 
 @dataclass(frozen=True)
 class Trial:
-    """What the checks made of one fault.
+    """Checks of one fault.
 
     checks : every check that was made, passed or not.   change : the largest change of a value over its
-    scale, or of an uncertainty over itself where no value moved; what changed stands in ``changed``.
-    already : checks that do not pass without the fault either, so that they are no evidence and not among
+    scale, or of an uncertainty over itself where no value changed; ``changed`` names it.
+    failing_clean : checks that do not pass without the fault either, which are no evidence and not among
     ``checks``.   seconds : of one core.   failure : why there was no trial.
     """
 
@@ -46,24 +45,24 @@ class Trial:
     changed: str = ""
     seconds: float = 0.0
     failure: str | None = None
-    already: tuple[str, ...] = ()
+    failing_clean: tuple[str, ...] = ()
 
 
 def clean_path(folder: Path, case: str) -> Path:
-    """Where the clean result of a shipped case lies in the folder of the clean run."""
+    """Path of the clean result of a shipped case in the folder of the clean run."""
     return folder / "cases" / f"{case}.json"
 
 
 def try_fault(fault: Fault, clean_folder: Path) -> Trial:
-    """Plant ``fault``, solve and judge what it concerns, take it out again.
+    """Plant ``fault``, solve and judge what it affects, restore the code.
 
-    Sources that the fault does not touch are not solved again: their profiles are those of the clean run,
-    ``clean_folder``, and the faulty source is sampled at the same points. Raises StoreError where the clean
+    Sources without the fault are not solved: their profiles are those of the clean run in ``clean_folder``,
+    and the faulty source is sampled at the same points. Raises StoreError where the clean
     run is missing, PlantError where the fault no longer fits the source.
     """
     began = time.process_time()
     clean = {name: from_json(read_checked(clean_path(clean_folder, name))) for name in fault.cases}
-    printed = {name: _as_read(read_published(published_cases()[name])) for name in fault.published}
+    published = {name: _as_read(read_published(published_cases()[name])) for name in fault.published}
     checks: list[Check] = []
     changes: list[tuple[float, str]] = []
     failing = {check.key: check for result in clean.values() for check in _of_clean(result)}
@@ -73,19 +72,19 @@ def try_fault(fault: Fault, clean_folder: Path) -> Trial:
             checks += found
             changes += _changes(clean[name], profiles)
         for name in fault.published:
-            found, moved = _printed(name, printed[name])
+            found, moved = _published(name, published[name])
             checks += found
             changes.append(moved)
         tests = self_tests()
     checks += [of_self_test(test) for test in tests]
-    turned = [test.name for test in tests if not test.passed]
-    if turned:
-        changes.append((float(len(turned)), f"answers of the harness: {', '.join(turned)}"))
+    failed = [test.name for test in tests if not test.passed]
+    if failed:
+        changes.append((float(len(failed)), f"answers of the harness: {', '.join(failed)}"))
     change, changed = max(changes, default=(0.0, "nothing"))
     seconds = time.process_time() - began
-    already = tuple(sorted({f"{failing[c.key].said}" for c in checks if c.key in failing}))
+    failing_clean = tuple(sorted({failing[c.key].message for c in checks if c.key in failing}))
     evidence = tuple(check for check in checks if check.key not in failing)
-    return Trial(fault.name, evidence, change, changed, seconds, already=already)
+    return Trial(fault.name, evidence, change, changed, seconds, failing_clean=failing_clean)
 
 
 def _of_clean(result: CaseResult) -> list[Check]:
@@ -97,7 +96,7 @@ def _of_clean(result: CaseResult) -> list[Check]:
 
 
 def _judged(case: Case, clean: CaseResult, fault: Fault) -> tuple[list[Check], Profiles]:
-    """The verdicts that the faulty sources have a part in, their invariants, and their profiles."""
+    """The verdicts that involve the faulty sources, their invariants and their profiles."""
     solve = fault.solve or (fault.where,)
     profiles: Profiles = {(p.quantity, p.line, p.source): p for p in clean.profiles if p.source not in solve}
     outcomes = {source.source: source for source in clean.sources}
@@ -128,20 +127,20 @@ def _judged(case: Case, clean: CaseResult, fault: Fault) -> tuple[list[Check], P
 
 def _sampled(case: Case, clean: CaseResult, source: str, solution: Solution) -> list[Profile]:
     places = {profile.line: profile.position for profile in clean.profiles}
-    found = list(sample_contact(solution, source))
+    found = list(sample_contact(solution, source, case.problem))
     for line in case.lines:
         found += sample(solution, source, line, places[line.name])
     return found
 
 
 def _edge(clean: CaseResult, profiles: Mapping[tuple[str, str, str], Profile]) -> float:
-    """Contact radius of the last source that has one, as the run takes it."""
+    """Contact radius of the last source that has one, as in the run."""
     radii = [profiles.get(("contact_radius", "contact", source.source)) for source in clean.sources]
     return next((float(r.value[0]) for r in reversed(radii) if r is not None), 0.0)
 
 
 def _drifts(clean: CaseResult, fresh: Profiles) -> list[Check]:
-    """The numbers of the sources solved anew, held against those of the clean run as against a baseline."""
+    """The numbers of the sources solved in the trial, compared with the clean run as with a baseline."""
     now = tuple(fresh.get((p.quantity, p.line, p.source), p) for p in clean.profiles)
     stored = {numbers.key: numbers for numbers in measured(clean)}
     found = {numbers.key: numbers for numbers in measured(replace(clean, profiles=now))}
@@ -151,9 +150,9 @@ def _drifts(clean: CaseResult, fresh: Profiles) -> list[Check]:
 
 
 def _changes(clean: CaseResult, fresh: Profiles) -> list[tuple[float, str]]:
-    """How far each profile was moved by the fault; where none was, how far its uncertainty was."""
+    """Change of each profile by the fault; where none changed, that of its uncertainty."""
     p_h = float(clean.problem["p_h"])
-    values, spreads = [], []
+    values, uncertainties = [], []
     for (quantity, line, source), profile in fresh.items():
         old = clean.profile(quantity, line, source)
         if old is None:
@@ -163,18 +162,18 @@ def _changes(clean: CaseResult, fresh: Profiles) -> list[tuple[float, str]]:
         values.append((_largest(profile.value - old.value) / scale, where))
         if profile.uncertainty is not None and old.uncertainty is not None:
             change = _largest(profile.uncertainty - old.uncertainty) / (_largest(old.uncertainty) or 1.0)
-            spreads.append((change, f"uncertainty of {where}"))
-    return values if any(value > 0 for value, _ in values) else spreads
+            uncertainties.append((change, f"uncertainty of {where}"))
+    return values if any(value > 0 for value, _ in values) else uncertainties
 
 
 def _largest(values: np.ndarray) -> float:
-    """Largest magnitude; infinite where one is no number."""
+    """Largest magnitude; infinite where one is not finite."""
     return float(np.max(np.abs(values))) if np.isfinite(values).all() else float("inf")
 
 
 @dataclass(frozen=True, eq=False)
 class _AsRead:
-    """A column of a printed table as it was read: values [SI], depths [m], which of them count."""
+    """A column of a published table as read: values [SI], depths [m], which of them count."""
 
     name: str
     value: np.ndarray
@@ -189,13 +188,13 @@ def _as_read(case: PublishedCase) -> list[_AsRead]:
     ]
 
 
-def _printed(name: str, before: list[_AsRead]) -> tuple[list[Check], tuple[float, str]]:
-    """Verdicts of a printed table read under the fault, and how far the fault moved what was read."""
+def _published(name: str, before: list[_AsRead]) -> tuple[list[Check], tuple[float, str]]:
+    """Verdicts of a published table read under the fault, and how far the fault changed the values read."""
     case = read_published(published_cases()[name])
-    available = {m: s for m, s in printed_run.solvers().items() if m in METHODS_FOR_PRINT}
-    result = printed_run.run(case, available)
-    asked = [(c, v) for c, v in result.verdicts if set(c.between) & set(available)]
-    checks = [of_claim(c, v, name, False, kind="printed") for c, v in asked]
+    available = {m: s for m, s in run.solvers().items() if m in FOR_PUBLISHED}
+    result = published_run.run(case, available)
+    decided = [(c, v) for c, v in result.verdicts if set(c.between) & set(available)]
+    checks = [of_claim(c, v, name, False, kind="published") for c, v in decided]
     change = (0.0, "nothing")
     for old, new in zip(before, _as_read(case), strict=True):
         moved = max(
@@ -205,16 +204,3 @@ def _printed(name: str, before: list[_AsRead]) -> tuple[list[Check], tuple[float
         )
         change = max(change, (moved, f"{old.name} as read"))
     return checks, change
-
-
-def trial_to_json(trial: Trial) -> dict[str, Any]:
-    """A trial as strict JSON."""
-    found: dict[str, Any] = plain(asdict(trial))
-    return found
-
-
-def trial_from_json(data: dict[str, Any]) -> Trial:
-    """The inverse of ``trial_to_json``."""
-    checks = tuple(Check(**{**c, "outcome": Outcome(c["outcome"])}) for c in data["checks"])
-    made = {"checks": checks, "change": float(data["change"]), "already": tuple(data["already"])}
-    return Trial(**{**data, **made})

@@ -1,4 +1,4 @@
-"""What every solution must satisfy, whatever the other sources say: balance, equilibrium, bonds, symmetry."""
+"""Invariants of a solution: load balance, equilibrium, bonds, symmetry, limits."""
 
 from verification.judging.invariant import Invariant
 from verification.judging.invariants.check import check

@@ -4,11 +4,11 @@ import numpy as np
 from numpy.polynomial import legendre
 from scipy.special import ellipk
 
-from verification.judging.invariant import Invariant, decide
+from verification.judging.invariant import Invariant, decide, layer_name
 from verification.judging.invariants.refinement import INNER, followed
 from verification.judging.invariants.stencil import Stencil
 from verification.problem.arrays import Array
-from verification.problem.contact import CoatedContact, PrescribedLoad, Solution
+from verification.problem.contact import CoatedContact, PrescribedLoad, Solution, stress_with_uncertainty
 
 __all__ = [
     "bonded_displacement",
@@ -29,19 +29,19 @@ STEP = 1e-3
 def bonded_traction(solution: Solution, source: str, problem: CoatedContact, k: int) -> Invariant:
     """sigma_xz, sigma_yz and sigma_zz are the same on both sides of interface ``k``, from 1."""
     x, y, z = _line(solution, problem, k)
-    sides = [solution.stress(x, y, z, layer=layer)[:, 2] for layer in (k - 1, k)]
-    bound = None
-    if solution.uncertainty is not None:
-        U = [solution.stress_uncertainty(x, y, z, layer=layer)[:, 2] for layer in (k - 1, k)]
-        bound = (U[0] + U[1]) / problem.p_h
+    (upper, U_upper), (lower, U_lower) = (
+        stress_with_uncertainty(solution, x, y, z, layer=layer) for layer in (k - 1, k)
+    )
+    jump = (upper - lower)[:, 2] / problem.p_h
+    bound = None if U_upper is None or U_lower is None else (U_upper + U_lower)[:, 2] / problem.p_h
     law = f"sigma_xz, sigma_yz, sigma_zz pass interface {k} unchanged, over p_h"
-    return decide(f"bonded tractions, interface {k}", source, law, (sides[0] - sides[1]) / problem.p_h, bound)
+    return decide(f"bonded tractions, interface {k}", source, law, jump, bound)
 
 
 def bonded_displacement(solution: Solution, source: str, problem: CoatedContact, k: int) -> Invariant:
-    """u is the same on both sides of interface ``k``, each carried there from three depths of its own side.
+    """u is the same on both sides of interface ``k``, extrapolated from three depths on each side.
 
-    Bounded by the uncertainty of displacements on both sides, and by what the third depth changes.
+    Bounded by the uncertainty of displacements on both sides plus the change by the third depth.
     """
     x, y, z = _line(solution, problem, k)
     thickness = [h for _, _, h in problem.coatings] + [solution.contact_radius]
@@ -54,8 +54,8 @@ def bonded_displacement(solution: Solution, source: str, problem: CoatedContact,
         error = error + np.abs(parabola - line)
     bound = None
     if solution.uncertainty is not None:
-        spread = displacement_bound(solution, problem, x, y, z, given_pressure=True)
-        bound = (error + 2 * spread) / solution.approach
+        U = displacement_bound(solution, problem, x, y, z, given_pressure=True)
+        bound = (error + 2 * U) / solution.approach
     law = f"u passes interface {k} unchanged, over the approach"
     return decide(
         f"bonded displacements, interface {k}", source, law, (at[0] - at[1]) / solution.approach, bound
@@ -65,8 +65,8 @@ def bonded_displacement(solution: Solution, source: str, problem: CoatedContact,
 def hooke(solution: Solution, source: str, problem: CoatedContact, layer: int, stencil: Stencil) -> Invariant:
     """E eps_ij = (1 + nu) sigma_ij - nu sigma_kk delta_ij in ``layer``, strains by differences of u.
 
-    Bounded by the differences' own error and twice by the uncertainty of the stresses: what moves a stress
-    by as much moves the strain by that over E.
+    Bounded by the error of the differences plus twice the uncertainty of the stresses, once for the stresses
+    and once, over E, for the strains.
     """
     x, y, z = stencil.points
     E, nu = ([c[:2] for c in problem.coatings] + [problem.substrate])[layer]
@@ -74,17 +74,16 @@ def hooke(solution: Solution, source: str, problem: CoatedContact, layer: int, s
     gradient, error = stencil.gradient(u)
     strain = (gradient + gradient.swapaxes(0, 1)) / 2
     x, y, z = stencil.place
-    sigma = solution.stress(x, y, z, layer=layer)
+    sigma, U = stress_with_uncertainty(solution, x, y, z, layer=layer)
     unit = np.eye(3)[:, :, None]
     residual = E * strain - (1 + nu) * sigma + nu * unit * np.trace(sigma)
     bound = None
-    if solution.uncertainty is not None:
-        U = solution.stress_uncertainty(x, y, z, layer=layer)
+    if U is not None:
         error = (error + error.swapaxes(0, 1)) / 2
         bound = (E * error + 2 * (1 + nu) * U + 2 * abs(nu) * unit * np.trace(U)) / problem.p_h
-    called = f"coating {layer + 1}" if layer < len(problem.coatings) else "substrate"
-    law = f"E eps = (1 + nu) sigma - nu tr sigma in {called}, over p_h"
-    return decide(f"Hooke's law, {called}", source, law, residual / problem.p_h, bound)
+    name = layer_name(layer, problem)
+    law = f"E eps = (1 + nu) sigma - nu tr sigma in {name}, over p_h"
+    return decide(f"Hooke's law, {name}", source, law, residual / problem.p_h, bound)
 
 
 def sphere(solution: Solution, source: str, problem: CoatedContact) -> Invariant:
@@ -107,7 +106,7 @@ def sphere(solution: Solution, source: str, problem: CoatedContact) -> Invariant
 
 
 def reciprocity(solution: Solution, source: str, problem: CoatedContact) -> Invariant:
-    """Betti's reciprocity: what sliding lifts, the load draws in by as much.
+    """Betti's reciprocity of normal and tangential load.
 
     On the surface u_z is odd in x by the tangential load alone, u_x by the normal load alone, and
     odd part of u_z = -f times odd part of u_x, since q = f p.
@@ -119,8 +118,8 @@ def reciprocity(solution: Solution, source: str, problem: CoatedContact) -> Inva
     odd = (ahead - behind) / 2
     bound = None
     if solution.uncertainty is not None:
-        spread = displacement_bound(solution, problem, x, y, zero, given_pressure=True)
-        bound = (1 + problem.friction) * spread / solution.approach
+        U = displacement_bound(solution, problem, x, y, zero, given_pressure=True)
+        bound = (1 + problem.friction) * U / solution.approach
     law = "u_z odd in x, by sliding, is -f times u_x odd in x, by the load; over the approach"
     residual = (odd[2] + problem.friction * odd[0]) / solution.approach
     return decide("reciprocity of load and sliding", source, law, residual, bound)
@@ -135,29 +134,29 @@ def displacement_bound(
     *,
     given_pressure: bool = False,
 ) -> Array:
-    """Uncertainty of displacements at points [m]: that of the approach, plus what U_p would press in,
+    """Uncertainty of displacements at points [m]: that of the approach, plus the displacement under U_p,
 
         u(r) = 4/(pi E*) int U_p(s) K(m) s/(r+s) ds,   m = 4 r s/(r+s)^2
 
     on the half-space of the most compliant material, with K the complete elliptic integral, Johnson (3.96),
-    plus, where a solution carries coarser companions, what they change, which then speaks for the edge. A law
-    that holds for whatever pressure there is, ``given_pressure``, is not blurred by U_p.
+    plus, where a solution has coarser companions, their change, which then replaces U_p near the edge. For an
+    invariant that holds under any pressure, ``given_pressure``, U_p does not enter.
     """
-    spread = np.full(np.shape(x), float(solution.uncertainty.approach))
+    U = np.full(np.shape(x), float(solution.uncertainty.approach))
     change = followed(solution, lambda s: s.displacement(x, y, z))
     if not given_pressure:
-        spread += _pressed_in(solution, problem, x, y, 1.0 if change is None else INNER)
-    return spread if change is None else spread + change.max(axis=0)
+        U += _under_uncertainty(solution, problem, x, y, 1.0 if change is None else INNER)
+    return U if change is None else U + change.max(axis=0)
 
 
-def _pressed_in(
+def _under_uncertainty(
     solution: Solution, problem: CoatedContact | PrescribedLoad, x: Array, y: Array, reach: float
 ) -> Array:
-    """What U_p presses in, of the part of the contact within ``reach`` of its radius."""
+    """Displacement under U_p [m] of the part of the contact within ``reach`` of its radius."""
     a = solution.contact_radius
     t, w = legendre.leggauss(64)
     phi = np.pi / 4 * (t + 1)
-    # the uncertainty peaks at the edge, and reaches beyond it
+    # The uncertainty is largest at the edge, and extends beyond it.
     s = a * np.concatenate([np.sin(phi), 1 + 0.05 * (t + 1)])
     weight = a * np.concatenate([np.pi / 4 * w * np.cos(phi), 0.05 * w])
     U = solution.pressure_uncertainty(s * np.cos(ANGLE), s * np.sin(ANGLE))

@@ -1,10 +1,10 @@
-"""Every invariant that one solution can be held against by itself."""
+"""Every invariant that one solution has to satisfy by itself."""
 
 from collections.abc import Callable, Iterator
 from functools import partial
 
-from verification.judging.invariant import Invariant, absent
-from verification.judging.invariants import bond, coefficients, statics, symmetry
+from verification.judging.invariant import Invariant, failed
+from verification.judging.invariants import bond, influence, statics, symmetry
 from verification.problem.contact import CoatedContact, NotClaimed, Solution
 
 __all__ = ["check"]
@@ -15,8 +15,8 @@ Law = Callable[[], Invariant | tuple[Invariant, ...]]
 def check(solution: Solution, source: str, problem: CoatedContact) -> tuple[Invariant, ...]:
     """Balance, tractions, equilibrium, bonds, Hooke's law and symmetry of ``solution`` by ``source``.
 
-    One that cannot be evaluated is NO_RESULT with its sentence; one about a field that the source makes no
-    claim of is left out; the others go on.
+    One that raises an exception is NO_RESULT with its message; one of a field that the source does not claim
+    is left out.
     """
     found: list[Invariant] = []
     for name, law in _laws(solution, source, problem):
@@ -24,8 +24,8 @@ def check(solution: Solution, source: str, problem: CoatedContact) -> tuple[Inva
             row = law()
         except NotClaimed:
             continue
-        except Exception as error:  # whatever a solution fails with is a row of the report
-            row = absent(name, source, f"{type(error).__name__}: {' '.join(str(error).split())[:300]}")
+        except Exception as error:  # any failure of a solution is a row of the report
+            row = failed(name, source, error)
         found += row if isinstance(row, tuple) else (row,)
     return tuple(found)
 
@@ -46,4 +46,4 @@ def _laws(solution: Solution, source: str, problem: CoatedContact) -> Iterator[t
         yield "reciprocity of load and sliding", partial(bond.reciprocity, *subject)
     yield "symmetry", partial(symmetry.symmetry, *subject)
     if source == "semianalytic":
-        yield "influence coefficients", partial(coefficients.influence_coefficients, *subject)
+        yield "influence coefficients", partial(influence.influence_coefficients, *subject)

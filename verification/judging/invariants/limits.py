@@ -1,20 +1,19 @@
-"""What is left of a coating where it is very thick or very thin, from its compliance wave by wave.
+"""Effect of a very thick or a very thin coating on the approach, from its compliance M(k).
 
 M(k) is the compliance over that of a half-space of the coating's material, as computed by the references.
 """
 
 import numpy as np
-from numpy.polynomial import legendre
 
-from verification.problem.arrays import Array
 from verification.problem.contact import CoatedContact
 from verification.sources.references.layered import LayeredHalfSpace
+from verification.sources.references.quadrature import on_panels
 
 __all__ = ["thick_shift", "thin_shift"]
 
 
 def thick_shift(thick: CoatedContact, alone: CoatedContact) -> tuple[float, float]:
-    """How far the base of a thick coating sinks under the load [m], and what that leaves, over the approach.
+    """Displacement of the base of a thick coating under the load [m], with the error eta over the approach.
 
         u_e(0) = W/(pi E1*) int (M-1) dk
 
@@ -26,8 +25,8 @@ def thick_shift(thick: CoatedContact, alone: CoatedContact) -> tuple[float, floa
     material as a half-space.
     """
     h = thick.coatings[0][2]
-    # M - 1 dies like exp(-2 k h)
-    k, w = _panels(np.concatenate([np.geomspace(1e-6, 1e-1, 21), np.linspace(0.2, 30, 150)]) / h)
+    # M - 1 decays as exp(-2 k h).
+    k, w = on_panels(np.concatenate([np.geomspace(1e-6, 1e-1, 21), np.linspace(0.2, 30, 150)]) / h, 12)
     excess = LayeredHalfSpace(thick.coatings, thick.substrate, k).compliance - 1
     per_force = thick.load / (np.pi * alone.E_star)
     eta = per_force * alone.a_h**2 * float(w @ (np.abs(excess) * k**2))
@@ -44,7 +43,7 @@ def thin_shift(thin: CoatedContact) -> float:
     """
     E, nu, h = thin.coatings[0]
     edges = np.concatenate([np.arange(0, 400, 2.0), np.geomspace(400, 4000 + 40 * thin.a_h / h, 100)])
-    k, w = _panels(edges / thin.a_h)
+    k, w = on_panels(edges / thin.a_h, 12)
     M = LayeredHalfSpace(thin.coatings, thin.substrate, k).compliance
     m = M * thin.E_star * (1 - nu**2) / E
 
@@ -58,10 +57,3 @@ def thin_shift(thin: CoatedContact) -> float:
     step = 1e-3
     up, down = energy(thin.load * (1 + step)), energy(thin.load * (1 - step))
     return (up - down) / (2 * step * thin.load)
-
-
-def _panels(edges: Array) -> tuple[Array, Array]:
-    """Twelve Gauss points in each panel."""
-    t, w = legendre.leggauss(12)
-    half = np.diff(edges) / 2
-    return ((edges[:-1] + half)[:, None] + half[:, None] * t).ravel(), (half[:, None] * w).ravel()

@@ -1,8 +1,8 @@
-"""What a solution's own coarser companions say of a number, for laws that integrate over the contact edge.
+"""Uncertainty of a number from a solution's coarser companions, for integrals over the contact edge.
 
-At the edge the uncertainty of the pressure is that of a steep front that may be displaced; carried through
-an integral as if all of it had one sign it says a hundred times too much. There the integral itself is
-followed over the companions instead.
+Near the edge the uncertainty of the pressure is that of the position of a steep front; integrated as if all
+of it had one sign it is a hundred times too large. There the change of the integral over the companions is
+used.
 """
 
 from collections.abc import Callable
@@ -16,9 +16,9 @@ from verification.problem.contact import Solution
 __all__ = ["INNER", "followed"]
 
 
-INNER = 0.95  # of a; out to here the pressure's own uncertainty speaks
-# An error of order 3/2 on patches sqrt(2) coarser: 1/(2^(3/4) - 1). The change before guards against a last
-# one that is small by chance.
+INNER = 0.95  # of a; out to here the uncertainty of the pressure is integrated
+# LAST: an error of order 3/2 on patches sqrt(2) coarser, 1/(2^(3/4) - 1). BEFORE guards against a last change
+# that is small by chance.
 LAST, BEFORE = 1.5, 0.5
 
 

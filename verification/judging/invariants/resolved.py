@@ -1,4 +1,4 @@
-"""Invariants between solutions: one problem solved scaled, with equal moduli, thick, thin, pressed otherwise.
+"""Invariants between solutions: one problem also solved scaled, with equal moduli, thick, thin, under a disc.
 
 They need further solves, so a case has to enable them (``resolve = true``), and both methods solve on coarse
 grids and meshes, whose uncertainty bounds each invariant and is capped like any other.
@@ -12,25 +12,21 @@ from typing import Any
 import numpy as np
 from numpy.polynomial import legendre
 
-from verification.judging.invariant import Invariant, absent, decide
+from verification.judging.invariant import Invariant, decide, failed
 from verification.judging.invariants.bond import displacement_bound
 from verification.judging.invariants.limits import thick_shift, thin_shift
 from verification.problem.arrays import Array
-from verification.problem.contact import CoatedContact, PrescribedLoad, Solution
+from verification.problem.contact import CoatedContact, PrescribedLoad, Solution, stress_with_uncertainty
+from verification.problem.quantity import QUANTITIES, SCALARS
 from verification.sources.references.hamilton import Hamilton
+from verification.sources.registry import METHODS, SOURCES
 
-__all__ = ["COARSE", "resolved"]
+__all__ = ["resolved"]
 
-Solve = Callable[[CoatedContact], Solution]
+Solve = Callable[[CoatedContact | PrescribedLoad], Solution]
 Law = Callable[[], Invariant]
 
-# Each as coarse as leaves the uncertainty below the caps; stresses and thin coatings want more of a mesh.
-Numerics = Mapping[str, Mapping[str, Any]]
-COARSE: Numerics = {"semianalytic": {"patches": 129}, "fem_reference": {"size": 0.25}}
-STRESSES: Numerics = {"semianalytic": {"patches": 129}, "fem_reference": {"size": 0.22}}
-THIN: Numerics = {"semianalytic": {"patches": 129}, "fem_reference": {"size": 0.22}}
-
-# Of a_h: far enough in the limit for what is left of the coating to be bounded below the caps.
+# h/a_h, so near to the limit that the remaining effect of the coating is bounded below the caps.
 THICK_AT, THIN_AT = 20.0, 0.03
 # No powers of two, so that scaled numbers share no digits.
 RADIUS, LOAD, MODULUS = 2.7, 0.37, 1.9
@@ -39,48 +35,47 @@ PLACES = ((0.0, 0.45), (0.6, 0.3), (-0.6, 1.7), (1.3, 0.3))  # x, z over a_h
 
 
 def resolved(
-    problem: CoatedContact, available: Mapping[str, Callable[[CoatedContact, Mapping[str, Any]], Solution]]
+    problem: CoatedContact, available: Mapping[str, Callable[..., Solution]]
 ) -> tuple[Invariant, ...]:
     """Scaling, equal moduli, thick and thin limit, reciprocity of each method that is available.
 
     problem : with one coating at least.   available : solvers by name, as in ``run.solvers``.
-    A law that cannot be had is NO_RESULT with its sentence.
+    One that raises an exception is NO_RESULT with its message.
     """
     found = []
-    for source in COARSE:
-        if source not in available:
-            continue
-
-        def solve(
-            changed: CoatedContact,
-            numerics: Numerics = COARSE,
-            source: str = source,
-        ) -> Solution:
-            return available[source](changed, numerics[source])
-
-        for name, law in _laws(solve, source, problem):
+    for source in (name for name in METHODS if name in available):
+        coarse, finer = (
+            partial(_solved, available[source], numerics)
+            for numerics in (SOURCES[source].coarse, SOURCES[source].coarse_stress)
+        )
+        for name, law in _laws(coarse, finer, source, problem):
             try:
                 found.append(law())
-            except Exception as error:  # as in ``check``: a row of the report, whatever went wrong
-                said = f"{type(error).__name__}: {' '.join(str(error).split())[:300]}"
-                found.append(absent(name, source, said))
+            except Exception as error:  # as in ``check``, a row of the report
+                found.append(failed(name, source, error))
     return tuple(found)
 
 
-def _laws(solve: Callable[..., Solution], source: str, problem: CoatedContact) -> Iterator[tuple[str, Law]]:
+def _solved(
+    solve: Callable[..., Solution], numerics: Mapping[str, Any], problem: CoatedContact | PrescribedLoad
+) -> Solution:
+    return solve(problem, numerics)
+
+
+def _laws(solve: Solve, finer: Solve, source: str, problem: CoatedContact) -> Iterator[tuple[str, Law]]:
     base: list[Solution] = []
 
-    def once(given: CoatedContact) -> Solution:
+    def once(given: CoatedContact | PrescribedLoad) -> Solution:
         if not base:
-            base.append(solve(given, STRESSES))
+            base.append(finer(given))
         return base[0]
 
-    yield "scaling", partial(_scaling, partial(solve, numerics=STRESSES), once, source, problem)
-    yield "reciprocity", partial(_reciprocity, once, source, problem)
+    yield "scaling", partial(_scaling, finer, once, source, problem)
+    yield "reciprocity", partial(_reciprocity, once, solve, source, problem)
     yield "equal moduli", partial(_equal_moduli, solve, source, problem)
     smooth = replace(problem, friction=0.0)
     yield "thick coating", partial(_thick, solve, source, smooth)
-    yield "thin coating", partial(_thin, partial(solve, numerics=THIN), source, smooth)
+    yield "thin coating", partial(_thin, finer, source, smooth)
 
 
 def _scaling(solve: Solve, base: Solve, source: str, problem: CoatedContact) -> Invariant:
@@ -105,7 +100,7 @@ def _scaling(solve: Solve, base: Solve, source: str, problem: CoatedContact) -> 
 
 
 def _equal_moduli(solve: Solve, source: str, problem: CoatedContact) -> Invariant:
-    """A coating of the substrate's own material is none: Hertz, with friction Hamilton."""
+    """Coatings of the substrate's material: Hertz's contact, with friction Hamilton's."""
     coatings = tuple((*problem.substrate, h) for _, _, h in problem.coatings)
     same = replace(problem, coatings=coatings)
     exact = Hamilton(problem.radius, problem.load, *problem.substrate, problem.friction)
@@ -116,25 +111,25 @@ def _equal_moduli(solve: Solve, source: str, problem: CoatedContact) -> Invarian
 
 
 def _thick(solve: Solve, source: str, problem: CoatedContact) -> Invariant:
-    """A very thick coating is a half-space of its own."""
+    """A very thick coating: Hertz's contact of the coating's material, on a base that is displaced."""
     E, nu, _ = problem.coatings[0]
     alone = replace(problem, coatings=(), substrate=(E, nu))
     thick = replace(problem, coatings=((E, nu, THICK_AT * alone.a_h),))
     found = solve(thick)
-    sink, left = thick_shift(thick, alone)
+    base, eta = thick_shift(thick, alone)
     scales = np.array([alone.a_h, alone.p_h, alone.delta_h])
-    values = np.array([found.contact_radius, found.peak_pressure, found.approach - sink]) / scales
+    values = np.array([found.contact_radius, found.peak_pressure, found.approach - base]) / scales
     U = found.uncertainty
-    # A gap bent by ``left`` of the approach changes the curvature by twice that; a and p0 go by powers 1/3
-    # and 2/3 of it.
-    bent = np.array([2 / 3, 4 / 3, 1.0]) * left
+    # A gap changed by eta of the approach has a curvature changed by twice that; a and p0 vary as its powers
+    # 1/3 and 2/3.
+    bent = np.array([2 / 3, 4 / 3, 1.0]) * eta
     bound = np.array([U.contact_radius, U.peak_pressure, U.approach]) / scales + bent
-    law = f"h = {THICK_AT:g} a_h gives Hertz of the coating, and an approach less by the sinking of the base"
+    law = f"h = {THICK_AT:g} a_h gives Hertz of the coating, plus the displacement of the base"
     return decide("thick coating", source, law, values - 1, bound)
 
 
 def _thin(solve: Solve, source: str, problem: CoatedContact) -> Invariant:
-    """A very thin coating leaves Hertz of the substrate but for a first-order term.
+    """A very thin coating: Hertz's contact of the substrate with a first-order change of the approach.
 
     The second order is minus the square of the first, over the approach, to a few per cent from h = 0.01 a_h
     down; twice that is allowed.
@@ -149,27 +144,14 @@ def _thin(solve: Solve, source: str, problem: CoatedContact) -> Invariant:
     return decide("thin coating", source, law, gap, bound, cap=APPROACH_CAP)
 
 
-def _reciprocity(solve: Solve, source: str, problem: CoatedContact) -> Invariant:
-    """Betti: the contact pressure works on a disc's displacements what the disc's works on the contact's.
+def _reciprocity(base: Solve, solve: Solve, source: str, problem: CoatedContact) -> Invariant:
+    """Betti's reciprocity of the contact with a uniform disc: int p u_disc dA = int p_disc u dA.
 
-    int p u_disc dA = int p_disc u dA, over W times the approach. Along x = 0, where friction lifts nothing.
+    Over W times the approach, along x = 0, where friction causes no u_z.
     """
-    import fem_reference
-    import semianalytic
-
-    method: Any = {"semianalytic": semianalytic, "fem_reference": fem_reference}[source]
-    contact = solve(problem)
-    disc = PrescribedLoad(
-        problem.p_h, 0.6 * contact.contact_radius, problem.coatings, problem.substrate, problem.friction
-    )
-    pressed: Solution = method.solve_prescribed(
-        pressure=disc.pressure,
-        load_radius=disc.load_radius,
-        coatings=disc.coatings,
-        substrate=disc.substrate,
-        friction=disc.friction,
-        **COARSE[source],
-    )
+    contact = base(problem)
+    disc = problem.under_disc(problem.p_h, 0.6 * contact.contact_radius)
+    pressed = solve(disc)
     work = problem.load * contact.approach
 
     def works(n: int) -> tuple[float, float]:
@@ -180,31 +162,31 @@ def _reciprocity(solve: Solve, source: str, problem: CoatedContact) -> Invariant
         s = disc.load_radius * (t + 1) / 2
         patch = np.pi * s * disc.load_radius * w / work
         p, U_p = contact.pressure(0 * r, r), contact.pressure_uncertainty(0 * r, r)
-        u_disc, u = _sink(pressed, r), _sink(contact, s)
-        spread = area @ (U_p * np.abs(u_disc) + p * displacement_bound(pressed, disc, 0 * r, r, 0 * r))
-        spread += disc.pressure * patch @ displacement_bound(contact, problem, 0 * s, s, 0 * s)
-        return float(area @ (p * u_disc) - disc.pressure * patch @ u), float(spread)
+        u_disc, u = _surface_displacement(pressed, r), _surface_displacement(contact, s)
+        U = area @ (U_p * np.abs(u_disc) + p * displacement_bound(pressed, disc, 0 * r, r, 0 * r))
+        U += disc.pressure * patch @ displacement_bound(contact, problem, 0 * s, s, 0 * s)
+        return float(area @ (p * u_disc) - disc.pressure * patch @ u), float(U)
 
-    (gap, spread), (coarser, _) = works(32), works(24)
+    (gap, bound), (coarser, _) = works(32), works(24)
     law = "int p u_disc dA = int p_disc u dA with a uniform disc, over W times the approach"
-    return decide("reciprocity", source, law, gap, spread + abs(gap - coarser))
+    return decide("reciprocity", source, law, gap, bound + abs(gap - coarser))
 
 
-def _sink(solution: Solution, y: Array) -> Array:
+def _surface_displacement(solution: Solution, y: Array) -> Array:
     return solution.displacement(np.zeros_like(y), y, np.zeros_like(y))[2]
 
 
 def _dimensionless(solution: Solution, problem: CoatedContact) -> tuple[Array, Array]:
     """a/a_h, p0/p_h, approach/delta_h and the stresses over p_h at ``PLACES``, with their uncertainties."""
-    scales = (problem.a_h, problem.p_h, problem.delta_h)
-    names = ("contact_radius", "peak_pressure", "approach")
-    U = solution.uncertainty
+    scalars = [(QUANTITIES[name], getattr(problem, QUANTITIES[name].scale)) for name in SCALARS]
     x, z = problem.a_h * np.array(PLACES).T
     y = 0.2 * np.abs(x)
-    values = [getattr(solution, name) / scale for name, scale in zip(names, scales, strict=True)]
-    spread = [getattr(U, name) / scale for name, scale in zip(names, scales, strict=True)]
-    sigma = solution.stress(x, y, z) / problem.p_h
+    values = [quantity.value(solution, problem) / scale for quantity, scale in scalars]
+    U = [(quantity.uncertainty(solution, problem) or 0.0) / scale for quantity, scale in scalars]
+    sigma, U_sigma = stress_with_uncertainty(solution, x, y, z)
+    if U_sigma is None:
+        raise ValueError("states no uncertainty that would bound the invariant")
     return (
-        np.concatenate([values, sigma.ravel()]),
-        np.concatenate([spread, solution.stress_uncertainty(x, y, z).ravel() / problem.p_h]),
+        np.concatenate([values, (sigma / problem.p_h).ravel()]),
+        np.concatenate([U, (U_sigma / problem.p_h).ravel()]),
     )

@@ -1,30 +1,30 @@
-"""Invariants of forces: load, tractions of the surface, equilibrium inside each layer."""
+"""Invariants of forces: load balance, surface tractions, equilibrium inside each layer."""
 
 import numpy as np
 from numpy.polynomial import legendre
 
-from verification.judging.invariant import Invariant, decide
+from verification.judging.invariant import Invariant, decide, layer_name
 from verification.judging.invariants.refinement import INNER, followed
 from verification.judging.invariants.stencil import Stencil
 from verification.problem.arrays import Array
-from verification.problem.contact import CoatedContact, Solution
+from verification.problem.contact import CoatedContact, Solution, stress_with_uncertainty
 
 __all__ = ["equilibrium", "load_balance", "places_in", "surface"]
 
 
 # Of the contact radius. As in the claims, no point lies within 5 % of the edge.
 SURFACE = np.array([-1.2, -0.9, -0.5, 0.0, 0.25, 0.5, 0.75, 0.9, 1.1, 1.3])
-# No mirror plane of a square grid.
+# Off the mirror planes of a square grid.
 ANGLE = 0.35
 # The field varies over its distance from the contact edge; four steps stay within a quarter of that.
 PART_OF_REACH = 1 / 16
 
 
 def load_balance(solution: Solution, source: str, problem: CoatedContact) -> Invariant:
-    """The pressure carries the load: int p dA = W, out to 1.1 a.
+    """Load balance: int p dA = W, out to 1.1 a.
 
-    Bounded by the integral of the pressure's uncertainty, near the edge by what coarser companions change
-    where that is less, and by what a coarser quadrature changes.
+    Bounded by the integral of the pressure's uncertainty, near the edge by the change over coarser companions
+    where that is less, plus the change by a coarser quadrature.
     """
     fine, coarse = (_load(solution, problem, n) for n in (40, 28))
     bound = None
@@ -69,14 +69,15 @@ def surface(solution: Solution, source: str, problem: CoatedContact) -> tuple[In
     inside = np.abs(x) < solution.contact_radius
     f, p_h = problem.friction, problem.p_h
     p = solution.pressure(x, y) / p_h
-    sigma = solution.stress(x, y, 0.0, layer=0)[:, 2] / p_h
+    stress, spread = stress_with_uncertainty(solution, x, y, 0.0, layer=0)
+    sigma = stress[:, 2] / p_h
     normal, shear = sigma[2] + p, np.stack([sigma[0] + f * p, sigma[1]])
     free = np.concatenate([sigma, p[None]])
     laws: list[tuple[str, str, Array, Array | None]]
     bounds: list[Array | None] = [None, None, None]
-    if solution.uncertainty is not None:
+    if spread is not None:
         Up = solution.pressure_uncertainty(x, y) / p_h
-        U = solution.stress_uncertainty(x, y, 0.0, layer=0)[:, 2] / p_h
+        U = spread[:, 2] / p_h
         bounds = [
             (U[2] + Up)[inside],
             np.stack([U[0] + f * Up, U[1]])[:, inside],
@@ -91,7 +92,7 @@ def surface(solution: Solution, source: str, problem: CoatedContact) -> tuple[In
 
 
 def places_in(layer: int, solution: Solution, problem: CoatedContact) -> Stencil:
-    """Under the contact, in the substrate beside it too, with steps that stay inside ``layer``."""
+    """Stencils under the contact, in the substrate also beside it, with steps that stay inside ``layer``."""
     a = solution.contact_radius
     top = (0.0, *problem.interfaces)[layer]
     coated = layer < len(problem.coatings)
@@ -99,7 +100,7 @@ def places_in(layer: int, solution: Solution, problem: CoatedContact) -> Stencil
     r = a * (np.array([0.5]) if coated else np.array([0.5, 1.3]))
     z = np.full(r.shape, top + 0.4 * thickness)
     across = PART_OF_REACH * np.hypot(r - a, z)
-    # the same for both: every depth has a price of its own
+    # The same for both places, since every further depth costs an evaluation.
     down = np.full(r.shape, min(across.min(), 0.08 * thickness))
     return Stencil(np.stack([r * np.cos(ANGLE), r * np.sin(ANGLE), z]), np.stack([across, across, down]))
 
@@ -109,8 +110,8 @@ def equilibrium(
 ) -> Invariant:
     """sigma_ij,j = 0 inside ``layer``, as the force on a slab of the vertical step's height.
 
-    Bounded by the differences' own error and by what uncertain stresses make of them, each as uncertain as
-    the worst of the places and of the farthest points at their depth.
+    Bounded by the error of the differences plus the propagated uncertainty of the stresses, at each point the
+    largest of the places and of the farthest points at their depth.
     """
     x, y, z = stencil.points
     height = stencil.step[2] / problem.p_h
@@ -118,13 +119,10 @@ def equilibrium(
     force = np.einsum("jijn->in", gradient) * height
     bound = None
     if solution.uncertainty is not None:
-        spread = np.empty((3, 3, x.size))
+        U = np.empty((3, 3, x.size))
         x, y, z = stencil.corners
-        spread[:] = solution.stress_uncertainty(x, y, z, layer).max(axis=-1, keepdims=True)
-        bound = np.einsum("jijn->in", stencil.spread(spread) + error) * height
-    law = f"div sigma = 0 in {_called(layer, problem)}, times the step over p_h"
-    return decide(f"equilibrium, {_called(layer, problem)}", source, law, force, bound)
-
-
-def _called(layer: int, problem: CoatedContact) -> str:
-    return f"coating {layer + 1}" if layer < len(problem.coatings) else "substrate"
+        U[:] = solution.stress_uncertainty(x, y, z, layer).max(axis=-1, keepdims=True)
+        bound = np.einsum("jijn->in", stencil.propagated(U) + error) * height
+    name = layer_name(layer, problem)
+    law = f"div sigma = 0 in {name}, times the step over p_h"
+    return decide(f"equilibrium, {name}", source, law, force, bound)

@@ -1,10 +1,10 @@
-"""Derivatives of a field by central differences, with what bounds their error.
+"""Derivatives of a field by central differences with a bound of their error.
 
 Romberg's extrapolation of the steps h, 2h, 4h:
 
     D = [64 d(h) - 20 d(2h) + d(4h)] / 45,   d(h) = [f(+h) - f(-h)] / 2h
 
-Its error is below the change that the third step made, |D - (4 d(h) - d(2h))/3|.
+Its error is below the change by the third step, |D - (4 d(h) - d(2h))/3|.
 """
 
 from dataclasses import dataclass
@@ -58,8 +58,8 @@ class Stencil:
         )
         return best, np.abs(best - shorter)
 
-    def spread(self, uncertainty: Array) -> Array:
-        """What uncertain values make of the gradient at most, (3,) + (..., n)."""
+    def propagated(self, uncertainty: Array) -> Array:
+        """Largest effect of uncertain values on the gradient, (3,) + (..., n)."""
         f = self._around(uncertainty)
         each = (f[..., 0, :, :] + f[..., 1, :, :]) / (2 * _STEPS[:, None])
         return np.einsum("s,...asn->a...n", np.abs(_WEIGHTS), each) / self._steps(uncertainty)

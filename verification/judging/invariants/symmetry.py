@@ -4,13 +4,13 @@ import numpy as np
 
 from verification.judging.invariant import Invariant, decide
 from verification.problem.arrays import Array
-from verification.problem.contact import CoatedContact, Solution
+from verification.problem.contact import CoatedContact, Solution, stress_with_uncertainty
 
 __all__ = ["symmetry"]
 
 
 RADII = np.array([0.3, 0.7])
-# Off every mirror plane, and turned into one another by both mirrors.
+# Off every mirror plane, mapped onto one another by both mirrors.
 TURNS = 2 * np.pi * (np.arange(8) + 0.5) / 8
 MIRROR = ((3 - np.arange(8)) % 8, 7 - np.arange(8))
 
@@ -27,15 +27,16 @@ def symmetry(solution: Solution, source: str, problem: CoatedContact) -> tuple[I
     stated = solution.uncertainty is not None
     sigma, U = [], []
     for z, layer in _depths(solution, problem):
-        sigma.append(solution.stress(x, y, z, layer) / problem.p_h)
-        if stated:
-            U.append(solution.stress_uncertainty(x, y, z, layer) / problem.p_h)
+        stress, spread = stress_with_uncertainty(solution, x, y, z, layer)
+        sigma.append(stress / problem.p_h)
+        if spread is not None:
+            U.append(spread / problem.p_h)
     s = np.stack(sigma, axis=2)
     u = np.stack(U, axis=2) if stated else np.zeros_like(s)
     found = []
     for axis, name in ((0, "x"), (1, "y")):
         if axis == 0 and problem.friction:
-            continue  # sliding breaks this one; what is left of it is in the harmonics
+            continue  # sliding has no such mirror; the harmonics check what remains of it
         flip = np.ones(3)
         flip[axis] = -1.0
         image = np.einsum("i,j,ij...->ij...", flip, flip, s[..., MIRROR[axis]])
@@ -49,7 +50,7 @@ def symmetry(solution: Solution, source: str, problem: CoatedContact) -> tuple[I
 
 
 def _beyond_harmonics(s: Array, u: Array, *, friction: bool) -> tuple[Array, Array]:
-    """What of stresses (3, 3, ..., turns) their mean and first harmonic leave, and the bound of it."""
+    """Stresses (3, 3, ..., turns) less their mean and first harmonic, with the bound of the remainder."""
     cos, sin = np.cos(TURNS), np.sin(TURNS)
     zero = np.zeros_like(cos)
     turn = np.array([[cos, sin, zero], [-sin, cos, zero], [zero, zero, zero + 1]])

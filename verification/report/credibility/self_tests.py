@@ -1,15 +1,16 @@
-"""The answers of the harness to questions whose answer is known."""
+"""Self-tests of the harness on problems with a known answer."""
 
-from collections.abc import Sequence
-
+from verification.report.material import Material
 from verification.report.tables.cells import Cell, Part, Row, Section, Table
-from verification.running.self_tests import SelfTest
 
-__all__ = ["self_test_section"]
+__all__ = ["section"]
 
 
-def self_test_section(tests: Sequence[SelfTest]) -> Section:
-    """Each self-test with what it asks for and what came out."""
+def section(material: Material) -> Section | None:
+    """Each self-test with its requirement and its outcome; None where none was made."""
+    tests = material.evidence.self_tests
+    if not tests:
+        return None
     rows = [
         Row(
             Cell(test.name),
@@ -21,13 +22,11 @@ def self_test_section(tests: Sequence[SelfTest]) -> Section:
         )
         for test in tests
     ]
-    table = Table(
-        "Asked before the first case was solved.", ["part", "passed", "what must hold", "found"], rows
-    )
-    said = (
-        "Methods and references watch each other; what reads the cases, samples the solutions, judges and "
-        "stores is watched by questions whose answer was worked out by hand."
+    table = Table("Made before the first case was solved.", ["part", "passed", "requirement", "found"], rows)
+    text = (
+        "Comparisons check the methods and references. These tests check the parts that read the cases, "
+        "sample the solutions, judge and store, against results worked out by hand."
     )
     bad = [test for test in tests if not test.passed]
-    failures = [f"{test.name}: {test.found}. The verdicts of this run mean nothing." for test in bad]
-    return Section("self-tests", "Self-tests of the harness", [Part(said, [table])], failures)
+    failures = [f"{test.name}: {test.found}. The verdicts of this run are not valid." for test in bad]
+    return Section("self-tests", "Self-tests of the harness", [Part(text, [table])], failures)

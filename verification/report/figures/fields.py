@@ -1,4 +1,4 @@
-"""Pictures of the stresses below the contact: both methods side by side, beside them their difference."""
+"""Stresses in the plane below the contact: both methods and their difference side by side."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -8,16 +8,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from verification.problem.arrays import Array
-from verification.problem.quantity import COMPONENTS, von_mises
+from verification.problem.quantity import IN_PLANE, von_mises
 from verification.report.figures.raster import Frame, Scale, draw_field, rasterised
 from verification.report.tables.cells import Panel
 from verification.report.tables.csv import embedded, written
-from verification.report.tables.labels import METHODS, source_label
+from verification.report.tables.labels import source_label
 from verification.report.tables.lookup import scale as scale_of
 from verification.report.tables.lookup import slug
 from verification.report.tables.numbers import plain, scientific
 from verification.running.result import CaseResult
 from verification.sampling.plane import Plane
+from verification.sources.registry import METHODS
 
 __all__ = ["Pictures", "pictures", "plane_csv"]
 
@@ -71,14 +72,14 @@ def plane_csv(plane: Plane) -> str:
         columns[1] += [f"{v:.6g}" for v in np.tile(x, z.size)]
         columns[2] += [f"{v:.6g}" for v in np.repeat(z, x.size)]
     for source, layers in plane.stress.items():
-        for name in (*COMPONENTS, "von_mises"):
+        for name in (*IN_PLANE, "von_mises"):
             values = np.concatenate([_quantity(sigma, name)[:, ::EVERY].ravel() for sigma in layers])
             columns.append([f"{name} [Pa] {source}", *(f"{v:.6g}" for v in values)])
     return written(list(zip_longest(*columns, fillvalue="")))
 
 
 def _quantity(sigma: Array, name: str) -> Array:
-    return von_mises(sigma) if name == "von_mises" else sigma[list(COMPONENTS).index(name)]
+    return von_mises(sigma) if name == "von_mises" else sigma[list(IN_PLANE).index(name)]
 
 
 def _row(

@@ -8,7 +8,7 @@ import numpy as np
 from markupsafe import Markup
 
 from verification.report.figures.plot import Axes, drawing, power_of_ten
-from verification.report.tables.labels import Style
+from verification.sources.source import Style
 
 __all__ = ["Trail", "decades", "draw_loglog"]
 

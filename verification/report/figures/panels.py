@@ -6,27 +6,23 @@ import numpy as np
 from markupsafe import Markup
 
 from verification.judging.verdict import Claim, Outcome
+from verification.problem.quantity import QUANTITIES
 from verification.report.figures.curves import FLOOR, Curve, Difference, draw
 from verification.report.tables.cells import Panel
-from verification.report.tables.labels import (
-    METHODS,
-    Style,
-    pair_label,
-    pair_style,
-    source_label,
-    source_style,
-)
+from verification.report.tables.labels import pair_label, pair_style, source_label, source_style
 from verification.report.tables.lookup import (
-    baseline,
     claimed_quantities,
     contact_radius,
     coordinate,
     difference,
+    reference_source,
     scale,
     sources_with_profiles,
 )
 from verification.report.tables.numbers import scientific
 from verification.running.result import CaseResult
+from verification.sources.registry import METHODS
+from verification.sources.source import Style
 
 __all__ = ["LineFigures", "line_figures", "swatch"]
 
@@ -69,8 +65,8 @@ def _on(result: CaseResult, line: str) -> list:
 
 
 def _pairs(result: CaseResult, line: str, quantity: str) -> list[tuple[str, str]]:
-    """The claimed pairs worth a curve: methods among themselves, and whatever meets the best reference."""
-    best = baseline(result)
+    """The claimed pairs that are drawn: methods with each other, sources with the reference source."""
+    best = reference_source(result)
     claimed = [c.between for c, _ in result.verdicts if (c.quantity, c.line) == (quantity, line)]
     return [
         pair
@@ -94,11 +90,11 @@ def _panel(result: CaseResult, line: str, quantity: str) -> Panel:
         found = difference(result, first, second)
         if found is None or first is None:
             continue
-        gap, spread = found
+        gap, uncertainty = found
         failed = verdict.outcome is not Outcome.AGREES and verdict.worst is not None
         worst = verdict.worst / a_h if failed and verdict.worst is not None else None
         vague = verdict.outcome is Outcome.INCONCLUSIVE
-        differences.append(Difference(first.position / a_h, gap, spread, pair_style(pair), worst, vague))
+        differences.append(Difference(first.position / a_h, gap, uncertainty, pair_style(pair), worst, vague))
     cap = min((claim.cap for claim, _ in claims), default=None)
     zones = _unjudged(result, [claim for claim, _ in claims], curves)
     figure = draw(
@@ -114,7 +110,7 @@ def _panel(result: CaseResult, line: str, quantity: str) -> Panel:
     note = f"largest judged difference {scientific(largest)}"
     if bad:
         note = f"{len(bad)} of {len(claims)} do not agree, difference {scientific(largest)}"
-    title = "p / p_h" if quantity == "pressure" else f"{quantity} / p_h"
+    title = f"{QUANTITIES[quantity].symbol if quantity in QUANTITIES else quantity} / p_h"
     return Panel(title, figure, note if claims else "not compared", "fails" if bad else "")
 
 

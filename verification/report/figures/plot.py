@@ -9,7 +9,7 @@ import numpy as np
 from markupsafe import Markup, escape
 
 from verification.problem.arrays import Array
-from verification.report.tables.labels import Style
+from verification.sources.source import Style
 
 __all__ = ["HUGE", "Axes", "drawing", "polyline", "power_of_ten", "round_ticks", "short"]
 
@@ -68,6 +68,10 @@ class Axes:
             'stroke-opacity=".55" stroke-width=".8"/>'
         )
 
+    def add(self, element: str) -> None:
+        """Any SVG element, in units of the drawing, clipped to the frame."""
+        self._inside.append(element)
+
     def zone(self, low: float, high: float) -> None:
         """A vertical strip."""
         (a, _), (b, _) = self.place(np.array([low, high]), 0.0)
@@ -121,10 +125,7 @@ class Axes:
         self._write(u + by[0], v + by[1], text, "", colour)
 
     def ticks(
-        self,
-        x: Sequence[tuple[float, str]] = (),
-        y: Sequence[tuple[float, str]] = (),
-        label: str = "",
+        self, x: Sequence[tuple[float, str]] = (), y: Sequence[tuple[float, str]] = (), label: str = ""
     ) -> None:
         """Grid lines with their texts at values of both axes, and the ``label`` below."""
         left, top, width, height = self.box

@@ -14,13 +14,13 @@ from typing import Any
 import contourpy
 import matplotlib as mpl
 import numpy as np
-from markupsafe import Markup
+from markupsafe import Markup, escape
 from numpy.typing import NDArray
 from PIL import Image
 from scipy.interpolate import PchipInterpolator
 
 from verification.problem.arrays import Array
-from verification.report.figures.plot import polyline, power_of_ten, round_ticks
+from verification.report.figures.plot import Axes, polyline, power_of_ten, round_ticks
 
 __all__ = ["Frame", "Scale", "coloured", "draw_field", "rasterised"]
 
@@ -106,17 +106,29 @@ def draw_field(raster: Array, frame: Frame, scale: Scale, *, label: str, lines: 
     raster : as from ``rasterised``, NaN is drawn grey.   lines : draw level lines at the ticks of the scale.
     """
     width, height = LEFT + WIDTH + RIGHT, TOP + frame.height + BOTTOM
-    parts = [
-        Markup(
-            '<image x="{}" y="{}" width="{}" height="{:.1f}" preserveAspectRatio="none" href="{}"/>'
-        ).format(LEFT, TOP, WIDTH, frame.height, _address(coloured(raster, scale), ragged=not lines))
-    ]
+    axes = Axes((LEFT, TOP, WIDTH, frame.height), (-frame.half, frame.half), (frame.depth, 0.0))
+    axes.ticks(round_ticks(-frame.half, frame.half, 5), round_ticks(0.0, frame.depth, 5), "x / a_h")
+    axes.add(_image(_address(coloured(raster, scale), ragged=not lines), LEFT, WIDTH, frame))
     if lines:
-        parts.append(_level_lines(raster, frame, scale))
-    parts += [_solid(frame), _axes(frame), _bar(frame, scale)]
+        axes.add(_level_lines(raster, frame, scale))
+    unit = WIDTH / (2 * frame.half)
+    across = "".join(f"M{LEFT} {TOP + d * unit:.1f}h{WIDTH:g}" for d in frame.interfaces if d < frame.depth)
+    axes.add(f'<path d="{across}" class="edge casing"/><path d="{across}" class="edge"/>')
+    half, middle = min(frame.contact, frame.half) * unit, TOP + frame.height / 2
     return Markup(
-        '<svg class="figure field" viewBox="0 0 {:.0f} {:.1f}" role="img" aria-label="{}">{}</svg>'
-    ).format(width, height, label, Markup("").join(parts))
+        f'<svg class="figure field" viewBox="0 0 {width:.0f} {height:.1f}" role="img" '
+        f'aria-label="{escape(label)}">{axes.markup()}<path d="M{LEFT + WIDTH / 2 - half:.1f} {TOP - 3.5}'
+        f'h{2 * half:.1f}" class="s-cap" stroke-width="4"/><text x="10" y="{middle:.1f}" class="f-muted" '
+        f'text-anchor="middle" transform="rotate(-90 10 {middle:.1f})">z / a_h</text>'
+        f"{_bar(frame, scale)}</svg>"
+    )
+
+
+def _image(address: str, left: float, width: float, frame: Frame) -> str:
+    return (
+        f'<image x="{left}" y="{TOP}" width="{width}" height="{frame.height:.1f}" preserveAspectRatio="none" '
+        f'href="{address}"/>'
+    )
 
 
 def coloured(raster: Array, scale: Scale) -> NDArray[np.uint8]:
@@ -142,7 +154,7 @@ def _address(pixels: NDArray[np.uint8], ragged: bool = False) -> str:
     return f"data:image/webp;base64,{base64.b64encode(written.getvalue()).decode()}"
 
 
-def _level_lines(raster: Array, frame: Frame, scale: Scale) -> Markup:
+def _level_lines(raster: Array, frame: Frame, scale: Scale) -> str:
     """Lines of equal value at the ticks, broken at interfaces where the value jumps."""
     rows, columns = raster.shape
     x = LEFT + WIDTH * (np.arange(columns) + 0.5) / columns
@@ -155,69 +167,19 @@ def _level_lines(raster: Array, frame: Frame, scale: Scale) -> Markup:
         lines = contourpy.contour_generator(x, z[low:high], raster[low:high])
         for value, _ in scale.ticks:
             path += [polyline(np.asarray(line)) for line in lines.lines(value)]
-    return Markup('<path d="{}" class="level"/>').format("".join(path))
+    return f'<path d="{"".join(path)}" class="level"/>'
 
 
-def _solid(frame: Frame) -> Markup:
-    """Interfaces across the raster, the contact above it."""
-    unit = WIDTH / (2 * frame.half)
-    depths = [TOP + d * unit for d in frame.interfaces if d < frame.depth]
-    across = "".join(f"M{LEFT} {z:.1f}h{WIDTH:g}" for z in depths)
-    half = min(frame.contact, frame.half) * unit
-    return Markup(
-        '<path d="{0}" class="edge casing"/><path d="{0}" class="edge"/>'
-        '<path d="M{1:.1f} {2}h{3:.1f}" class="s-cap" stroke-width="4"/>'
-    ).format(across, LEFT + WIDTH / 2 - half, TOP - 3.5, 2 * half)
-
-
-def _axes(frame: Frame) -> Markup:
-    unit = WIDTH / (2 * frame.half)
-    bottom = TOP + frame.height
-    parts = [
-        Markup('<path d="M{} {}h{}v{:.1f}h-{}z" class="s-muted"/>').format(
-            LEFT, TOP, WIDTH, frame.height, WIDTH
-        )
-    ]
-    for value, text in round_ticks(-frame.half, frame.half, 5):
-        at = LEFT + WIDTH / 2 + value * unit
-        parts.append(Markup('<path d="M{0:.1f} {1:.1f}v3" class="s-muted"/>').format(at, bottom))
-        parts.append(
-            Markup('<text x="{:.1f}" y="{:.1f}" class="f-ink" text-anchor="middle">{}</text>').format(
-                at, bottom + 14, text
-            )
-        )
-    for value, text in round_ticks(0.0, frame.depth, 5):
-        at = TOP + value * unit
-        parts.append(Markup('<path d="M{} {:.1f}h-3" class="s-muted"/>').format(LEFT, at))
-        parts.append(
-            Markup('<text x="{}" y="{:.1f}" class="f-ink" text-anchor="end">{}</text>').format(
-                LEFT - 5, at + 3.5, text
-            )
-        )
-    parts.append(
-        Markup(
-            '<text x="{:.1f}" y="{:.1f}" class="f-muted" text-anchor="middle">x / a_h</text>'
-            '<text x="10" y="{:.1f}" class="f-muted" text-anchor="middle" '
-            'transform="rotate(-90 10 {:.1f})">z / a_h</text>'
-        ).format(LEFT + WIDTH / 2, bottom + 28, TOP + frame.height / 2, TOP + frame.height / 2)
-    )
-    return Markup("").join(parts)
-
-
-def _bar(frame: Frame, scale: Scale) -> Markup:
+def _bar(frame: Frame, scale: Scale) -> str:
+    """The colours of the scale with its ticks, to the right of the raster."""
     left, width = LEFT + WIDTH + 8, 10.0
-    parts = [
-        Markup(
-            '<image x="{}" y="{}" width="{}" height="{:.1f}" preserveAspectRatio="none" href="{}"/>'
-        ).format(left, TOP, width, frame.height, _address(_palette(scale)[::-1, None, :]))
-    ]
+    parts = [_image(_address(_palette(scale)[::-1, None, :]), left, width, frame)]
     for value, text in scale.ticks:
         share = (value - scale.low) / (scale.high - scale.low or 1.0)
         if -1e-9 <= share <= 1 + 1e-9:
             at = TOP + (1 - share) * frame.height
             parts.append(
-                Markup(
-                    '<path d="M{} {:.1f}h3" class="s-muted"/><text x="{}" y="{:.1f}" class="f-ink">{}</text>'
-                ).format(left + width, at, left + width + 5, at + 3.5, text)
+                f'<path d="M{left + width} {at:.1f}h3" class="s-muted"/>'
+                f'<text x="{left + width + 5}" y="{at + 3.5:.1f}" class="f-ink">{text}</text>'
             )
-    return Markup("").join(parts)
+    return "".join(parts)

@@ -1,24 +1,28 @@
-"""The error of each method against the exact reference beside the uncertainty it states itself."""
+"""Error of each method against the exact reference beside the uncertainty it states."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
 from verification.judging.verdict import Claim
-from verification.problem.profile import SCALARS
-from verification.report.tables.cells import Cell, Row, Table
-from verification.report.tables.labels import EXACT, METHODS, source_label
+from verification.problem.quantity import QUANTITIES, SCALARS
+from verification.report.material import Material
+from verification.report.tables.cells import Cell, Part, Row, Section, Table, number
+from verification.report.tables.labels import source_label
 from verification.report.tables.lookup import (
     GROUPS,
-    baseline,
     difference,
     group_of,
     judged,
+    reference_source,
     sources_with_profiles,
 )
+from verification.report.tables.matrix import case_cell
 from verification.report.tables.numbers import plain, scientific
 from verification.running.result import CaseResult
+from verification.sources.registry import METHODS, REFERENCES
 
 __all__ = [
     "Accuracy",
@@ -27,11 +31,12 @@ __all__ = [
     "accuracy_sentence",
     "accuracy_table",
     "coverage_table",
+    "section",
 ]
 
-# An estimate below half the true error is no estimate.
+# Ratio of stated to true error below which an estimate counts as wrong.
 TOO_SMALL = 0.5
-# Share of quantities whose true error an uncertainty must hold, the level at which it is usually stated.
+# Share of quantities whose true error an uncertainty must cover, the level at which it is usually stated.
 COVERED = 0.95
 
 
@@ -39,7 +44,7 @@ COVERED = 0.95
 class Accuracy:
     """One quantity on one line: the largest ``error``, the ``estimate`` at that point, as fractions.
 
-    ratio : smallest (U_method + U_reference) / |error| over the judged points; 1 or more brackets the
+    ratio : smallest (U_method + U_reference) / |error| over the judged points; 1 or more covered the
             error everywhere.   None where the method states no uncertainty.
     """
 
@@ -51,22 +56,35 @@ class Accuracy:
     ratio: float | None
 
     @property
-    def brackets(self) -> bool:
-        """True where the stated uncertainty holds the error at every judged point."""
+    def covered(self) -> bool:
+        """True where the stated uncertainty covers the error at every judged point."""
         return self.ratio is not None and self.ratio >= 1
 
     @property
     def css(self) -> str:
-        """How a cell is coloured: by whether the estimate can be believed."""
+        """Class of a cell: by the ratio of the stated to the true error."""
         if self.ratio is None or self.ratio < TOO_SMALL:
             return "disagrees"
         return "agrees" if self.ratio >= 1 else "inconclusive"
 
 
+def section(material: Material) -> Section | None:
+    """How often the stated uncertainty covers the true error, then the errors of each method."""
+    results = material.contacts
+    parts = [
+        Part(accuracy_sentence(results, source), [overview])
+        for source in METHODS
+        if (overview := accuracy_overview(results, material.anchors, source))
+    ]
+    coverage = Part("", [coverage_table(results)])
+    return Section("accuracy", "Accuracy against the exact reference", [coverage, *parts]) if parts else None
+
+
+@lru_cache(maxsize=256)
 def accuracies(result: CaseResult) -> tuple[Accuracy, ...]:
     """Every quantity of every method with an exact counterpart; () where the case has no exact reference."""
-    exact = baseline(result)
-    if exact not in EXACT:
+    exact = reference_source(result)
+    if exact not in REFERENCES:
         return ()
     edges = {(c.quantity, c.line): c for c, _ in result.verdicts}
     found = []
@@ -86,24 +104,22 @@ def _accuracy(result: CaseResult, claim: Claim, source: str, exact: str) -> Accu
     found = difference(result, mine, theirs)
     if found is None or mine is None:
         return None
-    error, spread = found
+    error, uncertainty = found
     here = judged(result, claim, mine.position) & np.isfinite(error)
     if not here.any():
         return None
     worst = int(np.argmax(np.where(here, error, -1.0)))
-    if spread is None:
+    if uncertainty is None:
         return Accuracy(source, claim.quantity, claim.line, float(error[worst]), None, None)
-    ratio = np.where(error > 0, spread / np.where(error > 0, error, 1.0), np.inf)
-    smallest = float(np.min(np.where(np.isfinite(spread), ratio, 0.0)[here]))
-    estimate = float(spread[worst])
+    ratio = np.where(error > 0, uncertainty / np.where(error > 0, error, 1.0), np.inf)
+    smallest = float(np.min(np.where(np.isfinite(uncertainty), ratio, 0.0)[here]))
+    estimate = float(uncertainty[worst])
     return Accuracy(source, claim.quantity, claim.line, float(error[worst]), estimate, smallest)
 
 
-def accuracy_table(result: CaseResult) -> Table | None:
+def accuracy_table(result: CaseResult) -> Table:
     """True error beside own estimate for each quantity of one case; None without an exact reference."""
     found = accuracies(result)
-    if not found:
-        return None
     sources = [s for s in METHODS if any(item.source == s for item in found)]
     places = list(dict.fromkeys((item.quantity, item.line) for item in found))
     rows = []
@@ -115,7 +131,7 @@ def accuracy_table(result: CaseResult) -> Table | None:
         rows.append(Row(Cell(quantity), cells))
     return Table(
         "Largest error against the exact reference, the uncertainty stated at that point, and the smallest "
-        "ratio of stated to true over all judged points: 1 or more brackets the error everywhere.",
+        "ratio of stated to true over all judged points: the error is covered everywhere at 1 or more.",
         ["quantity", "line", *["error", "stated", "ratio"] * len(sources)],
         rows,
         [("", 2), *((source_label(source), 3) for source in sources)],
@@ -125,27 +141,24 @@ def accuracy_table(result: CaseResult) -> Table | None:
 def _three_cells(item: Accuracy) -> list[Cell]:
     ratio = "not stated" if item.ratio is None else plain(item.ratio, 2) if item.ratio < 1e4 else "> 1e4"
     return [
-        Cell(scientific(item.error), item.error),
-        Cell(scientific(item.estimate), item.estimate),
+        number(item.error),
+        number(item.estimate),
         Cell(ratio, item.ratio if item.ratio is not None else -1.0, f"flag {item.css}"),
     ]
 
 
-def accuracy_overview(results: Sequence[CaseResult], anchors: Mapping[int, str], source: str) -> Table | None:
+def accuracy_overview(results: Sequence[CaseResult], anchors: Mapping[CaseResult, str], source: str) -> Table:
     """The errors of one method over all cases, the worst quantity of each group; None where there is none."""
     columns = [*SCALARS, *GROUPS[1:]]
     rows = []
-    for number, result in enumerate(results):
+    for result in results:
         found = [item for item in accuracies(result) if item.source == source]
         if not found:
             continue
         cells = [
             _overview_cell([i for i in found if name in (i.quantity, group_of(i.line))]) for name in columns
         ]
-        note = f"{result.title} ({result.name})"
-        rows.append(Row(Cell(result.title, note=note, href=f"#{anchors[number]}-accuracy"), cells))
-    if not rows:
-        return None
+        rows.append(Row(case_cell(result, f"#{anchors[result]}-accuracy"), cells))
     return Table(
         f"Error of {source_label(source)} against the exact reference, then the uncertainty it states for "
         "the same point. Marked where the estimate is below the error (▼) or below half of it (▼▼).",
@@ -168,52 +181,65 @@ def _overview_cell(found: Sequence[Accuracy]) -> Cell:
     return Cell(text, worst.error, f"flag {weakest.css}", note)
 
 
-def coverage_table(results: Sequence[CaseResult]) -> Table | None:
-    """How often the uncertainty a method states holds its true error; None without an exact reference."""
+def coverage_table(results: Sequence[CaseResult]) -> Table:
+    """How often the uncertainty that a method states covers its true error, scalars and lines apart."""
     rows = []
     for source in METHODS:
-        found = [(result, item) for result in results for item in accuracies(result) if item.source == source]
-        if not found:
-            continue
-        held = sum(item.brackets for _, item in found)
-        case, worst = min(found, key=lambda pair: -1.0 if pair[1].ratio is None else pair[1].ratio)
-        stated = [item.ratio for _, item in found if item.ratio is not None and np.isfinite(item.ratio)]
-        reach = "not stated" if not worst.ratio else plain(1 / worst.ratio, 2)
-        cells = [
-            Cell(f"{held} of {len(found)}", held),
-            Cell(f"{100 * held / len(found):.1f} %", held / len(found), _covered_css(held / len(found))),
-            Cell(reach, 1 / worst.ratio if worst.ratio else None),
-            Cell(f"{worst.quantity.replace('_', ' ')} on {worst.line}, {case.title}"),
-            Cell(plain(float(np.median(stated)), 2) if stated else "–"),
-        ]
-        rows.append(Row(Cell(source_label(source)), cells))
-    if not rows:
-        return None
+        for name, scalars in (
+            (", ".join(QUANTITIES[s].symbol for s in SCALARS), True),
+            ("stresses, pressure", False),
+        ):
+            found = [
+                (result, item)
+                for result in results
+                for item in accuracies(result)
+                if item.source == source and (item.quantity in SCALARS) is scalars
+            ]
+            if not found:
+                continue
+            share = sum(item.covered for _, item in found) / len(found)
+            case, worst = min(found, key=lambda pair: -1.0 if pair[1].ratio is None else pair[1].ratio)
+            stated = [item.ratio for _, item in found if item.ratio is not None and np.isfinite(item.ratio)]
+            cells = [
+                Cell(name),
+                Cell(f"{sum(item.covered for _, item in found)} of {len(found)}", share),
+                Cell(f"{100 * share:.1f} %", share, f"flag {'agrees' if share >= COVERED else 'disagrees'}"),
+                Cell(plain(1 / worst.ratio, 2), 1 / worst.ratio) if worst.ratio else Cell("not stated"),
+                Cell(f"{worst.quantity.replace('_', ' ')} on {worst.line}, {case.title}"),
+                number(float(np.median(stated)), lambda ratio: plain(ratio, 2)) if stated else Cell("–"),
+                number(max(item.error for _, item in found)),
+            ]
+            rows.append(Row(Cell(source_label(source)), cells))
     return Table(
         "Quantities on all lines of all cases whose true error, known from the exact reference, lies within "
-        f"the stated uncertainty at every judged point; at least {100 * COVERED:.0f} % are asked for. The "
-        "largest error over its uncertainty, and the median of the smallest ratios of uncertainty to error.",
-        ["method", "held", "share", "largest error / U", "there", "median U / error"],
+        f"the stated uncertainty U at every judged point; {100 * COVERED:.0f} % are required. Largest "
+        "ratio of error to U with its place; median of the smallest ratios of U to the error; largest error.",
+        [
+            "method",
+            "quantities",
+            "covered",
+            "share",
+            "largest error / U",
+            "there",
+            "median U / error",
+            "largest error",
+        ],
         rows,
         css="overview",
     )
 
 
-def _covered_css(share: float) -> str:
-    return f"flag {'agrees' if share >= COVERED else 'disagrees'}"
-
-
 def accuracy_sentence(results: Sequence[CaseResult], source: str) -> str:
-    """How often the uncertainty stated by a method holds the true error."""
+    """How often the uncertainty stated by a method covers the true error."""
     found = [item for result in results for item in accuracies(result) if item.source == source]
     if not found:
         return f"{source_label(source).capitalize()}: no case with an exact reference."
-    good = sum(item.brackets for item in found)
+    good = sum(item.covered for item in found)
     low = sum(item.ratio is not None and item.ratio < TOO_SMALL for item in found)
-    silent = sum(item.ratio is None for item in found)
-    unstated = f"; in {silent} none is stated" if silent else ""
+    unstated = sum(item.ratio is None for item in found)
+    without = f"; in {unstated} none is stated" if unstated else ""
     share = f"{good} of {len(found)} quantities ({100 * good / len(found):.1f} %)"
     return (
-        f"{source_label(source).capitalize()}: the stated uncertainty holds the true error in {share}; "
-        f"in {low} it is below half of it{unstated}."
+        f"{source_label(source).capitalize()}: the stated uncertainty covers the true error in {share}; "
+        f"in {low} it is below half of it{without}."
     )

@@ -1,4 +1,4 @@
-"""Pressures and stresses of coatings that differ in their modulus alone, all in one plot each.
+"""Pressures and stresses of coatings that differ in their modulus alone, one plot for each quantity.
 
 The plots of O'Sullivan and King, J. Tribol. 110 (1988) 235-240: lengths over a_h, stresses over p_h, a curve
 for each E1/E2 at one thickness, without friction or with one coefficient.
@@ -12,20 +12,22 @@ from typing import NamedTuple
 import numpy as np
 from markupsafe import Markup
 
+from verification.problem.quantity import QUANTITIES, SCALARS
 from verification.report.figures.panels import swatch
 from verification.report.figures.plot import HUGE, Axes, drawing, round_ticks
+from verification.report.material import Material
 from verification.report.tables.cells import Cell, Gallery, Panel, Part, Row, Section, Table
 from verification.report.tables.csv import written
 from verification.report.tables.labels import source_label, source_style
 from verification.report.tables.lookup import coordinate, layers, scalar, scale, sources_with_profiles
 from verification.report.tables.numbers import plain
 from verification.running.result import CaseResult
+from verification.sources.registry import CLOSED
 
-__all__ = ["family_section"]
+__all__ = ["family_section", "section"]
 
 WIDTH, HEIGHT = 320, 260
 BOX = (48.0, 6.5, 265.6, 215.8)  # left, top, width, height
-CLOSED = ("hertz", "hamilton")  # of the uncoated member only
 SMALLEST = 3  # fewer than this many moduli are no family
 PANELS = (
     ("pressure", "surface"),
@@ -44,11 +46,16 @@ class Member(NamedTuple):
     result: CaseResult
 
 
-def family_section(results: Sequence[CaseResult]) -> Section | None:
+def section(material: Material) -> Section | None:
+    """The families among the cases of the run."""
+    return family_section(material.contacts)
+
+
+def family_section(results: Sequence[CaseResult], anchor: str = "family") -> Section | None:
     """A gallery for every family among the cases; None where there is none.
 
     A family: one coating, one thickness over a_h, one nu throughout, one friction, and three or more E1/E2,
-    the uncoated solid standing for E1/E2 = 1.
+    the uncoated solid as E1/E2 = 1.
     """
     parts = []
     for (thickness, friction, nu), members in sorted(_families(results).items()):
@@ -61,7 +68,7 @@ def family_section(results: Sequence[CaseResult]) -> Section | None:
             "configuration of O'Sullivan and King (1988), lengths over a_h, stresses over p_h."
         )
         parts.append(Part(text, [_numbers(members)], _gallery(members)))
-    return Section("family", "Pressure and stress against the coating's modulus", parts) if parts else None
+    return Section(anchor, "Pressure and stress against the coating's modulus", parts) if parts else None
 
 
 def _families(results: Sequence[CaseResult]) -> dict[tuple[float, float, float], list[Member]]:
@@ -93,13 +100,16 @@ def _gallery(members: Sequence[Member]) -> Gallery:
         if any(p.quantity == quantity and p.line == line for m in members for p in m.result.profiles)
     ]
     panels = [
-        Panel("p / p_h" if quantity == "pressure" else f"{quantity} / p_h", figure, f"on {line}", "")
+        Panel(f"{QUANTITIES[quantity].symbol} / p_h", figure, f"on {line}", "")
         for quantity, line in shown
         if (figure := _draw(members, quantity, line))
     ]
     sources = dict.fromkeys(s for m in members for s in sources_with_profiles(m.result))
     legend = [(swatch(source_style(source)), source_label(source)) for source in sources]
-    caption = "At each curve its E1/E2, the sources over each other; each case says by how much they differ."
+    caption = (
+        "E1/E2 beside each curve; the sources overlie each other, their differences are in the sections of "
+        "the cases."
+    )
     return Gallery(legend, panels, caption, _curves_csv(members, shown))
 
 
@@ -120,28 +130,24 @@ def _curves_csv(members: Sequence[Member], shown: Sequence[tuple[str, str]]) -> 
 
 def _numbers(members: Sequence[Member]) -> Table:
     """The contact's scalars over their Hertz scales, by every source."""
-    scalars = (
-        ("contact_radius", "a_h", "a"),
-        ("peak_pressure", "p_h", "p0"),
-        ("approach", "delta_h", "delta"),
-    )
+    scalars = [QUANTITIES[name] for name in SCALARS]
     sources = [
         s
         for s in dict.fromkeys(s for m in members for s in sources_with_profiles(m.result))
-        if s not in CLOSED
+        if s not in CLOSED  # which hold for the uncoated member only
     ]
     rows = []
     for member in members:
         cells = []
         for source in sources:
-            for quantity, unit, _ in scalars:
-                found = scalar(member.result, quantity, source)
-                value = None if found is None else float(found[0] / scale(member.result, unit))
+            for quantity in scalars:
+                found = scalar(member.result, quantity.name, source)
+                value = None if found is None else float(found[0] / scale(member.result, quantity.scale))
                 cells.append(Cell("–" if value is None else f"{value:.6f}", value))
         rows.append(Row(Cell(plain(member.ratio, 3), member.ratio, note=member.result.title), cells))
     return Table(
-        "Contact radius, peak pressure and approach over the Hertz scales of the bare substrate.",
-        ["E1/E2", *(f"{symbol} / {unit}" for _ in sources for _, unit, symbol in scalars)],
+        "Scalars of the contact over the Hertz scales of the bare substrate.",
+        ["E1/E2", *(f"{q.symbol} / {q.scale}" for _ in sources for q in scalars)],
         rows,
         [("", 1), *((source_label(source), len(scalars)) for source in sources)],
     )

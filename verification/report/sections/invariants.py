@@ -1,17 +1,18 @@
-"""What each solution was held against by itself: the rows of a case, and all laws over all cases."""
+"""Invariants of the solutions: the rows of a case, all invariants over all cases."""
 
 import re
 from collections.abc import Mapping, Sequence
 
 from verification.judging.invariants import Invariant
 from verification.judging.verdict import Outcome
-from verification.report.tables.cells import Cell, Part, Row, Section, Table
+from verification.report.material import Material
+from verification.report.tables.cells import Cell, Part, Row, Section, Table, number
 from verification.report.tables.labels import OUTCOMES, source_label
 from verification.report.tables.matrix import outcome_cell
 from verification.report.tables.numbers import plain, scientific
 from verification.running.result import CaseResult
 
-__all__ = ["invariant_cell", "invariant_section", "invariant_table"]
+__all__ = ["invariant_cell", "invariant_table", "section"]
 
 _NUMBERED = re.compile(r", (?:coating|interface|layer) \d+$|, substrate$")
 
@@ -27,8 +28,8 @@ def invariant_table(found: Sequence[Invariant]) -> Table | None:
                 Cell(one.name),
                 Cell(source_label(one.source)),
                 Cell(one.message, css="reason"),
-                Cell(scientific(one.value), one.value),
-                Cell(scientific(one.bound), one.bound),
+                number(one.value),
+                number(one.bound),
                 Cell(scientific(one.margin, sign=True), one.margin),
                 Cell(_percent(one.share), one.share),
             ],
@@ -37,10 +38,10 @@ def invariant_table(found: Sequence[Invariant]) -> Table | None:
         for one in sorted(found, key=_badness)
     ]
     return Table(
-        "What a solution must satisfy whatever the others say. Residual and bound at the point where the "
+        "Conditions that a solution satisfies by itself. Residual and bound at the point where the "
         "residual takes the largest share of its bound; the bound follows from the uncertainty stated there, "
         "the error of the differences or quadrature, and rounding.",
-        ["verdict", "invariant", "source", "law", "residual", "bound", "margin", "share"],
+        ["verdict", "invariant", "source", "condition", "residual", "bound", "margin", "share"],
         rows,
         css="verdicts",
     )
@@ -59,9 +60,10 @@ def invariant_cell(result: CaseResult, href: str) -> Cell:
     return Cell(text, held / len(found), f"verdict {style.css}", note, href)
 
 
-def invariant_section(results: Sequence[CaseResult], anchors: Mapping[int, str]) -> Section | None:
-    """Every law over all cases, by source; None where no case has any."""
-    rows = [(n, one) for n, result in enumerate(results) for one in result.invariants]
+def section(material: Material) -> Section | None:
+    """Every invariant over all cases, by source; None where no case has any."""
+    results, anchors = material.contacts, material.anchors
+    rows = [(result, one) for result in results for one in result.invariants]
     if not rows:
         return None
     sources = list(dict.fromkeys(one.source for _, one in rows))
@@ -80,9 +82,9 @@ def invariant_section(results: Sequence[CaseResult], anchors: Mapping[int, str])
         f"{tightest.name} of {source_label(tightest.source)}, at {_percent(tightest.share)} of it."
     )
     table = Table(
-        "How often each law holds, its largest residual, and the largest share that a residual takes of its "
-        "bound: beyond 100 % the law is broken.",
-        ["law", *["hold", "residual", "share"] * len(sources)],
+        "How often each invariant holds, its largest residual, and the largest ratio of a residual to its "
+        "bound: beyond 100 % the invariant is violated.",
+        ["invariant", *["hold", "residual", "share"] * len(sources)],
         lines,
         [("", 1), *((source_label(source), 3) for source in sources)],
         "overview",
@@ -90,7 +92,9 @@ def invariant_section(results: Sequence[CaseResult], anchors: Mapping[int, str])
     return Section("invariants", "Invariants of every solution", [Part(text, [table])])
 
 
-def _family_cells(found: Sequence[tuple[int, Invariant]], anchors: Mapping[int, str]) -> list[Cell]:
+def _family_cells(
+    found: Sequence[tuple[CaseResult, Invariant]], anchors: Mapping[CaseResult, str]
+) -> list[Cell]:
     if not found:
         return [Cell("", css="nothing")] * 3
     case, worst = min(found, key=lambda item: _badness(item[1]))
@@ -100,13 +104,13 @@ def _family_cells(found: Sequence[tuple[int, Invariant]], anchors: Mapping[int, 
     href = f"#{anchors[case]}-invariants"
     return [
         Cell(f"{held} of {len(found)}", held / len(found), css, worst.message, href),
-        Cell(scientific(largest), largest),
+        number(largest),
         Cell(_percent(worst.share), worst.share),
     ]
 
 
 def _family(one: Invariant) -> str:
-    """The law without the number of the layer or interface."""
+    """The name of the invariant without the number of the layer or interface."""
     return _NUMBERED.sub("", one.name)
 
 

@@ -1,79 +1,85 @@
-"""Solution verification: what a ladder of each knob says beside what a method states and the true error."""
+"""Solution verification: stated uncertainty, refinement of each numerical parameter, true error."""
 
 from collections.abc import Sequence
 
-from verification.credibility.parameters import KnobLadder, Stated
-from verification.report.tables.cells import Cell, Part, Row, Section, Table
+from verification.credibility.parameters import Stated, Sweep
+from verification.report.material import Material
+from verification.report.tables.cells import Cell, Part, Row, Section, Table, number
 from verification.report.tables.labels import source_label
 from verification.report.tables.numbers import plain, scientific
 
-__all__ = ["knob_section"]
+__all__ = ["parameter_section", "section"]
 
 
-def knob_section(ladders: Sequence[KnobLadder], stated: Sequence[Stated]) -> Section:
-    """For each method what it states, what the fits give, the true error; then every knob by itself."""
+def section(material: Material) -> Section | None:
+    """The parameter sweeps of the accuracy study; None where there are none."""
+    study = material.evidence.accuracy
+    return parameter_section(study.sweeps, study.stated) if study is not None and study.stated else None
+
+
+def parameter_section(sweeps: Sequence[Sweep], stated: Sequence[Stated]) -> Section:
+    """Stated uncertainty, fitted uncertainty, true error of each method; then every parameter by itself."""
     parts = []
     for one in stated:
-        mine = [ladder for ladder in ladders if ladder.method == one.method]
-        parts.append(Part(_sentence(one, mine), [_totals(one, mine), _orders(mine)]))
-    return Section("knobs", "Uncertainty by knob", parts)
+        mine = [sweep for sweep in sweeps if sweep.method == one.method]
+        parts.append(Part(_summary(one, mine), [_totals(one, mine), _orders(mine)]))
+    return Section("parameters", "Uncertainty by numerical parameter", parts)
 
 
-def _sentence(one: Stated, ladders: Sequence[KnobLadder]) -> str:
+def _summary(one: Stated, sweeps: Sequence[Sweep]) -> str:
     names = list(one.uncertainty)
     held = sum(one.uncertainty[name] >= one.error[name] for name in names)
-    fitted = [_sum(ladders, name) for name in names]
+    fitted = [_sum(sweeps, name) for name in names]
     by_fit = sum(U is not None and one.error[name] <= U for name, U in zip(names, fitted, strict=True))
     return (
         f"{source_label(one.method).capitalize()}, {one.solid} solid: the uncertainty that the solution "
-        f"states holds the true error in {held} of {len(names)} quantities, the sum of the fitted ladders in "
-        f"{by_fit}."
+        f"states covers the true error in {held} of {len(names)} quantities, the sum of the fitted "
+        f"uncertainties in {by_fit}."
     )
 
 
-def _totals(one: Stated, ladders: Sequence[KnobLadder]) -> Table:
+def _totals(one: Stated, sweeps: Sequence[Sweep]) -> Table:
     rows = []
     for name, U in one.uncertainty.items():
         cells = [
-            Cell(scientific(one.error[name]), one.error[name]),
+            number(one.error[name]),
             _held(U, one.error[name]),
-            _held(_sum(ladders, name), one.error[name]),
+            _held(_sum(sweeps, name), one.error[name]),
         ]
-        for ladder in ladders:
-            found = ladder.estimate(name)
-            cells.append(
-                Cell("–") if found is None else Cell(scientific(found.uncertainty), found.uncertainty)
-            )
+        for sweep in sweeps:
+            found = sweep.estimate(name)
+            cells.append(Cell("–") if found is None else number(found.uncertainty))
         rows.append(Row(Cell(name), cells))
     return Table(
-        "True error at the default numerics, the uncertainty stated, and that of the ladders: the sum over "
-        "the knobs, then knob by knob, by least squares over four levels or more (Eca and Hoekstra 2014), by "
-        "the grid convergence index where there are three. All over the scales of the bare substrate. The "
-        "order of the elements is another way to lower the error of their size: it is shown and not added.",
-        ["quantity", "true error", "stated U", "fitted U", *(ladder.knob for ladder in ladders)],
+        "True error at the default numerics, the uncertainty stated, and the fitted one: the sum over "
+        "the parameters, then each parameter, by least squares over four levels or more (Eca and Hoekstra "
+        "2014), by the grid convergence index where there are three. All over the scales of the bare "
+        "substrate. The order of the elements is another way to lower the error of their size: it is shown "
+        "and not added.",
+        ["quantity", "true error", "stated U", "fitted U", *(sweep.parameter for sweep in sweeps)],
         rows,
         css="overview",
     )
 
 
-def _orders(ladders: Sequence[KnobLadder]) -> Table:
-    names = list(dict.fromkeys(name for ladder in ladders for name in ladder.values))
+def _orders(sweeps: Sequence[Sweep]) -> Table:
+    names = list(dict.fromkeys(name for sweep in sweeps for name in sweep.values))
     rows = []
     for name in names:
-        found = [ladder.estimate(name) for ladder in ladders]
+        found = [sweep.estimate(name) for sweep in sweeps]
         orders = [None if one is None else one.order for one in found]
         rows.append(Row(Cell(name), [Cell("–" if p is None else plain(p, 2), p) for p in orders]))
-    levels = "; ".join(f"{ladder.knob}: {', '.join(ladder.levels)}" for ladder in ladders)
+    levels = "; ".join(f"{sweep.parameter}: {', '.join(sweep.levels)}" for sweep in sweeps)
     return Table(
-        "Observed order in the step of each ladder; a dash where the values follow no power of the step that "
-        f"can be believed, being at rest, noise or falling too fast. The levels, {levels}.",
-        ["quantity", *(ladder.knob for ladder in ladders)],
+        "Observed order in the step of each parameter; a dash where the values are constant, are noise or "
+        f"fall too fast for a power of the step. Levels: {levels}.",
+        ["quantity", *(sweep.parameter for sweep in sweeps)],
         rows,
     )
 
 
-def _sum(ladders: Sequence[KnobLadder], name: str) -> float | None:
-    found = [ladder.estimate(name) for ladder in ladders if ladder.knob != "element order"]
+def _sum(sweeps: Sequence[Sweep], name: str) -> float | None:
+    found = [sweep.estimate(name) for sweep in sweeps if sweep.parameter != "element order"]
     values = [one.uncertainty for one in found if one is not None]
     return sum(values) if values else None
 

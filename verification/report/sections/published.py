@@ -1,4 +1,4 @@
-"""Published sources in the report: their citation, every table as printed beside what the methods give."""
+"""Published sources: citation, every table as published beside the values of the methods."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -8,37 +8,27 @@ import numpy as np
 
 from verification.judging.verdict import Outcome
 from verification.problem.profile import Profile
-from verification.report.tables.case import budget_table, diagnostics_table, layer_table, verdict_table
-from verification.report.tables.cells import Cell, Row, Table
-from verification.report.tables.labels import EXACT, METHODS, OUTCOMES, OutcomeStyle, source_label
+from verification.problem.quantity import QUANTITIES
+from verification.report.material import Material, rerun_command
+from verification.report.tables.case import budget_table, diagnostics_table, facts, layer_table, verdict_table
+from verification.report.tables.cells import Cell, Part, Row, Section, Table, number
+from verification.report.tables.labels import OUTCOMES, OutcomeStyle, source_label
 from verification.report.tables.matrix import outcome_cell
-from verification.report.tables.numbers import engineering, plain, scientific
+from verification.report.tables.numbers import plain, scientific
 from verification.running.result import CaseResult
+from verification.sources.registry import METHODS, PUBLISHED, REFERENCES
 
-__all__ = ["PublishedView", "published_overview", "published_view"]
-
-PUBLISHED = "published"
-_SAID = {
-    "peak_pressure": "p0",
-    "contact_radius": "a",
-    "approach": "delta",
-    "load": "W",
-    "kappa": "stiffness of the flat punch over 2 a E1*",
-    "series_over_load": "load by the formula over W",
-    "series_over_kappa": "stiffness by the formula over that of the flat punch",
-    "tau_max": "largest shear on the axis",
-    "von_mises_max": "largest von Mises stress on the axis",
-}
+__all__ = ["PublishedView", "published_view", "section"]
 
 
 @dataclass(frozen=True)
 class PublishedView:
-    """All that the page says of one published source."""
+    """Everything on the page about one published source."""
 
     anchor: str
     result: CaseResult
     outcome: OutcomeStyle
-    sentence: str
+    summary: str
     command: str
     facts: Sequence[tuple[str, str]]
     failures: Sequence[tuple[str, str]]
@@ -50,22 +40,21 @@ class PublishedView:
 
 
 def _sources(result: CaseResult) -> tuple[str, ...]:
-    """Both methods, and the exact reference where it was asked."""
+    """Both methods, and the references that were compared."""
     claimed = {source for claim, _ in result.verdicts for source in claim.between}
-    return METHODS + tuple(source for source in EXACT if source in claimed)
+    return METHODS + tuple(source for source in REFERENCES if source in claimed)
 
 
-def published_overview(results: Sequence[CaseResult], anchors: Mapping[int, str]) -> Table:
+def section(material: Material) -> Section | None:
     """Every source at a glance: year, how it was read, values that count, verdict of each method."""
+    if not material.published:
+        return None
     rows = []
-    shown = [result for result in results if result.published]
-    sources = tuple(dict.fromkeys(source for result in shown for source in _sources(result)))
-    for number, result in enumerate(results):
-        if not result.published:
-            continue
-        printed = result.published["columns"]
-        counted = sum(sum(item["counted"]) for item in printed)
-        total = sum(len(item["counted"]) for item in printed)
+    sources = tuple(dict.fromkeys(s for result in material.published for s in _sources(result)))
+    for result in material.published:
+        columns = result.published["columns"]
+        counted = sum(sum(item["counted"]) for item in columns)
+        total = sum(len(item["counted"]) for item in columns)
         cells = [
             outcome_cell(result.outcome),
             Cell(str(result.published["year"]), result.published["year"]),
@@ -78,21 +67,22 @@ def published_overview(results: Sequence[CaseResult], anchors: Mapping[int, str]
         ]
         for source in sources:
             cells += _method_cells(result, source) if source in _sources(result) else [Cell("–"), Cell("–")]
-        head = Cell(result.title, note=result.source, href=f"#{anchors[number]}")
+        head = Cell(result.title, note=result.source, href=f"#{material.anchors[result]}")
         rows.append(
             Row(head, cells, "" if result.outcome is Outcome.AGREES else OUTCOMES[result.outcome].css)
         )
-    return Table(
-        "A method meets a value when the difference is within the reading uncertainty of the source and the "
-        "method's own uncertainty together. Values known to be misprints, or second-hand where better ones "
-        "stand beside, are shown below and never counted. Differences are over the pressure for stresses, "
-        "over the largest value printed for displacements, strains and loading curves, over the value for "
+    table = Table(
+        "A method meets a value when the difference is within the digitisation uncertainty of the source "
+        "plus the uncertainty of the method. Values known to be misprints, or second-hand where better ones "
+        "are available, are shown below and never counted. Differences are over the pressure for stresses, "
+        "over the largest published value for displacements, strains and loading curves, over the value for "
         "scalars of a contact.",
         ["source", "verdict", "year", "read", "values", "not counted"]
-        + ["met", "largest gap"] * len(sources),
+        + ["met", "largest difference"] * len(sources),
         rows,
         [("", 6), *((source_label(source), 2) for source in sources)],
     )
+    return Section("published", "Published results", [Part("", [table])])
 
 
 def _method_cells(result: CaseResult, method: str) -> list[Cell]:
@@ -109,21 +99,21 @@ def _method_cells(result: CaseResult, method: str) -> list[Cell]:
     largest = max(numbers, default=None)
     return [
         Cell(f"{met} of {total}", met, "verdict agrees" if met == total else "verdict disagrees"),
-        Cell(scientific(largest), largest),
+        number(largest),
     ]
 
 
-def published_view(result: CaseResult, anchor: str, command: str) -> PublishedView:
-    """Citation, problem, tables and verdicts of one published source; ``command`` solves it again."""
+def published_view(material: Material, result: CaseResult) -> PublishedView:
+    """Citation, problem, tables and verdicts of one published source."""
     bad = sum(verdict.outcome is not Outcome.AGREES for _, verdict in result.verdicts)
     total = len(result.verdicts)
     return PublishedView(
-        anchor=anchor,
+        anchor=material.anchors[result],
         result=result,
         outcome=OUTCOMES[result.outcome],
-        sentence=f"{bad} of {total} comparisons do not agree." if bad else f"All {total} comparisons agree.",
-        command=command,
-        facts=_facts(result),
+        summary=f"{bad} of {total} comparisons do not agree." if bad else f"All {total} comparisons agree.",
+        command=rerun_command(result.name, material.info.command),
+        facts=facts(result),
         failures=[(source_label(s.source), s.failure) for s in result.sources if s.failure is not None],
         layers=layer_table(result),
         tables=_tables(result),
@@ -133,26 +123,8 @@ def published_view(result: CaseResult, anchor: str, command: str) -> PublishedVi
     )
 
 
-def _facts(result: CaseResult) -> list[tuple[str, str]]:
-    names = {
-        "pressure": ("uniform pressure q", "Pa"),
-        "load_radius": ("radius of the disc a", "m"),
-        "radius": ("sphere radius R", "m"),
-        "load": ("load W", "N"),
-        "a_h": ("a_h, Hertz contact radius", "m"),
-        "p_h": ("p_h, Hertz peak pressure", "Pa"),
-        "delta_h": ("delta_h, Hertz approach", "m"),
-    }
-    found = [
-        (said, engineering(result.problem[name], unit))
-        for name, (said, unit) in names.items()
-        if name in result.problem
-    ]
-    return [*found, ("friction f", plain(result.problem.get("friction", 0.0)))]
-
-
 def _tables(result: CaseResult) -> list[tuple[str, Table]]:
-    """One table for each column that was printed, its lines one below the other."""
+    """One table for each published column, its lines one below the other."""
     columns: dict[tuple[str, str, str], list[dict[str, Any]]] = {}
     for item in result.published["columns"]:
         columns.setdefault((item["file"], item["column"], item["quantity"]), []).append(item)
@@ -170,16 +142,16 @@ def _table(result: CaseResult, column: str, quantity: str, items: Sequence[Mappi
         methods = {
             method: (_profile(result, item, method), *_gap(result, item, method)) for method in sources
         }
-        reading = _profile(result, item, PUBLISHED)
+        source = _profile(result, item, PUBLISHED)
         for n, text in enumerate(item["text"]):
             counted = item["counted"][n]
-            spread = (
-                reading.uncertainty[n] if reading is not None and reading.uncertainty is not None else None
+            uncertainty = (
+                source.uncertainty[n] if source is not None and source.uncertainty is not None else None
             )
             cells = [
                 Cell(plain(item["position"][n], 6), item["position"][n]),
                 Cell(text.replace("-", "−"), float(text)),
-                Cell(_in(spread, item), spread),
+                Cell(_in(uncertainty, item), uncertainty),
             ]
             met = []
             for method in sources:
@@ -209,15 +181,17 @@ def _table(result: CaseResult, column: str, quantity: str, items: Sequence[Mappi
             )
             rows.append(Row(head, cells, "" if counted else "inconclusive"))
     unit = f" in {first['unit']}" if first["unit"] != "1" else ""
-    said = _SAID.get(quantity, quantity) + (" here, of the other sign" if first["to_si"] < 0 else " here")
+    meaning = (QUANTITIES[quantity].meaning or QUANTITIES[quantity].symbol) + (
+        " here, of the other sign" if first["to_si"] < 0 else " here"
+    )
     return Table(
-        f"{column}{unit}, as printed ({said}): "
-        "the difference of each method from it, and the uncertainty of both together that allows for it.",
+        f"{column}{unit}, as published ({meaning}): "
+        "the difference of each method from it, and the sum of both uncertainties.",
         [
             "where",
             f"{first['coordinate']} in {first['position_unit']}",
-            "printed",
-            "reading U",
+            "published",
+            "digitisation U",
             *["value", "difference", "U of both"] * len(sources),
             "met",
         ],
@@ -228,7 +202,7 @@ def _table(result: CaseResult, column: str, quantity: str, items: Sequence[Mappi
 
 
 def _in(value: float | None, item: Mapping[str, Any], signed: bool = False) -> str:
-    """A difference [SI] in the unit it was printed in; a signed one in its sign convention."""
+    """A difference [SI] in the published unit; a signed one in its sign convention."""
     if value is None:
         return "–"
     return scientific(value / item["to_si"] if signed else value / abs(item["to_si"]), sign=signed)
@@ -237,13 +211,13 @@ def _in(value: float | None, item: Mapping[str, Any], signed: bool = False) -> s
 def _gap(
     result: CaseResult, item: Mapping[str, Any], method: str
 ) -> tuple[np.ndarray | None, np.ndarray | None]:
-    """Method less print, and the uncertainty of both [SI]; None where either is missing."""
-    mine, printed = _profile(result, item, method), _profile(result, item, PUBLISHED)
-    if mine is None or printed is None:
+    """Method less published value, and the sum of both uncertainties [SI]; None where one is missing."""
+    mine, theirs = _profile(result, item, method), _profile(result, item, PUBLISHED)
+    if mine is None or theirs is None:
         return None, None
-    if mine.uncertainty is None or printed.uncertainty is None:
-        return mine.value - printed.value, None
-    return mine.value - printed.value, mine.uncertainty + printed.uncertainty
+    if mine.uncertainty is None or theirs.uncertainty is None:
+        return mine.value - theirs.value, None
+    return mine.value - theirs.value, mine.uncertainty + theirs.uncertainty
 
 
 def _profile(result: CaseResult, item: Mapping[str, Any], source: str) -> Profile | None:

@@ -6,10 +6,11 @@ from typing import Any
 import numpy as np
 from matplotlib.ticker import MaxNLocator
 
-import semianalytic
 from verification.problem.arrays import Array
-from verification.problem.quantity import COMPONENTS, von_mises
+from verification.problem.contact import CoatedContact
+from verification.problem.quantity import IN_PLANE, QUANTITIES, von_mises
 from verification.report.study.figures import Drawn, drawn, sheet
+from verification.sources.registry import METHODS, solvers
 from verification.study.curves import Curve
 from verification.study.plan import Study
 
@@ -19,7 +20,10 @@ __all__ = ["contour_figure", "nearest"]
 LEVELS = 18
 COLUMNS, ROWS, FEWEST = 81, 28, 6
 WIDEST, DEEPEST = 2.0, 1.6  # of the largest contact radius, what is drawn
-FIELDS = (r"$\sigma_{xx} / p_h$", r"$\sigma_{xz} / p_h$", r"von Mises stress $/ p_h$")
+FIELDS = (
+    *(f"${QUANTITIES[name].tex} / p_h$" for name in ("sigma_xx", "sigma_xz")),
+    "von Mises stress $/ p_h$",
+)
 
 
 def nearest(curve: Curve, wanted: Sequence[float]) -> tuple[float, ...]:
@@ -48,10 +52,10 @@ def contour_figure(study: Study, curve: Curve, thicknesses: Sequence[float]) -> 
         for column, name in enumerate(FIELDS):
             low, high = _range([field[column] for row in fields for field in row])
             levels = np.asarray(MaxNLocator(LEVELS, steps=[1, 2, 2.5, 5, 10]).tick_values(low, high))
-            for h, solution, ladder, field, axes in zip(
+            for h, solution, layers_z, field, axes in zip(
                 thicknesses, solutions, depths, fields, panels[:, column], strict=True
             ):
-                for z, values in zip(ladder, (layer[column] for layer in field), strict=True):
+                for z, values in zip(layers_z, (layer[column] for layer in field), strict=True):
                     filled = axes.contourf(
                         x, z, values, levels=levels, cmap="RdBu_r" if column < 2 else "viridis", extend="both"
                     )
@@ -70,8 +74,8 @@ def contour_figure(study: Study, curve: Curve, thicknesses: Sequence[float]) -> 
             axes.set_xlabel("$x / a_h$")
         for axes in panels[:, 0]:
             axes.set_ylabel("$z / a_h$")
-        for h, ladder, field in zip(thicknesses, depths, fields, strict=True):
-            rows += _numbers(h, x, ladder, field)
+        for h, layers_z, field in zip(thicknesses, depths, fields, strict=True):
+            rows += _numbers(h, x, layers_z, field)
         name = f"contours_{curve.ratio:.4g}_f{curve.friction:g}".replace(".", "_")
         return drawn(
             figure,
@@ -84,14 +88,10 @@ def contour_figure(study: Study, curve: Curve, thicknesses: Sequence[float]) -> 
 
 def _solved(study: Study, curve: Curve, h: float) -> Any:
     E, nu = study.substrate
-    return semianalytic.solve(
-        radius=study.radius,
-        load=study.load,
-        coatings=((curve.ratio * E, study.coating_nu, h * curve.a_h),),
-        substrate=(E, nu),
-        friction=curve.friction,
-        **(study.numerics.get("semianalytic", {}) | {"estimate_uncertainty": False}),
-    )
+    coating = (curve.ratio * E, study.coating_nu, h * curve.a_h)
+    problem = CoatedContact(study.radius, study.load, (coating,), (E, nu), curve.friction)
+    numerics = study.numerics.get(METHODS[0], {}) | {"estimate_uncertainty": False}
+    return solvers()[METHODS[0]](problem, numerics)
 
 
 def _depths(h: float, deep: float) -> list[Array]:
@@ -105,8 +105,8 @@ def _depths(h: float, deep: float) -> list[Array]:
 
 def _fields(solution: Any, x: Array, z: Array, layer: int, p_h: float) -> tuple[Array, Array, Array]:
     sigma = solution.stress(x[None, :], 0.0, z[:, None], layer=layer)
-    s = np.array([sigma[component] for component in COMPONENTS.values()]) / p_h
-    names = list(COMPONENTS)
+    s = np.array([sigma[component] for component in IN_PLANE.values()]) / p_h
+    names = list(IN_PLANE)
     return s[names.index("sigma_xx")], s[names.index("sigma_xz")], von_mises(s)
 
 
@@ -120,11 +120,11 @@ def _range(values: Sequence[Array]) -> tuple[float, float]:
 
 
 def _numbers(
-    h: float, x: Array, ladder: Sequence[Array], field: Sequence[tuple[Array, Array, Array]]
+    h: float, x: Array, layers_z: Sequence[Array], field: Sequence[tuple[Array, Array, Array]]
 ) -> list[list[str]]:
     return [
         [f"{h:.6g}", f"{at:.5g}", f"{z:.5g}", str(layer), *(f"{values[i, j]:.5g}" for values in fields)]
-        for layer, (depths, fields) in enumerate(zip(ladder, field, strict=True))
+        for layer, (depths, fields) in enumerate(zip(layers_z, field, strict=True))
         for i, z in enumerate(depths)
         for j, at in enumerate(x)
     ]

@@ -1,4 +1,4 @@
-"""The report of a study: figures for a paper beside one page that says what they show."""
+"""The report of a study: figures for a paper beside one page that describes them."""
 
 import base64
 from collections.abc import Sequence
@@ -16,16 +16,10 @@ from verification.report.study.figures import (
     write_drawn,
 )
 from verification.report.study.recommendation import near, recommendation_sentences
-from verification.report.study.summary import (
-    agreement_sentences,
-    curve_sentences,
-    main_sentences,
-    preference_sentences,
-)
-from verification.report.tables.cells import Cell, Gallery, Panel, Part, Row, Section, Table
+from verification.report.study.summary import agreement_sentences, main_sentences
+from verification.report.tables.cells import Cell, Gallery, Panel, Part, Row, Section, Table, number
 from verification.report.tables.csv import embedded
 from verification.report.tables.labels import source_label
-from verification.report.tables.numbers import scientific
 from verification.report.templates import render_sections
 from verification.running.store import write_atomically
 from verification.study.criteria import MODES, Judged, judged
@@ -97,16 +91,12 @@ def write_study_report(
 
 def _summary(found: Sequence[Curve], checks: Sequence[Difference]) -> Section:
     if not found:
-        return Section("summary", "What the curves say", [], ["No curve has two solved points."])
+        return Section("summary", "Summary of the curves", [], ["No curve has two solved points."])
     parts = [Part(sentence) for sentence in main_sentences(found)]
     parts += [Part(sentence) for sentence in agreement_sentences(checks)]
     if not checks:
         parts.append(Part("No point was cross-checked."))
-    parts += [
-        Part(sentence, folded=f"Every curve of {quantity}")
-        for quantity, sentence in zip(MODES, curve_sentences(found), strict=True)
-    ]
-    return Section("summary", "What the curves say", parts)
+    return Section("summary", "Summary of the curves", parts)
 
 
 def _extremes(found: Sequence[Curve]) -> Part:
@@ -156,22 +146,22 @@ def _preference(study: Study, judgements: Sequence[Judged]) -> Section:
                 Cell(f"{j.curve.ratio:.4g}", j.curve.ratio),
                 [
                     Cell(f"{j.curve.friction:g}", j.curve.friction),
-                    Cell(f"{h:.3g}", h),
+                    Cell(f"{'≤ ' if h == j.h[0] else '≥ ' if h == j.h[-1] else ''}{h:.3g}", h),
                     Cell(f"{h * j.curve.a_h * 1e6:.3g}", h * j.curve.a_h),
                     Cell(f"{use:.4f}", use),
                     Cell(mode, note=MODES[mode]),
                     *([Cell(ranges or "none")] if limited else []),
-                    Cell(scientific(j.reading), j.reading),
+                    number(j.interpolation_error),
                     *_near_cells(j, h, mode),
                 ],
                 "" if j.admissible or not j.limited else "disagrees",
             )
         )
     table = Table(
-        "The preferable thickness of every curve. Reading error: the largest change at a point read from the "
-        "others, over the largest use; the curve itself, with twice the points, is read more closely. "
-        "Last: the differences of the governing stress, over p_h, at the checked thickness nearest to the "
-        "preferable one.",
+        "The preferable thickness of every curve; ≤ and ≥ mark an end of the sweep, beyond which it may lie. "
+        "Interpolation error: the largest error at a point interpolated from the others, over the largest "
+        "ratio of stress to strength; the curve itself has twice the points. Last: the differences of the "
+        "governing stress, over p_h, at the checked thickness nearest to the preferable one.",
         [
             "E1/E2",
             "f",
@@ -180,16 +170,15 @@ def _preference(study: Study, judgements: Sequence[Judged]) -> Section:
             "stress / strength" if limited else "stress / p_h",
             "governing mode",
             *(["admissible h [µm]"] if limited else []),
-            "reading error",
+            "interpolation error",
             "checked at",
-            "off finite elements",
-            "off exact",
+            "difference, finite elements",
+            "difference, exact",
         ],
         rows,
     )
-    parts = [Part(study.criteria.sentence()), *(Part(s) for s in recommendation_sentences(judgements))]
-    every = Part(" ".join(preference_sentences(judgements)), folded="Every curve in words")
-    return Section("preferable", "Which thickness", [*parts, Part("", [table]), every])
+    parts = [Part(study.criteria.description()), *(Part(s) for s in recommendation_sentences(judgements))]
+    return Section("preferable", "Which thickness", [*parts, Part("", [table])])
 
 
 def _near_cells(judgement: Judged, h: float, mode: str) -> list[Cell]:
@@ -200,7 +189,7 @@ def _near_cells(judgement: Judged, h: float, mode: str) -> list[Cell]:
         one = by_source.get(source)
         if one is not None:
             cells[0] = Cell(f"{one.h:.3g}", one.h)
-        cells.append(Cell("–") if one is None else Cell(scientific(one.difference), one.difference))
+        cells.append(Cell("–") if one is None else number(one.difference))
     return cells
 
 
@@ -235,7 +224,7 @@ def _maps(study: Study, found: Sequence[Curve]) -> tuple[list[Drawn], list[str]]
     for curve in (c for c in middle if c.ratio in chosen):
         try:
             drawings.append(contour_figure(study, curve, nearest(curve, CONTOURS)))
-        except Exception as error:  # a map that fails is a sentence of the page
+        except Exception as error:  # a map that fails is a message on the page
             failures.append(f"contour map of {curve.label}: {' '.join(str(error).split())[:300]}")
     return drawings, failures
 
@@ -249,8 +238,8 @@ def _checks(checks: Sequence[Difference]) -> list[Section]:
             [
                 Cell(d.quantity),
                 Cell(str(d.points), d.points),
-                Cell(scientific(d.largest), d.largest),
-                Cell(scientific(d.stated), d.stated),
+                number(d.largest),
+                number(d.stated),
                 Cell(f"{d.ratio:.4g}", d.ratio),
                 Cell(f"{d.h:.3g}", d.h),
                 Cell(f"{d.friction:g}", d.friction),
@@ -279,6 +268,6 @@ def _checks(checks: Sequence[Difference]) -> list[Section]:
 
 
 def _failed(every: Sequence[Curve], more: Sequence[str]) -> list[Section]:
-    said = [f"{c.label}, h = {h:.4g} a_h: {sentence}" for c in every for h, sentence in c.failures]
-    said += more
-    return [Section("failed", "What could not be solved", [], said[:200])] if said else []
+    failures = [f"{c.label}, h = {h:.4g} a_h: {sentence}" for c in every for h, sentence in c.failures]
+    failures += more
+    return [Section("failed", "What could not be solved", [], failures[:200])] if failures else []

@@ -1,14 +1,16 @@
-"""What the curves of a study say, in sentences made from its numbers."""
+"""Summary of the curves of a study in sentences made from its numbers."""
 
 from collections.abc import Sequence
 
 import numpy as np
 
-from verification.study.criteria import MODES, Judged
+from verification.problem.quantity import QUANTITIES
+from verification.report.tables.labels import source_label
+from verification.study.criteria import MODES
 from verification.study.curves import Curve, Difference
 from verification.study.table import SCALARS
 
-__all__ = ["agreement_sentences", "curve_sentences", "main_sentences", "preference_sentences"]
+__all__ = ["agreement_sentences", "main_sentences"]
 
 FLAT = 0.02  # of its own largest value; a curve that changes less does not depend on thickness
 NOWHERE = 1e-3  # of p_h
@@ -29,11 +31,11 @@ def main_sentences(curves: Sequence[Curve]) -> list[str]:
 
 
 def _main(quantity: str, curves: Sequence[Curve]) -> str:
-    said = QUANTITY[quantity]
+    name = QUANTITY[quantity][0].upper() + QUANTITY[quantity][1:]
     worst = max(curves, key=lambda c: c.extremes(quantity)[1][1])
     h, value = worst.extremes(quantity)[1]
     if value < NOWHERE:
-        return f"{said[0].upper()}{said[1:]} stays below {NOWHERE:g} p_h everywhere."
+        return f"{name} stays below {NOWHERE:g} p_h everywhere."
     i = int(worst.stress[quantity].argmax())
     x, z = worst.x[quantity][i], worst.z[quantity][i]
     at = f" at x = {x:.2f} a_h, z = {z:.2f} a_h" if np.isfinite(x) else ""
@@ -41,46 +43,42 @@ def _main(quantity: str, curves: Sequence[Curve]) -> str:
     ends = {min(c.ratio for c in beside), max(c.ratio for c in beside)}
     courses = [_course(c, quantity, value) for c in beside if c.ratio in ends]
     return (
-        f"{said[0].upper()}{said[1:]} reaches {value:.3g} p_h, {value * worst.p_h / 1e6:.4g} MPa, with "
+        f"{name} reaches {value:.3g} p_h, {value * worst.p_h / 1e6:.4g} MPa, with "
         f"{worst.label}, h = {h:.2g} a_h{at}; over the thickness, at f = {worst.friction:g}, "
-        f"{'; '.join(courses)}."
+        f"{'; '.join(courses)}.{_friction_effect(quantity, curves)}"
+    )
+
+
+def _friction_effect(quantity: str, curves: Sequence[Curve]) -> str:
+    """Ratio of the largest stress at the largest friction to that at the least."""
+    frictions = sorted({c.friction for c in curves})
+    if len(frictions) < 2:
+        return ""
+    low, high = (
+        max(c.extremes(quantity)[1][1] for c in curves if c.friction == f)
+        for f in (frictions[0], frictions[-1])
+    )
+    if low < NOWHERE:
+        return f" With f = {frictions[0]:g} it is at most {low:.1e} p_h."
+    return (
+        f" From f = {frictions[0]:g} to {frictions[-1]:g} its largest value over all coatings changes by "
+        f"a factor of {high / low:.2f}."
     )
 
 
 def _contact(curves: Sequence[Curve]) -> str:
     """Ranges of the scalars of the contact, with the coating of each end."""
-    symbols = {"peak_pressure": "p0", "contact_radius": "a", "approach": "delta"}
     found = []
     for name, scale in SCALARS.items():
         low = min(curves, key=lambda c: c.extremes(name)[0][1])
         high = max(curves, key=lambda c: c.extremes(name)[1][1])
         (h_low, least), (h_high, most) = low.extremes(name)[0], high.extremes(name)[1]
         found.append(
-            f"{symbols[name]} is between {least:.3g} {scale} (E1/E2 = {low.ratio:.3g}, h = {h_low:.2g} a_h) "
+            f"{QUANTITIES[name].symbol} is between {least:.3g} {scale} (E1/E2 = {low.ratio:.3g}, "
+            f"h = {h_low:.2g} a_h) "
             f"and {most:.3g} {scale} (E1/E2 = {high.ratio:.3g}, h = {h_high:.2g} a_h)"
         )
     return f"Of the contact, {'; '.join(found)}."
-
-
-def curve_sentences(curves: Sequence[Curve]) -> list[str]:
-    """A paragraph for each stress: how it runs over the thickness, what stiffness and friction do to it."""
-    return [_stress(quantity, curves) for quantity in MODES]
-
-
-def _stress(quantity: str, curves: Sequence[Curve]) -> str:
-    said = QUANTITY[quantity]
-    largest = max((c.extremes(quantity)[1][1] for c in curves), default=0.0)
-    if largest < NOWHERE:
-        return f"{said[0].upper()}{said[1:]} stays below {NOWHERE:g} p_h everywhere."
-    parts = [f"{said[0].upper()}{said[1:]}."]
-    for friction in sorted({c.friction for c in curves}):
-        group = [c for c in curves if c.friction == friction]
-        clauses = [_course(c, quantity, largest) for c in group]
-        parts.append(f"With f = {friction:g}, {'; '.join(clauses)}.")
-    ratio = _of_friction(quantity, curves)
-    if ratio:
-        parts.append(ratio)
-    return " ".join(parts)
 
 
 def _course(curve: Curve, quantity: str, largest: float) -> str:
@@ -105,61 +103,8 @@ def _course(curve: Curve, quantity: str, largest: float) -> str:
     return f"{name} has {' and '.join(inner)}"
 
 
-def _of_friction(quantity: str, curves: Sequence[Curve]) -> str:
-    """What the largest friction makes of the largest stress of the frictionless contact."""
-    frictions = sorted({c.friction for c in curves})
-    if len(frictions) < 2:
-        return ""
-    low, high = (
-        max(c.extremes(quantity)[1][1] for c in curves if c.friction == f)
-        for f in (frictions[0], frictions[-1])
-    )
-    if low < NOWHERE:
-        return f"It takes friction: {low:.1e} p_h at most with f = {frictions[0]:g}."
-    return (
-        f"From f = {frictions[0]:g} to {frictions[-1]:g} its largest value over all coatings changes by "
-        f"a factor of {high / low:.2f}."
-    )
-
-
-def preference_sentences(judgements: Sequence[Judged]) -> list[str]:
-    """For each curve the preferable thickness, what governs there, what range is admissible."""
-    found = []
-    for j in judgements:
-        h, use, mode = j.preferable
-        where = f"h = {h:.3g} a_h ({h * j.curve.a_h * 1e6:.3g} µm)"
-        end = _at_end(j, h)
-        said = f"{j.curve.label}: preferable {where}{end}, where {MODES[mode]} first"
-        if j.limited:
-            said += f", at {use:.2f} of the strength in {mode}. "
-            if j.admissible:
-                ranges = " and ".join(_range(j, low, high) for low, high in j.admissible)
-                said += f"Admissible: {ranges}."
-            else:
-                said += "No thickness of the sweep is admissible."
-        else:
-            said += f", with {mode} = {use:.3f} p_h."
-        found.append(said)
-    return found
-
-
-def _at_end(j: Judged, h: float) -> str:
-    if h in (j.h[0], j.h[-1]):
-        side = "thinnest" if h == j.h[0] else "thickest"
-        return f", the {side} of the sweep, so perhaps beyond"
-    return ""
-
-
-def _range(j: Judged, low: float, high: float) -> str:
-    unit = j.curve.a_h * 1e6
-    left = f"{low * unit:.3g}" if low > j.h[0] else f"{low * unit:.3g} (the thinnest of the sweep)"
-    right = f"{high * unit:.3g} µm" if high < j.h[-1] else f"{high * unit:.3g} µm (the thickest of the sweep)"
-    return f"h = {left} to {right}"
-
-
 def agreement_sentences(differences: Sequence[Difference]) -> list[str]:
     """How far the other sources are from the semi-analytical method over all checked points."""
-    names = {"fem_reference": "finite element model", "integral_equation": "exact reference"}
     found = []
     for source in dict.fromkeys(d.source for d in differences):
         mine = [d for d in differences if d.source == source]
@@ -167,8 +112,8 @@ def agreement_sentences(differences: Sequence[Difference]) -> list[str]:
         scalar = max((d for d in mine if d.quantity in SCALARS), key=lambda d: d.largest)
         where = f"E1/E2 = {stress.ratio:.3g}, h = {stress.h:.3g} a_h, f = {stress.friction:g}"
         found.append(
-            f"{stress.points} points were also solved by the {names[source]}: no stress differs by more than "
-            f"{stress.largest:.1e} p_h ({stress.quantity} at {where}), "
+            f"{stress.points} points were also solved by the {source_label(source)}: no stress differs "
+            f"by more than {stress.largest:.1e} p_h ({stress.quantity} at {where}), "
             f"no scalar of the contact by more than {scalar.largest:.1e} of its scale "
             f"({scalar.quantity.replace('_', ' ')})."
         )

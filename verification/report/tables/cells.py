@@ -1,13 +1,15 @@
-"""The few shapes a report page is made of: cells, rows, tables, figures, sections."""
+"""Parts of a report page: cells, rows, tables, figures, sections."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 from markupsafe import Markup
 
 from verification.report.tables.csv import embedded, written
+from verification.report.tables.numbers import scientific
 
-__all__ = ["Cell", "Gallery", "Panel", "Part", "Row", "Section", "Table"]
+__all__ = ["Cell", "Gallery", "Panel", "Part", "Row", "Section", "Table", "number"]
 
 
 @dataclass(frozen=True)
@@ -24,6 +26,11 @@ class Cell:
     href: str = ""
 
 
+def number(value: float | None, show: Callable[[Any], str] = scientific, css: str = "") -> Cell:
+    """A cell that shows ``value`` and sorts by it."""
+    return Cell(show(value), value, css)
+
+
 @dataclass(frozen=True)
 class Row:
     """One row: its ``head`` names it, ``css`` colours it."""
@@ -37,7 +44,7 @@ class Row:
 class Table:
     """``columns`` head the cells, ``groups`` span them: (title, number of columns), "" for none.
 
-    The first column is that of the row heads.
+    The first column is that of the row heads. A table without rows is false, and not shown.
     """
 
     caption: str
@@ -45,6 +52,9 @@ class Table:
     rows: Sequence[Row]
     groups: Sequence[tuple[str, int]] = ()
     css: str = ""
+
+    def __bool__(self) -> bool:
+        return bool(self.rows)
 
 
 @dataclass(frozen=True)
@@ -85,7 +95,7 @@ class Part:
 
     @property
     def download(self) -> str:
-        """The numbers behind the gallery as an address that carries them; "" without a gallery."""
+        """The numbers of the gallery as a data address; "" without a gallery."""
         if self.gallery is None:
             return ""
         return embedded(self.gallery.csv or written([row for item in self.tables for row in _cells_of(item)]))
@@ -93,7 +103,7 @@ class Part:
 
 @dataclass(frozen=True)
 class Section:
-    """A part of the page about the run as a whole; ``failures`` are sentences said before all else."""
+    """A part of the page about the run as a whole; ``failures`` are messages shown first."""
 
     anchor: str
     title: str
@@ -102,7 +112,7 @@ class Section:
 
 
 def _cells_of(table: Table) -> list[list[str]]:
-    """Heads, then rows: the number behind a cell where it has one, else what it says."""
+    """Heads, then rows: the number of a cell where it has one, else its text."""
     heads = list(table.columns)
     if table.groups:
         over = [title for title, count in table.groups for _ in range(count)]

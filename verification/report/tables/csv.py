@@ -1,4 +1,4 @@
-"""The numbers behind the figures as CSV that travels inside the page."""
+"""The numbers of the figures as CSV embedded in the page."""
 
 import base64
 import csv
@@ -7,7 +7,8 @@ from collections.abc import Sequence
 from io import StringIO
 from itertools import zip_longest
 
-from verification.problem.profile import SCALARS, Profile
+from verification.problem.profile import Profile
+from verification.problem.quantity import unit_of
 from verification.report.tables.lookup import coordinate
 from verification.running.result import CaseResult
 
@@ -33,11 +34,11 @@ def line_csv(result: CaseResult, line: str) -> str:
         if line != "contact":
             columns.append([f"{coordinate(line)} [m]", *(f"{x:.9g}" for x in group[0].position.tolist())])
         for profile in group:
-            head = f"{profile.quantity} [{_unit(profile)}] {profile.source}"
+            head = f"{profile.quantity} [{unit_of(profile.quantity)}] {profile.source}"
             columns.append([_safe(head), *(f"{v:.8g}" for v in profile.value.tolist())])
             if profile.uncertainty is not None:
-                spread = [f"{v:.3g}" for v in profile.uncertainty.tolist()]
-                columns.append([_safe(f"uncertainty of {head}"), *spread])
+                uncertainty = [f"{v:.3g}" for v in profile.uncertainty.tolist()]
+                columns.append([_safe(f"uncertainty of {head}"), *uncertainty])
     return written(list(zip_longest(*columns, fillvalue="")))
 
 
@@ -45,10 +46,6 @@ def embedded(text: str) -> str:
     """``text`` compressed as a data address; the same text always gives the same address."""
     packed = gzip.compress(text.encode(), compresslevel=9, mtime=0)
     return f"data:application/gzip;base64,{base64.b64encode(packed).decode()}"
-
-
-def _unit(profile: Profile) -> str:
-    return "m" if profile.quantity in SCALARS[1:] else "Pa"
 
 
 def written(rows: Sequence[Sequence[str]]) -> str:
@@ -59,5 +56,5 @@ def written(rows: Sequence[Sequence[str]]) -> str:
 
 
 def _safe(text: str) -> str:
-    # A name from a stranger must not run as a formula when the file is opened in a spreadsheet.
+    # An untrusted name must not run as a formula when the file is opened in a spreadsheet.
     return f"'{text}" if text[:1] in ("=", "+", "-", "@", "\t", "\r") else text

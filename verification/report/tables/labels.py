@@ -1,56 +1,14 @@
-"""How the report calls and draws each source, quantity and outcome."""
+"""Labels, line styles, marks of sources, pairs of sources, outcomes."""
 
 from dataclasses import dataclass
 
 from verification.judging.verdict import Outcome
+from verification.sources.registry import METHODS, SOURCES
+from verification.sources.source import Style
 
-__all__ = [
-    "EXACT",
-    "METHODS",
-    "OUTCOMES",
-    "OutcomeStyle",
-    "Style",
-    "pair_label",
-    "pair_style",
-    "source_label",
-    "source_style",
-]
+__all__ = ["OUTCOMES", "OutcomeStyle", "pair_label", "pair_style", "source_label", "source_style"]
 
-METHODS = ("semianalytic", "fem_reference")
-EXACT = ("integral_equation", "hertz", "hamilton")
-
-_LABELS = {
-    "semianalytic": "semi-analytical",
-    "fem_reference": "finite elements",
-    "integral_equation": "integral equation",
-    "hertz": "Hertz",
-    "hamilton": "Hamilton",
-    "case": "the case",
-}
-
-
-@dataclass(frozen=True)
-class Style:
-    """A line in a figure: ``colour`` names a role of the style sheet, never a value.
-
-    dash : on, off lengths in line widths; () is a full line, so that colour is never the only difference.
-    """
-
-    colour: str
-    dash: tuple[float, ...] = ()
-    width: float = 1.6
-    opacity: float = 1.0
-
-
-# The exact curve lies below as a broad grey road on which the methods have to drive.
-_STYLES = {
-    "semianalytic": Style("semi"),
-    "fem_reference": Style("fem", (3.6, 3.0), 1.9),
-    "integral_equation": Style("exact", (), 5.0, 0.35),
-    "hertz": Style("hertz", (1.0, 1.4), 1.8),
-    "hamilton": Style("hertz", (1.0, 1.4), 1.8),
-}
-_OTHER = Style("other", (5.0, 1.5, 1.0, 1.5))
+_OTHER = SOURCES["published"].style
 _BETWEEN_METHODS = Style("pair", (4.5, 1.4, 1.0, 1.4), 1.4)
 _BETWEEN_REFERENCES = Style("ink", (1.0, 1.4), 1.4)
 
@@ -76,16 +34,16 @@ OUTCOMES = {
 
 def source_label(source: str) -> str:
     """The name of a source in running text; an unknown one keeps its own."""
-    return _LABELS.get(source, source)
+    return SOURCES[source].label if source in SOURCES else {"case": "the case"}.get(source, source)
 
 
 def source_style(source: str) -> Style:
     """The line a source is drawn with in every figure."""
-    return _STYLES.get(source, _OTHER)
+    return SOURCES[source].style if source in SOURCES else _OTHER
 
 
 def pair_label(pair: tuple[str, str]) -> str:
-    """Two sources held against each other, as column heads and legends say it."""
+    """Two compared sources, for column heads and legends."""
     return " – ".join(source_label(source) for source in pair)
 
 

@@ -1,4 +1,4 @@
-"""Reading a case result: its scales, its references, the points its verdicts speak of."""
+"""Lookup in a case result: scales, references, judged points."""
 
 import re
 from typing import Any
@@ -7,13 +7,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from verification.judging.verdict import Claim
-from verification.problem.profile import SCALARS, Profile
-from verification.report.tables.labels import EXACT, METHODS
+from verification.problem.profile import Profile
+from verification.problem.quantity import QUANTITIES, SCALARS
 from verification.running.result import CaseResult
+from verification.sources.registry import METHODS, REFERENCES
 
 __all__ = [
     "GROUPS",
-    "baseline",
     "claimed_quantities",
     "contact_radius",
     "coordinate",
@@ -22,14 +22,14 @@ __all__ = [
     "judged",
     "layers",
     "lines",
+    "reference_source",
     "scalar",
     "scale",
     "slug",
     "sources_with_profiles",
 ]
 
-GROUPS = ("p0, a, approach", "surface", "axis", "interfaces")
-_SCALAR_SCALES = {"peak_pressure": "p_h", "contact_radius": "a_h", "approach": "delta_h"}
+GROUPS = (", ".join(QUANTITIES[name].symbol for name in SCALARS), "surface", "axis", "interfaces")
 
 
 def group_of(line: str) -> str:
@@ -51,12 +51,12 @@ def sources_with_profiles(result: CaseResult) -> tuple[str, ...]:
     return tuple(s for s in order if s in found) + tuple(sorted(found - set(order)))
 
 
-def baseline(result: CaseResult) -> str | None:
-    """What the others are held against: the last exact reference, else the finite elements."""
+def reference_source(result: CaseResult) -> str | None:
+    """Reference source of a case: the last exact reference, else the finite elements."""
     found = sources_with_profiles(result)
-    exact = [source for source in found if source in EXACT]
+    exact = [source for source in found if source in REFERENCES]
     references = [source for source in found if source not in METHODS]
-    for choice in (exact, references, [s for s in found if s == "fem_reference"]):
+    for choice in (exact, references, [s for s in found if s in METHODS[1:]]):
         if choice:
             return choice[-1]
     return None
@@ -91,13 +91,13 @@ def scalar(result: CaseResult, quantity: str, source: str) -> tuple[np.float64, 
     profile = result.profile(quantity, "contact", source)
     if profile is None or profile.value.size == 0:
         return None
-    spread = None if profile.uncertainty is None else float(profile.uncertainty[0])
-    return profile.value[0], spread
+    uncertainty = None if profile.uncertainty is None else float(profile.uncertainty[0])
+    return profile.value[0], uncertainty
 
 
 def contact_radius(result: CaseResult) -> float | None:
     """The contact radius [m] by the best source that gave a finite one."""
-    for source in (baseline(result), *sources_with_profiles(result)):
+    for source in (reference_source(result), *sources_with_profiles(result)):
         found = scalar(result, "contact_radius", source) if source else None
         if found is not None and np.isfinite(found[0]):
             return found[0]
@@ -110,14 +110,14 @@ def coordinate(line: str) -> str:
 
 
 def claimed_quantities(result: CaseResult, line: str) -> tuple[str, ...]:
-    """Quantities on ``line`` that a claim speaks of; where there is none, all that were sampled."""
+    """Quantities on ``line`` with a claim; where there is none, all that were sampled."""
     sampled = tuple(dict.fromkeys(p.quantity for p in result.profiles if p.line == line))
     claimed = {claim.quantity for claim, _ in result.verdicts if claim.line == line}
     return tuple(q for q in sampled if q in claimed) or sampled
 
 
 def judged(result: CaseResult, claim: Claim, position: NDArray[np.float64]) -> NDArray[np.bool_]:
-    """Marks the points of ``position`` that ``claim`` speaks of: those outside its zone around the edge."""
+    """Marks the points of ``position`` judged by ``claim``: those outside its zone around the edge."""
     a = contact_radius(result)
     if not claim.edge or a is None or coordinate(claim.line) == "z":
         return np.ones(position.shape, dtype=bool)

@@ -4,12 +4,13 @@ from collections.abc import Callable, Mapping, Sequence
 
 from verification.judging.verdict import Claim, Outcome, Verdict
 from verification.report.tables.cells import Cell, Row, Table
-from verification.report.tables.labels import METHODS, OUTCOMES, source_label
+from verification.report.tables.labels import OUTCOMES, source_label
 from verification.report.tables.lookup import GROUPS, group_of, slug
 from verification.report.tables.numbers import scientific
 from verification.running.result import CaseResult
+from verification.sources.registry import METHODS
 
-__all__ = ["outcome_cell", "verdict_matrix"]
+__all__ = ["case_cell", "outcome_cell", "verdict_matrix"]
 
 # With a soft hyphen, where a narrow column may break the word.
 _HEADS = {"interfaces": "inter\u00adfaces"}
@@ -17,48 +18,40 @@ _HEADS = {"interfaces": "inter\u00adfaces"}
 
 def verdict_matrix(
     results: Sequence[CaseResult],
-    anchors: Mapping[int, str],
-    states: Mapping[str, Cell] | None = None,
-    laws: Callable[[CaseResult, str], Cell] | None = None,
+    anchors: Mapping[CaseResult, str],
+    more: Sequence[tuple[str, Callable[[CaseResult], Cell]]] = (),
 ) -> Table:
-    """Every case at a glance; each cell holds its worst verdict and its largest difference.
+    """Overview of all cases; each cell holds its worst verdict and its largest difference.
 
-    anchors : the anchor of each case by its number.
-    states : what became of each case since the baseline, by its name; no such column without.
-    laws : the cell of a case's invariants, which leads to the address given; no such column without.
+    more : further columns behind the verdict, each with the function that gives the cell of a case.
     """
     claims = [claim for result in results for claim, _ in result.verdicts]
     blocks = sorted({_block(claim) for claim in claims})
     groups = [*GROUPS, *sorted({group_of(claim.line) for claim in claims} - set(GROUPS))]
     columns = [(b, g) for b in blocks for g in groups if any(_place(c) == (b, g) for c in claims)]
     rows = []
-    for number, result in enumerate(results):
-        anchor = anchors[number]
-        cells = [outcome_cell(result.outcome, href=f"#{anchor}")]
-        if states:
-            cells.append(states.get(result.name, Cell("", None, "nothing", "not in the baseline")))
-        if laws:
-            cells.append(laws(result, f"#{anchor}-invariants"))
+    for result in results:
+        link = f"#{anchors[result]}"
+        cells = [outcome_cell(result.outcome, href=link), *(cell(result) for _, cell in more)]
         for place in columns:
             found = [(c, v) for c, v in result.verdicts if _place(c) == place]
-            cells.append(_cell(found, f"#{anchor}-{_target(result, place[1])}"))
-        rows.append(Row(Cell(result.title, note=f"{result.title} ({result.name})", href=f"#{anchor}"), cells))
+            cells.append(_cell(found, f"{link}-{_target(result, place[1])}"))
+        rows.append(Row(case_cell(result, link), cells))
     spans = [(title, sum(b == (rank, title) for b, _ in columns)) for rank, title in blocks]
     return Table(
         "Largest difference of each pair of sources, as a fraction of the value for p0, a and approach, "
-        "of p_h for stresses. A cell leads to the figures behind it."
-        + (" Numbers since the baseline: = same, ≠ drifted, − gone, + new." if states else ""),
-        [
-            "case",
-            "verdict",
-            *(["base\u00adline"] if states else []),
-            *(["invari\u00adants"] if laws else []),
-            *(_HEADS.get(group, group) for _, group in columns),
-        ],
+        "of p_h for stresses. A cell links to the figures behind it. Numbers since the baseline, where they "
+        "were compared: = same, ≠ drifted, − gone, + new.",
+        ["case", "verdict", *(name for name, _ in more), *(_HEADS.get(group, group) for _, group in columns)],
         rows,
-        [("", 2 + bool(states) + bool(laws)), *spans],
+        [("", 2 + len(more)), *spans],
         "matrix",
     )
+
+
+def case_cell(result: CaseResult, href: str) -> Cell:
+    """The title of a case as the head of a row, with its name for a pointer."""
+    return Cell(result.title, note=f"{result.title} ({result.name})", href=href)
 
 
 def outcome_cell(outcome: Outcome, href: str = "") -> Cell:
@@ -82,10 +75,10 @@ def _cell(found: Sequence[tuple[Claim, Verdict]], href: str) -> Cell:
         f"{agreeing} of {len(found)} agree; largest difference {scientific(largest)}, {claim.quantity} "
         f"on {claim.line}, {' against '.join(source_label(s) for s in claim.between)}"
     )
-    # The letter alone keeps sixteen columns within a page; its mark and word stand above the matrix.
+    # The letter alone keeps sixteen columns within a page; its mark and word are above the matrix.
     style = OUTCOMES[worst]
     if worst is Outcome.NO_RESULT:
-        # The difference of those that did come to a number would look like the answer.
+        # The difference of those with a number would look like the result.
         return Cell(f"{style.letter} –", None, f"verdict {style.css}", note, href)
     return Cell(f"{style.letter} {scientific(largest)}", largest, f"verdict {style.css}", note, href)
 

@@ -122,7 +122,7 @@ def _even_spherical_bessel(count: int, x: Array) -> Array:
     near = np.maximum(x[~up], 1e-8)
     above, here = np.zeros_like(near), np.full_like(near, 1e-280)
     scratch = np.zeros((count, near.size))
-    # 40 orders above the largest argument the start is forgotten to rounding.
+    # 40 orders above the largest argument the start value has no effect beyond rounding.
     for n in range(top + 40, -1, -1):
         if n % 2 == 0 and n < top:
             scratch[n // 2] = here
@@ -136,10 +136,6 @@ def _even_spherical_bessel(count: int, x: Array) -> Array:
         np.sin(near) / near,
         np.where(near > 1e-3, np.sin(near) / near**2 - np.cos(near) / near, near / 3),
     )
-    ratio = np.where(np.abs(j0) >= np.abs(j1), j0 / _or_one(here), j1 / _or_one(above))
-    found[:, ~up] = scratch * ratio
+    even = np.abs(j0) >= np.abs(j1)
+    found[:, ~up] = scratch * (np.where(even, j0, j1) / np.where(even, here, above))
     return found
-
-
-def _or_one(values: Array) -> Array:
-    return np.where(values == 0, 1.0, values)

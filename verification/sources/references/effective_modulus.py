@@ -1,7 +1,7 @@
-"""Effective contact moduli of a film on a substrate, as the formulas used in nanoindentation give them.
+"""Effective contact moduli of a film on a substrate by formulas of nanoindentation.
 
-All speak of the contact stiffness S = dP/d delta = 2 a E_eff at contact radius a, which for a sphere is that
-of a flat punch: E_eff is to be held against E1* kappa of ``flat_punch``. ``xi`` is h/a.
+All define E_eff by the contact stiffness S = dP/d delta = 2 a E_eff at contact radius a, for a sphere that
+of a flat punch: E_eff compares with E1* kappa of ``flat_punch``. ``xi`` is h/a.
 
     I0 = (2/pi) atan xi + [(1 - 2 nu) xi ln(1 + 1/xi^2) - xi/(1 + xi^2)] / (2 pi (1 - nu))
     I1 = (2/pi) atan xi + (xi/pi) ln(1 + 1/xi^2)
@@ -10,7 +10,7 @@ Gao, Chiu and Lee, Int. J. Solids Struct. 29 (1992) 2471-2492: I0 and I1 are the
 the shear modulus and of Poisson's ratio of the film. No primary source was at hand: the formulas are those
 of D. Mercier's NIMS toolbox (2014), I0 and I1 besides confirmed by differentiating the exact stiffness.
 Formulas with a coefficient that is fitted to each experiment (Doerner and Nix 1986, King 1987, Saha and Nix
-2002, Mencik 1997, Hu and Lawn 1998, Jung 2004) predict nothing by themselves, hence have no map.
+2002, Mencik 1997, Hu and Lawn 1998, Jung 2004) make no prediction by themselves and are left out.
 """
 
 from collections.abc import Callable

@@ -14,16 +14,17 @@ kappa.
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.polynomial import legendre
 
-from verification.sources.references.layered import LayeredHalfSpace
+from verification.problem.arrays import Coatings
+from verification.sources.references.layered import LayeredHalfSpace, contact_modulus
+from verification.sources.references.quadrature import gauss_legendre, on_panels
 
-__all__ = ["Pressed", "kappa", "pressed"]
+__all__ = ["Pressed", "pressed"]
 
 
 @dataclass(frozen=True)
 class Pressed:
-    """What presses to one contact radius.
+    """Flat punch and sphere of one contact radius.
 
     kappa : stiffness of the flat punch over 2 a E1*.   load, approach : of the sphere, each times its radius
     R [N m, m^2]. The sphere's dW/d delta is the stiffness of the punch.
@@ -34,52 +35,35 @@ class Pressed:
     approach: float
 
 
-def kappa(
-    a: float,
-    coatings: tuple[tuple[float, float, float], ...],
-    substrate: tuple[float, float],
-    nodes: int = 60,
-    tail: float = 40.0,
-) -> float:
-    """Stiffness P/delta of a punch of radius ``a`` [m] over that of the half-space of the top material.
-
-    Arguments and errors as for ``pressed``.
-    """
-    return pressed(a, coatings, substrate, nodes, tail).kappa
-
-
 def pressed(
     a: float,
-    coatings: tuple[tuple[float, float, float], ...],
+    coatings: Coatings,
     substrate: tuple[float, float],
     nodes: int = 60,
     tail: float = 40.0,
 ) -> Pressed:
     """Punch and sphere of contact radius ``a`` [m].
 
-    nodes : Gauss-Legendre points under the punch; more are taken where the layer is thin.
-    tail : k h at which M - 1 is taken for zero.
+    nodes : Gauss-Legendre points under the punch; more where the layer is thin.
+    tail : k h beyond which M - 1 is neglected.
     Raises ValueError where a is not positive.
     """
     if not a > 0:
         raise ValueError(f"a = {a:g} m; a punch has a positive radius")
-    E, nu = coatings[0][:2] if coatings else substrate
-    E_star = E / (1 - nu**2)
+    E_star = contact_modulus(coatings, substrate)
     if not coatings:
         return Pressed(1.0, 4 / 3 * E_star * a**3, a**2)
     thickness = coatings[0][2]
     nodes += int(2 * a / thickness)
-    s, w = legendre.leggauss(nodes)
+    s, w = gauss_legendre(nodes)
     x, weight = 0.5 * a * (1 + s), 0.5 * a * w
     # Panels short against both the decay with h and the oscillation with a, shortest at k = 0 where M bends.
     end = tail / thickness
     edges = np.concatenate([[0.0], np.geomspace(1e-6, 1.0, 30) * min(1 / a, 1 / thickness)])
     step = min(2.0 / a, 0.5 / thickness)
     edges = np.concatenate([edges, np.arange(edges[-1] + step, end + step, step)])
-    half = 0.5 * np.diff(edges)
-    g, gw = legendre.leggauss(16)
-    k = ((edges[:-1] + half)[:, None] + half[:, None] * g).ravel()
-    excess = (half[:, None] * gw).ravel() * (LayeredHalfSpace(coatings, substrate, k).compliance - 1)
+    k, k_weight = on_panels(edges, 16)
+    excess = k_weight * (LayeredHalfSpace(coatings, substrate, k).compliance - 1)
     cosine = np.cos(k[:, None] * np.append(x, a))
     K = (2 / np.pi) * (cosine.T * excess) @ cosine
     given = np.stack([np.ones(nodes), x**2], axis=1)

@@ -22,7 +22,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from verification.problem.arrays import Array
 from verification.problem.contact import NotClaimed
-from verification.sources.references.hertz import Hertz, HertzUncertainty
+from verification.sources.references.hertz import Hertz, HertzContact
 
 __all__ = ["Hamilton"]
 
@@ -30,65 +30,26 @@ Complex = NDArray[np.complex128]
 
 
 @dataclass(frozen=True)
-class Hamilton:
-    """Sphere of ``radius`` [m] under ``load`` [N] on a solid of ``E`` [Pa], ``nu``; q = ``friction`` p."""
+class Hamilton(HertzContact):
+    """Sphere of ``radius`` [m] under ``load`` [N] on a solid of ``E`` [Pa], ``nu``; q = ``friction`` p.
 
-    radius: float
-    load: float
-    E: float
-    nu: float
+    Contact radius, approach and pressure are those without friction.
+    """
+
     friction: float
 
     def __post_init__(self) -> None:
         if not (np.isfinite(self.friction) and self.friction >= 0):
             raise ValueError(f"friction = {self.friction:g}; Coulomb's coefficient is zero or positive")
-        Hertz(self.radius, self.load, self.E, self.nu)  # refuses the rest in its own words
-
-    @property
-    def normal(self) -> Hertz:
-        """The same contact without friction."""
-        return Hertz(self.radius, self.load, self.E, self.nu)
-
-    @property
-    def contact_radius(self) -> float:
-        """a [m], as without friction. Johnson (4.22)."""
-        return self.normal.contact_radius
-
-    @property
-    def approach(self) -> float:
-        """delta [m], as without friction. Johnson (4.23)."""
-        return self.normal.approach
-
-    @property
-    def peak_pressure(self) -> float:
-        """p0 [Pa], as without friction. Johnson (4.24)."""
-        return self.normal.peak_pressure
-
-    @property
-    def uncertainty(self) -> HertzUncertainty:
-        """Zero: exact."""
-        return HertzUncertainty()
-
-    @property
-    def diagnostics(self) -> HertzUncertainty:
-        """Nothing to report of a closed form."""
-        return HertzUncertainty()
-
-    @property
-    def surface_nodes(self) -> Array:
-        """The pressure is known everywhere; 401 points on [-2a, 2a]."""
-        return self.normal.surface_nodes
-
-    def pressure(self, x: ArrayLike, y: ArrayLike = 0.0) -> Array:
-        """p = p0 sqrt(1 - r^2/a^2) inside the contact, 0 outside [Pa]. Johnson (3.39)."""
-        return self.normal.pressure(x, y)
+        super().__post_init__()
 
     def stress(self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None) -> Array:
         """sigma[i, j, ...] [Pa], shape (3, 3) + points: Hertz and Huber's field and that of the friction.
 
         One material: ``layer`` is accepted and has no meaning here. Raises ValueError where z < 0.
         """
-        return self.normal.stress(x, y, z) + self.friction * self.stress_of_traction(x, y, z)
+        normal = Hertz(self.radius, self.load, self.E, self.nu)
+        return normal.stress(x, y, z) + self.friction * self.stress_of_traction(x, y, z)
 
     def stress_of_traction(self, x: ArrayLike, y: ArrayLike, z: ArrayLike) -> Array:
         """Stress under q = p in +x alone, without the pressure [Pa], shape (3, 3) + points.
@@ -99,7 +60,7 @@ class Hamilton:
             sigma_zz = -B1 cos theta
             sigma_xz = -[A0 - 1/2 B0] - 1/2 B2 cos 2 theta,   sigma_yz = -1/2 B2 sin 2 theta
 
-        Worked out from the response of the half-space to each wave of q. Raises ValueError where z < 0.
+        Derived from the response of the half-space to each wave of q. Raises ValueError where z < 0.
         """
         x, y, z = np.broadcast_arrays(*(np.asarray(v, dtype=float) for v in (x, y, z)))
         if np.any(z < 0):
@@ -122,14 +83,6 @@ class Hamilton:
     def displacement(self, x: ArrayLike, y: ArrayLike, z: ArrayLike) -> Array:
         """No claim is made on displacements; raises NotClaimed."""
         raise NotClaimed("the closed form claims no displacement field; ask one of the methods")
-
-    def pressure_uncertainty(self, x: ArrayLike, y: ArrayLike = 0.0) -> Array:
-        """Zero [Pa]: exact."""
-        return self.normal.pressure_uncertainty(x, y)
-
-    def stress_uncertainty(self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None) -> Array:
-        """Zero [Pa]: exact."""
-        return self.normal.stress_uncertainty(x, y, z)
 
 
 def _integrals(r: Array, z: Array) -> tuple[list[Array], list[Array]]:

@@ -8,14 +8,15 @@ Normal load, then friction q = f p in +x (the first, second and third harmonics 
 
 Amplitudes per wavenumber come from ``layered``; on the surface the homogeneous part, which decays too
 slowly for quadrature, is taken in closed form from the Abel potential of the pressure.
-Sneddon, Fourier Transforms (1951); sliding worked out from the rotation of the wave vector's frame.
+Sneddon, Fourier Transforms (1951); sliding derived by rotation of the wave vector's frame.
 """
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 from scipy.special import j0, j1, jv
 
 from verification.problem.arrays import Array, Coatings
@@ -61,8 +62,7 @@ class HankelField:
         layers = layer_at(z, self.coatings, layer)
         sigma = np.zeros((3, 3, *x.shape))
         r, theta = np.hypot(x, y), np.arctan2(y, x)
-        for depth, number in sorted(set(zip(z.ravel().tolist(), layers.ravel().tolist(), strict=True))):
-            here = (z == depth) & (layers == number)
+        for here, depth, number in _planes(z, layers):
             sigma[:, :, here] = self._plane(r[here], theta[here], depth, number)
         return sigma
 
@@ -74,8 +74,7 @@ class HankelField:
         layers = layer_at(z, self.coatings, None)
         u_r, u_z = np.zeros(x.shape), np.zeros(x.shape)
         r = np.hypot(x, y)
-        for depth, number in sorted(set(zip(z.ravel().tolist(), layers.ravel().tolist(), strict=True))):
-            here = (z == depth) & (layers == number)
+        for here, depth, number in _planes(z, layers):
             u_r[here], u_z[here] = self._displaced(r[here], depth, number)
         theta = np.arctan2(y, x)
         return np.stack([u_r * np.cos(theta), u_r * np.sin(theta), u_z])
@@ -84,16 +83,12 @@ class HankelField:
         u_r, u_z = np.zeros(r.size), np.zeros(r.size)
         if z == 0:
             E, nu = self.coatings[0][:2] if self.coatings else self.substrate
-            # Johnson (3.20a, b): the load inside r draws the surface in.
+            # Johnson (3.20a, b): the load inside r moves the surface towards the axis.
             inside = np.where(r > 0, self.pressure.resultant(r) / np.where(r > 0, r, 1.0), 0.0)
             u_r, u_z = -(1 - 2 * nu) * (1 + nu) / E * inside, (1 - nu**2) / E * self.pressure.sink(r)
             if not self.coatings:
                 return u_r, u_z
-        k, weight = self._wavenumbers(z or 2 * self.coatings[0][2], float(r.max(initial=0.0)))
-        solid = LayeredHalfSpace(self.coatings, self.substrate, k)
-        bare = LayeredHalfSpace((), (float(solid.E[0]), float(solid.nu[0])), k) if z == 0 else None
-        A = _difference(solid, bare, z, layer, "normal")
-        weighted = weight * k * self.pressure.transform(k)
+        k, weighted, (A,) = self._waves(r, z, layer, "normal")
         J = _bessel(k, r, highest=1)
         return u_r - (weighted * A.U) @ J[1], u_z + (weighted * A.w) @ J[0]
 
@@ -103,27 +98,35 @@ class HankelField:
             total += self._homogeneous_surface(r, theta)
             if not self.coatings:
                 return total
-            reach = 2 * self.coatings[0][2]
-        else:
-            reach = z
-        k, weight = self._wavenumbers(reach, float(r.max(initial=0.0)))
-        solid = LayeredHalfSpace(self.coatings, self.substrate, k)
-        bare = LayeredHalfSpace((), (float(solid.E[0]), float(solid.nu[0])), k) if z == 0 else None
-        weighted = weight * k * self.pressure.transform(k)
-        loads = {"normal": 1.0} | (
-            {"shear": self.friction, "antiplane": self.friction} if self.friction else {}
-        )
-        amplitudes = {load: _difference(solid, bare, z, layer, load) for load in loads}
+        loads = ("normal", "shear", "antiplane") if self.friction else ("normal",)
+        k, weighted, (normal, *tangential) = self._waves(r, z, layer, *loads)
         step = max(1, CHUNK // k.size)
         for start in range(0, r.size, step):
             part = slice(start, start + step)
             J = _bessel(k, r[part], highest=3 if self.friction else 2)
-            total[:, :, part] += _normal(amplitudes["normal"], weighted, J, theta[part])
+            total[:, :, part] += _normal(normal, weighted, J, theta[part])
             if self.friction:
                 total[:, :, part] += self.friction * _sliding(
-                    amplitudes["shear"], amplitudes["antiplane"], weighted, J, theta[part]
+                    tangential[0], tangential[1], weighted, J, theta[part]
                 )
         return total
+
+    def _waves(self, r: Array, z: float, layer: int, *loads: str) -> tuple[Array, Array, list[Amplitudes]]:
+        """Wavenumbers, weights of the integrals with k phat(k), amplitudes of each load at depth ``z``.
+
+        On the surface the amplitudes are those in excess of the homogeneous solid of the top material.
+        """
+        k, weight = self._wavenumbers(z or 2 * self.coatings[0][2], float(r.max(initial=0.0)))
+        solid = LayeredHalfSpace(self.coatings, self.substrate, k)
+        found = [solid.amplitudes(z, layer, load) for load in loads]
+        if z == 0:
+            bare = LayeredHalfSpace((), (float(solid.E[0]), float(solid.nu[0])), k)
+            known = [bare.amplitudes(z, 0, load) for load in loads]
+            found = [
+                Amplitudes(**{name: getattr(A, name) - getattr(B, name) for name in vars(A)})
+                for A, B in zip(found, known, strict=True)
+            ]
+        return k, weight * k * self.pressure.transform(k), found
 
     def _wavenumbers(self, reach: float, r: float) -> tuple[Array, Array]:
         """Gauss panels up to tail/reach, no wider than the oscillation of J(kr) cos(ka), finer near 0."""
@@ -153,14 +156,10 @@ class HankelField:
         return sigma
 
 
-def _difference(
-    solid: LayeredHalfSpace, bare: LayeredHalfSpace | None, z: float, layer: int, load: str
-) -> Amplitudes:
-    full = solid.amplitudes(z, layer, load)
-    if bare is None:
-        return full
-    known = bare.amplitudes(z, 0, load)
-    return Amplitudes(**{name: getattr(full, name) - getattr(known, name) for name in vars(full)})
+def _planes(z: Array, layers: NDArray[np.int_]) -> Iterator[tuple[NDArray[np.bool_], float, int]]:
+    """The points at each depth of each layer: where they are, the depth, the layer."""
+    for depth, layer in sorted(set(zip(z.ravel().tolist(), layers.ravel().tolist(), strict=True))):
+        yield (z == depth) & (layers == layer), depth, layer
 
 
 def _bessel(k: Array, r: Array, highest: int) -> list[Array]:

@@ -1,7 +1,5 @@
 """Hertz contact of a rigid sphere on a homogeneous elastic half-space.
 
-The reference that every uncoated case is held against: closed form, no mesh, no iteration.
-
 Axes: origin at first contact, ``z`` into the solid. Stress is positive in tension, pressure positive in
 compression, hence sigma_zz = -p at z = 0. SI units.
 
@@ -17,7 +15,7 @@ from numpy.typing import ArrayLike
 from verification.problem.arrays import Array
 from verification.problem.contact import NotClaimed
 
-__all__ = ["Hertz", "HertzUncertainty"]
+__all__ = ["Hertz", "HertzContact", "HertzUncertainty"]
 
 
 @dataclass(frozen=True)
@@ -31,8 +29,11 @@ class HertzUncertainty:
 
 
 @dataclass(frozen=True)
-class Hertz:
-    """Sphere of ``radius`` [m] under ``load`` [N] on a solid of ``E`` [Pa], ``nu``."""
+class HertzContact:
+    """Sphere of ``radius`` [m] under ``load`` [N] on a solid of ``E`` [Pa], ``nu``: its size and pressure.
+
+    Raises ValueError naming the quantity that is out of range.
+    """
 
     radius: float
     load: float
@@ -86,6 +87,18 @@ class Hertz:
         r = np.hypot(x, y)
         return self.peak_pressure * np.sqrt(np.maximum(1 - (r / self.contact_radius) ** 2, 0))
 
+    def pressure_uncertainty(self, x: ArrayLike, y: ArrayLike = 0.0) -> Array:
+        """Zero [Pa]: exact."""
+        return np.zeros(np.broadcast_shapes(np.shape(x), np.shape(y)))
+
+    def stress_uncertainty(self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None) -> Array:
+        """Zero [Pa]: exact."""
+        return np.zeros((3, 3, *np.broadcast_shapes(np.shape(x), np.shape(y), np.shape(z))))
+
+
+class Hertz(HertzContact):
+    """Stress and surface displacement without friction."""
+
     def surface_displacement(self, r: ArrayLike) -> Array:
         """u_z at z = 0 [m], positive into the solid. Johnson (3.41a), (3.42a)."""
         a, p0 = self.contact_radius, self.peak_pressure
@@ -121,11 +134,12 @@ class Hertz:
         # (1 - s^3)/r^2 is 0/0 on the axis, where its limit is 3 / (2 (1 + z^2)) for s -> 1.
         near = r < 1e-4
         ring = np.where(near, 1.5 / (1 + z**2), (1 - s**3) / np.where(near, 1.0, r**2))
-        lens = w2 * s / _or_one(w2 * w2 + z**2) * s**2
+        size = np.where((size := w2 * w2 + z**2) == 0, 1.0, size)
+        lens = w2 * s / size * s**2
         lens = np.where(w2 == 0, np.sqrt(np.maximum(-d, 0.0)), lens)
         radial = (1 - 2 * nu) / 3 * ring + lens + s * (w2 * (1 - nu) / (1 + w2) + (1 + nu) * w * arc - 2)
         hoop = -(1 - 2 * nu) / 3 * ring - s * (2 * nu + w2 * (1 - nu) / (1 + w2) - (1 + nu) * w * arc)
-        shear = -r * z**2 * w / _or_one(w2 * w2 + z**2) / (1 + w2)
+        shear = -r * z**2 * w / size / (1 + w2)
         sigma = np.zeros((3, 3, *x.shape))
         mean, deviator = p0 * (radial + hoop) / 2, p0 * (radial - hoop) / 2
         sigma[0, 0] = mean + deviator * np.cos(2 * theta)
@@ -156,15 +170,3 @@ class Hertz:
     def displacement(self, x: ArrayLike, y: ArrayLike, z: ArrayLike) -> Array:
         """No claim is made below the surface; raises NotClaimed."""
         raise NotClaimed("the closed form claims no displacement field; see surface_displacement")
-
-    def pressure_uncertainty(self, x: ArrayLike, y: ArrayLike = 0.0) -> Array:
-        """Zero [Pa]: exact."""
-        return np.zeros(np.broadcast_shapes(np.shape(x), np.shape(y)))
-
-    def stress_uncertainty(self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None) -> Array:
-        """Zero [Pa]: exact."""
-        return np.zeros((3, 3, *np.broadcast_shapes(np.shape(x), np.shape(y), np.shape(z))))
-
-
-def _or_one(values: Array) -> Array:
-    return np.where(values == 0, 1.0, values)

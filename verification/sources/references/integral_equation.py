@@ -13,7 +13,6 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.polynomial import legendre
 from numpy.typing import ArrayLike
 from scipy.optimize import brentq
 
@@ -21,15 +20,15 @@ from verification.problem.arrays import Array, Coatings
 from verification.problem.contact import NotClaimed
 from verification.sources.references.axisymmetric_pressure import AbelPressure
 from verification.sources.references.hankel import HankelField
-from verification.sources.references.layered import LayeredHalfSpace, bending_length
-from verification.sources.references.quadrature import wavenumber_panels
+from verification.sources.references.layered import LayeredHalfSpace, bending_length, contact_modulus
+from verification.sources.references.quadrature import gauss_legendre, wavenumber_panels
 
 __all__ = ["ExactSolution", "ExactUncertainty", "solve"]
 
 
 @dataclass(frozen=True)
 class ExactUncertainty:
-    """Absolute, SI: what changes when every quadrature is made coarser by a quarter."""
+    """Absolute, SI: twice the change when every quadrature is made coarser by a quarter."""
 
     contact_radius: float
     approach: float
@@ -48,7 +47,7 @@ class ExactDiagnostics:
 
 @dataclass(frozen=True, eq=False)
 class ExactSolution:
-    """Contact and stresses; ``coarser`` is the companion its uncertainty is read from."""
+    """Contact and stresses; the difference from ``coarser`` gives the uncertainty."""
 
     abel: AbelPressure
     approach: float
@@ -77,10 +76,10 @@ class ExactSolution:
         if self.coarser is None:
             return None
         names = ("contact_radius", "approach", "peak_pressure")
-        spread = {
+        U = {
             n: 2 * abs(getattr(self, n) - getattr(self.coarser, n)) + 1e-12 * getattr(self, n) for n in names
         }
-        return ExactUncertainty(**spread, budget=tuple((n, "quadrature", u) for n, u in spread.items()))
+        return ExactUncertainty(**U, budget=tuple((n, "quadrature", u) for n, u in U.items()))
 
     @property
     def _rounding(self) -> float:
@@ -102,14 +101,10 @@ class ExactSolution:
     def pressure_uncertainty(self, x: ArrayLike, y: ArrayLike = 0.0) -> Array:
         """Absolute [Pa]; raises ValueError where no companion was solved."""
         a, coarser = self.abel.a, self._companion()
-        spread = (
-            2 * np.abs(self.pressure(x, y) - coarser.pressure(x, y)) + self._rounding * self.peak_pressure
-        )
+        U = 2 * np.abs(self.pressure(x, y) - coarser.pressure(x, y)) + self._rounding * self.peak_pressure
         # The vertical tangent at the edge turns an uncertain radius into an uncertain pressure.
         edge = np.abs(np.hypot(x, y) - a) <= 2 * abs(a - coarser.abel.a)
-        return np.where(
-            edge, np.maximum(spread, np.sqrt(abs(1 - coarser.abel.a / a)) * self.peak_pressure), spread
-        )
+        return np.where(edge, np.maximum(U, np.sqrt(abs(1 - coarser.abel.a / a)) * self.peak_pressure), U)
 
     def stress_uncertainty(self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None) -> Array:
         """Absolute [Pa], shape (3, 3) + points; raises ValueError where no companion was solved."""
@@ -134,7 +129,7 @@ def solve(
 ) -> ExactSolution:
     """Contact of a rigid sphere of ``radius`` [m] under ``load`` [N]; arguments as in CoatedContact.
 
-    nodes : Gauss-Legendre points in the contact; more are taken where a coating is thin.
+    nodes : Gauss-Legendre points in the contact; more where a coating is thin.
     Raises ValueError when no contact radius between 1e-3 and 1e3 of the Hertz radius carries the load.
     """
     fine = _solve(radius, load, coatings, substrate, friction, nodes, 16, 36.0)
@@ -154,10 +149,10 @@ def _solve(
     panel: int,
     tail: float,
 ) -> ExactSolution:
-    E1, nu1 = coatings[0][:2] if coatings else substrate
-    E_star = E1 / (1 - nu1**2)
+    E_star = contact_modulus(coatings, substrate)
     guess = _radius_guess(radius, load, E_star, coatings, substrate)
-    s, weight = _gauss(_contact_nodes(nodes, guess, coatings))
+    x_i, w_i = gauss_legendre(_contact_nodes(nodes, guess, coatings))
+    s, weight = 0.5 * (1 + x_i), 0.5 * w_i
     k, k_weight = _kernel_wavenumbers(coatings, substrate, guess, panel, tail)
     M = LayeredHalfSpace(coatings, substrate, k).compliance if coatings else np.ones_like(k)
     kernel = k_weight * (M - 1)
@@ -220,14 +215,8 @@ def _contact_nodes(nodes: int, a: float, coatings: Coatings) -> int:
 def _kernel_wavenumbers(
     coatings: Coatings, substrate: tuple[float, float], a: float, panel: int, tail: float
 ) -> tuple[Array, Array]:
-    """Gauss panels up to where M - 1 ~ (k h)^2 exp(-2 k h) has died; finer near 0."""
+    """Gauss panels up to where M - 1 ~ (k h)^2 exp(-2 k h) is negligible; finer near 0."""
     if not coatings:
         return np.ones(1), np.zeros(1)
     end = (tail + 2 * np.log(tail)) / (2 * coatings[0][2])
     return wavenumber_panels(end, 0.5 / bending_length(coatings, substrate), 3.0 / a, panel)
-
-
-def _gauss(n: int) -> tuple[Array, Array]:
-    """Gauss-Legendre on [0, 1]."""
-    x, w = legendre.leggauss(n)
-    return 0.5 * (1 + x), 0.5 * w

@@ -1,4 +1,4 @@
-"""Thin layers on a rigid base and thick coatings in the limits where their stiffness is simple.
+"""Stiffness of thin layers on a rigid base, or of thick coatings, in closed form.
 
 Thin, compressible: the layer is a bed of springs, p = M u/h with the oedometric modulus M = E (1 - nu) /
 ((1 + nu)(1 - 2 nu)). Thin, incompressible: the layer is a film that has to be squeezed out sideways,
@@ -11,6 +11,7 @@ Mechanics (2018), chapter 18. Thick: Hertz of the coating, then what the interfa
 
 import numpy as np
 
+from verification.problem.arrays import Coatings
 from verification.sources.references.layered import LayeredHalfSpace, bending_length
 from verification.sources.references.quadrature import wavenumber_panels
 
@@ -29,12 +30,10 @@ def squeezed_film(a: float, E: float, h: float) -> tuple[float, float]:
     return 3 * np.pi * G * a**4 / (8 * h**3), np.pi * G * a**6 / (32 * h**3)
 
 
-def thick(
-    a: float, coatings: tuple[tuple[float, float, float], ...], substrate: tuple[float, float]
-) -> tuple[float, float]:
+def thick(a: float, coatings: Coatings, substrate: tuple[float, float]) -> tuple[float, float]:
     """kappa of a flat punch on a thick coating: Hertz's 1, then 1/(1 + (2/pi) a int_0^inf (M - 1) dk).
 
-    The kernel of the integral equation taken for constant under the punch.
+    First order in a/h: the kernel of the integral equation is constant under the punch.
     """
     end = 40.0 / coatings[0][2]
     k, weight = wavenumber_panels(end, 0.5 / bending_length(coatings, substrate), 0.5 / coatings[0][2], 16)

@@ -1,7 +1,7 @@
 """Response of a layered half-space to surface tractions, wavenumber by wavenumber.
 
 State vectors and surface impedances: in each layer the equations of elasticity are dy/dz = k N y, whose
-propagator is known in closed form; the impedance of all that lies below is carried up through the layers.
+propagator is known in closed form; the impedance of everything below is propagated up through the layers.
 Nothing is shared with the Airy functions or Papkovich potentials of the methods under verification.
 
 Frame of the wave vector: L along k, T across it, e^{ikL} understood, real amplitudes from
@@ -10,16 +10,16 @@ Frame of the wave vector: L along k, T across it, e^{ikL} understood, real ampli
     U' = T/G - k w,            w' = [nu k U + (1-2nu) S/(2G)]/(1-nu),
     T' = -k s_LL,              S' = k T,          s_LL = [nu S - 2G k U]/(1-nu),   s_TT = nu (s_LL + S)
 
-Kausel and Roesset, Bull. Seism. Soc. Am. 71 (1981) 1743-1761, for the idea; written out for statics here.
+Kausel and Roesset, Bull. Seism. Soc. Am. 71 (1981) 1743-1761, for waves; derived for statics here.
 """
 
 from dataclasses import dataclass
 
 import numpy as np
 
-from verification.problem.arrays import Array
+from verification.problem.arrays import Array, Coatings
 
-__all__ = ["Amplitudes", "LayeredHalfSpace", "bending_length"]
+__all__ = ["Amplitudes", "LayeredHalfSpace", "bending_length", "contact_modulus"]
 
 
 # Beyond this k h a layer is a half-space to better than rounding (exp(-80) is left of its lower side), while
@@ -45,7 +45,13 @@ class Amplitudes:
     lt: Array
 
 
-def bending_length(coatings: tuple[tuple[float, float, float], ...], substrate: tuple[float, float]) -> float:
+def contact_modulus(coatings: Coatings, substrate: tuple[float, float]) -> float:
+    """E1* = E1/(1 - nu1^2) [Pa] of the material at the surface."""
+    E, nu = coatings[0][:2] if coatings else substrate
+    return E / (1 - nu**2)
+
+
+def bending_length(coatings: Coatings, substrate: tuple[float, float]) -> float:
     """Length over which coatings bend like a plate on their base, h (E1/E2)^(1/3), at least h [m]."""
     stiffest = max(E for E, _, _ in coatings)
     return sum(h for _, _, h in coatings) * max(1.0, stiffest / substrate[0]) ** (1 / 3)
@@ -54,9 +60,7 @@ def bending_length(coatings: tuple[tuple[float, float, float], ...], substrate: 
 class LayeredHalfSpace:
     """Bonded ``coatings`` ((E, nu, thickness), ...) on ``substrate`` (E, nu), solved at wavenumbers ``k``."""
 
-    def __init__(
-        self, coatings: tuple[tuple[float, float, float], ...], substrate: tuple[float, float], k: Array
-    ) -> None:
+    def __init__(self, coatings: Coatings, substrate: tuple[float, float], k: Array) -> None:
         self.k = k
         self.E = np.array([c[0] for c in coatings] + [substrate[0]])
         self.nu = np.array([c[1] for c in coatings] + [substrate[1]])
@@ -86,7 +90,7 @@ class LayeredHalfSpace:
             u = self.down[i] @ u
         k, g, nu = self.k, self.g[layer], self.nu[layer]
         U0, T0 = _decaying(g, nu)
-        c = _sink(k * (z - self.top[layer])) @ np.linalg.solve(U0, u)
+        c = _decay(k * (z - self.top[layer])) @ np.linalg.solve(U0, u)
         y = np.concatenate([U0 @ c, T0 @ c], axis=1)
         if layer < len(self.thickness):
             thin = k * self.thickness[layer] <= THICK
@@ -140,7 +144,7 @@ class LayeredHalfSpace:
             x = self.k * self.thickness[i]
             U0, T0 = _decaying(self.g[i], self.nu[i])
             Z[i] = np.tile(T0 @ np.linalg.inv(U0), (x.size, 1, 1))
-            down[i] = U0 @ _sink(x) @ np.linalg.inv(U0)
+            down[i] = U0 @ _decay(x) @ np.linalg.inv(U0)
             thin = x <= THICK
             P = _propagator(-x[thin], self.g[i], self.nu[i])
             u = P[:, :2, :2] + P[:, :2, 2:] @ Z[i + 1][thin]
@@ -167,7 +171,7 @@ def _in_plane(g: float, nu: float) -> Array:
     )
 
 
-def _sink(x: Array) -> Array:
+def _decay(x: Array) -> Array:
     """Change of the two decaying solutions' coefficients over a depth x/k: exp(-x) [[1, x], [0, 1]]."""
     decay = np.exp(-x)
     return np.stack([np.stack([decay, x * decay], -1), np.stack([0 * x, decay], -1)], -2)

@@ -8,18 +8,17 @@ Unit pressure on a square of side d displaces the origin by K = C / (pi E1*), wh
 The ring integral is that over the square in polar coordinates around the origin: no integrand is singular,
 whether the origin lies inside or outside. M = 1 leaves F = 1/r, the homogeneous solid of Love (1929); M - 1
 dies as exp(-2 k h), so Gauss panels over the edge with Gauss panels over the wavenumber give ten digits.
-Neither Fourier grid nor image nor series: it shares nothing with the conversions it judges.
+No Fourier grid, no image, no series: it shares nothing with the conversions that it checks.
 """
 
 from collections.abc import Callable
 
 import numpy as np
-from numpy.polynomial import legendre
 from scipy.special import j1
 
 from verification.problem.arrays import Array, Coatings
-from verification.sources.references.layered import LayeredHalfSpace, bending_length
-from verification.sources.references.quadrature import wavenumber_panels
+from verification.sources.references.layered import LayeredHalfSpace, bending_length, contact_modulus
+from verification.sources.references.quadrature import gauss_legendre, wavenumber_panels
 
 __all__ = ["over_square", "surface_coefficient"]
 
@@ -36,8 +35,6 @@ def surface_coefficient(
     """
     if min(abs(abs(x) - side / 2), abs(abs(y) - side / 2)) < 1e-6 * side:
         raise ValueError(f"({x:g}, {y:g}) m puts the origin in line with the rim of a square of {side:g} m")
-    E, nu = coatings[0][:2] if coatings else substrate
-    E_star = E / (1 - nu**2)
     C = over_square(x, y, side, lambda r: 1 / r)
     if coatings:
         h = coatings[0][2]
@@ -50,7 +47,7 @@ def surface_coefficient(
 
         # g is singular no nearer than 2 h below the surface, which sets the panels along the edge.
         C += over_square(x, y, side, F, panels=int(np.ceil(side / (2 * h))))
-    return C / (np.pi * E_star)
+    return C / (np.pi * contact_modulus(coatings, substrate))
 
 
 def over_square(x: float, y: float, side: float, F: Callable[[Array], Array], panels: int = 1) -> float:
@@ -59,7 +56,7 @@ def over_square(x: float, y: float, side: float, F: Callable[[Array], Array], pa
     F : of an array of distances from the origin [m].   panels : along each edge, of ``NODES`` points.
     Returns int int_square (r^2 F)'/r dA.
     """
-    s, w = legendre.leggauss(NODES)
+    s, w = gauss_legendre(NODES)
     half = side / (2 * panels)
     t = ((2 * np.arange(panels)[:, None] + 1 + s) * half - side / 2).ravel()
     weight = half * np.tile(w, panels)
@@ -74,6 +71,6 @@ def over_square(x: float, y: float, side: float, F: Callable[[Array], Array], pa
 
 
 def _wavenumbers(reach: float, coatings: Coatings, substrate: tuple[float, float]) -> tuple[Array, Array]:
-    """Gauss panels up to where M - 1 has died, no wider than the oscillation at ``reach``; finer near 0."""
+    """Gauss panels up to exp(-2 k h) = exp(-36), no wider than the oscillation at ``reach``; finer near 0."""
     end = (36 + 2 * np.log(36)) / (2 * coatings[0][2])
     return wavenumber_panels(end, 0.5 / bending_length(coatings, substrate), 8 / reach, NODES)

@@ -3,7 +3,7 @@
     phat(k) = int_0^a q J0(kr) r dr = q a J1(ka)/k
 
 Stress and displacement as in ``hankel``; the surface of the homogeneous solid in closed form, Johnson,
-Contact Mechanics (1985), (3.29): no grid, no elements, no edge to resolve.
+Contact Mechanics (1985), (3.29).
 """
 
 from dataclasses import dataclass
@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.special import ellipe, ellipkm1, j1
 
-from verification.problem.arrays import Array
+from verification.problem.arrays import Array, Coatings
 from verification.sources.references.hankel import HankelField
 
 __all__ = ["DiscSolution", "UniformDisc", "solve_prescribed"]
@@ -75,7 +75,7 @@ class DiscDiagnostics:
 
 @dataclass(frozen=True, eq=False)
 class DiscSolution:
-    """Stresses and displacements; ``coarser`` is the field its uncertainty is read from."""
+    """Stresses and displacements; the difference from ``coarser`` gives the uncertainty."""
 
     disc: UniformDisc
     field: HankelField
@@ -98,7 +98,7 @@ class DiscSolution:
 
     @property
     def uncertainty(self) -> DiscUncertainty:
-        """What changes when every quadrature is made coarser by a quarter, twice."""
+        """Twice the change when every quadrature is made coarser by a quarter."""
         return DiscUncertainty(float(self.displacement_uncertainty(0.0, 0.0, 0.0)[2]))
 
     @property
@@ -142,13 +142,13 @@ def solve_prescribed(
     *,
     pressure: float,
     load_radius: float,
-    coatings: tuple[tuple[float, float, float], ...],
+    coatings: Coatings,
     substrate: tuple[float, float],
     friction: float = 0.0,
     nodes: int = 16,
     tail: float = 36.0,
 ) -> DiscSolution:
-    """A layered half-space under ``pressure`` [Pa] on a disc of ``load_radius`` [m]; others as elsewhere.
+    """A layered half-space under ``pressure`` [Pa] on a disc of ``load_radius`` [m], as in PrescribedLoad.
 
     Raises ValueError where there is friction.
     """

@@ -48,7 +48,8 @@ def test_page_needs_nothing_from_outside_and_names_the_failed_point(folder):
     assert not re.search(r'(?:src|href)="(?!data:|#)', page)
     assert "no luck" in page
     assert "35 points solved, 1 could not be" in page
-    assert "Admissible: h = " in page
+    assert "admissible at every friction" in page
+    assert "admissible h [µm]" in page
 
 
 def test_the_same_table_gives_the_same_figures(folder):

@@ -4,7 +4,7 @@ from verification.judging.verdict import Outcome
 from verification.regression.comparison import RunComparison
 from verification.regression.drift import State
 from verification.report.sections.baseline import MOST, drift_table, state_cell
-from verification.report.tables.cells import Cell, Part, Row, Section, Table
+from verification.report.tables.cells import Cell, Part, Row, Section, Table, number
 from verification.report.tables.labels import pair_label
 from verification.report.tables.matrix import outcome_cell
 from verification.report.tables.numbers import factor, scientific, seconds
@@ -14,7 +14,7 @@ __all__ = ["comparison_page", "comparison_sentence"]
 
 
 def comparison_sentence(found: RunComparison) -> str:
-    """What changed from the first run to the second, in one sentence."""
+    """Changes from the first run to the second, in one sentence."""
     worse = sum(change.worse for change in found.verdicts)
     changed = f"{len(found.verdicts)} verdicts changed" if found.verdicts else "No verdict changed"
     changed += f", {worse} of them no longer AGREES" if worse else ""
@@ -23,19 +23,19 @@ def comparison_sentence(found: RunComparison) -> str:
     largest = max((c.change for c in found.cases if c.change is not None), default=None)
     drifted = f"{moved} of {total} numbers drifted" if moved else f"all {total} numbers are the same"
     if any(case.state is State.GONE or case.state is State.NEW for case in found.cases) and not moved:
-        drifted = "no number that both have drifted"
+        drifted = "no common number drifted"
     by = f", by at most {scientific(largest)} of their scale" if largest else ""
     return f"{changed}; {drifted}{by}."
 
 
 def comparison_page(found: RunComparison) -> str:
     """The whole page as text."""
-    facts = [("first run", found.places[0]), ("second run", found.places[1])]
+    facts = [("first run", found.paths[0]), ("second run", found.paths[1])]
     facts += [("first started", found.started[0]), ("second started", found.started[1])]
     sections = [
         Section("verdicts", "Verdicts", [_verdicts(found)]),
         Section("numbers", "Numbers", [_numbers(found)]),
-        Section("versions", "Versions", [_versions(found)]),
+        Section("versions", "Provenance", [_versions(found)]),
         Section("times", "Times", [Part("", [_times(found)])]),
     ]
     return render_sections("coatcheck compare", comparison_sentence(found), facts, sections)
@@ -43,7 +43,7 @@ def comparison_page(found: RunComparison) -> str:
 
 def _verdicts(found: RunComparison) -> Part:
     if not found.verdicts:
-        return Part("Every comparison has the verdict it had.")
+        return Part("Every comparison has the same verdict in both runs.")
     rows = [
         Row(
             Cell(change.case),
@@ -59,41 +59,41 @@ def _verdicts(found: RunComparison) -> Part:
         for change in sorted(found.verdicts, key=lambda change: not change.worse)
     ]
     columns = ["case", "first", "second", "quantity", "line", "between", "reason in the second"]
-    return Part("", [Table("Comparisons whose verdict changed, what became worse first.", columns, rows)])
+    return Part(
+        "", [Table("Comparisons whose verdict changed, the changes for the worse first.", columns, rows)]
+    )
 
 
 def _numbers(found: RunComparison) -> Part:
     rows = []
     for case in found.cases:
         counts = [case.count(state) for state in (State.SAME, State.DRIFTED, State.GONE, State.NEW)]
-        cells = [state_cell(case), *(Cell(str(count), float(count)) for count in counts)]
-        rows.append(
-            Row(Cell(case.name, note=case.title), [*cells, Cell(scientific(case.change), case.change)])
-        )
+        cells = [state_cell(case), *(number(count, str) for count in counts)]
+        rows.append(Row(Cell(case.name, note=case.title), [*cells, number(case.change)]))
     table = Table(
         "Every point of every profile of the second run against the first.",
         ["case", "state", "same", "drifted", "gone", "new", "largest change"],
         rows,
     )
-    # Cases that only one run has are told above.
+    # Cases of only one run have their rows above.
     both = [c for c in found.cases if {d.state for d in c.drifts} - {State.NEW, State.GONE}]
     moved = [(c, d) for c in both for d in c.drifts if d.state is not State.SAME]
-    text = "" if len(moved) <= MOST else f"{len(moved)} profiles are not what they were."
+    text = "" if len(moved) <= MOST else f"{len(moved)} profiles differ."
     return Part(text, [table, *([drift_table(moved)] if moved else [])])
 
 
 def _versions(found: RunComparison) -> Part:
     if not found.versions:
-        return Part("Both runs stand on the same command, commit, machine, packages.")
+        return Part("Both runs have the same command, commit, machine, packages.")
     rows = [Row(Cell(name), [Cell(then), Cell(now)]) for name, then, now in found.versions]
-    return Part("", [Table("What the two runs stand on where it differs.", ["", "first", "second"], rows)])
+    return Part("", [Table("Differences of provenance.", ["", "first", "second"], rows)])
 
 
 def _times(found: RunComparison) -> Table:
     rows = []
     for name, then, now in found.seconds:
         ratio = Cell("–") if then is None or now is None else Cell(factor(now, then), now / max(then, 1e-9))
-        rows.append(Row(Cell(name), [Cell(seconds(then), then), Cell(seconds(now), now), ratio]))
+        rows.append(Row(Cell(name), [number(then, seconds), number(now, seconds), ratio]))
     return Table("Seconds of each case.", ["case", "first", "second", "second over first"], rows)
 
 

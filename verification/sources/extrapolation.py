@@ -1,17 +1,19 @@
-"""A solution in a limit that a method refuses, by extrapolation: nu = 1/2, or a base as good as rigid."""
+"""Extrapolation to limits that a method does not support: nu = 1/2, or a rigid base."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
 from operator import attrgetter
+from types import SimpleNamespace
 from typing import Any, TypeVar
 
 import numpy as np
 
 from verification.problem.arrays import Array
 from verification.problem.contact import CoatedContact, PrescribedLoad, Solution
+from verification.problem.quantity import QUANTITIES, SCALARS
 
-__all__ = ["eased", "towards_limits"]
+__all__ = ["extrapolated", "short_of_limit"]
 
 Problem = TypeVar("Problem", bound=CoatedContact | PrescribedLoad)
 Solver = Callable[[CoatedContact | PrescribedLoad], Solution]
@@ -19,21 +21,21 @@ STEP = 1e-3  # of Poisson's ratio
 STIFFEST = 1e4  # base over softest coating
 
 
-def towards_limits(problem: CoatedContact | PrescribedLoad, solve: Solver) -> Solution:
-    """The solution as nu -> 1/2 and E of a stiff base is reached; that of ``solve`` where neither is asked.
+def extrapolated(problem: CoatedContact | PrescribedLoad, solve: Solver) -> Solution:
+    """The solution in the incompressible or rigid limit; that of ``solve`` for a problem in neither.
 
-    Carried on along a straight line from t = 1 and 2 to t = 0, with nu = 1/2 - 1e-3 t in the incompressible
-    layers and, under a coating 1e4 times softer, a compliance of the base of 1/E + 1e-4 t / E1. What that
-    leaves out is the second difference over t = 1, 2, 3; it is part of the uncertainty.
+    Linear extrapolation from t = 1 and 2 to t = 0, with nu = 1/2 - 1e-3 t in the incompressible layers and,
+    under a coating 1e4 times softer, a compliance of the base of 1/E + 1e-4 t / E1. The second difference
+    over t = 1, 2, 3 estimates the error of the extrapolation; it is part of the uncertainty.
     """
-    if eased(problem, 1) == problem:
+    if short_of_limit(problem, 1) == problem:
         return solve(problem)
-    near, further, third = (solve(eased(problem, t)) for t in (1, 2, 3))
+    near, further, third = (solve(short_of_limit(problem, t)) for t in (1, 2, 3))
     return _Extrapolated(near, further, third)
 
 
-def eased(problem: Problem, t: int) -> Problem:
-    """The problem at ``t`` steps from its limits; itself where it stands at none."""
+def short_of_limit(problem: Problem, t: int) -> Problem:
+    """The problem ``t`` steps short of its limits; unchanged where it is in none."""
 
     def compressible(nu: float) -> float:
         return nu - STEP * t if nu == 0.5 else nu
@@ -46,42 +48,33 @@ def eased(problem: Problem, t: int) -> Problem:
     return replace(problem, coatings=coatings, substrate=(E, compressible(nu)))
 
 
-@dataclass(frozen=True)
-class _Scalars:
-    contact_radius: float
-    approach: float
-    peak_pressure: float
-    budget: tuple[tuple[str, str, float], ...]
-
-
 @dataclass(frozen=True, eq=False)
 class _Extrapolated:
-    """2 f(1) - f(2), with 2 U + U and the second difference for its uncertainty."""
+    """2 f(1) - f(2) of uncertainty 2 U(1) + U(2) + |second difference|."""
 
     near: Solution
     further: Solution
     third: Solution
 
     def __getattr__(self, name: str) -> Any:
-        if name in ("contact_radius", "approach", "peak_pressure"):
+        if name in SCALARS:
             return 2 * getattr(self.near, name) - getattr(self.further, name)
         if name in ("diagnostics", "surface_nodes"):
             return getattr(self.near, name)
         raise AttributeError(name)
 
     @cached_property
-    def uncertainty(self) -> _Scalars | None:
-        """Of the three scalars; None where the solutions state none."""
+    def uncertainty(self) -> Any:
+        """Uncertainty of the scalars; None where the solutions state none."""
         if self.near.uncertainty is None or self.further.uncertainty is None:
             return None
-        names = ("contact_radius", "approach", "peak_pressure")
         rows, total = [], {}
-        for name in names:
+        for name in (name for name in SCALARS if not QUANTITIES[name].derived):
             own = 2 * getattr(self.near.uncertainty, name) + getattr(self.further.uncertainty, name)
             bend = abs(self._bend(attrgetter(name)))
             rows += [(name, "both solutions", own), (name, "limit", bend)]
             total[name] = own + bend
-        return _Scalars(**total, budget=tuple(rows))
+        return SimpleNamespace(**total, budget=tuple(rows))
 
     def pressure(self, x: Any, y: Any = 0.0) -> Array:
         return 2 * self.near.pressure(x, y) - self.further.pressure(x, y)

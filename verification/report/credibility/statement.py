@@ -1,0 +1,243 @@
+"""Credibility of the verdicts: evidence in eight steps, each figure with its date and commit.
+
+In the order of ASME V&V 10-2006, Guide for Verification and Validation in Computational Solid Mechanics, with
+further requirements of NASA-STD-7009A (2016), Standard for Models and Simulations: limits of use, robustness
+of the result, evidence for each.
+"""
+
+from collections.abc import Sequence
+
+from verification.credibility.independence import shared
+from verification.judging.verdict import Outcome
+from verification.report.credibility.tables import (
+    alarm_table,
+    design_table,
+    import_table,
+    order_table,
+    pair_table,
+    parameter_table,
+    range_table,
+)
+from verification.report.material import Evidence, Material
+from verification.report.sections.accuracy import accuracies, coverage_table
+from verification.report.sections.baseline import baseline_sentence
+from verification.report.tables.cells import Cell, Part, Row, Section, Table
+from verification.report.tables.numbers import plain
+from verification.running.result import CaseResult
+
+__all__ = ["ANCHOR", "figures", "section"]
+
+ANCHOR = "credibility"
+ASSUMED = (
+    "A rigid, parabolic sphere, much larger than the contact; small strains; linear, isotropic, elastic "
+    "layers with nu < 1/2, perfectly bonded, on a half-space; no adhesion, no roughness; Coulomb friction "
+    "q = f p that leaves p unchanged."
+)
+NOT_CLAIMED = (
+    "Validity for a real coating: nothing was compared with an experiment, so this is verification, not "
+    "validation. Detection of an error in the assumptions common to both methods. Accuracy of the surface "
+    "stresses within the unjudged zone around the contact edge. A strict bound by the uncertainty: it is an "
+    "estimate from coarser solutions, and the share in which it covers the true error is given above. "
+    "Detection of other kinds of faults at the rate of those that were planted. The same accuracy outside "
+    "the ranges above."
+)
+
+
+def section(material: Material) -> Section | None:
+    """Eight steps from the intended use to the limits of the claim, under a table of their figures.
+
+    None where no evidence was collected.
+    """
+    results, evidence = material.results, material.evidence
+    if evidence == Evidence():
+        return None
+    contacts = material.contacts
+    parts = [
+        Part(
+            "Evidence for the verdicts of this report, in the order of ASME V&V 10 (Guide for Verification "
+            "and Validation in Computational Solid Mechanics) with further requirements of NASA-STD-7009A. "
+            "Every figure was measured in this run or is read from a record with its date and commit.",
+            [_overview(material)],
+        ),
+        Part(
+            "Deciding whether numerical solutions of one mathematical model are correct within a stated "
+            f"uncertainty. The model: {ASSUMED[0].lower()}{ASSUMED[1:]} Ranges of the problems of this "
+            "run and of the random problems of the false alarm rate:",
+            [range_table(contacts)],
+            title="1. Intended use and limits",
+        ),
+        Part(
+            "Orders of convergence on problems with a known solution: manufactured fields in two bonded "
+            "materials for the finite element operator, exact solutions of the contact for both methods.",
+            [design_table(evidence.orders), order_table(evidence.accuracy)],
+            title="2. Code verification",
+        ),
+        Part(
+            "Every method states an uncertainty U for each number, from coarser solutions of the same "
+            "problem, one for each numerical parameter. U is checked where the exact solution is known: "
+            f"{_bracketed(contacts)}",
+            [coverage_table(contacts), parameter_table(contacts)],
+            title="3. Solution verification",
+        ),
+        Part(
+            _compared(results),
+            [pair_table(results)],
+            title="4. Comparison with references and between methods",
+        ),
+        Part(
+            _independent(evidence), [import_table(evidence.parts)], title="5. Independence of the two methods"
+        ),
+        Part(_faults(evidence), [], title="6. Fault detection"),
+        Part(_alarms(evidence), [alarm_table(evidence.alarms)], title="7. False alarms"),
+        Part(NOT_CLAIMED, title="8. Not claimed"),
+    ]
+    return Section(ANCHOR, "Credibility", parts, evidence.failures)
+
+
+def figures(evidence: Evidence) -> tuple[str, str]:
+    """Fault detection score and false alarm rate as sentences, each with date and commit."""
+    return _faults(evidence), _alarms(evidence)
+
+
+def _overview(material: Material) -> Table:
+    results, info, evidence = material.results, material.info, material.evidence
+    study, baseline = evidence.accuracy, evidence.baseline
+    here = f"this run, {_day(info.started)}, {info.commit or 'no commit'}"
+    good = [one for one in evidence.orders if one.as_designed]
+    invariants = [one for result in results for one in result.invariants]
+    holding = sum(one.outcome is Outcome.AGREES for one in invariants)
+    agreeing, total = _agreeing(results)
+    design = f"{len(good)} of {len(evidence.orders)} manufactured solutions at their design order"
+    refinements = (
+        "not measured in this run"
+        if study is None
+        else f"{len(study.refinements)} refinement studies on exact solutions"
+    )
+    held = f"{holding} of {len(invariants)} invariants hold" if invariants else "not measured"
+    rows = [
+        (
+            "Code verification",
+            f"{design}; {refinements}" if evidence.orders else f"not measured; {refinements}",
+            here,
+        ),
+        ("Solution verification", _bracketed(material.contacts), here),
+        ("Invariants of each solution", held, here),
+        ("Comparison", f"{agreeing} of {total} comparisons agree", here),
+        ("Independence", _short_independence(evidence), here),
+        ("Regression", "not measured" if baseline is None else baseline_sentence(baseline), here),
+        ("Fault detection", *_recorded(_short_faults(evidence), evidence.faults)),
+        ("False alarms", *_recorded(_short_alarms(evidence), evidence.alarms)),
+    ]
+    return Table(
+        "Overview of the evidence.",
+        ["question", "found", "measured"],
+        [Row(Cell(name), [Cell(found, css="words"), Cell(when, css="words")]) for name, found, when in rows],
+    )
+
+
+def _recorded(found: str, record: object) -> tuple[str, str]:
+    return found, "never" if record is None else _when(record)
+
+
+def _when(record: object) -> str:
+    commit = getattr(record, "commit", None) or "no commit"
+    return f"{_day(getattr(record, 'started', ''))}, {commit}"
+
+
+def _day(started: str) -> str:
+    return started[:10]
+
+
+def _agreeing(results: Sequence[CaseResult]) -> tuple[int, int]:
+    verdicts = [verdict for result in results for _, verdict in result.verdicts]
+    return sum(verdict.outcome is Outcome.AGREES for verdict in verdicts), len(verdicts)
+
+
+def _bracketed(results: Sequence[CaseResult]) -> str:
+    found = [item for result in results for item in accuracies(result)]
+    if not found:
+        return "not measured: no case of this run has an exact reference."
+    good = sum(item.covered for item in found)
+    return (
+        f"U covers the true error at every judged point in {good} of {len(found)} quantities "
+        f"({plain(100 * good / len(found), 3)} %)."
+    )
+
+
+def _compared(results: Sequence[CaseResult]) -> str:
+    agreeing, total = _agreeing(results)
+    if not total:
+        return "Nothing was compared in this run."
+    text = f"{agreeing} of {total} comparisons of this run agree."
+    if not any(result.published for result in results):
+        text += " Published results were not part of it: coatcheck run published."
+    return text
+
+
+def _independent(evidence: Evidence) -> str:
+    if not evidence.parts:
+        return "Not measured: the source of the packages could not be read."
+    first, second = evidence.parts[:2]
+    common = ", ".join(shared(first, second)) or "none"
+    both = ", ".join(sorted(set(first.packages) & set(second.packages))) or "none"
+    return (
+        f"{_short_independence(evidence)} Read from the installed source. Packages that both "
+        f"methods use: {both}; modules that both import: {common}. A fault in one of these, in Python "
+        "or in the processor affects both. So does a fault in their common assumptions, in the statement of "
+        "the problem, in the sampling and judging of both; the last two are checked by planted faults and by "
+        "self-tests of the harness."
+    )
+
+
+def _short_independence(evidence: Evidence) -> str:
+    if not evidence.parts:
+        return "not measured"
+    bad = [sentence for part in evidence.parts for sentence in (*part.forbidden, *part.hidden)]
+    counted = sum(part.statements for part in evidence.parts)
+    files = sum(part.files for part in evidence.parts)
+    if bad:
+        return f"{len(bad)} imports are forbidden: {'; '.join(bad[:5])}."
+    whole = f"{counted} imports in {files} files of both methods and the references"
+    return f"None of {whole} is forbidden."
+
+
+def _faults(evidence: Evidence) -> str:
+    record = evidence.faults
+    if record is None:
+        return "Not measured: there is no record of planted faults; make one with: coatcheck faults --record"
+    return (
+        f"{_short_faults(evidence)} Measured {_when(record)}, by coatcheck faults, which also tabulates "
+        "faults against checks. A crash alone does not count as detected. "
+        + ("Those that were not are in the section on planted faults." if record.survivors else "")
+    )
+
+
+def _short_faults(evidence: Evidence) -> str:
+    record = evidence.faults
+    if record is None:
+        return "not measured"
+    return (
+        f"{record.caught} of {len(record.rows)} planted faults are detected, "
+        f"{plain(100 * record.share, 3)} %; {record.as_predicted} of them by the predicted check."
+    )
+
+
+def _alarms(evidence: Evidence) -> str:
+    record = evidence.alarms
+    if record is None:
+        return "Not measured: there is no record of false alarms; make one with: coatcheck alarms --record"
+    return (
+        f"{_short_alarms(evidence)} Measured {_when(record)}, by coatcheck alarms --count {record.problems} "
+        f"--seed {record.seed}. INCONCLUSIVE and a missing result count as alarms, too."
+    )
+
+
+def _short_alarms(evidence: Evidence) -> str:
+    record = evidence.alarms
+    if record is None:
+        return "not measured"
+    return (
+        f"{len(record.alarms)} false alarms in {record.comparisons} comparisons and {record.invariants} "
+        f"invariants of {record.problems} clean random problems; {record.agreeing} of the problems agree "
+        "throughout."
+    )

@@ -1,0 +1,172 @@
+"""Material of a report: results, provenance and other evidence, of a run or read back from one."""
+
+import json
+import shlex
+from collections import Counter
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from datetime import UTC, datetime
+from functools import cached_property
+from pathlib import Path, PurePath
+from typing import Any, TypeVar
+
+from verification.cases.contact import shipped_cases
+from verification.cases.published import published_cases
+from verification.credibility import alarms
+from verification.credibility.accuracy import AccuracyStudy
+from verification.credibility.alarms import AlarmRecord
+from verification.credibility.faults.campaign import RECORD
+from verification.credibility.faults.record import Record, read_record
+from verification.credibility.independence import Part, parts
+from verification.credibility.manufactured import DesignOrder, design_orders
+from verification.regression.baseline import Regression
+from verification.report.tables.lookup import slug
+from verification.running.fields import read_planes
+from verification.running.provenance import machine
+from verification.running.records import decode
+from verification.running.result import CaseResult, RunInfo, from_json, to_json
+from verification.running.self_tests import SelfTest
+from verification.running.store import MAX_BYTES, StoreError, read_bounded, read_checked
+from verification.sampling.plane import Plane
+from verification.study.formulas import EffectiveStudy
+
+__all__ = ["Evidence", "Material", "gather", "rerun_command", "stored_material"]
+
+T = TypeVar("T")
+
+
+@dataclass(frozen=True)
+class Evidence:
+    """What a report shows beside the results; None or () for what is missing, see ``failures``.
+
+    orders, parts : manufactured solutions and imports, measured.   faults, alarms : read from records.
+    accuracy : errors of the methods over resolution.   formulas : effective-modulus formulas.
+    baseline : the change of each number since the baseline.
+    """
+
+    orders: tuple[DesignOrder, ...] = ()
+    parts: tuple[Part, ...] = ()
+    faults: Record | None = None
+    alarms: AlarmRecord | None = None
+    failures: tuple[str, ...] = ()
+    accuracy: AccuracyStudy | None = None
+    baseline: Regression | None = None
+    self_tests: tuple[SelfTest, ...] = ()
+    formulas: EffectiveStudy | None = None
+
+
+def gather(records: Path) -> Evidence:
+    """Evidence of credibility; faults and false alarms as recorded in the directory ``records``."""
+    failures: list[str] = []
+
+    def attempt(what: str, measure: Callable[[], T], otherwise: T) -> T:
+        try:
+            return measure()
+        except Exception as error:  # one row of the page, never the report
+            message = str(error) if isinstance(error, StoreError) else f"{what}: {error}"
+            failures.append(" ".join(message.split())[:300])
+            return otherwise
+
+    return Evidence(
+        attempt("manufactured solutions", design_orders, ()),
+        attempt("imports", parts, ()),
+        attempt("planted faults", lambda: read_record(records / RECORD), None),
+        attempt("false alarms", lambda: alarms.read_record(records), None),
+        tuple(failures),
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class Material:
+    """Everything a report is made from.   planes : stresses below the contact, by name of the case."""
+
+    results: Sequence[CaseResult]
+    info: RunInfo
+    evidence: Evidence = field(default_factory=Evidence)
+    planes: Mapping[str, Plane] = field(default_factory=dict)
+
+    @cached_property
+    def contacts(self) -> list[CaseResult]:
+        """The results of cases that are not published sources."""
+        return [result for result in self.results if not result.published]
+
+    @cached_property
+    def published(self) -> list[CaseResult]:
+        """The results of published sources."""
+        return [result for result in self.results if result.published]
+
+    @cached_property
+    def anchors(self) -> Mapping[CaseResult, str]:
+        """A readable anchor for each case; two cases with one name get different ones."""
+        taken: Counter[str] = Counter()
+        anchors = {}
+        for result in self.results:
+            name = f"case-{slug(result.name)}"
+            taken[name] += 1
+            anchors[result] = name if taken[name] == 1 else f"{name}--{taken[name]}"
+        return anchors
+
+
+def stored_material(folder: Path) -> tuple[Material, bool]:
+    """The material of the run in ``folder``, and whether its evidence is that of the run.
+
+    Where report.json is missing or of other results, as after a run that was stopped, provenance and
+    evidence are those that can be had without it. Raises StoreError.
+    """
+    found = {}
+    for path in sorted((folder / "cases").glob("*.json")):
+        try:
+            result = from_json(read_checked(path))
+        except (KeyError, TypeError, ValueError) as error:
+            message = " ".join(str(error).split())[:100]
+            raise StoreError(f"{path}: of another version ({message}); run the case again") from None
+        found[result.name] = result
+    last = _last_report(folder)
+    order = [case.get("name") for case in last.get("cases", [])]
+    results = [found[name] for name in dict.fromkeys([*(n for n in order if n in found), *found])]
+    planes = read_planes(folder, results)
+    try:
+        if [to_json(result) for result in results] == last["cases"]:
+            info, evidence = decode(RunInfo, last["run"]), decode(Evidence, last["evidence"])
+            return Material(results, info, evidence, planes), True
+    except (KeyError, ValueError):
+        pass
+    times = [path.stat().st_mtime for path in (folder / "cases").glob("*.json")]
+    info = RunInfo(
+        command="coatcheck run, stopped before its report or of several runs",
+        started=datetime.fromtimestamp(min(times, default=0.0), UTC).isoformat(timespec="seconds"),
+        seconds=sum(result.seconds for result in results),
+        jobs=1,
+        commit="not recorded",
+        machine=machine(),
+        versions={},
+    )
+    return Material(results, info, Evidence(), planes), False
+
+
+def _last_report(folder: Path) -> dict[str, Any]:
+    try:
+        data = json.loads(read_bounded(folder / "report.json", MAX_BYTES))
+        return data if isinstance(data, dict) and all(isinstance(c, dict) for c in data["cases"]) else {}
+    except (StoreError, ValueError, KeyError, TypeError, RecursionError):
+        return {}
+
+
+def rerun_command(name: str, command: str) -> str:
+    """The command, quoted for a shell, that solves the case ``name`` again.
+
+    command : that of the run, which tells where a file of the user's own was read from. Where it does not,
+    as after a run that was stopped, the file is named alone.
+    """
+    try:
+        words = shlex.split(command)[2:]
+    except ValueError:
+        words = []
+    own = [word for word in words if PurePath(word).stem == name and PurePath(word).name != name]
+    if own:
+        word = own[0]
+    elif name in words or name in shipped_cases() or name in published_cases():
+        word = name
+    else:
+        word = f"{name}.toml"
+    return f"coatcheck run {shlex.quote(f'./{word}' if word.startswith('-') else word)}"
