@@ -1,12 +1,13 @@
 """Checked input of the semi-analytical method."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-__all__ = ["COARSEST", "Body", "Numerics", "check_control", "check_positive"]
+__all__ = ["COARSEST", "Body", "Numerics", "check_control", "check_finite", "check_positive"]
 
 COARSEST = 33  # patches a side of the coarsest grid
 
@@ -33,6 +34,13 @@ class Numerics:
     threads: int = 1
 
     def __post_init__(self) -> None:
+        for name in ("patches", "max_iterations", "hankel_points", "enlarge", "edge_rounds", "threads"):
+            value = getattr(self, name)
+            if not isinstance(value, (int, np.integer)) or isinstance(value, bool):
+                raise ValueError(f"{name} = {value!r}; it has to be an integer")
+        for name in ("tolerance", "fill"):
+            if not _is_number(getattr(self, name)):
+                raise ValueError(f"{name} = {getattr(self, name)!r}; it has to be a number")
         if self.patches < COARSEST or (self.patches % 2 == 0 and self.edge_rounds > 0):
             raise ValueError(f"patches = {self.patches}; it must be odd and at least {COARSEST}")
         if not 1e-13 <= self.tolerance < 1:
@@ -59,22 +67,17 @@ class Body:
     friction: float
 
     def __post_init__(self) -> None:
-        if not np.isfinite(self.friction):
-            raise ValueError(f"friction = {self.friction:g}; it must be finite")
-        for i, material in enumerate(self.materials):
-            substrate = i == len(self.coatings)
-            what = "the substrate" if substrate else f"coating {i + 1}"
-            if len(material) != (2 if substrate else 3):
-                raise ValueError(
-                    f"{what} is {material!r}; give (E, nu, thickness), (E, nu) for the substrate"
-                )
-            E, nu = material[:2]
-            if not (np.isfinite(E) and E > 0):
-                raise ValueError(f"E = {E:g} Pa of {what}; it must be positive and finite")
-            if not -1 < nu <= 0.5:
-                raise ValueError(f"nu = {nu:g} of {what}; an isotropic solid has -1 < nu <= 0.5")
-            if not substrate:
-                check_positive(**{f"thickness of {what}": material[2]})
+        check_finite(friction=self.friction)
+        if not isinstance(self.coatings, Sequence) or isinstance(self.coatings, str):
+            raise ValueError(f"coatings = {self.coatings!r}; give a tuple of (E, nu, thickness), () for none")
+        for k, coating in enumerate(self.coatings, start=1):
+            if not isinstance(coating, Sequence) or len(coating) != 3:
+                raise ValueError(f"coating {k} = {coating!r}; give (E, nu, thickness)")
+            _check_material(f"of coating {k}", *coating[:2])
+            check_positive(**{f"thickness of coating {k}": coating[2]})
+        if not isinstance(self.substrate, Sequence) or len(self.substrate) != 2:
+            raise ValueError(f"substrate = {self.substrate!r}; give (E, nu)")
+        _check_material("of the substrate", *self.substrate)
 
     @property
     def materials(self) -> tuple[tuple[float, ...], ...]:
@@ -121,11 +124,29 @@ class Body:
         return np.full(z.shape, layer)
 
 
+def check_finite(**values: float) -> None:
+    """Raise ValueError for any value that is not a finite number."""
+    for name, value in values.items():
+        if not (_is_number(value) and np.isfinite(value)):
+            raise ValueError(f"{name} = {value!r}; it has to be a finite number")
+
+
 def check_positive(**values: float) -> None:
     """Raise ValueError for any value that is not a positive, finite number."""
     for name, value in values.items():
-        if not (np.isfinite(value) and value > 0):
-            raise ValueError(f"{name} = {value:g}; it must be positive and finite")
+        if not (_is_number(value) and np.isfinite(value) and value > 0):
+            raise ValueError(f"{name} = {value!r}; it has to be a positive finite number")
+
+
+def _check_material(where: str, E: float, nu: float) -> None:
+    check_positive(**{f"E {where}": E})
+    if not (_is_number(nu) and -1 < nu <= 0.5):
+        raise ValueError(f"nu {where} = {nu!r}; an isotropic solid has -1 < nu <= 0.5")
+
+
+def _is_number(value: object) -> bool:
+    """Whether a value is a real number, a NumPy scalar included: neither a truth value nor text."""
+    return isinstance(value, (int, float, np.integer, np.floating)) and not isinstance(value, bool)
 
 
 def check_control(load: float | None, approach: float | None) -> None:

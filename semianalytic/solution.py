@@ -16,7 +16,7 @@ from scipy.ndimage import maximum_filter
 
 from semianalytic import fields
 from semianalytic.edge_profile import Profile
-from semianalytic.inputs import Body
+from semianalytic.inputs import Body, check_finite
 from semianalytic.level import Level
 from semianalytic.uncertainty import Uncertainty, safety
 
@@ -122,6 +122,7 @@ class Solution:
 
         Raises ValueError unless it is finite.
         """
+        check_finite(friction=friction)
         coarser = None if self.coarser is None else self.coarser.with_friction(friction)
         return replace(self, coarser=coarser, _body=replace(self._body, friction=float(friction)))
 

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from semianalytic import abel, contact, convolution, edge_profile, frf, influence, nested, uncertainty
 from semianalytic.contact import NotConverged
 from semianalytic.grid import Grid, deconvolve, odd, touches_rim
-from semianalytic.inputs import Body, Numerics, check_control, check_positive
+from semianalytic.inputs import Body, Numerics, check_control, check_finite, check_positive
 from semianalytic.level import Indenter, Level
 from semianalytic.solution import Solution
 from semianalytic.uncertainty import WIDER, Uncertainty
@@ -63,7 +63,7 @@ def solve(
     check_positive(radius=radius)
     body = _body(coatings, substrate, friction)
     numerics = Numerics(
-        patches=patches or USUAL,
+        patches=USUAL if patches is None else patches,
         tolerance=tolerance,
         max_iterations=max_iterations,
         conversion=conversion,
@@ -198,8 +198,7 @@ def solve_prescribed(
         patches=patches, conversion=conversion, hankel_points=hankel_points, enlarge=enlarge, threads=threads
     )
     if not callable(pressure):
-        if not np.isfinite(pressure):
-            raise ValueError(f"pressure = {pressure:g}; give a finite one [Pa], or a function of r")
+        check_finite(pressure=pressure)
         pressure = partial(_uniform, float(pressure))
     shape = edge_profile.Prescribed(load_radius, pressure)
 
@@ -235,5 +234,6 @@ def _loaded(grid: Grid, shape: edge_profile.Prescribed, body: Body, numerics: Nu
 
 
 def _body(coatings: Coatings, substrate: Substrate, friction: float) -> Body:
+    Body(coatings, substrate, friction)  # refuses what is no number before it is made one
     layers = tuple(tuple(float(v) for v in coating) for coating in coatings)
     return Body(layers, tuple(float(v) for v in substrate), float(friction))  # type: ignore[arg-type]

@@ -247,3 +247,12 @@ def test_layer_beyond_the_substrate_is_refused():
 def test_unknown_load_is_refused():
     with pytest.raises(ValueError, match="'sideways'"):
         stress_frf([1.0], [0.0], 0, coatings=(), substrate=(1.0, 0.3), load="sideways")
+
+
+@pytest.mark.parametrize("ratio", [1e-8, 1e-4, 1e4, 1e6, 1e8])
+def test_closed_form_keeps_its_digits_at_large_contrast(ratio):
+    """Against the layered system in 60 digits; kh where a stiff coating bends among them."""
+    solid = ((ratio, 0.3, 1.0),), (1.0, 0.25)
+    for k in (1e-9, 1e-6, 1e-3, ratio ** (-1 / 3), 0.1, 1.0, 5.0):
+        exact = direct_solve(k, *solid, "normal")(0.0, 0)[4] / (2 * 0.7)
+        assert compliance(k, *solid) == pytest.approx(exact, rel=1e-12, abs=1e-14)

@@ -449,9 +449,9 @@ def test_stopping_short_raises():
         ({"load": None}, "give either load or approach"),
         ({"approach": 1e-6}, "give either load or approach"),
         ({"coatings": ((E, NU, -1e-6),)}, "thickness of coating 1 = -1e-06"),
-        ({"coatings": ((E, NU, 1e-6), (E, 0.6, 1e-6))}, "nu = 0.6 of coating 2"),
+        ({"coatings": ((E, NU, 1e-6), (E, 0.6, 1e-6))}, "nu of coating 2 = 0.6"),
         ({"coatings": ((E, NU),)}, "give .E, nu, thickness."),
-        ({"substrate": (0.0, NU)}, "E = 0 Pa of the substrate"),
+        ({"substrate": (0.0, NU)}, "E of the substrate = 0.0"),
         ({"friction": float("inf")}, "friction = inf"),
         ({"patches": 128}, "patches = 128"),
         ({"tolerance": 0.0}, "tolerance = 0"),
@@ -462,6 +462,47 @@ def test_stopping_short_raises():
 def test_meaningless_input_is_refused_with_a_message(changes, message):
     with pytest.raises(ValueError, match=message):
         solve(**changes)
+
+
+NO_NUMBERS = [True, np.True_, "1e-3", "text", None, (1.0,), np.array([1.0, 2.0]), {}]
+NO_COATINGS = [None, "text", 5.0, True, np.array([[E, NU, 1e-6]]), {(E, NU, 1e-6)}, iter(())]
+
+
+@pytest.mark.parametrize(
+    ("changes", "quantity"),
+    [
+        *(({"radius": value}, "radius") for value in NO_NUMBERS),
+        *(({"load": value}, "load") for value in NO_NUMBERS if value is not None),
+        *(({"friction": value}, "friction") for value in NO_NUMBERS),
+        *(({"coatings": ((value, NU, 1e-6),)}, "E of coating 1") for value in NO_NUMBERS),
+        *(({"coatings": ((E, value, 1e-6),)}, "nu of coating 1") for value in NO_NUMBERS),
+        *(({"coatings": ((E, NU, value),)}, "thickness of coating 1") for value in NO_NUMBERS),
+        *(({"substrate": (E, value)}, "nu of the substrate") for value in NO_NUMBERS),
+        *(({"coatings": value}, "coatings") for value in NO_COATINGS),
+        ({"coatings": (E, NU, 1e-6)}, "coating 1"),
+        ({"coatings": ("abc",)}, "E of coating 1"),
+        ({"coatings": (np.array([E, NU, 1e-6]),)}, "coating 1"),
+        *(
+            ({"substrate": value}, "substrate")
+            for value in (None, E, (), (E,), (E, NU, 1e-6), np.array([E, NU]))
+        ),
+        *(({"patches": value}, "patches") for value in (True, "65", 65.0)),
+        *(({"tolerance": value}, "tolerance") for value in (True, "1e-8", None)),
+    ],
+)
+def test_input_that_is_no_number_is_refused_by_name(changes, quantity):
+    with pytest.raises(ValueError, match=rf"^{quantity}\b.* = "):
+        solve(**changes)
+
+
+def test_numpy_numbers_are_accepted():
+    plain = solve(coatings=((E, NU, 1e-6),), friction=0.0, patches=65)
+    numbers = solve(
+        coatings=((np.float64(E), np.float64(NU), np.float64(1e-6)),),
+        friction=np.int64(0),
+        patches=np.int64(65),
+    )
+    assert numbers.contact_radius == plain.contact_radius
 
 
 def test_wrong_layers_and_points_above_the_surface_are_refused(coated):
