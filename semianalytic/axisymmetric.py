@@ -109,7 +109,7 @@ def _radial(profiles, body, x, y, z, layer, columns, homogeneous, rest, power: i
     if first.size:
         points, where = np.unique(np.stack([r[first], z[first]]), axis=1, return_inverse=True)
         for out, profile in zip(total, profiles, strict=True):
-            plain, linear = half_space_integrals(profile, *points, power)
+            plain, linear = half_space_integrals(profile, points[0], points[1], power)
             for row, (c, order) in zip(out, columns(homogeneous), strict=True):
                 row[first] = (c[0] * plain[order] + c[1] * linear[order])[where.ravel()]
     if body.coatings and rest is not None:
@@ -184,7 +184,7 @@ def _wavenumbers(reach: float, decay: float) -> tuple[Array, Array]:
     """
     width = min(PHASE / reach, 6 / decay)
     last = TAIL / decay
-    regular = np.linspace(width, last, int(last / width) + 2)[1:] if last > width else []
+    regular = np.linspace(width, last, int(last / width) + 2)[1:] if last > width else np.empty(0)
     edges = np.concatenate([[0], np.geomspace(1e-4 * width, width, 10), regular])
     s, w = legendre.leggauss(NODES)
     half = np.diff(edges)[:, None] / 2

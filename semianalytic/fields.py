@@ -46,8 +46,8 @@ def stress(
                 )
     profiles = {i: level.shape for i, level in enumerate(levels) if isinstance(level.shape, Profile)}
     if profiles:
-        points = tuple(np.asarray(v).ravel() for v in (x, y, z, where))
-        exact = axisymmetric.stress(list(profiles.values()), body, *points)
+        everywhere = tuple(np.asarray(v).ravel() for v in (x, y, z, where))
+        exact = axisymmetric.stress(list(profiles.values()), body, *everywhere)
         for i, components in zip(profiles, exact, strict=True):
             result[i] += subsurface.tensor(components).reshape(3, 3, *z.shape)
     return result
