@@ -41,19 +41,10 @@ PHASE, NODES = 12.0, 16  # of J_m(kr) cos(ka) on a Gauss panel [rad], and its po
 NEAREST = 0.25  # |s|/a at which a path starts that would otherwise start nearer to the origin
 
 
-def stress(
-    profiles: Sequence[Profile],
-    body: Body,
-    x: Array,
-    y: Array,
-    z: Array,
-    layer: Array,
-    *,
-    layers: bool = True,
-) -> Array:
+def stress(profiles: Sequence[Profile], body: Body, x: Array, y: Array, z: Array, layer: Array) -> Array:
     """Stress under each profile with traction q = f p in +x at points (x, y, z) [m] of the layers named.
 
-    x, y, z, layer : (n,).  layers : False leaves out the rest of the response of the layers.
+    x, y, z, layer : (n,).
     Returns xx, yy, zz, xy, xz, yz [Pa], (len(profiles), 6, n).
     """
     friction = body.friction
@@ -67,7 +58,7 @@ def stress(
     def rest(k: Array, depth: Array, number: int, load: frf.Load) -> Array:
         return k * frf.stress_frf(k, depth, number, **body.layers, load=load, excess=number == 0)
 
-    radial = _radial(profiles, body, x, y, z, layer, columns, homogeneous, rest if layers else None, 1)
+    radial = _radial(profiles, body, x, y, z, layer, columns, homogeneous, rest, 1)
     return np.array([point_force.combine_stress(one, *_direction(x, y), friction) for one in radial])
 
 
@@ -99,8 +90,8 @@ def _direction(x: Array, y: Array) -> tuple[Array, Array]:
 def _radial(profiles, body, x, y, z, layer, columns, homogeneous, rest, power: int) -> Array:
     """Radial functions of `point_force` under each profile, (len(profiles), columns, n).
 
-    homogeneous(load) : c, c' of every field, (..., 2).  rest(k, z, layer, load) : k^power F, None without
-    layers.  power : of k besides phat.
+    homogeneous(load) : c, c' of every field, (..., 2).  rest(k, z, layer, load) : k^power F of the layers.
+    power : of k besides phat.
     """
     r = np.hypot(x, y)
     orders = [order for _, order in columns(homogeneous)]
@@ -112,7 +103,7 @@ def _radial(profiles, body, x, y, z, layer, columns, homogeneous, rest, power: i
             plain, linear = half_space_integrals(profile, points[0], points[1], power)
             for row, (c, order) in zip(out, columns(homogeneous), strict=True):
                 row[first] = (c[0] * plain[order] + c[1] * linear[order])[where.ravel()]
-    if body.coatings and rest is not None:
+    if body.coatings:
         for number, decay, at in _groups(body, z, layer):
             k, weight = _wavenumbers(profiles[0].radius + float(r[at].max()), decay)
             phat = weight * np.array([_transform(profile, k) for profile in profiles])

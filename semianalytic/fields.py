@@ -58,14 +58,14 @@ def stress_of_uncertain_edge(
 ) -> Array:
     """Largest change of a stress [Pa] when the edge profile widens or narrows by ``shift`` [m].
 
-    The layers' part, which is smooth, is left out: only the change at the edge itself is a square root.
+    Returns the shape of the points.
     """
     x, y, z, where = np.broadcast_arrays(x, y, z, body.layer_of(z, layer))
     shape = level.shape
     assert isinstance(shape, Profile)
     points = tuple(np.asarray(v).ravel() for v in (x, y, z, where))
     moved = [Profile(shape.radius + s, shape.coefficients) for s in (0.0, -shift, shift)]
-    here, *others = axisymmetric.stress(moved, body, *points, layers=False)
+    here, *others = axisymmetric.stress(moved, body, *points)
     return np.max([np.abs(other - here).max(axis=0) for other in others], axis=0).reshape(z.shape)
 
 

@@ -26,6 +26,7 @@ Array = NDArray[np.floating]
 
 # error of the stress of a given pressure, over its peak, against Hankel quadrature: above 4 patches, below
 EVALUATION = (5e-6, 5e-7)
+NEAR = 8.0  # patches from the edge, within which the error of its radius is felt
 EXACT = 1e-9  # that of an edge profile, and of the small rest by patches
 # likewise of a pressure: its response to the gap the iteration leaves, in proportion to the patches
 RESOLUTION = 1e-7
@@ -233,16 +234,20 @@ class Solution:
         return sigma, np.broadcast_to(total, (3, 3, *change.shape)).copy()
 
     def _uncertain_edge(self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None) -> Array:
-        """Change of the stress [Pa] by the uncertain radius, within three coarser patches of the edge."""
-        coarser, _ = self._companion()
+        """Change of the stress [Pa] by the uncertain radius, within ``NEAR`` patches of the edge.
+
+        Plus what the rest of the pressure may reach in the patch next to the edge, where it is left out: a
+        ring of that width.
+        """
         assert self.uncertainty is not None
         shift = self.uncertainty.contact_radius
         x, y, z = np.broadcast_arrays(*(np.asarray(v, dtype=float) for v in (x, y, z)))
         distance = np.hypot(np.hypot(x, y) - self.contact_radius, z)
-        near = distance < 3 * coarser.diagnostics.patch_size + shift
-        change = np.zeros(z.shape)
+        d = self.diagnostics.patch_size
+        near = distance < NEAR * d + shift
+        change = 4 * np.abs(self._level.rest).max() * d / (d + distance)
         if near.any():
-            change[near] = fields.stress_of_uncertain_edge(
+            change[near] += fields.stress_of_uncertain_edge(
                 self._level, self._body, shift, x[near], y[near], z[near], layer
             )
         return change
