@@ -148,26 +148,24 @@ class Discretisation:
 
         That factor is 2 pi for harmonic 0, pi for harmonic 1. ``materials`` = (E, nu) per layer.
         """
-        A_r, A_z, A_0 = strain_operator(harmonic)
-        fields = A_r.shape[1]
+        operators = strain_operator(harmonic)
+        fields = operators[0].shape[1]
         r = np.asarray(self.basis.global_coordinates())[0]
         weight = r * self.basis.dx
-        triangles, points = weight.shape
-        local = len(self.basis.basis)
         phi = np.stack([np.broadcast_to(np.asarray(b[0]), r.shape) for b in self.basis.basis], axis=-1)
-        dphi = [np.stack([b[0].grad[i] for b in self.basis.basis], axis=-1) for i in (0, 1)]
-        # strain of every (field, shape function) at every quadrature point
-        B = np.zeros((triangles, points, A_r.shape[0], fields, local))
-        for A, shape in ((A_r, dphi[0]), (A_z, dphi[1]), (A_0, phi / r[..., None])):
-            for s, field in zip(*np.nonzero(A), strict=True):
-                B[:, :, s, field] += A[s, field] * shape
-        D = np.stack([elasticity(E, nu, harmonic) for E, nu in materials])[self.mesh.layer]
-        flat = B.reshape(triangles, points, A_r.shape[0], fields * local)
-        stress = np.matmul(D[:, None], flat) * weight[..., None, None]
-        rows = points * A_r.shape[0]
-        K = np.matmul(
-            flat.reshape(triangles, rows, -1).transpose(0, 2, 1), stress.reshape(triangles, rows, -1)
-        )
+        d_r, d_z = (np.stack([b[0].grad[i] for b in self.basis.basis], axis=-1) for i in (0, 1))
+        triangles, _, local = phi.shape
+        D = np.stack([elasticity(E, nu, harmonic) for E, nu in materials])
+        terms = list(zip(operators, (d_r, d_z, phi / r[..., None]), strict=True))
+        # Strain is the sum of A shape over the terms; most entries of A^T D A are zero.
+        K = np.zeros((triangles, fields, local, fields, local))
+        for A, shape in terms:
+            weighted = (shape * weight[..., None]).transpose(0, 2, 1)
+            for other, other_shape in terms:
+                coupling = A.T @ D @ other
+                products = np.matmul(weighted, other_shape)
+                for f, g in np.argwhere(coupling.any(axis=0)):
+                    K[:, f, :, g] += coupling[self.mesh.layer, f, g, None, None] * products
         # 32 bits as in the sparse matrix: it would copy others
         dofs = np.asarray(self.basis.element_dofs, dtype=np.int32).T
         numbers = (np.arange(fields, dtype=np.int32)[:, None] * self.N + dofs[:, None, :]).reshape(

@@ -191,7 +191,9 @@ def refined_mesh(
     solve: Callable[..., Solution] | None = None,
 ) -> Refinement:
     """``problem`` by elements of ``order`` on meshes of each ``quality``; else as ``refined_grid``."""
-    steps = [(name, {"order": order, "quality": name}, None) for name in quality]
+    from fem_reference.solver import QUALITY
+
+    steps = [(name, {"order": order, "size": QUALITY[name]}, None) for name in quality]
     return _refined(problem, "fem_reference", solid, f"order {order}", solve or solve_elements, steps)
 
 
