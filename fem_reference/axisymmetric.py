@@ -39,6 +39,7 @@ from .mesh import MeridianMesh
 
 __all__ = ["ELEMENTS", "Discretisation", "constrained_solve", "elasticity", "strain_operator"]
 
+BLOCK = 64  # triangles whose stiffness is computed together
 ELEMENTS = {2: ElementTriP2, 3: ElementTriP3, 4: ElementTriP4}
 
 
@@ -148,24 +149,30 @@ class Discretisation:
 
         That factor is 2 pi for harmonic 0, pi for harmonic 1. ``materials`` = (E, nu) per layer.
         """
-        operators = strain_operator(harmonic)
-        fields = operators[0].shape[1]
+        A_r, A_z, A_0 = strain_operator(harmonic)
+        fields = A_r.shape[1]
         r = np.asarray(self.basis.global_coordinates())[0]
         weight = r * self.basis.dx
+        triangles, points = weight.shape
+        local = len(self.basis.basis)
         phi = np.stack([np.broadcast_to(np.asarray(b[0]), r.shape) for b in self.basis.basis], axis=-1)
         d_r, d_z = (np.stack([b[0].grad[i] for b in self.basis.basis], axis=-1) for i in (0, 1))
-        triangles, _, local = phi.shape
-        D = np.stack([elasticity(E, nu, harmonic) for E, nu in materials])
-        terms = list(zip(operators, (d_r, d_z, phi / r[..., None]), strict=True))
-        # Strain is the sum of A shape over the terms; most entries of A^T D A are zero.
-        K = np.zeros((triangles, fields, local, fields, local))
-        for A, shape in terms:
-            weighted = (shape * weight[..., None]).transpose(0, 2, 1)
-            for other, other_shape in terms:
-                coupling = A.T @ D @ other
-                products = np.matmul(weighted, other_shape)
-                for f, g in np.argwhere(coupling.any(axis=0)):
-                    K[:, f, :, g] += coupling[self.mesh.layer, f, g, None, None] * products
+        hoop = phi / r[..., None]
+        D = np.stack([elasticity(E, nu, harmonic) for E, nu in materials])[self.mesh.layer]
+        K = np.empty((triangles, fields * local, fields * local))
+        # in blocks that stay in the cache of the processor
+        for begin in range(0, triangles, BLOCK):
+            block = slice(begin, begin + BLOCK)
+            # strain of every (field, shape function) at every quadrature point
+            B = np.zeros((len(K[block]), points, A_r.shape[0], fields, local))
+            for A, shape in ((A_r, d_r[block]), (A_z, d_z[block]), (A_0, hoop[block])):
+                for s, field in zip(*np.nonzero(A), strict=True):
+                    B[:, :, s, field] += A[s, field] * shape
+            flat = B.reshape(-1, points, A_r.shape[0], fields * local)
+            stress = np.matmul(D[block, None], flat) * weight[block, :, None, None]
+            rows = points * A_r.shape[0]
+            transposed = flat.reshape(-1, rows, fields * local).transpose(0, 2, 1)
+            K[block] = np.matmul(transposed, stress.reshape(-1, rows, fields * local))
         # 32 bits as in the sparse matrix: it would copy others
         dofs = np.asarray(self.basis.element_dofs, dtype=np.int32).T
         numbers = (np.arange(fields, dtype=np.int32)[:, None] * self.N + dofs[:, None, :]).reshape(
