@@ -26,7 +26,7 @@ class Command(NamedTuple):
 
     name: str
     place: str
-    said: str
+    summary: str
     examples: tuple[str, ...]
 
 
@@ -118,7 +118,7 @@ BASELINE = (
 
 
 def _epilogue(examples: Sequence[str]) -> str:
-    """What stands below the options of a command: how it is called, how it ends."""
+    """Examples and exit codes, shown below the options of a command."""
     return "Examples:\n\n" + "\n".join(f"    {example}" for example in examples) + f"\n\n{CODES}"
 
 
@@ -126,7 +126,7 @@ def _add(parent: App, command: Command) -> None:
     parent.command(
         f"verification.commands.{command.place}",
         name=command.name,
-        help=command.said,
+        help=command.summary,
         help_epilogue=_epilogue(command.examples),
     )
 

@@ -17,10 +17,10 @@ from verification.commands.common import (
     print_error,
     within_package,
 )
+from verification.credibility.self_tests import self_tests
 from verification.judging.verdict import Outcome
 from verification.regression.baseline import regression
 from verification.regression.record import read_baseline
-from verification.running.self_tests import self_tests
 from verification.running.store import StoreError, locked, read_checked
 
 __all__ = ["report"]

@@ -21,7 +21,7 @@ from pathlib import Path
 from typing import Any
 
 from verification.running.pool import THREAD_VARIABLES, cores
-from verification.running.result import sentence
+from verification.running.result import message_of
 from verification.running.store import StoreError, locked
 from verification.study.cache import Cache, code_version, solve_key
 from verification.study.plan import Solve, Study
@@ -278,7 +278,7 @@ class _Run:
         if error is not None:
             # A solver's failure is an answer; a worker's is not stored, so that the next run solves again.
             killed = type(error).__name__ == "KilledWorker"
-            self.lost[key] = DIED if killed else sentence(error)
+            self.lost[key] = DIED if killed else message_of(error)
             self._note("lost", key, one.source)
             self.count(one)
             return

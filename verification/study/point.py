@@ -15,7 +15,7 @@ from threadpoolctl import threadpool_limits
 from verification.problem.contact import CoatedContact
 from verification.problem.quantity import QUANTITIES
 from verification.running.provenance import versions
-from verification.running.result import sentence
+from verification.running.result import message_of
 from verification.sources.registry import SOURCES
 from verification.study.cache import code_version
 from verification.study.quantities import quantities
@@ -42,7 +42,7 @@ def answer(request: Mapping[str, Any]) -> dict[str, Any]:
             solution = solve(problem, request["numerics"])
             rows = _rows(solution, problem, frictions)
     except Exception as error:  # a point that fails is a row with its message
-        rows = [{"friction": f, "status": "failed", "failure": sentence(error)} for f in frictions]
+        rows = [{"friction": f, "status": "failed", "failure": message_of(error)} for f in frictions]
     return {
         "rows": rows,
         "seconds": time.perf_counter() - begin,

@@ -7,11 +7,11 @@ from verification.commands.common import EXIT
 from verification.commands.run import _code
 from verification.credibility.faults.catalogue import FAULTS
 from verification.credibility.faults.planting import planted
+from verification.credibility.self_tests import SelfTest, self_tests
 from verification.judging.verdict import Outcome
 from verification.regression.baseline import Regression
 from verification.report.credibility.self_tests import section
 from verification.report.material import Evidence, Material
-from verification.running.self_tests import SelfTest, self_tests
 
 PASSED = SelfTest("judging", "verdicts are what they must be", True, "21 known answers")
 FAILED = SelfTest(
