@@ -28,18 +28,6 @@ from scipy.fft import irfft2, next_fast_len, rfft2
 
 from verification.problem.arrays import FloatArray
 
-__all__ = [
-    "BenchRow",
-    "CoatedRow",
-    "PlaneRow",
-    "coated_ratios",
-    "ratios",
-    "run_bench",
-    "run_coated",
-    "run_plane",
-]
-
-
 JUDGE = 1e-6
 ENOUGH = 120.0  # seconds of one measurement after which it is not repeated
 SIZES = (128, 256, 512, 1024, 2048)

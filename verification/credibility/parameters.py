@@ -19,8 +19,6 @@ from verification.sources.exact import solve_exactly
 from verification.sources.registry import METHODS, SOURCES, solvers
 from verification.sources.source import NumericalParameter
 
-__all__ = ["PARAMETERS", "Stated", "Sweep", "places", "probe", "stated", "study", "sweep"]
-
 PARAMETERS = tuple(parameter for source in SOURCES.values() for parameter in source.parameters)
 
 

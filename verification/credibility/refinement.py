@@ -20,18 +20,6 @@ from verification.problem.quantity import SCALARS
 from verification.sources.exact import solve_exactly
 from verification.sources.methods import solve_elements, solve_semianalytic
 
-__all__ = [
-    "QUANTITIES",
-    "Level",
-    "Reference",
-    "Refinement",
-    "failure_message",
-    "order_of",
-    "refined_grid",
-    "refined_mesh",
-    "settled",
-]
-
 QUANTITIES = (*(ALL[name].symbol for name in SCALARS), "pressure", "stress")
 # An error within this factor of the smallest of all levels has stopped falling.
 SETTLED = 3.0

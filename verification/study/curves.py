@@ -14,8 +14,6 @@ from verification.problem.arrays import Array
 from verification.study.quantities import QUANTITIES
 from verification.study.table import SCALARS, SOURCES
 
-__all__ = ["Curve", "Difference", "curves", "differences"]
-
 
 @dataclass(frozen=True, eq=False)
 class Curve:

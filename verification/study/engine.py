@@ -28,8 +28,6 @@ from verification.study.plan import Solve, Study
 from verification.study.point import answer, peak_memory, table_rows
 from verification.study.table import SOURCES, write_table
 
-__all__ = ["Outcome", "SchedulerError", "connected", "run_study", "table_path"]
-
 WINDOW = 3  # solves submitted at a time for each thread of the cluster
 DIED = "every worker that it was submitted to was killed, most likely for lack of memory; use fewer --jobs"
 LOGGERS = ("distributed", "distributed.client", "tornado", "tornado.application")

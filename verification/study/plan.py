@@ -22,8 +22,6 @@ from verification.problem.contact import CoatedContact
 from verification.study.criteria import Criteria
 from verification.study.table import SOURCES
 
-__all__ = ["Solve", "Study", "parse_study", "read_study_file", "shipped_studies", "thicknesses_between"]
-
 STUDIES = Path(__file__).parent.parent / "cases" / "shipped" / "studies"
 MOST_POINTS = 1_000_000
 

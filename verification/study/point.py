@@ -21,8 +21,6 @@ from verification.study.cache import code_version
 from verification.study.quantities import quantities
 from verification.study.table import SCALARS
 
-__all__ = ["answer", "peak_memory", "problem_of", "table_rows"]
-
 
 def answer(request: Mapping[str, Any]) -> dict[str, Any]:
     """Solve ``request`` and find every quantity at each of its frictions.

@@ -29,8 +29,6 @@ from verification.running.store import StoreError, write_atomically
 from verification.sources.registry import EXACT, METHODS
 from verification.study.quantities import QUANTITIES
 
-__all__ = ["COLUMNS", "SCALARS", "SOURCES", "read_columns", "read_study", "write_table"]
-
 # The first solves every point, the others those that are cross-checked.
 SOURCES = (*METHODS, *EXACT)
 # Each scalar of the contact with the scale of the bare substrate that it is given over.

@@ -18,17 +18,6 @@ from verification.running.records import decode, encode
 from verification.running.result import CaseResult
 from verification.running.store import StoreError, read_checked, write_checked
 
-__all__ = [
-    "RECORD",
-    "clean_cases",
-    "clean_folder",
-    "cost",
-    "failed_source",
-    "kept_trial",
-    "record_of",
-    "trial_task",
-]
-
 RECORD = "faults.json"  # its name in a folder of records
 
 

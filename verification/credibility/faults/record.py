@@ -13,20 +13,6 @@ from verification.judging.verdict import Outcome
 from verification.running.records import decode, encode, plain
 from verification.running.store import StoreError, read_checked, write_checked
 
-__all__ = [
-    "PASS_SHARE",
-    "SCHEMA",
-    "Catch",
-    "Record",
-    "Row",
-    "Tally",
-    "from_json",
-    "read_record",
-    "row_of",
-    "to_json",
-    "write_record",
-]
-
 SCHEMA = "coatcheck-faults/2"
 PASS_SHARE = 0.95
 SMALLEST_CHANGE = 1e-12  # of its scale; a smaller change is rounding

@@ -23,8 +23,6 @@ from verification.running.store import read_checked
 from verification.sampling.lines import sample, sample_contact
 from verification.sources.registry import METHODS
 
-__all__ = ["Trial", "clean_path", "try_fault"]
-
 Profiles = dict[tuple[str, str, str], Profile]
 FOR_PUBLISHED = METHODS[:1]  # published tables are compared with the faster method only
 
