@@ -3,7 +3,6 @@
 import time
 from collections.abc import Sequence
 from dataclasses import replace
-from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -49,14 +48,13 @@ def failed_source(clean: Sequence[CaseResult]) -> str:
 
 def trial_task(fault: Fault, output: Path) -> Task[Trial]:
     """The trial of ``fault`` in a process of its own."""
-    path = _path(fault, output)
-    words = (
-        "verification.credibility.faults.campaign:main",
-        fault.name,
-        str(clean_folder(output)),
-        str(path),
-    )
-    return Task(fault.name, words, path, _trial, partial(_failed, fault))
+    path, clean = _path(fault, output), str(clean_folder(output))
+    words = ("verification.credibility.faults.campaign:main", fault.name, clean, str(path))
+
+    def failed(reason: str, seconds: float) -> Trial:
+        return Trial(fault.name, seconds=seconds, failure=reason)
+
+    return Task(fault.name, words, path, _trial, failed)
 
 
 def kept_trial(fault: Fault, output: Path) -> Trial | None:
@@ -99,10 +97,6 @@ def _path(fault: Fault, output: Path) -> Path:
 
 def _trial(data: dict[str, Any]) -> Trial:
     return decode(Trial, data["trial"])
-
-
-def _failed(fault: Fault, reason: str, seconds: float) -> Trial:
-    return Trial(fault.name, seconds=seconds, failure=reason)
 
 
 def main(name: str, clean: str, path: str) -> None:
