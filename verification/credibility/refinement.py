@@ -172,11 +172,7 @@ def refined_grid(
 
 
 def refined_mesh(
-    problem: CoatedContact,
-    order: int,
-    quality: Sequence[str] = ("fast", "default"),
-    *,
-    solid: str = "",
+    problem: CoatedContact, order: int, quality: Sequence[str] = ("fast", "default"), *, solid: str = ""
 ) -> Refinement:
     """``problem`` by elements of ``order`` on meshes of each ``quality``; else as ``refined_grid``."""
     steps = [(name, {"order": order, "quality": name}, None) for name in quality]
