@@ -13,8 +13,6 @@ from cyclopts import App, CycloptsError
 
 from verification.commands.common import STOPPED, print_error
 
-__all__ = ["app", "main"]
-
 CODES = (
     "Exit codes: 0 all agree, 1 disagreement, 2 bad input, 3 no result, 4 inconclusive, 5 all agree but a "
     "number is not that of the baseline, 130 stopped by Ctrl-C."

@@ -16,8 +16,6 @@ from verification.problem.profile import Profile
 from verification.problem.quantity import CURVES, EXTREMES, QUANTITIES, SCALARS
 from verification.sources.registry import PUBLISHED
 
-__all__ = ["PublishedColumn", "columns_of", "si_of"]
-
 
 @dataclass(frozen=True, eq=False)
 class PublishedColumn:

@@ -35,8 +35,6 @@ from verification.running.records import plain
 from verification.running.store import StoreError, locked, write_atomically
 from verification.running.tasks import case_task
 
-__all__ = ["alarms"]
-
 MOST_SHOWN = 12
 
 

@@ -24,8 +24,6 @@ from verification.regression.record import path_in, read_baseline, write_baselin
 from verification.running.store import StoreError, locked
 from verification.running.stored import StoredRun, confirm, read_run
 
-__all__ = ["show", "update"]
-
 
 def update(
     run: Path = Path("reports"),

@@ -10,8 +10,6 @@ from rich.table import Table
 from verification.commands.common import EXIT, AsJson, Flag, print_error, print_json
 from verification.judging.verdict import Outcome
 
-__all__ = ["bench"]
-
 
 def bench(
     *,

@@ -21,36 +21,6 @@ if TYPE_CHECKING:
 
     from verification.running.result import CaseResult, RunInfo
 
-__all__ = [
-    "BAD_INPUT",
-    "BASELINE",
-    "DRIFTED",
-    "EXIT",
-    "RECORDS",
-    "STOPPED",
-    "STYLE",
-    "AsJson",
-    "BaselineFolder",
-    "Flag",
-    "Jobs",
-    "Output",
-    "Quiet",
-    "RecordsFolder",
-    "Resume",
-    "did_you_mean",
-    "exit_code",
-    "named_table",
-    "nearest_run",
-    "no_gmsh",
-    "one_line",
-    "print_error",
-    "print_json",
-    "print_out",
-    "refuse_installed",
-    "run_info",
-    "within_package",
-]
-
 UNBROKEN = 100_000  # columns of a file or pipe
 PACKAGE = Path(verification.__file__).parent
 BASELINE = PACKAGE / "regression" / "shipped"

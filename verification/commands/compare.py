@@ -26,8 +26,6 @@ from verification.running.records import plain
 from verification.running.store import StoreError, write_atomically
 from verification.running.stored import read_run
 
-__all__ = ["compare"]
-
 MOST_SHOWN = 8
 
 

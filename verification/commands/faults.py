@@ -38,8 +38,6 @@ if TYPE_CHECKING:
     from verification.credibility.faults.planting import Fault
     from verification.credibility.faults.record import Record
 
-__all__ = ["faults"]
-
 
 def faults(
     *names: str,

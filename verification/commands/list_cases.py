@@ -6,8 +6,6 @@ from verification.cases.contact import Case, read_case, shipped_cases
 from verification.cases.published import PublishedCase, published_cases, read_published
 from verification.commands.common import AsJson, named_table, print_json, print_out
 
-__all__ = ["list_cases"]
-
 
 def list_cases(*, as_json: AsJson = False) -> int:
     """List the shipped cases with title and source, then the published results with their year."""

@@ -23,8 +23,6 @@ from verification.regression.record import read_baseline
 from verification.running.self_tests import self_tests
 from verification.running.store import StoreError, locked, read_checked
 
-__all__ = ["report"]
-
 
 def report(
     folder: Path = Path("reports"),

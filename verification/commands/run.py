@@ -55,8 +55,6 @@ from verification.running.self_tests import SelfTest, self_tests
 from verification.running.store import StoreError, locked
 from verification.running.tasks import case_task, kept_result, published_task
 
-__all__ = ["run"]
-
 NARROW = 80  # columns
 
 

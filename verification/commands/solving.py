@@ -29,8 +29,6 @@ from verification.running.result import CaseResult
 from verification.running.store import StoreError
 from verification.running.tasks import kept_result
 
-__all__ = ["kept_results", "kept_study", "progress_bar", "solve"]
-
 T = TypeVar("T")
 
 NARROW = 60  # columns

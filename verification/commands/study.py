@@ -37,8 +37,6 @@ from verification.study.plan import Study, read_study_file, shipped_studies
 if TYPE_CHECKING:
     from verification.study.engine import Outcome as StudyOutcome
 
-__all__ = ["thickness"]
-
 
 def thickness(
     plan: str = "default",

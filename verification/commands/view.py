@@ -16,8 +16,6 @@ from verification.problem.quantity import STRESSES
 from verification.running.fields import read_fields
 from verification.running.store import StoreError, write_atomically
 
-__all__ = ["view"]
-
 QUANTITIES = ("von_mises", *STRESSES)
 
 

@@ -19,8 +19,6 @@ from verification.problem.arrays import Coatings
 from verification.sources.references.layered import LayeredHalfSpace, contact_modulus
 from verification.sources.references.quadrature import gauss_legendre, on_panels
 
-__all__ = ["Pressed", "pressed"]
-
 
 @dataclass(frozen=True)
 class Pressed:
