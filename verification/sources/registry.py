@@ -11,11 +11,7 @@ PUBLISHED = "published"  # source of the profiles of a published table
 _OTHER = Style("other", (5.0, 1.5, 1.0, 1.5))
 SOURCES: dict[str, Source] = {
     source.name: source
-    for source in (
-        *METHOD_SOURCES,
-        *REFERENCE_SOURCES,
-        Source(PUBLISHED, Kind.PUBLISHED, PUBLISHED, _OTHER),
-    )
+    for source in (*METHOD_SOURCES, *REFERENCE_SOURCES, Source(PUBLISHED, Kind.PUBLISHED, PUBLISHED, _OTHER))
 }
 
 

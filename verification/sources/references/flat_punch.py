@@ -34,11 +34,7 @@ class Pressed:
 
 
 def pressed(
-    a: float,
-    coatings: Coatings,
-    substrate: tuple[float, float],
-    nodes: int = 60,
-    tail: float = 40.0,
+    a: float, coatings: Coatings, substrate: tuple[float, float], nodes: int = 60, tail: float = 40.0
 ) -> Pressed:
     """Punch and sphere of contact radius ``a`` [m].
 
