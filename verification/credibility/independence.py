@@ -1,4 +1,4 @@
-"""What the two methods and the references import, read from their source as it is installed."""
+"""Imports of the two methods and of the references, read from their installed source."""
 
 import ast
 import sys
@@ -11,7 +11,7 @@ from verification.sources.registry import METHODS, SOURCES
 
 __all__ = ["PARTS", "Part", "imports_of", "parts", "shared"]
 
-# Each part with the packages it must not know.
+# Each part with the packages that it must not import.
 _METHODS = tuple(SOURCES[name].package for name in METHODS)
 PARTS = {name: (*(other for other in _METHODS if other != name), "verification") for name in _METHODS}
 PARTS["verification.sources.references"] = _METHODS
@@ -22,8 +22,8 @@ class Part:
     """Package ``name``: how many ``files`` with how many ``statements`` of import were read.
 
     modules : every module outside the standard library that it imports, its own left out.
-    forbidden : sentences, one for each import of what it must not know.
-    hidden : sentences, one for each import that only running would resolve.
+    forbidden : messages, one for each forbidden import.
+    hidden : messages, one for each import that is resolved only at run time.
     """
 
     name: str
@@ -41,7 +41,7 @@ class Part:
 
 def parts() -> tuple[Part, ...]:
     """Both methods, then the references. Raises ValueError where one is not installed as source."""
-    return tuple(imports_of(name, strangers) for name, strangers in PARTS.items())
+    return tuple(imports_of(name, forbidden_packages) for name, forbidden_packages in PARTS.items())
 
 
 def shared(first: Part, second: Part) -> tuple[str, ...]:
@@ -49,7 +49,7 @@ def shared(first: Part, second: Part) -> tuple[str, ...]:
     return tuple(sorted(set(first.modules) & set(second.modules)))
 
 
-def imports_of(name: str, strangers: tuple[str, ...] = ()) -> Part:
+def imports_of(name: str, forbidden_packages: tuple[str, ...] = ()) -> Part:
     """Read every file of the package ``name``. Raises ValueError where there is no source to read."""
     folder = _folder(name)
     modules: set[str] = set()
@@ -61,8 +61,8 @@ def imports_of(name: str, strangers: tuple[str, ...] = ()) -> Part:
         place = path.relative_to(folder).as_posix()
         for module in _imported(nodes):
             statements += 1
-            for stranger in strangers:
-                if module == stranger or module.startswith(f"{stranger}."):
+            for other in forbidden_packages:
+                if module == other or module.startswith(f"{other}."):
                     forbidden.append(f"{name}/{place} imports {module}")
             top = module.partition(".")[0]
             if top not in sys.stdlib_module_names and not (module + ".").startswith(f"{name}."):
@@ -75,7 +75,7 @@ def _folder(name: str) -> Path:
     spec = find_spec(name)
     places = list(spec.submodule_search_locations or ()) if spec is not None else []
     if not places or not list(Path(places[0]).glob("*.py")):
-        raise ValueError(f"{name}: its source is not here, so what it imports cannot be read")
+        raise ValueError(f"{name}: its source is not installed, so that its imports cannot be read")
     return Path(places[0])
 
 

@@ -1,8 +1,7 @@
-"""Manufactured solutions of the axisymmetric operator: its order of convergence where the answer is known.
+"""Manufactured solutions of the axisymmetric operator: observed against design order of convergence.
 
-Two bonded materials on a unit square, harmonics 0 and 1; the answer is written down first, the forces that
-belong to it are put in, and the operator has to give the answer back, better by its design order as the mesh
-is refined.
+Two bonded materials on a unit square, harmonics 0 and 1. A displacement field is prescribed, its body forces
+are applied, and the error of the computed field has to fall at the design order as the mesh is refined.
 """
 
 from dataclasses import dataclass
@@ -27,14 +26,14 @@ __all__ = [
 ]
 
 CELLS = (4, 8)  # a side
-COARSE = 0.25  # by which meshes this coarse may miss the order they tend to
+COARSE = 0.25  # admissible shortfall of the order on meshes this coarse
 
 
 @dataclass(frozen=True)
 class DesignOrder:
     """Orders of the displacement and of its gradient observed with elements of ``order``.
 
-    By design they are order + 1 and order, in L2.   errors : of the displacement, coarse then fine.
+    The design orders are order + 1 and order, in L2.   errors : of the displacement, coarse then fine.
     """
 
     order: int
@@ -45,12 +44,12 @@ class DesignOrder:
 
     @property
     def as_designed(self) -> bool:
-        """True where both orders come within ``COARSE`` of their design."""
+        """True where neither order is more than ``COARSE`` below its design."""
         return self.displacement > self.order + 1 - COARSE and self.gradient > self.order - COARSE
 
 
 def design_orders(cells: tuple[int, int] = CELLS) -> tuple[DesignOrder, ...]:
-    """Orders 2, 3, 4 in both harmonics, from meshes of ``cells`` a side."""
+    """Observed orders of elements of order 2, 3, 4 in both harmonics, from meshes of ``cells`` a side."""
     found = []
     span = np.log(cells[1] / cells[0])
     for order in (2, 3, 4):

@@ -14,7 +14,7 @@ __all__ = ["comparison_page", "comparison_sentence"]
 
 
 def comparison_sentence(found: RunComparison) -> str:
-    """What changed from the first run to the second, in one sentence."""
+    """Changes from the first run to the second, in one sentence."""
     worse = sum(change.worse for change in found.verdicts)
     changed = f"{len(found.verdicts)} verdicts changed" if found.verdicts else "No verdict changed"
     changed += f", {worse} of them no longer AGREES" if worse else ""
@@ -23,7 +23,7 @@ def comparison_sentence(found: RunComparison) -> str:
     largest = max((c.change for c in found.cases if c.change is not None), default=None)
     drifted = f"{moved} of {total} numbers drifted" if moved else f"all {total} numbers are the same"
     if any(case.state is State.GONE or case.state is State.NEW for case in found.cases) and not moved:
-        drifted = "no number that both have drifted"
+        drifted = "no common number drifted"
     by = f", by at most {scientific(largest)} of their scale" if largest else ""
     return f"{changed}; {drifted}{by}."
 
@@ -35,7 +35,7 @@ def comparison_page(found: RunComparison) -> str:
     sections = [
         Section("verdicts", "Verdicts", [_verdicts(found)]),
         Section("numbers", "Numbers", [_numbers(found)]),
-        Section("versions", "Versions", [_versions(found)]),
+        Section("versions", "Provenance", [_versions(found)]),
         Section("times", "Times", [Part("", [_times(found)])]),
     ]
     return render_sections("coatcheck compare", comparison_sentence(found), facts, sections)
@@ -43,7 +43,7 @@ def comparison_page(found: RunComparison) -> str:
 
 def _verdicts(found: RunComparison) -> Part:
     if not found.verdicts:
-        return Part("Every comparison has the verdict it had.")
+        return Part("Every comparison has the same verdict in both runs.")
     rows = [
         Row(
             Cell(change.case),
@@ -59,7 +59,9 @@ def _verdicts(found: RunComparison) -> Part:
         for change in sorted(found.verdicts, key=lambda change: not change.worse)
     ]
     columns = ["case", "first", "second", "quantity", "line", "between", "reason in the second"]
-    return Part("", [Table("Comparisons whose verdict changed, what became worse first.", columns, rows)])
+    return Part(
+        "", [Table("Comparisons whose verdict changed, the changes for the worse first.", columns, rows)]
+    )
 
 
 def _numbers(found: RunComparison) -> Part:
@@ -73,18 +75,18 @@ def _numbers(found: RunComparison) -> Part:
         ["case", "state", "same", "drifted", "gone", "new", "largest change"],
         rows,
     )
-    # Cases that only one run has are told above.
+    # Cases of only one run have their rows above.
     both = [c for c in found.cases if {d.state for d in c.drifts} - {State.NEW, State.GONE}]
     moved = [(c, d) for c in both for d in c.drifts if d.state is not State.SAME]
-    text = "" if len(moved) <= MOST else f"{len(moved)} profiles are not what they were."
+    text = "" if len(moved) <= MOST else f"{len(moved)} profiles differ."
     return Part(text, [table, *([drift_table(moved)] if moved else [])])
 
 
 def _versions(found: RunComparison) -> Part:
     if not found.versions:
-        return Part("Both runs stand on the same command, commit, machine, packages.")
+        return Part("Both runs have the same command, commit, machine, packages.")
     rows = [Row(Cell(name), [Cell(then), Cell(now)]) for name, then, now in found.versions]
-    return Part("", [Table("What the two runs stand on where it differs.", ["", "first", "second"], rows)])
+    return Part("", [Table("Differences of provenance.", ["", "first", "second"], rows)])
 
 
 def _times(found: RunComparison) -> Table:

@@ -55,10 +55,10 @@ def _suite(root: Element, result: CaseResult, info: RunInfo) -> None:
         text = f"{one.message}\nresidual {scientific(one.value)}, bound {scientific(one.bound)}"
         _mark(item, one.outcome, one.message, text)
     if not result.verdicts:
-        # A case that came to nothing must not vanish from the count.
+        # A case without a result must not vanish from the count.
         item = SubElement(suite, "testcase", classname=_text(result.name), name="case", time="0")
-        said = [f"{s.source}: {s.failure}" for s in result.sources if s.failure is not None]
-        _mark(item, Outcome.NO_RESULT, "the case has no comparison", "\n".join(said))
+        failures = [f"{s.source}: {s.failure}" for s in result.sources if s.failure is not None]
+        _mark(item, Outcome.NO_RESULT, "the case has no comparison", "\n".join(failures))
     suite.set("tests", str(len(suite.findall("testcase"))))
     suite.set("failures", str(len(suite.findall("testcase/failure"))))
     suite.set("errors", str(len(suite.findall("testcase/error"))))

@@ -30,7 +30,7 @@ from verification.report.tables.case import (
     budget_table,
     contact_table,
     diagnostics_table,
-    dominating_knob,
+    dominating_parameter,
     facts,
     layer_table,
     verdict_table,
@@ -63,7 +63,7 @@ SECTIONS: tuple[Callable[[Material], Section | None], ...] = (
     effective.family_section,
     effective.section,
 )
-# A failed source fails every comparison; the figures should still be within reach.
+# A failed source fails every comparison; the list before the figures stays short.
 MOST_FAILING = 6
 
 
@@ -80,12 +80,12 @@ class LineView:
 
 @dataclass(frozen=True)
 class CaseView:
-    """All that the page says of one case."""
+    """Everything on the page about one case."""
 
     anchor: str
     result: CaseResult
     outcome: OutcomeStyle
-    sentence: str
+    summary: str
     command: str
     facts: Sequence[tuple[str, str]]
     sketch: Markup
@@ -147,7 +147,7 @@ def _counts(results: Sequence[CaseResult]) -> list[tuple[OutcomeStyle, int]]:
 
 
 def _summary(results: Sequence[CaseResult]) -> str:
-    """What the run came to, in one sentence."""
+    """The outcome of the run in one sentence."""
     if not results:
         return "No case was run."
     verdicts = [(c, v, result) for result in results for c, v in result.verdicts]
@@ -161,9 +161,11 @@ def _summary(results: Sequence[CaseResult]) -> str:
             f"{len(passed)} of {number} agree throughout; of {len(verdicts)} comparisons {agreeing} agree "
             "within their numerical uncertainty"
         )
-    laws = [one for result in results for one in result.invariants]
-    if laws:
-        text += f"; {sum(one.outcome is Outcome.AGREES for one in laws)} of {len(laws)} invariants hold"
+    invariant = [one for result in results for one in result.invariants]
+    if invariant:
+        text += (
+            f"; {sum(one.outcome is Outcome.AGREES for one in invariant)} of {len(invariant)} invariants hold"
+        )
     stated = [(v.difference, c, r) for c, v, r in verdicts if v.difference is not None]
     if stated:
         largest, claim, result = max(stated, key=lambda item: item[0])
@@ -183,7 +185,7 @@ def _case(material: Material, result: CaseResult) -> CaseView:
         anchor=anchor,
         result=result,
         outcome=OUTCOMES[result.outcome],
-        sentence=_case_sentence(result, len(bad), len(broken)),
+        summary=_case_summary(result, len(bad), len(broken)),
         command=rerun_command(result.name, material.info.command),
         facts=facts(result),
         sketch=sketch(result),
@@ -198,7 +200,7 @@ def _case(material: Material, result: CaseResult) -> CaseView:
         broken=invariants.invariant_table(broken),
         failing=verdict_table(bad, a_h, MOST_FAILING) if bad else None,
         more=max(len(bad) - MOST_FAILING, 0),
-        verdicts=verdict_table(result.verdicts, a_h, knob=partial(dominating_knob, result)),
+        verdicts=verdict_table(result.verdicts, a_h, parameter=partial(dominating_parameter, result)),
         invariants=invariants.invariant_table(result.invariants),
         budget=budget_table(result),
         diagnostics=diagnostics_table(result),
@@ -215,11 +217,13 @@ def _line(result: CaseResult, line: str, anchor: str, file: str) -> LineView:
     )
 
 
-def _case_sentence(result: CaseResult, bad: int, broken: int) -> str:
-    total, laws = len(result.verdicts), len(result.invariants)
+def _case_summary(result: CaseResult, bad: int, broken: int) -> str:
+    total, count = len(result.verdicts), len(result.invariants)
     if not total:
-        return "Nothing could be compared."
+        return "No comparison was possible."
     text = f"{bad} of {total} comparisons do not agree" if bad else f"All {total} comparisons agree"
-    if laws:
-        text += f", {broken} of {laws} invariants do not hold" if broken else f", all {laws} invariants hold"
+    if count:
+        text += (
+            f", {broken} of {count} invariants do not hold" if broken else f", all {count} invariants hold"
+        )
     return text + "."

@@ -1,4 +1,4 @@
-"""A page on paper: PDF through an installed Chromium."""
+"""PDF of a page through an installed Chromium."""
 
 import os
 import shutil
@@ -23,7 +23,7 @@ FLAGS = (
 
 
 class NoBrowser(Exception):
-    """There is no browser to print with, or it does not print; the message is a sentence."""
+    """No browser is installed, or it fails to print."""
 
 
 def browser() -> str | None:
@@ -42,7 +42,7 @@ def printed(page: Path, path: Path, time_limit: float) -> Path:
             "--pdf needs Chromium or Chrome, and none is installed as chromium, chromium-browser or "
             f"google-chrome; {page} is written, and any browser prints it"
         )
-    # As root Chromium runs only without its sandbox; the page is our own, and asks for nothing from outside.
+    # As root Chromium runs only without its sandbox; the page is our own and loads nothing.
     sandbox = ("--no-sandbox",) if hasattr(os, "geteuid") and os.geteuid() == 0 else ()
     with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as folder:
         made = Path(folder) / "report.pdf"

@@ -4,6 +4,7 @@ import ctypes.util
 import hashlib
 import platform
 import subprocess
+from collections.abc import Sequence
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
@@ -23,6 +24,8 @@ PACKAGES = (
     "pydantic",
     "matplotlib",
 )
+
+CODE = (*(SOURCES[name].package for name in METHODS), "verification")
 
 # Shared libraries that the gmsh wheel opens and pip cannot bring, with the Debian/Ubuntu package of each.
 GMSH_LIBRARIES = {
@@ -66,13 +69,17 @@ def commit() -> str | None:
         return None
 
 
-def fingerprint() -> str:
-    """SHA-256 over versions and code of this program: equal where a result would come out the same again."""
-    house = Path(__file__).resolve().parents[2]
-    found = hashlib.sha256(repr(sorted(versions().items())).encode())
-    for package in (*(SOURCES[name].package for name in METHODS), "verification"):
-        for path in sorted((house / package).rglob("*.py")):
-            found.update(path.relative_to(house).as_posix().encode() + b"\0" + path.read_bytes())
+def fingerprint(modules: Sequence[str] = CODE, packages: Sequence[str] = ("python", *PACKAGES)) -> str:
+    """SHA-256 over the source of ``modules`` and the versions of ``packages``.
+
+    Results of equal fingerprints come from the same code; by default that is all of this program.
+    """
+    root, known = Path(__file__).resolve().parents[2], versions()
+    found = hashlib.sha256(repr([(name, known[name]) for name in packages]).encode())
+    for module in modules:
+        place = root.joinpath(*module.split("."))
+        for path in sorted(place.rglob("*.py")) or [place.with_suffix(".py")]:
+            found.update(path.relative_to(root).as_posix().encode() + b"\0" + path.read_bytes())
     return found.hexdigest()
 
 

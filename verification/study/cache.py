@@ -1,8 +1,8 @@
-"""A content-addressed store of solves that checks itself.
+"""A content-addressed store of solves with checksums.
 
-The key of a solve is the SHA-256 of everything that its answer depends on: the request in canonical JSON,
-the source files of the packages that answer, the versions of those that put digits into it. An answer lies in
-a file of that name, written whole or not at all, with its own checksum and the request it belongs to.
+The key of a solve is the SHA-256 of all that its answer depends on: the request in canonical JSON, the source
+files of the modules that answer, the versions of the packages that its digits depend on. An answer is a file
+of that name, written whole or not at all, with its checksum and its request.
 """
 
 import hashlib
@@ -10,11 +10,10 @@ import json
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
-from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
-from verification.running.provenance import versions
+from verification.running.provenance import fingerprint
 from verification.running.store import StoreError, read_checked, write_checked
 from verification.sources.registry import SOURCES
 
@@ -45,20 +44,8 @@ def solve_key(request: Mapping[str, Any]) -> str:
 
 @cache
 def code_version(source: str) -> str:
-    """SHA-256 of the source files behind an answer of ``source``, and of the versions it stands on."""
-    digest = hashlib.sha256()
-    for module in (SOURCES[source].package, *_SEARCH):
-        spec = find_spec(module)
-        assert spec is not None
-        assert spec.origin is not None
-        origin = Path(spec.origin)
-        files = sorted(origin.parent.rglob("*.py")) if origin.name == "__init__.py" else [origin]
-        for path in files:
-            digest.update(f"{module}/{path.name}\n".encode())
-            digest.update(path.read_bytes())
-    found = versions()
-    digest.update(json.dumps({name: found[name] for name in _DIGITS}).encode())
-    return digest.hexdigest()
+    """Fingerprint of the code behind an answer of ``source``."""
+    return fingerprint((SOURCES[source].package, *_SEARCH), _DIGITS)
 
 
 @dataclass(frozen=True)
@@ -68,11 +55,11 @@ class Cache:
     folder: Path
 
     def path(self, key: str) -> Path:
-        """Where the answer of ``key`` lies."""
+        """Path of the answer of ``key``."""
         return self.folder / key[:2] / f"{key}.json"
 
     def has(self, key: str) -> bool:
-        """Whether there is a file for ``key``, whole or not."""
+        """True where there is a file for ``key``, damaged or not."""
         return self.path(key).is_file()
 
     def get(self, key: str, request: Mapping[str, Any]) -> dict[str, Any]:
@@ -80,7 +67,7 @@ class Cache:
         path = self.path(key)
         stored = read_checked(path)
         if stored.get("key") != key or stored.get("request") != json.loads(json.dumps(request)):
-            raise StoreError(f"{path}: holds another solve than its name says; delete it")
+            raise StoreError(f"{path}: holds another solve than its name states; delete it")
         return stored["answer"]
 
     def put(self, key: str, request: Mapping[str, Any], answer: Mapping[str, Any]) -> None:
@@ -91,7 +78,7 @@ class Cache:
 
 
 def _without_nan(value: Any) -> Any:
-    """NaN, which strict JSON lacks, as null."""
+    """``value`` with null for NaN, which strict JSON lacks."""
     if isinstance(value, dict):
         return {key: _without_nan(item) for key, item in value.items()}
     if isinstance(value, list):

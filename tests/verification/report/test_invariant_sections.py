@@ -19,8 +19,8 @@ from verification.report.material import Material
 from verification.report.page import render
 from verification.report.sections.accuracy import coverage_table
 from verification.report.sections.invariants import invariant_cell, invariant_table, section
-from verification.report.sections.parameters import knob_section
-from verification.report.tables.case import dominating_knob
+from verification.report.sections.parameters import parameter_section
+from verification.report.tables.case import dominating_parameter
 from verification.running.result import from_json, to_json
 
 HOLDS = Invariant("load balance", "semianalytic", 1e-7, 1e-5, Outcome.AGREES, "int p dA = W: off by 1e-07")
@@ -98,10 +98,10 @@ def test_page_says_what_is_broken_before_the_problem(slipped):
     assert 'id="case-stiff-coating-invariants"' in page
 
 
-def test_dominating_knob_is_the_largest_share_of_the_less_certain_side():
+def test_dominating_parameter_is_the_largest_share_of_the_less_certain_side():
     result = result_of(contact((2 * STEEL[0], 0.3, 1.0)), points=31)
     found = {
-        (claim.quantity, claim.line): dominating_knob(result, claim, verdict)
+        (claim.quantity, claim.line): dominating_parameter(result, claim, verdict)
         for claim, verdict in result.verdicts
         if claim.between == ("semianalytic", "integral_equation")
     }
@@ -110,7 +110,7 @@ def test_dominating_knob_is_the_largest_share_of_the_less_certain_side():
     claim, verdict = result.verdicts[0]
     rows = tuple(("peak_pressure", knob, value) for knob, value in (("size", 1e3), ("domain", 1e9)))
     sources = tuple(replace(s, budget=rows) for s in result.sources)
-    assert dominating_knob(replace(result, sources=sources), claim, verdict) == "semi-analytical: domain"
+    assert dominating_parameter(replace(result, sources=sources), claim, verdict) == "semi-analytical: domain"
 
 
 def test_coverage_counts_the_quantities_whose_error_lies_within_what_is_stated():
@@ -135,15 +135,15 @@ def knobs():
     return (ladder,), (stated,)
 
 
-def test_knob_section_marks_a_stated_uncertainty_below_the_true_error():
-    section = knob_section(*knobs())
+def test_parameter_section_marks_a_stated_uncertainty_below_the_true_error():
+    section = parameter_section(*knobs())
     totals, orders = section.parts[0].tables
     p0, a = totals.rows
     assert [cell.css for cell in p0.cells[1:3]] == ["flag disagrees", "flag agrees"]
     assert [cell.css for cell in a.cells[1:3]] == ["flag agrees", "flag agrees"]
     assert p0.cells[2].sort == pytest.approx(1.25e-3, rel=1e-3)
     assert [row.cells[0].text for row in orders.rows] == ["2", "1"]
-    assert "holds the true error in 1 of 2 quantities, the sum of the fitted sweeps in 2" in (
+    assert "covers the true error in 1 of 2 quantities, the sum of the fitted uncertainties in 2" in (
         section.parts[0].text
     )
 

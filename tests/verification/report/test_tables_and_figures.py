@@ -19,7 +19,7 @@ from verification.report.sections.accuracy import accuracies, accuracy_sentence
 from verification.report.tables.case import budget_table, contact_table, verdict_table
 from verification.report.tables.csv import embedded, line_csv
 from verification.report.tables.labels import OUTCOMES, pair_style, source_style
-from verification.report.tables.lookup import baseline, contact_radius, difference, judged
+from verification.report.tables.lookup import contact_radius, difference, judged, reference_source
 from verification.report.tables.matrix import verdict_matrix
 from verification.report.tables.numbers import engineering, scientific, seconds, with_uncertainty
 
@@ -71,11 +71,14 @@ def test_fractions_and_times_are_short():
 
 
 def test_the_best_reference_is_the_last_exact_one_that_gave_a_result():
-    assert baseline(result_of(contact(), points=11)) == "hertz"
-    assert baseline(result_of(COATED, points=11)) == "integral_equation"
-    assert baseline(result_of(COATED, failures={"integral_equation": "no"}, points=11)) == "fem_reference"
+    assert reference_source(result_of(contact(), points=11)) == "hertz"
+    assert reference_source(result_of(COATED, points=11)) == "integral_equation"
+    assert (
+        reference_source(result_of(COATED, failures={"integral_equation": "no"}, points=11))
+        == "fem_reference"
+    )
     everything = dict.fromkeys(("semianalytic", "fem_reference", "integral_equation"), "no")
-    assert baseline(result_of(COATED, failures=everything, points=11)) is None
+    assert reference_source(result_of(COATED, failures=everything, points=11)) is None
 
 
 def test_the_worst_verdict_of_a_group_decides_its_cell():

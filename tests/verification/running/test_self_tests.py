@@ -1,7 +1,7 @@
 """The harness answers what is known of it, and a run says so when it does not."""
 
 import pytest
-from synthetic_results import contact, result_of
+from synthetic_results import INFO, contact, result_of
 
 from verification.commands.common.exits import EXIT
 from verification.commands.run import _code
@@ -9,7 +9,8 @@ from verification.credibility.faults.catalogue import FAULTS
 from verification.credibility.faults.planting import planted
 from verification.judging.verdict import Outcome
 from verification.regression.baseline import Regression
-from verification.report.credibility.self_tests import self_test_section
+from verification.report.credibility.self_tests import section
+from verification.report.material import Evidence, Material
 from verification.running.self_tests import SelfTest, self_tests
 
 PASSED = SelfTest("judging", "verdicts are what they must be", True, "21 known answers")
@@ -45,8 +46,9 @@ def test_a_run_is_no_better_than_its_harness(tmp_path):
 
 
 def test_the_report_says_which_answer_was_wrong():
-    section = self_test_section([PASSED, FAILED])
-    assert section.failures == [
+    shown = section(Material([], INFO, Evidence(self_tests=(PASSED, FAILED))))
+    assert shown is not None
+    assert shown.failures == [
         "judging: NaN: AGREES, where it has to be NO_RESULT. The verdicts of this run mean nothing."
     ]
-    assert len(section.parts[0].tables[0].rows) == 2
+    assert len(shown.parts[0].tables[0].rows) == 2

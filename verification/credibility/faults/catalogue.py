@@ -1,73 +1,52 @@
-"""Every planted fault by name, group after group, with the negative controls."""
+"""Every planted fault by name, read from ``lists/``, group after group, with the negative controls."""
 
-from verification.credibility.faults.lists import (
-    conjugate_gradients,
-    conversion_fft,
-    finite_elements,
-    frf,
-    harness,
-    material,
-    references,
-    stress,
-)
-from verification.credibility.faults.planting import Edit, Fault, faults_of
+import ast
+import tomllib
+from pathlib import Path
+from typing import Any
+
+from verification.credibility.faults.planting import Constant, Edit, Fault
+from verification.running.records import decode
 
 __all__ = ["CONTROLS", "FAULTS", "GROUPS", "chosen"]
 
-# The title of each group, in the order of the matrix.
-GROUPS = {
-    "material": "Material",
-    "frf": "Frequency response functions",
-    "conversion_fft": "Conversion and FFT",
-    "conjugate_gradients": "Conjugate gradients",
-    "stress": "Stress",
-    "finite_elements": "Finite elements",
-    "references": "References",
-    "harness": "Harness",
-}
-_MODULES = (
-    material,
-    frf,
-    conversion_fft,
-    conjugate_gradients,
-    stress,
-    finite_elements,
-    references,
-    harness,
+LISTS = Path(__file__).parent / "lists"
+_ORDER = (
+    "material",
+    "frf",
+    "conversion_fft",
+    "conjugate_gradients",
+    "stress",
+    "finite_elements",
+    "references",
+    "harness",
 )
-FAULTS: dict[str, Fault] = {fault.name: fault for module in _MODULES for fault in module.FAULTS}
 
-_CASES = ("01_uncoated_steel", "14_ratio_4_sliding")
-_ALL = ("01_uncoated_steel", "13_uncoated_sliding", "14_ratio_4_sliding", "15_dlc_chromium_sliding")
-_NOTHING = "nothing is planted"
-_control = faults_of("control", "semianalytic", _CASES)
+
+def _listed(group: str) -> tuple[str, dict[str, Fault]]:
+    """Title of a group, and its faults by name; what a fault leaves out is that of its group."""
+    content = tomllib.loads((LISTS / f"{group}.toml").read_text(encoding="utf-8"))
+    common = {"group": group, "where": content["where"], "cases": content["cases"]}
+    faults = [_fault(common | entry) for entry in content["fault"]]
+    return content["title"], {fault.name: fault for fault in faults}
+
+
+def _fault(entry: dict[str, Any]) -> Fault:
+    changes = [
+        Constant(change["target"], ast.literal_eval(change["value"]))
+        if "value" in change
+        else decode(Edit, change)
+        for change in entry.get("changes", ())
+    ]
+    return decode(Fault, entry | {"changes": changes})
+
+
+_GROUPS = {group: _listed(group) for group in _ORDER}
+# The title of each group, in the order of the matrix.
+GROUPS = {group: title for group, (title, _) in _GROUPS.items()}
+FAULTS = {name: fault for _, faults in _GROUPS.values() for name, fault in faults.items()}
 # No check that catches a fault may fail in these trials.
-CONTROLS: dict[str, Fault] = {
-    fault.name: fault
-    for fault in (
-        _control("control_semianalytic", _NOTHING, (), cases=(*_ALL, "10_silver_steel")),
-        _control(
-            "control_finite_elements", _NOTHING, (), where="fem_reference", cases=(*_ALL[:1], *_ALL[2:])
-        ),
-        _control("control_references", _NOTHING, (), where="integral_equation", cases=_ALL),
-        _control(
-            "control_published",
-            _NOTHING,
-            (),
-            where="published",
-            cases=(),
-            published=("kenpave_three_layer_axis", "ahlvin_ulery_1962"),
-        ),
-        # A faulty method is sampled at the points of the clean run, which are not nodes of its own grid where
-        # the fault moves the contact: that alone must raise no alarm.
-        _control(
-            "control_other_grid",
-            "no fault: the grid is 1 % wider, so that no point of comparison is a node of it",
-            (),
-            Edit("semianalytic.solver:solve", "fill: float = 1.12", "fill: float = 1.13"),
-        ),
-    )
-}
+CONTROLS = _listed("control")[1]
 
 
 def chosen(names: tuple[str, ...], group: str | None) -> list[Fault]:

@@ -9,7 +9,7 @@ import inspect
 import linecache
 import sys
 import textwrap
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 from functools import cached_property
@@ -19,7 +19,7 @@ from typing import Any
 
 from verification.sources.registry import METHODS, SOURCES
 
-__all__ = ["PACKAGES", "Constant", "Edit", "Fault", "PlantError", "faults_of", "planted"]
+__all__ = ["PACKAGES", "Constant", "Edit", "Fault", "PlantError", "planted"]
 
 PACKAGES = (*(SOURCES[name].package for name in METHODS), "verification")
 
@@ -70,21 +70,6 @@ class Fault:
     published: tuple[str, ...] = ()
     reason: str = ""
     remedy: str = ""
-
-
-def faults_of(group: str, where: str, cases: tuple[str, ...]) -> Callable[..., Fault]:
-    """Constructor of the faults of ``group``, with ``where`` and ``cases`` unless given.
-
-    It takes name, description, predicted and the changes, then any other field by keyword.
-    """
-
-    def fault(
-        name: str, description: str, predicted: tuple[str, ...], *changes: Edit | Constant, **more: Any
-    ) -> Fault:
-        fields = {"where": where, "cases": cases} | more
-        return Fault(name, group, description, changes=changes, predicted=predicted, **fields)
-
-    return fault
 
 
 @contextmanager

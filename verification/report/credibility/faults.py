@@ -1,4 +1,4 @@
-"""What the checks made of the planted faults: score, matrix, survivors."""
+"""Planted faults: share detected, checks that detect each, those that none detects."""
 
 from collections import Counter
 from collections.abc import Sequence
@@ -15,32 +15,36 @@ from verification.report.templates import render_sections
 
 __all__ = ["faults_page", "faults_section", "faults_sentence", "section"]
 
-# Mark, class and words of each way in which a fault may end.
+# Mark, class and words of each outcome of a planted fault.
 _CATCHES = {
-    Catch.DISAGREES: ("✓ caught", "verdict agrees", "a check that must hold does not"),
+    Catch.DISAGREES: ("✓ detected", "verdict agrees", "a check that must hold does not"),
     Catch.INCONCLUSIVE: (
         "? inconclusive",
         "verdict inconclusive",
         "the uncertainty it leaves exceeds the cap",
     ),
-    Catch.DRIFTED: ("~ baseline", "verdict inconclusive", "a number is not that of the baseline"),
-    Catch.NO_RESULT: ("∅ no result", "verdict no-result", "the source fails, which tells nothing of why"),
+    Catch.DRIFTED: ("~ baseline", "verdict inconclusive", "a number differs from the baseline"),
+    Catch.NO_RESULT: (
+        "∅ no result",
+        "verdict no-result",
+        "the source fails without a reason",
+    ),
     Catch.SURVIVED: ("✗ survived", "verdict disagrees", "every check passes"),
-    Catch.NOT_TRIED: ("∅ not tried", "verdict no-result", "the trial came to nothing"),
+    Catch.NOT_TRIED: ("∅ not tried", "verdict no-result", "the trial failed"),
 }
 
 
 def faults_sentence(record: Record) -> str:
     """The score in one sentence."""
-    said = (
-        f"{record.caught} of {len(record.rows)} planted faults are caught "
+    text = (
+        f"{record.caught} of {len(record.rows)} planted faults are detected "
         f"({plain(100 * record.share, 3)} %), "
-        f"{record.as_predicted} of them by a check that was named for it before it was tried"
+        f"{record.as_predicted} of them by the check predicted before the trial"
     )
     if record.controls:
         number = len(record.controls)
-        said += f"; of {number} trials with nothing planted {len(record.alarms) or 'none'} raised an alarm"
-    return said + "."
+        text += f"; of {number} negative controls {len(record.alarms) or 'none'} raised an alarm"
+    return text + "."
 
 
 def section(material: Material) -> Section | None:
@@ -50,20 +54,22 @@ def section(material: Material) -> Section | None:
 
 
 def faults_section(record: Record) -> Section:
-    """Planted faults as a section of any page: how it was done, the score, the matrix, what survived."""
+    """Planted faults as a section of any page: method, share detected, survivors, checks of each fault."""
     parts = [Part(_method(record)), Part(faults_sentence(record), [_score(record)])]
     if record.survivors:
-        parts.append(Part("What was not caught, why, what would catch it.", [_survivors(record)]))
+        parts.append(
+            Part("Faults that were not detected, with the reason and a possible check.", [_survivors(record)])
+        )
     groups = [(title, [row for row in record.rows if row.group == key]) for key, title in GROUPS.items()]
-    parts.append(Part(_reading(record), [_matrix(rows, title) for title, rows in groups if rows]))
+    parts.append(Part(_explained(record), [_matrix(rows, title) for title, rows in groups if rows]))
     if record.controls:
-        said = "The same trials with nothing planted: whatever is caught here is a false alarm."
-        parts.append(Part(said, [_matrix(record.controls, "Nothing planted")]))
-    failures = [f"{row.name} changes no number; it is not a fault." for row in record.idle]
-    failures += [f"{row.name}, in which nothing is planted, is caught: {row.by}" for row in record.alarms]
+        text = "Negative controls, the same trials with nothing planted: any detection is a false alarm."
+        parts.append(Part(text, [_matrix(record.controls, "Nothing planted")]))
+    failures = [f"{row.name} changes no number, so it is not a fault." for row in record.idle]
+    failures += [f"{row.name}, a negative control, is detected: {row.by}" for row in record.alarms]
     failures += [f"{row.name}: {row.failure}" for row in record.rows if row.failure]
     failures += [
-        f"Without any fault already, so that it is no evidence: {said}" for said in record.failing_clean
+        f"Fails without any fault, so that it is no evidence: {check}" for check in record.failing_clean
     ]
     return Section("faults", "Planted faults", parts, failures)
 
@@ -78,35 +84,38 @@ def faults_page(record: Record) -> str:
         ("machine", record.machine),
         *record.versions.items(),
     )
-    said = faults_sentence(record)
     return render_sections(
-        "coatcheck faults", said, facts, [faults_section(record)], "Written by coatcheck faults."
+        "coatcheck faults",
+        faults_sentence(record),
+        facts,
+        [faults_section(record)],
+        "Written by coatcheck faults.",
     )
 
 
 def _method(record: Record) -> str:
     return (
-        "One mistake at a time is planted in the running code, by exchanging a few words of the function "
-        "concerned, and the checks of the default run are put to what comes out. Only the faulty source is "
-        "solved again, with the default numerics; the others stand as a clean run left them. Tried on "
+        "One fault at a time is planted in the running code by changing a few words of one function, and the "
+        "checks of the default run are applied to the result. Only the faulty source is solved again, with "
+        "the default numerics; the other sources keep the results of a clean run. Date "
         f"{record.started[:10]}, commit {record.commit or 'unknown'}, {seconds(record.core_seconds)} on one "
         "core."
     )
 
 
-def _reading(record: Record) -> str:
-    columns = "; ".join(f"“{title}”: {said}" for title, said in COLUMNS.items())
+def _explained(record: Record) -> str:
+    columns = "; ".join(f"“{title}”: {text}" for title, text in COLUMNS.items())
     blind = sum(_only_coated(row) for row in record.rows)
-    said = (
-        f"{blind} faults pass every comparison of the uncoated cases, with Hertz and Hamilton too, and are "
-        "caught on coated cases alone. "
+    first = (
+        f"{blind} faults pass every comparison of the uncoated cases, including Hertz and Hamilton, and are "
+        "detected on coated cases only. "
         if blind
         else ""
     )
     return (
-        f"{said}Each cell counts the checks that do not pass, of those that were made: ✓ a disagreement, "
-        "? an uncertainty beyond its cap, ∅ no result. An empty cell is a check that was not made, since the "
-        f"fault does not reach it. The columns: {columns}."
+        f"{first}Each cell counts the checks that do not pass, of those that were made: ✓ a disagreement, "
+        "? an uncertainty beyond its cap, ∅ no result. An empty cell: not checked, since the "
+        f"fault does not affect it. The columns: {columns}."
     )
 
 
@@ -134,9 +143,9 @@ def _score(record: Record) -> Table:
         cells.append(Cell(str(named), named))
         rows.append(Row(Cell(title), cells))
     return Table(
-        "How the faults of each group were noticed. Predicted check: by one that was "
-        "named for the fault before the first trial.",
-        ["group", "faults", *(str(catch) for catch in shown), "caught in all", "predicted check"],
+        "Outcome of the faults of each group. Predicted check: detected by the check that was named for the "
+        "fault before the trial.",
+        ["group", "faults", *(str(catch) for catch in shown), "detected", "predicted check"],
         rows,
     )
 
@@ -148,13 +157,13 @@ def _survivors(record: Record) -> Table:
             [
                 _catch_cell(row),
                 Cell(row.description, css="words"),
-                Cell(row.reason or row.failure or "no reason recorded", css="words"),
+                Cell(row.reason or row.failure or "not known", css="words"),
                 Cell(row.remedy or "–", css="words"),
             ],
         )
         for row in record.survivors
     ]
-    columns = ["fault", "outcome", "what is wrong", "why it survives", "what would catch it"]
+    columns = ["fault", "outcome", "fault planted", "reason", "possible check"]
     return Table("Survivors.", columns, rows)
 
 
@@ -170,14 +179,14 @@ def _matrix(rows: Sequence[FaultRow], caption: str) -> Table:
             Cell(scientific(row.change), row.change, note=f"{row.changed}; {seconds(row.seconds)}"),
         ]
         made.append(Row(Cell(row.name, note=row.by), cells))
-    columns = ["fault", "what is wrong", "in", "outcome", "predicted check", *COLUMNS, "change"]
+    columns = ["fault", "fault planted", "in", "outcome", "predicted check", *COLUMNS, "change"]
     spans = [("", 5), ("checks that do not pass", len(COLUMNS)), ("", 1)]
     return Table(caption, columns, made, spans, "faults")
 
 
 def _catch_cell(row: FaultRow) -> Cell:
-    text, css, said = _CATCHES[row.catch]
-    return Cell(text, float(list(Catch).index(row.catch)), css, row.by or said)
+    text, css, meaning = _CATCHES[row.catch]
+    return Cell(text, float(list(Catch).index(row.catch)), css, row.by or meaning)
 
 
 def _seen_cell(seen: Tally | None) -> Cell:

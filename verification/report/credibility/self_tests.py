@@ -1,4 +1,4 @@
-"""The answers of the harness to questions whose answer is known."""
+"""Self-tests of the harness on problems with a known answer."""
 
 from verification.report.material import Material
 from verification.report.tables.cells import Cell, Part, Row, Section, Table
@@ -22,13 +22,11 @@ def section(material: Material) -> Section | None:
         )
         for test in tests
     ]
-    table = Table(
-        "Asked before the first case was solved.", ["part", "passed", "what must hold", "found"], rows
-    )
-    said = (
-        "Methods and references watch each other; what reads the cases, samples the solutions, judges and "
-        "stores is watched by questions whose answer was worked out by hand."
+    table = Table("Made before the first case was solved.", ["part", "passed", "requirement", "found"], rows)
+    text = (
+        "Comparisons check the methods and references. These tests check the parts that read the cases, "
+        "sample the solutions, judge and store, against results worked out by hand."
     )
     bad = [test for test in tests if not test.passed]
-    failures = [f"{test.name}: {test.found}. The verdicts of this run mean nothing." for test in bad]
-    return Section("self-tests", "Self-tests of the harness", [Part(said, [table])], failures)
+    failures = [f"{test.name}: {test.found}. The verdicts of this run are not valid." for test in bad]
+    return Section("self-tests", "Self-tests of the harness", [Part(text, [table])], failures)

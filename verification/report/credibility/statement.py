@@ -1,8 +1,8 @@
-"""The credibility page: what an AGREES of this suite is worth, each figure with where it was measured.
+"""Credibility of the verdicts: evidence in eight steps, each figure with its date and commit.
 
 In the order of ASME V&V 10-2006, Guide for Verification and Validation in Computational Solid Mechanics, with
-what NASA-STD-7009A (2016), Standard for Models and Simulations, asks besides: limits of use, robustness of
-the result, evidence for each.
+further requirements of NASA-STD-7009A (2016), Standard for Models and Simulations: limits of use, robustness
+of the result, evidence for each.
 """
 
 from collections.abc import Sequence
@@ -34,12 +34,12 @@ ASSUMED = (
     "q = f p that leaves p unchanged."
 )
 NOT_CLAIMED = (
-    "That any of this is true of a real coating: nothing here was held against an experiment, so this is "
-    "verification, not validation. That agreement would show an error in what both methods assume. That the "
-    "stresses hold closer to the contact edge on the surface than the zone left unjudged. That an "
-    "uncertainty is a strict bound: it is an estimate from coarser solutions, and the share in which it "
-    "holds the true error stands above. That faults of a kind nobody thought of would be caught at the rate "
-    "of those that were planted. That problems outside the ranges above behave alike."
+    "Validity for a real coating: nothing was compared with an experiment, so this is verification, not "
+    "validation. Detection of an error in the assumptions common to both methods. Accuracy of the surface "
+    "stresses within the unjudged zone around the contact edge. A strict bound by the uncertainty: it is an "
+    "estimate from coarser solutions, and the share in which it covers the true error is given above. "
+    "Detection of other kinds of faults at the rate of those that were planted. The same accuracy outside "
+    "the ranges above."
 )
 
 
@@ -54,27 +54,27 @@ def section(material: Material) -> Section | None:
     contacts = material.contacts
     parts = [
         Part(
-            "What an AGREES of this report is worth, in the order of ASME V&V 10 (Guide for Verification and "
-            "Validation in Computational Solid Mechanics) with what NASA-STD-7009A asks besides. Every "
-            "figure was measured in this run, or is read from a record with its date and commit.",
+            "Evidence for the verdicts of this report, in the order of ASME V&V 10 (Guide for Verification "
+            "and Validation in Computational Solid Mechanics) with further requirements of NASA-STD-7009A. "
+            "Every figure was measured in this run or is read from a record with its date and commit.",
             [_overview(material)],
         ),
         Part(
-            "To decide whether numerical solutions of one mathematical model are right within a stated "
-            f"uncertainty. The model: {ASSUMED[0].lower()}{ASSUMED[1:]} What was solved in this run, and "
-            "what the random problems of the false alarm rate are drawn from:",
+            "Deciding whether numerical solutions of one mathematical model are correct within a stated "
+            f"uncertainty. The model: {ASSUMED[0].lower()}{ASSUMED[1:]} Ranges of the problems of this "
+            "run and of the random problems of the false alarm rate:",
             [range_table(contacts)],
             title="1. Intended use and limits",
         ),
         Part(
-            "Orders of convergence where the answer is known beforehand: manufactured fields in two bonded "
+            "Orders of convergence on problems with a known solution: manufactured fields in two bonded "
             "materials for the finite element operator, exact solutions of the contact for both methods.",
             [design_table(evidence.orders), order_table(evidence.accuracy)],
             title="2. Code verification",
         ),
         Part(
-            "Every method states an uncertainty U for each number, from coarser companions of the same "
-            "problem, one for each knob. Whether U can be believed is seen where the answer is known: "
+            "Every method states an uncertainty U for each number, from coarser solutions of the same "
+            "problem, one for each numerical parameter. U is checked where the exact solution is known: "
             f"{_bracketed(contacts)}",
             [coverage_table(contacts), parameter_table(contacts)],
             title="3. Solution verification",
@@ -89,7 +89,7 @@ def section(material: Material) -> Section | None:
         ),
         Part(_faults(evidence), [], title="6. Fault detection"),
         Part(_alarms(evidence), [alarm_table(evidence.alarms)], title="7. False alarms"),
-        Part(NOT_CLAIMED, title="8. What is not claimed"),
+        Part(NOT_CLAIMED, title="8. Not claimed"),
     ]
     return Section(ANCHOR, "Credibility", parts, evidence.failures)
 
@@ -108,20 +108,20 @@ def _overview(material: Material) -> Table:
     holding = sum(one.outcome is Outcome.AGREES for one in invariants)
     agreeing, total = _agreeing(results)
     design = f"{len(good)} of {len(evidence.orders)} manufactured solutions at their design order"
-    ladders = (
+    refinements = (
         "not measured in this run"
         if study is None
         else f"{len(study.refinements)} refinement studies on exact solutions"
     )
-    laws = f"{holding} of {len(invariants)} laws hold" if invariants else "not measured"
+    held = f"{holding} of {len(invariants)} invariants hold" if invariants else "not measured"
     rows = [
         (
             "Code verification",
-            f"{design}; {ladders}" if evidence.orders else f"not measured; {ladders}",
+            f"{design}; {refinements}" if evidence.orders else f"not measured; {refinements}",
             here,
         ),
         ("Solution verification", _bracketed(material.contacts), here),
-        ("Invariants of each solution", laws, here),
+        ("Invariants of each solution", held, here),
         ("Comparison", f"{agreeing} of {total} comparisons agree", here),
         ("Independence", _short_independence(evidence), here),
         ("Regression", "not measured" if baseline is None else baseline_sentence(baseline), here),
@@ -129,7 +129,7 @@ def _overview(material: Material) -> Table:
         ("False alarms", *_recorded(_short_alarms(evidence), evidence.alarms)),
     ]
     return Table(
-        "The evidence at a glance.",
+        "Overview of the evidence.",
         ["question", "found", "measured"],
         [Row(Cell(name), [Cell(found, css="words"), Cell(when, css="words")]) for name, found, when in rows],
     )
@@ -159,7 +159,7 @@ def _bracketed(results: Sequence[CaseResult]) -> str:
         return "not measured: no case of this run has an exact reference."
     good = sum(item.covered for item in found)
     return (
-        f"U holds the true error at every judged point in {good} of {len(found)} quantities "
+        f"U covers the true error at every judged point in {good} of {len(found)} quantities "
         f"({plain(100 * good / len(found), 3)} %)."
     )
 
@@ -168,10 +168,10 @@ def _compared(results: Sequence[CaseResult]) -> str:
     agreeing, total = _agreeing(results)
     if not total:
         return "Nothing was compared in this run."
-    sentence = f"{agreeing} of {total} comparisons of this run agree."
+    text = f"{agreeing} of {total} comparisons of this run agree."
     if not any(result.published for result in results):
-        sentence += " Numbers that others printed were not part of it: coatcheck run published."
-    return sentence
+        text += " Published results were not part of it: coatcheck run published."
+    return text
 
 
 def _independent(evidence: Evidence) -> str:
@@ -181,11 +181,11 @@ def _independent(evidence: Evidence) -> str:
     common = ", ".join(shared(first, second)) or "none"
     both = ", ".join(sorted(set(first.packages) & set(second.packages))) or "none"
     return (
-        f"{_short_independence(evidence)} Read from the source as it is installed. Packages that both "
-        f"methods stand on: {both}; modules that both import: {common}. A fault in one of these, in Python, "
-        "in the processor, would hit both at once. So would a fault in what both assume, in the statement of "
-        "the problem that both are given, in the sampling and judging that both go through; the last is what "
-        "planted faults and self-tests of the harness are for."
+        f"{_short_independence(evidence)} Read from the installed source. Packages that both "
+        f"methods use: {both}; modules that both import: {common}. A fault in one of these, in Python "
+        "or in the processor affects both. So does a fault in their common assumptions, in the statement of "
+        "the problem, in the sampling and judging of both; the last two are checked by planted faults and by "
+        "self-tests of the harness."
     )
 
 
@@ -196,9 +196,9 @@ def _short_independence(evidence: Evidence) -> str:
     counted = sum(part.statements for part in evidence.parts)
     files = sum(part.files for part in evidence.parts)
     if bad:
-        return f"{len(bad)} imports break the contract: {'; '.join(bad[:5])}."
+        return f"{len(bad)} imports are forbidden: {'; '.join(bad[:5])}."
     whole = f"{counted} imports in {files} files of both methods and the references"
-    return f"None of {whole} crosses their borders."
+    return f"None of {whole} is forbidden."
 
 
 def _faults(evidence: Evidence) -> str:
@@ -206,13 +206,9 @@ def _faults(evidence: Evidence) -> str:
     if record is None:
         return "Not measured: there is no record of planted faults; make one with: coatcheck faults --record"
     return (
-        f"{_short_faults(evidence)} Measured {_when(record)}, by coatcheck faults, which also draws the "
-        "matrix of faults against checks. A crash alone does not count as caught. "
-        + (
-            "The survivors, with the reason and with what would catch them:"
-            if record.survivors
-            else "None survived."
-        )
+        f"{_short_faults(evidence)} Measured {_when(record)}, by coatcheck faults, which also tabulates "
+        "faults against checks. A crash alone does not count as detected. "
+        + ("Those that were not are in the section on planted faults." if record.survivors else "")
     )
 
 
@@ -221,8 +217,8 @@ def _short_faults(evidence: Evidence) -> str:
     if record is None:
         return "not measured"
     return (
-        f"{record.caught} of {len(record.rows)} planted faults are caught, "
-        f"{plain(100 * record.share, 3)} %; {record.as_predicted} of them by the comparison named beforehand."
+        f"{record.caught} of {len(record.rows)} planted faults are detected, "
+        f"{plain(100 * record.share, 3)} %; {record.as_predicted} of them by the predicted check."
     )
 
 
@@ -232,7 +228,7 @@ def _alarms(evidence: Evidence) -> str:
         return "Not measured: there is no record of false alarms; make one with: coatcheck alarms --record"
     return (
         f"{_short_alarms(evidence)} Measured {_when(record)}, by coatcheck alarms --count {record.problems} "
-        f"--seed {record.seed}. An INCONCLUSIVE or a missing result counts as an alarm, too."
+        f"--seed {record.seed}. INCONCLUSIVE and a missing result count as alarms, too."
     )
 
 
@@ -242,6 +238,6 @@ def _short_alarms(evidence: Evidence) -> str:
         return "not measured"
     return (
         f"{len(record.alarms)} false alarms in {record.comparisons} comparisons and {record.invariants} "
-        f"invariants of {record.problems} clean random problems; {record.agreeing} of the "
-        "problems agree throughout."
+        f"invariants of {record.problems} clean random problems; {record.agreeing} of the problems agree "
+        "throughout."
     )

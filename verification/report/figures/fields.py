@@ -1,4 +1,4 @@
-"""Pictures of the stresses below the contact: both methods side by side, beside them their difference."""
+"""Stresses in the plane below the contact: both methods and their difference side by side."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass

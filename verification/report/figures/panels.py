@@ -11,11 +11,11 @@ from verification.report.figures.curves import FLOOR, Curve, Difference, draw
 from verification.report.tables.cells import Panel
 from verification.report.tables.labels import pair_label, pair_style, source_label, source_style
 from verification.report.tables.lookup import (
-    baseline,
     claimed_quantities,
     contact_radius,
     coordinate,
     difference,
+    reference_source,
     scale,
     sources_with_profiles,
 )
@@ -65,8 +65,8 @@ def _on(result: CaseResult, line: str) -> list:
 
 
 def _pairs(result: CaseResult, line: str, quantity: str) -> list[tuple[str, str]]:
-    """The claimed pairs worth a curve: methods among themselves, and whatever meets the best reference."""
-    best = baseline(result)
+    """The claimed pairs that are drawn: methods with each other, sources with the reference source."""
+    best = reference_source(result)
     claimed = [c.between for c, _ in result.verdicts if (c.quantity, c.line) == (quantity, line)]
     return [
         pair
@@ -90,11 +90,11 @@ def _panel(result: CaseResult, line: str, quantity: str) -> Panel:
         found = difference(result, first, second)
         if found is None or first is None:
             continue
-        gap, spread = found
+        gap, uncertainty = found
         failed = verdict.outcome is not Outcome.AGREES and verdict.worst is not None
         worst = verdict.worst / a_h if failed and verdict.worst is not None else None
         vague = verdict.outcome is Outcome.INCONCLUSIVE
-        differences.append(Difference(first.position / a_h, gap, spread, pair_style(pair), worst, vague))
+        differences.append(Difference(first.position / a_h, gap, uncertainty, pair_style(pair), worst, vague))
     cap = min((claim.cap for claim, _ in claims), default=None)
     zones = _unjudged(result, [claim for claim, _ in claims], curves)
     figure = draw(

@@ -1,4 +1,4 @@
-"""A drawing of the layered solid under its sphere, to scale but for the sphere."""
+"""Sketch of the layered solid under its sphere, to scale except the sphere."""
 
 from math import isfinite, log, sqrt
 

@@ -1,4 +1,4 @@
-"""The fields of a case in a window, or as a picture off screen; in a process of its own.
+"""Fields of a case in a window or as a picture off screen; in a process of its own.
 
 VTK without a working OpenGL may end its process beyond recovery, so that of the command line asks this one:
 
@@ -37,7 +37,7 @@ def plotter(fields: Fields, name: str, *, off_screen: bool) -> Any:
         halves = [pv.read(path).clip(normal="y", origin=(0, 0, 0), invert=True) for path in fields.boxes]
         shown.append(("semi-analytical", pv.MultiBlock(halves)))
     if not shown:
-        raise ValueError("neither method left fields of this case")
+        raise ValueError("no method has fields of this case")
     blocks = [block for _, found in shown for block in found]
     known = [n for n in blocks[0].point_data if not n.startswith("displacement")]
     if name not in known:
@@ -60,7 +60,7 @@ def plotter(fields: Fields, name: str, *, off_screen: bool) -> Any:
                 scalars=name,
                 cmap=colours,
                 clim=limits,
-                # Bars of one title are one bar, so that the second picture would have none.
+                # Bars with one title are one bar; the second picture would have none.
                 scalar_bar_args=BAR | {"title": name + number * " "},
             )
             window.add_mesh(micro.outline(), color="black", line_width=1)
@@ -92,7 +92,7 @@ def _near(mesh: Any) -> Any:
     x, _, z = mesh.cell_centers().points.T
     layers = pv.MultiBlock()
     for layer in np.unique(mesh.cell_data["layer"]):
-        # One at a time: a filter makes one point of two at one place, and a jump a smear.
+        # One at a time: filters merge points at one place and smear a jump.
         mine = (mesh.cell_data["layer"] == layer) & (np.abs(x) < 2 * half) & (z < 2 * depth)
         part = mesh.extract_cells(np.flatnonzero(mine))
         for normal, origin in (("x", half), ("-x", -half), ("z", depth)):

@@ -13,10 +13,10 @@ from verification.report.tables.cells import Cell, Part, Row, Section, Table, nu
 from verification.report.tables.labels import source_label
 from verification.report.tables.lookup import (
     GROUPS,
-    baseline,
     difference,
     group_of,
     judged,
+    reference_source,
     sources_with_profiles,
 )
 from verification.report.tables.matrix import case_cell
@@ -83,7 +83,7 @@ def section(material: Material) -> Section | None:
 @lru_cache(maxsize=256)
 def accuracies(result: CaseResult) -> tuple[Accuracy, ...]:
     """Every quantity of every method with an exact counterpart; () where the case has no exact reference."""
-    exact = baseline(result)
+    exact = reference_source(result)
     if exact not in REFERENCES:
         return ()
     edges = {(c.quantity, c.line): c for c, _ in result.verdicts}
@@ -104,16 +104,16 @@ def _accuracy(result: CaseResult, claim: Claim, source: str, exact: str) -> Accu
     found = difference(result, mine, theirs)
     if found is None or mine is None:
         return None
-    error, spread = found
+    error, uncertainty = found
     here = judged(result, claim, mine.position) & np.isfinite(error)
     if not here.any():
         return None
     worst = int(np.argmax(np.where(here, error, -1.0)))
-    if spread is None:
+    if uncertainty is None:
         return Accuracy(source, claim.quantity, claim.line, float(error[worst]), None, None)
-    ratio = np.where(error > 0, spread / np.where(error > 0, error, 1.0), np.inf)
-    smallest = float(np.min(np.where(np.isfinite(spread), ratio, 0.0)[here]))
-    estimate = float(spread[worst])
+    ratio = np.where(error > 0, uncertainty / np.where(error > 0, error, 1.0), np.inf)
+    smallest = float(np.min(np.where(np.isfinite(uncertainty), ratio, 0.0)[here]))
+    estimate = float(uncertainty[worst])
     return Accuracy(source, claim.quantity, claim.line, float(error[worst]), estimate, smallest)
 
 
@@ -236,10 +236,10 @@ def accuracy_sentence(results: Sequence[CaseResult], source: str) -> str:
         return f"{source_label(source).capitalize()}: no case with an exact reference."
     good = sum(item.covered for item in found)
     low = sum(item.ratio is not None and item.ratio < TOO_SMALL for item in found)
-    silent = sum(item.ratio is None for item in found)
-    unstated = f"; in {silent} none is stated" if silent else ""
+    unstated = sum(item.ratio is None for item in found)
+    without = f"; in {unstated} none is stated" if unstated else ""
     share = f"{good} of {len(found)} quantities ({100 * good / len(found):.1f} %)"
     return (
         f"{source_label(source).capitalize()}: the stated uncertainty covers the true error in {share}; "
-        f"in {low} it is below half of it{unstated}."
+        f"in {low} it is below half of it{without}."
     )

@@ -1,4 +1,4 @@
-"""The section on the baseline: what became of each number since it was recorded."""
+"""Comparison with the baseline: the change of each number since it was recorded."""
 
 from collections.abc import Mapping, Sequence
 from math import isfinite
@@ -23,27 +23,27 @@ _STATES = {
 }
 _RULE = (
     f"A number is the same where it differs by at most {scientific(RELATIVE, 1)} of the largest magnitude of "
-    "its profile. Each profile is held by points over its whole length, by its root mean square, and by its "
+    "its profile. Compared of each profile: points over its whole length, its root mean square, and its "
     f"largest stated uncertainty, which may change {FACTOR:g}-fold before it counts as drifted."
 )
 
 
 def state_cell(case: CaseDrift, *, short: bool = False) -> Cell:
-    """What became of a case, as mark and word, or as mark alone; it sorts by how bad it is."""
+    """State of a case as mark and word, or as mark alone; it sorts by severity."""
     mark, css, rank = _STATES[case.state]
     note = f"{case.state}: {case.message or f'largest change {_change(case.change)} of the scale'}"
     return Cell(mark if short else f"{mark} {case.state}", float(rank), f"verdict {css}".strip(), note)
 
 
 def baseline_sentence(found: Regression) -> str:
-    """What the run came to beside its baseline, in one sentence."""
+    """Comparison of the run with its baseline, in one sentence."""
     if found.update is None:
-        return f"There is no baseline in {found.folder}, so this run was held against none."
+        return f"There is no baseline in {found.folder}, so this run was not compared."
     counts = {state: sum(case.count(state) for case in found.cases) for state in State}
-    told = [f"{counts[state]} {state}" for state in (State.SAME, State.DRIFTED, State.GONE, State.NEW)]
+    parts = [f"{counts[state]} {state}" for state in (State.SAME, State.DRIFTED, State.GONE, State.NEW)]
     largest = max((c.change for c in found.cases if c.change is not None), default=None)
     by = f"; the largest change is {_change(largest)} of its scale" if largest is not None else ""
-    return f"{', '.join(told)}, of {sum(counts.values())} numbers{by}."
+    return f"{', '.join(parts)}, of {sum(counts.values())} numbers{by}."
 
 
 def section(material: Material) -> Section | None:
@@ -54,7 +54,7 @@ def section(material: Material) -> Section | None:
     anchors = {result.name: anchor for result, anchor in material.anchors.items()}
     if found.update is None:
         text = (
-            f"{baseline_sentence(found)} A run that is whole, agreeing throughout, becomes one by: "
+            f"{baseline_sentence(found)} A complete run that agrees throughout becomes the baseline by: "
             'coatcheck baseline update --why "..."'
         )
         return Section(ANCHOR, "Baseline", [Part(text)])
@@ -65,8 +65,10 @@ def section(material: Material) -> Section | None:
         Part(f"{baseline_sentence(found)} The baseline in {found.folder} was {made}: “{update.why}”. {_RULE}")
     ]
     if found.other_versions:
-        said = "; ".join(f"{name} {then} then, {now} now" for name, then, now in found.other_versions)
-        parts.append(Part(f"The digits may differ because this run stands on something else: {said}."))
+        differences = "; ".join(
+            f"{name} {then} in the baseline, {now} in this run" for name, then, now in found.other_versions
+        )
+        parts.append(Part(f"The digits may differ because the provenance differs: {differences}."))
     # A case that is gone as a whole has its row above.
     here = [c for c in found.cases if any(d.state is not State.GONE for d in c.drifts)]
     moved = [(c, d) for c in here for d in c.drifts if d.state in (State.DRIFTED, State.GONE)]
@@ -75,7 +77,7 @@ def section(material: Material) -> Section | None:
 
 
 def drift_table(moved: Sequence[tuple[CaseDrift, Drift]]) -> Table:
-    """The profiles that are not what they were, the largest change first."""
+    """The changed profiles, the largest change first."""
     order = sorted(moved, key=lambda item: -(float("inf") if item[1].change is None else item[1].change))
     rows = []
     for case, drift in order[:MOST]:
@@ -91,8 +93,8 @@ def drift_table(moved: Sequence[tuple[CaseDrift, Drift]]) -> Table:
         rows.append(Row(Cell(case.name, note=case.title), cells))
     more = f" The {MOST} of {len(order)} with the largest change." if len(order) > MOST else ""
     return Table(
-        f"What is not as it was; changes over the largest magnitude of the profile.{more}",
-        ["case", "state", "source", "quantity", "line", "largest change", "what happened"],
+        f"Changed numbers; changes over the largest magnitude of the profile.{more}",
+        ["case", "state", "source", "quantity", "line", "largest change", "remark"],
         rows,
     )
 
@@ -110,7 +112,7 @@ def _case_table(cases: Sequence[CaseDrift], anchors: Mapping[str, str]) -> Table
         place = anchors.get(case.name)
         rows.append(Row(Cell(case.title, note=case.name, href=f"#{place}" if place else ""), cells))
     return Table(
-        "Numbers of each case since the baseline was recorded.",
+        "Numbers of each case compared with the baseline.",
         ["case", "state", "same", "drifted", "gone", "new", "largest change", ""],
         rows,
     )

@@ -1,4 +1,4 @@
-"""What each conversion makes of the influence coefficients: the section's part with its figure."""
+"""Errors of the influence coefficients by conversion from the Fourier domain."""
 
 from collections.abc import Callable, Sequence
 from itertools import groupby
@@ -32,15 +32,15 @@ def conversion_part(found: Sequence[ConversionError]) -> Part:
         for name, some in groupby(sorted(found, key=_kind), key=_kind)  # by conversion and aliases
     }
     return Part(
-        _conversion_sentence(found),
-        [_conversion_table(found)],
+        _summary(found),
+        [_table(found)],
         Gallery(
             [(swatch(_look(kind)[1]), _look(kind)[0]) for kind in sorted(groups, key=_rank)],
-            _conversion_panels(groups),
-            "First the error of the influence coefficients of the displacement by the distance of the "
-            f"patch; conversions that need a domain have one {_DOMAIN_SHOWN} times the grid. Then the error "
-            "at three patches over the size of the domain; the split conversion needs none and is drawn "
-            "level. The judge is direct quadrature around the edge of the patch.",
+            _panels(groups),
+            "First the error of the influence coefficients of the displacement over the distance of the "
+            f"patch; conversions that need a domain use one of {_DOMAIN_SHOWN} times the grid. Then the "
+            "error at three patches over the size of the domain; the split conversion needs none and is a "
+            "level line. Reference: direct quadrature around the edge of the patch.",
         ),
     )
 
@@ -57,7 +57,7 @@ def _rank(kind: tuple[str, int]) -> int:
     return list(_CONVERSIONS).index(kind) if kind in _CONVERSIONS else len(_CONVERSIONS)
 
 
-def _conversion_panels(groups: dict[tuple[str, int], list[ConversionError]]) -> list[Panel]:
+def _panels(groups: dict[tuple[str, int], list[ConversionError]]) -> list[Panel]:
     widths = sorted({one.enlarge for some in groups.values() for one in some} - {0})
     any_one = next(iter(groups.values()))[0]
     # the loaded patch, the patch beside it, the corner of the grid
@@ -100,34 +100,34 @@ def _conversion_panels(groups: dict[tuple[str, int], list[ConversionError]]) -> 
     ]
 
 
-def _conversion_sentence(found: Sequence[ConversionError]) -> str:
+def _summary(found: Sequence[ConversionError]) -> str:
     split = next((one for one in found if one.conversion == "split"), None)
     paper = [one for one in found if _kind(one) == ("plain", 2)]
     bare = [one for one in found if _kind(one) == ("plain", 0)]
     text = []
     if paper:
         text.append(
-            "The paper's plain conversion with two aliases a side, on domains "
-            f"{paper[0].enlarge} to {paper[-1].enlarge} times the grid, is off by "
-            f"{_range([one.error[0] for one in paper])} at the loaded patch and by as much as "
+            "The plain conversion of the source paper with two aliases a side, on domains "
+            f"{paper[0].enlarge} to {paper[-1].enlarge} times the grid, has an error of "
+            f"{_range([one.error[0] for one in paper])} at the loaded patch and of "
             f"{_range([max(one.error) for one in paper])} at the worst one."
         )
     if bare:
-        text.append(f"Without aliases it is off by {_range([one.error[0] for one in bare])} where it loads.")
+        text.append(f"Without aliases it is {_range([one.error[0] for one in bare])} at the loaded patch.")
     if split:
-        sentence = (
-            f"The split conversion is off by {scientific(split.largest)} of the largest coefficient and by "
-            f"at most {scientific(max(split.error))} of any coefficient itself"
+        line = (
+            f"The error of the split conversion is {scientific(split.largest)} of the largest coefficient "
+            f"and at most {scientific(max(split.error))} of any coefficient itself"
         )
         if paper:
             best = min(paper, key=lambda one: max(one.error))
             times = factor(max(best.error), max(split.error))
-            sentence += f"; the plain one on its best domain is {times} times as far off"
-        text.append(sentence + ".")
+            line += f"; that of the plain one on its best domain is {times} times as large"
+        text.append(line + ".")
     return " ".join(text)
 
 
-def _conversion_table(found: Sequence[ConversionError]) -> Table:
+def _table(found: Sequence[ConversionError]) -> Table:
     rows = []
     for one in sorted(found, key=lambda one: (_rank(_kind(one)), one.enlarge)):
         numbers = (one.error[0], one.error[1], max(one.error), one.largest)

@@ -1,4 +1,4 @@
-"""The sections on what formulas are worth: effective moduli, limits, and moduli side by side."""
+"""Accuracy of effective-modulus formulas and of simple limits against the exact reference."""
 
 from collections.abc import Sequence
 from itertools import pairwise
@@ -63,13 +63,13 @@ def _map_part(study: EffectiveStudy) -> Part:
         panels.append(Panel(name, figure, note, ""))
         rows.append(_formula_row(study, name, error))
     text = (
-        "The formulas by which nanoindentation takes the substrate out of a contact stiffness, each held "
-        "against the exact answer over E1/E2 and h/a: S = 2 a E_eff at contact radius a, which of a "
+        "Formulas that correct the contact stiffness of nanoindentation for the substrate, each compared "
+        "with the exact solution over E1/E2 and h/a: S = 2 a E_eff at contact radius a, which of a "
         "sphere is that of a flat punch, from the integral equation. nu = 0.3 in film and substrate. "
         "Perriot and Barthel's exponent is fitted to each ratio of moduli, between "
-        f"{PERRIOT_BARTHEL_N[0]:g} and {PERRIOT_BARTHEL_N[1]:g}; drawn is the one that does best. Formulas "
+        f"{PERRIOT_BARTHEL_N[0]:g} and {PERRIOT_BARTHEL_N[1]:g}; drawn is the best one. Formulas "
         "with a coefficient that each experiment fits anew (Doerner and Nix, King, Saha and Nix, Hu and "
-        "Lawn, Jung) predict nothing by themselves and have no map."
+        "Lawn, Jung) are not predictive and have no map."
     )
     legend = [
         (_tint(colour, shade), f"{word} {_percent(level)[1:]}")
@@ -81,7 +81,7 @@ def _map_part(study: EffectiveStudy) -> Part:
         "upwards stiff ones."
     )
     numbers = Table(
-        "Departure from the exact answer over the whole map, E1/E2 from 0.01 to 100 and h/a from 0.05 to "
+        "Departure from the exact solution over the whole map, E1/E2 from 0.01 to 100 and h/a from 0.05 to "
         "20, and over its middle, E1/E2 from 0.1 to 10; the share of either that is within 10 %.",
         ["formula", *["most compliant", "stiffest", "median", "within 10 %"] * 2],
         rows,
@@ -106,10 +106,10 @@ def _confirmation(study: EffectiveStudy) -> Part:
     apart = max(abs(log10(theirs / fitted)) for _, theirs, fitted, _ in study.refitted)
     n = [row[3] for row in study.refitted]
     text = (
-        "No primary source was at hand. Gao's weights are confirmed by computation: I0 and I1 are within "
+        "No primary source was available. Gao's weights are confirmed by computation: I0 and I1 are within "
         f"{scientific(first, 1)} and {scientific(second, 1)} of the exact first derivatives of the "
         "stiffness with the film's shear modulus and Poisson's ratio. Perriot and Barthel's x0 is within "
-        f"{plain(apart, 2)} in its logarithm of what a least-squares fit to the exact answer gives, with n "
+        f"{plain(apart, 2)} in its logarithm of what a least-squares fit to the exact solution gives, with n "
         f"from {plain(min(n), 3)} to {plain(max(n), 3)}."
     )
     rows = [
@@ -117,8 +117,8 @@ def _confirmation(study: EffectiveStudy) -> Part:
         for ratio, theirs, fitted, exponent in study.refitted
     ]
     table = Table(
-        "x0 of Perriot and Barthel, and x0 with n fitted to the exact answer at nu = 0.3.",
-        ["E1/E2", "x0, theirs", "x0, fitted", "n, fitted"],
+        "x0 of Perriot and Barthel, and x0 with n fitted to the exact solution at nu = 0.3.",
+        ["E1/E2", "x0, published", "x0, fitted", "n, fitted"],
         rows,
     )
     return Part(text, [table])
@@ -196,7 +196,7 @@ def _draw_limit(limits: Sequence[Limit], styles: dict[str, Style], label: str) -
     axes.ticks(_decades(left, right), _decades(low, high), "a / h")
     for limit, along, excess in zip(limits, x, y, strict=True):
         axes.line(along, excess, styles[limit.name])
-    return drawing(WIDTH, HEIGHT, f"{label}: departure of the limit from the exact answer", axes)
+    return drawing(WIDTH, HEIGHT, f"{label}: departure of the limit from the exact solution", axes)
 
 
 def _widened(values: Array, share: float) -> tuple[float, float]:

@@ -1,4 +1,4 @@
-"""Pressures and stresses of coatings that differ in their modulus alone, all in one plot each.
+"""Pressures and stresses of coatings that differ in their modulus alone, one plot for each quantity.
 
 The plots of O'Sullivan and King, J. Tribol. 110 (1988) 235-240: lengths over a_h, stresses over p_h, a curve
 for each E1/E2 at one thickness, without friction or with one coefficient.
@@ -106,7 +106,10 @@ def _gallery(members: Sequence[Member]) -> Gallery:
     ]
     sources = dict.fromkeys(s for m in members for s in sources_with_profiles(m.result))
     legend = [(swatch(source_style(source)), source_label(source)) for source in sources]
-    caption = "At each curve its E1/E2, the sources over each other; each case says by how much they differ."
+    caption = (
+        "E1/E2 beside each curve; the sources overlie each other, their differences are in the sections of "
+        "the cases."
+    )
     return Gallery(legend, panels, caption, _curves_csv(members, shown))
 
 

@@ -1,4 +1,4 @@
-"""What each solution was held against by itself: the rows of a case, and all laws over all cases."""
+"""Invariants of the solutions: the rows of a case, all invariants over all cases."""
 
 import re
 from collections.abc import Mapping, Sequence
@@ -38,10 +38,10 @@ def invariant_table(found: Sequence[Invariant]) -> Table | None:
         for one in sorted(found, key=_badness)
     ]
     return Table(
-        "What a solution must satisfy whatever the others say. Residual and bound at the point where the "
+        "Conditions that a solution satisfies by itself. Residual and bound at the point where the "
         "residual takes the largest share of its bound; the bound follows from the uncertainty stated there, "
         "the error of the differences or quadrature, and rounding.",
-        ["verdict", "invariant", "source", "law", "residual", "bound", "margin", "share"],
+        ["verdict", "invariant", "source", "condition", "residual", "bound", "margin", "share"],
         rows,
         css="verdicts",
     )
@@ -82,9 +82,9 @@ def section(material: Material) -> Section | None:
         f"{tightest.name} of {source_label(tightest.source)}, at {_percent(tightest.share)} of it."
     )
     table = Table(
-        "How often each law holds, its largest residual, and the largest share that a residual takes of its "
-        "bound: beyond 100 % the law is broken.",
-        ["law", *["hold", "residual", "share"] * len(sources)],
+        "How often each invariant holds, its largest residual, and the largest ratio of a residual to its "
+        "bound: beyond 100 % the invariant is violated.",
+        ["invariant", *["hold", "residual", "share"] * len(sources)],
         lines,
         [("", 1), *((source_label(source), 3) for source in sources)],
         "overview",
@@ -110,7 +110,7 @@ def _family_cells(
 
 
 def _family(one: Invariant) -> str:
-    """The law without the number of the layer or interface."""
+    """The name of the invariant without the number of the layer or interface."""
     return _NUMBERED.sub("", one.name)
 
 

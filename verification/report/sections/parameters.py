@@ -1,4 +1,4 @@
-"""Solution verification: what a sweep of each knob says beside what a method states and the true error."""
+"""Solution verification: stated uncertainty, refinement of each numerical parameter, true error."""
 
 from collections.abc import Sequence
 
@@ -8,33 +8,33 @@ from verification.report.tables.cells import Cell, Part, Row, Section, Table, nu
 from verification.report.tables.labels import source_label
 from verification.report.tables.numbers import plain, scientific
 
-__all__ = ["knob_section", "section"]
+__all__ = ["parameter_section", "section"]
 
 
 def section(material: Material) -> Section | None:
     """The parameter sweeps of the accuracy study; None where there are none."""
     study = material.evidence.accuracy
-    return knob_section(study.sweeps, study.stated) if study is not None and study.stated else None
+    return parameter_section(study.sweeps, study.stated) if study is not None and study.stated else None
 
 
-def knob_section(sweeps: Sequence[Sweep], stated: Sequence[Stated]) -> Section:
-    """For each method what it states, what the fits give, the true error; then every knob by itself."""
+def parameter_section(sweeps: Sequence[Sweep], stated: Sequence[Stated]) -> Section:
+    """Stated uncertainty, fitted uncertainty, true error of each method; then every parameter by itself."""
     parts = []
     for one in stated:
         mine = [sweep for sweep in sweeps if sweep.method == one.method]
-        parts.append(Part(_sentence(one, mine), [_totals(one, mine), _orders(mine)]))
-    return Section("knobs", "Uncertainty by knob", parts)
+        parts.append(Part(_summary(one, mine), [_totals(one, mine), _orders(mine)]))
+    return Section("parameters", "Uncertainty by numerical parameter", parts)
 
 
-def _sentence(one: Stated, sweeps: Sequence[Sweep]) -> str:
+def _summary(one: Stated, sweeps: Sequence[Sweep]) -> str:
     names = list(one.uncertainty)
     held = sum(one.uncertainty[name] >= one.error[name] for name in names)
     fitted = [_sum(sweeps, name) for name in names]
     by_fit = sum(U is not None and one.error[name] <= U for name, U in zip(names, fitted, strict=True))
     return (
         f"{source_label(one.method).capitalize()}, {one.solid} solid: the uncertainty that the solution "
-        f"states holds the true error in {held} of {len(names)} quantities, the sum of the fitted sweeps in "
-        f"{by_fit}."
+        f"states covers the true error in {held} of {len(names)} quantities, the sum of the fitted "
+        f"uncertainties in {by_fit}."
     )
 
 
@@ -51,10 +51,11 @@ def _totals(one: Stated, sweeps: Sequence[Sweep]) -> Table:
             cells.append(Cell("–") if found is None else number(found.uncertainty))
         rows.append(Row(Cell(name), cells))
     return Table(
-        "True error at the default numerics, the uncertainty stated, and that of the sweeps: the sum over "
-        "the knobs, then knob by knob, by least squares over four levels or more (Eca and Hoekstra 2014), by "
-        "the grid convergence index where there are three. All over the scales of the bare substrate. The "
-        "order of the elements is another way to lower the error of their size: it is shown and not added.",
+        "True error at the default numerics, the uncertainty stated, and the fitted one: the sum over "
+        "the parameters, then each parameter, by least squares over four levels or more (Eca and Hoekstra "
+        "2014), by the grid convergence index where there are three. All over the scales of the bare "
+        "substrate. The order of the elements is another way to lower the error of their size: it is shown "
+        "and not added.",
         ["quantity", "true error", "stated U", "fitted U", *(sweep.parameter for sweep in sweeps)],
         rows,
         css="overview",
@@ -70,8 +71,8 @@ def _orders(sweeps: Sequence[Sweep]) -> Table:
         rows.append(Row(Cell(name), [Cell("–" if p is None else plain(p, 2), p) for p in orders]))
     levels = "; ".join(f"{sweep.parameter}: {', '.join(sweep.levels)}" for sweep in sweeps)
     return Table(
-        "Observed order in the step of each sweep; a dash where the values follow no power of the step that "
-        f"can be believed, being at rest, noise or falling too fast. The levels, {levels}.",
+        "Observed order in the step of each parameter; a dash where the values are constant, are noise or "
+        f"fall too fast for a power of the step. Levels: {levels}.",
         ["quantity", *(sweep.parameter for sweep in sweeps)],
         rows,
     )

@@ -1,4 +1,4 @@
-"""Published sources in the report: their citation, every table as printed beside what the methods give."""
+"""Published sources: citation, every table as published beside the values of the methods."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -23,12 +23,12 @@ __all__ = ["PublishedView", "published_view", "section"]
 
 @dataclass(frozen=True)
 class PublishedView:
-    """All that the page says of one published source."""
+    """Everything on the page about one published source."""
 
     anchor: str
     result: CaseResult
     outcome: OutcomeStyle
-    sentence: str
+    summary: str
     command: str
     facts: Sequence[tuple[str, str]]
     failures: Sequence[tuple[str, str]]
@@ -40,7 +40,7 @@ class PublishedView:
 
 
 def _sources(result: CaseResult) -> tuple[str, ...]:
-    """Both methods, and the exact reference where it was asked."""
+    """Both methods, and the references that were compared."""
     claimed = {source for claim, _ in result.verdicts for source in claim.between}
     return METHODS + tuple(source for source in REFERENCES if source in claimed)
 
@@ -52,9 +52,9 @@ def section(material: Material) -> Section | None:
     rows = []
     sources = tuple(dict.fromkeys(s for result in material.published for s in _sources(result)))
     for result in material.published:
-        printed = result.published["columns"]
-        counted = sum(sum(item["counted"]) for item in printed)
-        total = sum(len(item["counted"]) for item in printed)
+        columns = result.published["columns"]
+        counted = sum(sum(item["counted"]) for item in columns)
+        total = sum(len(item["counted"]) for item in columns)
         cells = [
             outcome_cell(result.outcome),
             Cell(str(result.published["year"]), result.published["year"]),
@@ -72,13 +72,13 @@ def section(material: Material) -> Section | None:
             Row(head, cells, "" if result.outcome is Outcome.AGREES else OUTCOMES[result.outcome].css)
         )
     table = Table(
-        "A method meets a value when the difference is within the reading uncertainty of the source and the "
-        "method's own uncertainty together. Values known to be misprints, or second-hand where better ones "
-        "stand beside, are shown below and never counted. Differences are over the pressure for stresses, "
-        "over the largest value printed for displacements, strains and loading curves, over the value for "
+        "A method meets a value when the difference is within the digitisation uncertainty of the source "
+        "plus the uncertainty of the method. Values known to be misprints, or second-hand where better ones "
+        "are available, are shown below and never counted. Differences are over the pressure for stresses, "
+        "over the largest published value for displacements, strains and loading curves, over the value for "
         "scalars of a contact.",
         ["source", "verdict", "year", "read", "values", "not counted"]
-        + ["met", "largest gap"] * len(sources),
+        + ["met", "largest difference"] * len(sources),
         rows,
         [("", 6), *((source_label(source), 2) for source in sources)],
     )
@@ -111,7 +111,7 @@ def published_view(material: Material, result: CaseResult) -> PublishedView:
         anchor=material.anchors[result],
         result=result,
         outcome=OUTCOMES[result.outcome],
-        sentence=f"{bad} of {total} comparisons do not agree." if bad else f"All {total} comparisons agree.",
+        summary=f"{bad} of {total} comparisons do not agree." if bad else f"All {total} comparisons agree.",
         command=rerun_command(result.name, material.info.command),
         facts=facts(result),
         failures=[(source_label(s.source), s.failure) for s in result.sources if s.failure is not None],
@@ -124,7 +124,7 @@ def published_view(material: Material, result: CaseResult) -> PublishedView:
 
 
 def _tables(result: CaseResult) -> list[tuple[str, Table]]:
-    """One table for each column that was printed, its lines one below the other."""
+    """One table for each published column, its lines one below the other."""
     columns: dict[tuple[str, str, str], list[dict[str, Any]]] = {}
     for item in result.published["columns"]:
         columns.setdefault((item["file"], item["column"], item["quantity"]), []).append(item)
@@ -142,16 +142,16 @@ def _table(result: CaseResult, column: str, quantity: str, items: Sequence[Mappi
         methods = {
             method: (_profile(result, item, method), *_gap(result, item, method)) for method in sources
         }
-        reading = _profile(result, item, PUBLISHED)
+        source = _profile(result, item, PUBLISHED)
         for n, text in enumerate(item["text"]):
             counted = item["counted"][n]
-            spread = (
-                reading.uncertainty[n] if reading is not None and reading.uncertainty is not None else None
+            uncertainty = (
+                source.uncertainty[n] if source is not None and source.uncertainty is not None else None
             )
             cells = [
                 Cell(plain(item["position"][n], 6), item["position"][n]),
                 Cell(text.replace("-", "−"), float(text)),
-                Cell(_in(spread, item), spread),
+                Cell(_in(uncertainty, item), uncertainty),
             ]
             met = []
             for method in sources:
@@ -181,17 +181,17 @@ def _table(result: CaseResult, column: str, quantity: str, items: Sequence[Mappi
             )
             rows.append(Row(head, cells, "" if counted else "inconclusive"))
     unit = f" in {first['unit']}" if first["unit"] != "1" else ""
-    said = (QUANTITIES[quantity].meaning or QUANTITIES[quantity].symbol) + (
+    meaning = (QUANTITIES[quantity].meaning or QUANTITIES[quantity].symbol) + (
         " here, of the other sign" if first["to_si"] < 0 else " here"
     )
     return Table(
-        f"{column}{unit}, as printed ({said}): "
-        "the difference of each method from it, and the uncertainty of both together that allows for it.",
+        f"{column}{unit}, as published ({meaning}): "
+        "the difference of each method from it, and the sum of both uncertainties.",
         [
             "where",
             f"{first['coordinate']} in {first['position_unit']}",
-            "printed",
-            "reading U",
+            "published",
+            "digitisation U",
             *["value", "difference", "U of both"] * len(sources),
             "met",
         ],
@@ -202,7 +202,7 @@ def _table(result: CaseResult, column: str, quantity: str, items: Sequence[Mappi
 
 
 def _in(value: float | None, item: Mapping[str, Any], signed: bool = False) -> str:
-    """A difference [SI] in the unit it was printed in; a signed one in its sign convention."""
+    """A difference [SI] in the published unit; a signed one in its sign convention."""
     if value is None:
         return "–"
     return scientific(value / item["to_si"] if signed else value / abs(item["to_si"]), sign=signed)
@@ -211,13 +211,13 @@ def _in(value: float | None, item: Mapping[str, Any], signed: bool = False) -> s
 def _gap(
     result: CaseResult, item: Mapping[str, Any], method: str
 ) -> tuple[np.ndarray | None, np.ndarray | None]:
-    """Method less print, and the uncertainty of both [SI]; None where either is missing."""
-    mine, printed = _profile(result, item, method), _profile(result, item, PUBLISHED)
-    if mine is None or printed is None:
+    """Method less published value, and the sum of both uncertainties [SI]; None where one is missing."""
+    mine, theirs = _profile(result, item, method), _profile(result, item, PUBLISHED)
+    if mine is None or theirs is None:
         return None, None
-    if mine.uncertainty is None or printed.uncertainty is None:
-        return mine.value - printed.value, None
-    return mine.value - printed.value, mine.uncertainty + printed.uncertainty
+    if mine.uncertainty is None or theirs.uncertainty is None:
+        return mine.value - theirs.value, None
+    return mine.value - theirs.value, mine.uncertainty + theirs.uncertainty
 
 
 def _profile(result: CaseResult, item: Mapping[str, Any], source: str) -> Profile | None:

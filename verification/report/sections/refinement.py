@@ -1,4 +1,4 @@
-"""The sections on how the errors of both methods fall with resolution."""
+"""Convergence of both methods: errors against the exact reference over resolution."""
 
 from collections.abc import Sequence
 
@@ -60,41 +60,43 @@ def finite_element_section(material: Material) -> Section | None:
     return Section("finite-element-accuracy", "Finite element accuracy", parts, failures)
 
 
-def _grid_parts(ladders: Sequence[Refinement]) -> list[Part]:
+def _grid_parts(studies: Sequence[Refinement]) -> list[Part]:
     caption = (
-        "Error against the integral equation over N, the patches along a side of the grid, which is 1.12 "
-        "times as wide as the contact. Beside each curve its observed slope, down to where the fall ends; a "
-        "dash where it falls less than threefold, or within less than a doubling of N."
+        "Error against the integral equation over N, the number of patches along a side of the grid, which "
+        "is 1.12 times as wide as the contact. Beside each curve its observed slope, as far as the error "
+        "falls; a dash where it falls less than threefold, or over less than a doubling of N."
     )
-    first, *others = _grid_sentences([one for one in ladders if one.levels])
+    first, *others = _grid_summary([one for one in studies if one.levels])
     return [
         Part(f"{PROBLEM[0].upper()}{PROBLEM[1:]}. {first}"),
         *(Part(sentence) for sentence in others),
         Part(
             "",
-            [_ladder_table(ladders, "patches a side")],
-            _ladder_gallery(ladders, "semi", "N", (33, 49, 65, 97, 129, 257), caption),
+            [_refinement_table(studies, "patches per side")],
+            _refinement_gallery(studies, "semi", "N", (33, 49, 65, 97, 129, 257), caption),
         ),
     ]
 
 
-def _element_parts(ladders: Sequence[Refinement]) -> list[Part]:
+def _element_parts(studies: Sequence[Refinement]) -> list[Part]:
     caption = (
         "Error against the integral equation over the square root of the number of degrees of freedom, which "
         "grows as the elements shrink: its slope is the order in the size of the elements."
     )
     return [
         Part(
-            _element_sentence([one for one in ladders if one.levels]),
-            [_ladder_table(ladders, "mesh")],
-            _ladder_gallery(ladders, "fem", "√(degrees of freedom)", (50, 70, 100, 150, 200, 300), caption),
+            _element_summary([one for one in studies if one.levels]),
+            [_refinement_table(studies, "mesh")],
+            _refinement_gallery(
+                studies, "fem", "√(degrees of freedom)", (50, 70, 100, 150, 200, 300), caption
+            ),
         )
     ]
 
 
-def _grid_sentences(ladders: Sequence[Refinement]) -> list[str]:
-    found = [_fall_sentence(one) for one in ladders if one.setting == CORRECTED]
-    by_setting = {one.setting: one for one in ladders if one.solid == ladders[0].solid}
+def _grid_summary(studies: Sequence[Refinement]) -> list[str]:
+    found = [_errors_summary(one) for one in studies if one.setting == CORRECTED]
+    by_setting = {one.setting: one for one in studies if one.solid == studies[0].solid}
     best, stairs, paper = (by_setting.get(setting) for setting in (CORRECTED, STAIRCASE, PLAIN))
     if best and stairs:
         here, there = best.levels[-1].errors["pressure"], stairs.levels[-1].errors["pressure"]
@@ -102,9 +104,9 @@ def _grid_sentences(ladders: Sequence[Refinement]) -> list[str]:
         speed = "converges" if stairs.falls("pressure") else "does not converge"
         speed += "" if order is None else f" at order {order:.1f}"
         found.append(
-            "With the edge of the contact left the staircase that patches make of it, the pressure on the "
+            "Without correction of the contact edge, a staircase of patches, the pressure on the "
             f"{stairs.solid} solid {speed}, to {scientific(there)} at {stairs.levels[-1].name}; the "
-            f"corrected edge comes to {scientific(here)} at {best.levels[-1].name}, a factor of "
+            f"error with the corrected edge is {scientific(here)} at {best.levels[-1].name}, a factor of "
             f"{factor(there, here)}."
         )
     if paper and stairs:
@@ -112,23 +114,28 @@ def _grid_sentences(ladders: Sequence[Refinement]) -> list[str]:
         stuck = [q for q in QUANTITIES if stairs.falls(q) and not paper.falls(q)]
         text = (
             f"With the plain conversion of the source paper, from {first.name} to {last.name}, the "
-            f"approach is off by {scientific(first.errors['approach'])} → "
-            f"{scientific(last.errors['approach'])} and p0 by "
+            f"error of the approach is {scientific(first.errors['approach'])} → "
+            f"{scientific(last.errors['approach'])} that of p0 "
             f"{scientific(first.errors['p0'])} → {scientific(last.errors['p0'])}"
         )
         if stuck:
-            text += f"; a finer grid does not bring down {_listed(stuck)}, for there the conversion rules"
+            text += (
+                f"; a finer grid does not reduce {_listed(stuck)}, dominated by the error of the conversion"
+            )
         found.append(text + ".")
-    return found or ["No more than single levels could be solved."]
+    return found or ["No refinement study has more than one level."]
 
 
-def _fall_sentence(one: Refinement) -> str:
+def _errors_summary(one: Refinement) -> str:
     first, last = one.levels[0], one.levels[-1]
     numbers = ", ".join(
         f"{q} {scientific(first.errors[q])} → {scientific(last.errors[q])}" for q in QUANTITIES
     )
     solid = one.solid[:1].upper() + one.solid[1:]
-    text = f"{solid}, {one.setting}, the default: from {first.name} to {last.name} the errors go {numbers}."
+    text = (
+        f"{solid}, {one.setting}, the default: from {first.name} to {last.name} the errors change as "
+        f"{numbers}."
+    )
     ended: dict[str, list[str]] = {}
     for q in QUANTITIES:
         at = settled([level.errors[q] for level in one.levels])
@@ -136,32 +143,32 @@ def _fall_sentence(one: Refinement) -> str:
             ended.setdefault(one.levels[at].name, []).append(q)
     if ended:
         where = "; ".join(f"{_listed(qs)} from {name} on" for name, qs in ended.items())
-        text += f" A finer grid no longer brings down {where}: there another knob rules."
+        text += f" A finer grid no longer reduces {where}: another numerical parameter dominates there."
     return text
 
 
-def _element_sentence(ladders: Sequence[Refinement]) -> str:
+def _element_summary(studies: Sequence[Refinement]) -> str:
     found = []
-    for one in ladders:
+    for one in studies:
         last = one.levels[-1]
         found.append(
-            f"{one.setting} comes to p0 {scientific(last.errors['p0'])}, pressure "
+            f"{one.setting} gives p0 {scientific(last.errors['p0'])}, pressure "
             f"{scientific(last.errors['pressure'])}, stress {scientific(last.errors['stress'])} with "
             f"{plain(last.resolution * last.resolution, 6)} degrees of freedom in {seconds(last.seconds)}"
         )
-    text = f"On the {ladders[0].solid} solid and the {ladders[0].levels[-1].name} mesh {'; '.join(found)}."
-    if len(ladders) > 1:
-        low, high = ladders[0], ladders[-1]
+    text = f"On the {studies[0].solid} solid and the {studies[0].levels[-1].name} mesh {'; '.join(found)}."
+    if len(studies) > 1:
+        low, high = studies[0], studies[-1]
         worse, better = low.levels[-1].errors, high.levels[-1].errors
         gains = [f"{factor(worse[q], better[q])} in {q}" for q in ("p0", "pressure", "stress")]
         text += f" {high.setting.capitalize()} gains over {low.setting} factors of {_listed(gains)}."
     return text
 
 
-def _ladder_gallery(
-    ladders: Sequence[Refinement], key: str, coordinate: str, ticks: Sequence[float], caption: str
+def _refinement_gallery(
+    studies: Sequence[Refinement], key: str, coordinate: str, ticks: Sequence[float], caption: str
 ) -> Gallery:
-    first = ladders[0].solid
+    first = studies[0].solid
 
     def trail(one: Refinement, quantity: str) -> Trail:
         order = one.order(quantity)
@@ -172,7 +179,7 @@ def _ladder_gallery(
             "–" if order is None else f"−{order:.1f}",
         )
 
-    trails = {q: [trail(one, q) for one in ladders if one.levels] for q in QUANTITIES}
+    trails = {q: [trail(one, q) for one in studies if one.levels] for q in QUANTITIES}
     height = decades([one for some in trails.values() for one in some])
     panels = [
         Panel(
@@ -191,14 +198,14 @@ def _ladder_gallery(
     ]
     legend = [
         (swatch(_SETTINGS.get((one.setting, one.solid == first), _UNKNOWN)), f"{one.solid}: {one.setting}")
-        for one in ladders
+        for one in studies
     ]
     return Gallery(legend, panels, caption)
 
 
-def _ladder_table(ladders: Sequence[Refinement], level_name: str) -> Table:
+def _refinement_table(studies: Sequence[Refinement], level_name: str) -> Table:
     rows = []
-    for one in ladders:
+    for one in studies:
         name = f"{one.solid}: {one.setting}"
         for level in one.levels:
             cells = [Cell(level.name)]

@@ -52,10 +52,10 @@ def contour_figure(study: Study, curve: Curve, thicknesses: Sequence[float]) -> 
         for column, name in enumerate(FIELDS):
             low, high = _range([field[column] for row in fields for field in row])
             levels = np.asarray(MaxNLocator(LEVELS, steps=[1, 2, 2.5, 5, 10]).tick_values(low, high))
-            for h, solution, ladder, field, axes in zip(
+            for h, solution, layers_z, field, axes in zip(
                 thicknesses, solutions, depths, fields, panels[:, column], strict=True
             ):
-                for z, values in zip(ladder, (layer[column] for layer in field), strict=True):
+                for z, values in zip(layers_z, (layer[column] for layer in field), strict=True):
                     filled = axes.contourf(
                         x, z, values, levels=levels, cmap="RdBu_r" if column < 2 else "viridis", extend="both"
                     )
@@ -74,8 +74,8 @@ def contour_figure(study: Study, curve: Curve, thicknesses: Sequence[float]) -> 
             axes.set_xlabel("$x / a_h$")
         for axes in panels[:, 0]:
             axes.set_ylabel("$z / a_h$")
-        for h, ladder, field in zip(thicknesses, depths, fields, strict=True):
-            rows += _numbers(h, x, ladder, field)
+        for h, layers_z, field in zip(thicknesses, depths, fields, strict=True):
+            rows += _numbers(h, x, layers_z, field)
         name = f"contours_{curve.ratio:.4g}_f{curve.friction:g}".replace(".", "_")
         return drawn(
             figure,
@@ -120,11 +120,11 @@ def _range(values: Sequence[Array]) -> tuple[float, float]:
 
 
 def _numbers(
-    h: float, x: Array, ladder: Sequence[Array], field: Sequence[tuple[Array, Array, Array]]
+    h: float, x: Array, layers_z: Sequence[Array], field: Sequence[tuple[Array, Array, Array]]
 ) -> list[list[str]]:
     return [
         [f"{h:.6g}", f"{at:.5g}", f"{z:.5g}", str(layer), *(f"{values[i, j]:.5g}" for values in fields)]
-        for layer, (depths, fields) in enumerate(zip(ladder, field, strict=True))
+        for layer, (depths, fields) in enumerate(zip(layers_z, field, strict=True))
         for i, z in enumerate(depths)
         for j, at in enumerate(x)
     ]

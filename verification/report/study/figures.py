@@ -45,7 +45,7 @@ __all__ = [
 ]
 
 
-# Okabe and Ito's colours, told apart by the colour-blind; friction is told by the dash besides.
+# Okabe and Ito's colours, distinct for the colour-blind; dashes distinguish friction.
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00", "#000000")
 DASHES: tuple[Any, ...] = ("-", (0, (5, 2)), (0, (1.2, 1.4)), (0, (5, 1.5, 1, 1.5)))
 DPI = 200
@@ -87,7 +87,7 @@ class Drawn:
 def sheet(width: float, height: float) -> Iterator[Figure]:
     """An empty figure of ``width`` by ``height`` [mm] in the settings of a paper."""
     with mpl.rc_context(_SETTINGS), warnings.catch_warnings():
-        # Curves without one finite number leave an empty frame, no complaint.
+        # Curves without one finite number leave an empty frame, without a warning.
         warnings.simplefilter("ignore")
         yield Figure(figsize=(width / 25.4, height / 25.4), layout="constrained")
 
@@ -161,7 +161,7 @@ def _against_thickness(
         ("compliant coating, $E_1 < E_2$", [c for c in curves if c.ratio < 1]),
         ("stiff coating, $E_1 \\geq E_2$", [c for c in curves if c.ratio >= 1]),
     ]
-    sides = [(said, members) for said, members in sides if members]
+    sides = [(heading, members) for heading, members in sides if members]
     frictions = sorted({c.friction for c in curves})
     ratios = sorted({c.ratio for c in curves})
     colours = {ratio: COLOURS[i % len(COLOURS)] for i, ratio in enumerate(ratios)}
@@ -177,7 +177,7 @@ def _against_thickness(
             height_ratios=(3, 1)[: 1 + checked],
         )
         panels = grid[0]
-        for axes, (said, members) in zip(panels, sides, strict=True):
+        for axes, (heading, members) in zip(panels, sides, strict=True):
             for curve in members:
                 colour = colours[curve.ratio]
                 dash = DASHES[frictions.index(curve.friction) % len(DASHES)]
@@ -192,7 +192,7 @@ def _against_thickness(
                         [f"{curve.ratio:g}", f"{curve.friction:g}", f"{x:.9g}", f"{y:.9g}", source]
                         for x, y in zip(h, value, strict=True)
                     ]
-            _thickness_axis(axes, said)
+            _thickness_axis(axes, heading)
         panels[0].set_ylabel(label)
         if checked:
             for axes in panels:
@@ -270,8 +270,8 @@ def _legend(figure: Figure, ratios: Sequence[float], frictions: Sequence[float],
             for i, f in enumerate(frictions)
         ]
     handles += [
-        Line2D([], [], color="#444444", marker=mark, linestyle="none", markerfacecolor="none", label=said)
-        for mark, said in [(RECORDS[s].style.marker, RECORDS[s].label) for s in SOURCES[1:] if s in sources]
+        Line2D([], [], color="#444444", marker=mark, linestyle="none", markerfacecolor="none", label=label)
+        for mark, label in [(RECORDS[s].style.marker, RECORDS[s].label) for s in SOURCES[1:] if s in sources]
     ]
     figure.legend(handles=handles, loc="outside lower center", ncols=min(len(handles), 5), frameon=False)
 
@@ -372,14 +372,14 @@ def governing_figure(judgements: Sequence[Judged]) -> list[Drawn]:
         panels[0].set_ylabel("$E_1/E_2$")
         handles = [Patch(color=_pale(COLOURS[list(MODES).index(m)]), label=f"{m}: {MODES[m]}") for m in modes]
         figure.legend(handles=handles, loc="outside lower center", ncols=2, frameon=False)
-        said = "stress over strength, red where it is 1" if judgements[0].limited else "stress over p_h"
+        quantity = "stress over strength, red where it is 1" if judgements[0].limited else "stress over p_h"
         return [
             drawn(
                 figure,
                 "governing_mode",
                 "Governing failure mode",
                 "Colour: the mode whose stress is largest against its strength. Lines: the largest "
-                f"{said}. Dots: solved points.",
+                f"{quantity}. Dots: solved points.",
                 rows,
             )
         ]

@@ -1,4 +1,4 @@
-"""The thickness that a study recommends, with what bounds it and how well it is cross-checked there.
+"""Recommended thickness of a study, the failure modes that bound it, the cross-checks near it.
 
 One coating at several frictions is recommended where it is admissible at all of them. Each end of that range
 is where some stress of some friction meets its strength: the failure mode beyond.
@@ -50,7 +50,7 @@ def recommendation_sentences(judgements: Sequence[Judged]) -> list[str]:
     """
     limited = [j for j in judgements if j.limited]
     if not limited:
-        return _spread(judgements)
+        return _preferable_range(judgements)
     found = []
     for ratio in sorted({j.curve.ratio for j in limited}):
         members = sorted((j for j in limited if j.curve.ratio == ratio), key=lambda j: j.curve.friction)
@@ -58,16 +58,16 @@ def recommendation_sentences(judgements: Sequence[Judged]) -> list[str]:
     return found
 
 
-def _spread(judgements: Sequence[Judged]) -> list[str]:
+def _preferable_range(judgements: Sequence[Judged]) -> list[str]:
     if not judgements:
         return []
     thin = min(judgements, key=lambda j: j.preferable[0])
     thick = max(judgements, key=lambda j: j.preferable[0])
-    said = [
+    ends = [
         f"h = {j.preferable[0]:.3g} a_h ({j.curve.label}; {j.preferable[2]} governs)" for j in (thin, thick)
     ]
     return [
-        f"Over the {len(judgements)} curves the preferable thickness lies between {said[0]} and {said[1]}."
+        f"Over the {len(judgements)} curves the preferable thickness lies between {ends[0]} and {ends[1]}."
     ]
 
 
@@ -84,7 +84,7 @@ def _of_modulus(members: Sequence[Judged]) -> list[str]:
         h, use, mode = j.preferable
         return [
             f"{name}: no thickness of the sweep is admissible at every friction ({every}); with "
-            f"f = {j.curve.friction:g} even the preferable h = {_micrometres(j, h)} takes {use:.2f} of the "
+            f"f = {j.curve.friction:g} even the preferable h = {_micrometres(j, h)} uses {use:.2f} of the "
             f"strength in {mode}: {MODES[mode]}. {_checked([(j, h, mode)])}"
         ]
     found = []
@@ -92,20 +92,20 @@ def _of_modulus(members: Sequence[Judged]) -> list[str]:
         ends = [_bound(members, low, thinner=True), _bound(members, high, thinner=False)]
         at = members[0].h
         inside = np.flatnonzero((at >= low) & (at <= high))
-        taken = np.array([np.interp(at[inside], j.h, j.largest) for j in members])
-        best = int(taken.max(axis=0).argmin())
-        worst = members[int(taken[:, best].argmax())]
+        used = np.array([np.interp(at[inside], j.h, j.largest) for j in members])
+        best = int(used.max(axis=0).argmin())
+        worst = members[int(used[:, best].argmax())]
         h = float(at[inside[best]])
         mode = worst.modes[worst.governing[int(np.abs(worst.h - h).argmin())]]
         beyond = "; ".join(
             f"{side}, {_beyond(end)}" for side, end in zip(("thinner", "thicker"), ends, strict=True)
         )
-        asked = [(*end[:1], place, end[1]) for place, end in zip((low, high), ends, strict=True) if end]
+        places = [(*end[:1], place, end[1]) for place, end in zip((low, high), ends, strict=True) if end]
         found.append(
             f"{name}: h = {low * curve.a_h * 1e6:.3g} to {_micrometres(worst, high)} is admissible at every "
             f"friction ({every}). {beyond[0].upper()}{beyond[1:]}. "
-            f"Within it h = {_micrometres(worst, h)} takes least, {taken[:, best].max():.2f} of the strength "
-            f"in {mode} with f = {worst.curve.friction:g}. {_checked([*asked, (worst, h, mode)])}"
+            f"Within it h = {_micrometres(worst, h)} uses least, {used[:, best].max():.2f} of the strength "
+            f"in {mode} with f = {worst.curve.friction:g}. {_checked([*places, (worst, h, mode)])}"
         )
     return found
 
@@ -136,18 +136,18 @@ def _micrometres(j: Judged, h: float) -> str:
     return f"{h * j.curve.a_h * 1e6:.3g} µm"
 
 
-def _checked(asked: Sequence[tuple[Judged, float, str]]) -> str:
+def _checked(places: Sequence[tuple[Judged, float, str]]) -> str:
     """The cross-checks nearest to each (curve, thickness, mode), every source with its worst difference."""
-    found = [(j, one) for j, h, mode in asked for one in near(j, h, mode)]
+    found = [(j, one) for j, h, mode in places for one in near(j, h, mode)]
     if not found:
         return "No point near it was cross-checked."
-    said = []
+    parts = []
     for source in dict.fromkeys(one.source for _, one in found):
         j, one = max(
             ((j, one) for j, one in found if one.source == source), key=lambda item: item[1].difference
         )
-        said.append(
+        parts.append(
             f"at most {one.difference:.1e} p_h off the {source_label(source)} ({one.mode}, "
             f"h = {_micrometres(j, one.h)}, f = {j.curve.friction:g})"
         )
-    return f"At the checked thicknesses nearest to it these stresses are {' and '.join(said)}."
+    return f"At the checked thicknesses nearest to it these stresses are {' and '.join(parts)}."

@@ -10,7 +10,7 @@ from verification.judging.verdict import Claim, Outcome, Verdict
 from verification.problem.quantity import QUANTITIES, SCALARS, unit_of
 from verification.report.tables.cells import Cell, Row, Table, number
 from verification.report.tables.labels import OUTCOMES, pair_label, source_label
-from verification.report.tables.lookup import baseline, layers, scalar, scale
+from verification.report.tables.lookup import layers, reference_source, scalar, scale
 from verification.report.tables.matrix import outcome_cell
 from verification.report.tables.numbers import engineering, plain, scientific, with_uncertainty
 from verification.running.result import CaseResult
@@ -19,7 +19,7 @@ __all__ = [
     "budget_table",
     "contact_table",
     "diagnostics_table",
-    "dominating_knob",
+    "dominating_parameter",
     "facts",
     "layer_table",
     "verdict_table",
@@ -72,7 +72,7 @@ def layer_table(result: CaseResult) -> Table:
 
 def contact_table(result: CaseResult) -> Table:
     """Peak pressure, contact radius and approach of every source, with uncertainty and difference."""
-    base = baseline(result)
+    base = reference_source(result)
     against = f"vs {source_label(base)}" if base else "difference"
     rows = []
     for source in result.sources:
@@ -99,9 +99,11 @@ def _scalar_cells(result: CaseResult, quantity: str, source: str, base: str | No
     found = scalar(result, quantity, source)
     if found is None:
         return [Cell("no result", css="no-result"), Cell("–"), Cell("–")]
-    value, spread = found
+    value, uncertainty = found
     shown = Cell(
-        with_uncertainty(value, spread, unit_of(quantity)), value, note="" if spread else _spread_note(spread)
+        with_uncertainty(value, uncertainty, unit_of(quantity)),
+        value,
+        note="" if uncertainty else _note(uncertainty),
     )
     relative = value / scale(result, QUANTITIES[quantity].scale)
     ratio = Cell(f"{relative:.6f}", relative)
@@ -112,19 +114,19 @@ def _scalar_cells(result: CaseResult, quantity: str, source: str, base: str | No
     return [shown, ratio, Cell(scientific(gap, sign=True), abs(gap))]
 
 
-def _spread_note(spread: float | None) -> str:
-    return "uncertainty not stated" if spread is None else "exact"
+def _note(uncertainty: float | None) -> str:
+    return "uncertainty not stated" if uncertainty is None else "exact"
 
 
 def verdict_table(
     verdicts: Sequence[tuple[Claim, Verdict]],
     a_h: float,
     most: int | None = None,
-    knob: Callable[[Claim, Verdict], str] | None = None,
+    parameter: Callable[[Claim, Verdict], str] | None = None,
 ) -> Table:
     """The comparisons, the worst first; ``most`` keeps as many of them.
 
-    knob : what dominates the uncertainty of a comparison, in words; no such column without.
+    parameter : gives what dominates the uncertainty of a comparison; no such column without.
     """
     rows = []
     for claim, verdict in sorted(verdicts, key=lambda item: _badness(item[1]))[:most]:
@@ -142,7 +144,7 @@ def verdict_table(
                     number(verdict.uncertainty),
                     number(claim.cap),
                     Cell(scientific(verdict.margin, sign=True), verdict.margin),
-                    *([Cell(knob(claim, verdict))] if knob is not None else []),
+                    *([Cell(parameter(claim, verdict))] if parameter is not None else []),
                     Cell(where, verdict.worst),
                     Cell(verdict.reason, css="reason"),
                 ],
@@ -150,12 +152,12 @@ def verdict_table(
             )
         )
     columns = ["verdict", "quantity", "line", "between", "max |A − B|", "max U", "cap", "margin"]
-    columns += ["U mostly from"] if knob is not None else []
-    said = "the side and the knob that give U its largest part there; " if knob is not None else ""
+    columns += ["largest part of U"] if parameter is not None else []
+    part = "the source and the numerical parameter with the largest part of U; " if parameter else ""
     return Table(
         "Largest difference and largest uncertainty U = U_A + U_B over the judged points, the cap on U, the "
         "smallest margin U − |A − B|, all as fractions of the value (p0, a, approach) or of p_h; "
-        f"{said}the point that decides.",
+        f"{part}the deciding point.",
         [*columns, "at", "reason"],
         rows,
         css="verdicts",
@@ -167,11 +169,11 @@ def _badness(verdict: Verdict) -> tuple[int, float]:
     return OUTCOMES[verdict.outcome].rank, margin if isfinite(margin) else 0.0
 
 
-def dominating_knob(result: CaseResult, claim: Claim, verdict: Verdict) -> str:
-    """The side of a comparison with the larger uncertainty where it is decided, with its largest knob.
+def dominating_parameter(result: CaseResult, claim: Claim, verdict: Verdict) -> str:
+    """The source with the larger uncertainty at the deciding point, with its dominating parameter.
 
-    Stresses and pressures take over what other knobs do to p0 and add their own share of the first, the size
-    of patches or elements: what of U exceeds the others' share of p0 is that knob's.
+    U of a stress or pressure is that of p0, with its own part due to the first parameter, the size of patches
+    or elements: the excess of U over the other parameters' parts of p0 belongs to the first.
     """
     sides = []
     for source in claim.between:
@@ -185,37 +187,37 @@ def dominating_knob(result: CaseResult, claim: Claim, verdict: Verdict) -> str:
     budget = next((s.budget for s in result.sources if s.source == source), ())
     scalar_claim = any(q == claim.quantity for q, _, _ in budget)
     quantity = claim.quantity if scalar_claim else "peak_pressure"
-    knobs = [(knob, value) for q, knob, value in budget if q == quantity]
-    if not knobs:
+    parts = [(name, value) for q, name, value in budget if q == quantity]
+    if not parts:
         return source_label(source)
     if not scalar_claim:
-        others = sum(value for _, value in knobs[1:])
-        knobs[0] = (knobs[0][0], max(U - others, 0.0))
-    return f"{source_label(source)}: {max(knobs, key=lambda item: item[1])[0]}"
+        others = sum(value for _, value in parts[1:])
+        parts[0] = (parts[0][0], max(U - others, 0.0))
+    return f"{source_label(source)}: {max(parts, key=lambda item: item[1])[0]}"
 
 
 def budget_table(result: CaseResult) -> Table | None:
-    """Uncertainty by knob: a row for each knob of each method; None where no method states a budget."""
+    """Uncertainty budget: a row for each numerical parameter of each method."""
     rows: list[Row] = []
     for source in result.sources:
         quantities = list(dict.fromkeys(quantity for quantity, _, _ in source.budget))
         for quantity in quantities:
-            knobs = [(knob, value) for q, knob, value in source.budget if q == quantity]
-            largest = max((value for _, value in knobs if isfinite(value)), default=0.0)
-            for knob, value in knobs:
-                dominant = value == largest > 0 and len(knobs) > 1
+            parts = [(name, value) for q, name, value in source.budget if q == quantity]
+            largest = max((value for _, value in parts if isfinite(value)), default=0.0)
+            for name, value in parts:
+                dominant = value == largest > 0 and len(parts) > 1
                 cells = [
                     Cell(quantity),
-                    Cell(knob, css="dominant" if dominant else ""),
+                    Cell(name, css="dominant" if dominant else ""),
                     Cell(engineering(value, unit_of(quantity), 2), value),
                     Cell(scientific(_relative(result, source.source, quantity, value)), value),
                     Cell("◀ dominates" if dominant else "", css="dominant"),
                 ]
                 rows.append(Row(Cell(source_label(source.source)), cells))
     return Table(
-        "Each method's own uncertainty, knob by knob from its own ladder; relative to the value, to p_h for "
-        "stresses.",
-        ["source", "quantity", "knob", "uncertainty", "relative", ""],
+        "Uncertainty of each method by numerical parameter, from its own refinement; relative to the value, "
+        "to p_h for stresses.",
+        ["source", "quantity", "parameter", "uncertainty", "relative", ""],
         rows,
     )
 
@@ -227,13 +229,13 @@ def _relative(result: CaseResult, source: str, quantity: str, value: float) -> f
 
 
 def diagnostics_table(result: CaseResult) -> Table | None:
-    """What each source says of its own work: iterations, residuals, unknowns; None where nothing is said."""
+    """Diagnostics of each source: iterations, residuals, unknowns."""
     rows = [
         Row(Cell(source_label(source.source)), [Cell(name.replace("_", " ")), Cell(_shown(value))])
         for source in result.sources
         for name, value in source.diagnostics.items()
     ]
-    return Table("Diagnostics each source reports of itself.", ["source", "diagnostic", "value"], rows)
+    return Table("Diagnostics reported by each source.", ["source", "diagnostic", "value"], rows)
 
 
 def _shown(value: Any) -> str:

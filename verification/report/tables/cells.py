@@ -1,4 +1,4 @@
-"""The few shapes a report page is made of: cells, rows, tables, figures, sections."""
+"""Parts of a report page: cells, rows, tables, figures, sections."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -95,7 +95,7 @@ class Part:
 
     @property
     def download(self) -> str:
-        """The numbers behind the gallery as an address that carries them; "" without a gallery."""
+        """The numbers of the gallery as a data address; "" without a gallery."""
         if self.gallery is None:
             return ""
         return embedded(self.gallery.csv or written([row for item in self.tables for row in _cells_of(item)]))
@@ -103,7 +103,7 @@ class Part:
 
 @dataclass(frozen=True)
 class Section:
-    """A part of the page about the run as a whole; ``failures`` are sentences said before all else."""
+    """A part of the page about the run as a whole; ``failures`` are messages shown first."""
 
     anchor: str
     title: str
@@ -112,7 +112,7 @@ class Section:
 
 
 def _cells_of(table: Table) -> list[list[str]]:
-    """Heads, then rows: the number behind a cell where it has one, else what it says."""
+    """Heads, then rows: the number of a cell where it has one, else its text."""
     heads = list(table.columns)
     if table.groups:
         over = [title for title, count in table.groups for _ in range(count)]

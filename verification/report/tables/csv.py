@@ -1,4 +1,4 @@
-"""The numbers behind the figures as CSV that travels inside the page."""
+"""The numbers of the figures as CSV embedded in the page."""
 
 import base64
 import csv
@@ -37,8 +37,8 @@ def line_csv(result: CaseResult, line: str) -> str:
             head = f"{profile.quantity} [{unit_of(profile.quantity)}] {profile.source}"
             columns.append([_safe(head), *(f"{v:.8g}" for v in profile.value.tolist())])
             if profile.uncertainty is not None:
-                spread = [f"{v:.3g}" for v in profile.uncertainty.tolist()]
-                columns.append([_safe(f"uncertainty of {head}"), *spread])
+                uncertainty = [f"{v:.3g}" for v in profile.uncertainty.tolist()]
+                columns.append([_safe(f"uncertainty of {head}"), *uncertainty])
     return written(list(zip_longest(*columns, fillvalue="")))
 
 
@@ -56,5 +56,5 @@ def written(rows: Sequence[Sequence[str]]) -> str:
 
 
 def _safe(text: str) -> str:
-    # A name from a stranger must not run as a formula when the file is opened in a spreadsheet.
+    # An untrusted name must not run as a formula when the file is opened in a spreadsheet.
     return f"'{text}" if text[:1] in ("=", "+", "-", "@", "\t", "\r") else text

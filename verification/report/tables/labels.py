@@ -1,4 +1,4 @@
-"""How the report calls and draws each source, quantity and outcome."""
+"""Labels, line styles, marks of sources, pairs of sources, outcomes."""
 
 from dataclasses import dataclass
 
@@ -43,7 +43,7 @@ def source_style(source: str) -> Style:
 
 
 def pair_label(pair: tuple[str, str]) -> str:
-    """Two sources held against each other, as column heads and legends say it."""
+    """Two compared sources, for column heads and legends."""
     return " – ".join(source_label(source) for source in pair)
 
 

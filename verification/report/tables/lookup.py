@@ -1,4 +1,4 @@
-"""Reading a case result: its scales, its references, the points its verdicts speak of."""
+"""Lookup in a case result: scales, references, judged points."""
 
 import re
 from typing import Any
@@ -14,7 +14,6 @@ from verification.sources.registry import METHODS, REFERENCES
 
 __all__ = [
     "GROUPS",
-    "baseline",
     "claimed_quantities",
     "contact_radius",
     "coordinate",
@@ -23,6 +22,7 @@ __all__ = [
     "judged",
     "layers",
     "lines",
+    "reference_source",
     "scalar",
     "scale",
     "slug",
@@ -51,8 +51,8 @@ def sources_with_profiles(result: CaseResult) -> tuple[str, ...]:
     return tuple(s for s in order if s in found) + tuple(sorted(found - set(order)))
 
 
-def baseline(result: CaseResult) -> str | None:
-    """What the others are held against: the last exact reference, else the finite elements."""
+def reference_source(result: CaseResult) -> str | None:
+    """Reference source of a case: the last exact reference, else the finite elements."""
     found = sources_with_profiles(result)
     exact = [source for source in found if source in REFERENCES]
     references = [source for source in found if source not in METHODS]
@@ -91,13 +91,13 @@ def scalar(result: CaseResult, quantity: str, source: str) -> tuple[np.float64, 
     profile = result.profile(quantity, "contact", source)
     if profile is None or profile.value.size == 0:
         return None
-    spread = None if profile.uncertainty is None else float(profile.uncertainty[0])
-    return profile.value[0], spread
+    uncertainty = None if profile.uncertainty is None else float(profile.uncertainty[0])
+    return profile.value[0], uncertainty
 
 
 def contact_radius(result: CaseResult) -> float | None:
     """The contact radius [m] by the best source that gave a finite one."""
-    for source in (baseline(result), *sources_with_profiles(result)):
+    for source in (reference_source(result), *sources_with_profiles(result)):
         found = scalar(result, "contact_radius", source) if source else None
         if found is not None and np.isfinite(found[0]):
             return found[0]
@@ -110,14 +110,14 @@ def coordinate(line: str) -> str:
 
 
 def claimed_quantities(result: CaseResult, line: str) -> tuple[str, ...]:
-    """Quantities on ``line`` that a claim speaks of; where there is none, all that were sampled."""
+    """Quantities on ``line`` with a claim; where there is none, all that were sampled."""
     sampled = tuple(dict.fromkeys(p.quantity for p in result.profiles if p.line == line))
     claimed = {claim.quantity for claim, _ in result.verdicts if claim.line == line}
     return tuple(q for q in sampled if q in claimed) or sampled
 
 
 def judged(result: CaseResult, claim: Claim, position: NDArray[np.float64]) -> NDArray[np.bool_]:
-    """Marks the points of ``position`` that ``claim`` speaks of: those outside its zone around the edge."""
+    """Marks the points of ``position`` judged by ``claim``: those outside its zone around the edge."""
     a = contact_radius(result)
     if not claim.edge or a is None or coordinate(claim.line) == "z":
         return np.ones(position.shape, dtype=bool)

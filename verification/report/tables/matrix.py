@@ -21,7 +21,7 @@ def verdict_matrix(
     anchors: Mapping[CaseResult, str],
     more: Sequence[tuple[str, Callable[[CaseResult], Cell]]] = (),
 ) -> Table:
-    """Every case at a glance; each cell holds its worst verdict and its largest difference.
+    """Overview of all cases; each cell holds its worst verdict and its largest difference.
 
     more : further columns behind the verdict, each with the function that gives the cell of a case.
     """
@@ -75,10 +75,10 @@ def _cell(found: Sequence[tuple[Claim, Verdict]], href: str) -> Cell:
         f"{agreeing} of {len(found)} agree; largest difference {scientific(largest)}, {claim.quantity} "
         f"on {claim.line}, {' against '.join(source_label(s) for s in claim.between)}"
     )
-    # The letter alone keeps sixteen columns within a page; its mark and word stand above the matrix.
+    # The letter alone keeps sixteen columns within a page; its mark and word are above the matrix.
     style = OUTCOMES[worst]
     if worst is Outcome.NO_RESULT:
-        # The difference of those that did come to a number would look like the answer.
+        # The difference of those with a number would look like the result.
         return Cell(f"{style.letter} –", None, f"verdict {style.css}", note, href)
     return Cell(f"{style.letter} {scientific(largest)}", largest, f"verdict {style.css}", note, href)
 

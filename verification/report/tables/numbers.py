@@ -1,4 +1,4 @@
-"""Numbers as a reader wants them: engineering prefixes, as many digits as the uncertainty supports."""
+"""Numbers as text: engineering prefixes, as many digits as the uncertainty supports."""
 
 from math import floor, isfinite, log10
 from typing import Any
@@ -23,20 +23,20 @@ def with_uncertainty(value: Any, uncertainty: Any, unit: str) -> str:
 
     uncertainty : None is "not stated" (six digits are shown), 0 is "exact" (nine digits).
     """
-    number, spread = _number(value), _number(uncertainty)
+    number, stated = _number(value), _number(uncertainty)
     if number is None:
         return "not finite"
     factor, prefix = _prefix(number)
     mantissa, shown = number / factor, f"{prefix}{unit}"
     if uncertainty is None:
         return f"{_minus(format(mantissa, '.6g'))} {shown}"
-    if spread == 0:
+    if stated == 0:
         return f"{_minus(format(mantissa, f'.{MOST_DIGITS}g'))} {shown}"
-    width = -1.0 if spread is None else spread / factor
+    width = -1.0 if stated is None else stated / factor
     if not 1e-30 < width < 1e30:
         # Not finite, negative, or of no sensible size: shown as it is, for it needs looking at.
         return f"{_minus(format(mantissa, '.6g'))} {shown} ± {uncertainty:.2g} {unit}"
-    # Two digits of the uncertainty; beyond nine of the value nothing is meant any more.
+    # Two digits of the uncertainty, at most nine of the value.
     whole = floor(log10(abs(mantissa))) if mantissa else 0
     decimals = min(max(1 - floor(log10(width)), 0), max(MOST_DIGITS - 1 - whole, 0))
     # Numbers of absurd size keep their exponent instead of running over the page.
@@ -79,7 +79,7 @@ def factor(worse: Any, better: Any) -> str:
     """How many times ``better`` goes into ``worse``, two digits: "3.2", "4600", "1.4e9"."""
     large, small = _number(worse), _number(better)
     if large is None or small is None or small <= 0:
-        return "untold"
+        return "undefined"
     ratio = large / small
     if not 0.01 <= ratio < 1e5:
         return scientific(ratio)
