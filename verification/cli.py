@@ -1,8 +1,4 @@
-"""The command line of coatcheck.
-
-Exit codes: 0 all agree, 1 a disagreement, 2 bad input, 3 a missing result, 4 inconclusive, 5 all agree but
-a number is not that of the baseline, 130 stopped by Ctrl-C.
-"""
+"""The command line of coatcheck."""
 
 import re
 import sys
@@ -11,9 +7,8 @@ from typing import Literal, NamedTuple
 
 from cyclopts import App, CycloptsError
 
-from verification.commands.common import STOPPED, print_error
-
-__all__ = ["app", "main"]
+from verification.commands.common.exits import BAD_INPUT, STOPPED
+from verification.commands.common.terminal import print_error
 
 CODES = (
     "Exit codes: 0 all agree, 1 disagreement, 2 bad input, 3 no result, 4 inconclusive, 5 all agree but a "
@@ -22,18 +17,20 @@ CODES = (
 
 
 class Command(NamedTuple):
-    """A command: ``place`` is module:function of the commands, as text, so that only one is loaded."""
+    """A command: ``place`` is its module:function, as text, so that only one is loaded.
+
+    That of a command "x" is x:x unless given.
+    """
 
     name: str
-    place: str
-    said: str
+    summary: str
     examples: tuple[str, ...]
+    place: str = ""
 
 
 COMMANDS = (
     Command(
         "run",
-        "run:run",
         "Solve cases by every method and reference, judge every claim, write the report.",
         (
             "coatcheck run",
@@ -44,19 +41,17 @@ COMMANDS = (
     ),
     Command(
         "list",
-        "list_cases:list_cases",
         "List the shipped cases and published results with their sources.",
         ("coatcheck list", "coatcheck list --json"),
+        "list_cases:list_cases",
     ),
     Command(
         "report",
-        "report:report",
         "Write the report of a stored run again, nothing solved; print it with --pdf.",
         ("coatcheck report", "coatcheck report reports/mine --pdf"),
     ),
     Command(
         "view",
-        "view:view",
         "Look at the fields of a case, in a window or as a picture.",
         (
             "coatcheck run 05_ratio_4 --fields",
@@ -66,25 +61,21 @@ COMMANDS = (
     ),
     Command(
         "compare",
-        "compare:compare",
         "Show two runs side by side: verdicts, numbers, versions, times.",
         ("coatcheck compare reports reports/mine --output compared.html",),
     ),
     Command(
         "faults",
-        "faults:faults",
         "Plant one mistake at a time; report which checks of the default run catch it.",
         ("coatcheck faults", "coatcheck faults --group stress", "coatcheck faults --list"),
     ),
     Command(
         "alarms",
-        "alarms:alarms",
         "Solve clean random problems; count the verdicts that are not AGREES.",
         ("coatcheck alarms", "coatcheck alarms --count 5 --seed 7"),
     ),
     Command(
         "bench",
-        "bench:bench",
         "Time the semi-analytical contact beside its peers; ratios first.",
         ("coatcheck bench", "coatcheck bench --sizes 128 256 --threads 1"),
     ),
@@ -92,43 +83,35 @@ COMMANDS = (
 STUDY = (
     Command(
         "thickness",
-        "study:thickness",
         "Which thickness? Stresses of a coating against thickness, stiffness and friction, cross-checked.",
         (
             "coatcheck study thickness",
             "coatcheck study thickness dlc_on_steel --output reports/dlc",
             "coatcheck study thickness my_coating.toml --scheduler tcp://host:8786",
+            "coatcheck study thickness --no-cross-check --limit 30",
         ),
+        "study:thickness",
     ),
 )
 BASELINE = (
     Command(
         "update",
-        "baseline:update",
         "Make a stored default run the baseline, with the reason why.",
         ('coatcheck baseline update --why "finer default grid"',),
+        "baseline:update",
     ),
     Command(
         "show",
-        "baseline:show",
         "Show what the baseline holds and every update it has seen.",
         ("coatcheck baseline show",),
+        "baseline:show",
     ),
 )
 
 
 def _epilogue(examples: Sequence[str]) -> str:
-    """What stands below the options of a command: how it is called, how it ends."""
+    """The text below the options of a command: examples, exit codes."""
     return "Examples:\n\n" + "\n".join(f"    {example}" for example in examples) + f"\n\n{CODES}"
-
-
-def _add(parent: App, command: Command) -> None:
-    parent.command(
-        f"verification.commands.{command.place}",
-        name=command.name,
-        help=command.said,
-        help_epilogue=_epilogue(command.examples),
-    )
 
 
 def _version() -> str:
@@ -146,7 +129,7 @@ app = App(
 )
 baseline = App(
     name="baseline",
-    help="The stored numbers that every run is held against.",
+    help="The stored numbers that every run is compared with.",
     help_epilogue=_epilogue([example for entry in BASELINE for example in entry.examples]),
 )
 study = App(
@@ -156,7 +139,11 @@ study = App(
 )
 for parent, entries in ((app, COMMANDS), (baseline, BASELINE), (study, STUDY)):
     for entry in entries:
-        _add(parent, entry)
+        epilogue, place = (
+            _epilogue(entry.examples),
+            f"verification.commands.{entry.place or f'{entry.name}:{entry.name}'}",
+        )
+        parent.command(place, name=entry.name, help=entry.summary, help_epilogue=epilogue)
 app.command(baseline)
 app.command(study)
 
@@ -208,7 +195,8 @@ def main() -> None:
     try:
         code = app(sys.argv[1:], exit_on_error=False, print_error=False, result_action="return_value")
     except CycloptsError as error:
-        code = print_error(" ".join(str(error).split()) + " Try: coatcheck --help")
+        print_error(" ".join(str(error).split()) + " Try: coatcheck --help")
+        code = BAD_INPUT
     except KeyboardInterrupt:
         sys.stderr.write("\ncoatcheck: stopped; finished cases are kept, go on with --resume\n")
         code = STOPPED

@@ -16,8 +16,6 @@ from verification.problem.profile import Profile
 from verification.problem.quantity import CURVES, EXTREMES, QUANTITIES, SCALARS
 from verification.sources.registry import PUBLISHED
 
-__all__ = ["PublishedColumn", "columns_of", "si_of"]
-
 
 @dataclass(frozen=True, eq=False)
 class PublishedColumn:
@@ -58,11 +56,7 @@ def si_of(name: str, units: dict[str, float], where: str) -> float:
 
 
 def columns_of(
-    table: TableEntry,
-    content: PublishedTable,
-    units: dict[str, float],
-    problem: Problem,
-    key: str,
+    table: TableEntry, content: PublishedTable, units: dict[str, float], problem: Problem, key: str
 ) -> list[PublishedColumn]:
     content = content.where(table.rows) if table.rows else content
     labels = content.text(table.label) if table.label else ("",) * len(content.rows)
@@ -117,11 +111,7 @@ def columns_of(
 
 
 def _points(
-    at: PositionEntry | None,
-    content: PublishedTable,
-    units: dict[str, float],
-    problem: Problem,
-    where: str,
+    at: PositionEntry | None, content: PublishedTable, units: dict[str, float], problem: Problem, where: str
 ) -> Points:
     n = len(content.rows)
     if at is None:
@@ -179,11 +169,7 @@ def _uncertainty(column: ColumnEntry, content: PublishedTable, counted: NDArray[
 
 
 def _scale(
-    column: ColumnEntry,
-    table: TableEntry,
-    content: PublishedTable,
-    units: dict[str, float],
-    problem: Problem,
+    column: ColumnEntry, table: TableEntry, content: PublishedTable, units: dict[str, float], problem: Problem
 ) -> float:
     """Stresses over the pressure; displacements and strains over the largest of their kind in the table."""
     kind = QUANTITIES[column.quantity].kind

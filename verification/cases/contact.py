@@ -13,9 +13,6 @@ from verification.problem.contact import CoatedContact
 from verification.problem.profile import Line, line_of, lines_of
 from verification.sources.registry import METHODS, sources_of
 
-__all__ = ["Case", "parse_case", "read_case", "refuse_unfit_scales", "shipped_cases"]
-
-
 CASES = Path(__file__).parent / "shipped" / "contact"
 
 

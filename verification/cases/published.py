@@ -18,8 +18,6 @@ from verification.problem.loading import CONTROLS, PUNCH, LoadingCurve, Problem
 from verification.problem.quantity import QUANTITIES
 from verification.sources.registry import EXACT, METHODS, PUBLISHED, SOURCES
 
-__all__ = ["PublishedCase", "is_published", "parse_published", "published_cases", "read_published"]
-
 # Largest admissible uncertainty of a method, as on the lines of every other case; the digitisation
 # uncertainty is added to it.
 CAP = 5e-3

@@ -6,8 +6,6 @@ from pydantic import Field, model_validator
 
 from verification.cases.toml import Strict, Text
 
-__all__ = ["ColumnEntry", "LayerEntry", "PositionEntry", "ProblemEntry", "PublishedFile", "TableEntry"]
-
 Positive = Annotated[float, Field(gt=0)]
 # 1/2 is allowed: the finite element method extrapolates to the incompressible limit.
 Poisson = Annotated[float, Field(gt=-1, le=0.5)]

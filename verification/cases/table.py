@@ -10,8 +10,6 @@ from dataclasses import dataclass, replace
 from math import floor, isfinite, log10
 from pathlib import Path
 
-__all__ = ["FOLDER", "MAX_BYTES", "UNITS", "PublishedError", "PublishedTable", "read_table"]
-
 FOLDER = Path(__file__).parent / "shipped" / "published"
 MAX_BYTES = 1_000_000
 

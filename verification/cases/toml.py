@@ -6,23 +6,6 @@ from typing import Annotated, Any, TypeVar
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
-__all__ = [
-    "MAX_BYTES",
-    "MAX_DOTS",
-    "MAX_NAME",
-    "CaseError",
-    "Checked",
-    "Length",
-    "Modulus",
-    "Poisson",
-    "Strict",
-    "Text",
-    "first_error",
-    "load_toml",
-    "read_bounded",
-    "read_toml",
-]
-
 Checked = TypeVar("Checked", bound=BaseModel)
 
 

@@ -11,15 +11,6 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-__all__ = [
-    "CoatedContact",
-    "NotClaimed",
-    "PrescribedLoad",
-    "Solution",
-    "keywords",
-    "stress_with_uncertainty",
-]
-
 
 @dataclass(frozen=True)
 class CoatedContact:

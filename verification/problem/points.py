@@ -8,8 +8,6 @@ from numpy.typing import NDArray
 from verification.problem.arrays import Array
 from verification.problem.geometry import layer_at
 
-__all__ = ["Points"]
-
 
 @dataclass(frozen=True, eq=False)
 class Points:

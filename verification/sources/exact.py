@@ -7,8 +7,6 @@ from verification.problem.contact import CoatedContact, PrescribedLoad, keywords
 from verification.problem.loading import LoadingCurve, Problem
 from verification.sources.source import Kind, Source, Style
 
-__all__ = ["REFERENCE_SOURCES"]
-
 PACKAGE = "verification.sources.references"
 
 

@@ -13,8 +13,6 @@ from verification.problem.arrays import Array
 from verification.problem.contact import CoatedContact, PrescribedLoad, Solution
 from verification.problem.quantity import QUANTITIES, SCALARS
 
-__all__ = ["extrapolated", "short_of_limit"]
-
 Problem = TypeVar("Problem", bound=CoatedContact | PrescribedLoad)
 Solver = Callable[[CoatedContact | PrescribedLoad], Solution]
 STEP = 1e-3  # of Poisson's ratio

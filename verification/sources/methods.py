@@ -9,8 +9,6 @@ from verification.problem.contact import CoatedContact, PrescribedLoad, keywords
 from verification.problem.loading import LoadingCurve, Problem
 from verification.sources.source import Kind, NumericalParameter, Solver, Source, Style
 
-__all__ = ["METHOD_SOURCES", "sharing_pressure"]
-
 # Element size on a loading curve, which needs many solves; it leaves 1e-7 of the approach.
 CURVE_SIZE = 0.28
 

@@ -18,8 +18,6 @@ from scipy.optimize import minimize_scalar
 from verification.problem.arrays import Array
 from verification.sources.references.quadrature import gauss_legendre
 
-__all__ = ["AbelPressure"]
-
 
 @dataclass(frozen=True, eq=False)
 class AbelPressure:

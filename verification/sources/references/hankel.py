@@ -24,9 +24,6 @@ from verification.problem.geometry import layer_at
 from verification.sources.references.layered import Amplitudes, LayeredHalfSpace, bending_length
 from verification.sources.references.quadrature import wavenumber_panels
 
-__all__ = ["AxisymmetricPressure", "HankelField"]
-
-
 CHUNK = 2_000_000  # products of wavenumbers with radii held in memory at once
 
 

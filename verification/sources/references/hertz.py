@@ -15,8 +15,6 @@ from numpy.typing import ArrayLike
 from verification.problem.arrays import Array
 from verification.problem.contact import NotClaimed
 
-__all__ = ["Hertz", "HertzContact", "HertzUncertainty"]
-
 
 @dataclass(frozen=True)
 class HertzUncertainty:

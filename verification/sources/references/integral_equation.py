@@ -23,8 +23,6 @@ from verification.sources.references.hankel import HankelField
 from verification.sources.references.layered import LayeredHalfSpace, bending_length, contact_modulus
 from verification.sources.references.quadrature import gauss_legendre, wavenumber_panels
 
-__all__ = ["ExactSolution", "ExactUncertainty", "solve"]
-
 
 @dataclass(frozen=True)
 class ExactUncertainty:

@@ -19,9 +19,6 @@ import numpy as np
 
 from verification.problem.arrays import Array, Coatings
 
-__all__ = ["Amplitudes", "LayeredHalfSpace", "bending_length", "contact_modulus"]
-
-
 # Beyond this k h a layer is a half-space to better than rounding (exp(-80) is left of its lower side), while
 # the propagator's condition number grows like (k h)^2.
 THICK = 40.0

@@ -15,8 +15,6 @@ from scipy.special import ellipe, ellipkm1, j1
 from verification.problem.arrays import Array, Coatings
 from verification.sources.references.hankel import HankelField
 
-__all__ = ["DiscSolution", "UniformDisc", "solve_prescribed"]
-
 
 @dataclass(frozen=True)
 class UniformDisc:
