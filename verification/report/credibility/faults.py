@@ -24,11 +24,7 @@ _CATCHES = {
         "the uncertainty it leaves exceeds the cap",
     ),
     Catch.DRIFTED: ("~ baseline", "verdict inconclusive", "a number differs from the baseline"),
-    Catch.NO_RESULT: (
-        "∅ no result",
-        "verdict no-result",
-        "the source fails without a reason",
-    ),
+    Catch.NO_RESULT: ("∅ no result", "verdict no-result", "the source fails without a reason"),
     Catch.SURVIVED: ("✗ survived", "verdict disagrees", "every check passes"),
     Catch.NOT_TRIED: ("∅ not tried", "verdict no-result", "the trial failed"),
 }
