@@ -46,8 +46,9 @@ def _exact_accepts(problem: Problem, kind: str) -> bool:
 
 
 def _closed_accepts(problem: Problem, kind: str, *, sliding: bool) -> bool:
-    uncoated = isinstance(problem, CoatedContact) and problem.homogeneous
-    return uncoated and (problem.friction > 0) is sliding and kind != "displacement"
+    if not isinstance(problem, CoatedContact) or kind == "displacement":
+        return False
+    return problem.homogeneous and (problem.friction > 0) is sliding
 
 
 _EXACT, _CLOSED = Style("exact", (), 5.0, 0.35, "+"), Style("hertz", (1.0, 1.4), 1.8)

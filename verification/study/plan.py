@@ -131,7 +131,6 @@ class _Range(Strict):
         return self
 
 
-Positive = Annotated[float, Field(gt=0)]
 Values = Annotated[list[Positive], Field(min_length=1, max_length=100_000)]
 
 
