@@ -14,7 +14,7 @@ from verification.commands.common.terminal import print_json
 from verification.regression.baseline import regression
 from verification.regression.record import read_baseline
 from verification.running.self_tests import self_tests
-from verification.running.store import locked, read_checked
+from verification.running.store import locked
 
 
 @with_exit_code
@@ -44,8 +44,6 @@ def report(
     time_limit
         Seconds that printing may take.
     """
-    from verification.credibility.accuracy import from_json as study_from_json
-    from verification.credibility.accuracy import path_in
     from verification.report.material import gather, stored_material
     from verification.report.pdf import NoBrowser, printed
     from verification.report.write import write_report
@@ -62,8 +60,6 @@ def report(
                 found = gather(RECORDS if records is None else records)
                 kept = {name: getattr(evidence, name) for name in ("accuracy", "baseline", "formulas")}
                 evidence = replace(found, **kept, self_tests=evidence.self_tests or self_tests())
-            if not whole and path_in(folder).exists():
-                evidence = replace(evidence, accuracy=study_from_json(read_checked(path_in(folder))))
             if baseline is not None or not whole:
                 place = BASELINE if baseline is None else baseline
                 known, name = read_baseline(place), within_package(place)
