@@ -2,8 +2,10 @@
 
 import re
 import sys
+import tomllib
 from collections.abc import Sequence
-from typing import Literal, NamedTuple
+from pathlib import Path
+from typing import Literal
 
 from cyclopts import App, CycloptsError
 
@@ -16,97 +18,8 @@ CODES = (
 )
 
 
-class Command(NamedTuple):
-    """A command: ``place`` is its module:function, as text, so that only one is loaded.
-
-    That of a command "x" is x:x unless given.
-    """
-
-    name: str
-    summary: str
-    examples: tuple[str, ...]
-    place: str = ""
-
-
-COMMANDS = (
-    Command(
-        "run",
-        "Solve cases by every method and reference, judge every claim, write the report.",
-        (
-            "coatcheck run",
-            "coatcheck run 05_ratio_4 my_coating.toml --output reports/mine --fields",
-            "coatcheck run published",
-            "coatcheck run --resume -v",
-        ),
-    ),
-    Command(
-        "list",
-        "List the shipped cases and published results with their sources.",
-        ("coatcheck list", "coatcheck list --json"),
-        "list_cases:list_cases",
-    ),
-    Command(
-        "report",
-        "Write the report of a stored run again, nothing solved; print it with --pdf.",
-        ("coatcheck report", "coatcheck report reports/mine --pdf"),
-    ),
-    Command(
-        "view",
-        "Look at the fields of a case, in a window or as a picture.",
-        (
-            "coatcheck run 05_ratio_4 --fields",
-            "coatcheck view 05_ratio_4",
-            "coatcheck view 05_ratio_4 --quantity sigma_xx --screenshot sigma_xx.png",
-        ),
-    ),
-    Command(
-        "compare",
-        "Show two runs side by side: verdicts, numbers, versions, times.",
-        ("coatcheck compare reports reports/mine --output compared.html",),
-    ),
-    Command(
-        "faults",
-        "Plant one mistake at a time; report which checks of the default run catch it.",
-        ("coatcheck faults", "coatcheck faults --group stress", "coatcheck faults --list"),
-    ),
-    Command(
-        "alarms",
-        "Solve clean random problems; count the verdicts that are not AGREES.",
-        ("coatcheck alarms", "coatcheck alarms --count 5 --seed 7"),
-    ),
-    Command(
-        "bench",
-        "Time the semi-analytical contact beside its peers; ratios first.",
-        ("coatcheck bench", "coatcheck bench --sizes 128 256 --threads 1"),
-    ),
-)
-STUDY = (
-    Command(
-        "thickness",
-        "Which thickness? Stresses of a coating against thickness, stiffness and friction, cross-checked.",
-        (
-            "coatcheck study thickness",
-            "coatcheck study thickness dlc_on_steel --output reports/dlc",
-            "coatcheck study thickness my_coating.toml --scheduler tcp://host:8786",
-            "coatcheck study thickness --no-cross-check --limit 30",
-        ),
-        "study:thickness",
-    ),
-)
-BASELINE = (
-    Command(
-        "update",
-        "Make a stored default run the baseline, with the reason why.",
-        ('coatcheck baseline update --why "finer default grid"',),
-        "baseline:update",
-    ),
-    Command(
-        "show",
-        "Show what the baseline holds and every update it has seen.",
-        ("coatcheck baseline show",),
-        "baseline:show",
-    ),
-)
+# Read as data, so that the module of a command is imported only when it is called.
+COMMANDS = tomllib.loads((Path(__file__).parent / "commands" / "commands.toml").read_text(encoding="utf-8"))
 
 
 def _epilogue(examples: Sequence[str]) -> str:
@@ -120,6 +33,14 @@ def _version() -> str:
     return version("coatcheck")
 
 
+def _group(name: str, summary: str) -> App:
+    """The commands whose names begin with ``name``."""
+    examples = [
+        line for key, entry in COMMANDS.items() if key.startswith(f"{name} ") for line in entry["examples"]
+    ]
+    return App(name=name, help=summary, help_epilogue=_epilogue(examples))
+
+
 app = App(
     name="coatcheck",
     help="Verify coated point contact: two independent methods, Hertz and an exact reference in one report.",
@@ -127,25 +48,17 @@ app = App(
     version=_version,
     help_format="plaintext",
 )
-baseline = App(
-    name="baseline",
-    help="The stored numbers that every run is compared with.",
-    help_epilogue=_epilogue([example for entry in BASELINE for example in entry.examples]),
-)
-study = App(
-    name="study",
-    help="Sweep a parameter with both methods behind every number.",
-    help_epilogue=_epilogue([example for entry in STUDY for example in entry.examples]),
-)
-for parent, entries in ((app, COMMANDS), (baseline, BASELINE), (study, STUDY)):
-    for entry in entries:
-        epilogue, place = (
-            _epilogue(entry.examples),
-            f"verification.commands.{entry.place or f'{entry.name}:{entry.name}'}",
-        )
-        parent.command(place, name=entry.name, help=entry.summary, help_epilogue=epilogue)
-app.command(baseline)
-app.command(study)
+groups = {
+    "": app,
+    "baseline": _group("baseline", "The stored numbers that every run is compared with."),
+    "study": _group("study", "Sweep a parameter with both methods behind every number."),
+}
+for key, entry in COMMANDS.items():
+    group, _, name = key.rpartition(" ")
+    place, epilogue = f"verification.commands.{entry['place']}", _epilogue(entry["examples"])
+    groups[group].command(place, name=name, help=entry["summary"], help_epilogue=epilogue)
+app.command(groups["baseline"])
+app.command(groups["study"])
 
 
 # The generated function alone does nothing: zsh has to call it where the file lies in a directory of $fpath,

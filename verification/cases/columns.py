@@ -63,16 +63,14 @@ def columns_of(
     found = []
     for i, column in enumerate(table.column):
         here = f"{table.file}, column {column.name}"
+        named = f"{here}: quantity {column.quantity!r}"
         if column.quantity not in QUANTITIES:
+            raise PublishedError(f"{named} is unknown; known are {', '.join(QUANTITIES)}")
+        fits = (column.quantity in CURVES) == isinstance(problem, LoadingCurve)
+        if not fits and column.quantity not in SCALARS:
             raise PublishedError(
-                f"{here}: quantity {column.quantity!r} is unknown; known are {', '.join(QUANTITIES)}"
-            )
-        if (column.quantity in CURVES) != isinstance(
-            problem, LoadingCurve
-        ) and column.quantity not in SCALARS:
-            raise PublishedError(
-                f"{here}: quantity {column.quantity!r} does not go with this problem; {', '.join(CURVES)} "
-                "belong to a sphere without a load, all others to a load"
+                f"{named} does not go with this problem; {', '.join(CURVES)} belong to a sphere without a "
+                "load, all others to a load"
             )
         at = column.at or table.at
         if at is None and column.quantity not in SCALARS + EXTREMES:
@@ -116,7 +114,6 @@ def _points(
     n = len(content.rows)
     if at is None:
         return Points.origin(n)
-
     try:
         unit = si_of(at.unit, units, "at")
 

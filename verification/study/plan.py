@@ -17,7 +17,7 @@ import numpy as np
 from pydantic import Discriminator, Field, Tag, model_validator
 
 from verification.cases.contact import refuse_unfit_scales
-from verification.cases.toml import CaseError, Length, Modulus, Poisson, Strict, Text, read_bounded, read_toml
+from verification.cases.toml import CaseError, Poisson, Positive, Strict, Text, read_bounded, read_toml
 from verification.problem.contact import CoatedContact
 from verification.study.criteria import Criteria
 from verification.study.table import SOURCES
@@ -103,17 +103,17 @@ def thicknesses_between(low: float, high: float, count: int) -> tuple[float, ...
 
 
 class _Substrate(Strict):
-    E: Modulus
+    E: Positive
     nu: Poisson
 
 
 class _Coating(Strict):
-    E: Modulus | None = None
+    E: Positive | None = None
     nu: Poisson
 
 
 class _Problem(Strict):
-    radius: Length
+    radius: Positive
     load: Annotated[float, Field(gt=0)]
     substrate: _Substrate
     coating: _Coating
@@ -131,7 +131,6 @@ class _Range(Strict):
         return self
 
 
-Positive = Annotated[float, Field(gt=0)]
 Values = Annotated[list[Positive], Field(min_length=1, max_length=100_000)]
 
 
