@@ -21,13 +21,9 @@ from rich.table import Column, Table
 from verification.cases.contact import Case, read_case, shipped_cases
 from verification.cases.published import PublishedCase, is_published, published_cases, read_published
 from verification.cases.toml import CaseError
-from verification.commands.common import (
-    BASELINE,
-    DRIFTED,
-    EXIT,
-    RECORDS,
-    STOPPED,
-    STYLE,
+from verification.commands.common.exits import DRIFTED, EXIT, STOPPED, exit_code, with_exit_code
+from verification.commands.common.folders import BASELINE, RECORDS, within_package
+from verification.commands.common.options import (
     AsJson,
     BaselineFolder,
     Flag,
@@ -36,30 +32,29 @@ from verification.commands.common import (
     Quiet,
     RecordsFolder,
     Resume,
-    did_you_mean,
-    exit_code,
-    no_gmsh,
-    one_line,
-    print_error,
-    print_json,
-    run_info,
-    within_package,
 )
-from verification.commands.solving import kept_results, kept_study, solve
+from verification.commands.common.terminal import STYLE, did_you_mean, one_line, print_error, print_json
+from verification.commands.solving import (
+    kept_results,
+    kept_study,
+    require_gmsh,
+    run_info,
+    solve,
+    worker_count,
+)
 from verification.judging.verdict import Outcome
 from verification.regression.baseline import Regression, State, regression, regression_json
 from verification.regression.record import read_baseline
-from verification.running.pool import Task, cores
+from verification.running.pool import Task
 from verification.running.result import CaseResult
 from verification.running.self_tests import SelfTest, self_tests
 from verification.running.store import StoreError, locked
 from verification.running.tasks import case_task, kept_result, published_task
 
-__all__ = ["run"]
-
 NARROW = 80  # columns
 
 
+@with_exit_code
 def run(
     *cases: str,
     output: Output = Path("reports"),
@@ -75,14 +70,9 @@ def run(
 ) -> int:
     """Solve cases by every method and reference, judge every claim, write the report.
 
-    Without arguments all shipped cases are run, and the convergence of both methods is measured. Examples:
-
-        coatcheck run
-        coatcheck run 05_ratio_4 my_coating.toml --output reports/mine
-        coatcheck run published
-
-    Exit codes: 0 all agree, 1 disagreement, 2 bad input, 3 no result, 4 inconclusive, 5 all agree but a
-    number is not that of the baseline, on its machine with its versions; elsewhere the report tells of it.
+    Without arguments all shipped cases are run, and the convergence of both methods is measured. The exit
+    code is 5 only where a number differs from the baseline on its machine with its versions; elsewhere the
+    report shows it.
 
     Parameters
     ----------
@@ -97,15 +87,9 @@ def run(
     verbose
         Say the seconds and iterations of every source as the cases finish.
     """
-    jobs = cores() if jobs is None else jobs
-    if jobs < 1 or not time_limit > 0:
-        return print_error(f"--jobs = {jobs}, --time-limit = {time_limit:g}; both must be positive")
-    try:
-        chosen = _choose(cases)
-    except CaseError as error:
-        return print_error(str(error))
-    if (code := no_gmsh()) is not None:
-        return code
+    jobs = worker_count(jobs, time_limit)
+    chosen = _choose(cases)
+    require_gmsh()
 
     from verification.credibility import accuracy as accuracy_study
     from verification.credibility.accuracy import AccuracyStudy
@@ -142,8 +126,6 @@ def run(
                 gather(records), accuracy=study, baseline=beside, self_tests=tests, formulas=formulas
             )
             page = write_report(Material(ordered, info, evidence, read_planes(output, ordered)), output)
-    except StoreError as error:
-        return print_error(str(error))
     except KeyboardInterrupt:
         return _stopped(chosen, output)
     if as_json:

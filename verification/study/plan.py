@@ -19,7 +19,7 @@ import numpy as np
 from pydantic import Discriminator, Field, Tag, model_validator
 
 from verification.cases.contact import refuse_unfit_scales
-from verification.cases.toml import CaseError, Length, Modulus, Poisson, Strict, Text, read_bounded, read_toml
+from verification.cases.toml import CaseError, Poisson, Positive, Strict, Text, read_bounded, read_toml
 from verification.problem.contact import CoatedContact
 from verification.study.cache import solve_key
 from verification.study.criteria import Criteria
@@ -104,22 +104,21 @@ def thicknesses_between(low: float, high: float, count: int) -> tuple[float, ...
     return (low, *(float(v) for v in values[1:-1]), high)
 
 
-Positive = Annotated[float, Field(gt=0)]
 Values = Annotated[list[Positive], Field(min_length=1, max_length=100_000)]
 
 
 class _Substrate(Strict):
-    E: Modulus
+    E: Positive
     nu: Poisson
 
 
 class _Coating(Strict):
-    E: Modulus | None = None
+    E: Positive | None = None
     nu: Poisson
 
 
 class _Problem(Strict):
-    radius: Length
+    radius: Positive
     load: Positive
     substrate: _Substrate
     coating: _Coating

@@ -3,7 +3,7 @@
 import pytest
 from synthetic_results import INFO, contact, result_of
 
-from verification.commands.common import EXIT
+from verification.commands.common.exits import EXIT
 from verification.commands.run import _code
 from verification.credibility.faults.catalogue import FAULTS
 from verification.credibility.faults.planting import planted
