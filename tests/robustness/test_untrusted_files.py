@@ -14,7 +14,7 @@ from quick_case import QUICK, coatcheck
 from verification.cases.contact import parse_case, read_case
 from verification.cases.published import is_published
 from verification.cases.toml import CaseError
-from verification.commands.common import one_line
+from verification.commands.common.terminal import one_line
 from verification.judging.verdict import Outcome, Verdict
 from verification.report.material import Material
 from verification.report.page import render

@@ -21,13 +21,9 @@ from rich.table import Column, Table
 from verification.cases.contact import Case, read_case, shipped_cases
 from verification.cases.published import PublishedCase, is_published, published_cases, read_published
 from verification.cases.toml import CaseError
-from verification.commands.common import (
-    BASELINE,
-    DRIFTED,
-    EXIT,
-    RECORDS,
-    STOPPED,
-    STYLE,
+from verification.commands.common.exits import DRIFTED, EXIT, STOPPED, exit_code, with_exit_code
+from verification.commands.common.folders import BASELINE, RECORDS, within_package
+from verification.commands.common.options import (
     AsJson,
     BaselineFolder,
     Flag,
@@ -36,34 +32,33 @@ from verification.commands.common import (
     Quiet,
     RecordsFolder,
     Resume,
-    did_you_mean,
-    exit_code,
-    no_gmsh,
-    one_line,
-    print_error,
-    print_json,
-    run_info,
-    within_package,
 )
-from verification.commands.solving import kept_results, kept_study, solve
+from verification.commands.common.terminal import STYLE, did_you_mean, one_line, print_error, print_json
+from verification.commands.solving import (
+    kept_results,
+    kept_study,
+    require_gmsh,
+    run_info,
+    solve,
+    worker_count,
+)
 from verification.credibility import accuracy as accuracy_study
 from verification.credibility.accuracy import AccuracyStudy
 from verification.credibility.self_tests import SelfTest, self_tests
 from verification.judging.verdict import Outcome
 from verification.regression.baseline import Regression, State, regression, regression_json
 from verification.regression.record import read_baseline
-from verification.running.pool import Task, cores
+from verification.running.pool import Task
 from verification.running.result import CaseResult
 from verification.running.store import StoreError, locked
 from verification.running.tasks import case_task, kept_result, published_task
 from verification.study import formulas as effective_study
 from verification.study.formulas import EffectiveStudy
 
-__all__ = ["run"]
-
 NARROW = 80  # columns
 
 
+@with_exit_code
 def run(
     *cases: str,
     output: Output = Path("reports"),
@@ -79,37 +74,20 @@ def run(
 ) -> int:
     """Solve cases by every method and reference, judge every claim, write the report.
 
-    Without arguments all shipped cases are run, and the convergence of both methods is measured. Examples:
+    Without arguments all shipped cases are run, and the convergence of both methods is measured. The exit
+    code is 5 only where a number differs from the baseline on its machine with its versions; elsewhere the
+    report shows it.
 
-        coatcheck run
-        coatcheck run 05_ratio_4 my_coating.toml --output reports/mine
-        coatcheck run published
-
-    Exit codes: 0 all agree, 1 disagreement, 2 bad input, 3 no result, 4 inconclusive, 5 all agree but a
-    number is not that of the baseline, on its machine with its versions; elsewhere the report states it.
-
-    Parameters
-    ----------
-    cases
-        Names of shipped cases, see coatcheck list; paths of .toml files; "published" for all published ones.
-    output
-        Directory of the report: report.html, report.json, junit.xml and one file per case.
-    time_limit
-        Seconds one case may take before it is stopped and reported as having no result.
-    fields
-        Also write the fields of each case, for ParaView and coatcheck view, into the folder fields there.
-    verbose
-        Print the seconds and iterations of every source as the cases finish.
+    Args:
+        cases: Names of shipped cases, see coatcheck list; .toml files; "published" for all published results.
+        output: Directory of the report: report.html, report.json, junit.xml and one file per case.
+        time_limit: Seconds one case may take before it is stopped and reported as having no result.
+        fields: Also write the fields of each case, for ParaView and coatcheck view, into its folder fields.
+        verbose: Print the seconds and iterations of every source as the cases finish.
     """
-    jobs = cores() if jobs is None else jobs
-    if jobs < 1 or not time_limit > 0:
-        return print_error(f"--jobs = {jobs}, --time-limit = {time_limit:g}; both must be positive")
-    try:
-        chosen = _choose(cases)
-    except CaseError as error:
-        return print_error(str(error))
-    if (code := no_gmsh()) is not None:
-        return code
+    jobs = worker_count(jobs, time_limit)
+    chosen = _choose(cases)
+    require_gmsh()
 
     from verification.report.material import Material, gather
     from verification.report.write import write_report
@@ -141,8 +119,6 @@ def run(
                 formulas=formulas,
             )
             page = write_report(Material(results, info, evidence, read_planes(output, results)), output)
-    except StoreError as error:
-        return print_error(str(error))
     except KeyboardInterrupt:
         return _stopped(chosen, output)
     if as_json:
@@ -157,7 +133,7 @@ def _self_tested() -> tuple[SelfTest, ...]:
     tests = self_tests()
     for test in tests:
         if not test.passed:
-            print_error(f"self-test of the {test.name}: {test.found}; the verdicts of this run mean nothing")
+            print_error(f"self-test of the {test.name}: {test.found}; the verdicts of this run are not valid")
     return tests
 
 

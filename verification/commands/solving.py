@@ -1,5 +1,6 @@
 """Progress of tasks on the terminal; results of earlier runs that can be kept."""
 
+import datetime
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TypeVar
@@ -21,19 +22,34 @@ from rich.text import Text
 
 from verification.cases.contact import Case
 from verification.cases.published import PublishedCase
-from verification.commands.common import STYLE, one_line, print_error
+from verification.commands.common.exits import CommandError, no_result
+from verification.commands.common.terminal import STYLE, one_line, print_error
 from verification.credibility import accuracy as accuracy_study
 from verification.credibility.accuracy import AccuracyStudy
-from verification.running.pool import Task, run_tasks
-from verification.running.result import CaseResult
+from verification.running.pool import Task, cores, run_tasks
+from verification.running.provenance import commit, machine, missing_libraries, versions
+from verification.running.result import CaseResult, RunInfo
 from verification.running.store import StoreError
 from verification.running.tasks import kept_result
-
-__all__ = ["kept_results", "kept_study", "progress_bar", "solve"]
 
 T = TypeVar("T")
 
 NARROW = 60  # columns
+
+
+def worker_count(jobs: int | None, time_limit: float) -> int:
+    """Processes side by side. Raises CommandError where one of both is not positive."""
+    jobs = cores() if jobs is None else jobs
+    if jobs < 1 or not time_limit > 0:
+        raise CommandError(f"--jobs = {jobs}, --time-limit = {time_limit:g}; both must be positive")
+    return jobs
+
+
+def require_gmsh() -> None:
+    """Raises CommandError with the packages to install where gmsh cannot be loaded."""
+    if lacking := missing_libraries():
+        install = f"apt-get install {' '.join(lacking)}"
+        raise no_result(f"gmsh lacks system libraries here; install them with: {install}")
 
 
 def kept_results(
@@ -103,6 +119,19 @@ def _sources(result: CaseResult) -> str:
                 text += f"  {source.diagnostics[name]} {name}"
         lines.append(text if source.failure is None else f"{text}  {one_line(source.failure)}")
     return "\n".join(lines)
+
+
+def run_info(command: str, started: datetime.datetime, jobs: int) -> RunInfo:
+    """Command, time, commit, machine and versions of the run that ends now."""
+    return RunInfo(
+        command=command,
+        started=started.isoformat(timespec="seconds"),
+        seconds=(datetime.datetime.now(datetime.UTC) - started).total_seconds(),
+        jobs=jobs,
+        commit=commit(),
+        machine=f"{machine()}, {cores()} cores",
+        versions=versions(),
+    )
 
 
 class _Description(ProgressColumn):

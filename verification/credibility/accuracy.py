@@ -19,22 +19,6 @@ from verification.running.store import StoreError, read_checked, write_checked
 from verification.sources.methods import sharing_pressure
 from verification.sources.registry import solvers
 
-__all__ = [
-    "CORRECTED",
-    "PLAIN",
-    "PROBLEM",
-    "SCHEMA",
-    "STAIRCASE",
-    "AccuracyStudy",
-    "failed",
-    "from_json",
-    "measure",
-    "path_in",
-    "stored",
-    "task",
-    "to_json",
-]
-
 SCHEMA = "coatcheck-accuracy/2"
 CORRECTED = "split conversion, corrected edge"
 STAIRCASE = "split conversion, staircase edge"

@@ -6,9 +6,6 @@ from verification.problem.profile import Line, lines_of
 from verification.problem.quantity import IN_PLANE, QUANTITIES, SCALARS
 from verification.sources.registry import pairs_of, sources_of
 
-__all__ = ["EDGE", "standard_claims"]
-
-
 # The pressure falls to zero with a vertical tangent, so no method has a meaningful value within a few
 # patches of the edge; this fraction of a is left unjudged on the surface.
 EDGE = 0.05

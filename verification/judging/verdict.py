@@ -13,8 +13,6 @@ from numpy.typing import NDArray
 from verification.judging.outcome import Outcome
 from verification.problem.profile import Profile
 
-__all__ = ["Claim", "Comparison", "Outcome", "Verdict", "compare", "judge"]
-
 
 @dataclass(frozen=True)
 class Claim:

@@ -5,8 +5,6 @@ from numpy.typing import NDArray
 
 from verification.problem.arrays import Array, Coatings
 
-__all__ = ["layer_at"]
-
 
 def layer_at(z: Array, coatings: Coatings, layer: int | None) -> NDArray[np.int_]:
     """Layer of each depth; on an interface the upper one unless ``layer`` says otherwise.

@@ -3,12 +3,12 @@
 from verification.judging.verdict import Outcome
 from verification.regression.comparison import RunComparison
 from verification.regression.drift import State
-from verification.report.sections.baseline import MOST, drift_table, state_cell
+from verification.report.html.templates import render_sections
+from verification.report.sections.baseline import MOST, case_table, drift_table
 from verification.report.tables.cells import Cell, Part, Row, Section, Table, number
 from verification.report.tables.labels import pair_label
 from verification.report.tables.matrix import outcome_cell
 from verification.report.tables.numbers import factor, scientific, seconds
-from verification.report.templates import render_sections
 
 __all__ = ["comparison_page", "comparison_sentence"]
 
@@ -65,21 +65,14 @@ def _verdicts(found: RunComparison) -> Part:
 
 
 def _numbers(found: RunComparison) -> Part:
-    rows = []
-    for case in found.cases:
-        counts = [case.count(state) for state in (State.SAME, State.DRIFTED, State.GONE, State.NEW)]
-        cells = [state_cell(case), *(number(count, str) for count in counts)]
-        rows.append(Row(Cell(case.name, note=case.title), [*cells, number(case.change)]))
-    table = Table(
-        "Every point of every profile of the second run against the first.",
-        ["case", "state", "same", "drifted", "gone", "new", "largest change"],
-        rows,
+    table = case_table(
+        found.cases, {}, "Every point of every profile of the second run compared with the first."
     )
     # Cases of only one run have their rows above.
     both = [c for c in found.cases if {d.state for d in c.drifts} - {State.NEW, State.GONE}]
     moved = [(c, d) for c in both for d in c.drifts if d.state is not State.SAME]
     text = "" if len(moved) <= MOST else f"{len(moved)} profiles differ."
-    return Part(text, [table, *([drift_table(moved)] if moved else [])])
+    return Part(text, [table, drift_table(moved)])
 
 
 def _versions(found: RunComparison) -> Part:

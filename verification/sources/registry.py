@@ -7,27 +7,11 @@ from verification.sources.exact import REFERENCE_SOURCES
 from verification.sources.methods import METHOD_SOURCES
 from verification.sources.source import Kind, Solver, Source, Style
 
-__all__ = [
-    "CLOSED",
-    "EXACT",
-    "METHODS",
-    "PUBLISHED",
-    "REFERENCES",
-    "SOURCES",
-    "pairs_of",
-    "solvers",
-    "sources_of",
-]
-
 PUBLISHED = "published"  # source of the profiles of a published table
 _OTHER = Style("other", (5.0, 1.5, 1.0, 1.5))
 SOURCES: dict[str, Source] = {
     source.name: source
-    for source in (
-        *METHOD_SOURCES,
-        *REFERENCE_SOURCES,
-        Source(PUBLISHED, Kind.PUBLISHED, PUBLISHED, _OTHER),
-    )
+    for source in (*METHOD_SOURCES, *REFERENCE_SOURCES, Source(PUBLISHED, Kind.PUBLISHED, PUBLISHED, _OTHER))
 }
 
 

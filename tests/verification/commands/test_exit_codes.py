@@ -9,7 +9,7 @@ from quick_case import COMMAND, QUICK, coatcheck
 
 from verification.cases.contact import Case, read_case, shipped_cases
 from verification.cases.published import published_cases
-from verification.commands.common import exit_code
+from verification.commands.common.exits import exit_code
 from verification.judging.verdict import Claim, Outcome, Verdict
 from verification.running.result import CaseResult
 from verification.running.tasks import run_cases

@@ -10,7 +10,7 @@ from quick_case import QUICK, coatcheck
 from synthetic_results import INFO, STEEL, contact, result_of
 
 from verification.cases.contact import shipped_cases
-from verification.commands.common import BASELINE
+from verification.commands.common.folders import BASELINE
 from verification.regression.baseline import (
     Baseline,
     against,

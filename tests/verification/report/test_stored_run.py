@@ -19,6 +19,7 @@ from verification.running.store import write_checked
 from verification.sampling.plane import sample_plane
 from verification.sources.references.hertz import Hertz
 from verification.study.formulas import EffectiveStudy
+from verification.study.formulas import to_json as effective_json
 
 RESULTS = [
     result_of(contact((2 * STEEL[0], 0.3, 1.0)), name="z_first", text="the case file", points=11),
@@ -83,6 +84,10 @@ def test_a_case_solved_since_has_no_evidence_of_the_run(run):
     material, whole = stored_material(run)
     assert not whole
     assert material.evidence.baseline is None
+    assert material.evidence.formulas is None
+    formulas = EffectiveStudy(failure="stopped")
+    write_checked(run / "effective-modulus.json", effective_json(formulas))
+    assert stored_material(run)[0].evidence.formulas.failure == "stopped"
     assert "stopped before its report" in material.info.command
 
 

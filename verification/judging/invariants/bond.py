@@ -10,16 +10,6 @@ from verification.judging.invariants.stencil import Stencil
 from verification.problem.arrays import Array
 from verification.problem.contact import CoatedContact, PrescribedLoad, Solution, stress_with_uncertainty
 
-__all__ = [
-    "bonded_displacement",
-    "bonded_traction",
-    "displacement_bound",
-    "hooke",
-    "reciprocity",
-    "sphere",
-]
-
-
 RADII = np.array([0.0, 0.5, 0.9, 1.4])
 ANGLE = 0.35
 # Of the thinner neighbour; a tenth of a per cent curves a displacement by 1e-6 of its change in the layer.

@@ -21,8 +21,6 @@ from verification.problem.quantity import QUANTITIES, SCALARS
 from verification.sources.references.hamilton import Hamilton
 from verification.sources.registry import METHODS, SOURCES
 
-__all__ = ["resolved"]
-
 Solve = Callable[[CoatedContact | PrescribedLoad], Solution]
 Law = Callable[[], Invariant]
 

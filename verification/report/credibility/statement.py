@@ -28,6 +28,7 @@ from verification.running.result import CaseResult
 __all__ = ["ANCHOR", "figures", "section"]
 
 ANCHOR = "credibility"
+NO_RECORD = ("Not measured: there is no record of {}; make one with: coatcheck {} --record", "not measured")
 ASSUMED = (
     "A rigid, parabolic sphere, much larger than the contact; small strains; linear, isotropic, elastic "
     "layers with nu < 1/2, perfectly bonded, on a half-space; no adhesion, no roughness; Coulomb friction "
@@ -125,8 +126,8 @@ def _overview(material: Material) -> Table:
         ("Comparison", f"{agreeing} of {total} comparisons agree", here),
         ("Independence", _short_independence(evidence), here),
         ("Regression", "not measured" if baseline is None else baseline_sentence(baseline), here),
-        ("Fault detection", *_recorded(_short_faults(evidence), evidence.faults)),
-        ("False alarms", *_recorded(_short_alarms(evidence), evidence.alarms)),
+        ("Fault detection", *_recorded(_faults(evidence, short=True), evidence.faults)),
+        ("False alarms", *_recorded(_alarms(evidence, short=True), evidence.alarms)),
     ]
     return Table(
         "Overview of the evidence.",
@@ -201,43 +202,35 @@ def _short_independence(evidence: Evidence) -> str:
     return f"None of {whole} is forbidden."
 
 
-def _faults(evidence: Evidence) -> str:
+def _faults(evidence: Evidence, *, short: bool = False) -> str:
     record = evidence.faults
     if record is None:
-        return "Not measured: there is no record of planted faults; make one with: coatcheck faults --record"
-    return (
-        f"{_short_faults(evidence)} Measured {_when(record)}, by coatcheck faults, which also tabulates "
-        "faults against checks. A crash alone does not count as detected. "
-        + ("Those that were not are in the section on planted faults." if record.survivors else "")
-    )
-
-
-def _short_faults(evidence: Evidence) -> str:
-    record = evidence.faults
-    if record is None:
-        return "not measured"
-    return (
+        return NO_RECORD[short].format("planted faults", "faults")
+    text = (
         f"{record.caught} of {len(record.rows)} planted faults are detected, "
         f"{plain(100 * record.share, 3)} %; {record.as_predicted} of them by the predicted check."
     )
-
-
-def _alarms(evidence: Evidence) -> str:
-    record = evidence.alarms
-    if record is None:
-        return "Not measured: there is no record of false alarms; make one with: coatcheck alarms --record"
+    if short:
+        return text
+    survivors = "Those that were not are in the section on planted faults." if record.survivors else ""
     return (
-        f"{_short_alarms(evidence)} Measured {_when(record)}, by coatcheck alarms --count {record.problems} "
-        f"--seed {record.seed}. INCONCLUSIVE and a missing result count as alarms, too."
+        f"{text} Measured {_when(record)}, by coatcheck faults, which also tabulates faults against checks. "
+        f"A crash alone does not count as detected. {survivors}"
     )
 
 
-def _short_alarms(evidence: Evidence) -> str:
+def _alarms(evidence: Evidence, *, short: bool = False) -> str:
     record = evidence.alarms
     if record is None:
-        return "not measured"
-    return (
+        return NO_RECORD[short].format("false alarms", "alarms")
+    text = (
         f"{len(record.alarms)} false alarms in {record.comparisons} comparisons and {record.invariants} "
         f"invariants of {record.problems} clean random problems; {record.agreeing} of the problems agree "
         "throughout."
+    )
+    if short:
+        return text
+    return (
+        f"{text} Measured {_when(record)}, by coatcheck alarms --count {record.problems} --seed "
+        f"{record.seed}. INCONCLUSIVE and a missing result count as alarms, too."
     )

@@ -20,7 +20,7 @@ from verification.report.tables.lookup import (
     sources_with_profiles,
 )
 from verification.report.tables.matrix import case_cell
-from verification.report.tables.numbers import plain, scientific
+from verification.report.tables.numbers import factor, plain, scientific
 from verification.running.result import CaseResult
 from verification.sources.registry import METHODS, REFERENCES
 
@@ -206,7 +206,7 @@ def coverage_table(results: Sequence[CaseResult]) -> Table:
                 Cell(f"{100 * share:.1f} %", share, f"flag {'agrees' if share >= COVERED else 'disagrees'}"),
                 Cell(plain(1 / worst.ratio, 2), 1 / worst.ratio) if worst.ratio else Cell("not stated"),
                 Cell(f"{worst.quantity.replace('_', ' ')} on {worst.line}, {case.title}"),
-                number(float(np.median(stated)), lambda ratio: plain(ratio, 2)) if stated else Cell("–"),
+                number(float(np.median(stated)), lambda ratio: factor(ratio, 1.0)) if stated else Cell("–"),
                 number(max(item.error for _, item in found)),
             ]
             rows.append(Row(Cell(source_label(source)), cells))

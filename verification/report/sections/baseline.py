@@ -10,7 +10,7 @@ from verification.report.tables.cells import Cell, Part, Row, Section, Table, nu
 from verification.report.tables.labels import source_label
 from verification.report.tables.numbers import scientific
 
-__all__ = ["ANCHOR", "baseline_sentence", "drift_table", "section", "state_cell"]
+__all__ = ["ANCHOR", "baseline_sentence", "case_table", "drift_table", "section", "state_cell"]
 
 ANCHOR = "baseline"
 MOST = 40
@@ -31,7 +31,7 @@ _RULE = (
 def state_cell(case: CaseDrift, *, short: bool = False) -> Cell:
     """State of a case as mark and word, or as mark alone; it sorts by severity."""
     mark, css, rank = _STATES[case.state]
-    note = f"{case.state}: {case.message or f'largest change {_change(case.change)} of the scale'}"
+    note = f"{case.state}: {case.message or f'largest change {scientific(case.change)} of the scale'}"
     return Cell(mark if short else f"{mark} {case.state}", float(rank), f"verdict {css}".strip(), note)
 
 
@@ -42,7 +42,7 @@ def baseline_sentence(found: Regression) -> str:
     counts = {state: sum(case.count(state) for case in found.cases) for state in State}
     parts = [f"{counts[state]} {state}" for state in (State.SAME, State.DRIFTED, State.GONE, State.NEW)]
     largest = max((c.change for c in found.cases if c.change is not None), default=None)
-    by = f"; the largest change is {_change(largest)} of its scale" if largest is not None else ""
+    by = f"; the largest change is {scientific(largest)} of its scale" if largest is not None else ""
     return f"{', '.join(parts)}, of {sum(counts.values())} numbers{by}."
 
 
@@ -72,7 +72,15 @@ def section(material: Material) -> Section | None:
     # A case that is gone as a whole has its row above.
     here = [c for c in found.cases if any(d.state is not State.GONE for d in c.drifts)]
     moved = [(c, d) for c in here for d in c.drifts if d.state in (State.DRIFTED, State.GONE)]
-    parts.append(Part("", [_case_table(found.cases, anchors), *([drift_table(moved)] if moved else [])]))
+    parts.append(
+        Part(
+            "",
+            [
+                case_table(found.cases, anchors, "Numbers of each case compared with the baseline."),
+                drift_table(moved),
+            ],
+        )
+    )
     return Section(ANCHOR, "Baseline", parts)
 
 
@@ -87,7 +95,7 @@ def drift_table(moved: Sequence[tuple[CaseDrift, Drift]]) -> Table:
             Cell(source_label(drift.source)),
             Cell(drift.quantity),
             Cell(drift.line),
-            Cell(_change(drift.change), drift.change if _finite(drift.change) else None),
+            _change(drift.change),
             Cell(drift.message),
         ]
         rows.append(Row(Cell(case.name, note=case.title), cells))
@@ -99,28 +107,21 @@ def drift_table(moved: Sequence[tuple[CaseDrift, Drift]]) -> Table:
     )
 
 
-def _case_table(cases: Sequence[CaseDrift], anchors: Mapping[str, str]) -> Table:
+def case_table(cases: Sequence[CaseDrift], anchors: Mapping[str, str], caption: str) -> Table:
+    """State and counts of numbers of each case; ``anchors`` leads to cases by name."""
     rows = []
     for case in cases:
         counts = [case.count(state) for state in (State.SAME, State.DRIFTED, State.GONE, State.NEW)]
         cells = [
             state_cell(case),
             *(number(count, str) for count in counts),
-            Cell(_change(case.change), case.change if _finite(case.change) else None),
+            _change(case.change),
             Cell(case.message),
         ]
         place = anchors.get(case.name)
         rows.append(Row(Cell(case.title, note=case.name, href=f"#{place}" if place else ""), cells))
-    return Table(
-        "Numbers of each case compared with the baseline.",
-        ["case", "state", "same", "drifted", "gone", "new", "largest change", ""],
-        rows,
-    )
+    return Table(caption, ["case", "state", "same", "drifted", "gone", "new", "largest change", ""], rows)
 
 
-def _finite(change: float | None) -> bool:
-    return change is not None and isfinite(change)
-
-
-def _change(change: float | None) -> str:
-    return scientific(change)
+def _change(change: float | None) -> Cell:
+    return Cell(scientific(change), change if change is not None and isfinite(change) else None)

@@ -13,6 +13,7 @@ from verification.report.figures.plot import Axes, drawing, power_of_ten
 from verification.report.material import Material
 from verification.report.sections import family
 from verification.report.tables.cells import Cell, Gallery, Panel, Part, Row, Section, Table
+from verification.report.tables.csv import written
 from verification.report.tables.numbers import plain, scientific
 from verification.sources.references.effective_modulus import PERRIOT_BARTHEL_N
 from verification.sources.source import Style
@@ -230,18 +231,16 @@ def _percent(value: float, sign: bool = True) -> str:
 def _map_csv(study: EffectiveStudy) -> str:
     names = ["exact", *(name for name, _ in study.formulas)]
     tables = [study.exact, *(table for _, table in study.formulas)]
-    lines = ["E1/E2,h/a," + ",".join(f"E_eff/E2* {name}" for name in names)]
+    rows = [["E1/E2", "h/a", *(f"E_eff/E2* {name}" for name in names)]]
     for i, ratio in enumerate(study.ratio):
         for j, thickness in enumerate(study.thickness):
-            lines.append(",".join(f"{v:.9g}" for v in (ratio, thickness, *(table[i][j] for table in tables))))
-    return "\n".join(lines) + "\n"
+            rows.append([f"{v:.9g}" for v in (ratio, thickness, *(table[i][j] for table in tables))])
+    return written(rows)
 
 
 def _limit_csv(limits: Sequence[Limit]) -> str:
-    lines = ["limit,solid,a/h,exact over limit less 1"]
+    rows = [["limit", "solid", "a/h", "exact over limit less 1"]]
     for one in limits:
-        lines += [
-            f'"{one.panel}",{one.name},{a:.9g},{excess:.9g}'
-            for a, excess in zip(one.a_over_h, one.excess, strict=True)
-        ]
-    return "\n".join(lines) + "\n"
+        pairs = zip(one.a_over_h, one.excess, strict=True)
+        rows += [[one.panel, one.name, f"{a:.9g}", f"{excess:.9g}"] for a, excess in pairs]
+    return written(rows)

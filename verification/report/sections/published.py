@@ -1,7 +1,6 @@
 """Published sources: citation, every table as published beside the values of the methods."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -9,34 +8,15 @@ import numpy as np
 from verification.judging.verdict import Outcome
 from verification.problem.profile import Profile
 from verification.problem.quantity import QUANTITIES
-from verification.report.material import Material, rerun_command
-from verification.report.tables.case import budget_table, diagnostics_table, facts, layer_table, verdict_table
+from verification.report.material import Material
 from verification.report.tables.cells import Cell, Part, Row, Section, Table, number
-from verification.report.tables.labels import OUTCOMES, OutcomeStyle, source_label
+from verification.report.tables.labels import OUTCOMES, source_label
 from verification.report.tables.matrix import outcome_cell
 from verification.report.tables.numbers import plain, scientific
 from verification.running.result import CaseResult
 from verification.sources.registry import METHODS, PUBLISHED, REFERENCES
 
-__all__ = ["PublishedView", "published_view", "section"]
-
-
-@dataclass(frozen=True)
-class PublishedView:
-    """Everything on the page about one published source."""
-
-    anchor: str
-    result: CaseResult
-    outcome: OutcomeStyle
-    summary: str
-    command: str
-    facts: Sequence[tuple[str, str]]
-    failures: Sequence[tuple[str, str]]
-    layers: Table
-    tables: Sequence[tuple[str, Table]]
-    verdicts: Table
-    budget: Table | None
-    diagnostics: Table | None
+__all__ = ["section", "tables"]
 
 
 def _sources(result: CaseResult) -> tuple[str, ...]:
@@ -103,27 +83,7 @@ def _method_cells(result: CaseResult, method: str) -> list[Cell]:
     ]
 
 
-def published_view(material: Material, result: CaseResult) -> PublishedView:
-    """Citation, problem, tables and verdicts of one published source."""
-    bad = sum(verdict.outcome is not Outcome.AGREES for _, verdict in result.verdicts)
-    total = len(result.verdicts)
-    return PublishedView(
-        anchor=material.anchors[result],
-        result=result,
-        outcome=OUTCOMES[result.outcome],
-        summary=f"{bad} of {total} comparisons do not agree." if bad else f"All {total} comparisons agree.",
-        command=rerun_command(result.name, material.info.command),
-        facts=facts(result),
-        failures=[(source_label(s.source), s.failure) for s in result.sources if s.failure is not None],
-        layers=layer_table(result),
-        tables=_tables(result),
-        verdicts=verdict_table(result.verdicts, 0.0),
-        budget=budget_table(result),
-        diagnostics=diagnostics_table(result),
-    )
-
-
-def _tables(result: CaseResult) -> list[tuple[str, Table]]:
+def tables(result: CaseResult) -> list[tuple[str, Table]]:
     """One table for each published column, its lines one below the other."""
     columns: dict[tuple[str, str, str], list[dict[str, Any]]] = {}
     for item in result.published["columns"]:

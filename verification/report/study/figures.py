@@ -116,14 +116,13 @@ def stress_figures(curves: Sequence[Curve]) -> list[Drawn]:
     return [
         _against_thickness(
             curves,
-            quantity,
-            f"stress_{quantity}",
-            f"{quantity}: {MODES[quantity]}",
-            NAMES[quantity] + r" / $p_h$",
-            lambda curve, q=quantity: curve.stress[q],  # type: ignore[misc]
-            in_pascal=True,
+            f"stress_{name}",
+            name,
+            f"{name}: {MODES[name]}",
+            NAMES[name] + r" / $p_h$",
+            p_h=curves[0].p_h,
         )
-        for quantity in QUANTITIES
+        for name in QUANTITIES
     ]
 
 
@@ -134,28 +133,17 @@ def contact_figure(curves: Sequence[Curve]) -> list[Drawn]:
     scales = {"delta_h": r"\delta_h"}
     names = {name: f"${QUANTITY[name].tex} / {scales.get(scale, scale)}$" for name, scale in SCALARS.items()}
     return [
-        _against_thickness(
-            chosen,
-            quantity,
-            f"contact_{quantity}",
-            quantity.replace("_", " "),
-            label,
-            lambda curve, q=quantity: curve.scalar[q],  # type: ignore[misc]
-            in_pascal=False,
-        )
-        for quantity, label in names.items()
+        _against_thickness(chosen, f"contact_{name}", name, name.replace("_", " "), label)
+        for name, label in names.items()
     ]
 
 
+def _values(curve: Curve, quantity: str) -> Array:
+    return curve.stress[quantity] if quantity in curve.stress else curve.scalar[quantity]
+
+
 def _against_thickness(
-    curves: Sequence[Curve],
-    quantity: str,
-    name: str,
-    title: str,
-    label: str,
-    values: Callable[[Curve], Array],
-    *,
-    in_pascal: bool,
+    curves: Sequence[Curve], name: str, quantity: str, title: str, label: str, *, p_h: float | None = None
 ) -> Drawn:
     sides = [
         ("compliant coating, $E_1 < E_2$", [c for c in curves if c.ratio < 1]),
@@ -181,11 +169,11 @@ def _against_thickness(
             for curve in members:
                 colour = colours[curve.ratio]
                 dash = DASHES[frictions.index(curve.friction) % len(DASHES)]
-                axes.plot(curve.h, values(curve), color=colour, linestyle=dash)
+                axes.plot(curve.h, _values(curve, quantity), color=colour, linestyle=dash)
                 for source, marks in curve.marks.items():
                     _mark(axes, *marks[quantity], source, colour)
                 for source, (h, value) in {
-                    SOURCES[0]: (curve.h, values(curve)),
+                    SOURCES[0]: (curve.h, _values(curve, quantity)),
                     **{s: m[quantity] for s, m in curve.marks.items()},
                 }.items():
                     rows += [
@@ -197,10 +185,10 @@ def _against_thickness(
         if checked:
             for axes in panels:
                 axes.set_xlabel("")
-            _differences(grid[1], sides, quantity, lambda curve: colours[curve.ratio], values)
-        if in_pascal:
-            p_h = curves[0].p_h / 1e6
-            second = panels[-1].secondary_yaxis("right", functions=(lambda y: y * p_h, lambda y: y / p_h))
+            _differences(grid[1], sides, quantity, lambda curve: colours[curve.ratio])
+        if p_h is not None:
+            unit = p_h / 1e6
+            second = panels[-1].secondary_yaxis("right", functions=(lambda y: y * unit, lambda y: y / unit))
             second.set_ylabel("MPa")
         _legend(figure, ratios, frictions, {s for c in curves for s in c.marks})
         caption = (
@@ -218,7 +206,6 @@ def _differences(
     sides: Sequence[tuple[str, Sequence[Curve]]],
     quantity: str,
     colour: Callable[[Curve], str],
-    values: Callable[[Curve], Array],
 ) -> None:
     """|mark - curve| at every cross-checked thickness, on a logarithmic scale that ends at ``LEAST``."""
     for axes, (_, members) in zip(panels, sides, strict=True):
@@ -226,7 +213,7 @@ def _differences(
             for source, marks in curve.marks.items():
                 at, value = marks[quantity]
                 known = np.isin(at, curve.h)
-                here = values(curve)[np.searchsorted(curve.h, at[known])]
+                here = _values(curve, quantity)[np.searchsorted(curve.h, at[known])]
                 _mark(axes, at[known], np.maximum(np.abs(value[known] - here), LEAST), source, colour(curve))
         axes.set_yscale("log")
         axes.set_ylim(0.6 * LEAST, 1e-2)
