@@ -3,12 +3,12 @@
 from verification.judging.verdict import Outcome
 from verification.regression.comparison import RunComparison
 from verification.regression.drift import State
+from verification.report.html.templates import render_sections
 from verification.report.sections.baseline import MOST, case_table, drift_table
 from verification.report.tables.cells import Cell, Part, Row, Section, Table, number
 from verification.report.tables.labels import pair_label
 from verification.report.tables.matrix import outcome_cell
 from verification.report.tables.numbers import factor, scientific, seconds
-from verification.report.templates import render_sections
 
 __all__ = ["comparison_page", "comparison_sentence"]
 

@@ -12,6 +12,7 @@ from verification.report.credibility import faults, self_tests, statement
 from verification.report.figures.fields import pictures
 from verification.report.figures.panels import line_figures
 from verification.report.figures.sketch import sketch
+from verification.report.html.templates import rendered
 from verification.report.material import Material, rerun_command
 from verification.report.sections import (
     accuracy,
@@ -39,7 +40,6 @@ from verification.report.tables.labels import OUTCOMES, OutcomeStyle, source_lab
 from verification.report.tables.lookup import lines, scale, slug
 from verification.report.tables.matrix import verdict_matrix
 from verification.report.tables.numbers import scientific, seconds
-from verification.report.templates import rendered
 from verification.running.result import CaseResult
 
 __all__ = ["render"]

@@ -7,11 +7,11 @@ from verification.credibility.faults.catalogue import GROUPS
 from verification.credibility.faults.checks import COLUMNS
 from verification.credibility.faults.record import Catch, Record, Tally
 from verification.credibility.faults.record import Row as FaultRow
+from verification.report.html.templates import render_sections
 from verification.report.material import Material
 from verification.report.tables.cells import Cell, Part, Row, Section, Table
 from verification.report.tables.labels import source_label
 from verification.report.tables.numbers import plain, scientific, seconds
-from verification.report.templates import render_sections
 
 __all__ = ["faults_page", "faults_section", "faults_sentence", "section"]
 

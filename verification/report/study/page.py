@@ -6,6 +6,7 @@ from pathlib import Path
 
 from markupsafe import Markup
 
+from verification.report.html.templates import render_sections
 from verification.report.study.contours import contour_figure, nearest
 from verification.report.study.figures import (
     Drawn,
@@ -20,7 +21,6 @@ from verification.report.study.summary import agreement_sentences, main_sentence
 from verification.report.tables.cells import Cell, Gallery, Panel, Part, Row, Section, Table, number
 from verification.report.tables.csv import embedded
 from verification.report.tables.labels import source_label
-from verification.report.templates import render_sections
 from verification.running.store import write_atomically
 from verification.study.criteria import MODES, Judged, judged
 from verification.study.curves import Curve, Difference, curves, differences
