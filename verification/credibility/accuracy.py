@@ -16,22 +16,6 @@ from verification.running.provenance import commit, versions
 from verification.running.records import decode, encode
 from verification.running.store import StoreError, read_checked, write_checked
 
-__all__ = [
-    "CORRECTED",
-    "PLAIN",
-    "PROBLEM",
-    "SCHEMA",
-    "STAIRCASE",
-    "AccuracyStudy",
-    "failed",
-    "from_json",
-    "measure",
-    "path_in",
-    "stored",
-    "task",
-    "to_json",
-]
-
 SCHEMA = "coatcheck-accuracy/2"
 CORRECTED = "split conversion, corrected edge"
 STAIRCASE = "split conversion, staircase edge"

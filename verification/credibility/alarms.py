@@ -12,8 +12,6 @@ from verification.running.records import decode, encode
 from verification.running.result import CaseResult, RunInfo
 from verification.running.store import StoreError, read_checked, write_checked
 
-__all__ = ["Alarm", "AlarmRecord", "counted", "path_in", "read_record", "write_record"]
-
 SCHEMA = "coatcheck-alarms/2"
 
 

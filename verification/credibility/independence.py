@@ -9,8 +9,6 @@ from pathlib import Path
 
 from verification.sources.registry import METHODS, SOURCES
 
-__all__ = ["PARTS", "Part", "imports_of", "parts", "shared"]
-
 # Each part with the packages that it must not import.
 _METHODS = tuple(SOURCES[name].package for name in METHODS)
 PARTS = {name: (*(other for other in _METHODS if other != name), "verification") for name in _METHODS}

@@ -14,17 +14,6 @@ from fem_reference.axisymmetric import Discretisation, constrained_solve, elasti
 from fem_reference.mesh import MeridianMesh
 from verification.problem.arrays import Array
 
-__all__ = [
-    "MATERIALS",
-    "DesignOrder",
-    "boundary",
-    "design_orders",
-    "elongation",
-    "galerkin_errors",
-    "shear",
-    "unit_square",
-]
-
 CELLS = (4, 8)  # a side
 COARSE = 0.25  # admissible shortfall of the order on meshes this coarse
 

@@ -19,8 +19,7 @@ from verification.sources.exact import solve_exactly
 from verification.sources.registry import METHODS, SOURCES, solvers
 from verification.sources.source import NumericalParameter
 
-__all__ = ["PARAMETERS", "Stated", "Sweep", "places", "probe", "stated", "study", "sweep"]
-
+Function = Callable[..., Any]
 PARAMETERS = tuple(parameter for source in SOURCES.values() for parameter in source.parameters)
 
 
@@ -79,11 +78,7 @@ def probe(solution: Solution, problem: CoatedContact, a: float) -> dict[str, flo
 
 
 def _collect(
-    problem: CoatedContact,
-    a: float,
-    scalars: dict[str, float],
-    pressure: Callable[..., Any],
-    stress: Callable[..., Any],
+    problem: CoatedContact, a: float, scalars: dict[str, float], pressure: Function, stress: Function
 ) -> dict[str, float]:
     found = {QUANTITIES[q].symbol: value / _scale(q, problem) for q, value in scalars.items()}
     found["pressure, r = 0.6 a"] = float(pressure(np.array([0.6 * a]))[0]) / problem.p_h
@@ -94,11 +89,7 @@ def _collect(
 
 
 def sweep(
-    problem: CoatedContact,
-    parameter: NumericalParameter,
-    a: float,
-    solve: Callable[..., Solution],
-    solid: str = "",
+    problem: CoatedContact, parameter: NumericalParameter, a: float, solve: Function, solid: str = ""
 ) -> Sweep:
     """``problem`` on every level of ``parameter``; a level that fails ends the sweep with its message.
 
@@ -126,9 +117,7 @@ def sweep(
     )
 
 
-def stated(
-    problem: CoatedContact, method: str, solve: Callable[..., Solution], exact: Solution, solid: str = ""
-) -> Stated:
+def stated(problem: CoatedContact, method: str, solve: Function, exact: Solution, solid: str = "") -> Stated:
     """The uncertainty that ``method`` states at its defaults, and its true error against ``exact``."""
     a = exact.contact_radius
     solution = solve(problem)

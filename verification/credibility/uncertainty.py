@@ -19,9 +19,6 @@ from scipy.optimize import minimize_scalar
 
 from verification.problem.arrays import Array
 
-__all__ = ["Estimate", "Fit", "convergence_index", "least_squares", "uncertainty"]
-
-
 # Eca and Hoekstra accept a fitted order within these bounds only.
 LEAST_ORDER, THEORETICAL_ORDER, SLACK = 0.5, 2.0, 0.1
 TRUSTED, SAFE = 1.25, 3.0

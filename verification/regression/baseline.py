@@ -9,22 +9,6 @@ from verification.regression.drift import POINTS, Drift, Numbers, State, drift, 
 from verification.running.records import plain
 from verification.running.result import CaseResult, RunInfo
 
-__all__ = [
-    "Baseline",
-    "CaseDrift",
-    "Drift",
-    "Numbers",
-    "Regression",
-    "State",
-    "Update",
-    "against",
-    "case_drift",
-    "digest",
-    "regression",
-    "regression_json",
-    "updated",
-]
-
 
 @dataclass(frozen=True)
 class CaseDrift:

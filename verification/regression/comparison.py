@@ -8,8 +8,6 @@ from verification.regression.drift import State, measured
 from verification.running.result import CaseResult
 from verification.running.stored import StoredRun
 
-__all__ = ["RunComparison", "VerdictChange", "compare_runs"]
-
 EVERY = 1_000_000  # more points than a profile has
 
 

@@ -19,8 +19,6 @@ from verification.problem.profile import Profile
 from verification.problem.quantity import QUANTITIES
 from verification.running.result import CaseResult
 
-__all__ = ["FACTOR", "POINTS", "RELATIVE", "Drift", "Numbers", "State", "drift", "measured"]
-
 RELATIVE = 1e-8
 POINTS = 17
 FAINT = 1e-3

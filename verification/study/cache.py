@@ -17,8 +17,6 @@ from verification.running.provenance import fingerprint
 from verification.running.store import StoreError, read_checked, write_checked
 from verification.sources.registry import SOURCES
 
-__all__ = ["Cache", "code_version", "solve_key"]
-
 # Modules that an answer depends on beside the package of its source.
 _SEARCH = (
     "verification.study.quantities",

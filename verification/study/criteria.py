@@ -20,9 +20,6 @@ from verification.problem.arrays import Array
 from verification.study.curves import Curve
 from verification.study.quantities import Stress
 
-__all__ = ["MODES", "Criteria", "Judged", "judged"]
-
-
 # Failure mode of each stress.
 MODES = {
     "sigma_xx_surface": "the coating cracks at its surface",

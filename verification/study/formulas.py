@@ -29,8 +29,6 @@ from verification.sources.references.flat_punch import pressed
 from verification.sources.references.layer_limits import spring_bed, squeezed_film, thick
 from verification.sources.registry import EXACT
 
-__all__ = ["EffectiveStudy", "Limit", "from_json", "measure", "task", "to_json"]
-
 Rows = tuple[tuple[float, ...], ...]
 
 SCHEMA = "coatcheck-effective/2"

@@ -22,8 +22,6 @@ from scipy.interpolate import make_interp_spline
 from verification.problem.arrays import Array
 from verification.problem.contact import Solution, stress_with_uncertainty
 
-__all__ = ["XX", "XZ", "YY", "ZZ", "Parts", "Plane", "crowded", "plane", "stress_at", "surface"]
-
 Curve = Callable[[Array], Array]
 
 XX, YY, ZZ, XZ = range(4)

@@ -18,8 +18,6 @@ from verification.problem.contact import CoatedContact, Solution
 from verification.problem.quantity import von_mises
 from verification.study.planes import XX, XZ, ZZ, Parts, Plane, crowded, plane, stress_at, surface
 
-__all__ = ["QUANTITIES", "Located", "Stress", "quantities"]
-
 Measure = Callable[[Array], Array]
 
 # The stresses of a study [Pa] in the order of the columns.

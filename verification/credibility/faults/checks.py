@@ -8,8 +8,6 @@ from verification.regression.baseline import Drift
 from verification.running.self_tests import SelfTest
 from verification.sources.registry import CLOSED, EXACT
 
-__all__ = ["COLUMNS", "Check", "of_baseline", "of_claim", "of_invariant", "of_self_test"]
-
 # The columns of the matrix of faults: title and what is compared.
 COLUMNS = {
     "bare, closed form": "uncoated cases, Hertz or Hamilton on one side",

@@ -19,8 +19,6 @@ from typing import Any
 
 from verification.sources.registry import METHODS, SOURCES
 
-__all__ = ["PACKAGES", "Constant", "Edit", "Fault", "PlantError", "planted"]
-
 PACKAGES = (*(SOURCES[name].package for name in METHODS), "verification")
 
 

@@ -1,12 +1,12 @@
 """One planted fault tried against the checks of the default run."""
 
 import time
-from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 
+from verification.cases.columns import PublishedColumn
 from verification.cases.contact import Case, read_case, shipped_cases
 from verification.cases.published import PublishedCase, published_cases, read_published
 from verification.credibility.faults.checks import Check, of_baseline, of_claim, of_invariant, of_self_test
@@ -23,9 +23,8 @@ from verification.running.store import read_checked
 from verification.sampling.lines import sample, sample_contact
 from verification.sources.registry import METHODS
 
-__all__ = ["Trial", "clean_path", "try_fault"]
-
 Profiles = dict[tuple[str, str, str], Profile]
+Columns = list[tuple[PublishedColumn, np.ndarray]]  # each with the marks of the rows that count
 FOR_PUBLISHED = METHODS[:1]  # published tables are compared with the faster method only
 
 
@@ -57,12 +56,12 @@ def try_fault(fault: Fault, clean_folder: Path) -> Trial:
     """Plant ``fault``, solve and judge what it affects, restore the code.
 
     Sources without the fault are not solved: their profiles are those of the clean run in ``clean_folder``,
-    and the faulty source is sampled at the same points. Raises StoreError where the clean
-    run is missing, PlantError where the fault no longer fits the source.
+    and the faulty source is sampled at the same points. Raises StoreError where the clean run is missing,
+    PlantError where the fault no longer fits the source.
     """
     began = time.process_time()
     clean = {name: from_json(read_checked(clean_path(clean_folder, name))) for name in fault.cases}
-    published = {name: _as_read(read_published(published_cases()[name])) for name in fault.published}
+    published = {name: _as_read(name)[1] for name in fault.published}
     checks: list[Check] = []
     changes: list[tuple[float, str]] = []
     failing = {check.key: check for result in clean.values() for check in _of_clean(result)}
@@ -112,16 +111,16 @@ def _judged(case: Case, clean: CaseResult, fault: Fault) -> tuple[list[Check], P
             outcomes[source] = SourceResult(source, 0.0, run.sentence(error))
             continue
         fresh |= {(p.quantity, p.line, source): p for p in found}
-        rows = invariants_of(solution, source, case.problem)
-        checks += [of_invariant(row, case.name) for row in rows]
+        checks += [of_invariant(row, case.name) for row in invariants_of(solution, source, case.problem)]
     profiles |= fresh
-    edge = _edge(clean, profiles)
-    touched = [c for c in case.claims if set(c.between) & set(solve)] if available else list(case.claims)
+    # Contact radius of the last source that has one, as in the run.
+    radii = [profiles.get(("contact_radius", "contact", source.source)) for source in clean.sources]
+    edge = next((float(r.value[0]) for r in reversed(radii) if r is not None), 0.0)
     checks += _drifts(clean, fresh)
-    verdicts = [(c, run.decide(c, profiles, outcomes, case.problem, edge)) for c in touched]
-    checks += [
-        of_claim(claim, verdict, case.name, bool(case.problem.coatings)) for claim, verdict in verdicts
-    ]
+    for claim in case.claims:
+        if not available or set(claim.between) & set(solve):
+            verdict = run.decide(claim, profiles, outcomes, case.problem, edge)
+            checks.append(of_claim(claim, verdict, case.name, bool(case.problem.coatings)))
     return checks, fresh
 
 
@@ -131,12 +130,6 @@ def _sampled(case: Case, clean: CaseResult, source: str, solution: Solution) -> 
     for line in case.lines:
         found += sample(solution, source, line, places[line.name])
     return found
-
-
-def _edge(clean: CaseResult, profiles: Mapping[tuple[str, str, str], Profile]) -> float:
-    """Contact radius of the last source that has one, as in the run."""
-    radii = [profiles.get(("contact_radius", "contact", source.source)) for source in clean.sources]
-    return next((float(r.value[0]) for r in reversed(radii) if r is not None), 0.0)
 
 
 def _drifts(clean: CaseResult, fresh: Profiles) -> list[Check]:
@@ -171,36 +164,25 @@ def _largest(values: np.ndarray) -> float:
     return float(np.max(np.abs(values))) if np.isfinite(values).all() else float("inf")
 
 
-@dataclass(frozen=True, eq=False)
-class _AsRead:
-    """A column of a published table as read: values [SI], depths [m], which of them count."""
-
-    name: str
-    value: np.ndarray
-    z: np.ndarray
-    counted: np.ndarray
-    scale: float
-
-
-def _as_read(case: PublishedCase) -> list[_AsRead]:
-    return [
-        _AsRead(f"{p.column} of {p.file}", p.profile.value, p.at.z, p.counted, p.scale) for p in case.columns
-    ]
-
-
-def _published(name: str, before: list[_AsRead]) -> tuple[list[Check], tuple[float, str]]:
-    """Verdicts of a published table read under the fault, and how far the fault changed the values read."""
+def _as_read(name: str) -> tuple[PublishedCase, Columns]:
+    """A published case, and its columns as they are read now, with or without a fault."""
     case = read_published(published_cases()[name])
+    return case, [(column, column.counted) for column in case.columns]
+
+
+def _published(name: str, before: Columns) -> tuple[list[Check], tuple[float, str]]:
+    """Verdicts of a published table read under the fault, and how far the fault changed the values read."""
+    case, columns = _as_read(name)
     available = {m: s for m, s in run.solvers().items() if m in FOR_PUBLISHED}
     result = published_run.run(case, available)
     decided = [(c, v) for c, v in result.verdicts if set(c.between) & set(available)]
     checks = [of_claim(c, v, name, False, kind="published") for c, v in decided]
     change = (0.0, "nothing")
-    for old, new in zip(before, _as_read(case), strict=True):
+    for (old, old_counted), (new, counted) in zip(before, columns, strict=True):
         moved = max(
-            _largest(new.value - old.value) / old.scale,
-            _largest(new.z - old.z) / (_largest(old.z) or 1.0),
-            float(np.mean(new.counted != old.counted)),
+            _largest(new.profile.value - old.profile.value) / old.scale,
+            _largest(new.at.z - old.at.z) / (_largest(old.at.z) or 1.0),
+            float(np.mean(counted != old_counted)),
         )
-        change = max(change, (moved, f"{old.name} as read"))
+        change = max(change, (moved, f"{old.column} of {old.file} as read"))
     return checks, change
