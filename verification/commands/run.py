@@ -74,18 +74,12 @@ def run(
     code is 5 only where a number differs from the baseline on its machine with its versions; elsewhere the
     report shows it.
 
-    Parameters
-    ----------
-    cases
-        Names of shipped cases, see coatcheck list; paths of .toml files; "published" for all printed results.
-    output
-        Directory of the report: report.html, report.json, junit.xml and one file per case.
-    time_limit
-        Seconds one case may take before it is stopped and reported as having no result.
-    fields
-        Also write the fields of each case, for ParaView and coatcheck view, into the folder fields there.
-    verbose
-        Say the seconds and iterations of every source as the cases finish.
+    Args:
+        cases: Names of shipped cases, see coatcheck list; .toml files; "published" for all published results.
+        output: Directory of the report: report.html, report.json, junit.xml and one file per case.
+        time_limit: Seconds one case may take before it is stopped and reported as having no result.
+        fields: Also write the fields of each case, for ParaView and coatcheck view, into its folder fields.
+        verbose: Say the seconds and iterations of every source as the cases finish.
     """
     jobs = worker_count(jobs, time_limit)
     chosen = _choose(cases)
@@ -222,30 +216,22 @@ def _print_table(results: Sequence[CaseResult], page: Path, seconds: float, besi
         table.add_column(head, no_wrap=True, vertical="bottom")
     for result in results:
         worst = max((v.difference for _, v in result.verdicts if v.difference is not None), default=None)
-        table.add_row(
-            escape(result.name),
-            *(
-                f"[{STYLE[o]}]{n}[/]" if (n := sum(v.outcome is o for _, v in result.verdicts)) else "."
-                for o in Outcome
-            ),
-            "-" if worst is None else f"{worst:.1e}",
-            *([_state(beside, result.name)] if states else []),
-        )
+        count = Counter(verdict.outcome for _, verdict in result.verdicts)
+        counts = [f"[{STYLE[o]}]{count[o]}[/]" if count[o] else "." for o in Outcome]
+        state = [_state(beside, result.name)] if states else []
+        table.add_row(escape(result.name), *counts, "-" if worst is None else f"{worst:.1e}", *state)
     console.print(table)
     # What is read by another program stays one line a sentence.
     say = partial(console.print, highlight=False, soft_wrap=not console.is_terminal)
     for result in results:
+        name = escape(result.name)
         for source in result.sources:
             if source.failure:
-                say(
-                    f"[bold red]{escape(result.name)}, {source.source}:[/] {escape(one_line(source.failure))}"
-                )
+                say(f"[bold red]{name}, {source.source}:[/] {escape(one_line(source.failure))}")
         for law in result.invariants:
             if law.outcome is not Outcome.AGREES:
-                say(
-                    f"[{STYLE[law.outcome]}]{escape(result.name)}, {law.source}, {escape(law.name)}:[/] "
-                    f"{escape(one_line(law.message))}"
-                )
+                what = f"{name}, {law.source}, {escape(law.name)}:"
+                say(f"[{STYLE[law.outcome]}]{what}[/] {escape(one_line(law.message))}")
     laws = [law for result in results for law in result.invariants]
     if laws:
         say(f"{sum(law.outcome is Outcome.AGREES for law in laws)} of {len(laws)} invariants hold")
