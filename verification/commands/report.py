@@ -31,18 +31,12 @@ def report(
 ) -> int:
     """Write the report of a stored run again from its cases, nothing solved; a run that was stopped too.
 
-    Parameters
-    ----------
-    folder
-        Directory of the run.
-    pdf
-        Also print the page to report.pdf there, through an installed Chromium or Chrome.
-    baseline
-        Directory of a baseline to compare with instead of the run's own comparison.
-    records
-        Directory of credibility records to show instead of those stored with the run.
-    time_limit
-        Seconds that printing may take.
+    Args:
+        folder: Directory of the run.
+        pdf: Also print the page to report.pdf there, through an installed Chromium or Chrome.
+        baseline: Directory of a baseline to compare with instead of the run's own comparison.
+        records: Directory of credibility records to show instead of those stored with the run.
+        time_limit: Seconds that printing may take.
     """
     from verification.report.material import gather, stored_material
     from verification.report.pdf import NoBrowser, printed

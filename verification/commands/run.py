@@ -224,30 +224,22 @@ def _print_table(results: Sequence[CaseResult], page: Path, seconds: float, besi
         table.add_column(head, no_wrap=True, vertical="bottom")
     for result in results:
         worst = max((v.difference for _, v in result.verdicts if v.difference is not None), default=None)
-        table.add_row(
-            escape(result.name),
-            *(
-                f"[{STYLE[o]}]{n}[/]" if (n := sum(v.outcome is o for _, v in result.verdicts)) else "."
-                for o in Outcome
-            ),
-            "-" if worst is None else f"{worst:.1e}",
-            *([_state(beside, result.name)] if states else []),
-        )
+        count = Counter(verdict.outcome for _, verdict in result.verdicts)
+        counts = [f"[{STYLE[o]}]{count[o]}[/]" if count[o] else "." for o in Outcome]
+        state = [_state(beside, result.name)] if states else []
+        table.add_row(escape(result.name), *counts, "-" if worst is None else f"{worst:.1e}", *state)
     console.print(table)
     # In a pipe each message stays on one line.
     say = partial(console.print, highlight=False, soft_wrap=not console.is_terminal)
     for result in results:
+        name = escape(result.name)
         for source in result.sources:
             if source.failure:
-                say(
-                    f"[bold red]{escape(result.name)}, {source.source}:[/] {escape(one_line(source.failure))}"
-                )
+                say(f"[bold red]{name}, {source.source}:[/] {escape(one_line(source.failure))}")
         for law in result.invariants:
             if law.outcome is not Outcome.AGREES:
-                say(
-                    f"[{STYLE[law.outcome]}]{escape(result.name)}, {law.source}, {escape(law.name)}:[/] "
-                    f"{escape(one_line(law.message))}"
-                )
+                what = f"{name}, {law.source}, {escape(law.name)}:"
+                say(f"[{STYLE[law.outcome]}]{what}[/] {escape(one_line(law.message))}")
     laws = [law for result in results for law in result.invariants]
     if laws:
         say(f"{sum(law.outcome is Outcome.AGREES for law in laws)} of {len(laws)} invariants hold")

@@ -99,10 +99,8 @@ def solve(
             bar.update(task, advance=1, description=", ".join(at_work) or "report")
             if not silent and isinstance(result, CaseResult):
                 colour = STYLE[result.outcome]
-                console.print(
-                    f"[{colour}]{result.outcome:<12}[/] {escape(result.name)}  {result.seconds:.1f} s",
-                    highlight=False,
-                )
+                line = f"[{colour}]{result.outcome:<12}[/] {escape(result.name)}  {result.seconds:.1f} s"
+                console.print(line, highlight=False)
                 if verbose:
                     console.print(escape(_sources(result)), style="dim", highlight=False)
 
