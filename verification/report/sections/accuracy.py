@@ -24,16 +24,6 @@ from verification.report.tables.numbers import factor, plain, scientific
 from verification.running.result import CaseResult
 from verification.sources.registry import METHODS, REFERENCES
 
-__all__ = [
-    "Accuracy",
-    "accuracies",
-    "accuracy_overview",
-    "accuracy_sentence",
-    "accuracy_table",
-    "coverage_table",
-    "section",
-]
-
 # Ratio of stated to true error below which an estimate counts as wrong.
 TOO_SMALL = 0.5
 # Share of quantities whose true error an uncertainty must cover, the level at which it is usually stated.
@@ -72,7 +62,7 @@ def section(material: Material) -> Section | None:
     """How often the stated uncertainty covers the true error, then the errors of each method."""
     results = material.contacts
     parts = [
-        Part(accuracy_sentence(results, source), [overview])
+        Part("", [overview])
         for source in METHODS
         if (overview := accuracy_overview(results, material.anchors, source))
     ]
@@ -226,20 +216,4 @@ def coverage_table(results: Sequence[CaseResult]) -> Table:
         ],
         rows,
         css="overview",
-    )
-
-
-def accuracy_sentence(results: Sequence[CaseResult], source: str) -> str:
-    """How often the uncertainty stated by a method covers the true error."""
-    found = [item for result in results for item in accuracies(result) if item.source == source]
-    if not found:
-        return f"{source_label(source).capitalize()}: no case with an exact reference."
-    good = sum(item.covered for item in found)
-    low = sum(item.ratio is not None and item.ratio < TOO_SMALL for item in found)
-    unstated = sum(item.ratio is None for item in found)
-    without = f"; in {unstated} none is stated" if unstated else ""
-    share = f"{good} of {len(found)} quantities ({100 * good / len(found):.1f} %)"
-    return (
-        f"{source_label(source).capitalize()}: the stated uncertainty covers the true error in {share}; "
-        f"in {low} it is below half of it{without}."
     )

@@ -34,17 +34,6 @@ from verification.study.curves import Curve
 from verification.study.quantities import QUANTITIES
 from verification.study.table import SCALARS, SOURCES
 
-__all__ = [
-    "Drawn",
-    "contact_figure",
-    "governing_figure",
-    "sheet",
-    "stress_figures",
-    "use_figures",
-    "write_drawn",
-]
-
-
 # Okabe and Ito's colours, distinct for the colour-blind; dashes distinguish friction.
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00", "#000000")
 DASHES: tuple[Any, ...] = ("-", (0, (5, 2)), (0, (1.2, 1.4)), (0, (5, 1.5, 1, 1.5)))

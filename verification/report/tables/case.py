@@ -15,17 +15,6 @@ from verification.report.tables.matrix import outcome_cell
 from verification.report.tables.numbers import engineering, plain, scientific, with_uncertainty
 from verification.running.result import CaseResult
 
-__all__ = [
-    "budget_table",
-    "contact_table",
-    "diagnostics_table",
-    "dominating_parameter",
-    "facts",
-    "layer_table",
-    "verdict_table",
-]
-
-
 _FACTS = {
     "pressure": ("uniform pressure q", "Pa"),
     "load_radius": ("radius of the disc a", "m"),
