@@ -48,7 +48,7 @@ def pictures(result: CaseResult, plane: Plane | None) -> Pictures | None:
     a_h, p_h = float(scale_of(result, "a_h")), float(scale_of(result, "p_h"))
     if plane is None or not plane.stress or not a_h > 0 or not p_h > 0:
         return None
-    failures = tuple((source_label(name), sentence) for name, sentence in plane.failures.items())
+    failures = tuple((source_label(name), message) for name, message in plane.failures.items())
     sources = [name for name in METHODS if name in plane.stress]
     bottoms = [float(z[-1]) / a_h for z in plane.depths]
     frame = Frame(float(plane.x[-1]) / a_h, bottoms[-1], tuple(bottoms[:-1]), plane.radius / a_h)
