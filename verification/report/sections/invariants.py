@@ -9,7 +9,7 @@ from verification.judging.invariants import Invariant
 from verification.judging.verdict import Outcome
 from verification.report.material import Material
 from verification.report.tables.cells import Cell, Part, Section, Table, number, row, tally
-from verification.report.tables.labels import OUTCOMES, source_label
+from verification.report.tables.labels import OUTCOMES, row_css, source_label
 from verification.report.tables.matrix import outcome_cell
 from verification.report.tables.numbers import plain, scientific
 from verification.running.result import CaseResult
@@ -33,7 +33,7 @@ def invariant_table(found: Sequence[Invariant]) -> Table | None:
             number(one.bound),
             number(one.margin, partial(scientific, sign=True)),
             number(one.share, _percent),
-            css="" if one.outcome is Outcome.AGREES else OUTCOMES[one.outcome].css,
+            css=row_css(one.outcome),
         )
         for one in sorted(found, key=_badness)
     ]
