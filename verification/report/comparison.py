@@ -10,8 +10,6 @@ from verification.report.tables.labels import pair_label
 from verification.report.tables.matrix import outcome_cell
 from verification.report.tables.numbers import factor, scientific, seconds
 
-__all__ = ["comparison_message", "comparison_page"]
-
 
 def comparison_message(found: RunComparison) -> str:
     """Changes from the first run to the second, in one sentence."""

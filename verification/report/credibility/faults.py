@@ -13,8 +13,6 @@ from verification.report.tables.cells import Cell, Part, Section, Table, number,
 from verification.report.tables.labels import source_label
 from verification.report.tables.numbers import plain, scientific, seconds
 
-__all__ = ["faults_message", "faults_page", "faults_section", "section"]
-
 # Mark, class and words of each outcome of a planted fault.
 _CATCHES = {
     Catch.DISAGREES: ("✓ detected", "verdict agrees", "a check that must hold does not"),

@@ -3,8 +3,6 @@
 from verification.report.material import Material
 from verification.report.tables.cells import Cell, Part, Section, Table, row, words
 
-__all__ = ["section"]
-
 
 def section(material: Material) -> Section | None:
     """Each self-test with its requirement and its outcome; None where none was made."""

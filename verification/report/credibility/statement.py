@@ -26,8 +26,6 @@ from verification.report.tables.cells import Part, Section, Table, row, words
 from verification.report.tables.numbers import plain
 from verification.running.result import CaseResult
 
-__all__ = ["ANCHOR", "figures", "section"]
-
 ANCHOR = "credibility"
 NO_RECORD = ("Not measured: there is no record of {}; make one with: coatcheck {} --record", "not measured")
 ASSUMED = (

@@ -20,9 +20,6 @@ from verification.running.result import CaseResult
 from verification.sampling.plane import Plane
 from verification.sources.registry import METHODS
 
-__all__ = ["Pictures", "pictures", "plane_csv"]
-
-
 SHOWN = ("von_mises", "sigma_xx", "sigma_xz")
 TITLES = {"von_mises": "von Mises"}
 SEQUENTIAL, DIVERGING, DIFFERENCE = "viridis", "RdBu_r", "cividis"

@@ -10,8 +10,6 @@ from verification.report.tables.cells import Cell, Part, Section, Table, number,
 from verification.report.tables.labels import source_label
 from verification.report.tables.numbers import scientific
 
-__all__ = ["ANCHOR", "baseline_message", "case_table", "drift_table", "section", "state_cell"]
-
 ANCHOR = "baseline"
 MOST = 40
 # How a state is shown without relying on colour: mark, class, rank in a column.

@@ -12,8 +12,6 @@ from verification.report.tables.cells import Cell, Gallery, Panel, Part, Table, 
 from verification.report.tables.numbers import factor, plain, scientific
 from verification.sources.source import Style
 
-__all__ = ["conversion_part"]
-
 _CONVERSIONS = {
     ("split", 0): ("split, no domain", Style("semi")),
     ("split-fft", 2): ("split, by FFT", Style("hertz", DASHES)),

@@ -20,9 +20,6 @@ from verification.sources.references.effective_modulus import PERRIOT_BARTHEL_N
 from verification.sources.source import Style
 from verification.study.formulas import EffectiveStudy, Limit
 
-__all__ = ["family_section", "section"]
-
-
 WIDTH, HEIGHT = 320, 250
 BOX = (48.0, 5.0, 266.0, 207.5)  # left, top, width, height
 LEVELS = (0.01, 0.05, 0.1, 0.2, 0.5)

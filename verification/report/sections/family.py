@@ -24,8 +24,6 @@ from verification.report.tables.numbers import plain
 from verification.running.result import CaseResult
 from verification.sources.registry import CLOSED
 
-__all__ = ["family_section", "section"]
-
 WIDTH, HEIGHT = 320, 260
 BOX = (48.0, 6.5, 265.6, 215.8)  # left, top, width, height
 SMALLEST = 3  # fewer than this many moduli are no family

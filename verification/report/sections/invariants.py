@@ -14,8 +14,6 @@ from verification.report.tables.matrix import outcome_cell
 from verification.report.tables.numbers import plain, scientific
 from verification.running.result import CaseResult
 
-__all__ = ["invariant_cell", "invariant_table", "section"]
-
 _NUMBERED = re.compile(r", (?:coating|interface|layer) \d+$|, substrate$")
 
 

@@ -9,8 +9,6 @@ from verification.report.tables.cells import Cell, Part, Section, Table, number,
 from verification.report.tables.labels import source_label
 from verification.report.tables.numbers import plain
 
-__all__ = ["parameter_section", "section"]
-
 
 def section(material: Material) -> Section | None:
     """The parameter sweeps of the accuracy study; None where there are none."""

@@ -16,8 +16,6 @@ from verification.report.tables.numbers import plain, scientific
 from verification.running.result import CaseResult
 from verification.sources.registry import METHODS, PUBLISHED, REFERENCES
 
-__all__ = ["section", "tables"]
-
 
 def _sources(result: CaseResult) -> tuple[str, ...]:
     """Both methods, and the references that were compared."""

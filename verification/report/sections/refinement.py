@@ -14,8 +14,6 @@ from verification.report.tables.cells import Cell, Gallery, Part, Section, Table
 from verification.report.tables.numbers import factor, scientific, seconds
 from verification.sources.source import Style
 
-__all__ = ["finite_element_section", "semianalytic_section"]
-
 _SCALARS = [QUANTITY[name] for name in SCALARS]
 _TITLES = {q.symbol: q.symbol for q in _SCALARS} | {
     "pressure": "pressure, L2 over the contact",

@@ -7,8 +7,6 @@ from verification.report.tables.matrix import case_cell
 from verification.report.tables.numbers import seconds
 from verification.running.result import SourceResult
 
-__all__ = ["section"]
-
 
 def section(material: Material) -> Section | None:
     """Seconds of every source in every case; None without a case."""

@@ -28,8 +28,6 @@ from verification.study.plan import Study
 from verification.study.quantities import QUANTITIES
 from verification.study.table import SCALARS, SOURCES, read_columns
 
-__all__ = ["write_study_report"]
-
 CONTOURS = (0.1, 0.5, 2.0)  # h/a_h; the solved ones nearest to these
 
 

@@ -12,8 +12,6 @@ import numpy as np
 from verification.report.tables.labels import source_label
 from verification.study.criteria import MODES, Judged
 
-__all__ = ["Near", "near", "recommendation_messages"]
-
 
 @dataclass(frozen=True)
 class Near:

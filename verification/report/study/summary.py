@@ -10,8 +10,6 @@ from verification.study.criteria import MODES
 from verification.study.curves import Curve, Difference
 from verification.study.table import SCALARS
 
-__all__ = ["agreement_messages", "main_messages"]
-
 FLAT = 0.02  # of its own largest value; a curve that changes less does not depend on thickness
 NOWHERE = 1e-3  # of p_h
 QUANTITY = {
