@@ -11,9 +11,9 @@ from verification.commands.common.exits import CommandError, exit_code, no_resul
 from verification.commands.common.folders import BASELINE, RECORDS, nearest_run, within_package
 from verification.commands.common.options import AsJson, Flag, Quiet
 from verification.commands.common.terminal import print_json
+from verification.credibility.self_tests import self_tests
 from verification.regression.baseline import regression
 from verification.regression.record import read_baseline
-from verification.running.self_tests import self_tests
 from verification.running.store import locked
 
 
