@@ -62,7 +62,7 @@ def complaint_of(path: Path, monkeypatch: pytest.MonkeyPatch) -> str | None:
     def accept(*_: object, **__: object) -> None:
         raise Accepted
 
-    monkeypatch.setattr(pool, "_Job", accept)
+    monkeypatch.setattr(pool._Slot, "start", accept)
     said, printed = io.StringIO(), io.StringIO()
     try:
         with redirect_stderr(said), redirect_stdout(printed):

@@ -5,7 +5,7 @@ fitted uncertainty is compared with the budget that the method states and with t
 integral equation.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -105,16 +105,9 @@ def sweep(
             failure = f"{name}: {failure_message(error)}"
             break
     done = parameter.levels[: len(found)]
-    return Sweep(
-        parameter.method,
-        solid,
-        parameter.name,
-        parameter.order,
-        tuple(name for name, _, _ in done),
-        tuple(step for _, _, step in done),
-        {name: tuple(level[name] for level in found) for name in (found[0] if found else {})},
-        failure,
-    )
+    levels, steps = tuple(name for name, _, _ in done), tuple(step for _, _, step in done)
+    values = {name: tuple(level[name] for level in found) for name in (found[0] if found else {})}
+    return Sweep(parameter.method, solid, parameter.name, parameter.order, levels, steps, values, failure)
 
 
 def stated(problem: CoatedContact, method: str, solve: Function, exact: Solution, solid: str = "") -> Stated:
@@ -134,11 +127,17 @@ def stated(problem: CoatedContact, method: str, solve: Function, exact: Solution
 
 
 def study(
-    problem: CoatedContact, solid: str, methods: Sequence[str] = METHODS
+    problem: CoatedContact,
+    solid: str,
+    methods: Sequence[str] = METHODS,
+    available: Mapping[str, Callable[..., Solution]] | None = None,
 ) -> tuple[tuple[Sweep, ...], tuple[Stated, ...]]:
-    """Every parameter sweep and the uncertainty that each method states."""
+    """Every parameter sweep and the uncertainty that each method states.
+
+    available : other solvers, by method.
+    """
     exact = solve_exactly(problem, {"estimate_uncertainty": False})
-    available = solvers()
+    available = available or solvers()
     chosen = [p for p in PARAMETERS if p.method in methods and (problem.coatings or not p.coated)]
     sweeps = tuple(sweep(problem, p, exact.contact_radius, available[p.method], solid) for p in chosen)
     return sweeps, tuple(stated(problem, m, available[m], exact, solid) for m in methods)

@@ -172,12 +172,19 @@ def refined_grid(
 
 
 def refined_mesh(
-    problem: CoatedContact, order: int, quality: Sequence[str] = ("fast", "default"), *, solid: str = ""
+    problem: CoatedContact,
+    order: int,
+    quality: Sequence[str] = ("fast", "default"),
+    *,
+    solid: str = "",
+    solve: Callable[..., Solution] | None = None,
 ) -> Refinement:
     """``problem`` by elements of ``order`` on meshes of each ``quality``; else as ``refined_grid``."""
-    steps = [(name, {"order": order, "quality": name}, None) for name in quality]
+    from fem_reference.solver import QUALITY
+
+    steps = [(name, {"order": order, "size": QUALITY[name]}, None) for name in quality]
     empty = Refinement("fem_reference", solid, f"order {order}", ())
-    return _refined(problem, empty, solve_elements, steps)
+    return _refined(problem, empty, solve or solve_elements, steps)
 
 
 def _refined(

@@ -97,8 +97,8 @@ def read_bounded(path: Path, most: int) -> bytes:
                 raise StoreError(f"{path}: not a regular file; it cannot be read")
             raw = file.read(most + 1)
     except (OSError, ValueError) as error:
-        said = error.strerror if isinstance(error, OSError) else error
-        raise StoreError(f"{path}: cannot be read ({said})") from None
+        reason = error.strerror if isinstance(error, OSError) else error
+        raise StoreError(f"{path}: cannot be read ({reason})") from None
     if len(raw) > most:
         raise StoreError(f"{path}: larger than {most} bytes; not a file of this program")
     return raw

@@ -93,18 +93,11 @@ def differences(columns: Mapping[str, NDArray[Any]]) -> tuple[Difference, ...]:
             difference = np.abs(columns[quantity][here] - columns[quantity][beside]) / over
             uncertainty = columns[f"{quantity}_uncertainty"]
             i = int(np.nanargmax(difference))
-            found.append(
-                Difference(
-                    source,
-                    quantity,
-                    here.size,
-                    float(difference[i]),
-                    float((uncertainty[here[i]] + uncertainty[beside[i]]) / over[i]),
-                    float(columns["modulus_ratio"][here[i]]),
-                    float(columns["thickness_over_a_h"][here[i]]),
-                    float(columns["friction"][here[i]]),
-                )
-            )
+            largest = float(difference[i])
+            stated = float((uncertainty[here[i]] + uncertainty[beside[i]]) / over[i])
+            place = (columns[name][here[i]] for name in ("modulus_ratio", "thickness_over_a_h", "friction"))
+            ratio, h, friction = map(float, place)
+            found.append(Difference(source, quantity, here.size, largest, stated, ratio, h, friction))
     return tuple(found)
 
 
@@ -113,7 +106,7 @@ def _curve(columns: Mapping[str, NDArray[Any]], ratio: float, friction: float) -
     solved = mine & (columns["status"] == "solved")
     lead = columns["source"] == SOURCES[0]
     rows = _by_thickness(columns, solved & lead)
-    some = np.flatnonzero(mine)[0]
+    p_h, a_h, delta_h = (float(columns[name][np.flatnonzero(mine)[0]]) for name in ("p_h", "a_h", "delta_h"))
 
     def take(name: str) -> Array:
         return columns[name][rows].astype(float)
@@ -124,13 +117,12 @@ def _curve(columns: Mapping[str, NDArray[Any]], ratio: float, friction: float) -
         if checked.size:
             h = columns["thickness_over_a_h"][checked]
             marks[source] = {q: (h, columns[f"{q}_over_{s}"][checked]) for q, s in SCALES.items()}
-    p_h = float(columns["p_h"][some])
     return Curve(
         ratio,
         friction,
         p_h,
-        float(columns["a_h"][some]),
-        float(columns["delta_h"][some]),
+        a_h,
+        delta_h,
         take("thickness_over_a_h"),
         {q: take(f"{q}_over_p_h") for q in QUANTITIES},
         {q: take(f"{q}_uncertainty") / p_h for q in QUANTITIES},

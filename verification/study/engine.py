@@ -21,7 +21,7 @@ from pathlib import Path
 from typing import Any
 
 from verification.running.pool import THREAD_VARIABLES, cores
-from verification.running.result import sentence
+from verification.running.result import message_of
 from verification.running.store import StoreError, locked
 from verification.study.cache import Cache, code_version
 from verification.study.plan import Solve, Study
@@ -215,9 +215,9 @@ class _Run:
                 digest = bytes.fromhex(one.key)
                 if digest in self.requested or self._stored(one):
                     self.count(one)
-                    continue
-                self.requested.add(digest)
-                yield one
+                else:
+                    self.requested.add(digest)
+                    yield one
 
     def solve(self, waiting: Iterator[Solve], client: Any, function: Callable[..., Any]) -> None:
         """Keep a bounded number of solves submitted until none is left; store each answer."""
@@ -255,7 +255,7 @@ class _Run:
         if error is not None:
             # A solver's failure is an answer; a worker's is not stored, so that the next run solves again.
             killed = type(error).__name__ == "KilledWorker"
-            self.outcome.lost[one.key] = DIED if killed else sentence(error)
+            self.outcome.lost[one.key] = DIED if killed else message_of(error)
             self._note("lost", one)
             self.count(one)
             return

@@ -15,7 +15,7 @@ from threadpoolctl import threadpool_limits
 from verification.problem.contact import CoatedContact
 from verification.problem.quantity import QUANTITIES
 from verification.running.provenance import versions
-from verification.running.result import sentence
+from verification.running.result import message_of
 from verification.sources.registry import SOURCES
 from verification.study.cache import code_version
 from verification.study.quantities import quantities
@@ -40,7 +40,7 @@ def answer(request: Mapping[str, Any]) -> dict[str, Any]:
             solution = solve(problem, request["numerics"])
             rows = _rows(solution, problem, frictions)
     except Exception as error:  # a point that fails is a row with its message
-        rows = failed_rows(request, sentence(error))
+        rows = failed_rows(request, message_of(error))
     return {
         "rows": rows,
         "seconds": time.perf_counter() - begin,

@@ -11,6 +11,7 @@ from verification.cases.contact import Case, read_case, shipped_cases
 from verification.cases.published import PublishedCase, published_cases, read_published
 from verification.credibility.faults.checks import Check, of_baseline, of_claim, of_invariant, of_self_test
 from verification.credibility.faults.planting import Fault, planted
+from verification.credibility.self_tests import self_tests
 from verification.judging.invariants import check as invariants_of
 from verification.problem.contact import Solution
 from verification.problem.profile import Profile
@@ -18,7 +19,6 @@ from verification.regression.baseline import State, drift, measured
 from verification.running import contact as run
 from verification.running import published as published_run
 from verification.running.result import CaseResult, SourceResult, from_json
-from verification.running.self_tests import self_tests
 from verification.running.store import read_checked
 from verification.sampling.lines import sample, sample_contact
 from verification.sources.registry import METHODS
@@ -108,7 +108,7 @@ def _judged(case: Case, clean: CaseResult, fault: Fault) -> tuple[list[Check], P
         try:
             found = _sampled(case, clean, source, solution)
         except Exception as error:  # as in the run itself
-            outcomes[source] = SourceResult(source, 0.0, run.sentence(error))
+            outcomes[source] = SourceResult(source, 0.0, run.message_of(error))
             continue
         fresh |= {(p.quantity, p.line, source): p for p in found}
         checks += [of_invariant(row, case.name) for row in invariants_of(solution, source, case.problem)]
@@ -135,10 +135,9 @@ def _sampled(case: Case, clean: CaseResult, source: str, solution: Solution) -> 
 def _drifts(clean: CaseResult, fresh: Profiles) -> list[Check]:
     """The numbers of the sources solved in the trial, compared with the clean run as with a baseline."""
     now = tuple(fresh.get((p.quantity, p.line, p.source), p) for p in clean.profiles)
-    stored = {numbers.key: numbers for numbers in measured(clean)}
     found = {numbers.key: numbers for numbers in measured(replace(clean, profiles=now))}
     solved = {source for _, _, source in fresh}
-    rows = [drift(then, found[key]) for key, then in stored.items() if key[0] in solved]
+    rows = [drift(then, found[then.key]) for then in measured(clean) if then.source in solved]
     return [of_baseline(row, clean.name, row.state is State.SAME) for row in rows]
 
 

@@ -16,7 +16,7 @@ def section(material: Material) -> Section | None:
             Cell(test.name),
             [
                 Cell("✓", 1.0, "verdict agrees") if test.passed else Cell("✗", 0.0, "verdict disagrees"),
-                Cell(test.sentence, css="words"),
+                Cell(test.statement, css="words"),
                 Cell(test.found, css="words"),
             ],
         )
