@@ -165,9 +165,9 @@ def test_a_picture_is_rendered_without_a_display(tmp_path, folder):
 )
 def test_rendering_that_crashes_or_hangs_is_one_sentence(tmp_path, capsys, program, said):
     assert _picture([sys.executable, "-c", program], tmp_path / "x.png", 0.5) == 3
-    complaint = capsys.readouterr().err
-    assert said in complaint
-    assert len(complaint.splitlines()) == 1
+    error = capsys.readouterr().err
+    assert said in error
+    assert len(error.splitlines()) == 1
     assert not list(tmp_path.iterdir())
 
 
@@ -189,6 +189,6 @@ def test_what_cannot_be_viewed_is_one_sentence(folder, capsys, monkeypatch, word
     if "screenshot" in options:
         options["screenshot"] = Path(options["screenshot"])
     assert view(words["case"], output=folder, **options) == code
-    complaint = capsys.readouterr().err
-    assert said in complaint
-    assert len(complaint.splitlines()) == 1
+    error = capsys.readouterr().err
+    assert said in error
+    assert len(error.splitlines()) == 1
