@@ -75,10 +75,8 @@ fi
 def completion(shell: Literal["bash", "zsh", "fish"], /) -> int:
     """Print the script that completes coatcheck in a shell.
 
-    Parameters
-    ----------
-    shell
-        bash, zsh or fish.
+    Args:
+        shell: bash, zsh or fish.
     """
     script = app.generate_completion(prog_name="coatcheck", shell=shell)
     # A word that no command or option begins with may be a case file; fish tries files by itself.

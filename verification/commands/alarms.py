@@ -41,18 +41,12 @@ def alarms(
     the same seed draws the same problems everywhere. Each is left as a case file under OUTPUT/problems, all
     of them in a report.
 
-    Parameters
-    ----------
-    count
-        Number of problems.
-    seed
-        Seed of the random numbers.
-    output
-        Directory of the report, of the results, of the case files.
-    record
-        Store the record as RECORDS/alarms.json, for the credibility page of every report.
-    time_limit
-        Seconds one problem may take before it is stopped and counted as alarms.
+    Args:
+        count: Number of problems.
+        seed: Seed of the random numbers.
+        output: Directory of the report, of the results, of the case files.
+        record: Store the record as RECORDS/alarms.json, for the credibility page of every report.
+        time_limit: Seconds one problem may take before it is stopped and counted as alarms.
     """
     jobs = worker_count(jobs, time_limit)
     if count < 1 or seed < 0:

@@ -26,12 +26,9 @@ def update(
 
     The run must be whole, hold every shipped case, and agree throughout.
 
-    Parameters
-    ----------
-    run
-        Directory of the run, or its report.json.
-    why
-        The reason, stored with date, commit and versions in the baseline's history; required.
+    Args:
+        run: Directory of the run, or its report.json.
+        why: The reason, stored with date, commit and versions in the baseline's history; required.
     """
     if not why.strip():
         raise CommandError('--why is empty; give the reason: coatcheck baseline update --why "..."')

@@ -32,18 +32,12 @@ def bench(
     it with CMake, a C++17 compiler and Eigen). The full set takes half an hour:
     coatcheck bench --sizes 128 256 512 1024 2048 --coated --plane
 
-    Parameters
-    ----------
-    sizes
-        Patches along a side of the square [-2a, 2a]^2.
-    threads
-        Numbers of threads to measure with.
-    repeats
-        Measurements of each; the median counts.
-    coated
-        Also count the iterations of coated solids on each of the grids.
-    plane
-        Also time the six stresses of a plane beside six inverse real FFTs.
+    Args:
+        sizes: Patches along a side of the square [-2a, 2a]^2.
+        threads: Numbers of threads to measure with.
+        repeats: Measurements of each; the median counts.
+        coated: Also count the iterations of coated solids on each of the grids.
+        plane: Also time the six stresses of a plane beside six inverse real FFTs.
     """
     if min(sizes) < 16 or max(sizes) > 4096 or min(threads) < 1 or repeats < 1:
         raise CommandError("--sizes from 16 to 4096, --threads and --repeats from 1")
@@ -61,9 +55,8 @@ def bench(
     found += coated_ratios(layered)
     if as_json:
         records: dict[str, Sequence[Any]] = {"rows": rows, "coated": layered, "planes": planes}
-        print_json(
-            {name: [asdict(r) for r in some] for name, some in records.items()} | {"ratios": dict(found)}
-        )
+        content = {name: [asdict(record) for record in some] for name, some in records.items()}
+        print_json(content | {"ratios": dict(found)})
         return 0
     figures = Table("figure", "value", box=None, header_style="bold")
     for name, value in found:

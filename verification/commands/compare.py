@@ -27,14 +27,10 @@ def compare(
 
     Exit codes: 0 nothing changed, 5 numbers differ, 1 a comparison no longer agrees, 2 bad input.
 
-    Parameters
-    ----------
-    first
-        Directory of a run, or its report.json.
-    second
-        The run that is compared with it.
-    output
-        Also write the comparison to this HTML file.
+    Args:
+        first: Directory of a run, or its report.json.
+        second: The run that is compared with it.
+        output: Also write the comparison to this HTML file.
     """
     try:
         found = compare_runs(read_run(first), read_run(second))

@@ -43,21 +43,14 @@ def faults(
 
     Exit codes: 0 at least 95 % are caught, every survivor explained; 1 not so; 2 bad input.
 
-    Parameters
-    ----------
-    names
-        Names of faults, see --list; all of them unless given.
-    group
-        Try one group: material, frf, conversion_fft, conjugate_gradients, stress, finite_elements,
-        references, harness.
-    listed
-        List the faults instead of trying them.
-    output
-        Directory of the matrix, faults.html with faults.json, of the clean runs, of the trials.
-    record
-        Store the matrix of all faults as RECORDS/faults.json, which the credibility page of a report reads.
-    time_limit
-        Seconds one fault may take before it is stopped and counted as not tried.
+    Args:
+        names: Names of faults, see --list; all of them unless given.
+        group: Try one group: material, frf, conversion_fft, conjugate_gradients, stress, finite_elements,
+            references, harness.
+        listed: List the faults instead of trying them.
+        output: Directory of the matrix, faults.html with faults.json, of the clean runs, of the trials.
+        record: Store the matrix of all faults as RECORDS/faults.json, for the credibility page of a report.
+        time_limit: Seconds one fault may take before it is stopped and counted as not tried.
     """
     jobs = worker_count(jobs, time_limit)
     from verification.credibility.faults.catalogue import CONTROLS, FAULTS, GROUPS, chosen

@@ -11,9 +11,9 @@ from verification.commands.common.exits import CommandError, exit_code, no_resul
 from verification.commands.common.folders import BASELINE, RECORDS, nearest_run, within_package
 from verification.commands.common.options import AsJson, Flag, Quiet
 from verification.commands.common.terminal import print_json
+from verification.credibility.self_tests import self_tests
 from verification.regression.baseline import regression
 from verification.regression.record import read_baseline
-from verification.running.self_tests import self_tests
 from verification.running.store import locked
 
 
@@ -31,18 +31,12 @@ def report(
 ) -> int:
     """Write the report of a stored run again from its cases, nothing solved; a run that was stopped too.
 
-    Parameters
-    ----------
-    folder
-        Directory of the run.
-    pdf
-        Also print the page to report.pdf there, through an installed Chromium or Chrome.
-    baseline
-        Directory of a baseline to compare with instead of the run's own comparison.
-    records
-        Directory of credibility records to show instead of those stored with the run.
-    time_limit
-        Seconds that printing may take.
+    Args:
+        folder: Directory of the run.
+        pdf: Also print the page to report.pdf there, through an installed Chromium or Chrome.
+        baseline: Directory of a baseline to compare with instead of the run's own comparison.
+        records: Directory of credibility records to show instead of those stored with the run.
+        time_limit: Seconds that printing may take.
     """
     from verification.report.material import gather, stored_material
     from verification.report.pdf import NoBrowser, printed

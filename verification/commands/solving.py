@@ -1,4 +1,4 @@
-"""Tasks solved before the eyes of whoever waits: what stands from earlier, a bar, a line for each result."""
+"""Progress of tasks on the terminal; results of earlier runs that can be kept."""
 
 import datetime
 from collections.abc import Sequence
@@ -55,7 +55,7 @@ def require_gmsh() -> None:
 def kept_results(
     chosen: Sequence[Case | PublishedCase], output: Path, *, fields: bool = False
 ) -> dict[str, CaseResult]:
-    """The earlier results that stand, by name; why another one does not is said on standard error."""
+    """Earlier results that can be kept, by name; prints why another one cannot."""
     kept = {}
     for case in chosen:
         try:
@@ -69,7 +69,7 @@ def kept_results(
 
 
 def kept_study(output: Path) -> AccuracyStudy | None:
-    """The earlier accuracy study where it stands, as ``kept_results``."""
+    """The earlier accuracy study where it can be kept; prints why it cannot."""
     try:
         return accuracy_study.stored(output)
     except StoreError as error:
@@ -80,9 +80,9 @@ def kept_study(output: Path) -> AccuracyStudy | None:
 def solve(
     tasks: Sequence[Task[T]], jobs: int, time_limit: float, silent: bool, *, verbose: bool = False
 ) -> list[T]:
-    """Run ``tasks`` side by side under a progress bar; each result is said as it comes, unless ``silent``.
+    """Run ``tasks`` with a progress bar and a line for each result, unless ``silent``.
 
-    verbose : say the seconds, and where it counts them the iterations, of every source.
+    verbose : print seconds, iterations and unknowns of every source.
     """
     console = Console(stderr=True)
     bar = progress_bar(console, silent=silent)
@@ -99,10 +99,8 @@ def solve(
             bar.update(task, advance=1, description=", ".join(at_work) or "report")
             if not silent and isinstance(result, CaseResult):
                 colour = STYLE[result.outcome]
-                console.print(
-                    f"[{colour}]{result.outcome:<12}[/] {escape(result.name)}  {result.seconds:.1f} s",
-                    highlight=False,
-                )
+                line = f"[{colour}]{result.outcome:<12}[/] {escape(result.name)}  {result.seconds:.1f} s"
+                console.print(line, highlight=False)
                 if verbose:
                     console.print(escape(_sources(result)), style="dim", highlight=False)
 
@@ -135,7 +133,7 @@ def run_info(command: str, started: datetime.datetime, jobs: int) -> RunInfo:
 
 
 class _Description(ProgressColumn):
-    """What is at work, on one line."""
+    """Names of the tasks at work, in one line."""
 
     def render(self, task: RichTask) -> Text:
         return Text(task.description, no_wrap=True, overflow="ellipsis")

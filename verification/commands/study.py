@@ -44,20 +44,13 @@ def thickness(
 
     A stopped study resumes where it was stopped; no point is solved twice.
 
-    Parameters
-    ----------
-    plan
-        Name of a shipped study, or the path of a .toml study file.
-    output
-        Directory of the table, PLAN.parquet, and of the cache.
-    scheduler
-        Address of a running Dask scheduler, in place of a local cluster.
-    limit
-        Only the first so many points.
-    cross_check
-        Solve every k-th point by finite elements and by the exact reference too.
-    figures
-        Draw the table: PLAN.html, and figures/PLAN for print.
+    Args:
+        plan: Name of a shipped study, or the path of a .toml study file.
+        output: Directory of the table, PLAN.parquet, and of the cache.
+        scheduler: Address of a running Dask scheduler, in place of a local cluster.
+        limit: Only the first so many points.
+        cross_check: Solve every k-th point by finite elements and by the exact reference too.
+        figures: Draw the table: PLAN.html, and figures/PLAN for print.
     """
     if (jobs is not None and jobs < 1) or (limit is not None and limit < 1):
         raise CommandError(f"--jobs = {jobs}, --limit = {limit}; both must be positive")

@@ -32,18 +32,13 @@ def view(
 ) -> int:
     """Show the fields of a case from coatcheck run --fields: finite elements beside semi-analytical.
 
-    Parameters
-    ----------
-    case
-        Name of the case; ParaView opens its fields too, CASE-fem.vtu and CASE-semi.vtm in OUTPUT/fields.
-    quantity
-        von_mises, or a stress: sigma_xx, sigma_yy, sigma_zz, sigma_xy, sigma_yz, sigma_xz.
-    output
-        Directory of the run.
-    screenshot
-        Write this PNG file instead of opening a window; no display is needed.
-    time_limit
-        Longest time of rendering [s].
+    Args:
+        case: Name of the case; ParaView opens its fields too, CASE-fem.vtu and CASE-semi.vtm in
+            OUTPUT/fields.
+        quantity: von_mises, or a stress: sigma_xx, sigma_yy, sigma_zz, sigma_xy, sigma_yz, sigma_xz.
+        output: Directory of the run.
+        screenshot: Write this PNG file instead of opening a window; no display is needed.
+        time_limit: Longest time of rendering [s].
     """
     if quantity not in QUANTITIES:
         raise CommandError(f"--quantity = {quantity}; there are {', '.join(QUANTITIES)}")

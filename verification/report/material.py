@@ -19,13 +19,13 @@ from verification.credibility.faults.campaign import RECORD
 from verification.credibility.faults.record import Record, read_record
 from verification.credibility.independence import Part, parts
 from verification.credibility.manufactured import DesignOrder, design_orders
+from verification.credibility.self_tests import SelfTest
 from verification.regression.baseline import Regression
 from verification.report.tables.lookup import slug
 from verification.running.fields import read_planes
 from verification.running.provenance import machine
 from verification.running.records import decode
 from verification.running.result import CaseResult, RunInfo, from_json, to_json
-from verification.running.self_tests import SelfTest
 from verification.running.store import MAX_BYTES, StoreError, read_bounded, read_checked
 from verification.sampling.plane import Plane
 from verification.study import formulas

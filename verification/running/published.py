@@ -12,14 +12,12 @@ from verification.problem.contact import Solution
 from verification.problem.loading import Problem
 from verification.problem.profile import Profile
 from verification.problem.quantity import POINTWISE, QUANTITIES
-from verification.running.result import CaseResult, SourceResult, describe, diagnostics_of, sentence
+from verification.running.result import CaseResult, SourceResult, describe, diagnostics_of, message_of
 from verification.sampling.memo import tabulated
 from verification.sampling.points import values
 from verification.sources.loading import Loading
 from verification.sources.registry import CLOSED, METHODS, PUBLISHED, solvers
 from verification.sources.source import Solver
-
-__all__ = ["failed", "published_solvers", "run"]
 
 
 def published_solvers(problem: Problem) -> dict[str, Solver]:
@@ -31,7 +29,7 @@ def run(case: PublishedCase, available: Mapping[str, Solver] | None = None) -> C
     """Solve by every source, take what was printed at the very points, judge every column on every line.
 
     available : solvers by source; both methods are called to account, the exact reference where it is there.
-    A source that fails leaves its sentence and NO_RESULT on each of its claims.
+    A source that fails leaves its message and NO_RESULT on each of its claims.
     """
     started = time.perf_counter()
     available = published_solvers(case.problem) if available is None else available
@@ -51,7 +49,7 @@ def run(case: PublishedCase, available: Mapping[str, Solver] | None = None) -> C
                 if source in METHODS or (item.profile.quantity, item.profile.line) in asked
             ]
         except Exception as error:  # a failed solve is a row of the report, whatever went wrong
-            outcomes[source] = SourceResult(source, time.perf_counter() - begin, sentence(error))
+            outcomes[source] = SourceResult(source, time.perf_counter() - begin, message_of(error))
             continue
         seconds, budget = time.perf_counter() - begin, getattr(solution.uncertainty, "budget", ())
         outcomes[source] = SourceResult(source, seconds, None, diagnostics_of(solution.diagnostics), budget)

@@ -36,7 +36,7 @@ class Plane:
     """Stresses at x [m], (nx,), and the depths z [m] of each layer, (nz,), both sides of its interfaces.
 
     stress : by source, for each layer the stresses ``IN_PLANE`` [Pa], (4, nz, nx); the others are 0.
-    failures : by source the sentence of one whose stresses could not be had.   radius : contact radius [m].
+    failures : message by source that failed.   radius : contact radius [m].
     """
 
     x: Array
@@ -47,7 +47,7 @@ class Plane:
 
 
 def sample_plane(interfaces: tuple[float, ...], solutions: Mapping[str, Solution]) -> Plane:
-    """Stresses of the methods among ``solutions`` at the same points; a method that fails leaves a sentence.
+    """Stresses of the methods among ``solutions`` at the same points; a method that fails leaves its message.
 
     interfaces : depths [m] from the surface down.
     """

@@ -1,5 +1,6 @@
 """Records of the two numerical methods; each method is imported when it first solves."""
 
+from collections import deque
 from collections.abc import Mapping
 from dataclasses import replace
 from functools import partial
@@ -44,21 +45,23 @@ def _elements(numerics: Mapping[str, Any], problem: CoatedContact | PrescribedLo
     return solve(**keywords(problem), **numerics)
 
 
-def sharing_pressure(solve: Solver) -> Solver:
-    """``solve`` that does not solve anew a problem that differs from the last one in friction alone.
+def sharing_pressure(solve: Solver, kept: int = 1) -> Solver:
+    """``solve`` that does not solve anew a problem that differs from an earlier one in friction alone.
 
-    The pressure does not depend on friction (Goodman): ``with_friction`` of the last solution adds to its
+    The pressure does not depend on friction (Goodman): ``with_friction`` of the earlier solution adds to its
     fields those of the tangential traction. Solutions that lack it are solved each time.
+    kept : number of solutions that are kept, of a problem and its numerics each.
     """
-    last: list[tuple[CoatedContact, dict[str, Any], Any]] = []
+    earlier: deque[tuple[CoatedContact, dict[str, Any], Any]] = deque(maxlen=kept)
 
-    def shared(problem: CoatedContact, numerics: Mapping[str, Any]) -> Any:
-        for known, given, solution in last:
-            same = replace(known, friction=problem.friction) == problem and given == numerics
+    def shared(problem: CoatedContact, numerics: Mapping[str, Any] | None = None) -> Any:
+        for known, given, solution in earlier:
+            same = replace(known, friction=problem.friction) == problem and given == (numerics or {})
             if same and hasattr(type(solution), "with_friction"):
                 return solution.with_friction(problem.friction)
-        last[:] = [(problem, dict(numerics), solve(problem, numerics))]
-        return last[0][2]
+        solution = solve(problem, numerics)
+        earlier.append((problem, dict(numerics or {}), solution))
+        return solution
 
     return shared
 
@@ -90,7 +93,7 @@ SEMIANALYTIC = (
     _SEMI("iteration", _reduced("tolerance", "{:.0e}", (1e-5, 1e-6, 1e-7, 1e-8), patches=129)),
 )
 ELEMENTS = (
-    _FEM("element size", _reduced("size", "size {}", (0.5, 0.36, 0.25, 0.16)), order=4.0),
+    _FEM("element size", _reduced("size", "size {}", (0.5, 0.36, 0.25, 0.16), order=4), order=4.0),
     _FEM("element order", _varied("order", "order {}", (2, 3, 4), size=0.25), order=4.0),
     _FEM("outer boundary", _varied("far", "at {:g}", (125.0, 250.0, 500.0, 1000.0), size=0.36)),
     _FEM("load balance", _reduced("load_tolerance", "{:.0e}", (1e-3, 1e-4, 1e-5, 1e-6), size=0.36)),

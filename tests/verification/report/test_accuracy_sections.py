@@ -1,4 +1,4 @@
-"""The sections on accuracy: every curve drawn, every sentence from the numbers, nothing breaks the page."""
+"""The sections on accuracy: every curve drawn, every message from the numbers, nothing breaks the page."""
 
 import re
 from dataclasses import replace

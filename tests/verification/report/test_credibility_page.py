@@ -126,7 +126,7 @@ def test_the_fault_score_and_its_survivors_come_from_the_record(tmp_path):
 def test_a_damaged_record_is_named_and_its_figure_is_not_measured(tmp_path):
     (tmp_path / "alarms.json").write_text("{")
     found = section(gather(tmp_path))
-    assert any("alarms.json" in sentence for sentence in found.failures)
+    assert any("alarms.json" in message for message in found.failures)
     assert part(found, STEPS[6]).text.startswith("Not measured")
 
 

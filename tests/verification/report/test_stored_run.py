@@ -9,12 +9,12 @@ from synthetic_study import study
 
 from verification.commands.report import report
 from verification.credibility.alarms import counted, write_record
+from verification.credibility.self_tests import SelfTest
 from verification.regression.baseline import regression, updated
 from verification.report.material import Material, gather, rerun_command, stored_material
 from verification.report.write import write_report
 from verification.running.fields import plane_path, write_plane
 from verification.running.result import to_json
-from verification.running.self_tests import SelfTest
 from verification.running.store import write_checked
 from verification.sampling.plane import sample_plane
 from verification.sources.references.hertz import Hertz

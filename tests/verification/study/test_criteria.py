@@ -109,10 +109,10 @@ def test_differences_name_the_worst_point(tmp_path):
 
 
 def test_sentences_say_which_way_a_stress_runs(found):
-    sentences = dict(zip(study_table.QUANTITIES, main_messages(found)[:-1], strict=True))
-    assert "has a minimum of" in sentences["sigma_xx_surface"]
-    assert "falls from" in sentences["von_mises_substrate"]
-    assert "a factor of 3.50" in sentences["sigma_xx_surface"]
+    messages = dict(zip(study_table.QUANTITIES, main_messages(found)[:-1], strict=True))
+    assert "has a minimum of" in messages["sigma_xx_surface"]
+    assert "falls from" in messages["von_mises_substrate"]
+    assert "a factor of 3.50" in messages["sigma_xx_surface"]
 
 
 @pytest.mark.parametrize(

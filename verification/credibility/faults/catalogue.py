@@ -8,8 +8,6 @@ from typing import Any
 from verification.credibility.faults.planting import Constant, Edit, Fault
 from verification.running.records import decode
 
-__all__ = ["CONTROLS", "FAULTS", "GROUPS", "chosen"]
-
 LISTS = Path(__file__).parent / "lists"
 _ORDER = (
     "material",

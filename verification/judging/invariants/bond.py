@@ -47,9 +47,8 @@ def bonded_displacement(solution: Solution, source: str, problem: CoatedContact,
         U = displacement_bound(solution, problem, x, y, z, given_pressure=True)
         bound = (error + 2 * U) / solution.approach
     law = f"u passes interface {k} unchanged, over the approach"
-    return decide(
-        f"bonded displacements, interface {k}", source, law, (at[0] - at[1]) / solution.approach, bound
-    )
+    gap = (at[0] - at[1]) / solution.approach
+    return decide(f"bonded displacements, interface {k}", source, law, gap, bound)
 
 
 def hooke(solution: Solution, source: str, problem: CoatedContact, layer: int, stencil: Stencil) -> Invariant:

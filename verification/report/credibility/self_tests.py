@@ -11,7 +11,7 @@ def section(material: Material) -> Section | None:
         return None
     passed, failed = Cell("✓", 1.0, "verdict agrees"), Cell("✗", 0.0, "verdict disagrees")
     rows = [
-        row(test.name, passed if test.passed else failed, words(test.sentence), words(test.found))
+        row(test.name, passed if test.passed else failed, words(test.statement), words(test.found))
         for test in tests
     ]
     table = Table("Made before the first case was solved.", ["part", "passed", "requirement", "found"], rows)

@@ -88,7 +88,7 @@ def drawn(figure: Figure, name: str, title: str, caption: str, rows: Sequence[Se
     FigureCanvasAgg(figure)
     figure.draw_without_rendering()
     # Laid out once, not again for each format.
-    figure.set_layout_engine("none")
+    figure.set_layout_engine(None)
     FigureCanvasPdf(figure).print_figure(pdf, format="pdf", metadata={"CreationDate": None})
     FigureCanvasAgg(figure).print_figure(png, format="png", dpi=DPI, metadata={"Software": None})
     return Drawn(name, title, caption, pdf.getvalue(), png.getvalue(), written(rows))

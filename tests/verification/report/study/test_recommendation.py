@@ -53,9 +53,9 @@ def test_an_end_of_the_sweep_is_no_failure(found):
 
 def test_where_nothing_is_admissible_the_sentence_says_what_breaks(found):
     criteria = Criteria(strength={"sigma_xx_surface": 1e6})
-    sentences = recommendation_messages([judged(c, criteria) for c in found])
-    assert len(sentences) == 2
-    for said in sentences:
+    messages = recommendation_messages([judged(c, criteria) for c in found])
+    assert len(messages) == 2
+    for said in messages:
         assert "no thickness of the sweep is admissible at every friction" in said
         assert "with f = 0.25 even the preferable" in said
 
@@ -66,11 +66,11 @@ def test_without_strengths_the_span_of_preferable_thicknesses_is_named(found):
 
 
 def test_the_summary_is_a_sentence_a_stress_and_one_for_the_contact(found):
-    sentences = main_messages(found)
-    assert len(sentences) == len(study_table.QUANTITIES) + 1
+    messages = main_messages(found)
+    assert len(messages) == len(study_table.QUANTITIES) + 1
     worst = study_table.stress("von_mises_substrate", 2.0, 0.05, 0.25)
     assert (
         f"reaches {worst:.3g} p_h, {worst * study_table.P_H / 1e6:.4g} MPa, with E1/E2 = 2, f = 0.25"
-        in (sentences[6])
+        in (messages[6])
     )
-    assert "p0 is between 1 p_h" in sentences[7]
+    assert "p0 is between 1 p_h" in messages[7]

@@ -41,20 +41,20 @@ Answers = Iterator[tuple[str, Any, Any]]  # what was asked, what came out, what 
 
 @dataclass(frozen=True)
 class SelfTest:
-    """``name`` of a part of the harness, the ``sentence`` it has to fulfil, what was ``found``."""
+    """``name`` of a part of the harness, the ``statement`` that must hold, what was ``found``."""
 
     name: str
-    sentence: str
+    statement: str
     passed: bool
     found: str
 
 
 def self_tests() -> tuple[SelfTest, ...]:
     """All of them, in the order in which a case runs through the harness."""
-    return tuple(_tried(name, sentence, ask) for name, sentence, ask in _TESTS)
+    return tuple(_tried(name, statement, ask) for name, statement, ask in _TESTS)
 
 
-def _tried(name: str, sentence: str, ask: Callable[[], Answers]) -> SelfTest:
+def _tried(name: str, statement: str, ask: Callable[[], Answers]) -> SelfTest:
     asked = 0
     try:
         for what, found, wanted in ask():
@@ -63,12 +63,12 @@ def _tried(name: str, sentence: str, ask: Callable[[], Answers]) -> SelfTest:
                 np.isclose(found, wanted, rtol=1e-9, atol=0) if isinstance(wanted, float) else found == wanted
             )
             if not same:
-                return SelfTest(name, sentence, False, f"{what}: {found}, where it has to be {wanted}")
+                return SelfTest(name, statement, False, f"{what}: {found}, where it has to be {wanted}")
     except Exception as error:  # whatever a part of the harness fails with is the answer
         return SelfTest(
-            name, sentence, False, f"{type(error).__name__}: {' '.join(str(error).split())[:300]}"
+            name, statement, False, f"{type(error).__name__}: {' '.join(str(error).split())[:300]}"
         )
-    return SelfTest(name, sentence, True, f"{asked} known answers")
+    return SelfTest(name, statement, True, f"{asked} known answers")
 
 
 def _of_case_file() -> Answers:
