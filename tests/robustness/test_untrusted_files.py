@@ -190,10 +190,10 @@ def test_file_made_to_exhaust_the_reader_is_refused_at_once(tmp_path, raw, said)
     path.write_text(raw)
     began = time.process_time()
     assert not is_published(path)
-    with pytest.raises(CaseError, match=said) as complaint:
+    with pytest.raises(CaseError, match=said) as error:
         read_case(path)
     assert time.process_time() - began < 3
-    assert len(one_line(str(complaint.value))) <= 1000
+    assert len(one_line(str(error.value))) <= 1000
 
 
 def test_report_of_a_stranger_is_read_or_refused(tmp_path):

@@ -70,6 +70,6 @@ def _print(found: RunComparison) -> None:
         print_out(f"... with {more} more, which --output or --json shows")
     for name, then, now in found.versions:
         print_out(escape(f"{name}: {one_line(then)} to {one_line(now)}"))
-    from verification.report.comparison import comparison_sentence
+    from verification.report.comparison import comparison_message
 
-    print_out(comparison_sentence(found))
+    print_out(comparison_message(found))

@@ -243,10 +243,10 @@ def _print_table(results: Sequence[CaseResult], page: Path, seconds: float, besi
     laws = [law for result in results for law in result.invariants]
     if laws:
         say(f"{sum(law.outcome is Outcome.AGREES for law in laws)} of {len(laws)} invariants hold")
-    from verification.report.sections.baseline import baseline_sentence
+    from verification.report.sections.baseline import baseline_message
 
     known = f"baseline of {beside.update.when[:10]} in {beside.folder}: " if beside.update is not None else ""
-    say(escape(f"{known}{baseline_sentence(beside)}"))
+    say(escape(f"{known}{baseline_message(beside)}"))
     number = "1 case" if len(results) == 1 else f"{len(results)} cases"
     say(f"{number} in {seconds:.0f} s; report: {escape(str(page))}")
 

@@ -71,7 +71,7 @@ def imports_of(name: str, forbidden_packages: tuple[str, ...] = ()) -> Part:
 
 def _folder(name: str) -> Path:
     spec = find_spec(name)
-    places = list(spec.submodule_search_locations or ()) if spec is not None else []
+    places = spec.submodule_search_locations if spec is not None else None
     if not places or not list(Path(places[0]).glob("*.py")):
         raise ValueError(f"{name}: its source is not installed, so that its imports cannot be read")
     return Path(places[0])
@@ -84,8 +84,7 @@ def _imported(nodes: list[ast.AST]) -> Iterator[str]:
             yield from (alias.name for alias in node.names)
         elif isinstance(node, ast.ImportFrom) and node.level == 0 and node.module:
             for alias in node.names:
-                whole = f"{node.module}.{alias.name}"
-                yield whole if node.module == "scipy" else node.module
+                yield f"scipy.{alias.name}" if node.module == "scipy" else node.module
 
 
 def _called_by_name(nodes: list[ast.AST]) -> Iterator[str]:

@@ -105,16 +105,9 @@ def sweep(
             failure = f"{name}: {failure_message(error)}"
             break
     done = parameter.levels[: len(found)]
-    return Sweep(
-        parameter.method,
-        solid,
-        parameter.name,
-        parameter.order,
-        tuple(name for name, _, _ in done),
-        tuple(step for _, _, step in done),
-        {name: tuple(level[name] for level in found) for name in (found[0] if found else {})},
-        failure,
-    )
+    levels, steps = tuple(name for name, _, _ in done), tuple(step for _, _, step in done)
+    values = {name: tuple(level[name] for level in found) for name in (found[0] if found else {})}
+    return Sweep(parameter.method, solid, parameter.name, parameter.order, levels, steps, values, failure)
 
 
 def stated(problem: CoatedContact, method: str, solve: Function, exact: Solution, solid: str = "") -> Stated:

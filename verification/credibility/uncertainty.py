@@ -71,9 +71,8 @@ def least_squares(h: Sequence[float], phi: Sequence[float], order: float = THEOR
     if data_range <= np.finfo(float).eps * size:
         return Estimate(float(np.finfo(float).eps * size), None, float(values[0]), "least squares")
     fit, trusted = _best(steps, values, order)
-    finest = float(steps[0])
-    epsilon = abs(fit(finest) - fit.limit)
-    missed = abs(float(values[0]) - fit(finest))
+    fitted = fit(float(steps[0]))
+    epsilon, missed = abs(fitted - fit.limit), abs(float(values[0]) - fitted)
     if fit.deviation < data_range:
         found = (TRUSTED if trusted else SAFE) * epsilon + fit.deviation + missed
     else:

@@ -5,15 +5,13 @@ from verification.regression.comparison import RunComparison
 from verification.regression.drift import State
 from verification.report.html.templates import render_sections
 from verification.report.sections.baseline import MOST, case_table, drift_table
-from verification.report.tables.cells import Cell, Part, Row, Section, Table, number
+from verification.report.tables.cells import Cell, Part, Section, Table, number, row, words
 from verification.report.tables.labels import pair_label
 from verification.report.tables.matrix import outcome_cell
 from verification.report.tables.numbers import factor, scientific, seconds
 
-__all__ = ["comparison_page", "comparison_sentence"]
 
-
-def comparison_sentence(found: RunComparison) -> str:
+def comparison_message(found: RunComparison) -> str:
     """Changes from the first run to the second, in one sentence."""
     worse = sum(change.worse for change in found.verdicts)
     changed = f"{len(found.verdicts)} verdicts changed" if found.verdicts else "No verdict changed"
@@ -38,23 +36,21 @@ def comparison_page(found: RunComparison) -> str:
         Section("versions", "Provenance", [_versions(found)]),
         Section("times", "Times", [Part("", [_times(found)])]),
     ]
-    return render_sections("coatcheck compare", comparison_sentence(found), facts, sections)
+    return render_sections("coatcheck compare", comparison_message(found), facts, sections)
 
 
 def _verdicts(found: RunComparison) -> Part:
     if not found.verdicts:
         return Part("Every comparison has the same verdict in both runs.")
     rows = [
-        Row(
-            Cell(change.case),
-            [
-                _outcome(change.before),
-                _outcome(change.after),
-                Cell(change.quantity),
-                Cell(change.line),
-                Cell(pair_label(change.between)),
-                Cell(change.reason, css="words"),
-            ],
+        row(
+            change.case,
+            _outcome(change.before),
+            _outcome(change.after),
+            change.quantity,
+            change.line,
+            pair_label(change.between),
+            words(change.reason),
         )
         for change in sorted(found.verdicts, key=lambda change: not change.worse)
     ]
@@ -78,7 +74,7 @@ def _numbers(found: RunComparison) -> Part:
 def _versions(found: RunComparison) -> Part:
     if not found.versions:
         return Part("Both runs have the same command, commit, machine, packages.")
-    rows = [Row(Cell(name), [Cell(then), Cell(now)]) for name, then, now in found.versions]
+    rows = [row(*version) for version in found.versions]
     return Part("", [Table("Differences of provenance.", ["", "first", "second"], rows)])
 
 
@@ -86,7 +82,7 @@ def _times(found: RunComparison) -> Table:
     rows = []
     for name, then, now in found.seconds:
         ratio = Cell("–") if then is None or now is None else Cell(factor(now, then), now / max(then, 1e-9))
-        rows.append(Row(Cell(name), [number(then, seconds), number(now, seconds), ratio]))
+        rows.append(row(name, number(then, seconds), number(now, seconds), ratio))
     return Table("Seconds of each case.", ["case", "first", "second", "second over first"], rows)
 
 

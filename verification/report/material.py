@@ -31,8 +31,6 @@ from verification.sampling.plane import Plane
 from verification.study import formulas
 from verification.study.formulas import EffectiveStudy
 
-__all__ = ["Evidence", "Material", "gather", "rerun_command", "stored_material"]
-
 T = TypeVar("T")
 
 

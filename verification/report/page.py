@@ -42,8 +42,6 @@ from verification.report.tables.matrix import verdict_matrix
 from verification.report.tables.numbers import scientific, seconds
 from verification.running.result import CaseResult
 
-__all__ = ["render"]
-
 # Sections of the page between the verdicts and the cases, in their order; None is left out.
 SECTIONS: tuple[Callable[[Material], Section | None], ...] = (
     published.section,

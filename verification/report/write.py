@@ -14,8 +14,6 @@ from verification.running.records import encode
 from verification.running.result import SCHEMA, to_json
 from verification.running.store import PART, StoreError
 
-__all__ = ["report_json", "write_report"]
-
 
 def write_report(material: Material, folder: Path) -> Path:
     """Write report.html, report.json and junit.xml into ``folder`` and return the path of the page.

@@ -17,8 +17,6 @@ from verification.sampling.lines import positions, sample, sample_contact
 from verification.sources.registry import solvers
 from verification.sources.source import Solver
 
-__all__ = ["Solved", "decide", "failed", "judge_case", "run", "solve_case"]
-
 
 def run(case: Case, available: Mapping[str, Solver] | None = None) -> CaseResult:
     """Solve a case by every source its claims name, sample all at the same points, judge the claims.

@@ -21,17 +21,6 @@ from verification.sampling.plane import Plane
 from verification.sampling.vtk import WRITERS
 from verification.sources.registry import SOURCES
 
-__all__ = [
-    "Fields",
-    "fields_path",
-    "plane_path",
-    "read_fields",
-    "read_plane",
-    "read_planes",
-    "write_fields",
-    "write_plane",
-]
-
 SCHEMA = "coatcheck-fields/1"
 PLANE = "coatcheck-plane/2"
 

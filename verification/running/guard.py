@@ -26,8 +26,6 @@ from typing import BinaryIO, NoReturn
 
 from verification.running.store import StoreError
 
-__all__ = ["UNWRITABLE", "main"]
-
 UNWRITABLE = 74  # exit code of a process that could not write its result, EX_IOERR of sysexits.h
 
 

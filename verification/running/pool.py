@@ -19,8 +19,6 @@ from typing import IO, Any, Generic, TypeVar
 from verification.running.guard import UNWRITABLE
 from verification.running.store import StoreError, read_checked
 
-__all__ = ["THREAD_VARIABLES", "T", "T_co", "Task", "cores", "run_tasks"]
-
 T = TypeVar("T")
 T_co = TypeVar("T_co", covariant=True)
 

@@ -10,8 +10,6 @@ from pathlib import Path
 
 from verification.sources.registry import METHODS, SOURCES
 
-__all__ = ["commit", "fingerprint", "machine", "missing_libraries", "versions"]
-
 PACKAGES = (
     "coatcheck",
     "numpy",

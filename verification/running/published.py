@@ -19,8 +19,6 @@ from verification.sources.loading import Loading
 from verification.sources.registry import CLOSED, METHODS, PUBLISHED, solvers
 from verification.sources.source import Solver
 
-__all__ = ["failed", "published_solvers", "run"]
-
 
 def published_solvers(problem: Problem) -> dict[str, Solver]:
     """Solvers of a published ``problem``: the methods, and the exact reference where it supports it."""

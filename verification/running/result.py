@@ -10,18 +10,6 @@ from verification.problem.loading import LoadingCurve
 from verification.problem.profile import Profile
 from verification.running.records import decode, encode
 
-__all__ = [
-    "SCHEMA",
-    "CaseResult",
-    "RunInfo",
-    "SourceResult",
-    "describe",
-    "diagnostics_of",
-    "from_json",
-    "message_of",
-    "to_json",
-]
-
 SCHEMA = "coatcheck-report/1"
 
 

@@ -11,16 +11,6 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
-__all__ = [
-    "PART",
-    "StoreError",
-    "locked",
-    "read_bounded",
-    "read_checked",
-    "write_atomically",
-    "write_checked",
-]
-
 # A result of this program takes up to 3 MB; what is larger was not written by it.
 MAX_BYTES = 50_000_000
 PART = ".coatcheck-part"  # how the name of a file ends that is still being written

@@ -8,8 +8,6 @@ from verification.running.records import decode
 from verification.running.result import CaseResult, RunInfo, from_json, to_json
 from verification.running.store import MAX_BYTES, StoreError, read_bounded, read_checked
 
-__all__ = ["StoredRun", "confirm", "read_run"]
-
 
 @dataclass(frozen=True, eq=False)
 class StoredRun:

@@ -19,8 +19,6 @@ from verification.running.records import plain
 from verification.running.result import CaseResult, describe, from_json
 from verification.running.store import StoreError, read_checked
 
-__all__ = ["case_task", "kept_result", "published_task", "result_path", "run_cases"]
-
 
 def result_path(folder: Path, case: Case | PublishedCase) -> Path:
     """Where the checked result of ``case`` lies in a run directory."""

@@ -20,8 +20,6 @@ from verification.sources.methods import sharing_pressure
 from verification.sources.registry import METHODS, SOURCES, solvers
 from verification.sources.source import Solver
 
-__all__ = ["contact", "published"]
-
 for _method in METHODS:  # once for all cases, see ``guard``
     import_module(SOURCES[_method].package)
 

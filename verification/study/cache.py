@@ -70,9 +70,8 @@ class Cache:
 
     def put(self, key: str, request: Mapping[str, Any], answer: Mapping[str, Any]) -> None:
         """Store an answer. Raises StoreError where it cannot be written."""
-        write_checked(
-            self.path(key), {"key": key, "request": dict(request), "answer": _without_nan(dict(answer))}
-        )
+        content = {"key": key, "request": dict(request), "answer": _without_nan(dict(answer))}
+        write_checked(self.path(key), content)
 
 
 def _without_nan(value: Any) -> Any:

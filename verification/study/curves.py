@@ -93,18 +93,11 @@ def differences(columns: Mapping[str, NDArray[Any]]) -> tuple[Difference, ...]:
             difference = np.abs(columns[quantity][here] - columns[quantity][beside]) / over
             uncertainty = columns[f"{quantity}_uncertainty"]
             i = int(np.nanargmax(difference))
-            found.append(
-                Difference(
-                    source,
-                    quantity,
-                    here.size,
-                    float(difference[i]),
-                    float((uncertainty[here[i]] + uncertainty[beside[i]]) / over[i]),
-                    float(columns["modulus_ratio"][here[i]]),
-                    float(columns["thickness_over_a_h"][here[i]]),
-                    float(columns["friction"][here[i]]),
-                )
-            )
+            largest = float(difference[i])
+            stated = float((uncertainty[here[i]] + uncertainty[beside[i]]) / over[i])
+            place = (columns[name][here[i]] for name in ("modulus_ratio", "thickness_over_a_h", "friction"))
+            ratio, h, friction = map(float, place)
+            found.append(Difference(source, quantity, here.size, largest, stated, ratio, h, friction))
     return tuple(found)
 
 

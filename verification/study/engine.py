@@ -215,9 +215,9 @@ class _Run:
                 digest = bytes.fromhex(one.key)
                 if digest in self.requested or self._stored(one):
                     self.count(one)
-                    continue
-                self.requested.add(digest)
-                yield one
+                else:
+                    self.requested.add(digest)
+                    yield one
 
     def solve(self, waiting: Iterator[Solve], client: Any, function: Callable[..., Any]) -> None:
         """Keep a bounded number of solves submitted until none is left; store each answer."""

@@ -1,4 +1,4 @@
-"""The command line: exit codes, complaints in one sentence, nothing written on bad input."""
+"""The command line: exit codes, one-line messages, nothing written on bad input."""
 
 import json
 import os

@@ -47,7 +47,7 @@ COMMANDS = (
 
 
 def asked(capsys, *words):
-    """Exit code, output and complaints of a command in this process."""
+    """Exit code, output and messages of a command in this process."""
     from verification.cli import app
 
     code = app([str(word) for word in words], result_action="return_value")

@@ -1,4 +1,4 @@
-"""Convergence of the methods: the yardsticks are right, the ladders fall, what fails is a sentence."""
+"""Convergence of the methods: the references are right, the ladders fall, what fails is a message."""
 
 import json
 from dataclasses import replace

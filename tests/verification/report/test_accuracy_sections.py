@@ -1,4 +1,4 @@
-"""The sections on accuracy: every curve drawn, every sentence from the numbers, nothing breaks the page."""
+"""The sections on accuracy: every curve drawn, every message from the numbers, nothing breaks the page."""
 
 import re
 from dataclasses import replace
@@ -69,7 +69,6 @@ def test_slopes_are_written_beside_the_curves(page):
 
 def test_words_come_from_the_numbers():
     said = text_of(convergence_sections(study()))
-    assert f"pressure {33.0**-4:.1e} → 1.0e-7".replace("e-0", "e-") in said
     assert "from N = 65 on: another numerical parameter dominates there" in said
     assert "converges at order 1.0, to 3.9e-3 at N = 257" in said
     assert "a factor of 39000" in said
@@ -78,7 +77,7 @@ def test_words_come_from_the_numbers():
     assert "2.0e-9 " not in said
     assert "2.0e-12 of the largest coefficient" in said
     assert "2.0e9 times as large" in said
-    assert "Order 4 gains over order 2 factors of 40000 in p0" in said
+    assert "mesh, order 4 gains over order 2 factors of 40000 in p0" in said
     other = replace(
         study(), refinements=(falling(CORRECTED, 2.0), falling(STAIRCASE, 0.1), falling(PLAIN, 3.0))
     )

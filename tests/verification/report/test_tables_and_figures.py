@@ -15,7 +15,7 @@ from verification.report.figures import panels
 from verification.report.figures.curves import FLOOR, Curve, Difference, draw
 from verification.report.figures.panels import line_figures
 from verification.report.figures.plot import Axes, drawing, polyline
-from verification.report.sections.accuracy import accuracies, accuracy_sentence
+from verification.report.sections.accuracy import accuracies, coverage_table
 from verification.report.tables.case import budget_table, contact_table, verdict_table
 from verification.report.tables.csv import embedded, line_csv
 from verification.report.tables.labels import OUTCOMES, pair_style, source_style
@@ -137,8 +137,10 @@ def test_accuracy_tells_an_honest_estimate_from_a_vain_one():
     assert fem
     assert not any(item.covered for item in fem)
     assert all(item.css == "disagrees" for item in fem)
-    assert "(100.0 %)" in accuracy_sentence([honest], "fem_reference")
-    assert "none is stated" in accuracy_sentence([silent], "fem_reference")
+    rows = [row for row in coverage_table([honest]).rows if row.head.text == "finite elements"]
+    assert [row.cells[2].text for row in rows] == ["100.0 %", "100.0 %"]
+    rows = [row for row in coverage_table([silent]).rows if row.head.text == "finite elements"]
+    assert [row.cells[3].text for row in rows] == ["not stated", "not stated"]
 
 
 def test_accuracy_is_the_largest_error_outside_the_zone_around_the_edge():

@@ -135,10 +135,9 @@ def _sampled(case: Case, clean: CaseResult, source: str, solution: Solution) -> 
 def _drifts(clean: CaseResult, fresh: Profiles) -> list[Check]:
     """The numbers of the sources solved in the trial, compared with the clean run as with a baseline."""
     now = tuple(fresh.get((p.quantity, p.line, p.source), p) for p in clean.profiles)
-    stored = {numbers.key: numbers for numbers in measured(clean)}
     found = {numbers.key: numbers for numbers in measured(replace(clean, profiles=now))}
     solved = {source for _, _, source in fresh}
-    rows = [drift(then, found[key]) for key, then in stored.items() if key[0] in solved]
+    rows = [drift(then, found[then.key]) for then in measured(clean) if then.source in solved]
     return [of_baseline(row, clean.name, row.state is State.SAME) for row in rows]
 
 

@@ -11,8 +11,6 @@ from verification.problem.arrays import Array
 from verification.report.figures.plot import HUGE, Axes, drawing, power_of_ten, round_ticks
 from verification.sources.source import Style
 
-__all__ = ["FLOOR", "Curve", "Difference", "draw"]
-
 FLOOR = 1e-9
 TOP = 1e-1
 WIDTH, HEIGHT = 320, 300

@@ -24,8 +24,6 @@ from verification.running.result import CaseResult
 from verification.sources.registry import METHODS
 from verification.sources.source import Style
 
-__all__ = ["LineFigures", "line_figures", "swatch"]
-
 
 @dataclass(frozen=True)
 class LineFigures:

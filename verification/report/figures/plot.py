@@ -11,8 +11,6 @@ from markupsafe import Markup, escape
 from verification.problem.arrays import Array
 from verification.sources.source import Style
 
-__all__ = ["HUGE", "Axes", "drawing", "polyline", "power_of_ten", "round_ticks", "short"]
-
 # Larger numbers are failures; a curve has a gap there.
 HUGE = 1e12
 FAR = 1e4  # units; nothing is drawn farther off than this

@@ -22,9 +22,6 @@ from scipy.interpolate import PchipInterpolator
 from verification.problem.arrays import Array
 from verification.report.figures.plot import Axes, polyline, power_of_ten, round_ticks
 
-__all__ = ["Frame", "Scale", "coloured", "draw_field", "rasterised"]
-
-
 LEFT, TOP, RIGHT, BOTTOM = 34.0, 12.0, 52.0, 32.0  # margins around the raster, in units of the drawing
 WIDTH = 250.0  # of the raster
 PIXELS = 200  # along x

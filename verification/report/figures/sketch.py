@@ -8,8 +8,6 @@ from verification.report.tables.lookup import contact_radius, layers, scale
 from verification.report.tables.numbers import engineering, plain
 from verification.running.result import CaseResult
 
-__all__ = ["sketch"]
-
 WIDTH, HEIGHT = 400, 250
 BLOCK = 216
 SURFACE = 92

@@ -10,8 +10,6 @@ from markupsafe import Markup
 
 from verification.report.tables.cells import Section
 
-__all__ = ["render_sections", "rendered"]
-
 HTML = Path(__file__).parent
 
 

@@ -12,23 +12,6 @@ from verification.problem.quantity import QUANTITIES, SCALARS
 from verification.running.result import CaseResult
 from verification.sources.registry import METHODS, REFERENCES
 
-__all__ = [
-    "GROUPS",
-    "claimed_quantities",
-    "contact_radius",
-    "coordinate",
-    "difference",
-    "group_of",
-    "judged",
-    "layers",
-    "lines",
-    "reference_source",
-    "scalar",
-    "scale",
-    "slug",
-    "sources_with_profiles",
-]
-
 GROUPS = (", ".join(QUANTITIES[name].symbol for name in SCALARS), "surface", "axis", "interfaces")
 
 
