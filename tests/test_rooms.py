@@ -1,4 +1,4 @@
-"""The packages in rooms: names that do not repeat each other, imports downwards only."""
+"""The packages in rooms: small folders, names that do not repeat each other, imports downwards only."""
 
 import ast
 from collections import defaultdict
@@ -57,6 +57,15 @@ def test_verification_shows_its_rooms_and_the_command_line():
     assert modules == {"cli"}
     assert rooms >= FLOOR.keys()
     assert len(rooms) <= MOST
+
+
+def test_no_room_holds_more_than_twelve_modules():
+    sizes = {
+        folder.relative_to(ROOT).as_posix(): len(modules) + len(inner)
+        for folder, (modules, inner) in folders().items()
+        if ROOT / "verification" in folder.parents
+    }
+    assert {name: size for name, size in sizes.items() if size > MOST} == {}
 
 
 def test_no_module_repeats_the_name_of_its_folder():
