@@ -21,8 +21,8 @@ from verification.report.tables.lookup import (
 )
 from verification.report.tables.numbers import scientific
 from verification.running.result import CaseResult
+from verification.sources.record import Style
 from verification.sources.registry import METHODS
-from verification.sources.source import Style
 
 
 @dataclass(frozen=True)
