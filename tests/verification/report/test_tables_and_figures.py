@@ -3,6 +3,7 @@
 import csv
 import io
 import re
+from dataclasses import replace
 from math import inf, nan
 
 import numpy as np
@@ -285,5 +286,5 @@ def test_a_claimless_line_shows_what_was_sampled():
         "sigma_xx / p_h",
         "sigma_zz / p_h",
     ]
-    bare = type(result)(**{**vars(result), "verdicts": ()})
+    bare = replace(result, verdicts=())
     assert len(line_figures(bare, "axis").panels) == 4
