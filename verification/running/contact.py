@@ -138,7 +138,7 @@ def decide(
     for source in claim.between:
         outcome = outcomes.get(source)
         if outcome is None or outcome.failure is not None:
-            reason = "was not asked" if outcome is None else outcome.failure
+            reason = "was not solved" if outcome is None else outcome.failure
             return Verdict(Outcome.NO_RESULT, f"{source}: {reason}")
         sides.append(profiles[claim.quantity, claim.line, source])
     a, b = sides

@@ -1,4 +1,4 @@
-"""One published case from its problem to its verdicts: methods, exact reference and what was printed."""
+"""One published case from its problem to its verdicts."""
 
 import time
 from collections.abc import Mapping
@@ -26,9 +26,9 @@ def published_solvers(problem: Problem) -> dict[str, Solver]:
 
 
 def run(case: PublishedCase, available: Mapping[str, Solver] | None = None) -> CaseResult:
-    """Solve by every source, take what was printed at the very points, judge every column on every line.
+    """Solve by every source, evaluate each at the published points, judge every column on every line.
 
-    available : solvers by source; both methods are called to account, the exact reference where it is there.
+    available : solvers by source; a method that is missing has NO_RESULT, a reference no claims.
     A source that fails leaves its message and NO_RESULT on each of its claims.
     """
     started = time.perf_counter()
@@ -40,13 +40,13 @@ def run(case: PublishedCase, available: Mapping[str, Solver] | None = None) -> C
         try:
             solution = solve(case.problem)
             if not isinstance(solution, Loading):
-                asked_of = [i.at for i in case.columns if QUANTITIES[i.profile.quantity].kind in POINTWISE]
-                solution = tabulated(solution, asked_of)
-            asked = {(c.quantity, c.line) for c in case.claims if source in c.between}
+                points = [i.at for i in case.columns if QUANTITIES[i.profile.quantity].kind in POINTWISE]
+                solution = tabulated(solution, points)
+            claimed = {(c.quantity, c.line) for c in case.claims if source in c.between}
             found = [
                 _profile(solution, source, item, case)
                 for item in case.columns
-                if source in METHODS or (item.profile.quantity, item.profile.line) in asked
+                if source in METHODS or (item.profile.quantity, item.profile.line) in claimed
             ]
         except Exception as error:  # a failed solve is a row of the report, whatever went wrong
             outcomes[source] = SourceResult(source, time.perf_counter() - begin, message_of(error))
@@ -60,7 +60,7 @@ def run(case: PublishedCase, available: Mapping[str, Solver] | None = None) -> C
         source, item = claim.between[0], columns[claim.quantity, claim.line]
         if source not in available and source not in METHODS:
             continue
-        failure = outcomes[source].failure if source in outcomes else "was not asked"
+        failure = outcomes[source].failure if source in outcomes else "was not solved"
         if failure is not None:
             verdicts.append((claim, Verdict(Outcome.NO_RESULT, f"{source}: {failure}")))
             continue
@@ -102,7 +102,7 @@ def _blank(case: PublishedCase) -> CaseResult:
 
 
 def _record(item: PublishedColumn) -> dict[str, Any]:
-    """What the report needs to show a column as it was printed."""
+    """A published column as the report shows it."""
     return {
         "quantity": item.profile.quantity,
         "line": item.profile.line,
@@ -125,5 +125,5 @@ def _record(item: PublishedColumn) -> dict[str, Any]:
 def _profile(
     solution: Solution | Loading, source: str, item: PublishedColumn, case: PublishedCase
 ) -> Profile:
-    value, spread = values(solution, item.profile.quantity, item.at, case.problem, item.series)
-    return replace(item.profile, value=value, source=source, uncertainty=spread)
+    value, uncertainty = values(solution, item.profile.quantity, item.at, case.problem, item.series)
+    return replace(item.profile, value=value, source=source, uncertainty=uncertainty)

@@ -18,8 +18,8 @@ def sample_contact(solution: Solution, source: str, problem: CoatedContact) -> t
     for name in SCALARS:
         value = np.array([QUANTITIES[name].value(solution, problem)])
         stated = QUANTITIES[name].uncertainty(solution, problem)
-        spread = None if stated is None else np.array([stated])
-        found.append(Profile(name, "contact", np.zeros(1), value, source, spread))
+        U = None if stated is None else np.array([stated])
+        found.append(Profile(name, "contact", np.zeros(1), value, source, U))
     return tuple(found)
 
 
@@ -64,7 +64,7 @@ def sample(solution: Solution, source: str, line: Line, position: Array) -> tupl
                 solution.pressure_uncertainty(x) if stated else None,
             )
         )
-    sigma, spread = stress_with_uncertainty(solution, x, 0.0, z, layer=line.layer)
+    sigma, U = stress_with_uncertainty(solution, x, 0.0, z, layer=line.layer)
     for name, component in IN_PLANE.items():
         profiles.append(
             Profile(
@@ -73,7 +73,7 @@ def sample(solution: Solution, source: str, line: Line, position: Array) -> tupl
                 position,
                 sigma[component],
                 source,
-                None if spread is None else spread[component],
+                None if U is None else U[component],
             )
         )
     return tuple(profiles)

@@ -94,10 +94,16 @@ class ExactSolution:
         edge = np.abs(np.hypot(x, y) - a) <= 2 * abs(a - coarser.abel.a)
         return np.where(edge, np.maximum(U, np.sqrt(abs(1 - coarser.abel.a / a)) * self.peak_pressure), U)
 
+    def stress_with_uncertainty(
+        self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None
+    ) -> tuple[Array, Array]:
+        """Stress and its uncertainty [Pa], (3, 3) + points; ValueError where no companion was solved."""
+        sigma, coarser = self.stress(x, y, z, layer), self._companion().stress(x, y, z, layer)
+        return sigma, 2 * np.abs(sigma - coarser) + self._rounding * self.peak_pressure
+
     def stress_uncertainty(self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None) -> Array:
-        """Absolute [Pa], shape (3, 3) + points; raises ValueError where no companion was solved."""
-        coarser = self._companion().stress(x, y, z, layer)
-        return 2 * np.abs(self.stress(x, y, z, layer) - coarser) + self._rounding * self.peak_pressure
+        """The second part of ``stress_with_uncertainty``."""
+        return self.stress_with_uncertainty(x, y, z, layer)[1]
 
     def _companion(self) -> "ExactSolution":
         if self.coarser is None:
