@@ -9,9 +9,9 @@ from collections import Counter
 from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import replace
-from functools import partial
+from functools import cache, partial
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import Parameter
 from rich.console import Console
@@ -49,11 +49,14 @@ from verification.judging.verdict import Outcome
 from verification.regression.baseline import Regression, State, regression, regression_json
 from verification.regression.record import read_baseline
 from verification.running.pool import Task
-from verification.running.result import CaseResult
+from verification.running.result import CaseResult, RunInfo
 from verification.running.store import StoreError, locked
 from verification.running.tasks import case_task, kept_result, published_task
 from verification.study import formulas as effective_study
 from verification.study.formulas import EffectiveStudy
+
+if TYPE_CHECKING:
+    from verification.report.material import Evidence
 
 NARROW = 80  # columns
 
@@ -89,11 +92,13 @@ def run(
     chosen = _choose(cases)
     require_gmsh()
 
-    from verification.report.material import Material, gather
-    from verification.report.write import write_report
-    from verification.running.fields import read_planes
+    @cache
+    def prepared() -> tuple[tuple[SelfTest, ...], "Evidence"]:
+        """Self-tests and evidence, neither of which depends on a result."""
+        from verification.report.material import gather
 
-    tests = _self_tested()
+        return _self_tested(), gather(records)
+
     begin, started = time.perf_counter(), datetime.datetime.now(datetime.UTC)
     try:
         known = read_baseline(baseline)
@@ -104,21 +109,18 @@ def run(
             tasks += [_task(case, output, fields) for case in chosen if case.name not in kept]
             tasks += [accuracy_study.task(output)] if not cases and accuracy is None else []
             tasks += [effective_study.task(output)] if "published" in cases else []
-            solved = solve(tasks, jobs, time_limit, quiet or as_json, verbose=verbose)
+            solved = solve(tasks, jobs, time_limit, quiet or as_json, verbose=verbose, meanwhile=prepared)
             accuracy = next((found for found in solved if isinstance(found, AccuracyStudy)), accuracy)
             formulas = next((found for found in solved if isinstance(found, EffectiveStudy)), None)
             new = {found.name: found for found in solved if isinstance(found, CaseResult)}
             results = [kept.get(case.name) or new[case.name] for case in chosen]
             info = run_info(shlex.join(["coatcheck", "run", *cases]), started, jobs)
             beside = regression(results, known, within_package(baseline), info, whole=not cases)
+            tests, evidence = prepared()
             evidence = replace(
-                gather(records),
-                accuracy=accuracy,
-                baseline=beside,
-                self_tests=tests,
-                formulas=formulas,
+                evidence, accuracy=accuracy, baseline=beside, self_tests=tests, formulas=formulas
             )
-            page = write_report(Material(results, info, evidence, read_planes(output, results)), output)
+            page = _write_page(results, info, evidence, output)
     except KeyboardInterrupt:
         return _stopped(chosen, output)
     if as_json:
@@ -126,6 +128,14 @@ def run(
     elif not quiet:
         _print_table(results, page, time.perf_counter() - begin, beside)
     return _code(results, beside, tests)
+
+
+def _write_page(results: Sequence[CaseResult], info: RunInfo, evidence: "Evidence", output: Path) -> Path:
+    from verification.report.material import Material
+    from verification.report.write import write_report
+    from verification.running.fields import read_planes
+
+    return write_report(Material(results, info, evidence, read_planes(output, results)), output)
 
 
 def _self_tested() -> tuple[SelfTest, ...]:

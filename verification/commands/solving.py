@@ -1,7 +1,7 @@
 """Progress of tasks on the terminal; results of earlier runs that can be kept."""
 
 import datetime
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TypeVar
 
@@ -78,11 +78,17 @@ def kept_study(output: Path) -> AccuracyStudy | None:
 
 
 def solve(
-    tasks: Sequence[Task[T]], jobs: int, time_limit: float, silent: bool, *, verbose: bool = False
+    tasks: Sequence[Task[T]],
+    jobs: int,
+    time_limit: float,
+    silent: bool,
+    *,
+    verbose: bool = False,
+    meanwhile: Callable[[], object] = lambda: None,
 ) -> list[T]:
     """Run ``tasks`` with a progress bar and a line for each result, unless ``silent``.
 
-    verbose : print seconds, iterations and unknowns of every source.
+    verbose : print seconds, iterations and unknowns of every source.   meanwhile : as in ``run_tasks``.
     """
     console = Console(stderr=True)
     bar = progress_bar(console, silent=silent)
@@ -104,7 +110,14 @@ def solve(
                 if verbose:
                     console.print(escape(_sources(result)), style="dim", highlight=False)
 
-        return run_tasks(tasks, jobs=jobs, time_limit=time_limit, started=started, finished=finished)
+        return run_tasks(
+            tasks,
+            jobs=jobs,
+            time_limit=time_limit,
+            started=started,
+            finished=finished,
+            meanwhile=meanwhile,
+        )
 
 
 def _sources(result: CaseResult) -> str:

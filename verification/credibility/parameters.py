@@ -16,8 +16,8 @@ from verification.credibility.uncertainty import Estimate, uncertainty
 from verification.problem.contact import CoatedContact, Solution
 from verification.problem.quantity import QUANTITIES, SCALARS
 from verification.sources.exact import solve_exactly
+from verification.sources.record import NumericalParameter
 from verification.sources.registry import METHODS, SOURCES, solvers
-from verification.sources.source import NumericalParameter
 
 Function = Callable[..., Any]
 PARAMETERS = tuple(parameter for source in SOURCES.values() for parameter in source.parameters)

@@ -22,9 +22,9 @@ def write_report(material: Material, folder: Path) -> Path:
     that an error leaves the earlier report as it was. Raises StoreError where the folder cannot be written.
     """
     texts = {
-        "report.json": report_json(material),
         "junit.xml": junit_xml(material.results, material.info),
         "report.html": render(material),
+        "report.json": report_json(material),
     }
     ready: dict[Path, Path] = {}
     try:

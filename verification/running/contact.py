@@ -14,8 +14,8 @@ from verification.problem.profile import Profile
 from verification.problem.quantity import QUANTITIES, SCALARS
 from verification.running.result import CaseResult, SourceResult, describe, diagnostics_of, message_of
 from verification.sampling.lines import positions, sample, sample_contact
+from verification.sources.record import Solver
 from verification.sources.registry import solvers
-from verification.sources.source import Solver
 
 
 def run(case: Case, available: Mapping[str, Solver] | None = None) -> CaseResult:

@@ -64,27 +64,28 @@ def run_tasks(
     time_limit: float,
     started: Callable[[str], None] = lambda name: None,
     finished: Callable[[str, T], None] = lambda name, result: None,
+    meanwhile: Callable[[], object] = lambda: None,
 ) -> list[T]:
     """Run ``tasks`` on ``jobs`` processes, each of a name of its own; results in their order.
 
     A task that fails, hangs beyond ``time_limit`` [s] or dies leaves what ``failed`` makes of the reason, and
     the file of an earlier run as it was. Raises StoreError where results cannot be written.
+    meanwhile : called once, when the first tasks have started.
     """
     threads = max(1, cores() // jobs)
     waiting = _ordered(tasks)
     results: dict[int, T] = {}
     with _ended([_Slot[T](threads) for _ in range(min(jobs, len(waiting)))]) as slots:
+        _start_idle(slots, waiting, started)
+        meanwhile()
         while len(results) < len(tasks):
-            for slot in slots:
-                if slot.task is None and (slot.owed or waiting):
-                    slot.owed = slot.owed or waiting.popleft()
-                    started(slot.start().name)
             select.select([end for slot in slots if (end := slot.replies) is not None], [], [], POLL)
             for slot in slots:
                 if (found := slot.poll(time_limit)) is not None:
                     number, name, result = found
                     results[number] = result
                     finished(name, result)
+            _start_idle(slots, waiting, started)
     return [results[number] for number in range(len(tasks))]
 
 
@@ -98,6 +99,13 @@ def _ordered(tasks: Sequence[Task[T]]) -> deque[Group[T]]:
         key = (number, None) if task.together is None else task.together
         groups.setdefault(key, deque()).append((number, task))
     return deque(sorted(groups.values(), key=lambda group: -sum(task.cost for _, task in group)))
+
+
+def _start_idle(slots: list["_Slot[T]"], waiting: deque[Group[T]], started: Callable[[str], None]) -> None:
+    for slot in slots:
+        if slot.task is None and (slot.owed or waiting):
+            slot.owed = slot.owed or waiting.popleft()
+            started(slot.start().name)
 
 
 class _Slot(Generic[T]):

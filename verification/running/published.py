@@ -16,8 +16,8 @@ from verification.running.result import CaseResult, SourceResult, describe, diag
 from verification.sampling.memo import tabulated
 from verification.sampling.points import values
 from verification.sources.loading import Loading
+from verification.sources.record import Solver
 from verification.sources.registry import CLOSED, METHODS, PUBLISHED, solvers
-from verification.sources.source import Solver
 
 
 def published_solvers(problem: Problem) -> dict[str, Solver]:

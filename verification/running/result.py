@@ -1,6 +1,7 @@
 """The result of a case, with its exact JSON form."""
 
 from dataclasses import asdict, dataclass, field, is_dataclass
+from functools import cached_property
 from typing import Any
 
 from verification.judging.invariants import Invariant
@@ -59,12 +60,10 @@ class CaseResult:
                 return outcome
         return Outcome.AGREES if found else Outcome.NO_RESULT
 
-    def profile(self, quantity: str, line: str, source: str) -> Profile | None:
-        """The profile of ``quantity`` on ``line`` by ``source``; None where there is none."""
-        for profile in self.profiles:
-            if (profile.quantity, profile.line, profile.source) == (quantity, line, source):
-                return profile
-        return None
+    @cached_property
+    def profile_of(self) -> dict[tuple[str, str, str], Profile]:
+        """Each profile by its (quantity, line, source)."""
+        return {(profile.quantity, profile.line, profile.source): profile for profile in self.profiles}
 
 
 @dataclass(frozen=True)

@@ -17,8 +17,8 @@ from verification.running.result import to_json
 from verification.running.store import write_checked
 from verification.sampling.plane import sample_plane
 from verification.sources.methods import sharing_pressure
+from verification.sources.record import Solver
 from verification.sources.registry import METHODS, SOURCES, solvers
-from verification.sources.source import Solver
 
 for _method in METHODS:  # once for all cases, see ``guard``
     import_module(SOURCES[_method].package)

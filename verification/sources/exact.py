@@ -6,7 +6,7 @@ from typing import Any
 
 from verification.problem.contact import CoatedContact, PrescribedLoad, keywords
 from verification.problem.loading import LoadingCurve, Problem
-from verification.sources.source import Kind, Source, Style
+from verification.sources.record import Kind, Source, Style
 
 CODE = "verification.sources.references"
 

@@ -8,7 +8,7 @@ from typing import Any
 
 from verification.problem.contact import CoatedContact, PrescribedLoad, keywords
 from verification.problem.loading import LoadingCurve, Problem
-from verification.sources.source import Kind, NumericalParameter, Solver, Source, Style
+from verification.sources.record import Kind, NumericalParameter, Solver, Source, Style
 
 # Element size on a loading curve, which needs many solves; it leaves 1e-7 of the approach.
 CURVE_SIZE = 0.28

@@ -5,7 +5,7 @@ from itertools import combinations
 from verification.problem.loading import Problem
 from verification.sources.exact import REFERENCE_SOURCES
 from verification.sources.methods import METHOD_SOURCES
-from verification.sources.source import Kind, Solver, Source, Style
+from verification.sources.record import Kind, Solver, Source, Style
 
 PUBLISHED = "published"  # source of the profiles of a published table
 _OTHER = Style("other", (5.0, 1.5, 1.0, 1.5))

@@ -24,7 +24,7 @@ _SEARCH = (
     "verification.study.point",
     "verification.problem",
     "verification.sources.registry",
-    "verification.sources.source",
+    "verification.sources.record",
     "verification.sources.methods",
     "verification.sources.exact",
     "verification.sources.extrapolation",

@@ -7,8 +7,8 @@ import pytest
 
 from verification.credibility.accuracy import BARE, COATED
 from verification.credibility.parameters import PARAMETERS, stated, study, sweep
+from verification.sources.record import NumericalParameter
 from verification.sources.references.hertz import Hertz
-from verification.sources.source import NumericalParameter
 
 EXACT = Hertz(BARE.radius, BARE.load, *BARE.substrate)
 KNOB = NumericalParameter(

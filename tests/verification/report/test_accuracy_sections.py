@@ -16,7 +16,7 @@ from verification.report.material import Evidence, Material
 from verification.report.page import render
 from verification.report.sections.refinement import finite_element_section, semianalytic_section
 from verification.report.tables.numbers import factor
-from verification.sources.source import Style
+from verification.sources.record import Style
 
 
 def material(found, results=()) -> Material:

@@ -146,7 +146,7 @@ def _changes(clean: CaseResult, fresh: Profiles) -> list[tuple[float, str]]:
     p_h = float(clean.problem["p_h"])
     values, uncertainties = [], []
     for (quantity, line, source), profile in fresh.items():
-        old = clean.profile(quantity, line, source)
+        old = clean.profile_of.get((quantity, line, source))
         if old is None:
             continue
         scale = p_h if line != "contact" else float(abs(old.value[0]))

@@ -9,7 +9,7 @@ from markupsafe import Markup
 
 from verification.report.figures.plot import Axes, drawing, power_of_ten
 from verification.report.tables.cells import Panel
-from verification.sources.source import Style
+from verification.sources.record import Style
 
 WIDTH, HEIGHT = 320, 235
 BOX = (48.0, 5.9, 232.0, 190.4)  # left, top, width, height

@@ -9,7 +9,7 @@ import numpy as np
 from markupsafe import Markup, escape
 
 from verification.problem.arrays import Array
-from verification.sources.source import Style
+from verification.sources.record import Style
 
 # Larger numbers are failures; a curve has a gap there.
 HUGE = 1e12

@@ -89,8 +89,8 @@ def accuracies(result: CaseResult) -> tuple[Accuracy, ...]:
 
 
 def _accuracy(result: CaseResult, claim: Claim, source: str, exact: str) -> Accuracy | None:
-    mine = result.profile(claim.quantity, claim.line, source)
-    theirs = result.profile(claim.quantity, claim.line, exact)
+    mine = result.profile_of.get((claim.quantity, claim.line, source))
+    theirs = result.profile_of.get((claim.quantity, claim.line, exact))
     found = difference(result, mine, theirs)
     if found is None or mine is None:
         return None

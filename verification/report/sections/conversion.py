@@ -10,7 +10,7 @@ from verification.report.figures.loglog import DASHES, DOTS, MIXED, UNKNOWN, Plo
 from verification.report.figures.panels import swatch
 from verification.report.tables.cells import Cell, Gallery, Panel, Part, Table, number, row
 from verification.report.tables.numbers import factor, plain, scientific
-from verification.sources.source import Style
+from verification.sources.record import Style
 
 _CONVERSIONS = {
     ("split", 0): ("split, no domain", Style("semi")),

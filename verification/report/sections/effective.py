@@ -16,8 +16,8 @@ from verification.report.sections import family
 from verification.report.tables.cells import Gallery, Panel, Part, Row, Section, Table, number, row
 from verification.report.tables.csv import written
 from verification.report.tables.numbers import plain, scientific
+from verification.sources.record import Style
 from verification.sources.references.effective_modulus import PERRIOT_BARTHEL_N
-from verification.sources.source import Style
 from verification.study.formulas import EffectiveStudy, Limit
 
 WIDTH, HEIGHT = 320, 250

@@ -168,4 +168,4 @@ def _gap(
 
 
 def _profile(result: CaseResult, item: Mapping[str, Any], source: str) -> Profile | None:
-    return result.profile(item["quantity"], item["line"], source)
+    return result.profile_of.get((item["quantity"], item["line"], source))

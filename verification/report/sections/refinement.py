@@ -12,7 +12,7 @@ from verification.report.material import Material
 from verification.report.sections.conversion import conversion_part
 from verification.report.tables.cells import Cell, Gallery, Part, Section, Table, number, row
 from verification.report.tables.numbers import factor, scientific, seconds
-from verification.sources.source import Style
+from verification.sources.record import Style
 
 _SCALARS = [QUANTITY[name] for name in SCALARS]
 _TITLES = {q.symbol: q.symbol for q in _SCALARS} | {

@@ -160,7 +160,7 @@ def dominating_parameter(result: CaseResult, claim: Claim, verdict: Verdict) -> 
     """
     sides = []
     for source in claim.between:
-        profile = result.profile(claim.quantity, claim.line, source)
+        profile = result.profile_of.get((claim.quantity, claim.line, source))
         if profile is not None and profile.uncertainty is not None and profile.position.size:
             at = 0 if verdict.worst is None else int(np.argmin(np.abs(profile.position - verdict.worst)))
             sides.append((float(profile.uncertainty[at]), source))

@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 
 from verification.judging.verdict import Outcome
+from verification.sources.record import Style
 from verification.sources.registry import METHODS, SOURCES
-from verification.sources.source import Style
 
 _OTHER = SOURCES["published"].style
 _BETWEEN_METHODS = Style("pair", (4.5, 1.4, 1.0, 1.4), 1.4)
