@@ -157,16 +157,16 @@ def test_a_picture_is_rendered_without_a_display(tmp_path, folder):
 
 
 @pytest.mark.parametrize(
-    ("program", "said"),
+    ("program", "time_limit", "said"),
     [
-        ("import os; os.abort()", "could not render off screen here (signal 6)"),
-        ("import time; time.sleep(60)", "no picture after 0.5 s"),
-        ("raise SystemExit(0)", "could not render off screen here (code 0)"),
+        ("import os; os.abort()", 60.0, "could not render off screen here (signal 6)"),
+        ("import time; time.sleep(60)", 0.5, "no picture after 0.5 s"),
+        ("raise SystemExit(0)", 60.0, "could not render off screen here (code 0)"),
     ],
 )
-def test_rendering_that_crashes_or_hangs_is_one_message(tmp_path, program, said):
+def test_rendering_that_crashes_or_hangs_is_one_message(tmp_path, program, time_limit, said):
     with pytest.raises(CommandError) as error:
-        _picture([sys.executable, "-c", program], tmp_path / "x.png", 0.5)
+        _picture([sys.executable, "-c", program], tmp_path / "x.png", time_limit)
     assert error.value.code == 3
     assert said in str(error.value)
     assert len(str(error.value).splitlines()) == 1
