@@ -1,4 +1,4 @@
-"""Stress and displacement fields of a contact from the pressure on its grid."""
+"""Fields of a contact: stress, displacement, from the pressure on its grid."""
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray

@@ -1,4 +1,4 @@
-"""Speed and memory of the semi-analytical contact, side by side with its peers.
+"""Cost of the semi-analytical contact in time, in memory, beside that of its peers.
 
 A rigid sphere on a homogeneous half-space, not periodic, on the square [-2a, 2a]^2 of N x N patches, solved
 by ``semianalytic.indent``, by the Polonsky-Keer solver of tamaas with its DC-FFT operator, and by aspher as

@@ -1,4 +1,4 @@
-"""Imports of the two methods and of the references, read from their installed source."""
+"""Imports of methods or references, read from their installed source."""
 
 import ast
 import sys

@@ -1,4 +1,4 @@
-"""Layers and depths of a coated half-space."""
+"""Layers of a coated half-space by depth."""
 
 import numpy as np
 from numpy.typing import NDArray

@@ -1,4 +1,4 @@
-"""Material of a report: results, provenance and other evidence, of a run or read back from one."""
+"""Material of a report: results, provenance, other evidence, of a run or read back from one."""
 
 import json
 import shlex

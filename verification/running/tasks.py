@@ -1,4 +1,4 @@
-"""Cases as tasks of the pool, and their results stored by an earlier run."""
+"""Cases as tasks of the pool, with the results stored by an earlier run."""
 
 import os
 from collections.abc import Sequence

@@ -1,4 +1,4 @@
-"""Tasks of the pool: a case is solved, judged and stored, each of its files checked.
+"""Tasks of the pool: a case solved, judged, stored in checked files.
 
 Cases of one process share the normal contact where they differ in friction alone.
 """

@@ -1,4 +1,4 @@
-"""Registry of the sources, in the order in which tables and figures show them."""
+"""Registry of the sources, in the order in which the report shows them."""
 
 from itertools import combinations
 

@@ -1,4 +1,4 @@
-"""The table of a study as curves over the thickness, one for each modulus and friction.
+"""The table of a study as curves over the thickness, one for each modulus at each friction.
 
 The rows of the other sources are marks beside the curve.
 """

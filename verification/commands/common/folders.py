@@ -1,4 +1,4 @@
-"""Directories of the package and of runs."""
+"""Directories that the commands read or write."""
 
 from pathlib import Path
 

@@ -1,4 +1,4 @@
-"""Messages and tables of the commands.
+"""Terminal output of the commands.
 
 The command line imports this for each command, so numpy and rich are imported where they are used.
 """

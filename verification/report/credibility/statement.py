@@ -1,4 +1,4 @@
-"""Credibility of the verdicts: evidence in eight steps, each figure with its date and commit.
+"""Credibility of the verdicts: evidence in eight steps, each figure with its date, its commit.
 
 In the order of ASME V&V 10-2006, Guide for Verification and Validation in Computational Solid Mechanics, with
 further requirements of NASA-STD-7009A (2016), Standard for Models and Simulations: limits of use, robustness

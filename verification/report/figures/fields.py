@@ -1,4 +1,4 @@
-"""Stresses in the plane below the contact: both methods and their difference side by side."""
+"""Stresses in the plane below the contact: both methods beside their difference."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""A field of the x-z plane as a small inline picture with axes, contours and a bar of its colours.
+"""A field of the x-z plane as a small inline picture with axes, contours, a bar of its colours.
 
 The raster is a compressed image of a few kilobytes; axes, interfaces, contact and level lines are drawn over
 it as vectors in the colours of the page, so that they follow light, dark and print.

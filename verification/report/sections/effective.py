@@ -1,4 +1,4 @@
-"""Accuracy of effective-modulus formulas and of simple limits against the exact reference."""
+"""Effective-modulus formulas, simple limits: their accuracy against the exact reference."""
 
 from collections.abc import Sequence
 from functools import partial

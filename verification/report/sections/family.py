@@ -1,4 +1,4 @@
-"""Pressures and stresses of coatings that differ in their modulus alone, one plot for each quantity.
+"""Coatings that differ in their modulus alone, one plot for each quantity.
 
 The plots of O'Sullivan and King, J. Tribol. 110 (1988) 235-240: lengths over a_h, stresses over p_h, a curve
 for each E1/E2 at one thickness, without friction or with one coefficient.
