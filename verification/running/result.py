@@ -18,7 +18,7 @@ SCHEMA = "coatcheck-report/1"
 class SourceResult:
     """Time and diagnostics of one source of a case, or the message it failed with.
 
-    budget : (quantity, knob, uncertainty) rows of the method's own ladders, SI.
+    budget : (quantity, numerical parameter, uncertainty) rows of the method's own refinement studies, SI.
     """
 
     source: str

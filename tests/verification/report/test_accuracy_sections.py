@@ -114,8 +114,8 @@ def test_study_that_died_is_its_reason_alone():
 def test_part_that_is_missing_leaves_the_others():
     whole = study()
     bare = replace(whole.refinements[0], levels=(), failure="N = 33: no grid fits")
-    for ladders in ((bare,), (bare, *whole.refinements[1:]), (bare, elements(3)), whole.refinements[1:2]):
-        Document(render(material(replace(whole, refinements=ladders))))
+    for studies in ((bare,), (bare, *whole.refinements[1:]), (bare, elements(3)), whole.refinements[1:2]):
+        Document(render(material(replace(whole, refinements=studies))))
     for conversions in ((), whole.conversions[:1], whole.conversions[1:2], (conversion("new", 4, 1, 1.0),)):
         Document(render(material(replace(whole, conversions=conversions))))
 
@@ -125,7 +125,7 @@ def test_no_number_whatever_keeps_a_report_from_being_written():
     odd = [1e308, -1e308, 5e-324, float("nan"), float("inf"), -float("inf"), 0.0, -1.0, 1e-30]
     whole = study()
     for _ in range(3):
-        ladders = tuple(
+        studies = tuple(
             replace(
                 one,
                 levels=tuple(
@@ -144,7 +144,7 @@ def test_no_number_whatever_keeps_a_report_from_being_written():
             replace(one, error=tuple(float(random.choice(odd)) for _ in one.error), largest=float("nan"))
             for one in whole.conversions
         )
-        Document(render(material(replace(whole, refinements=ladders, conversions=conversions))))
+        Document(render(material(replace(whole, refinements=studies, conversions=conversions))))
 
 
 def test_words_from_strangers_stay_words():

@@ -127,7 +127,7 @@ def test_coverage_counts_the_quantities_whose_error_lies_within_what_is_stated()
         assert theirs.cells[2].text == "100.0 %"
 
 
-def knobs():
+def studies():
     steps = (8.0, 4.0, 2.0, 1.0)
     values = {"p0": tuple(1 + 1e-3 * h**2 for h in steps), "a": tuple(1 + 1e-5 * h for h in steps)}
     refinement = Sweep("semianalytic", "coated", "patch size", 2.0, tuple("abcd"), steps, values)
@@ -136,7 +136,7 @@ def knobs():
 
 
 def test_parameter_section_marks_a_stated_uncertainty_below_the_true_error():
-    section = parameter_section(*knobs())
+    section = parameter_section(*studies())
     totals, orders = section.parts[0].tables
     p0, a = totals.rows
     assert [cell.css for cell in p0.cells[1:3]] == ["flag disagrees", "flag agrees"]
@@ -149,7 +149,7 @@ def test_parameter_section_marks_a_stated_uncertainty_below_the_true_error():
 
 
 def test_knobs_survive_the_file_of_the_accuracy_study():
-    refinements, stated = knobs()
+    refinements, stated = studies()
     whole = replace(study(), sweeps=refinements, stated=stated)
     back = study_from_json(json.loads(json.dumps(study_to_json(whole), allow_nan=False)))
     assert back == whole
