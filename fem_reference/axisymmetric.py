@@ -39,6 +39,7 @@ from .mesh import MeridianMesh
 
 __all__ = ["ELEMENTS", "Discretisation", "constrained_solve", "elasticity", "strain_operator"]
 
+BLOCK = 64  # triangles whose stiffness is computed together
 ELEMENTS = {2: ElementTriP2, 3: ElementTriP3, 4: ElementTriP4}
 
 
@@ -155,19 +156,23 @@ class Discretisation:
         triangles, points = weight.shape
         local = len(self.basis.basis)
         phi = np.stack([np.broadcast_to(np.asarray(b[0]), r.shape) for b in self.basis.basis], axis=-1)
-        dphi = [np.stack([b[0].grad[i] for b in self.basis.basis], axis=-1) for i in (0, 1)]
-        # strain of every (field, shape function) at every quadrature point
-        B = np.zeros((triangles, points, A_r.shape[0], fields, local))
-        for A, shape in ((A_r, dphi[0]), (A_z, dphi[1]), (A_0, phi / r[..., None])):
-            for s, field in zip(*np.nonzero(A), strict=True):
-                B[:, :, s, field] += A[s, field] * shape
+        d_r, d_z = (np.stack([b[0].grad[i] for b in self.basis.basis], axis=-1) for i in (0, 1))
+        hoop = phi / r[..., None]
         D = np.stack([elasticity(E, nu, harmonic) for E, nu in materials])[self.mesh.layer]
-        flat = B.reshape(triangles, points, A_r.shape[0], fields * local)
-        stress = np.matmul(D[:, None], flat) * weight[..., None, None]
-        rows = points * A_r.shape[0]
-        K = np.matmul(
-            flat.reshape(triangles, rows, -1).transpose(0, 2, 1), stress.reshape(triangles, rows, -1)
-        )
+        K = np.empty((triangles, fields * local, fields * local))
+        # in blocks that stay in the cache of the processor
+        for begin in range(0, triangles, BLOCK):
+            block = slice(begin, begin + BLOCK)
+            # strain of every (field, shape function) at every quadrature point
+            B = np.zeros((len(K[block]), points, A_r.shape[0], fields, local))
+            for A, shape in ((A_r, d_r[block]), (A_z, d_z[block]), (A_0, hoop[block])):
+                for s, field in zip(*np.nonzero(A), strict=True):
+                    B[:, :, s, field] += A[s, field] * shape
+            flat = B.reshape(-1, points, A_r.shape[0], fields * local)
+            stress = np.matmul(D[block, None], flat) * weight[block, :, None, None]
+            rows = points * A_r.shape[0]
+            transposed = flat.reshape(-1, rows, fields * local).transpose(0, 2, 1)
+            K[block] = np.matmul(transposed, stress.reshape(-1, rows, fields * local))
         # 32 bits as in the sparse matrix: it would copy others
         dofs = np.asarray(self.basis.element_dofs, dtype=np.int32).T
         numbers = (np.arange(fields, dtype=np.int32)[:, None] * self.N + dofs[:, None, :]).reshape(

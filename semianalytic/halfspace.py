@@ -1,4 +1,4 @@
-"""Closed forms of Love, Boussinesq and Cerruti for a uniformly loaded rectangle on a half-space.
+"""Closed forms of Love, Boussinesq, Cerruti for a uniformly loaded rectangle on a half-space.
 
 Everything follows from three potentials of the loaded rectangle, rho = |point - source|,
 

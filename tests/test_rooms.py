@@ -1,6 +1,7 @@
-"""The packages in rooms: names that do not repeat each other, imports downwards only."""
+"""The packages in rooms: small folders, names that do not repeat each other, imports downwards only."""
 
 import ast
+import re
 from collections import defaultdict
 from pathlib import Path
 
@@ -59,6 +60,15 @@ def test_verification_shows_its_rooms_and_the_command_line():
     assert len(rooms) <= MOST
 
 
+def test_no_room_holds_more_than_twelve_modules():
+    sizes = {
+        folder.relative_to(ROOT).as_posix(): len(modules) + len(inner)
+        for folder, (modules, inner) in folders().items()
+        if ROOT / "verification" in folder.parents
+    }
+    assert {name: size for name, size in sizes.items() if size > MOST} == {}
+
+
 def test_no_module_repeats_the_name_of_its_folder():
     repeated = [
         f"{folder.relative_to(ROOT)}/{name}"
@@ -89,3 +99,13 @@ def test_rooms_import_downwards_only():
             if top == "verification" and other and other != room and FLOOR.get(other, MOST) >= FLOOR[room]:
                 upward.append(f"{path.relative_to(ROOT)} imports {name}")
     assert upward == []
+
+
+def test_every_module_has_one_purpose_in_its_first_line():
+    lines = {}
+    for path in MODULES:
+        tree = ast.parse(path.read_text(encoding="utf-8"))
+        if tree.body or path.name != "__init__.py":
+            lines[path.relative_to(ROOT).as_posix()] = (ast.get_docstring(tree) or "").partition("\n")[0]
+    found = {name: line for name, line in lines.items() if not line or re.search(r"\band\b", line, re.I)}
+    assert found == {}

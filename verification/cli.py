@@ -1,19 +1,16 @@
-"""The command line of coatcheck.
-
-Exit codes: 0 all agree, 1 a disagreement, 2 bad input, 3 a missing result, 4 inconclusive, 5 all agree but
-a number is not that of the baseline, 130 stopped by Ctrl-C.
-"""
+"""The command line of coatcheck."""
 
 import re
 import sys
+import tomllib
 from collections.abc import Sequence
-from typing import Literal, NamedTuple
+from pathlib import Path
+from typing import Literal
 
 from cyclopts import App, CycloptsError
 
-from verification.commands.common import STOPPED, print_error
-
-__all__ = ["app", "main"]
+from verification.commands.common.exits import BAD_INPUT, STOPPED
+from verification.commands.common.terminal import print_error
 
 CODES = (
     "Exit codes: 0 all agree, 1 disagreement, 2 bad input, 3 no result, 4 inconclusive, 5 all agree but a "
@@ -21,120 +18,27 @@ CODES = (
 )
 
 
-class Command(NamedTuple):
-    """A command: ``place`` is module:function of the commands, as text, so that only one is loaded."""
-
-    name: str
-    place: str
-    said: str
-    examples: tuple[str, ...]
-
-
-COMMANDS = (
-    Command(
-        "run",
-        "run:run",
-        "Solve cases by every method and reference, judge every claim, write the report.",
-        (
-            "coatcheck run",
-            "coatcheck run 05_ratio_4 my_coating.toml --output reports/mine --fields",
-            "coatcheck run published",
-            "coatcheck run --resume -v",
-        ),
-    ),
-    Command(
-        "list",
-        "list_cases:list_cases",
-        "List the shipped cases and published results with their sources.",
-        ("coatcheck list", "coatcheck list --json"),
-    ),
-    Command(
-        "report",
-        "report:report",
-        "Write the report of a stored run again, nothing solved; print it with --pdf.",
-        ("coatcheck report", "coatcheck report reports/mine --pdf"),
-    ),
-    Command(
-        "view",
-        "view:view",
-        "Look at the fields of a case, in a window or as a picture.",
-        (
-            "coatcheck run 05_ratio_4 --fields",
-            "coatcheck view 05_ratio_4",
-            "coatcheck view 05_ratio_4 --quantity sigma_xx --screenshot sigma_xx.png",
-        ),
-    ),
-    Command(
-        "compare",
-        "compare:compare",
-        "Show two runs side by side: verdicts, numbers, versions, times.",
-        ("coatcheck compare reports reports/mine --output compared.html",),
-    ),
-    Command(
-        "faults",
-        "faults:faults",
-        "Plant one mistake at a time; report which checks of the default run catch it.",
-        ("coatcheck faults", "coatcheck faults --group stress", "coatcheck faults --list"),
-    ),
-    Command(
-        "alarms",
-        "alarms:alarms",
-        "Solve clean random problems; count the verdicts that are not AGREES.",
-        ("coatcheck alarms", "coatcheck alarms --count 5 --seed 7"),
-    ),
-    Command(
-        "bench",
-        "bench:bench",
-        "Time the semi-analytical contact beside its peers; ratios first.",
-        ("coatcheck bench", "coatcheck bench --sizes 128 256 --threads 1"),
-    ),
-)
-STUDY = (
-    Command(
-        "thickness",
-        "study:thickness",
-        "Which thickness? Stresses of a coating against thickness, stiffness and friction, cross-checked.",
-        (
-            "coatcheck study thickness",
-            "coatcheck study thickness dlc_on_steel --output reports/dlc",
-            "coatcheck study thickness my_coating.toml --scheduler tcp://host:8786",
-        ),
-    ),
-)
-BASELINE = (
-    Command(
-        "update",
-        "baseline:update",
-        "Make a stored default run the baseline, with the reason why.",
-        ('coatcheck baseline update --why "finer default grid"',),
-    ),
-    Command(
-        "show",
-        "baseline:show",
-        "Show what the baseline holds and every update it has seen.",
-        ("coatcheck baseline show",),
-    ),
-)
+# Read as data, so that the module of a command is imported only when it is called.
+COMMANDS = tomllib.loads((Path(__file__).parent / "commands" / "commands.toml").read_text(encoding="utf-8"))
 
 
 def _epilogue(examples: Sequence[str]) -> str:
-    """What stands below the options of a command: how it is called, how it ends."""
+    """The text below the options of a command: examples, exit codes."""
     return "Examples:\n\n" + "\n".join(f"    {example}" for example in examples) + f"\n\n{CODES}"
-
-
-def _add(parent: App, command: Command) -> None:
-    parent.command(
-        f"verification.commands.{command.place}",
-        name=command.name,
-        help=command.said,
-        help_epilogue=_epilogue(command.examples),
-    )
 
 
 def _version() -> str:
     from importlib.metadata import version
 
     return version("coatcheck")
+
+
+def _group(name: str, summary: str) -> App:
+    """The commands whose names begin with ``name``."""
+    examples = [
+        line for key, entry in COMMANDS.items() if key.startswith(f"{name} ") for line in entry["examples"]
+    ]
+    return App(name=name, help=summary, help_epilogue=_epilogue(examples))
 
 
 app = App(
@@ -144,21 +48,17 @@ app = App(
     version=_version,
     help_format="plaintext",
 )
-baseline = App(
-    name="baseline",
-    help="The stored numbers that every run is held against.",
-    help_epilogue=_epilogue([example for entry in BASELINE for example in entry.examples]),
-)
-study = App(
-    name="study",
-    help="Sweep a parameter with both methods behind every number.",
-    help_epilogue=_epilogue([example for entry in STUDY for example in entry.examples]),
-)
-for parent, entries in ((app, COMMANDS), (baseline, BASELINE), (study, STUDY)):
-    for entry in entries:
-        _add(parent, entry)
-app.command(baseline)
-app.command(study)
+groups = {
+    "": app,
+    "baseline": _group("baseline", "The stored numbers that every run is compared with."),
+    "study": _group("study", "Sweep a parameter with both methods behind every number."),
+}
+for key, entry in COMMANDS.items():
+    group, _, name = key.rpartition(" ")
+    place, epilogue = f"verification.commands.{entry['place']}", _epilogue(entry["examples"])
+    groups[group].command(place, name=name, help=entry["summary"], help_epilogue=epilogue)
+app.command(groups["baseline"])
+app.command(groups["study"])
 
 
 # The generated function alone does nothing: zsh has to call it where the file lies in a directory of $fpath,
@@ -175,10 +75,8 @@ fi
 def completion(shell: Literal["bash", "zsh", "fish"], /) -> int:
     """Print the script that completes coatcheck in a shell.
 
-    Parameters
-    ----------
-    shell
-        bash, zsh or fish.
+    Args:
+        shell: bash, zsh or fish.
     """
     script = app.generate_completion(prog_name="coatcheck", shell=shell)
     # A word that no command or option begins with may be a case file; fish tries files by itself.
@@ -208,7 +106,8 @@ def main() -> None:
     try:
         code = app(sys.argv[1:], exit_on_error=False, print_error=False, result_action="return_value")
     except CycloptsError as error:
-        code = print_error(" ".join(str(error).split()) + " Try: coatcheck --help")
+        print_error(" ".join(str(error).split()) + " Try: coatcheck --help")
+        code = BAD_INPUT
     except KeyboardInterrupt:
         sys.stderr.write("\ncoatcheck: stopped; finished cases are kept, go on with --resume\n")
         code = STOPPED

@@ -88,7 +88,7 @@ def keys_of(node: Any, here: tuple[str | int, ...] = ()) -> list[tuple[str | int
 
 @st.composite
 def malformed(draw: st.DrawFn, trees: list[Tree]) -> tuple[bytes, tuple[str, ...]]:
-    """A file with one thing changed, and the keys a complaint may name: () where its text was garbled."""
+    """A file with one thing changed, and the keys an error may name: () where its text was garbled."""
     tree = copy.deepcopy(draw(st.sampled_from(trees)))
     changes = ["replace"] * 6 + ["garble"] * 3 + ["lose", "add", "rename", "repeat", "wrap"]
     kind = draw(st.sampled_from(changes))

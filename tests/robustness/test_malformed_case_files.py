@@ -1,4 +1,4 @@
-"""Bad case files by the thousand: one sentence with file and key, exit code 2, nothing written."""
+"""Bad case files by the thousand: one message with file and key, exit code 2, nothing written."""
 
 import io
 import re
@@ -62,7 +62,7 @@ def complaint_of(path: Path, monkeypatch: pytest.MonkeyPatch) -> str | None:
     def accept(*_: object, **__: object) -> None:
         raise Accepted
 
-    monkeypatch.setattr(pool, "_Job", accept)
+    monkeypatch.setattr(pool._Slot, "start", accept)
     said, printed = io.StringIO(), io.StringIO()
     try:
         with redirect_stderr(said), redirect_stdout(printed):
@@ -70,22 +70,22 @@ def complaint_of(path: Path, monkeypatch: pytest.MonkeyPatch) -> str | None:
     except Accepted:
         shutil.rmtree(folder / "out")
         return None
-    sentence = said.getvalue()
+    message = said.getvalue()
     assert code == 2
-    assert sentence.endswith("\n")
-    assert sentence.count("\n") == 1
-    assert sentence[:-1].isprintable()
-    assert len(sentence) < 1100
+    assert message.endswith("\n")
+    assert message.count("\n") == 1
+    assert message[:-1].isprintable()
+    assert len(message) < 1100
     assert printed.getvalue() == ""
     assert not (folder / "out").exists()
-    return sentence.removeprefix("coatcheck: ").strip()
+    return message.removeprefix("coatcheck: ").strip()
 
 
-def names(sentence: str, path: Path, keys: tuple[str, ...]) -> bool:
+def names(message: str, path: Path, keys: tuple[str, ...]) -> bool:
     """True where the file is named, and one of ``keys``, or the part of the file around it, or a line."""
-    if not sentence.startswith(f"{path}: "):
+    if not message.startswith(f"{path}: "):
         return False
-    said = sentence.removeprefix(f"{path}: ")
+    said = message.removeprefix(f"{path}: ")
     if not keys or said.startswith(("not TOML", "not UTF-8", "line ", "larger than")):
         return bool(re.search(r"line \d+|column|document|bytes|nested|digits|[a-z_]+", said))
     shown = [re.sub(r"[^ -~]", "", key)[:30] for key in keys]
@@ -108,10 +108,10 @@ def bad_files(tmp_path, monkeypatch, wanted):
     def each(made):
         raw, keys = made
         path.write_bytes(raw)
-        sentence = complaint_of(path, monkeypatch)
+        message = complaint_of(path, monkeypatch)
         counts["files"] += 1
-        counts["refused"] += sentence is not None
-        assert sentence is None or names(sentence, path, keys), (sentence, keys)
+        counts["refused"] += message is not None
+        assert message is None or names(message, path, keys), (message, keys)
         assert [entry.name for entry in tmp_path.iterdir()] == ["mine.toml"]
 
     each()
@@ -135,7 +135,7 @@ def test_files_that_were_not_changed_are_accepted(tmp_path, monkeypatch):
 
 
 def refusal(read: Callable[[Path], object], path: Path) -> str | None:
-    """The sentence ``read`` refuses a file with; None where it is good."""
+    """The message ``read`` refuses a file with; None where it is good."""
     try:
         read(path)
     except CaseError as error:
@@ -154,9 +154,9 @@ def test_generated_published_cases_and_tables_are_refused_in_one_sentence(tmp_pa
     def read(raw, kind, named):
         (tmp_path / "mine.toml").write_bytes(raw)
         counts[kind] += 1
-        sentence = refusal(read_published, tmp_path / "mine.toml")
-        counts["refused"] += sentence is not None
-        assert sentence is None or re.match(named, sentence), sentence
+        message = refusal(read_published, tmp_path / "mine.toml")
+        counts["refused"] += message is not None
+        assert message is None or re.match(named, message), message
 
     @generated(600)
     @given(malformed(trees))
@@ -191,9 +191,9 @@ def test_generated_study_files_are_refused_in_one_sentence(tmp_path):
     def each(made):
         path.write_bytes(made[0])
         counts["files"] += 1
-        sentence = refusal(read_study_file, path)
-        counts["refused"] += sentence is not None
-        assert sentence is None or sentence.startswith(f"{path}: "), sentence
+        message = refusal(read_study_file, path)
+        counts["refused"] += message is not None
+        assert message is None or message.startswith(f"{path}: "), message
 
     each()
     sys.stdout.write(f"{counts['files']} study files: {counts['refused']} refused\n")
@@ -322,10 +322,10 @@ assert len(BAD) >= 60
 def test_bad_file_written_by_hand_names_file_and_key(tmp_path, monkeypatch, raw, said):
     path = tmp_path / "mine.toml"
     path.write_bytes(raw)
-    sentence = complaint_of(path, monkeypatch)
-    assert sentence is not None
-    assert sentence.startswith(f"{path}: ")
-    assert said in sentence
+    message = complaint_of(path, monkeypatch)
+    assert message is not None
+    assert message.startswith(f"{path}: ")
+    assert said in message
 
 
 def test_zero_with_a_monstrous_exponent_is_a_number(tmp_path):
@@ -341,6 +341,6 @@ def test_name_that_no_file_should_have_is_refused(tmp_path, monkeypatch):
     for name in ("two\nlines", "\x1b[31mred", "x" * 120, "\udcff"):
         path = tmp_path / f"{name}.toml"
         path.write_text(GOOD)
-        sentence = complaint_of(path, monkeypatch)
-        assert sentence is not None, repr(name)
-        assert "printable characters" in sentence
+        message = complaint_of(path, monkeypatch)
+        assert message is not None, repr(name)
+        assert "printable characters" in message

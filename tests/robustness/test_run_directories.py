@@ -263,7 +263,7 @@ def test_full_disk_is_one_sentence_and_the_earlier_results_stay(tmp_path, small_
         assert content(out)["report.json"] == earlier["report.json"]
         count += 1
     assert count >= 3
-    sys.stdout.write(f"disk full at {count} moments: one sentence each, earlier results intact\n")
+    sys.stdout.write(f"disk full at {count} moments: one message each, earlier results intact\n")
 
 
 @pytest.mark.slow

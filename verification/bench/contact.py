@@ -1,4 +1,4 @@
-"""Speed and memory of the semi-analytical contact, side by side with its peers.
+"""Cost of the semi-analytical contact in time, in memory, beside that of its peers.
 
 A rigid sphere on a homogeneous half-space, not periodic, on the square [-2a, 2a]^2 of N x N patches, solved
 by ``semianalytic.indent``, by the Polonsky-Keer solver of tamaas with its DC-FFT operator, and by aspher as
@@ -21,24 +21,14 @@ from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass
 from importlib import import_module
 from importlib.util import find_spec
+from itertools import product
 from statistics import median
+from typing import Any, TypeVar
 
 import numpy as np
 from scipy.fft import irfft2, next_fast_len, rfft2
 
 from verification.problem.arrays import FloatArray
-
-__all__ = [
-    "BenchRow",
-    "CoatedRow",
-    "PlaneRow",
-    "coated_ratios",
-    "ratios",
-    "run_bench",
-    "run_coated",
-    "run_plane",
-]
-
 
 JUDGE = 1e-6
 ENOUGH = 120.0  # seconds of one measurement after which it is not repeated
@@ -48,6 +38,8 @@ W = 4 / 3 * E_STAR * A**3 / R
 # tolerances with which each solver just meets the judge; all measure their own gap, over their own scale
 TOLERANCE = {"semianalytic": 8e-7, "tamaas": 1e-6, "aspher": 1e-7}
 PEERS = ("tamaas", "aspher")
+Coatings = tuple[tuple[float, float, float], ...]
+T = TypeVar("T")
 
 
 @dataclass(frozen=True)
@@ -128,12 +120,10 @@ def run_bench(
     if solvers is None:
         solvers = [name for name in TOLERANCE if find_spec(name)]
     rows = []
-    for patches in sizes:
-        for count in threads:
-            for solver in solvers:
-                if progress:
-                    progress(f"{solver}, {patches} x {patches} patches, {count} thread{'s' * (count > 1)}")
-                rows.append(_measure(solver, patches, count, repeats))
+    for patches, count, solver in product(sizes, threads, solvers):
+        if progress:
+            progress(f"{solver}, {patches} x {patches} patches, {count} thread{'s' * (count > 1)}")
+        rows.append(_measure(solver, patches, count, repeats))
     return rows
 
 
@@ -159,9 +149,8 @@ def ratios(rows: Sequence[BenchRow]) -> list[tuple[str, float]]:
         line = [(row.patches, row.seconds) for row in rows if (row.solver, row.threads) == (solver, threads)]
         if len(line) > 1:
             n, seconds = np.log(np.array(line)).T
-            found.append(
-                (f"{solver}: time grows as N^, threads {threads}", float(np.polyfit(n, seconds, 1)[0]))
-            )
+            growth = float(np.polyfit(n, seconds, 1)[0])
+            found.append((f"{solver}: time grows as N^, threads {threads}", growth))
     return found
 
 
@@ -189,99 +178,73 @@ def coated_ratios(rows: Sequence[CoatedRow]) -> list[tuple[str, float]]:
 
 
 def _coated(patches: int, ratio: float, h: float) -> CoatedRow:
-    import semianalytic
-
     coatings = ((ratio * E_STAR, 0.0, h * A),)
     half_width = 2 * A * max(1.0, ratio ** (-1 / 3))
-    began = time.perf_counter()
-    s = semianalytic.indent(
-        profile=_sphere,
-        half_width=half_width,
-        load=W,
-        coatings=coatings,
-        substrate=(E_STAR, 0.0),
-        patches=patches,
-        tolerance=TOLERANCE["semianalytic"],
-        estimate_uncertainty=False,
-    )
-    seconds = time.perf_counter() - began
+    seconds, s = _timed(lambda: _indented(patches, half_width, coatings))
     loaded = np.flatnonzero(s.patch_pressure.any(axis=1))
     n = int(1.1 * (loaded[-1] - loaded[0]))
-    setup = _setup_seconds(n, 2 * half_width / patches, coatings)
+    setup, _ = _timed(lambda: _set_up(n, 2 * half_width / patches, coatings))
     d = s.diagnostics
     return CoatedRow(ratio, h, patches, d.iterations, d.convolutions, seconds, setup)
 
 
+def _timed(work: Callable[[], T]) -> tuple[float, T]:
+    """Seconds that ``work`` takes, and its result."""
+    began = time.perf_counter()
+    found = work()
+    return time.perf_counter() - began, found
+
+
 def run_plane(*, sizes: Sequence[int] = (256, 512), repeats: int = 9) -> list[PlaneRow]:
     """Time the six stresses at the interface of a sliding coating, against six transforms, taken in turns."""
+    return [_plane(patches, repeats) for patches in sizes]
+
+
+def _plane(patches: int, repeats: int) -> PlaneRow:
     from semianalytic import subsurface
     from semianalytic.inputs import Body
 
-    rows = []
-    for patches in sizes:
-        x = (np.arange(patches) - (patches - 1) / 2) * (2.2 * A / patches)
-        pressure = np.sqrt(np.maximum(1 - (x[:, None] ** 2 + x[None, :] ** 2) / A**2, 0))
-        began = time.perf_counter()
-        plane = subsurface.stress_plane(
-            0.3 * A,
-            0,
-            grid_x=x,
-            grid_y=x,
-            body=Body(((4 * E_STAR, 0.3, 0.3 * A),), (E_STAR, 0.3), 0.25),
-        )
-        setup = time.perf_counter() - began
-        ours, theirs = [], []
-        wave = plane.spectrum[0].copy()
-        for _ in range(repeats):
-            began = time.perf_counter()
-            plane(pressure)
-            ours.append(time.perf_counter() - began)
-            began = time.perf_counter()
-            for _ in range(6):
-                irfft2(wave, plane.size)
-            theirs.append(time.perf_counter() - began)
-        tracemalloc.start()
-        result = plane(pressure)
-        memory = tracemalloc.get_traced_memory()[1] / result.nbytes
-        tracemalloc.stop()
-        rows.append(PlaneRow(patches, median(ours), median(theirs), setup, memory))
-    return rows
+    x = (np.arange(patches) - (patches - 1) / 2) * (2.2 * A / patches)
+    pressure = np.sqrt(np.maximum(1 - (x[:, None] ** 2 + x[None, :] ** 2) / A**2, 0))
+    body = Body(((4 * E_STAR, 0.3, 0.3 * A),), (E_STAR, 0.3), 0.25)
+    setup, plane = _timed(lambda: subsurface.stress_plane(0.3 * A, 0, grid_x=x, grid_y=x, body=body))
+    wave = plane.spectrum[0].copy()
+    ours, theirs = [], []
+    for _ in range(repeats):
+        ours.append(_timed(lambda: plane(pressure))[0])
+        theirs.append(_timed(lambda: [irfft2(wave, plane.size) for _ in range(6)])[0])
+    tracemalloc.start()
+    result = plane(pressure)
+    memory = tracemalloc.get_traced_memory()[1] / result.nbytes
+    tracemalloc.stop()
+    return PlaneRow(patches, median(ours), median(theirs), setup, memory)
 
 
-def _setup_seconds(n: int, d: float, coatings: tuple[tuple[float, float, float], ...]) -> float:
-    """Time of the coefficients of an n x n window."""
+def _set_up(n: int, d: float, coatings: Coatings) -> None:
+    """The coefficients of an n x n window."""
     from semianalytic import frf, halfspace, influence
 
     def excess(k: FloatArray) -> FloatArray:
         return frf.compliance_excess(k, coatings, (E_STAR, 0.0))
 
-    began = time.perf_counter()
     thickness = [h for _, _, h in coatings]
     image = influence.split_image(excess, thickness)
     halfspace.surface_deflection(n, n, d, d)
     halfspace.surface_deflection(n, n, d, d, image[1])
     influence.remainder_coefficients(n, d, excess, thickness, image)
-    return time.perf_counter() - began
 
 
 def _measure(solver: str, patches: int, threads: int, repeats: int) -> BenchRow:
     """Run this file as a child and read its row."""
     environment = {**os.environ, "OMP_NUM_THREADS": str(threads), "OPENBLAS_NUM_THREADS": str(threads)}
-    command = [
-        sys.executable,
-        "-m",
-        "verification.bench.contact",
-        solver,
-        str(patches),
-        str(threads),
-        str(repeats),
-    ]
+    words = (solver, *map(str, (patches, threads, repeats)))
+    command = [sys.executable, "-m", "verification.bench.contact", *words]
     child = subprocess.run(command, env=environment, capture_output=True, text=True, check=False)
     if child.returncode:
-        words = child.stderr.strip().splitlines() or ["no message"]
-        raise RuntimeError(f"{solver} on {patches} x {patches} patches failed: {words[-1]}")
+        last = (child.stderr.strip().splitlines() or ["no message"])[-1]
+        raise RuntimeError(f"{solver} on {patches} x {patches} patches failed: {last}")
     row = json.loads(child.stdout.splitlines()[-1])
-    return BenchRow(**{**row, "repeats": tuple(row["repeats"])})
+    return BenchRow(**row | {"repeats": tuple(row["repeats"])})
 
 
 def _child(solver: str, patches: int, threads: int, repeats: int) -> BenchRow:
@@ -290,47 +253,37 @@ def _child(solver: str, patches: int, threads: int, repeats: int) -> BenchRow:
     before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
     times = []
     for _ in range(repeats):
-        began = time.perf_counter()
-        pressure, iterations, convolutions = run(patches, threads)
-        times.append(time.perf_counter() - began)
+        seconds, (pressure, iterations, convolutions) = _timed(lambda: run(patches, threads))
+        times.append(seconds)
         if sum(times) > ENOUGH:
             break
     memory = (resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before) * 1024 / patches**2
-    gap, penetration, load = _judge(pressure)
-    return BenchRow(
-        solver=solver,
-        patches=patches,
-        threads=threads,
-        seconds=median(times),
-        repeats=tuple(times),
-        gap=gap,
-        penetration=penetration,
-        load=load,
-        iterations=iterations,
-        convolutions=convolutions,
-        full_convolution=_full_convolution(patches, threads),
-        memory=memory,
-    )
+    measured = (solver, patches, threads, median(times), tuple(times), *_judge(pressure))
+    return BenchRow(*measured, iterations, convolutions, _full_convolution(patches, threads), memory)
 
 
 def _sphere(x: FloatArray, y: FloatArray) -> FloatArray:
     return (x**2 + y**2) / (2 * R)
 
 
-def _semianalytic(patches: int, threads: int) -> tuple[FloatArray, int, int]:
+def _indented(patches: int, half_width: float, coatings: Coatings, **numerics: Any) -> Any:
     import semianalytic
 
-    s = semianalytic.indent(
+    return semianalytic.indent(
         profile=_sphere,
-        half_width=2 * A,
+        half_width=half_width,
         load=W,
-        coatings=(),
+        coatings=coatings,
         substrate=(E_STAR, 0.0),
         patches=patches,
         tolerance=TOLERANCE["semianalytic"],
         estimate_uncertainty=False,
-        threads=threads,
+        **numerics,
     )
+
+
+def _semianalytic(patches: int, threads: int) -> tuple[FloatArray, int, int]:
+    s = _indented(patches, 2 * A, (), threads=threads)
     return s.patch_pressure, s.diagnostics.iterations, s.diagnostics.convolutions
 
 
@@ -409,14 +362,13 @@ def _full_convolution(n: int, threads: int) -> float:
 
     field = np.zeros((2 * n, 2 * n))
     wave = np.zeros((2 * n, n + 1), dtype=complex)
-    times = []
-    for _ in range(5):
-        began = time.perf_counter()
+
+    def convolve() -> None:
         ducc0.fft.r2c(field, axes=(0, 1), out=wave, nthreads=threads)
-        wave *= 1.0
+        np.multiply(wave, 1.0, out=wave)
         ducc0.fft.c2r(wave, axes=(0, 1), lastsize=2 * n, forward=False, out=field, nthreads=threads)
-        times.append(time.perf_counter() - began)
-    return min(times)
+
+    return min(_timed(convolve)[0] for _ in range(5))
 
 
 if __name__ == "__main__":

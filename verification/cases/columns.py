@@ -16,8 +16,6 @@ from verification.problem.profile import Profile
 from verification.problem.quantity import CURVES, EXTREMES, QUANTITIES, SCALARS
 from verification.sources.registry import PUBLISHED
 
-__all__ = ["PublishedColumn", "columns_of", "si_of"]
-
 
 @dataclass(frozen=True, eq=False)
 class PublishedColumn:
@@ -58,27 +56,21 @@ def si_of(name: str, units: dict[str, float], where: str) -> float:
 
 
 def columns_of(
-    table: TableEntry,
-    content: PublishedTable,
-    units: dict[str, float],
-    problem: Problem,
-    key: str,
+    table: TableEntry, content: PublishedTable, units: dict[str, float], problem: Problem, key: str
 ) -> list[PublishedColumn]:
     content = content.where(table.rows) if table.rows else content
     labels = content.text(table.label) if table.label else ("",) * len(content.rows)
     found = []
     for i, column in enumerate(table.column):
         here = f"{table.file}, column {column.name}"
+        named = f"{here}: quantity {column.quantity!r}"
         if column.quantity not in QUANTITIES:
+            raise PublishedError(f"{named} is unknown; known are {', '.join(QUANTITIES)}")
+        fits = (column.quantity in CURVES) == isinstance(problem, LoadingCurve)
+        if not fits and column.quantity not in SCALARS:
             raise PublishedError(
-                f"{here}: quantity {column.quantity!r} is unknown; known are {', '.join(QUANTITIES)}"
-            )
-        if (column.quantity in CURVES) != isinstance(
-            problem, LoadingCurve
-        ) and column.quantity not in SCALARS:
-            raise PublishedError(
-                f"{here}: quantity {column.quantity!r} does not go with this problem; {', '.join(CURVES)} "
-                "belong to a sphere without a load, all others to a load"
+                f"{named} does not go with this problem; {', '.join(CURVES)} belong to a sphere without a "
+                "load, all others to a load"
             )
         at = column.at or table.at
         if at is None and column.quantity not in SCALARS + EXTREMES:
@@ -117,16 +109,11 @@ def columns_of(
 
 
 def _points(
-    at: PositionEntry | None,
-    content: PublishedTable,
-    units: dict[str, float],
-    problem: Problem,
-    where: str,
+    at: PositionEntry | None, content: PublishedTable, units: dict[str, float], problem: Problem, where: str
 ) -> Points:
     n = len(content.rows)
     if at is None:
         return Points.origin(n)
-
     try:
         unit = si_of(at.unit, units, "at")
 
@@ -179,11 +166,7 @@ def _uncertainty(column: ColumnEntry, content: PublishedTable, counted: NDArray[
 
 
 def _scale(
-    column: ColumnEntry,
-    table: TableEntry,
-    content: PublishedTable,
-    units: dict[str, float],
-    problem: Problem,
+    column: ColumnEntry, table: TableEntry, content: PublishedTable, units: dict[str, float], problem: Problem
 ) -> float:
     """Stresses over the pressure; displacements and strains over the largest of their kind in the table."""
     kind = QUANTITIES[column.quantity].kind

@@ -6,15 +6,21 @@ from typing import Annotated, Any, Literal
 
 from pydantic import AfterValidator, Field, model_validator
 
-from verification.cases.toml import CaseError, Length, Modulus, Poisson, Strict, Text, read_bounded, read_toml
+from verification.cases.toml import (
+    CaseError,
+    Friction,
+    Poisson,
+    Positive,
+    Strict,
+    Text,
+    read_bounded,
+    read_toml,
+)
 from verification.judging.claims import EDGE, standard_claims
 from verification.judging.verdict import Claim
 from verification.problem.contact import CoatedContact
 from verification.problem.profile import Line, line_of, lines_of
 from verification.sources.registry import METHODS, sources_of
-
-__all__ = ["Case", "parse_case", "read_case", "refuse_unfit_scales", "shipped_cases"]
-
 
 CASES = Path(__file__).parent / "shipped" / "contact"
 
@@ -43,13 +49,13 @@ class Case:
 
 
 class _Substrate(Strict):
-    E: Modulus
+    E: Positive
     nu: Poisson
 
 
 class _Coating(_Substrate):
-    thickness: Length | None = None
-    thickness_over_a_h: Length | None = None
+    thickness: Positive | None = None
+    thickness_over_a_h: Positive | None = None
 
     @model_validator(mode="after")
     def _one_thickness(self) -> "_Coating":
@@ -62,9 +68,9 @@ class _Coating(_Substrate):
 
 
 class _Problem(Strict):
-    radius: Length
-    load: Annotated[float, Field(gt=0)]
-    friction: Annotated[float, Field(ge=0, le=2)] = 0.0
+    radius: Positive
+    load: Positive
+    friction: Friction = 0.0
     substrate: _Substrate
     coatings: Annotated[list[_Coating], Field(default_factory=list, max_length=50)]
 
@@ -123,45 +129,31 @@ def parse_case(raw: bytes, path: Path) -> Case:
     refuse_unfit_scales(path, problem)
     if checked.resolve and not problem.coatings:
         raise CaseError(f"{path}: resolve: requires a coating; add one, or leave resolve out")
-    return Case(
-        name=path.stem,
-        title=checked.title,
-        problem=problem,
-        claims=_claims(path, checked, problem),
-        source=checked.source,
-        numerics={
-            method: getattr(checked, method).model_dump(exclude_none=True)
-            for method in METHODS
-            if method in _CaseFile.model_fields
-        },
-        text=text,
-        resolve=checked.resolve,
-    )
+    numerics = {
+        method: getattr(checked, method).model_dump(exclude_none=True)
+        for method in METHODS
+        if method in _CaseFile.model_fields
+    }
+    claims = _claims(path, checked, problem)
+    return Case(path.stem, checked.title, problem, claims, checked.source, numerics, text, checked.resolve)
 
 
 def refuse_unfit_scales(path: Path, problem: CoatedContact) -> None:
     """Raise CaseError beyond the range of the parabolic sphere, of a method or of floating point."""
-    if problem.a_h > problem.radius:
-        raise CaseError(
-            f"{path}: problem.load: gives a contact radius of {problem.a_h:.3g} m on a sphere of "
-            f"{problem.radius:.3g} m; lower the load"
-        )
-    if not 1e-12 < problem.a_h < 1e3:
-        raise CaseError(
-            f"{path}: problem: contact radius a_h = {problem.a_h:.3g} m; check units of radius, load, E"
-        )
-    for i, (_, _, thickness) in enumerate(problem.coatings):
-        if not 1e-3 <= thickness / problem.a_h <= 1e3:
-            raise CaseError(
-                f"{path}: problem.coatings.{i}.thickness: {thickness / problem.a_h:.3g} times the contact "
-                f"radius {problem.a_h:.3g} m; both methods support 1e-3 to 1e3"
-            )
-    stiffest = max([E for E, _, _ in problem.coatings] + [problem.substrate[0]])
-    softest = min([E for E, _, _ in problem.coatings] + [problem.substrate[0]])
-    if stiffest > 1e4 * softest:
-        raise CaseError(
-            f"{path}: problem: moduli differ {stiffest / softest:.3g} times; at most 1e4 is supported"
-        )
+    a_h, R = problem.a_h, problem.radius
+    moduli = [*(E for E, _, _ in problem.coatings), problem.substrate[0]]
+    contrast = max(moduli) / min(moduli)
+    if a_h > R:
+        reason = f".load: gives a contact radius of {a_h:.3g} m on a sphere of {R:.3g} m; lower the load"
+        raise CaseError(f"{path}: problem{reason}")
+    if not 1e-12 < a_h < 1e3:
+        raise CaseError(f"{path}: problem: contact radius a_h = {a_h:.3g} m; check units of radius, load, E")
+    for i, (_, _, h) in enumerate(problem.coatings):
+        if not 1e-3 <= h / a_h <= 1e3:
+            reason = f"{h / a_h:.3g} times the contact radius {a_h:.3g} m; both methods support 1e-3 to 1e3"
+            raise CaseError(f"{path}: problem.coatings.{i}.thickness: {reason}")
+    if contrast > 1e4:
+        raise CaseError(f"{path}: problem: moduli differ {contrast:.3g} times; at most 1e4 is supported")
 
 
 def _claims(path: Path, checked: _CaseFile, problem: CoatedContact) -> tuple[Claim, ...]:

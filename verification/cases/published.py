@@ -13,12 +13,11 @@ from verification.cases.schema import LayerEntry, ProblemEntry, PublishedFile
 from verification.cases.table import FOLDER, UNITS, PublishedError, read_table
 from verification.cases.toml import CaseError, load_toml, read_bounded, read_toml
 from verification.judging.verdict import Claim
+from verification.problem.arrays import Coatings
 from verification.problem.contact import CoatedContact, PrescribedLoad
 from verification.problem.loading import CONTROLS, PUNCH, LoadingCurve, Problem
 from verification.problem.quantity import QUANTITIES
 from verification.sources.registry import EXACT, METHODS, PUBLISHED, SOURCES
-
-__all__ = ["PublishedCase", "is_published", "parse_published", "published_cases", "read_published"]
 
 # Largest admissible uncertainty of a method, as on the lines of every other case; the digitisation
 # uncertainty is added to it.
@@ -92,10 +91,7 @@ def parse_published(raw: bytes, path: Path) -> PublishedCase:
         ),
         columns=tuple(columns),
         citation={
-            "year": checked.year,
-            "primary_read": checked.primary_read,
-            "read": checked.read,
-            "remark": checked.remark,
+            **checked.model_dump(include={"year", "primary_read", "read", "remark"}),
             "notes": "\n".join(dict.fromkeys(notes)),
         },
         source=checked.source,
@@ -119,24 +115,21 @@ def _with_points(problem: Problem, columns: list[PublishedColumn]) -> Problem:
 
 def _problem(p: ProblemEntry) -> Problem:
     length, stress, force = (
-        si_of(value, UNITS, f"problem.{key}")
-        for key, value in (
-            ("length_unit", p.length_unit),
-            ("stress_unit", p.stress_unit),
-            ("load_unit", p.load_unit),
-        )
+        si_of(getattr(p, key), UNITS, f"problem.{key}") for key in ("length_unit", "stress_unit", "load_unit")
     )
     substrate = (p.substrate.E * stress, p.substrate.nu)
+
+    def layers(a_h: float | None) -> Coatings:
+        return tuple((c.E * stress, c.nu, _thickness(c, length, a_h)) for c in p.coatings)
+
     if p.radius is not None and p.load is not None:
         bare = CoatedContact(p.radius * length, p.load * force, (), substrate, p.friction)
-        coatings = tuple((c.E * stress, c.nu, _thickness(c, length, bare.a_h)) for c in p.coatings)
-        return replace(bare, coatings=coatings)
+        return replace(bare, coatings=layers(bare.a_h))
+    coatings = layers(None)
     if p.radius is not None:
-        coatings = tuple((c.E * stress, c.nu, _thickness(c, length, None)) for c in p.coatings)
         return LoadingCurve(p.radius * length, CONTROLS[0], (1.0,), coatings, substrate)
     assert p.pressure is not None
     assert p.load_radius is not None
-    coatings = tuple((c.E * stress, c.nu, _thickness(c, length, None)) for c in p.coatings)
     return PrescribedLoad(p.pressure * stress, p.load_radius * length, coatings, substrate, p.friction)
 
 
@@ -152,11 +145,10 @@ def _units(problem: Problem) -> dict[str, float]:
     """The units of the tables of this problem: UNITS with its own scales."""
     if isinstance(problem, LoadingCurve):
         R = problem.radius
-        layer: dict[str, float] = {}
-        if problem.coatings:
-            h = problem.coatings[0][2]
-            layer = {"h": h, "h^2/R": h**2 / R, "E* h^3/R": problem.E_star * h**3 / R}
-        return UNITS | {"R": R} | layer
+        if not problem.coatings:
+            return UNITS | {"R": R}
+        h = problem.coatings[0][2]
+        return UNITS | {"R": R, "h": h, "h^2/R": h**2 / R, "E* h^3/R": problem.E_star * h**3 / R}
     if isinstance(problem, PrescribedLoad):
         return UNITS | {"q": problem.pressure, "a": problem.load_radius}
     return UNITS | {"a_h": problem.a_h, "p_h": problem.p_h, "delta_h": problem.delta_h}

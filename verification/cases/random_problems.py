@@ -11,8 +11,6 @@ from math import log
 
 import numpy as np
 
-__all__ = ["FRICTION", "MOST_COATINGS", "POISSON", "RATIO", "THICKNESS", "THINNEST", "Draw", "draw"]
-
 # Ranges of the problems.
 RATIO = (0.1, 10.0)  # E_i / E of the substrate, of every coating
 THICKNESS = (0.1, 5.0)  # h / a_h, of each coating or of all together

@@ -4,11 +4,8 @@ from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
-from verification.cases.toml import Strict, Text
+from verification.cases.toml import Friction, Positive, Strict, Text
 
-__all__ = ["ColumnEntry", "LayerEntry", "PositionEntry", "ProblemEntry", "PublishedFile", "TableEntry"]
-
-Positive = Annotated[float, Field(gt=0)]
 # 1/2 is allowed: the finite element method extrapolates to the incompressible limit.
 Poisson = Annotated[float, Field(gt=-1, le=0.5)]
 Cells = Annotated[dict[str, str | float], Field(max_length=20)]
@@ -34,7 +31,7 @@ class ProblemEntry(Strict):
     load_unit: Text = "N"
     substrate: LayerEntry
     coatings: Annotated[list[LayerEntry], Field(default_factory=list, max_length=50)]
-    friction: Annotated[float, Field(ge=0, le=2)] = 0.0
+    friction: Friction = 0.0
     pressure: Positive | None = None
     load_radius: Positive | None = None
     radius: Positive | None = None
@@ -45,10 +42,8 @@ class ProblemEntry(Strict):
         disc = (self.pressure is not None) + (self.load_radius is not None)
         sphere = (self.radius is not None) + (self.load is not None)
         if (disc, sphere) not in ((2, 0), (0, 2)) and not (disc == 0 and self.load is None and self.radius):
-            raise ValueError(
-                "needs pressure and load_radius (a uniform disc), radius and load (a sphere), or radius "
-                "alone (a loading curve)"
-            )
+            fit = "pressure and load_radius (a uniform disc), radius and load (a sphere)"
+            raise ValueError(f"needs {fit}, or radius alone (a loading curve)")
         if self.load is None and self.friction and disc == 0:
             raise ValueError("friction belongs to a disc, or to a sphere under a load")
         return self

@@ -10,28 +10,14 @@ from dataclasses import dataclass, replace
 from math import floor, isfinite, log10
 from pathlib import Path
 
-__all__ = ["FOLDER", "MAX_BYTES", "UNITS", "PublishedError", "PublishedTable", "read_table"]
-
 FOLDER = Path(__file__).parent / "shipped" / "published"
 MAX_BYTES = 1_000_000
 
 INCH, PSI = 0.0254, 6894.757293168361
+_STRESSES = {"Pa": 1.0, "kPa": 1e3, "MPa": 1e6, "GPa": 1e9, "psi": PSI, "ksi": 1e3 * PSI}
+_LENGTHS = {"m": 1.0, "mm": 1e-3, "um": 1e-6, "in": INCH}
 # SI value of each unit of a table.
-UNITS = {
-    "Pa": 1.0,
-    "kPa": 1e3,
-    "MPa": 1e6,
-    "GPa": 1e9,
-    "psi": PSI,
-    "ksi": 1e3 * PSI,
-    "m": 1.0,
-    "mm": 1e-3,
-    "um": 1e-6,
-    "in": INCH,
-    "N": 1.0,
-    "1": 1.0,
-    "microstrain": 1e-6,
-}
+UNITS = _STRESSES | _LENGTHS | {"N": 1.0, "1": 1.0, "microstrain": 1e-6}
 
 
 class PublishedError(ValueError):
@@ -63,9 +49,8 @@ class PublishedTable:
     def text(self, column: str) -> tuple[str, ...]:
         """The cells of a column as printed. Raises PublishedError where there is no such column."""
         if column not in self.columns:
-            raise PublishedError(
-                f"{self.path.name}: has no column {column!r}; it has {', '.join(self.columns)}"
-            )
+            known = ", ".join(self.columns)
+            raise PublishedError(f"{self.path.name}: has no column {column!r}; it has {known}")
         number = self.columns.index(column)
         return tuple(row[number] for row in self.rows)
 
@@ -95,9 +80,8 @@ class PublishedTable:
             value = float("nan")
         if not isfinite(value):
             shown = repr(cell if len(cell) <= 40 else cell[:37] + "...")
-            raise PublishedError(
-                f"{self.path.name}, line {self.lines[row]}, column {column}: {shown} is not a finite number"
-            )
+            where = f"{self.path.name}, line {self.lines[row]}, column {column}"
+            raise PublishedError(f"{where}: {shown} is not a finite number")
         return value
 
 
@@ -130,10 +114,8 @@ def read_table(path: Path) -> PublishedTable:
             header = cells
             continue
         if len(cells) != len(header):
-            raise PublishedError(
-                f"{path.name}, line {number}: {len(cells)} cells under {len(header)} columns "
-                f"({', '.join(header)})"
-            )
+            found = f"{len(cells)} cells under {len(header)} columns ({', '.join(header)})"
+            raise PublishedError(f"{path.name}, line {number}: {found}")
         rows.append(cells)
         lines.append(number)
     if header is None or not rows:

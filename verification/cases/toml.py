@@ -6,34 +6,12 @@ from typing import Annotated, Any, TypeVar
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
-__all__ = [
-    "MAX_BYTES",
-    "MAX_DOTS",
-    "MAX_NAME",
-    "CaseError",
-    "Checked",
-    "Length",
-    "Modulus",
-    "Poisson",
-    "Strict",
-    "Text",
-    "first_error",
-    "load_toml",
-    "read_bounded",
-    "read_toml",
-]
-
 Checked = TypeVar("Checked", bound=BaseModel)
 
-
 MAX_BYTES = 250_000
-
-
 # Python's TOML reader takes time and memory with the square of the parts of a dotted key: 100,000 of them, in
 # 200 kB, exhaust 20 GB. A line of a case file has a few dots.
 MAX_DOTS = 250
-
-
 MAX_NAME = 100
 RENAMED = {"laws": "resolve"}  # keys of earlier versions
 
@@ -48,15 +26,9 @@ class Strict(BaseModel):
     model_config = ConfigDict(extra="forbid", strict=True, frozen=True, allow_inf_nan=False)
 
 
-Modulus = Annotated[float, Field(gt=0)]
-
-
+Positive = Annotated[float, Field(gt=0)]
 Poisson = Annotated[float, Field(gt=-1, lt=0.5)]
-
-
-Length = Annotated[float, Field(gt=0)]
-
-
+Friction = Annotated[float, Field(ge=0, le=2)]
 Text = Annotated[str, Field(min_length=1, max_length=500)]
 
 
@@ -64,9 +36,8 @@ def read_bounded(path: Path, kind: str, holds: str) -> bytes:
     """The content of a .toml file of a ``kind``; ``holds`` names its content. Raises CaseError."""
     # The name goes into file names, terminals and tables.
     if len(path.stem) > MAX_NAME or not path.stem.isprintable():
-        raise CaseError(
-            f"{path.name[:MAX_NAME]!r}: give the file a name of at most {MAX_NAME} printable characters"
-        )
+        rule = f"give the file a name of at most {MAX_NAME} printable characters"
+        raise CaseError(f"{path.name[:MAX_NAME]!r}: {rule}")
     try:
         if not path.is_file():
             what = "is a directory" if path.is_dir() else "there is no such file"

@@ -8,38 +8,20 @@ from rich.markup import escape
 
 from verification.cases.contact import Case, parse_case
 from verification.cases.random_problems import draw
-from verification.commands.common import (
-    RECORDS,
-    STYLE,
-    AsJson,
-    Flag,
-    Jobs,
-    Output,
-    Quiet,
-    RecordsFolder,
-    Resume,
-    exit_code,
-    named_table,
-    no_gmsh,
-    one_line,
-    print_error,
-    print_json,
-    print_out,
-    refuse_installed,
-    run_info,
-)
-from verification.commands.solving import kept_results, solve
+from verification.commands.common.exits import CommandError, exit_code, with_exit_code
+from verification.commands.common.folders import RECORDS, require_checkout
+from verification.commands.common.options import AsJson, Flag, Jobs, Output, Quiet, RecordsFolder, Resume
+from verification.commands.common.terminal import STYLE, named_table, one_line, print_json, print_out
+from verification.commands.solving import kept_results, require_gmsh, run_info, solve, worker_count
 from verification.credibility.alarms import AlarmRecord, counted, write_record
-from verification.running.pool import cores
 from verification.running.records import plain
-from verification.running.store import StoreError, locked, write_atomically
+from verification.running.store import locked, write_atomically
 from verification.running.tasks import case_task
-
-__all__ = ["alarms"]
 
 MOST_SHOWN = 12
 
 
+@with_exit_code
 def alarms(
     *,
     count: int = 24,
@@ -57,54 +39,36 @@ def alarms(
 
     One to three coatings, E1/E2 from 0.1 to 10, h/a_h from 0.1 to 5, Poisson ratios to 0.49, friction to 0.5;
     the same seed draws the same problems everywhere. Each is left as a case file under OUTPUT/problems, all
-    of them in a report. Examples:
+    of them in a report.
 
-        coatcheck alarms --record
-        coatcheck alarms --count 48 --seed 2 --output reports/more_alarms
-
-    Exit codes are those of coatcheck run.
-
-    Parameters
-    ----------
-    count
-        Number of problems.
-    seed
-        Seed of the random numbers.
-    output
-        Directory of the report, of the results, of the case files.
-    record
-        Store the record as RECORDS/alarms.json, for the credibility page of every report.
-    time_limit
-        Seconds one problem may take before it is stopped and counted as alarms.
+    Args:
+        count: Number of problems.
+        seed: Seed of the random numbers.
+        output: Directory of the report, of the results, of the case files.
+        record: Store the record as RECORDS/alarms.json, for the credibility page of every report.
+        time_limit: Seconds one problem may take before it is stopped and counted as alarms.
     """
-    jobs = cores() if jobs is None else jobs
-    if jobs < 1 or not time_limit > 0 or count < 1 or seed < 0:
-        return print_error(
-            f"--count = {count}, --seed = {seed}, --jobs = {jobs}, --time-limit = {time_limit:g}; only the "
-            "seed may be zero, none negative"
-        )
-    if record and (code := refuse_installed(records, "--records")) is not None:
-        return code
-    if (code := no_gmsh()) is not None:
-        return code
+    jobs = worker_count(jobs, time_limit)
+    if count < 1 or seed < 0:
+        raise CommandError(f"--count = {count}, --seed = {seed}; only the seed may be zero, none negative")
+    if record:
+        require_checkout(records, "--records")
+    require_gmsh()
 
     from verification.report.material import Material
     from verification.report.write import write_report
 
     started = datetime.datetime.now(datetime.UTC)
-    try:
-        with locked(output):
-            cases = [_case(seed, number, output) for number in range(count)]
-            kept = kept_results(cases, output) if resume else {}
-            tasks = [case_task(case, output) for case in cases if case.name not in kept]
-            solved = {r.name: r for r in solve(tasks, jobs, time_limit, quiet or as_json)}
-            results = [kept.get(case.name) or solved[case.name] for case in cases]
-            info = run_info(f"coatcheck alarms --count {count} --seed {seed}", started, jobs)
-            page = write_report(Material(results, info), output)
-            found = counted(results, seed, info)
-            stored = write_record(records, found) if record else None
-    except (StoreError, OSError) as error:
-        return print_error(str(error))
+    with locked(output):
+        cases = [_case(seed, number, output) for number in range(count)]
+        kept = kept_results(cases, output) if resume else {}
+        tasks = [case_task(case, output) for case in cases if case.name not in kept]
+        solved = {r.name: r for r in solve(tasks, jobs, time_limit, quiet or as_json)}
+        results = [kept.get(case.name) or solved[case.name] for case in cases]
+        info = run_info(f"coatcheck alarms --count {count} --seed {seed}", started, jobs)
+        page = write_report(Material(results, info), output)
+        found = counted(results, seed, info)
+        stored = write_record(records, found) if record else None
     if as_json:
         print_json(plain(asdict(found)))
     elif not quiet:

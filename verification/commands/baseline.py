@@ -7,61 +7,39 @@ from pathlib import Path
 from rich.markup import escape
 
 from verification.cases.contact import shipped_cases
-from verification.commands.common import (
-    BASELINE,
-    AsJson,
-    BaselineFolder,
-    Quiet,
-    named_table,
-    print_error,
-    print_json,
-    print_out,
-    refuse_installed,
-)
+from verification.commands.common.exits import CommandError, with_exit_code
+from verification.commands.common.folders import BASELINE, require_checkout
+from verification.commands.common.options import AsJson, BaselineFolder, Quiet
+from verification.commands.common.terminal import named_table, print_json, print_out
 from verification.judging.verdict import Outcome
 from verification.regression.baseline import Baseline, Update, updated
 from verification.regression.record import path_in, read_baseline, write_baseline
-from verification.running.store import StoreError, locked
+from verification.running.store import locked
 from verification.running.stored import StoredRun, confirm, read_run
 
-__all__ = ["show", "update"]
 
-
+@with_exit_code
 def update(
-    run: Path = Path("reports"),
-    *,
-    why: str = "",
-    baseline: BaselineFolder = BASELINE,
-    quiet: Quiet = False,
+    run: Path = Path("reports"), *, why: str = "", baseline: BaselineFolder = BASELINE, quiet: Quiet = False
 ) -> int:
     """Make a stored default run the baseline; no other command changes it.
 
-    The run must be whole, hold every shipped case, and agree throughout. Example:
+    The run must be whole, hold every shipped case, and agree throughout.
 
-        coatcheck run && coatcheck baseline update --why "finer grids: p0 nearer to exact by 3e-7"
-
-    Parameters
-    ----------
-    run
-        Directory of the run, or its report.json.
-    why
-        The reason, stored with date, commit and versions in the baseline's history; required.
+    Args:
+        run: Directory of the run, or its report.json.
+        why: The reason, stored with date, commit and versions in the baseline's history; required.
     """
     if not why.strip():
-        return print_error('--why is empty; give the reason: coatcheck baseline update --why "..."')
-    if (code := refuse_installed(baseline, "--baseline")) is not None:
-        return code
-    try:
-        found = read_run(run)
-        unfit = _unfit(found)
-        if unfit:
-            return print_error(unfit)
-        confirm(found)
-        with locked(baseline):
-            made = updated(read_baseline(baseline), found.results, found.info, " ".join(why.split()), _now())
-            path = write_baseline(baseline, made)
-    except StoreError as error:
-        return print_error(str(error))
+        raise CommandError('--why is empty; give the reason: coatcheck baseline update --why "..."')
+    require_checkout(baseline, "--baseline")
+    found = read_run(run)
+    _refuse_unfit(found)
+    confirm(found)
+    now = datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds")
+    with locked(baseline):
+        made = updated(read_baseline(baseline), found.results, found.info, " ".join(why.split()), now)
+        path = write_baseline(baseline, made)
     if not quiet:
         changed = made.last.changes
         size = path.stat().st_size / 1e3
@@ -74,14 +52,12 @@ def update(
     return 0
 
 
+@with_exit_code
 def show(*, baseline: BaselineFolder = BASELINE, as_json: AsJson = False) -> int:
     """Show the numbers in the baseline, case by case, with every update and its reason."""
-    try:
-        stored = read_baseline(baseline)
-    except StoreError as error:
-        return print_error(str(error))
+    stored = read_baseline(baseline)
     if stored is None:
-        return print_error(
+        raise CommandError(
             f'{path_in(baseline)}: there is no baseline; make one with: coatcheck baseline update --why "..."'
         )
     if as_json:
@@ -97,23 +73,20 @@ def show(*, baseline: BaselineFolder = BASELINE, as_json: AsJson = False) -> int
     return 0
 
 
-def _unfit(run: StoredRun) -> str | None:
-    """The reason why a run cannot be a baseline; None where it can."""
+def _refuse_unfit(run: StoredRun) -> None:
+    """Raises CommandError with the reason why a run cannot be a baseline."""
     names = {result.name for result in run.results}
     lacking = [name for name in shipped_cases() if name not in names]
     if lacking:
-        return (
+        raise CommandError(
             f"{run.path}: lacks {len(lacking)} of the shipped cases, first {lacking[0]}; a baseline is made "
             "from a default run: coatcheck run"
         )
     for result in run.results:
         if result.outcome is not Outcome.AGREES:
-            return f"{run.path}: {result.name} {result.outcome}; a baseline is made where every case agrees"
-    return None
-
-
-def _now() -> str:
-    return datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds")
+            raise CommandError(
+                f"{run.path}: {result.name} {result.outcome}; a baseline is made where every case agrees"
+            )
 
 
 def _print(stored: Baseline) -> None:

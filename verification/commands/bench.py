@@ -1,28 +1,26 @@
 """coatcheck bench: the semi-analytical contact timed beside other codes."""
 
+from collections.abc import Sequence
 from dataclasses import asdict
-from typing import Annotated
+from typing import Annotated, Any
 
 from cyclopts import Parameter
 from rich.console import Console
 from rich.table import Table
 
-from verification.commands.common import EXIT, AsJson, Flag, print_error, print_json
+from verification.commands.common.exits import EXIT, CommandError, with_exit_code
+from verification.commands.common.options import AsJson, Flag
+from verification.commands.common.terminal import print_json
 from verification.judging.verdict import Outcome
 
-__all__ = ["bench"]
+Numbers = Annotated[tuple[int, ...], Parameter(consume_multiple=True, negative="")]
 
 
+@with_exit_code
 def bench(
     *,
-    sizes: Annotated[
-        tuple[int, ...], Parameter(name=["--sizes", "-N"], consume_multiple=True, negative="")
-    ] = (
-        128,
-        256,
-        512,
-    ),
-    threads: Annotated[tuple[int, ...], Parameter(consume_multiple=True, negative="")] = (1, 2),
+    sizes: Annotated[Numbers, Parameter(name=["--sizes", "-N"])] = (128, 256, 512),
+    threads: Numbers = (1, 2),
     repeats: int = 5,
     coated: Flag = False,
     plane: Flag = False,
@@ -34,21 +32,15 @@ def bench(
     it with CMake, a C++17 compiler and Eigen). The full set takes half an hour:
     coatcheck bench --sizes 128 256 512 1024 2048 --coated --plane
 
-    Parameters
-    ----------
-    sizes
-        Patches along a side of the square [-2a, 2a]^2.
-    threads
-        Numbers of threads to measure with.
-    repeats
-        Measurements of each; the median counts.
-    coated
-        Also count the iterations of coated solids on each of the grids.
-    plane
-        Also time the six stresses of a plane beside six inverse real FFTs.
+    Args:
+        sizes: Patches along a side of the square [-2a, 2a]^2.
+        threads: Numbers of threads to measure with.
+        repeats: Measurements of each; the median counts.
+        coated: Also count the iterations of coated solids on each of the grids.
+        plane: Also time the six stresses of a plane beside six inverse real FFTs.
     """
     if min(sizes) < 16 or max(sizes) > 4096 or min(threads) < 1 or repeats < 1:
-        return print_error("--sizes from 16 to 4096, --threads and --repeats from 1")
+        raise CommandError("--sizes from 16 to 4096, --threads and --repeats from 1")
     from verification.bench.contact import coated_ratios, ratios, run_bench, run_coated, run_plane
 
     console = Console(stderr=True)
@@ -62,13 +54,9 @@ def bench(
         found.append((f"setting it up / one evaluation, {p.patches} patches", p.setup_seconds / p.seconds))
     found += coated_ratios(layered)
     if as_json:
-        content = {
-            "rows": [asdict(r) for r in rows],
-            "ratios": dict(found),
-            "coated": [asdict(r) for r in layered],
-            "planes": [asdict(r) for r in planes],
-        }
-        print_json(content)
+        records: dict[str, Sequence[Any]] = {"rows": rows, "coated": layered, "planes": planes}
+        content = {name: [asdict(record) for record in some] for name, some in records.items()}
+        print_json(content | {"ratios": dict(found)})
         return 0
     figures = Table("figure", "value", box=None, header_style="bold")
     for name, value in found:

@@ -5,20 +5,10 @@ from pathlib import Path
 
 from rich.markup import escape
 
-from verification.commands.common import (
-    DRIFTED,
-    EXIT,
-    STYLE,
-    AsJson,
-    Output,
-    Quiet,
-    named_table,
-    nearest_run,
-    one_line,
-    print_error,
-    print_json,
-    print_out,
-)
+from verification.commands.common.exits import DRIFTED, EXIT, CommandError, with_exit_code
+from verification.commands.common.folders import nearest_run
+from verification.commands.common.options import AsJson, Output, Quiet
+from verification.commands.common.terminal import STYLE, named_table, one_line, print_json, print_out
 from verification.judging.verdict import Outcome
 from verification.regression.comparison import RunComparison, compare_runs
 from verification.regression.drift import State
@@ -26,33 +16,21 @@ from verification.running.records import plain
 from verification.running.store import StoreError, write_atomically
 from verification.running.stored import read_run
 
-__all__ = ["compare"]
-
 MOST_SHOWN = 8
 
 
+@with_exit_code
 def compare(
-    first: Path,
-    second: Path,
-    *,
-    output: Output | None = None,
-    quiet: Quiet = False,
-    as_json: AsJson = False,
+    first: Path, second: Path, *, output: Output | None = None, quiet: Quiet = False, as_json: AsJson = False
 ) -> int:
-    """Show two runs side by side: verdicts that changed, numbers that drifted, versions, times. Example:
-
-        coatcheck compare reports reports/mine --output compare.html
+    """Show two runs side by side: verdicts that changed, numbers that drifted, versions, times.
 
     Exit codes: 0 nothing changed, 5 numbers differ, 1 a comparison no longer agrees, 2 bad input.
 
-    Parameters
-    ----------
-    first
-        Directory of a run, or its report.json.
-    second
-        The run that is compared with it.
-    output
-        Also write the comparison to this HTML file.
+    Args:
+        first: Directory of a run, or its report.json.
+        second: The run that is compared with it.
+        output: Also write the comparison to this HTML file.
     """
     try:
         found = compare_runs(read_run(first), read_run(second))
@@ -61,7 +39,7 @@ def compare(
 
             write_atomically(output, comparison_page(found).encode("utf-8", errors="replace"))
     except StoreError as error:
-        return print_error(f"{error}{nearest_run(first) or nearest_run(second)}")
+        raise CommandError(f"{error}{nearest_run(first) or nearest_run(second)}") from None
     if as_json:
         print_json({**plain(asdict(found)), "drifted": found.drifted, "worse": found.worse})
     elif not quiet:
@@ -92,6 +70,6 @@ def _print(found: RunComparison) -> None:
         print_out(f"... with {more} more, which --output or --json shows")
     for name, then, now in found.versions:
         print_out(escape(f"{name}: {one_line(then)} to {one_line(now)}"))
-    from verification.report.comparison import comparison_sentence
+    from verification.report.comparison import comparison_message
 
-    print_out(comparison_sentence(found))
+    print_out(comparison_message(found))

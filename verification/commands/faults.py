@@ -9,38 +9,20 @@ from typing import TYPE_CHECKING, Annotated
 from cyclopts import Parameter
 from rich.markup import escape
 
-from verification.commands.common import (
-    EXIT,
-    RECORDS,
-    AsJson,
-    Flag,
-    Jobs,
-    Output,
-    Quiet,
-    RecordsFolder,
-    Resume,
-    did_you_mean,
-    named_table,
-    no_gmsh,
-    print_error,
-    print_json,
-    print_out,
-    refuse_installed,
-    run_info,
-)
-from verification.commands.solving import kept_results, solve
-from verification.judging.verdict import Outcome
-from verification.running.pool import cores
-from verification.running.store import StoreError, locked, write_atomically
+from verification.commands.common.exits import CommandError, no_result, with_exit_code
+from verification.commands.common.folders import RECORDS, require_checkout
+from verification.commands.common.options import AsJson, Flag, Jobs, Output, Quiet, RecordsFolder, Resume
+from verification.commands.common.terminal import did_you_mean, named_table, print_json, print_out
+from verification.commands.solving import kept_results, require_gmsh, run_info, solve, worker_count
+from verification.running.store import locked, write_atomically
 from verification.running.tasks import case_task
 
 if TYPE_CHECKING:
     from verification.credibility.faults.planting import Fault
     from verification.credibility.faults.record import Record
 
-__all__ = ["faults"]
 
-
+@with_exit_code
 def faults(
     *names: str,
     group: str | None = None,
@@ -57,90 +39,72 @@ def faults(
     """Plant one mistake at a time in the running code; report which checks of the default run catch it.
 
     Without arguments every fault is tried, then the negative controls: nothing planted, so that no check
-    should fail. The source on disk is never changed. Examples:
-
-        coatcheck faults --record
-        coatcheck faults --group finite_elements
-        coatcheck faults kap_sign no_padding
+    should fail. The source on disk is never changed.
 
     Exit codes: 0 at least 95 % are caught, every survivor explained; 1 not so; 2 bad input.
 
-    Parameters
-    ----------
-    names
-        Names of faults, see --list; all of them unless given.
-    group
-        Try one group: material, frf, conversion_fft, conjugate_gradients, stress, finite_elements,
-        references, harness.
-    listed
-        List the faults instead of trying them.
-    output
-        Directory of the matrix, faults.html with faults.json, of the clean runs, of the trials.
-    record
-        Store the matrix of all faults as RECORDS/faults.json, which the credibility page of a report reads.
-    time_limit
-        Seconds one fault may take before it is stopped and counted as not tried.
+    Args:
+        names: Names of faults, see --list; all of them unless given.
+        group: Try one group: material, frf, conversion_fft, conjugate_gradients, stress, finite_elements,
+            references, harness.
+        listed: List the faults instead of trying them.
+        output: Directory of the matrix, faults.html with faults.json, of the clean runs, of the trials.
+        record: Store the matrix of all faults as RECORDS/faults.json, for the credibility page of a report.
+        time_limit: Seconds one fault may take before it is stopped and counted as not tried.
     """
-    jobs = cores() if jobs is None else jobs
-    if jobs < 1 or not time_limit > 0:
-        return print_error(f"--jobs = {jobs}, --time-limit = {time_limit:g}; both must be positive")
+    jobs = worker_count(jobs, time_limit)
     from verification.credibility.faults.catalogue import CONTROLS, FAULTS, GROUPS, chosen
 
     if group is not None and (group not in GROUPS or names):
         remedy = "give a group or names, not both" if names else f"choose one of {', '.join(GROUPS)}"
-        return print_error(f"--group = {group}: {remedy}{did_you_mean(group, GROUPS)}")
+        raise CommandError(f"--group = {group}: {remedy}{did_you_mean(group, GROUPS)}")
     try:
         wanted = chosen(names, group)
     except KeyError as error:
         name = str(error.args[0])
         near = did_you_mean(name, FAULTS | CONTROLS)
-        return print_error(f"{name}: no fault has this name, see coatcheck faults --list{near}")
+        raise CommandError(f"{name}: no fault has this name, see coatcheck faults --list{near}") from None
     if listed:
         _list(wanted, as_json)
         return 0
     if record and (names or group):
-        return print_error("--record stores the matrix of all faults; leave names and --group out")
-    if record and (code := refuse_installed(records, "--records")) is not None:
-        return code
-    if (code := no_gmsh()) is not None:
-        return code
+        raise CommandError("--record stores the matrix of all faults; leave names and --group out")
+    if record:
+        require_checkout(records, "--records")
+    require_gmsh()
 
     from verification.credibility.faults import campaign
     from verification.credibility.faults.record import to_json, write_record
     from verification.report.credibility.faults import faults_page
 
     started = datetime.datetime.now(datetime.UTC)
-    try:
-        with locked(output):
-            cases = campaign.clean_cases(wanted)
-            clean = kept_results(cases, campaign.clean_folder(output)) if resume else {}
-            tasks = [case_task(c, campaign.clean_folder(output)) for c in cases if c.name not in clean]
-            if reason := campaign.failed_source(
-                [*clean.values(), *solve(tasks, jobs, time_limit, quiet or as_json)]
-            ):
-                print_error(reason)
-                return EXIT[Outcome.NO_RESULT]
-            kept = {f.name: t for f in wanted if resume and (t := campaign.kept_trial(f, output))}
-            # the long ones first, so that no core waits at the end
-            order = sorted((f for f in wanted if f.name not in kept), key=campaign.cost, reverse=True)
-            trials = [campaign.trial_task(fault, output) for fault in order]
-            fresh = {trial.fault: trial for trial in solve(trials, jobs, time_limit, quiet or as_json)}
-            info = run_info("coatcheck faults", started, jobs)
-            found = campaign.record_of(
-                [kept.get(f.name) or fresh[f.name] for f in wanted],
-                started=info.started,
-                seconds=info.seconds,
-                commit=info.commit,
-                machine=f"{info.machine}, {jobs} jobs",
-                versions=info.versions,
-            )
-            write_record(output / campaign.RECORD, found)
-            page = output / "faults.html"
-            write_atomically(page, faults_page(found))
-            if record:
-                write_record(records / campaign.RECORD, found)
-    except StoreError as error:
-        return print_error(str(error))
+    with locked(output):
+        cases = campaign.clean_cases(wanted)
+        clean = kept_results(cases, campaign.clean_folder(output)) if resume else {}
+        tasks = [case_task(c, campaign.clean_folder(output)) for c in cases if c.name not in clean]
+        if reason := campaign.failed_source(
+            [*clean.values(), *solve(tasks, jobs, time_limit, quiet or as_json)]
+        ):
+            raise no_result(reason)
+        kept = {f.name: t for f in wanted if resume and (t := campaign.kept_trial(f, output))}
+        # the long ones first, so that no core waits at the end
+        order = sorted((f for f in wanted if f.name not in kept), key=campaign.cost, reverse=True)
+        trials = [campaign.trial_task(fault, output) for fault in order]
+        fresh = {trial.fault: trial for trial in solve(trials, jobs, time_limit, quiet or as_json)}
+        info = run_info("coatcheck faults", started, jobs)
+        found = campaign.record_of(
+            [kept.get(f.name) or fresh[f.name] for f in wanted],
+            started=info.started,
+            seconds=info.seconds,
+            commit=info.commit,
+            machine=f"{info.machine}, {jobs} jobs",
+            versions=info.versions,
+        )
+        write_record(output / campaign.RECORD, found)
+        page = output / "faults.html"
+        write_atomically(page, faults_page(found))
+        if record:
+            write_record(records / campaign.RECORD, found)
     if as_json:
         print_json(to_json(found))
     elif not quiet:

@@ -4,9 +4,8 @@ from rich.markup import escape
 
 from verification.cases.contact import Case, read_case, shipped_cases
 from verification.cases.published import PublishedCase, published_cases, read_published
-from verification.commands.common import AsJson, named_table, print_json, print_out
-
-__all__ = ["list_cases"]
+from verification.commands.common.options import AsJson
+from verification.commands.common.terminal import named_table, print_json, print_out
 
 
 def list_cases(*, as_json: AsJson = False) -> int:

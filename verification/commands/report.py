@@ -1,6 +1,5 @@
 """coatcheck report: write the report of a stored run again, or print it."""
 
-import json
 import sys
 from dataclasses import replace
 from pathlib import Path
@@ -8,62 +7,43 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
-from verification.commands.common import (
-    BASELINE,
-    EXIT,
-    RECORDS,
-    exit_code,
-    nearest_run,
-    print_error,
-    within_package,
-)
-from verification.judging.verdict import Outcome
+from verification.commands.common.exits import CommandError, exit_code, no_result, with_exit_code
+from verification.commands.common.folders import BASELINE, RECORDS, nearest_run, within_package
+from verification.commands.common.options import AsJson, Flag, Quiet
+from verification.commands.common.terminal import print_json
+from verification.credibility.self_tests import self_tests
 from verification.regression.baseline import regression
 from verification.regression.record import read_baseline
-from verification.running.self_tests import self_tests
-from verification.running.store import StoreError, locked, read_checked
-
-__all__ = ["report"]
+from verification.running.store import locked
 
 
+@with_exit_code
 def report(
     folder: Path = Path("reports"),
     /,
     *,
-    pdf: Annotated[bool, Parameter(negative="")] = False,
+    pdf: Flag = False,
     baseline: Annotated[Path | None, Parameter(name=["--baseline", "-b"])] = None,
     records: Path | None = None,
     time_limit: float = 300.0,
-    quiet: Annotated[bool, Parameter(name=["--quiet", "-q"], negative="")] = False,
-    as_json: Annotated[bool, Parameter(name="--json", negative="")] = False,
+    quiet: Quiet = False,
+    as_json: AsJson = False,
 ) -> int:
     """Write the report of a stored run again from its cases, nothing solved; a run that was stopped too.
 
-    Parameters
-    ----------
-    folder
-        Directory of the run.
-    pdf
-        Also print the page to report.pdf there, through an installed Chromium or Chrome.
-    baseline
-        Directory of a baseline to compare with instead of the run's own comparison.
-    records
-        Directory of credibility records to show instead of those stored with the run.
-    time_limit
-        Seconds that printing may take.
-    quiet
-        Print nothing but errors.
-    as_json
-        Print one JSON object that names the files.
+    Args:
+        folder: Directory of the run.
+        pdf: Also print the page to report.pdf there, through an installed Chromium or Chrome.
+        baseline: Directory of a baseline to compare with instead of the run's own comparison.
+        records: Directory of credibility records to show instead of those stored with the run.
+        time_limit: Seconds that printing may take.
     """
-    from verification.credibility.accuracy import from_json as study_from_json
-    from verification.credibility.accuracy import path_in
     from verification.report.material import gather, stored_material
     from verification.report.pdf import NoBrowser, printed
     from verification.report.write import write_report
 
     if not (folder / "cases").is_dir():
-        return print_error(
+        raise CommandError(
             f"{folder}: holds no run; write one with: coatcheck run --output {folder}{nearest_run(folder)}"
         )
     try:
@@ -74,8 +54,6 @@ def report(
                 found = gather(RECORDS if records is None else records)
                 kept = {name: getattr(evidence, name) for name in ("accuracy", "baseline", "formulas")}
                 evidence = replace(found, **kept, self_tests=evidence.self_tests or self_tests())
-            if not whole and path_in(folder).exists():
-                evidence = replace(evidence, accuracy=study_from_json(read_checked(path_in(folder))))
             if baseline is not None or not whole:
                 place = BASELINE if baseline is None else baseline
                 known, name = read_baseline(place), within_package(place)
@@ -85,12 +63,11 @@ def report(
             if pdf:
                 files.append(printed(files[0], folder / "report.pdf", time_limit))
     except NoBrowser as error:
-        print_error(str(error))
-        return EXIT[Outcome.NO_RESULT]
-    except (StoreError, ValueError) as error:
-        return print_error(str(error))
+        raise no_result(str(error)) from None
+    except ValueError as error:
+        raise CommandError(str(error)) from None
     if as_json:
-        sys.stdout.write(json.dumps({"files": [str(file) for file in files]}, indent=2) + "\n")
+        print_json({"files": [str(file) for file in files]})
     elif not quiet:
         sys.stdout.write("".join(f"{file}\n" for file in files))
     return 0 if material.results else exit_code(material.results)

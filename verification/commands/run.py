@@ -9,9 +9,9 @@ from collections import Counter
 from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import replace
-from functools import partial
+from functools import cache, partial
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import Parameter
 from rich.console import Console
@@ -21,13 +21,9 @@ from rich.table import Column, Table
 from verification.cases.contact import Case, read_case, shipped_cases
 from verification.cases.published import PublishedCase, is_published, published_cases, read_published
 from verification.cases.toml import CaseError
-from verification.commands.common import (
-    BASELINE,
-    DRIFTED,
-    EXIT,
-    RECORDS,
-    STOPPED,
-    STYLE,
+from verification.commands.common.exits import DRIFTED, EXIT, STOPPED, exit_code, with_exit_code
+from verification.commands.common.folders import BASELINE, RECORDS, within_package
+from verification.commands.common.options import (
     AsJson,
     BaselineFolder,
     Flag,
@@ -36,30 +32,36 @@ from verification.commands.common import (
     Quiet,
     RecordsFolder,
     Resume,
-    did_you_mean,
-    exit_code,
-    no_gmsh,
-    one_line,
-    print_error,
-    print_json,
-    run_info,
-    within_package,
 )
-from verification.commands.solving import kept_results, kept_study, solve
+from verification.commands.common.terminal import STYLE, did_you_mean, one_line, print_error, print_json
+from verification.commands.solving import (
+    kept_results,
+    kept_study,
+    require_gmsh,
+    run_info,
+    solve,
+    worker_count,
+)
+from verification.credibility import accuracy as accuracy_study
+from verification.credibility.accuracy import AccuracyStudy
+from verification.credibility.self_tests import SelfTest, self_tests
 from verification.judging.verdict import Outcome
 from verification.regression.baseline import Regression, State, regression, regression_json
 from verification.regression.record import read_baseline
-from verification.running.pool import Task, cores
-from verification.running.result import CaseResult
-from verification.running.self_tests import SelfTest, self_tests
+from verification.running.pool import Task
+from verification.running.result import CaseResult, RunInfo
 from verification.running.store import StoreError, locked
 from verification.running.tasks import case_task, kept_result, published_task
+from verification.study import formulas as effective_study
+from verification.study.formulas import EffectiveStudy
 
-__all__ = ["run"]
+if TYPE_CHECKING:
+    from verification.report.material import Evidence
 
 NARROW = 80  # columns
 
 
+@with_exit_code
 def run(
     *cases: str,
     output: Output = Path("reports"),
@@ -75,86 +77,78 @@ def run(
 ) -> int:
     """Solve cases by every method and reference, judge every claim, write the report.
 
-    Without arguments all shipped cases are run, and the convergence of both methods is measured. Examples:
+    Without arguments all shipped cases are run, and the convergence of both methods is measured. The exit
+    code is 5 only where a number differs from the baseline on its machine with its versions; elsewhere the
+    report shows it.
 
-        coatcheck run
-        coatcheck run 05_ratio_4 my_coating.toml --output reports/mine
-        coatcheck run published
-
-    Exit codes: 0 all agree, 1 disagreement, 2 bad input, 3 no result, 4 inconclusive, 5 all agree but a
-    number is not that of the baseline, on its machine with its versions; elsewhere the report tells of it.
-
-    Parameters
-    ----------
-    cases
-        Names of shipped cases, see coatcheck list; paths of .toml files; "published" for all printed results.
-    output
-        Directory of the report: report.html, report.json, junit.xml and one file per case.
-    time_limit
-        Seconds one case may take before it is stopped and reported as having no result.
-    fields
-        Also write the fields of each case, for ParaView and coatcheck view, into the folder fields there.
-    verbose
-        Say the seconds and iterations of every source as the cases finish.
+    Args:
+        cases: Names of shipped cases, see coatcheck list; .toml files; "published" for all published results.
+        output: Directory of the report: report.html, report.json, junit.xml and one file per case.
+        time_limit: Seconds one case may take before it is stopped and reported as having no result.
+        fields: Also write the fields of each case, for ParaView and coatcheck view, into its folder fields.
+        verbose: Print the seconds and iterations of every source as the cases finish.
     """
-    jobs = cores() if jobs is None else jobs
-    if jobs < 1 or not time_limit > 0:
-        return print_error(f"--jobs = {jobs}, --time-limit = {time_limit:g}; both must be positive")
-    try:
-        chosen = _choose(cases)
-    except CaseError as error:
-        return print_error(str(error))
-    if (code := no_gmsh()) is not None:
-        return code
+    jobs = worker_count(jobs, time_limit)
+    chosen = _choose(cases)
+    require_gmsh()
 
-    from verification.credibility import accuracy as accuracy_study
-    from verification.credibility.accuracy import AccuracyStudy
-    from verification.report.material import Material, gather
-    from verification.report.write import write_report
-    from verification.running.fields import read_planes
-    from verification.study import formulas as effective_study
-    from verification.study.formulas import EffectiveStudy
+    @cache
+    def prepared() -> tuple[tuple[SelfTest, ...], "Evidence"]:
+        """Self-tests and evidence, neither of which depends on a result."""
+        from verification.report.material import gather
 
-    tests = self_tests()
-    for test in tests:
-        if not test.passed:
-            print_error(f"self-test of the {test.name}: {test.found}; the verdicts of this run mean nothing")
+        return _self_tested(), gather(records)
+
     begin, started = time.perf_counter(), datetime.datetime.now(datetime.UTC)
     try:
         known = read_baseline(baseline)
         with locked(output):
             kept = kept_results(chosen, output, fields=fields) if resume else {}
-            study = kept_study(output) if resume and not cases else None
+            accuracy = kept_study(output) if resume and not cases else None
             tasks: list[Task[CaseResult | AccuracyStudy | EffectiveStudy]] = []
-            if not cases and study is None:
-                tasks.append(accuracy_study.task(output))
-            if "published" in cases:
-                tasks.append(effective_study.task(output))
-            tasks += [_task(c, output, fields) for c in chosen if c.name not in kept]
-            solved = solve(tasks, jobs, time_limit, quiet or as_json, verbose=verbose)
-            results = {r.name: r for r in solved if isinstance(r, CaseResult)}
-            study = next((r for r in solved if isinstance(r, AccuracyStudy)), study)
-            formulas = next((r for r in solved if isinstance(r, EffectiveStudy)), None)
-            ordered = [kept.get(case.name) or results[case.name] for case in chosen]
+            tasks += [_task(case, output, fields) for case in chosen if case.name not in kept]
+            tasks += [accuracy_study.task(output)] if not cases and accuracy is None else []
+            tasks += [effective_study.task(output)] if "published" in cases else []
+            solved = solve(tasks, jobs, time_limit, quiet or as_json, verbose=verbose, meanwhile=prepared)
+            accuracy = next((found for found in solved if isinstance(found, AccuracyStudy)), accuracy)
+            formulas = next((found for found in solved if isinstance(found, EffectiveStudy)), None)
+            new = {found.name: found for found in solved if isinstance(found, CaseResult)}
+            results = [kept.get(case.name) or new[case.name] for case in chosen]
             info = run_info(shlex.join(["coatcheck", "run", *cases]), started, jobs)
-            beside = regression(ordered, known, within_package(baseline), info, whole=not cases)
+            beside = regression(results, known, within_package(baseline), info, whole=not cases)
+            tests, evidence = prepared()
             evidence = replace(
-                gather(records), accuracy=study, baseline=beside, self_tests=tests, formulas=formulas
+                evidence, accuracy=accuracy, baseline=beside, self_tests=tests, formulas=formulas
             )
-            page = write_report(Material(ordered, info, evidence, read_planes(output, ordered)), output)
-    except StoreError as error:
-        return print_error(str(error))
+            page = _write_page(results, info, evidence, output)
     except KeyboardInterrupt:
         return _stopped(chosen, output)
     if as_json:
-        print_json(_summary(ordered, page, beside, tests))
+        print_json(_summary(results, page, beside, tests))
     elif not quiet:
-        _print_table(ordered, page, time.perf_counter() - begin, beside)
-    return _code(ordered, beside, tests)
+        _print_table(results, page, time.perf_counter() - begin, beside)
+    return _code(results, beside, tests)
+
+
+def _write_page(results: Sequence[CaseResult], info: RunInfo, evidence: "Evidence", output: Path) -> Path:
+    from verification.report.material import Material
+    from verification.report.write import write_report
+    from verification.running.fields import read_planes
+
+    return write_report(Material(results, info, evidence, read_planes(output, results)), output)
+
+
+def _self_tested() -> tuple[SelfTest, ...]:
+    """The self-tests of the harness, with a message for each that fails."""
+    tests = self_tests()
+    for test in tests:
+        if not test.passed:
+            print_error(f"self-test of the {test.name}: {test.found}; the verdicts of this run are not valid")
+    return tests
 
 
 def _code(results: Sequence[CaseResult], beside: Regression, tests: Sequence[SelfTest]) -> int:
-    """The worst verdict decides, no better than the harness it comes from; where all agree, the baseline."""
+    """Exit code of the worst verdict; of a failed self-test or of the baseline where all verdicts agree."""
     code = exit_code(results)
     if not all(test.passed for test in tests):
         return code or EXIT[Outcome.DISAGREES]
@@ -177,7 +171,7 @@ def _choose(names: Sequence[str]) -> list[Case | PublishedCase]:
         else:
             near = did_you_mean(name, [*shipped, *published, "published"])
             raise CaseError(f"{name}: neither a shipped case (see coatcheck list) nor a .toml file{near}")
-    # Names that a file system may take for one and the same.
+    # Two names may be one to a file system.
     plain = Counter(unicodedata.normalize("NFC", case.name).casefold() for case in cases)
     twice = {c.name for c in cases if plain[unicodedata.normalize("NFC", c.name).casefold()] > 1}
     if twice:
@@ -192,7 +186,7 @@ def _task(case: Case | PublishedCase, output: Path, fields: bool) -> Task[CaseRe
 
 
 def _stopped(chosen: Sequence[Case | PublishedCase], output: Path) -> int:
-    """Say what a run that was interrupted leaves; 130, as shells have it."""
+    """Print what an interrupted run leaves. Returns the exit code of SIGINT."""
     finished = 0
     for case in chosen:
         with suppress(StoreError):
@@ -227,12 +221,12 @@ def _summary(
 
 def _print_table(results: Sequence[CaseResult], page: Path, seconds: float, beside: Regression) -> None:
     console = Console()
-    # Broken by hand to stand in 80 columns beside the longest name of a shipped case; letters in fewer.
+    # Fits 80 columns beside the longest name of a shipped case; letters where there are fewer.
     heads = ["agrees", "dis-\nagrees", "incon-\nclusive", "no\nresult", "largest\ndifference"]
     narrow = console.width < NARROW
     if narrow:
         heads = ["A", "D", "I", "N", "largest"]
-    # What stands below the table says it for all cases.
+    # Without a baseline, or in a narrow terminal, the line below the table is enough.
     states = beside.update is not None and not narrow
     heads += ["baseline"] if states else []
     table = Table(Column("case", overflow="fold"), box=None, header_style="bold", pad_edge=False)
@@ -240,37 +234,29 @@ def _print_table(results: Sequence[CaseResult], page: Path, seconds: float, besi
         table.add_column(head, no_wrap=True, vertical="bottom")
     for result in results:
         worst = max((v.difference for _, v in result.verdicts if v.difference is not None), default=None)
-        table.add_row(
-            escape(result.name),
-            *(
-                f"[{STYLE[o]}]{n}[/]" if (n := sum(v.outcome is o for _, v in result.verdicts)) else "."
-                for o in Outcome
-            ),
-            "-" if worst is None else f"{worst:.1e}",
-            *([_state(beside, result.name)] if states else []),
-        )
+        count = Counter(verdict.outcome for _, verdict in result.verdicts)
+        counts = [f"[{STYLE[o]}]{count[o]}[/]" if count[o] else "." for o in Outcome]
+        state = [_state(beside, result.name)] if states else []
+        table.add_row(escape(result.name), *counts, "-" if worst is None else f"{worst:.1e}", *state)
     console.print(table)
-    # What is read by another program stays one line a sentence.
+    # In a pipe each message stays on one line.
     say = partial(console.print, highlight=False, soft_wrap=not console.is_terminal)
     for result in results:
+        name = escape(result.name)
         for source in result.sources:
             if source.failure:
-                say(
-                    f"[bold red]{escape(result.name)}, {source.source}:[/] {escape(one_line(source.failure))}"
-                )
+                say(f"[bold red]{name}, {source.source}:[/] {escape(one_line(source.failure))}")
         for law in result.invariants:
             if law.outcome is not Outcome.AGREES:
-                say(
-                    f"[{STYLE[law.outcome]}]{escape(result.name)}, {law.source}, {escape(law.name)}:[/] "
-                    f"{escape(one_line(law.message))}"
-                )
+                what = f"{name}, {law.source}, {escape(law.name)}:"
+                say(f"[{STYLE[law.outcome]}]{what}[/] {escape(one_line(law.message))}")
     laws = [law for result in results for law in result.invariants]
     if laws:
         say(f"{sum(law.outcome is Outcome.AGREES for law in laws)} of {len(laws)} invariants hold")
-    from verification.report.sections.baseline import baseline_sentence
+    from verification.report.sections.baseline import baseline_message
 
     known = f"baseline of {beside.update.when[:10]} in {beside.folder}: " if beside.update is not None else ""
-    say(escape(f"{known}{baseline_sentence(beside)}"))
+    say(escape(f"{known}{baseline_message(beside)}"))
     number = "1 case" if len(results) == 1 else f"{len(results)} cases"
     say(f"{number} in {seconds:.0f} s; report: {escape(str(page))}")
 

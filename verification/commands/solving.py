@@ -1,6 +1,7 @@
-"""Tasks solved before the eyes of whoever waits: what stands from earlier, a bar, a line for each result."""
+"""Progress of tasks on the terminal; results of earlier runs that can be kept."""
 
-from collections.abc import Sequence
+import datetime
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TypeVar
 
@@ -21,25 +22,40 @@ from rich.text import Text
 
 from verification.cases.contact import Case
 from verification.cases.published import PublishedCase
-from verification.commands.common import STYLE, one_line, print_error
+from verification.commands.common.exits import CommandError, no_result
+from verification.commands.common.terminal import STYLE, one_line, print_error
 from verification.credibility import accuracy as accuracy_study
 from verification.credibility.accuracy import AccuracyStudy
-from verification.running.pool import Task, run_tasks
-from verification.running.result import CaseResult
+from verification.running.pool import Task, cores, run_tasks
+from verification.running.provenance import commit, machine, missing_libraries, versions
+from verification.running.result import CaseResult, RunInfo
 from verification.running.store import StoreError
 from verification.running.tasks import kept_result
-
-__all__ = ["kept_results", "kept_study", "progress_bar", "solve"]
 
 T = TypeVar("T")
 
 NARROW = 60  # columns
 
 
+def worker_count(jobs: int | None, time_limit: float) -> int:
+    """Processes side by side. Raises CommandError where one of both is not positive."""
+    jobs = cores() if jobs is None else jobs
+    if jobs < 1 or not time_limit > 0:
+        raise CommandError(f"--jobs = {jobs}, --time-limit = {time_limit:g}; both must be positive")
+    return jobs
+
+
+def require_gmsh() -> None:
+    """Raises CommandError with the packages to install where gmsh cannot be loaded."""
+    if lacking := missing_libraries():
+        install = f"apt-get install {' '.join(lacking)}"
+        raise no_result(f"gmsh lacks system libraries here; install them with: {install}")
+
+
 def kept_results(
     chosen: Sequence[Case | PublishedCase], output: Path, *, fields: bool = False
 ) -> dict[str, CaseResult]:
-    """The earlier results that stand, by name; why another one does not is said on standard error."""
+    """Earlier results that can be kept, by name; prints why another one cannot."""
     kept = {}
     for case in chosen:
         try:
@@ -53,7 +69,7 @@ def kept_results(
 
 
 def kept_study(output: Path) -> AccuracyStudy | None:
-    """The earlier accuracy study where it stands, as ``kept_results``."""
+    """The earlier accuracy study where it can be kept; prints why it cannot."""
     try:
         return accuracy_study.stored(output)
     except StoreError as error:
@@ -62,11 +78,17 @@ def kept_study(output: Path) -> AccuracyStudy | None:
 
 
 def solve(
-    tasks: Sequence[Task[T]], jobs: int, time_limit: float, silent: bool, *, verbose: bool = False
+    tasks: Sequence[Task[T]],
+    jobs: int,
+    time_limit: float,
+    silent: bool,
+    *,
+    verbose: bool = False,
+    meanwhile: Callable[[], object] = lambda: None,
 ) -> list[T]:
-    """Run ``tasks`` side by side under a progress bar; each result is said as it comes, unless ``silent``.
+    """Run ``tasks`` with a progress bar and a line for each result, unless ``silent``.
 
-    verbose : say the seconds, and where it counts them the iterations, of every source.
+    verbose : print seconds, iterations and unknowns of every source.   meanwhile : as in ``run_tasks``.
     """
     console = Console(stderr=True)
     bar = progress_bar(console, silent=silent)
@@ -83,14 +105,19 @@ def solve(
             bar.update(task, advance=1, description=", ".join(at_work) or "report")
             if not silent and isinstance(result, CaseResult):
                 colour = STYLE[result.outcome]
-                console.print(
-                    f"[{colour}]{result.outcome:<12}[/] {escape(result.name)}  {result.seconds:.1f} s",
-                    highlight=False,
-                )
+                line = f"[{colour}]{result.outcome:<12}[/] {escape(result.name)}  {result.seconds:.1f} s"
+                console.print(line, highlight=False)
                 if verbose:
                     console.print(escape(_sources(result)), style="dim", highlight=False)
 
-        return run_tasks(tasks, jobs=jobs, time_limit=time_limit, started=started, finished=finished)
+        return run_tasks(
+            tasks,
+            jobs=jobs,
+            time_limit=time_limit,
+            started=started,
+            finished=finished,
+            meanwhile=meanwhile,
+        )
 
 
 def _sources(result: CaseResult) -> str:
@@ -105,8 +132,21 @@ def _sources(result: CaseResult) -> str:
     return "\n".join(lines)
 
 
+def run_info(command: str, started: datetime.datetime, jobs: int) -> RunInfo:
+    """Command, time, commit, machine and versions of the run that ends now."""
+    return RunInfo(
+        command=command,
+        started=started.isoformat(timespec="seconds"),
+        seconds=(datetime.datetime.now(datetime.UTC) - started).total_seconds(),
+        jobs=jobs,
+        commit=commit(),
+        machine=f"{machine()}, {cores()} cores",
+        versions=versions(),
+    )
+
+
 class _Description(ProgressColumn):
-    """What is at work, on one line."""
+    """Names of the tasks at work, in one line."""
 
     def render(self, task: RichTask) -> Text:
         return Text(task.description, no_wrap=True, overflow="ellipsis")

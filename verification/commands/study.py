@@ -14,32 +14,20 @@ from rich.progress import ProgressColumn, Task, TaskID, TextColumn
 from rich.text import Text
 
 from verification.cases.toml import CaseError
-from verification.commands.common import (
-    EXIT,
-    STOPPED,
-    AsJson,
-    Jobs,
-    Output,
-    Quiet,
-    did_you_mean,
-    no_gmsh,
-    print_error,
-    print_json,
-    print_out,
-)
-from verification.commands.solving import progress_bar
+from verification.commands.common.exits import EXIT, STOPPED, CommandError, with_exit_code
+from verification.commands.common.options import AsJson, Jobs, Output, Quiet
+from verification.commands.common.terminal import did_you_mean, print_error, print_json, print_out
+from verification.commands.solving import progress_bar, require_gmsh
 from verification.judging.verdict import Outcome
 from verification.running.pool import cores
 from verification.running.provenance import commit, machine
-from verification.running.store import StoreError
 from verification.study.plan import Study, read_study_file, shipped_studies
 
 if TYPE_CHECKING:
     from verification.study.engine import Outcome as StudyOutcome
 
-__all__ = ["thickness"]
 
-
+@with_exit_code
 def thickness(
     plan: str = "default",
     *,
@@ -54,38 +42,23 @@ def thickness(
 ) -> int:
     """Which thickness? Stresses of a coating against thickness, stiffness and friction, cross-checked.
 
-    A stopped study resumes where it was stopped; no point is solved twice. Examples:
+    A stopped study resumes where it was stopped; no point is solved twice.
 
-        coatcheck study thickness
-        coatcheck study thickness my_study.toml --output reports/mine
-        coatcheck study thickness --scheduler tcp://host:8786
-        coatcheck study thickness --no-cross-check --limit 30
-
-    Parameters
-    ----------
-    plan
-        Name of a shipped study, or the path of a .toml study file.
-    output
-        Directory of the table, PLAN.parquet, and of the cache.
-    scheduler
-        Address of a running Dask scheduler, in place of a local cluster.
-    limit
-        Only the first so many points.
-    cross_check
-        Solve every k-th point by finite elements and by the exact reference too.
-    figures
-        Draw the table: PLAN.html, and figures/PLAN for print.
+    Args:
+        plan: Name of a shipped study, or the path of a .toml study file.
+        output: Directory of the table, PLAN.parquet, and of the cache.
+        scheduler: Address of a running Dask scheduler, in place of a local cluster.
+        limit: Only the first so many points.
+        cross_check: Solve every k-th point by finite elements and by the exact reference too.
+        figures: Draw the table: PLAN.html, and figures/PLAN for print.
     """
     if (jobs is not None and jobs < 1) or (limit is not None and limit < 1):
-        return print_error(f"--jobs = {jobs}, --limit = {limit}; both must be positive")
-    try:
-        chosen = _choose(plan)
-    except CaseError as error:
-        return print_error(str(error))
+        raise CommandError(f"--jobs = {jobs}, --limit = {limit}; both must be positive")
+    chosen = _choose(plan)
     if not cross_check:
         chosen = replace(chosen, cross_check=0)
-    if chosen.cross_check and (code := no_gmsh()) is not None:
-        return code
+    if chosen.cross_check:
+        require_gmsh()
 
     from verification.study.engine import SchedulerError, connected, run_study, table_path
 
@@ -95,8 +68,8 @@ def thickness(
         with _bars(silent) as report:
             came = run_study(chosen, output, partial(connected, scheduler, jobs), limit=limit, report=report)
         page = _page(chosen, came, time.perf_counter() - begin) if figures else None
-    except (StoreError, SchedulerError) as error:
-        return print_error(str(error))
+    except SchedulerError as error:
+        raise CommandError(str(error)) from None
     except KeyboardInterrupt:
         sys.stderr.write(
             f"\ncoatcheck: stopped; solved points are in {table_path(output, chosen)}, "

@@ -10,17 +10,17 @@ from typing import Annotated
 from cyclopts import Parameter
 
 from verification.cases.contact import shipped_cases
-from verification.commands.common import EXIT, Output, did_you_mean, print_error
-from verification.judging.verdict import Outcome
+from verification.commands.common.exits import CommandError, no_result, with_exit_code
+from verification.commands.common.options import Output
+from verification.commands.common.terminal import did_you_mean
 from verification.problem.quantity import STRESSES
 from verification.running.fields import read_fields
 from verification.running.store import StoreError, write_atomically
 
-__all__ = ["view"]
-
 QUANTITIES = ("von_mises", *STRESSES)
 
 
+@with_exit_code
 def view(
     case: str,
     /,
@@ -32,72 +32,53 @@ def view(
 ) -> int:
     """Show the fields of a case from coatcheck run --fields: finite elements beside semi-analytical.
 
-    Parameters
-    ----------
-    case
-        Name of the case; ParaView opens its fields too, CASE-fem.vtu and CASE-semi.vtm in OUTPUT/fields.
-    quantity
-        von_mises, or a stress: sigma_xx, sigma_yy, sigma_zz, sigma_xy, sigma_yz, sigma_xz.
-    output
-        Directory of the run.
-    screenshot
-        Write this PNG file instead of opening a window; no display is needed.
-    time_limit
-        Longest time of rendering [s].
+    Args:
+        case: Name of the case; ParaView opens its fields too, CASE-fem.vtu and CASE-semi.vtm in
+            OUTPUT/fields.
+        quantity: von_mises, or a stress: sigma_xx, sigma_yy, sigma_zz, sigma_xy, sigma_yz, sigma_xz.
+        output: Directory of the run.
+        screenshot: Write this PNG file instead of opening a window; no display is needed.
+        time_limit: Longest time of rendering [s].
     """
     if quantity not in QUANTITIES:
-        return print_error(f"--quantity = {quantity}; there are {', '.join(QUANTITIES)}")
+        raise CommandError(f"--quantity = {quantity}; there are {', '.join(QUANTITIES)}")
     if Path(case).name != case:
-        return print_error(f"{case}: not the name of a case; see coatcheck list")
+        raise CommandError(f"{case}: not the name of a case; see coatcheck list")
     if screenshot is not None and screenshot.suffix.lower() != ".png":
-        return print_error(f"--screenshot = {screenshot}; the name has to end in .png")
+        raise CommandError(f"--screenshot = {screenshot}; the name has to end in .png")
     try:
         read_fields(output, case)
     except StoreError as error:
         stored = [path.stem for path in (output / "fields").glob("*.json")]
         near = "" if case in (cases := shipped_cases()) else did_you_mean(case, [*stored, *cases])
-        return print_error(f"{error}; fields are written by: coatcheck run {case} --fields{near}")
-    words = [
-        sys.executable,
-        "-m",
-        "verification.report.figures.viewer",
-        str(output),
-        case,
-        f"{quantity} [Pa]",
-    ]
+        raise CommandError(f"{error}; fields are written by: coatcheck run {case} --fields{near}") from None
+    viewer = [sys.executable, "-m", "verification.report.figures.viewer"]
+    words = [*viewer, str(output), case, f"{quantity} [Pa]"]
     if screenshot is not None:
-        return _picture(words, screenshot, time_limit)
+        _picture(words, screenshot, time_limit)
+        return 0
     if sys.platform == "linux" and not (os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")):
-        return _none("there is no display here; write a picture with --screenshot FILE.png")
+        raise no_result("there is no display here; write a picture with --screenshot FILE.png")
     code = subprocess.run(words, stderr=subprocess.DEVNULL, check=False).returncode
-    return (
-        0 if code == 0 else _none(f"VTK could not open a window ({_ended(code)}); try --screenshot FILE.png")
-    )
+    if code:
+        raise no_result(f"VTK could not open a window ({_ended(code)}); try --screenshot FILE.png")
+    return 0
 
 
-def _picture(words: list[str], path: Path, time_limit: float) -> int:
+def _picture(words: list[str], path: Path, time_limit: float) -> None:
     """Render in a process of its own, which may crash or hang; the picture appears whole or not at all."""
     with tempfile.TemporaryDirectory() as folder:
         drawn = Path(folder) / "picture.png"
         try:
             done = subprocess.run([*words, str(drawn)], capture_output=True, timeout=time_limit, check=False)
         except subprocess.TimeoutExpired:
-            return _none(f"no picture after {time_limit:g} s; raise --time-limit")
+            raise no_result(f"no picture after {time_limit:g} s; raise --time-limit") from None
         if done.returncode != 0 or not drawn.exists():
-            return _none(
+            raise no_result(
                 f"VTK could not render off screen here ({_ended(done.returncode)}); ParaView opens the "
                 "fields, and the report has pictures of the plane y = 0"
             )
-        try:
-            write_atomically(path, drawn.read_bytes())
-        except StoreError as error:
-            return print_error(str(error))
-    return 0
-
-
-def _none(message: str) -> int:
-    print_error(message)
-    return EXIT[Outcome.NO_RESULT]
+        write_atomically(path, drawn.read_bytes())
 
 
 def _ended(code: int) -> str:

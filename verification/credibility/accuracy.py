@@ -4,6 +4,7 @@ import os
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -15,22 +16,8 @@ from verification.running.pool import Task
 from verification.running.provenance import commit, versions
 from verification.running.records import decode, encode
 from verification.running.store import StoreError, read_checked, write_checked
-
-__all__ = [
-    "CORRECTED",
-    "PLAIN",
-    "PROBLEM",
-    "SCHEMA",
-    "STAIRCASE",
-    "AccuracyStudy",
-    "failed",
-    "from_json",
-    "measure",
-    "path_in",
-    "stored",
-    "task",
-    "to_json",
-]
+from verification.sources.methods import sharing_pressure
+from verification.sources.registry import solvers
 
 SCHEMA = "coatcheck-accuracy/2"
 CORRECTED = "split conversion, corrected edge"
@@ -38,6 +25,7 @@ STAIRCASE = "split conversion, staircase edge"
 PLAIN = "plain conversion, staircase edge"
 # Coarser grids have too few patches across the contact for its edge to be corrected.
 FINE = (41, 49, 65, 97, 129, 257)
+KEPT = 4  # solutions of a method, some 100 MB each of the finest meshes
 STEEL = (210e9, 0.3)
 BARE = CoatedContact(10e-3, 20.0, (), STEEL)
 COATED = CoatedContact(10e-3, 20.0, ((4 * STEEL[0], 0.3, BARE.a_h),), STEEL)
@@ -76,21 +64,27 @@ def measure() -> AccuracyStudy:
             failures.append(f"{part}: {failure_message(error)}")
             return otherwise
 
+    # Sweeps pass through numerics of the refinement studies, and of one another.
+    available = {name: sharing_pressure(solve, KEPT) for name, solve in solvers(COATED).items()}
+    grid = partial(refined_grid, solve=available["semianalytic"])
+    mesh = partial(refined_mesh, COATED, solid="coated", solve=available["fem_reference"])
     refinements = (
-        refined_grid(COATED, FINE, solid="coated", setting=CORRECTED),
-        refined_grid(COATED, solid="coated", setting=STAIRCASE, edge_rounds=0),
+        grid(COATED, FINE, solid="coated", setting=CORRECTED),
+        grid(COATED, solid="coated", setting=STAIRCASE, edge_rounds=0),
         # Its convolution kernel alone costs more than the rest, so it ends one level earlier.
-        refined_grid(COATED, (33, 65, 129), solid="coated", setting=PLAIN, edge_rounds=0, conversion="plain"),
-        refined_grid(BARE, FINE, solid="uncoated", setting=CORRECTED),
-        refined_grid(BARE, solid="uncoated", setting=STAIRCASE, edge_rounds=0),
-        *(refined_mesh(COATED, order, solid="coated") for order in (2, 3, 4)),
+        grid(COATED, (33, 65, 129), solid="coated", setting=PLAIN, edge_rounds=0, conversion="plain"),
+        grid(BARE, FINE, solid="uncoated", setting=CORRECTED),
+        grid(BARE, solid="uncoated", setting=STAIRCASE, edge_rounds=0),
+        *(mesh(order) for order in (2, 3, 4)),
     )
     failures += [f"{r.method}, {r.solid}, {r.setting}, {r.failure}" for r in refinements if r.failure]
     conversions: tuple[ConversionError, ...] = attempt(
         "conversions of the influence coefficients", lambda: conversion_errors(COATED), ()
     )
     nothing: tuple[tuple[Sweep, ...], tuple[Stated, ...]] = ((), ())
-    sweeps, stated = attempt("uncertainty by parameter", lambda: study(COATED, "coated"), nothing)
+    sweeps, stated = attempt(
+        "uncertainty by parameter", lambda: study(COATED, "coated", available=available), nothing
+    )
     failures += [f"{sweep.method}, {sweep.parameter}, {sweep.failure}" for sweep in sweeps if sweep.failure]
     seconds = time.perf_counter() - begin
     return AccuracyStudy(

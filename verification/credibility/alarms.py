@@ -12,8 +12,6 @@ from verification.running.records import decode, encode
 from verification.running.result import CaseResult, RunInfo
 from verification.running.store import StoreError, read_checked, write_checked
 
-__all__ = ["Alarm", "AlarmRecord", "counted", "path_in", "read_record", "write_record"]
-
 SCHEMA = "coatcheck-alarms/2"
 
 
@@ -55,35 +53,26 @@ class AlarmRecord:
 
 def counted(results: Sequence[CaseResult], seed: int, info: RunInfo) -> AlarmRecord:
     """The alarms in ``results``; a case without any comparison is one."""
-    alarms = [
-        Alarm(r.name, r.title, c.quantity, c.line, c.between, v.outcome, v.reason, r.text)
-        for r in results
-        for c, v in r.verdicts
-        if v.outcome is not Outcome.AGREES
+    verdicts = [(r, claim, verdict) for r in results for claim, verdict in r.verdicts]
+    invariants = [(r, invariant) for r in results for invariant in r.invariants]
+    nothing = ("", "", (), Outcome.NO_RESULT, "nothing was compared")
+    found: list[tuple[CaseResult, tuple[str, str, tuple[str, ...], Outcome, str]]] = [
+        *((r, (c.quantity, c.line, c.between, v.outcome, v.reason)) for r, c, v in verdicts),
+        *((r, (i.name, "", (i.source,), i.outcome, i.message)) for r, i in invariants),
+        *((r, nothing) for r in results if not r.verdicts),
     ]
-    alarms += [
-        Alarm(r.name, r.title, law.name, "", (law.source,), law.outcome, law.message, r.text)
-        for r in results
-        for law in r.invariants
-        if law.outcome is not Outcome.AGREES
-    ]
-    alarms += [
-        Alarm(r.name, r.title, "", "", (), Outcome.NO_RESULT, "nothing was compared", r.text)
-        for r in results
-        if not r.verdicts
-    ]
+    alarms = [Alarm(r.name, r.title, *row, r.text) for r, row in found if row[3] is not Outcome.AGREES]
     margins = [
-        verdict.margin / (verdict.margin + verdict.difference)
-        for result in results
-        for _, verdict in result.verdicts
-        if verdict.outcome is Outcome.AGREES and verdict.margin is not None and verdict.difference
+        v.margin / (v.margin + v.difference)
+        for _, _, v in verdicts
+        if v.outcome is Outcome.AGREES and v.margin is not None and v.difference
     ]
     return AlarmRecord(
         seed,
         len(results),
         sum(result.outcome is Outcome.AGREES for result in results),
-        sum(len(result.verdicts) for result in results),
-        sum(len(result.invariants) for result in results),
+        len(verdicts),
+        len(invariants),
         tuple(alarms),
         min(margins, default=None),
         info.started,

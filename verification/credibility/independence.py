@@ -1,4 +1,4 @@
-"""Imports of the two methods and of the references, read from their installed source."""
+"""Imports of methods or references, read from their installed source."""
 
 import ast
 import sys
@@ -8,8 +8,6 @@ from importlib.util import find_spec
 from pathlib import Path
 
 from verification.sources.registry import METHODS, SOURCES
-
-__all__ = ["PARTS", "Part", "imports_of", "parts", "shared"]
 
 # Each part with the packages that it must not import.
 _METHODS = tuple(SOURCES[name].package for name in METHODS)
@@ -73,7 +71,7 @@ def imports_of(name: str, forbidden_packages: tuple[str, ...] = ()) -> Part:
 
 def _folder(name: str) -> Path:
     spec = find_spec(name)
-    places = list(spec.submodule_search_locations or ()) if spec is not None else []
+    places = spec.submodule_search_locations if spec is not None else None
     if not places or not list(Path(places[0]).glob("*.py")):
         raise ValueError(f"{name}: its source is not installed, so that its imports cannot be read")
     return Path(places[0])
@@ -86,8 +84,7 @@ def _imported(nodes: list[ast.AST]) -> Iterator[str]:
             yield from (alias.name for alias in node.names)
         elif isinstance(node, ast.ImportFrom) and node.level == 0 and node.module:
             for alias in node.names:
-                whole = f"{node.module}.{alias.name}"
-                yield whole if node.module == "scipy" else node.module
+                yield f"scipy.{alias.name}" if node.module == "scipy" else node.module
 
 
 def _called_by_name(nodes: list[ast.AST]) -> Iterator[str]:

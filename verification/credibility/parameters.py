@@ -5,7 +5,7 @@ fitted uncertainty is compared with the budget that the method states and with t
 integral equation.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -16,11 +16,10 @@ from verification.credibility.uncertainty import Estimate, uncertainty
 from verification.problem.contact import CoatedContact, Solution
 from verification.problem.quantity import QUANTITIES, SCALARS
 from verification.sources.exact import solve_exactly
+from verification.sources.record import NumericalParameter
 from verification.sources.registry import METHODS, SOURCES, solvers
-from verification.sources.source import NumericalParameter
 
-__all__ = ["PARAMETERS", "Stated", "Sweep", "places", "probe", "stated", "study", "sweep"]
-
+Function = Callable[..., Any]
 PARAMETERS = tuple(parameter for source in SOURCES.values() for parameter in source.parameters)
 
 
@@ -79,11 +78,7 @@ def probe(solution: Solution, problem: CoatedContact, a: float) -> dict[str, flo
 
 
 def _collect(
-    problem: CoatedContact,
-    a: float,
-    scalars: dict[str, float],
-    pressure: Callable[..., Any],
-    stress: Callable[..., Any],
+    problem: CoatedContact, a: float, scalars: dict[str, float], pressure: Function, stress: Function
 ) -> dict[str, float]:
     found = {QUANTITIES[q].symbol: value / _scale(q, problem) for q, value in scalars.items()}
     found["pressure, r = 0.6 a"] = float(pressure(np.array([0.6 * a]))[0]) / problem.p_h
@@ -94,11 +89,7 @@ def _collect(
 
 
 def sweep(
-    problem: CoatedContact,
-    parameter: NumericalParameter,
-    a: float,
-    solve: Callable[..., Solution],
-    solid: str = "",
+    problem: CoatedContact, parameter: NumericalParameter, a: float, solve: Function, solid: str = ""
 ) -> Sweep:
     """``problem`` on every level of ``parameter``; a level that fails ends the sweep with its message.
 
@@ -114,21 +105,12 @@ def sweep(
             failure = f"{name}: {failure_message(error)}"
             break
     done = parameter.levels[: len(found)]
-    return Sweep(
-        parameter.method,
-        solid,
-        parameter.name,
-        parameter.order,
-        tuple(name for name, _, _ in done),
-        tuple(step for _, _, step in done),
-        {name: tuple(level[name] for level in found) for name in (found[0] if found else {})},
-        failure,
-    )
+    levels, steps = tuple(name for name, _, _ in done), tuple(step for _, _, step in done)
+    values = {name: tuple(level[name] for level in found) for name in (found[0] if found else {})}
+    return Sweep(parameter.method, solid, parameter.name, parameter.order, levels, steps, values, failure)
 
 
-def stated(
-    problem: CoatedContact, method: str, solve: Callable[..., Solution], exact: Solution, solid: str = ""
-) -> Stated:
+def stated(problem: CoatedContact, method: str, solve: Function, exact: Solution, solid: str = "") -> Stated:
     """The uncertainty that ``method`` states at its defaults, and its true error against ``exact``."""
     a = exact.contact_radius
     solution = solve(problem)
@@ -145,11 +127,17 @@ def stated(
 
 
 def study(
-    problem: CoatedContact, solid: str, methods: Sequence[str] = METHODS
+    problem: CoatedContact,
+    solid: str,
+    methods: Sequence[str] = METHODS,
+    available: Mapping[str, Callable[..., Solution]] | None = None,
 ) -> tuple[tuple[Sweep, ...], tuple[Stated, ...]]:
-    """Every parameter sweep and the uncertainty that each method states."""
+    """Every parameter sweep and the uncertainty that each method states.
+
+    available : other solvers, by method.
+    """
     exact = solve_exactly(problem, {"estimate_uncertainty": False})
-    available = solvers()
+    available = available or solvers()
     chosen = [p for p in PARAMETERS if p.method in methods and (problem.coatings or not p.coated)]
     sweeps = tuple(sweep(problem, p, exact.contact_radius, available[p.method], solid) for p in chosen)
     return sweeps, tuple(stated(problem, m, available[m], exact, solid) for m in methods)

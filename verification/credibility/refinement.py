@@ -5,7 +5,7 @@ A study that fails at some level keeps the coarser levels with the message of th
 
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
@@ -19,18 +19,6 @@ from verification.problem.quantity import QUANTITIES as ALL
 from verification.problem.quantity import SCALARS
 from verification.sources.exact import solve_exactly
 from verification.sources.methods import solve_elements, solve_semianalytic
-
-__all__ = [
-    "QUANTITIES",
-    "Level",
-    "Reference",
-    "Refinement",
-    "failure_message",
-    "order_of",
-    "refined_grid",
-    "refined_mesh",
-    "settled",
-]
 
 QUANTITIES = (*(ALL[name].symbol for name in SCALARS), "pressure", "stress")
 # An error within this factor of the smallest of all levels has stopped falling.
@@ -73,7 +61,7 @@ class Refinement:
     def order(self, quantity: str) -> float | None:
         """Observed order of ``quantity``, see ``order_of``."""
         return order_of(
-            [level.resolution for level in self.levels], [level.errors[quantity] for level in self.levels]
+            [one.resolution for one in self.levels], [one.errors[quantity] for one in self.levels]
         )
 
 
@@ -179,7 +167,8 @@ def refined_grid(
     numerics : any other keyword of semianalytic.solve.   solve : another solver, see ``Source``.
     """
     steps = [(f"N = {n}", {"patches": n, **numerics}, float(n)) for n in patches]
-    return _refined(problem, "semianalytic", solid, setting, solve or solve_semianalytic, steps)
+    empty = Refinement("semianalytic", solid, setting, ())
+    return _refined(problem, empty, solve or solve_semianalytic, steps)
 
 
 def refined_mesh(
@@ -191,19 +180,21 @@ def refined_mesh(
     solve: Callable[..., Solution] | None = None,
 ) -> Refinement:
     """``problem`` by elements of ``order`` on meshes of each ``quality``; else as ``refined_grid``."""
-    steps = [(name, {"order": order, "quality": name}, None) for name in quality]
-    return _refined(problem, "fem_reference", solid, f"order {order}", solve or solve_elements, steps)
+    from fem_reference.solver import QUALITY
+
+    steps = [(name, {"order": order, "size": QUALITY[name]}, None) for name in quality]
+    empty = Refinement("fem_reference", solid, f"order {order}", ())
+    return _refined(problem, empty, solve or solve_elements, steps)
 
 
 def _refined(
     problem: CoatedContact,
-    method: str,
-    solid: str,
-    setting: str,
+    empty: Refinement,
     solve: Callable[..., Any],
     steps: Sequence[tuple[str, dict[str, Any], float | None]],
 ) -> Refinement:
     levels: list[Level] = []
+    failure = None
     try:
         without = {"estimate_uncertainty": False}
         reference = Reference(problem, solve_exactly(problem, without))
@@ -211,13 +202,11 @@ def _refined(
             begin = time.perf_counter()
             found = solve(problem, numerics | without)
             seconds = time.perf_counter() - begin
-            if resolution is None:
-                resolution = float(np.sqrt(found.diagnostics.dofs))
-            levels.append(Level(name, resolution, seconds, reference.errors(found)))
+            size = resolution or float(np.sqrt(found.diagnostics.dofs))
+            levels.append(Level(name, size, seconds, reference.errors(found)))
     except Exception as error:  # a message of the report, not a traceback
         failure = f"{steps[len(levels)][0]}: {failure_message(error)}"
-        return Refinement(method, solid, setting, tuple(levels), failure)
-    return Refinement(method, solid, setting, tuple(levels))
+    return replace(empty, levels=tuple(levels), failure=failure)
 
 
 def failure_message(error: Exception) -> str:

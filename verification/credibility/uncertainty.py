@@ -19,9 +19,6 @@ from scipy.optimize import minimize_scalar
 
 from verification.problem.arrays import Array
 
-__all__ = ["Estimate", "Fit", "convergence_index", "least_squares", "uncertainty"]
-
-
 # Eca and Hoekstra accept a fitted order within these bounds only.
 LEAST_ORDER, THEORETICAL_ORDER, SLACK = 0.5, 2.0, 0.1
 TRUSTED, SAFE = 1.25, 3.0
@@ -74,9 +71,8 @@ def least_squares(h: Sequence[float], phi: Sequence[float], order: float = THEOR
     if data_range <= np.finfo(float).eps * size:
         return Estimate(float(np.finfo(float).eps * size), None, float(values[0]), "least squares")
     fit, trusted = _best(steps, values, order)
-    finest = float(steps[0])
-    epsilon = abs(fit(finest) - fit.limit)
-    missed = abs(float(values[0]) - fit(finest))
+    fitted = fit(float(steps[0]))
+    epsilon, missed = abs(fitted - fit.limit), abs(float(values[0]) - fitted)
     if fit.deviation < data_range:
         found = (TRUSTED if trusted else SAFE) * epsilon + fit.deviation + missed
     else:
@@ -95,9 +91,8 @@ def convergence_index(h: Sequence[float], phi: Sequence[float], order: float = T
     change = float(values[1] - values[0])
     ratio = float(steps[1] / steps[0])
     if values.size == 2:
-        error = abs(change) / (ratio**order - 1)
-        limit = float(values[0]) - change / (ratio**order - 1)
-        return Estimate(SAFE * error, None, limit, "two levels")
+        remainder = change / (ratio**order - 1)
+        return Estimate(SAFE * abs(remainder), None, float(values[0]) - remainder, "two levels")
     before = float(values[2] - values[1])
     if change == 0 or before / change <= 0:
         # alternating or constant: no order is observed, so the larger change is taken as the error
@@ -105,11 +100,9 @@ def convergence_index(h: Sequence[float], phi: Sequence[float], order: float = T
     observed = _order_of_three(steps, change, before)
     trusted = LEAST_ORDER <= observed <= order + SLACK
     used = observed if trusted else min(max(observed, LEAST_ORDER), order)
-    error = abs(change) / (ratio**used - 1)
-    limit = float(values[0]) - change / (ratio**used - 1)
-    return Estimate(
-        (TRUSTED if trusted else SAFE) * error, observed if trusted else None, limit, "three levels"
-    )
+    remainder = change / (ratio**used - 1)
+    found = (TRUSTED if trusted else SAFE) * abs(remainder)
+    return Estimate(found, observed if trusted else None, float(values[0]) - remainder, "three levels")
 
 
 def _checked(h: Sequence[float], phi: Sequence[float], least: int) -> tuple[Array, Array]:

@@ -6,9 +6,6 @@ from verification.problem.profile import Line, lines_of
 from verification.problem.quantity import IN_PLANE, QUANTITIES, SCALARS
 from verification.sources.registry import pairs_of, sources_of
 
-__all__ = ["EDGE", "standard_claims"]
-
-
 # The pressure falls to zero with a vertical tangent, so no method has a meaningful value within a few
 # patches of the edge; this fraction of a is left unjudged on the surface.
 EDGE = 0.05
@@ -19,20 +16,11 @@ def standard_claims(problem: CoatedContact) -> tuple[Claim, ...]:
     pairs = pairs_of(sources_of(problem))
     why = "scalars of the contact, from one number each"
     claims = [Claim(name, "contact", pair, QUANTITIES[name].cap, why) for pair in pairs for name in SCALARS]
+    why = "the stress a coating cracks or peels by"
     for line in lines_of(problem):
-        for quantity in _quantities(line, problem):
-            edge = EDGE if line.name == "surface" else 0.0
-            claims += [
-                Claim(
-                    quantity,
-                    line.name,
-                    pair,
-                    QUANTITIES[quantity].cap,
-                    "the stress a coating cracks or peels by",
-                    edge,
-                )
-                for pair in pairs
-            ]
+        edge = EDGE if line.name == "surface" else 0.0
+        for name in _quantities(line, problem):
+            claims += [Claim(name, line.name, pair, QUANTITIES[name].cap, why, edge) for pair in pairs]
     return tuple(claims)
 
 

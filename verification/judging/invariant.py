@@ -8,9 +8,6 @@ from numpy.typing import ArrayLike
 from verification.judging.verdict import Outcome
 from verification.problem.contact import CoatedContact
 
-__all__ = ["CAP", "ROUNDING", "Invariant", "absent", "decide", "failed", "layer_name"]
-
-
 # A field is a sum of some thousand terms, each good to one unit in the last place.
 ROUNDING = 4096 * float(np.finfo(float).eps)
 # Of p_h, as in comparisons of stresses: with a larger bound an invariant counts as not checked.

@@ -2,8 +2,6 @@
 
 from enum import StrEnum
 
-__all__ = ["Outcome"]
-
 
 class Outcome(StrEnum):
     """What a comparison came to; only AGREES passes."""

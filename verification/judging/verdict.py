@@ -13,8 +13,6 @@ from numpy.typing import NDArray
 from verification.judging.outcome import Outcome
 from verification.problem.profile import Profile
 
-__all__ = ["Claim", "Comparison", "Outcome", "Verdict", "compare", "judge"]
-
 
 @dataclass(frozen=True)
 class Claim:
@@ -93,20 +91,16 @@ def judge(comparison: Comparison, cap: float) -> Verdict:
     """
     judged = comparison.judged
     if not judged.any():
-        return Verdict(
-            Outcome.NO_RESULT, "no point lies outside the zone around the contact edge; refine the line"
-        )
+        reason = "no point lies outside the zone around the contact edge; refine the line"
+        return Verdict(Outcome.NO_RESULT, reason)
     position = comparison.a.position[judged]
     for side in (comparison.a, comparison.b):
         bad = ~np.isfinite(side.value[judged])
         if side.uncertainty is not None:
             bad |= ~np.isfinite(side.uncertainty[judged]) | (side.uncertainty[judged] < 0)
         if bad.any():
-            return Verdict(
-                Outcome.NO_RESULT,
-                f"{side.source} gives no finite {side.quantity} at {bad.sum()} of {bad.size} points, "
-                f"first at {position[bad][0]:.4g} m",
-            )
+            where = f"{bad.sum()} of {bad.size} points, first at {position[bad][0]:.4g} m"
+            return Verdict(Outcome.NO_RESULT, f"{side.source} gives no finite {side.quantity} at {where}")
     if not (np.isfinite(comparison.scale) and comparison.scale > 0):
         return Verdict(Outcome.NO_RESULT, f"the scale of the comparison is {comparison.scale:g}")
 
@@ -116,12 +110,8 @@ def judge(comparison: Comparison, cap: float) -> Verdict:
     if uncertainty is None:
         worst = int(np.argmax(difference))
         silent = [side.source for side in (comparison.a, comparison.b) if side.uncertainty is None]
-        if largest > cap:
-            outcome = Outcome.DISAGREES
-            reason = f"difference {largest:.2e} exceeds the cap {cap:.1e}"
-        else:
-            outcome = Outcome.INCONCLUSIVE
-            reason = f"difference {largest:.2e} is below the cap {cap:.1e}"
+        outcome = Outcome.DISAGREES if largest > cap else Outcome.INCONCLUSIVE
+        reason = f"difference {largest:.2e} {'exceeds' if largest > cap else 'is below'} the cap {cap:.1e}"
         reason += f"; {' and '.join(silent)} states no uncertainty"
         return Verdict(outcome, reason, largest, None, None, float(position[worst]))
 
@@ -130,18 +120,10 @@ def judge(comparison: Comparison, cap: float) -> Verdict:
     worst = int(np.argmin(margin))
     figures = (largest, float(U.max()), float(margin[worst]), float(position[worst]))
     if margin[worst] < 0:
-        return Verdict(
-            Outcome.DISAGREES,
-            f"difference {difference[worst]:.2e} exceeds the uncertainty {U[worst]:.2e}",
-            *figures,
-        )
+        reason = f"difference {difference[worst]:.2e} exceeds the uncertainty {U[worst]:.2e}"
+        return Verdict(Outcome.DISAGREES, reason, *figures)
     if U.max() > cap:
-        return Verdict(
-            Outcome.INCONCLUSIVE,
-            f"uncertainty {U.max():.2e} exceeds the cap {cap:.1e}; refine the method that dominates it",
-            *figures[:3],
-            float(position[np.argmax(U)]),
-        )
-    return Verdict(
-        Outcome.AGREES, f"difference {largest:.2e} within the uncertainty, at most {U.max():.2e}", *figures
-    )
+        reason = f"uncertainty {U.max():.2e} exceeds the cap {cap:.1e}; refine the method that dominates it"
+        return Verdict(Outcome.INCONCLUSIVE, reason, *figures[:3], float(position[np.argmax(U)]))
+    reason = f"difference {largest:.2e} within the uncertainty, at most {U.max():.2e}"
+    return Verdict(Outcome.AGREES, reason, *figures)

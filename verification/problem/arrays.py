@@ -5,8 +5,6 @@ from typing import Annotated, Any
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["Array", "Coatings", "FloatArray", "Mask"]
-
 
 class _Stored:
     """How pydantic stores an array: nested lists of numbers, NaN and infinity as text."""

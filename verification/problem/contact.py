@@ -9,16 +9,9 @@ from math import isfinite, pi
 from typing import Any, Protocol
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-__all__ = [
-    "CoatedContact",
-    "NotClaimed",
-    "PrescribedLoad",
-    "Solution",
-    "keywords",
-    "stress_with_uncertainty",
-]
+from verification.problem.arrays import Array, Coatings
 
 
 @dataclass(frozen=True)
@@ -33,7 +26,7 @@ class CoatedContact:
 
     radius: float
     load: float
-    coatings: tuple[tuple[float, float, float], ...]
+    coatings: Coatings
     substrate: tuple[float, float]
     friction: float = 0.0
 
@@ -89,7 +82,7 @@ class PrescribedLoad:
 
     pressure: float
     load_radius: float
-    coatings: tuple[tuple[float, float, float], ...]
+    coatings: Coatings
     substrate: tuple[float, float]
     friction: float = 0.0
 
@@ -102,6 +95,19 @@ class PrescribedLoad:
 def keywords(problem: CoatedContact | PrescribedLoad) -> dict[str, Any]:
     """The fields of ``problem`` by name, as keywords of a solver."""
     return {f.name: getattr(problem, f.name) for f in fields(problem)}
+
+
+@dataclass(frozen=True)
+class Uncertainty:
+    """Uncertainty of the scalars of a reference, absolute, SI: of a closed form 0, otherwise by quadrature.
+
+    budget : (scalar, contribution, value) of each that is not exact.
+    """
+
+    contact_radius: float = 0.0
+    approach: float = 0.0
+    peak_pressure: float = 0.0
+    budget: tuple[tuple[str, str, float], ...] = ()
 
 
 class NotClaimed(ValueError):
@@ -125,21 +131,19 @@ class Solution(Protocol):
     @property
     def diagnostics(self) -> Any: ...
     @property
-    def surface_nodes(self) -> NDArray[np.float64]: ...
-    def pressure(self, x: ArrayLike, y: ArrayLike = 0.0) -> NDArray[np.float64]: ...
-    def stress(
-        self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None
-    ) -> NDArray[np.float64]: ...
-    def displacement(self, x: ArrayLike, y: ArrayLike, z: ArrayLike) -> NDArray[np.float64]: ...
-    def pressure_uncertainty(self, x: ArrayLike, y: ArrayLike = 0.0) -> NDArray[np.float64]: ...
+    def surface_nodes(self) -> Array: ...
+    def pressure(self, x: ArrayLike, y: ArrayLike = 0.0) -> Array: ...
+    def stress(self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None) -> Array: ...
+    def displacement(self, x: ArrayLike, y: ArrayLike, z: ArrayLike) -> Array: ...
+    def pressure_uncertainty(self, x: ArrayLike, y: ArrayLike = 0.0) -> Array: ...
     def stress_uncertainty(
         self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None
-    ) -> NDArray[np.float64]: ...
+    ) -> Array: ...
 
 
 def stress_with_uncertainty(
     solution: Solution, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None
-) -> tuple[NDArray[np.float64], NDArray[np.float64] | None]:
+) -> tuple[Array, Array | None]:
     """Stress and its uncertainty [Pa] at points, (3, 3) + points; None where the solution states none.
 
     A solution with a method of this name evaluates its stress once for both.
@@ -154,9 +158,7 @@ def stress_with_uncertainty(
     return solution.stress(x, y, z, layer=layer), solution.stress_uncertainty(x, y, z, layer=layer)
 
 
-def _require_solid(
-    coatings: tuple[tuple[float, float, float], ...], substrate: tuple[float, float], friction: float
-) -> None:
+def _require_solid(coatings: Coatings, substrate: tuple[float, float], friction: float) -> None:
     for i, (E, nu, thickness) in enumerate(coatings):
         _require_positive(f"coatings[{i}].E", E)
         _require_poisson(f"coatings[{i}].nu", nu)

@@ -1,11 +1,9 @@
-"""Layers and depths of a coated half-space."""
+"""Layers of a coated half-space by depth."""
 
 import numpy as np
 from numpy.typing import NDArray
 
 from verification.problem.arrays import Array, Coatings
-
-__all__ = ["layer_at"]
 
 
 def layer_at(z: Array, coatings: Coatings, layer: int | None) -> NDArray[np.int_]:

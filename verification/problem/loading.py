@@ -5,8 +5,6 @@ from dataclasses import dataclass
 from verification.problem.arrays import Coatings
 from verification.problem.contact import CoatedContact, PrescribedLoad
 
-__all__ = ["CONTROLS", "PUNCH", "LoadingCurve", "Problem"]
-
 CONTROLS = ("contact_radius", "approach")
 PUNCH = ("kappa", "series_over_kappa")  # quantities that need the stiffness S
 

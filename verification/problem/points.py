@@ -5,10 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from verification.problem.arrays import Array
+from verification.problem.arrays import Array, Coatings
 from verification.problem.geometry import layer_at
-
-__all__ = ["Points"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,14 +27,7 @@ class Points:
 
     @classmethod
     def of(
-        cls,
-        x: Array,
-        y: Array,
-        z: Array,
-        coatings: tuple[tuple[float, float, float], ...],
-        layer: int | None,
-        unit: str,
-        in_si: float,
+        cls, x: Array, y: Array, z: Array, coatings: Coatings, layer: int | None, unit: str, in_si: float
     ) -> "Points":
         """Points with their layers, on an interface the upper one unless ``layer`` says otherwise."""
         return cls(x, y, z, np.broadcast_to(layer_at(z, coatings, layer), z.shape), unit, in_si)

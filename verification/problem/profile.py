@@ -10,8 +10,6 @@ from dataclasses import dataclass
 from verification.problem.arrays import Array
 from verification.problem.contact import CoatedContact
 
-__all__ = ["Line", "Profile", "line_of", "lines_of"]
-
 _INTERFACE = re.compile(r"interface ([1-9]\d*), (upper|lower) side")
 
 

@@ -9,19 +9,6 @@ import numpy as np
 
 from verification.problem.arrays import Array
 
-__all__ = [
-    "CURVES",
-    "EXTREMES",
-    "IN_PLANE",
-    "POINTWISE",
-    "QUANTITIES",
-    "SCALARS",
-    "STRESSES",
-    "Quantity",
-    "unit_of",
-    "von_mises",
-]
-
 
 @dataclass(frozen=True)
 class Quantity:

@@ -9,22 +9,6 @@ from verification.regression.drift import POINTS, Drift, Numbers, State, drift, 
 from verification.running.records import plain
 from verification.running.result import CaseResult, RunInfo
 
-__all__ = [
-    "Baseline",
-    "CaseDrift",
-    "Drift",
-    "Numbers",
-    "Regression",
-    "State",
-    "Update",
-    "against",
-    "case_drift",
-    "digest",
-    "regression",
-    "regression_json",
-    "updated",
-]
-
 
 @dataclass(frozen=True)
 class CaseDrift:
@@ -123,7 +107,7 @@ def against(
     names = {result.name for result in results}
     for name, numbers in baseline.cases.items():
         if whole and name not in names:
-            gone = tuple(_gone(then) for then in numbers)
+            gone = tuple(_unpaired(then, State.GONE) for then in numbers)
             found.append(CaseDrift(name, name, gone, "this case was not run"))
     return tuple(found)
 
@@ -131,15 +115,13 @@ def against(
 def case_drift(result: CaseResult, baseline: Baseline, points: int = POINTS) -> CaseDrift:
     """The changes of one case since ``baseline``."""
     now = {numbers.key: numbers for numbers in measured(result, points)}
-    stored = baseline.cases.get(result.name)
-    if stored is None:
-        drifts = tuple(_new(numbers) for numbers in now.values())
-        return CaseDrift(result.name, result.title, drifts, "not in the baseline")
-    then = {numbers.key: numbers for numbers in stored}
-    drifts = tuple(drift(old, now[key]) if key in now else _gone(old) for key, old in then.items())
-    drifts += tuple(_new(numbers) for key, numbers in now.items() if key not in then)
-    changed = baseline.digests.get(result.name) != digest(result.text)
-    return CaseDrift(result.name, result.title, drifts, "its case file was changed" if changed else "")
+    then = {numbers.key: numbers for numbers in baseline.cases.get(result.name, ())}
+    drifts = [drift(old, now[key]) if key in now else _unpaired(old, State.GONE) for key, old in then.items()]
+    drifts += [_unpaired(numbers, State.NEW) for key, numbers in now.items() if key not in then]
+    message = "" if baseline.digests.get(result.name) == digest(result.text) else "its case file was changed"
+    if result.name not in baseline.cases:
+        message = "not in the baseline"
+    return CaseDrift(result.name, result.title, tuple(drifts), message)
 
 
 def regression(
@@ -149,11 +131,14 @@ def regression(
     if baseline is None:
         return Regression(folder, None, ())
     then = baseline.last
-    pairs = [("machine", then.machine, info.machine)]
-    names = dict.fromkeys([*then.versions, *info.versions])
-    pairs += [(n, then.versions.get(n, "none"), info.versions.get(n, "none")) for n in names]
-    other = tuple((name, old, new) for name, old, new in pairs if old != new)
+    other = differing({"machine": then.machine, **then.versions}, {"machine": info.machine, **info.versions})
     return Regression(folder, then, against(results, baseline, whole=whole), other)
+
+
+def differing(then: Mapping[str, str], now: Mapping[str, str]) -> tuple[tuple[str, str, str], ...]:
+    """(name, then, now) of each text that differs, "none" where one side lacks it."""
+    pairs = ((name, then.get(name, "none"), now.get(name, "none")) for name in dict.fromkeys([*then, *now]))
+    return tuple(pair for pair in pairs if pair[1] != pair[2])
 
 
 def regression_json(found: Regression) -> dict[str, Any]:
@@ -171,15 +156,8 @@ def regression_json(found: Regression) -> dict[str, Any]:
     ]
     update = found.update
     recorded = None if update is None else {"why": update.why, "when": update.when, "commit": update.commit}
-    return plain(
-        {
-            "folder": found.folder,
-            "recorded": recorded,
-            "drifted": found.drifted,
-            "other_versions": found.other_versions,
-            "cases": cases,
-        }
-    )
+    content = {"folder": found.folder, "recorded": recorded, "drifted": found.drifted}
+    return plain(content | {"other_versions": found.other_versions, "cases": cases})
 
 
 def updated(
@@ -198,12 +176,9 @@ def updated(
     return Baseline(cases, digests, (*(old.history if old is not None else ()), update))
 
 
-def _gone(then: Numbers) -> Drift:
-    return Drift(*then.key, State.GONE, then.count, 0, None, "is no longer there")
-
-
-def _new(now: Numbers) -> Drift:
-    return Drift(*now.key, State.NEW, now.count, 0, None, "was not there before")
+def _unpaired(numbers: Numbers, state: State) -> Drift:
+    message = "is no longer there" if state is State.GONE else "was not there before"
+    return Drift(*numbers.key, state, numbers.count, 0, None, message)
 
 
 def digest(text: str) -> str:

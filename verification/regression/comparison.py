@@ -1,14 +1,13 @@
 """Comparison of two runs: verdicts, numbers, versions, times."""
 
 from dataclasses import dataclass
+from itertools import chain
 
 from verification.judging.verdict import Outcome
-from verification.regression.baseline import Baseline, CaseDrift, Update, against, digest
+from verification.regression.baseline import Baseline, CaseDrift, Update, against, differing, digest
 from verification.regression.drift import State, measured
 from verification.running.result import CaseResult
 from verification.running.stored import StoredRun
-
-__all__ = ["RunComparison", "VerdictChange", "compare_runs"]
 
 EVERY = 1_000_000  # more points than a profile has
 
@@ -61,24 +60,19 @@ class RunComparison:
 def compare_runs(a: StoredRun, b: StoredRun) -> RunComparison:
     """Differences of run ``b`` from run ``a``, at every point of every profile."""
     update = Update("", a.info.started, a.info.commit, a.info.machine, a.info.versions, 0, {})
-    first = Baseline(
-        {result.name: measured(result, EVERY) for result in a.results},
-        {result.name: digest(result.text) for result in a.results},
-        (update,),
-    )
-    names = list(dict.fromkeys(result.name for result in (*a.results, *b.results)))
+    numbers = {result.name: measured(result, EVERY) for result in a.results}
+    first = Baseline(numbers, {result.name: digest(result.text) for result in a.results}, (update,))
+    names = dict.fromkeys(result.name for result in (*a.results, *b.results))
     found = {name: (a.result(name), b.result(name)) for name in names}
-    changes = [
-        change for name, (one, two) in found.items() if one and two for change in _verdicts(name, one, two)
-    ]
+    changes = (_verdicts(name, one, two) for name, (one, two) in found.items() if one and two)
     return RunComparison(
         (str(a.path), str(b.path)),
         (a.info.started, b.info.started),
         against(b.results, first, whole=True, points=EVERY),
-        tuple(changes),
-        _versions(a, b),
+        tuple(chain.from_iterable(changes)),
+        differing(_provenance(a), _provenance(b)),
         tuple(
-            (name, None if one is None else one.seconds, None if two is None else two.seconds)
+            (name, one.seconds if one else None, two.seconds if two else None)
             for name, (one, two) in found.items()
         ),
     )
@@ -92,14 +86,13 @@ def _verdicts(name: str, one: CaseResult, two: CaseResult) -> list[VerdictChange
     for key in dict.fromkeys([*before, *after]):
         then, now = before.get(key), after.get(key)
         if then is None or now is None or then.outcome is not now.outcome:
-            reason = now.reason if now is not None else "is not claimed any more"
-            outcomes = (None if then is None else then.outcome, None if now is None else now.outcome)
+            reason = now.reason if now else "is not claimed any more"
+            outcomes = (then.outcome if then else None, now.outcome if now else None)
             found.append(VerdictChange(name, *key, *outcomes, reason))
     return found
 
 
-def _versions(a: StoredRun, b: StoredRun) -> tuple[tuple[str, str, str], ...]:
-    pairs = [(n, str(getattr(a.info, n)), str(getattr(b.info, n))) for n in ("command", "commit", "machine")]
-    for name in dict.fromkeys([*a.info.versions, *b.info.versions]):
-        pairs.append((name, a.info.versions.get(name, "none"), b.info.versions.get(name, "none")))
-    return tuple((name, then, now) for name, then, now in pairs if then != now)
+def _provenance(run: StoredRun) -> dict[str, str]:
+    return {
+        name: str(getattr(run.info, name)) for name in ("command", "commit", "machine")
+    } | run.info.versions

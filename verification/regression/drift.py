@@ -9,6 +9,7 @@ which depends on every point, and its largest stated uncertainty. An uncertainty
 and differs twofold between processors: it has drifted where it changed more than fourfold.
 """
 
+from collections import defaultdict
 from dataclasses import dataclass
 from enum import StrEnum
 
@@ -18,8 +19,6 @@ from verification.problem.arrays import Array
 from verification.problem.profile import Profile
 from verification.problem.quantity import QUANTITIES
 from verification.running.result import CaseResult
-
-__all__ = ["FACTOR", "POINTS", "RELATIVE", "Drift", "Numbers", "State", "drift", "measured"]
 
 RELATIVE = 1e-8
 POINTS = 17
@@ -92,10 +91,10 @@ class Drift:
 
 def measured(result: CaseResult, points: int = POINTS) -> tuple[Numbers, ...]:
     """The numbers of a result that a baseline stores: of each profile at most ``points`` values."""
-    largest: dict[tuple[str, str], float] = {}
+    largest: dict[tuple[str, str], float] = defaultdict(float)
     for profile in result.profiles:
         kind = (profile.source, _kind(profile))
-        largest[kind] = max(largest.get(kind, 0.0), _size(profile.value))
+        largest[kind] = max(largest[kind], _size(profile.value))
     return tuple(
         _numbers(profile, FAINT * largest[profile.source, _kind(profile)], points)
         for profile in result.profiles
@@ -126,11 +125,10 @@ def drift(then: Numbers, now: Numbers) -> Drift:
     if uncertainty:
         messages.append(uncertainty)
     count = int(moved.sum()) + bool(uncertainty)
-    largest: float | None = float(change.max()) if np.isfinite(change).all() else float("inf")
-    if not shift <= SHIFT:
-        largest = None
+    largest = float(change.max()) if np.isfinite(change).all() else float("inf")
     state = State.DRIFTED if count else State.SAME
-    return Drift(*then.key, state, then.count, count, largest, "; ".join(messages))
+    comparable = largest if shift <= SHIFT else None
+    return Drift(*then.key, state, then.count, count, comparable, "; ".join(messages))
 
 
 def _numbers(profile: Profile, faint: float, points: int) -> Numbers:
@@ -165,10 +163,6 @@ def _uncertainty_change(then: Numbers, now: Numbers, scale: float) -> str:
     if then.uncertainty is None or now.uncertainty is None:
         same = then.uncertainty is now.uncertainty
         return "" if same else "only one of the two states an uncertainty"
-    before, after = (max(u, RELATIVE * scale) for u in (then.uncertainty, now.uncertainty))
-    ratio = after / before
-    return (
-        ""
-        if 1 / FACTOR <= ratio <= FACTOR
-        else f"its stated uncertainty is {ratio:.2g} times that of the baseline"
-    )
+    ratio = max(now.uncertainty, RELATIVE * scale) / max(then.uncertainty, RELATIVE * scale)
+    same = 1 / FACTOR <= ratio <= FACTOR
+    return "" if same else f"its stated uncertainty is {ratio:.2g} times that of the baseline"

@@ -11,8 +11,6 @@ from verification.regression.drift import Numbers
 from verification.running.records import decode, encode
 from verification.running.store import StoreError, read_checked, write_checked
 
-__all__ = ["path_in", "read_baseline", "write_baseline"]
-
 SCHEMA = "coatcheck-baseline/1"
 
 

@@ -3,17 +3,15 @@
 from verification.judging.verdict import Outcome
 from verification.regression.comparison import RunComparison
 from verification.regression.drift import State
-from verification.report.sections.baseline import MOST, drift_table, state_cell
-from verification.report.tables.cells import Cell, Part, Row, Section, Table, number
+from verification.report.html.templates import render_sections
+from verification.report.sections.baseline import MOST, case_table, drift_table
+from verification.report.tables.cells import Cell, Part, Section, Table, number, row, words
 from verification.report.tables.labels import pair_label
 from verification.report.tables.matrix import outcome_cell
 from verification.report.tables.numbers import factor, scientific, seconds
-from verification.report.templates import render_sections
-
-__all__ = ["comparison_page", "comparison_sentence"]
 
 
-def comparison_sentence(found: RunComparison) -> str:
+def comparison_message(found: RunComparison) -> str:
     """Changes from the first run to the second, in one sentence."""
     worse = sum(change.worse for change in found.verdicts)
     changed = f"{len(found.verdicts)} verdicts changed" if found.verdicts else "No verdict changed"
@@ -38,23 +36,21 @@ def comparison_page(found: RunComparison) -> str:
         Section("versions", "Provenance", [_versions(found)]),
         Section("times", "Times", [Part("", [_times(found)])]),
     ]
-    return render_sections("coatcheck compare", comparison_sentence(found), facts, sections)
+    return render_sections("coatcheck compare", comparison_message(found), facts, sections)
 
 
 def _verdicts(found: RunComparison) -> Part:
     if not found.verdicts:
         return Part("Every comparison has the same verdict in both runs.")
     rows = [
-        Row(
-            Cell(change.case),
-            [
-                _outcome(change.before),
-                _outcome(change.after),
-                Cell(change.quantity),
-                Cell(change.line),
-                Cell(pair_label(change.between)),
-                Cell(change.reason, css="words"),
-            ],
+        row(
+            change.case,
+            _outcome(change.before),
+            _outcome(change.after),
+            change.quantity,
+            change.line,
+            pair_label(change.between),
+            words(change.reason),
         )
         for change in sorted(found.verdicts, key=lambda change: not change.worse)
     ]
@@ -65,27 +61,20 @@ def _verdicts(found: RunComparison) -> Part:
 
 
 def _numbers(found: RunComparison) -> Part:
-    rows = []
-    for case in found.cases:
-        counts = [case.count(state) for state in (State.SAME, State.DRIFTED, State.GONE, State.NEW)]
-        cells = [state_cell(case), *(number(count, str) for count in counts)]
-        rows.append(Row(Cell(case.name, note=case.title), [*cells, number(case.change)]))
-    table = Table(
-        "Every point of every profile of the second run against the first.",
-        ["case", "state", "same", "drifted", "gone", "new", "largest change"],
-        rows,
+    table = case_table(
+        found.cases, {}, "Every point of every profile of the second run compared with the first."
     )
     # Cases of only one run have their rows above.
     both = [c for c in found.cases if {d.state for d in c.drifts} - {State.NEW, State.GONE}]
     moved = [(c, d) for c in both for d in c.drifts if d.state is not State.SAME]
     text = "" if len(moved) <= MOST else f"{len(moved)} profiles differ."
-    return Part(text, [table, *([drift_table(moved)] if moved else [])])
+    return Part(text, [table, drift_table(moved)])
 
 
 def _versions(found: RunComparison) -> Part:
     if not found.versions:
         return Part("Both runs have the same command, commit, machine, packages.")
-    rows = [Row(Cell(name), [Cell(then), Cell(now)]) for name, then, now in found.versions]
+    rows = [row(*version) for version in found.versions]
     return Part("", [Table("Differences of provenance.", ["", "first", "second"], rows)])
 
 
@@ -93,7 +82,7 @@ def _times(found: RunComparison) -> Table:
     rows = []
     for name, then, now in found.seconds:
         ratio = Cell("–") if then is None or now is None else Cell(factor(now, then), now / max(then, 1e-9))
-        rows.append(Row(Cell(name), [number(then, seconds), number(now, seconds), ratio]))
+        rows.append(row(name, number(then, seconds), number(now, seconds), ratio))
     return Table("Seconds of each case.", ["case", "first", "second", "second over first"], rows)
 
 

@@ -8,8 +8,6 @@ from verification.judging.verdict import Outcome
 from verification.report.tables.numbers import scientific
 from verification.running.result import CaseResult, RunInfo
 
-__all__ = ["junit_xml"]
-
 # XML 1.0 has no way to write these, not even escaped.
 _FORBIDDEN = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 

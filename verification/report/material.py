@@ -1,4 +1,4 @@
-"""Material of a report: results, provenance and other evidence, of a run or read back from one."""
+"""Material of a report: results, provenance, other evidence, of a run or read back from one."""
 
 import json
 import shlex
@@ -12,25 +12,24 @@ from typing import Any, TypeVar
 
 from verification.cases.contact import shipped_cases
 from verification.cases.published import published_cases
-from verification.credibility import alarms
+from verification.credibility import accuracy, alarms
 from verification.credibility.accuracy import AccuracyStudy
 from verification.credibility.alarms import AlarmRecord
 from verification.credibility.faults.campaign import RECORD
 from verification.credibility.faults.record import Record, read_record
 from verification.credibility.independence import Part, parts
 from verification.credibility.manufactured import DesignOrder, design_orders
+from verification.credibility.self_tests import SelfTest
 from verification.regression.baseline import Regression
 from verification.report.tables.lookup import slug
 from verification.running.fields import read_planes
 from verification.running.provenance import machine
 from verification.running.records import decode
 from verification.running.result import CaseResult, RunInfo, from_json, to_json
-from verification.running.self_tests import SelfTest
 from verification.running.store import MAX_BYTES, StoreError, read_bounded, read_checked
 from verification.sampling.plane import Plane
+from verification.study import formulas
 from verification.study.formulas import EffectiveStudy
-
-__all__ = ["Evidence", "Material", "gather", "rerun_command", "stored_material"]
 
 T = TypeVar("T")
 
@@ -141,7 +140,16 @@ def stored_material(folder: Path) -> tuple[Material, bool]:
         machine=machine(),
         versions={},
     )
-    return Material(results, info, Evidence(), planes), False
+    measured = {
+        name: _measured(study, folder) for name, study in (("accuracy", accuracy), ("formulas", formulas))
+    }
+    return Material(results, info, Evidence(**measured), planes), False
+
+
+def _measured(study: Any, folder: Path) -> Any:
+    """The result of a study that a run stored in ``folder``; None where it has none."""
+    path = study.task(folder).path
+    return study.from_json(read_checked(path)) if path.exists() else None
 
 
 def _last_report(folder: Path) -> dict[str, Any]:

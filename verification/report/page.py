@@ -2,17 +2,17 @@
 
 from collections import Counter
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from functools import partial
+from typing import Any
 
 import numpy as np
-from markupsafe import Markup
 
 from verification.judging.verdict import Outcome
 from verification.report.credibility import faults, self_tests, statement
-from verification.report.figures.fields import Pictures, pictures
-from verification.report.figures.panels import LineFigures, line_figures
+from verification.report.figures.fields import pictures
+from verification.report.figures.panels import line_figures
 from verification.report.figures.sketch import sketch
+from verification.report.html.templates import rendered
 from verification.report.material import Material, rerun_command
 from verification.report.sections import (
     accuracy,
@@ -25,7 +25,6 @@ from verification.report.sections import (
     refinement,
     times,
 )
-from verification.report.sections.published import published_view
 from verification.report.tables.case import (
     budget_table,
     contact_table,
@@ -41,10 +40,7 @@ from verification.report.tables.labels import OUTCOMES, OutcomeStyle, source_lab
 from verification.report.tables.lookup import lines, scale, slug
 from verification.report.tables.matrix import verdict_matrix
 from verification.report.tables.numbers import scientific, seconds
-from verification.report.templates import rendered
 from verification.running.result import CaseResult
-
-__all__ = ["render"]
 
 # Sections of the page between the verdicts and the cases, in their order; None is left out.
 SECTIONS: tuple[Callable[[Material], Section | None], ...] = (
@@ -67,45 +63,6 @@ SECTIONS: tuple[Callable[[Material], Section | None], ...] = (
 MOST_FAILING = 6
 
 
-@dataclass(frozen=True)
-class LineView:
-    """One line of a case: its anchor, figures, and numbers."""
-
-    anchor: str
-    title: str
-    figures: LineFigures
-    csv: str
-    file: str
-
-
-@dataclass(frozen=True)
-class CaseView:
-    """Everything on the page about one case."""
-
-    anchor: str
-    result: CaseResult
-    outcome: OutcomeStyle
-    summary: str
-    command: str
-    facts: Sequence[tuple[str, str]]
-    sketch: Markup
-    failures: tuple[tuple[str, str], ...]
-    layers: Table
-    contact: Table
-    contact_csv: str
-    contact_file: str
-    pictures: Pictures | None
-    lines: tuple[LineView, ...]
-    accuracy: Table | None
-    broken: Table | None
-    failing: Table | None
-    more: int
-    verdicts: Table
-    invariants: Table | None
-    budget: Table | None
-    diagnostics: Table | None
-
-
 def render(material: Material) -> str:
     """The whole page as text. Every string of a result is escaped: a title "<script>" stays text."""
     # Results may hold numbers that overflow or are not finite; the page shows them as they are.
@@ -116,10 +73,10 @@ def render(material: Material) -> str:
             summary=_summary(material.results),
             counts=_counts(material.results),
             matrix=_matrix(material) if material.contacts else None,
-            published=[published_view(material, result) for result in material.published],
+            published=[_published(material, result) for result in material.published],
             outcomes=OUTCOMES.values(),
             sections=[section for make in SECTIONS if (section := make(material)) is not None],
-            cases=[_case(material, result) for result in material.contacts],
+            cases=[_contact(material, result) for result in material.contacts],
             seconds=seconds,
         )
 
@@ -175,55 +132,60 @@ def _summary(results: Sequence[CaseResult]) -> str:
     return text + "."
 
 
-def _case(material: Material, result: CaseResult) -> CaseView:
-    anchor = material.anchors[result]
-    bad = [item for item in result.verdicts if item[1].outcome is not Outcome.AGREES]
-    broken = [one for one in result.invariants if one.outcome is not Outcome.AGREES]
-    file = slug(result.name)
-    a_h = scale(result, "a_h")
-    return CaseView(
-        anchor=anchor,
-        result=result,
-        outcome=OUTCOMES[result.outcome],
-        summary=_case_summary(result, len(bad), len(broken)),
-        command=rerun_command(result.name, material.info.command),
-        facts=facts(result),
-        sketch=sketch(result),
-        failures=tuple((source_label(s.source), s.failure) for s in result.sources if s.failure is not None),
-        layers=layer_table(result),
-        contact=contact_table(result),
-        contact_csv=embedded(line_csv(result, "contact")),
-        contact_file=f"{file}-contact.csv",
-        pictures=pictures(result, material.planes.get(result.name)),
-        lines=tuple(_line(result, line, anchor, file) for line in lines(result)),
-        accuracy=accuracy.accuracy_table(result),
-        broken=invariants.invariant_table(broken),
-        failing=verdict_table(bad, a_h, MOST_FAILING) if bad else None,
-        more=max(len(bad) - MOST_FAILING, 0),
-        verdicts=verdict_table(result.verdicts, a_h, parameter=partial(dominating_parameter, result)),
-        invariants=invariants.invariant_table(result.invariants),
-        budget=budget_table(result),
-        diagnostics=diagnostics_table(result),
-    )
-
-
-def _line(result: CaseResult, line: str, anchor: str, file: str) -> LineView:
-    return LineView(
-        anchor=f"{anchor}-{slug(line)}",
-        title=f"Along the {line}" if line in ("surface", "axis") else line.capitalize(),
-        figures=line_figures(result, line),
-        csv=embedded(line_csv(result, line)),
-        file=f"{file}-{slug(line)}.csv",
-    )
-
-
-def _case_summary(result: CaseResult, bad: int, broken: int) -> str:
+def _common(material: Material, result: CaseResult) -> dict[str, Any]:
+    """What the templates of contacts and of published sources have in common."""
+    bad = sum(verdict.outcome is not Outcome.AGREES for _, verdict in result.verdicts)
+    broken = sum(one.outcome is not Outcome.AGREES for one in result.invariants)
     total, count = len(result.verdicts), len(result.invariants)
-    if not total:
-        return "No comparison was possible."
     text = f"{bad} of {total} comparisons do not agree" if bad else f"All {total} comparisons agree"
     if count:
         text += (
             f", {broken} of {count} invariants do not hold" if broken else f", all {count} invariants hold"
         )
-    return text + "."
+    return {
+        "anchor": material.anchors[result],
+        "result": result,
+        "outcome": OUTCOMES[result.outcome],
+        "summary": f"{text}." if total else "No comparison was possible.",
+        "command": rerun_command(result.name, material.info.command),
+        "facts": facts(result),
+        "failures": [(source_label(s.source), s.failure) for s in result.sources if s.failure is not None],
+        "layers": layer_table(result),
+        "budget": budget_table(result),
+        "diagnostics": diagnostics_table(result),
+    }
+
+
+def _published(material: Material, result: CaseResult) -> dict[str, Any]:
+    tables, verdicts = published.tables(result), verdict_table(result.verdicts, 0.0)
+    return _common(material, result) | {"tables": tables, "verdicts": verdicts}
+
+
+def _contact(material: Material, result: CaseResult) -> dict[str, Any]:
+    anchor, file, a_h = material.anchors[result], slug(result.name), scale(result, "a_h")
+    bad = [item for item in result.verdicts if item[1].outcome is not Outcome.AGREES]
+    return _common(material, result) | {
+        "sketch": sketch(result),
+        "contact": contact_table(result),
+        "contact_csv": embedded(line_csv(result, "contact")),
+        "contact_file": f"{file}-contact.csv",
+        "pictures": pictures(result, material.planes.get(result.name)),
+        "lines": [
+            {
+                "anchor": f"{anchor}-{slug(line)}",
+                "title": f"Along the {line}" if line in ("surface", "axis") else line.capitalize(),
+                "figures": line_figures(result, line),
+                "csv": embedded(line_csv(result, line)),
+                "file": f"{file}-{slug(line)}.csv",
+            }
+            for line in lines(result)
+        ],
+        "accuracy": accuracy.accuracy_table(result),
+        "broken": invariants.invariant_table(
+            [one for one in result.invariants if one.outcome is not Outcome.AGREES]
+        ),
+        "failing": verdict_table(bad, a_h, MOST_FAILING),
+        "more": max(len(bad) - MOST_FAILING, 0),
+        "verdicts": verdict_table(result.verdicts, a_h, parameter=partial(dominating_parameter, result)),
+        "invariants": invariants.invariant_table(result.invariants),
+    }

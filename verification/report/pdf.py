@@ -8,8 +8,6 @@ from pathlib import Path
 
 from verification.running.store import StoreError, write_atomically
 
-__all__ = ["NoBrowser", "browser", "printed"]
-
 BROWSERS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable", "chrome")
 FLAGS = (
     "--headless",

@@ -14,8 +14,6 @@ from verification.running.records import encode
 from verification.running.result import SCHEMA, to_json
 from verification.running.store import PART, StoreError
 
-__all__ = ["report_json", "write_report"]
-
 
 def write_report(material: Material, folder: Path) -> Path:
     """Write report.html, report.json and junit.xml into ``folder`` and return the path of the page.
@@ -24,9 +22,9 @@ def write_report(material: Material, folder: Path) -> Path:
     that an error leaves the earlier report as it was. Raises StoreError where the folder cannot be written.
     """
     texts = {
-        "report.json": report_json(material),
         "junit.xml": junit_xml(material.results, material.info),
         "report.html": render(material),
+        "report.json": report_json(material),
     }
     ready: dict[Path, Path] = {}
     try:

@@ -9,30 +9,27 @@ import numpy as np
 from verification.cases.contact import Case
 from verification.judging.invariants import Invariant, check, resolved
 from verification.judging.verdict import Claim, Outcome, Verdict, compare, judge
-from verification.problem.arrays import Array
 from verification.problem.contact import CoatedContact, Solution
-from verification.problem.profile import Line, Profile
+from verification.problem.profile import Profile
 from verification.problem.quantity import QUANTITIES, SCALARS
-from verification.running.result import CaseResult, SourceResult, describe, diagnostics_of, sentence
-from verification.sampling.lines import sample, sample_contact
+from verification.running.result import CaseResult, SourceResult, describe, diagnostics_of, message_of
+from verification.sampling.lines import positions, sample, sample_contact
+from verification.sources.record import Solver
 from verification.sources.registry import solvers
-from verification.sources.source import Solver
-
-__all__ = ["Solved", "decide", "failed", "judge_case", "run", "solve_case"]
 
 
 def run(case: Case, available: Mapping[str, Solver] | None = None) -> CaseResult:
     """Solve a case by every source its claims name, sample all at the same points, judge the claims.
 
-    A source that fails leaves its sentence and NO_RESULT on each of its claims; the others go on.
-    ``available`` replaces the solvers, as tests and planted faults do.
+    A source that fails leaves its message and NO_RESULT on each of its claims; the others are compared.
+    available : other solvers by name, as in tests and with planted faults.
     """
     return judge_case(case, solve_case(case, available))
 
 
 @dataclass(frozen=True, eq=False)
 class Solved:
-    """What each source of a case came to, by name: its Solution where it has one, its SourceResult always.
+    """Solution and SourceResult of each source of a case, by name; a source that failed has no Solution.
 
     resolved : invariants between solutions of the problem and of others, where the case has ``resolve``.
     """
@@ -55,8 +52,8 @@ def solve_case(case: Case, available: Mapping[str, Solver] | None = None) -> Sol
             for name in SCALARS:
                 if not np.isfinite(value := QUANTITIES[name].value(solution, case.problem)):
                     raise ValueError(f"{name} = {value}; the solution is not finite")
-        except Exception as error:  # a failed solve is a row of the report, whatever went wrong
-            outcomes[source] = SourceResult(source, time.perf_counter() - begin, sentence(error))
+        except Exception as error:  # any failed solve is a row of the report
+            outcomes[source] = SourceResult(source, time.perf_counter() - begin, message_of(error))
             continue
         solutions[source] = solution
         outcomes[source] = SourceResult(
@@ -69,22 +66,22 @@ def solve_case(case: Case, available: Mapping[str, Solver] | None = None) -> Sol
 
 
 def judge_case(case: Case, solved: Solved, *, invariants: bool = True) -> CaseResult:
-    """Sample what was solved at the same points of every line, then decide each claim of ``case``.
+    """Sample every solution at the same points of every line, then decide each claim of ``case``.
 
     invariants : whether each solution is checked against its invariants too.
     """
     started = time.perf_counter()
     solutions, outcomes = dict(solved.solutions), dict(solved.outcomes)
     profiles: dict[tuple[str, str, str], Profile] = {}
-    places = _positions(case, solutions) if solutions else {}
+    places = positions(case.problem, case.lines, solutions) if solutions else {}
     for source, solution in solutions.items():
         begin = time.perf_counter()
         try:
             found = list(sample_contact(solution, source, case.problem))
             for line in case.lines:
                 found += sample(solution, source, line, places[line])
-        except Exception as error:  # as above: stresses that cannot be had are a sentence, not a traceback
-            outcomes[source] = SourceResult(source, outcomes[source].seconds, sentence(error))
+        except Exception as error:  # as above
+            outcomes[source] = SourceResult(source, outcomes[source].seconds, message_of(error))
             continue
         old = outcomes[source]
         seconds = old.seconds + time.perf_counter() - begin
@@ -141,28 +138,10 @@ def decide(
     for source in claim.between:
         outcome = outcomes.get(source)
         if outcome is None or outcome.failure is not None:
-            reason = "was not asked" if outcome is None else outcome.failure
+            reason = "was not solved" if outcome is None else outcome.failure
             return Verdict(Outcome.NO_RESULT, f"{source}: {reason}")
         sides.append(profiles[claim.quantity, claim.line, source])
     a, b = sides
     scale = problem.p_h if claim.line != "contact" else float(abs(b.value[0]))
     excluded = np.abs(np.abs(a.position) - edge) < claim.edge * edge
     return judge(compare(a, b, scale=scale, excluded=excluded), claim.cap)
-
-
-def _positions(case: Case, solutions: Mapping[str, Solution]) -> dict[Line, Array]:
-    """Where each line is sampled [m]: along x at nodes of the semi-analytical grid, so that neither it nor
-    the finite element model, which has shape functions, needs a third interpolation."""
-    problem = case.problem
-    a = max(solution.contact_radius for solution in solutions.values())
-    nodes = next(iter(solutions.values())).surface_nodes
-    wanted = 2.5 * a * np.linspace(0, 1, 101)
-    if problem.friction:
-        wanted = np.concatenate([-wanted[:0:-1], wanted])
-    wanted = wanted[np.abs(wanted) <= np.abs(nodes).max()]
-    x = nodes[np.unique(np.abs(nodes[None, :] - wanted[:, None]).argmin(axis=1))]
-    bounds = np.array([0.0, *problem.interfaces, max(4 * a, *(2 * z for z in problem.interfaces), 0.0)])
-    # Six points in each layer at least, and a run that thins out with depth. None lies on an interface.
-    inside = bounds[:-1, None] + np.diff(bounds)[:, None] * (np.arange(6) + 0.5) / 6
-    z = np.unique(np.concatenate([inside.ravel(), 4 * a * ((np.arange(40) + 0.5) / 40) ** 1.5]))
-    return {line: z if line.depth is None else x for line in case.lines}

@@ -21,17 +21,6 @@ from verification.sampling.plane import Plane
 from verification.sampling.vtk import WRITERS
 from verification.sources.registry import SOURCES
 
-__all__ = [
-    "Fields",
-    "fields_path",
-    "plane_path",
-    "read_fields",
-    "read_plane",
-    "read_planes",
-    "write_fields",
-    "write_plane",
-]
-
 SCHEMA = "coatcheck-fields/1"
 PLANE = "coatcheck-plane/2"
 
@@ -69,16 +58,16 @@ def read_planes(folder: Path, results: Iterable[CaseResult]) -> dict[str, Plane]
     """The planes that a run directory holds of ``results``, by name of the case."""
     found = {}
     for result in results:
-        with suppress(StoreError):  # a case without a result, or published, has no plane
+        with suppress(StoreError):  # neither a failed case nor a published one has a plane
             found[result.name] = read_plane(plane_path(folder, result.name), result.text)
     return found
 
 
 @dataclass(frozen=True)
 class Fields:
-    """What was written of a case: the finite element ``mesh``, the ``boxes`` layer by layer, their ``index``.
+    """Files of a case: the finite element ``mesh``, the ``boxes`` layer by layer, their ``index``.
 
-    None and () where a method gave nothing; ``failures`` has by source the sentence why.
+    None and () where a method gave nothing; ``failures`` has the message of each such method.
     """
 
     mesh: Path | None
@@ -98,7 +87,7 @@ def write_fields(case: Case, solutions: Mapping[str, Solution], folder: Path) ->
     NAME-fem.vtu : the plane y = 0, quadratic triangles.   NAME-semi.vtm : an index of NAME-semi-layer-K.vtr,
     a box of a layer each, so that what jumps at an interface has both its values. All in metres, z into the
     solid; fields "sigma_xx [Pa]" ..., "von_mises [Pa]", "displacement [m]", cells with their "layer".
-    A method whose fields cannot be had leaves a sentence. Raises StoreError where files cannot be written.
+    A method that fails leaves its message. Raises StoreError where files cannot be written.
     """
     path = fields_path(folder, case.name)
     written: dict[str, bytes] = {}
@@ -107,7 +96,7 @@ def write_fields(case: Case, solutions: Mapping[str, Solution], folder: Path) ->
         if SOURCES[source].fields:
             try:
                 written |= WRITERS[SOURCES[source].fields](case, solution)
-            except Exception as error:  # fields are wanted besides; they cost no result
+            except Exception as error:  # a result does not depend on its files for ParaView
                 failures[source] = f"{type(error).__name__}: {' '.join(str(error).split())[:300]}"
     for name, data in written.items():
         write_atomically(path.parent / name, data)
@@ -132,7 +121,7 @@ def read_fields(folder: Path, name: str, case_file: str | None = None) -> Fields
         raise StoreError(f"{path}: of another case file or version of this program; run the case again")
     try:
         sums = {str(file): str(stated) for file, stated in data["files"].items()}
-        failures = {str(source): str(sentence) for source, sentence in data["failures"].items()}
+        failures = {str(source): str(message) for source, message in data["failures"].items()}
     except (KeyError, AttributeError):
         raise StoreError(f"{path}: not a list of fields; run the case again with --fields") from None
     for file, stated in sums.items():

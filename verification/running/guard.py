@@ -26,8 +26,6 @@ from typing import BinaryIO, NoReturn
 
 from verification.running.store import StoreError
 
-__all__ = ["UNWRITABLE", "main"]
-
 UNWRITABLE = 74  # exit code of a process that could not write its result, EX_IOERR of sysexits.h
 
 
@@ -96,7 +94,7 @@ def _run(place: str, *words: str) -> int:
 
 
 def _end_with_parent(requests: int) -> None:
-    # Without an event asked for, poll returns when the other end is closed: the parent is gone, however.
+    # With no event registered, poll returns when the other end is closed: the parent has ended.
     end = select.poll()
     end.register(requests, 0)
     end.poll()
@@ -104,9 +102,8 @@ def _end_with_parent(requests: int) -> None:
 
 
 def _first_candidate_when_memory_ends() -> None:
-    # No limit of its own on memory: the sparse factorisation asks for four times what it then touches, so one
-    # that stopped a runaway would refuse good cases. Where memory ends the kernel takes this process before
-    # the one that writes the report.
+    # No limit on memory: the sparse factorisation reserves four times what it uses, so a limit that stops a
+    # runaway would refuse good cases. The kernel ends this process before the one that writes the report.
     with suppress(OSError):
         Path("/proc/self/oom_score_adj").write_text("1000")
 

@@ -1,4 +1,4 @@
-"""What a run stands on: versions, commit, machine, system libraries."""
+"""Provenance of a run: versions, commit, machine, system libraries."""
 
 import ctypes.util
 import hashlib
@@ -9,8 +9,6 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
 from verification.sources.registry import METHODS, SOURCES
-
-__all__ = ["commit", "fingerprint", "machine", "missing_libraries", "versions"]
 
 PACKAGES = (
     "coatcheck",
@@ -42,7 +40,7 @@ GMSH_LIBRARIES = {
 
 
 def versions() -> dict[str, str]:
-    """Version of Python and of each package that puts digits into a result."""
+    """Version of Python and of each package that results depend on."""
     found = {"python": platform.python_version()}
     for name in PACKAGES:
         try:
@@ -89,16 +87,16 @@ def machine() -> str:
 
 
 def _processor() -> str:
-    """Name, family, model of the processor where Linux tells: what last digits may depend on."""
+    """Name, family and model of the processor, on Linux; the last digits may depend on them."""
     try:
         lines = Path("/proc/cpuinfo").read_text(encoding="utf-8", errors="replace").splitlines()
     except OSError:
         return ""
-    told: dict[str, str] = {}
+    fields: dict[str, str] = {}
     for line in lines:
         name, _, value = line.partition(":")
-        told.setdefault(name.strip(), value.strip())
-    found = [told[name] for name in ("model name", "cpu family", "model", "stepping") if name in told]
+        fields.setdefault(name.strip(), value.strip())
+    found = [fields[name] for name in ("model name", "cpu family", "model", "stepping") if name in fields]
     return f", {' '.join(found)}" if found else ""
 
 

@@ -1,4 +1,4 @@
-"""One published case from its problem to its verdicts: methods, exact reference and what was printed."""
+"""One published case from its problem to its verdicts."""
 
 import time
 from collections.abc import Mapping
@@ -12,14 +12,12 @@ from verification.problem.contact import Solution
 from verification.problem.loading import Problem
 from verification.problem.profile import Profile
 from verification.problem.quantity import POINTWISE, QUANTITIES
-from verification.running.result import CaseResult, SourceResult, describe, diagnostics_of, sentence
+from verification.running.result import CaseResult, SourceResult, describe, diagnostics_of, message_of
 from verification.sampling.memo import tabulated
 from verification.sampling.points import values
 from verification.sources.loading import Loading
+from verification.sources.record import Solver
 from verification.sources.registry import CLOSED, METHODS, PUBLISHED, solvers
-from verification.sources.source import Solver
-
-__all__ = ["failed", "published_solvers", "run"]
 
 
 def published_solvers(problem: Problem) -> dict[str, Solver]:
@@ -28,10 +26,10 @@ def published_solvers(problem: Problem) -> dict[str, Solver]:
 
 
 def run(case: PublishedCase, available: Mapping[str, Solver] | None = None) -> CaseResult:
-    """Solve by every source, take what was printed at the very points, judge every column on every line.
+    """Solve by every source, evaluate each at the published points, judge every column on every line.
 
-    available : solvers by source; both methods are called to account, the exact reference where it is there.
-    A source that fails leaves its sentence and NO_RESULT on each of its claims.
+    available : solvers by source; a method that is missing has NO_RESULT, a reference no claims.
+    A source that fails leaves its message and NO_RESULT on each of its claims.
     """
     started = time.perf_counter()
     available = published_solvers(case.problem) if available is None else available
@@ -42,16 +40,16 @@ def run(case: PublishedCase, available: Mapping[str, Solver] | None = None) -> C
         try:
             solution = solve(case.problem)
             if not isinstance(solution, Loading):
-                asked_of = [i.at for i in case.columns if QUANTITIES[i.profile.quantity].kind in POINTWISE]
-                solution = tabulated(solution, asked_of)
-            asked = {(c.quantity, c.line) for c in case.claims if source in c.between}
+                points = [i.at for i in case.columns if QUANTITIES[i.profile.quantity].kind in POINTWISE]
+                solution = tabulated(solution, points)
+            claimed = {(c.quantity, c.line) for c in case.claims if source in c.between}
             found = [
                 _profile(solution, source, item, case)
                 for item in case.columns
-                if source in METHODS or (item.profile.quantity, item.profile.line) in asked
+                if source in METHODS or (item.profile.quantity, item.profile.line) in claimed
             ]
         except Exception as error:  # a failed solve is a row of the report, whatever went wrong
-            outcomes[source] = SourceResult(source, time.perf_counter() - begin, sentence(error))
+            outcomes[source] = SourceResult(source, time.perf_counter() - begin, message_of(error))
             continue
         seconds, budget = time.perf_counter() - begin, getattr(solution.uncertainty, "budget", ())
         outcomes[source] = SourceResult(source, seconds, None, diagnostics_of(solution.diagnostics), budget)
@@ -62,7 +60,7 @@ def run(case: PublishedCase, available: Mapping[str, Solver] | None = None) -> C
         source, item = claim.between[0], columns[claim.quantity, claim.line]
         if source not in available and source not in METHODS:
             continue
-        failure = outcomes[source].failure if source in outcomes else "was not asked"
+        failure = outcomes[source].failure if source in outcomes else "was not solved"
         if failure is not None:
             verdicts.append((claim, Verdict(Outcome.NO_RESULT, f"{source}: {failure}")))
             continue
@@ -104,7 +102,7 @@ def _blank(case: PublishedCase) -> CaseResult:
 
 
 def _record(item: PublishedColumn) -> dict[str, Any]:
-    """What the report needs to show a column as it was printed."""
+    """A published column as the report shows it."""
     return {
         "quantity": item.profile.quantity,
         "line": item.profile.line,
@@ -127,5 +125,5 @@ def _record(item: PublishedColumn) -> dict[str, Any]:
 def _profile(
     solution: Solution | Loading, source: str, item: PublishedColumn, case: PublishedCase
 ) -> Profile:
-    value, spread = values(solution, item.profile.quantity, item.at, case.problem, item.series)
-    return replace(item.profile, value=value, source=source, uncertainty=spread)
+    value, uncertainty = values(solution, item.profile.quantity, item.at, case.problem, item.series)
+    return replace(item.profile, value=value, source=source, uncertainty=uncertainty)

@@ -6,8 +6,6 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-__all__ = ["decode", "encode", "plain"]
-
 T = TypeVar("T")
 
 

@@ -1,6 +1,7 @@
 """The result of a case, with its exact JSON form."""
 
 from dataclasses import asdict, dataclass, field, is_dataclass
+from functools import cached_property
 from typing import Any
 
 from verification.judging.invariants import Invariant
@@ -10,26 +11,14 @@ from verification.problem.loading import LoadingCurve
 from verification.problem.profile import Profile
 from verification.running.records import decode, encode
 
-__all__ = [
-    "SCHEMA",
-    "CaseResult",
-    "RunInfo",
-    "SourceResult",
-    "describe",
-    "diagnostics_of",
-    "from_json",
-    "sentence",
-    "to_json",
-]
-
 SCHEMA = "coatcheck-report/1"
 
 
 @dataclass(frozen=True)
 class SourceResult:
-    """How one method or reference fared: its seconds and diagnostics, or the sentence it failed with.
+    """Time and diagnostics of one source of a case, or the message it failed with.
 
-    budget : (quantity, knob, uncertainty) rows of the method's own ladders, SI.
+    budget : (quantity, numerical parameter, uncertainty) rows of the method's own refinement studies, SI.
     """
 
     source: str
@@ -41,12 +30,12 @@ class SourceResult:
 
 @dataclass(frozen=True, eq=False)
 class CaseResult:
-    """Everything one case came to; the report is drawn from these alone.
+    """Result of one case, all that the report needs.
 
     problem : the fields of CoatedContact, with the scales a_h, p_h, delta_h and the interfaces.
     verdicts : one (Claim, Verdict) per claim of the case, in its order.
     published : of a published case its citation and the tables as printed; empty for any other.
-    invariants : what each solution was held against by itself.
+    invariants : of each solution by itself.
     """
 
     name: str
@@ -71,12 +60,10 @@ class CaseResult:
                 return outcome
         return Outcome.AGREES if found else Outcome.NO_RESULT
 
-    def profile(self, quantity: str, line: str, source: str) -> Profile | None:
-        """The profile of ``quantity`` on ``line`` by ``source``; None where there is none."""
-        for profile in self.profiles:
-            if (profile.quantity, profile.line, profile.source) == (quantity, line, source):
-                return profile
-        return None
+    @cached_property
+    def profile_of(self) -> dict[tuple[str, str, str], Profile]:
+        """Each profile by its (quantity, line, source)."""
+        return {(profile.quantity, profile.line, profile.source): profile for profile in self.profiles}
 
 
 @dataclass(frozen=True)
@@ -138,10 +125,10 @@ def diagnostics_of(diagnostics: Any) -> dict[str, Any]:
     return asdict(diagnostics) if is_dataclass(diagnostics) and not isinstance(diagnostics, type) else {}
 
 
-def sentence(error: Exception) -> str:
-    """What went wrong, in one line."""
+def message_of(error: Exception) -> str:
+    """The message of ``error`` in one line."""
     text = " ".join(str(error).split())[:500]
-    # Both methods raise ValueError or their own NotConverged with a sentence; anything else is named.
+    # Both methods raise ValueError or their own NotConverged with a whole message; any other has its type.
     if isinstance(error, ValueError) or type(error).__name__ == "NotConverged":
         return text
     return f"{type(error).__name__}: {text or 'no message'}"

@@ -11,16 +11,6 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
-__all__ = [
-    "PART",
-    "StoreError",
-    "locked",
-    "read_bounded",
-    "read_checked",
-    "write_atomically",
-    "write_checked",
-]
-
 # A result of this program takes up to 3 MB; what is larger was not written by it.
 MAX_BYTES = 50_000_000
 PART = ".coatcheck-part"  # how the name of a file ends that is still being written
@@ -97,8 +87,8 @@ def read_bounded(path: Path, most: int) -> bytes:
                 raise StoreError(f"{path}: not a regular file; it cannot be read")
             raw = file.read(most + 1)
     except (OSError, ValueError) as error:
-        said = error.strerror if isinstance(error, OSError) else error
-        raise StoreError(f"{path}: cannot be read ({said})") from None
+        reason = error.strerror if isinstance(error, OSError) else error
+        raise StoreError(f"{path}: cannot be read ({reason})") from None
     if len(raw) > most:
         raise StoreError(f"{path}: larger than {most} bytes; not a file of this program")
     return raw

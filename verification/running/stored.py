@@ -8,12 +8,10 @@ from verification.running.records import decode
 from verification.running.result import CaseResult, RunInfo, from_json, to_json
 from verification.running.store import MAX_BYTES, StoreError, read_bounded, read_checked
 
-__all__ = ["StoredRun", "confirm", "read_run"]
-
 
 @dataclass(frozen=True, eq=False)
 class StoredRun:
-    """The ``results`` of a run with what it stood on; ``path`` is that of its report.json."""
+    """The ``results`` of a run with its provenance; ``path`` is that of its report.json."""
 
     path: Path
     info: RunInfo
@@ -27,7 +25,7 @@ class StoredRun:
 def read_run(place: Path) -> StoredRun:
     """The run in the directory ``place``, or in the report.json ``place`` itself.
 
-    Raises StoreError: one sentence that names the file.
+    Raises StoreError with a message that names the file.
     """
     path = place / "report.json" if place.is_dir() else place
     try:
@@ -38,12 +36,12 @@ def read_run(place: Path) -> StoredRun:
         data = json.loads(raw)
         return StoredRun(path, decode(RunInfo, data["run"]), tuple(from_json(case) for case in data["cases"]))
     except (ValueError, KeyError, TypeError, AttributeError, OverflowError, RecursionError) as error:
-        said = " ".join(str(error).split())[:120]
-        raise StoreError(f"{path}: not a report of this program ({said}); run the cases again") from None
+        reason = " ".join(str(error).split())[:120]
+        raise StoreError(f"{path}: not a report of this program ({reason}); run the cases again") from None
 
 
 def confirm(run: StoredRun) -> None:
-    """See to it that each case of the report is the one whose checksum holds beside it. Raises StoreError."""
+    """Raises StoreError where a case of the report is not the one stored beside it with its checksum."""
     for result in run.results:
         path = run.path.parent / "cases" / f"{result.name}.json"
         if to_json(from_json(read_checked(path))) != to_json(result):

@@ -1,4 +1,4 @@
-"""Cases as tasks of the pool, and their results stored by an earlier run."""
+"""Cases as tasks of the pool, with the results stored by an earlier run."""
 
 import os
 from collections.abc import Sequence
@@ -18,8 +18,6 @@ from verification.running.provenance import fingerprint
 from verification.running.records import plain
 from verification.running.result import CaseResult, describe, from_json
 from verification.running.store import StoreError, read_checked
-
-__all__ = ["case_task", "kept_result", "published_task", "result_path", "run_cases"]
 
 
 def result_path(folder: Path, case: Case | PublishedCase) -> Path:

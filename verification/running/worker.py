@@ -1,4 +1,4 @@
-"""Tasks of the pool: a case is solved, judged and stored, each of its files checked.
+"""Tasks of the pool: a case solved, judged, stored in checked files.
 
 Cases of one process share the normal contact where they differ in friction alone.
 """
@@ -17,10 +17,8 @@ from verification.running.result import to_json
 from verification.running.store import write_checked
 from verification.sampling.plane import sample_plane
 from verification.sources.methods import sharing_pressure
+from verification.sources.record import Solver
 from verification.sources.registry import METHODS, SOURCES, solvers
-from verification.sources.source import Solver
-
-__all__ = ["contact", "published"]
 
 for _method in METHODS:  # once for all cases, see ``guard``
     import_module(SOURCES[_method].package)

@@ -1,13 +1,15 @@
 """Profiles of a solution along the lines of a case."""
 
-import numpy as np
-from numpy.typing import NDArray
+from collections.abc import Mapping, Sequence
 
+import numpy as np
+
+from verification.problem.arrays import Array
 from verification.problem.contact import CoatedContact, Solution, stress_with_uncertainty
 from verification.problem.profile import Line, Profile
 from verification.problem.quantity import IN_PLANE, QUANTITIES, SCALARS
 
-__all__ = ["sample", "sample_contact"]
+__all__ = ["positions", "sample", "sample_contact"]
 
 
 def sample_contact(solution: Solution, source: str, problem: CoatedContact) -> tuple[Profile, ...]:
@@ -16,12 +18,34 @@ def sample_contact(solution: Solution, source: str, problem: CoatedContact) -> t
     for name in SCALARS:
         value = np.array([QUANTITIES[name].value(solution, problem)])
         stated = QUANTITIES[name].uncertainty(solution, problem)
-        spread = None if stated is None else np.array([stated])
-        found.append(Profile(name, "contact", np.zeros(1), value, source, spread))
+        U = None if stated is None else np.array([stated])
+        found.append(Profile(name, "contact", np.zeros(1), value, source, U))
     return tuple(found)
 
 
-def sample(solution: Solution, source: str, line: Line, position: NDArray[np.float64]) -> tuple[Profile, ...]:
+def positions(
+    problem: CoatedContact, lines: Sequence[Line], solutions: Mapping[str, Solution]
+) -> dict[Line, Array]:
+    """Positions along each line [m]: in x the surface nodes of the first solution, in z inside the layers.
+
+    The semi-analytical method comes first and needs no interpolation at its nodes; finite elements have
+    shape functions anywhere.
+    """
+    a = max(solution.contact_radius for solution in solutions.values())
+    nodes = next(iter(solutions.values())).surface_nodes
+    wanted = 2.5 * a * np.linspace(0, 1, 101)
+    if problem.friction:
+        wanted = np.concatenate([-wanted[:0:-1], wanted])
+    wanted = wanted[np.abs(wanted) <= np.abs(nodes).max()]
+    x = nodes[np.unique(np.abs(nodes[None, :] - wanted[:, None]).argmin(axis=1))]
+    bounds = np.array([0.0, *problem.interfaces, max(4 * a, *(2 * z for z in problem.interfaces), 0.0)])
+    # At least six points in each layer, none on an interface; spacing grows with depth.
+    inside = bounds[:-1, None] + np.diff(bounds)[:, None] * (np.arange(6) + 0.5) / 6
+    z = np.unique(np.concatenate([inside.ravel(), 4 * a * ((np.arange(40) + 0.5) / 40) ** 1.5]))
+    return {line: z if line.depth is None else x for line in lines}
+
+
+def sample(solution: Solution, source: str, line: Line, position: Array) -> tuple[Profile, ...]:
     """Every quantity of ``line`` at ``position`` [m]: the four stresses, on the surface the pressure too."""
     if line.depth is None:
         x, z = np.zeros_like(position), position
@@ -40,7 +64,7 @@ def sample(solution: Solution, source: str, line: Line, position: NDArray[np.flo
                 solution.pressure_uncertainty(x) if stated else None,
             )
         )
-    sigma, spread = stress_with_uncertainty(solution, x, 0.0, z, layer=line.layer)
+    sigma, U = stress_with_uncertainty(solution, x, 0.0, z, layer=line.layer)
     for name, component in IN_PLANE.items():
         profiles.append(
             Profile(
@@ -49,7 +73,7 @@ def sample(solution: Solution, source: str, line: Line, position: NDArray[np.flo
                 position,
                 sigma[component],
                 source,
-                None if spread is None else spread[component],
+                None if U is None else U[component],
             )
         )
     return tuple(profiles)

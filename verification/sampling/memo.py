@@ -22,12 +22,12 @@ Place = tuple[float, float, float]
 
 @dataclass(frozen=True, eq=False)
 class Tabulated:
-    """``sigma`` and ``spread`` at the points of each layer, the rest from ``solution`` itself."""
+    """``sigma`` and its uncertainty ``U`` at the points of each layer, the rest from ``solution`` itself."""
 
     solution: Solution
     places: dict[int, dict[Place, int]]
     sigma: dict[int, Array]
-    spread: dict[int, Array] = field(default_factory=dict)
+    U: dict[int, Array] = field(default_factory=dict)
 
     def __getattr__(self, name: str) -> Any:
         return getattr(self.solution, name)
@@ -42,14 +42,14 @@ class Tabulated:
     def stress_uncertainty(self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None) -> Array:
         """As of the solution."""
         rows = self._rows(x, y, z, layer)
-        if rows is None or layer is None or layer not in self.spread:
+        if rows is None or layer is None or layer not in self.U:
             return self.solution.stress_uncertainty(x, y, z, layer)
-        return self.spread[layer][:, :, rows]
+        return self.U[layer][:, :, rows]
 
     def _rows(self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None) -> list[int] | None:
         known = self.places.get(-1 if layer is None else layer, {})
-        asked = zip(*(np.asarray(v, dtype=float).ravel().tolist() for v in (x, y, z)), strict=False)
-        rows = [known.get(place) for place in asked]
+        points = zip(*(np.asarray(v, dtype=float).ravel().tolist() for v in (x, y, z)), strict=False)
+        rows = [known.get(place) for place in points]
         same = np.ndim(x) == np.ndim(y) == np.ndim(z) == 1
         return [row for row in rows if row is not None] if same and None not in rows else None
 
@@ -64,10 +64,10 @@ def tabulated(solution: Solution, points: Sequence[Points]) -> Tabulated:
             known = places.setdefault(layer, {})
             known.setdefault((x, y, z), len(known))
     sigma: dict[int, Array] = {}
-    spread: dict[int, Array] = {}
+    U: dict[int, Array] = {}
     for layer, known in places.items():
         x, y, z = np.array(list(known)).T
-        sigma[layer], U = stress_with_uncertainty(solution, x, y, z, layer=layer)
-        if U is not None:
-            spread[layer] = U
-    return Tabulated(solution, places, sigma, spread)
+        sigma[layer], uncertainty = stress_with_uncertainty(solution, x, y, z, layer=layer)
+        if uncertainty is not None:
+            U[layer] = uncertainty
+    return Tabulated(solution, places, sigma, U)

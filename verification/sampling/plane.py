@@ -1,16 +1,13 @@
 """Stresses of both methods in the plane y = 0 below the contact, as the report draws them.
 
-Sampled once, from the very Solutions that were judged, at nodes of the semi-analytical grid: there its
-stresses need no interpolation and the finite element model has shape functions anywhere. Kept beside the
-result of the case in a file of its own that checks itself.
+Of the Solutions that were judged, at nodes of the semi-analytical grid, where its pressure needs no
+interpolation; finite elements have shape functions anywhere.
 """
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from verification.problem.arrays import Array
 from verification.problem.contact import Solution
@@ -27,7 +24,6 @@ COLUMNS = 65
 LEVELS = 12  # over the depth of an uncoated solid
 FEWEST = 4  # in a layer, both its sides included
 CROWDING = 0.6  # levels are even in z ** CROWDING: close below the surface, wide apart below
-SHALLOW = 1.5  # patches
 EDGE = 0.06  # of a: so close to the contact edge no node is left out
 
 
@@ -36,7 +32,7 @@ class Plane:
     """Stresses at x [m], (nx,), and the depths z [m] of each layer, (nz,), both sides of its interfaces.
 
     stress : by source, for each layer the stresses ``IN_PLANE`` [Pa], (4, nz, nx); the others are 0.
-    failures : by source the sentence of one whose stresses could not be had.   radius : contact radius [m].
+    failures : message by source that failed.   radius : contact radius [m].
     """
 
     x: Array
@@ -47,7 +43,7 @@ class Plane:
 
 
 def sample_plane(interfaces: tuple[float, ...], solutions: Mapping[str, Solution]) -> Plane:
-    """Stresses of the methods among ``solutions`` at the same points; a method that fails leaves a sentence.
+    """Stresses of the methods among ``solutions`` at the same points; a method that fails leaves its message.
 
     interfaces : depths [m] from the surface down.
     """
@@ -56,45 +52,26 @@ def sample_plane(interfaces: tuple[float, ...], solutions: Mapping[str, Solution
         return Plane(np.zeros(0), (), 0.0, {}, {})
     first = next(iter(methods.values()))
     stress, failures = {}, {}
-    x, every = _columns(first)
+    x = _columns(first)
     depths = depths_of(first.contact_radius, interfaces, LEVELS)
     for name, solution in methods.items():
         try:
-            stress[name] = tuple(_layer(solution, x, every, z, k) for k, z in enumerate(depths))
-        except Exception as error:  # no picture is worth a result
+            layers = [solution.stress(x, 0.0, z[:, None], layer=k) for k, z in enumerate(depths)]
+            stress[name] = tuple(np.array([sigma[c] for c in IN_PLANE.values()]) for sigma in layers)
+        except Exception as error:  # a result does not depend on its pictures
             failures[name] = f"{type(error).__name__}: {' '.join(str(error).split())[:300]}"
     return Plane(x, depths, float(first.contact_radius), stress, failures)
 
 
-def _layer(solution: Any, x: Array, every: NDArray[np.int_], z: Array, layer: int) -> Array:
-    """The four stresses in one layer, (4, nz, nx)."""
-    if hasattr(solution, "stress_plane"):
-        middle, shallow = len(solution.nodes) // 2, SHALLOW * solution.diagnostics.patch_size
-        planes = [
-            # Whole planes are quicker, but stand on patches that are not refined towards the surface.
-            solution.stress(x, 0.0, depth, layer=layer)
-            if depth < shallow
-            else solution.stress_plane(float(depth), layer)[:, :, every, middle]
-            for depth in z
-        ]
-        sigma = np.stack(planes, axis=2)
-    else:
-        sigma = solution.stress(x[None, :], 0.0, z[:, None], layer=layer)
-    return np.array([sigma[component] for component in IN_PLANE.values()])
-
-
-def _columns(solution: Any) -> tuple[Array, NDArray[np.int_]]:
-    """Nodes drawn [m], the one at x = 0 among them, with their numbers."""
-    a = solution.contact_radius
-    nodes = np.asarray(solution.nodes if hasattr(solution, "stress_plane") else solution.surface_nodes)
+def _columns(solution: Solution) -> Array:
+    """Surface nodes drawn [m], the one at x = 0 among them."""
+    a, nodes = solution.contact_radius, solution.surface_nodes
     inside = np.flatnonzero(np.abs(nodes) <= WIDTH * a)
     middle = int(np.argmin(np.abs(nodes)))
     step = max(1, round((inside.size - 1) / (COLUMNS - 1)))
-    number = np.arange(nodes.size)
-    chosen = (number - middle) % step == 0
+    chosen = (np.arange(nodes.size) - middle) % step == 0
     chosen |= np.abs(np.abs(nodes) - a) < EDGE * a
-    every = inside[chosen[inside]]
-    return nodes[every], every
+    return nodes[inside[chosen[inside]]]
 
 
 def depths_of(a: float, interfaces: tuple[float, ...], levels: int) -> tuple[Array, ...]:
@@ -105,11 +82,11 @@ def depths_of(a: float, interfaces: tuple[float, ...], levels: int) -> tuple[Arr
     bottom = max(DEPTH, min(1.3 * max(interfaces, default=0.0) / a, DEEPEST)) * a
     bounds = np.array([0.0, *(z for z in interfaces if z < bottom), bottom]) ** CROWDING
     counts = [max(FEWEST, 1 + round((levels - 1) * float(part) / bounds[-1])) for part in np.diff(bounds)]
-    ladders = []
+    found = []
     for low, high, count in zip(bounds[:-1], bounds[1:], counts, strict=True):
         z = np.linspace(low, high, count) ** (1 / CROWDING)
-        ladders.append(z)
+        found.append(z)
     # Both sides of an interface lie on it to the last bit.
-    for k, depth in enumerate(interfaces[: len(ladders) - 1]):
-        ladders[k][-1] = ladders[k + 1][0] = depth
-    return tuple(ladders)
+    for k, depth in enumerate(interfaces[: len(found) - 1]):
+        found[k][-1] = found[k + 1][0] = depth
+    return tuple(found)

@@ -1,4 +1,4 @@
-"""Quantities a source may print, taken from a solution at any points of the solid."""
+"""Quantities of a solution at any points of the solid."""
 
 from typing import cast
 
@@ -49,7 +49,7 @@ def values(
         if hasattr(solution, "displacement_uncertainty"):
             return u, solution.displacement_uncertainty(at.x, at.y, at.z)[i]
         return u, None if stated is None else np.full(u.shape, float(stated.approach))
-    value, spread = np.empty(at.x.shape), np.empty(at.x.shape)
+    value, uncertainty = np.empty(at.x.shape), np.empty(at.x.shape)
     moduli = [(E, nu) for E, nu, _ in problem.coatings] + [problem.substrate]
     for layer in sorted(set(at.layer.tolist())):
         here = at.layer == layer
@@ -58,8 +58,8 @@ def values(
         sigma, U = stress_with_uncertainty(solution, *place, layer=layer)
         value[here] = np.einsum("ij,ij...->...", weight, sigma)
         if U is not None:
-            spread[here] = np.einsum("ij,ij...->...", np.abs(weight), U)
-    return value, None if stated is None else spread
+            uncertainty[here] = np.einsum("ij,ij...->...", np.abs(weight), U)
+    return value, None if stated is None else uncertainty
 
 
 def _extreme(solution: Solution, quantity: str) -> tuple[float, float | None]:
@@ -73,8 +73,8 @@ def _extreme(solution: Solution, quantity: str) -> tuple[float, float | None]:
     value = share * (here + (high - low) ** 2 / (8 * (2 * here - low - high)))
     if solution.uncertainty is None:
         return value, None
-    spread = solution.stress_uncertainty(0.0, 0.0, z[[top]])
-    return value, share * float(spread[2, 2, 0] + spread[0, 0, 0]) / 2
+    U = solution.stress_uncertainty(0.0, 0.0, z[[top]])
+    return value, share * float(U[2, 2, 0] + U[0, 0, 0]) / 2
 
 
 def _weights(quantity: str, E: float, nu: float) -> Array:

@@ -80,13 +80,13 @@ def _saved(grid: Any, file: str, case: Case, method: str, radius: float) -> byte
     """The bytes of the file that VTK writes of ``grid``, with the case file inside."""
     import pyvista as pv
 
-    said = {
+    texts = {
         "case file": case.text,
         "method": method,
         "axes": "metres, origin at first contact, x along sliding, z into the solid",
     }
-    for name, text in said.items():
-        # meshio refuses a mesh with text in it, so there it stands as bytes.
+    for name, text in texts.items():
+        # meshio refuses a mesh that contains text, so it is stored as bytes.
         if isinstance(grid, pv.UnstructuredGrid):
             grid.field_data[f"{name} [UTF-8]"] = np.frombuffer(text.encode(), dtype=np.uint8)
         else:

@@ -1,15 +1,14 @@
 """Records of the exact reference with the closed forms of uncoated contacts."""
 
 from collections.abc import Mapping
+from functools import partial
 from typing import Any
 
 from verification.problem.contact import CoatedContact, PrescribedLoad, keywords
 from verification.problem.loading import LoadingCurve, Problem
-from verification.sources.source import Kind, Source, Style
+from verification.sources.record import Kind, Source, Style
 
-__all__ = ["REFERENCE_SOURCES"]
-
-PACKAGE = "verification.sources.references"
+CODE = "verification.sources.references"
 
 
 def solve_exactly(problem: Problem, numerics: Mapping[str, Any] | None = None) -> Any:
@@ -46,37 +45,17 @@ def _exact_accepts(problem: Problem, kind: str) -> bool:
     return kind != "displacement"
 
 
-def _uncoated(problem: Problem, *, sliding: bool) -> bool:
-    return isinstance(problem, CoatedContact) and problem.homogeneous and (problem.friction > 0) is sliding
+def _closed_accepts(problem: Problem, kind: str, *, sliding: bool) -> bool:
+    if not isinstance(problem, CoatedContact) or kind == "displacement":
+        return False
+    return problem.homogeneous and (problem.friction > 0) is sliding
 
 
+_EXACT, _CLOSED = Style("exact", (), 5.0, 0.35, "+"), Style("hertz", (1.0, 1.4), 1.8)
+_smooth, _sliding = partial(_closed_accepts, sliding=False), partial(_closed_accepts, sliding=True)
 # The exact curve lies below the methods' as a broad grey band.
 REFERENCE_SOURCES = (
-    Source(
-        "integral_equation",
-        Kind.EXACT,
-        "integral equation",
-        Style("exact", (), 5.0, 0.35, "+"),
-        solve_exactly,
-        _exact_accepts,
-        PACKAGE,
-    ),
-    Source(
-        "hertz",
-        Kind.CLOSED,
-        "Hertz",
-        Style("hertz", (1.0, 1.4), 1.8),
-        hertz,
-        lambda problem, kind: _uncoated(problem, sliding=False) and kind != "displacement",
-        PACKAGE,
-    ),
-    Source(
-        "hamilton",
-        Kind.CLOSED,
-        "Hamilton",
-        Style("hertz", (1.0, 1.4), 1.8),
-        hamilton,
-        lambda problem, kind: _uncoated(problem, sliding=True) and kind != "displacement",
-        PACKAGE,
-    ),
+    Source("integral_equation", Kind.EXACT, "integral equation", _EXACT, solve_exactly, _exact_accepts, CODE),
+    Source("hertz", Kind.CLOSED, "Hertz", _CLOSED, hertz, _smooth, CODE),
+    Source("hamilton", Kind.CLOSED, "Hamilton", _CLOSED, hamilton, _sliding, CODE),
 )

@@ -13,8 +13,6 @@ from verification.problem.arrays import Array
 from verification.problem.contact import CoatedContact, PrescribedLoad, Solution
 from verification.problem.quantity import QUANTITIES, SCALARS
 
-__all__ = ["extrapolated", "short_of_limit"]
-
 Problem = TypeVar("Problem", bound=CoatedContact | PrescribedLoad)
 Solver = Callable[[CoatedContact | PrescribedLoad], Solution]
 STEP = 1e-3  # of Poisson's ratio
@@ -90,10 +88,8 @@ class _Extrapolated:
         return own + np.abs(self._bend(lambda s: s.pressure(x, y)))
 
     def stress_uncertainty(self, x: Any, y: Any, z: Any, layer: int | None = None) -> Array:
-        own = 2 * self.near.stress_uncertainty(x, y, z, layer) + self.further.stress_uncertainty(
-            x, y, z, layer
-        )
-        return own + np.abs(self._bend(lambda s: s.stress(x, y, z, layer)))
+        U, V = (one.stress_uncertainty(x, y, z, layer) for one in (self.near, self.further))
+        return 2 * U + V + np.abs(self._bend(lambda s: s.stress(x, y, z, layer)))
 
     def _bend(self, of: Callable[[Solution], Any]) -> Any:
         return of(self.near) - 2 * of(self.further) + of(self.third)

@@ -18,9 +18,6 @@ from verification.problem.loading import LoadingCurve
 from verification.sources.extrapolation import short_of_limit
 from verification.sources.references.flat_punch import Pressed, pressed
 
-__all__ = ["Loading", "exact_loading", "loading"]
-
-
 # Step in log W of a difference quotient. Rounding and the uncertainty of the approach require a longer step,
 # the curvature a shorter one; at 1 % both errors are about 1e-5.
 STEP = 0.01

@@ -1,5 +1,6 @@
 """Records of the two numerical methods; each method is imported when it first solves."""
 
+from collections import deque
 from collections.abc import Mapping
 from dataclasses import replace
 from functools import partial
@@ -7,12 +8,11 @@ from typing import Any
 
 from verification.problem.contact import CoatedContact, PrescribedLoad, keywords
 from verification.problem.loading import LoadingCurve, Problem
-from verification.sources.source import Kind, NumericalParameter, Solver, Source, Style
-
-__all__ = ["METHOD_SOURCES", "sharing_pressure"]
+from verification.sources.record import Kind, NumericalParameter, Solver, Source, Style
 
 # Element size on a loading curve, which needs many solves; it leaves 1e-7 of the approach.
 CURVE_SIZE = 0.28
+Levels = tuple[tuple[str, Mapping[str, Any], float], ...]
 
 
 def solve_semianalytic(problem: Problem, numerics: Mapping[str, Any] | None = None) -> Any:
@@ -45,21 +45,23 @@ def _elements(numerics: Mapping[str, Any], problem: CoatedContact | PrescribedLo
     return solve(**keywords(problem), **numerics)
 
 
-def sharing_pressure(solve: Solver) -> Solver:
-    """``solve`` that does not solve anew a problem that differs from the last one in friction alone.
+def sharing_pressure(solve: Solver, kept: int = 1) -> Solver:
+    """``solve`` that does not solve anew a problem that differs from an earlier one in friction alone.
 
-    The pressure does not depend on friction (Goodman): ``with_friction`` of the last solution adds to its
+    The pressure does not depend on friction (Goodman): ``with_friction`` of the earlier solution adds to its
     fields those of the tangential traction. Solutions that lack it are solved each time.
+    kept : number of solutions that are kept, of a problem and its numerics each.
     """
-    last: list[tuple[CoatedContact, dict[str, Any], Any]] = []
+    earlier: deque[tuple[CoatedContact, dict[str, Any], Any]] = deque(maxlen=kept)
 
-    def shared(problem: CoatedContact, numerics: Mapping[str, Any]) -> Any:
-        for known, given, solution in last:
-            same = replace(known, friction=problem.friction) == problem and given == numerics
+    def shared(problem: CoatedContact, numerics: Mapping[str, Any] | None = None) -> Any:
+        for known, given, solution in earlier:
+            same = replace(known, friction=problem.friction) == problem and given == (numerics or {})
             if same and hasattr(type(solution), "with_friction"):
                 return solution.with_friction(problem.friction)
-        last[:] = [(problem, dict(numerics), solve(problem, numerics))]
-        return last[0][2]
+        solution = solve(problem, numerics)
+        earlier.append((problem, dict(numerics or {}), solution))
+        return solution
 
     return shared
 
@@ -70,49 +72,31 @@ def _wider(times: float, patches: int = 129) -> tuple[str, Mapping[str, Any], fl
     return f"{times:g} times", {"patches": n, "fill": 1.12 * times * (n / (patches * times))}, 1 / times
 
 
+def _varied(keyword: str, label: str, values: tuple[Any, ...], **fixed: Any) -> Levels:
+    """Levels of a parameter that is 1/step."""
+    return tuple((label.format(v), {keyword: v, **fixed}, 1 / v) for v in values)
+
+
+def _reduced(keyword: str, label: str, values: tuple[float, ...], **fixed: Any) -> Levels:
+    """Levels of a parameter that is the step."""
+    return tuple((label.format(v), {keyword: v, **fixed}, v) for v in values)
+
+
 # All parameters but the size of patches and elements are varied on a coarser grid or mesh, to save time.
+_SEMI, _FEM = partial(NumericalParameter, "semianalytic"), partial(NumericalParameter, "fem_reference")
 SEMIANALYTIC = (
-    NumericalParameter(
-        "semianalytic",
-        "patch size",
-        tuple((f"N = {n}", {"patches": n}, 1 / n) for n in (65, 97, 129, 193, 257)),
+    _SEMI("patch size", _varied("patches", "N = {}", (65, 97, 129, 193, 257))),
+    _SEMI(
+        "conversion", _varied("hankel_points", "{} points", (512, 1024, 2048, 4096), patches=129), coated=True
     ),
-    NumericalParameter(
-        "semianalytic",
-        "conversion",
-        tuple((f"{n} points", {"patches": 129, "hankel_points": n}, 1 / n) for n in (512, 1024, 2048, 4096)),
-        coated=True,
-    ),
-    NumericalParameter("semianalytic", "domain", tuple(_wider(times) for times in (1.0, 1.25, 1.5, 2.0))),
-    NumericalParameter(
-        "semianalytic",
-        "iteration",
-        tuple((f"{t:.0e}", {"patches": 129, "tolerance": t}, t) for t in (1e-5, 1e-6, 1e-7, 1e-8)),
-    ),
+    _SEMI("domain", tuple(_wider(times) for times in (1.0, 1.25, 1.5, 2.0))),
+    _SEMI("iteration", _reduced("tolerance", "{:.0e}", (1e-5, 1e-6, 1e-7, 1e-8), patches=129)),
 )
 ELEMENTS = (
-    NumericalParameter(
-        "fem_reference",
-        "element size",
-        tuple((f"size {s}", {"size": s}, s) for s in (0.5, 0.36, 0.25, 0.16)),
-        order=4.0,
-    ),
-    NumericalParameter(
-        "fem_reference",
-        "element order",
-        tuple((f"order {p}", {"order": p, "size": 0.25}, 1 / p) for p in (2, 3, 4)),
-        order=4.0,
-    ),
-    NumericalParameter(
-        "fem_reference",
-        "outer boundary",
-        tuple((f"at {d:g}", {"far": d, "size": 0.36}, 1 / d) for d in (125.0, 250.0, 500.0, 1000.0)),
-    ),
-    NumericalParameter(
-        "fem_reference",
-        "load balance",
-        tuple((f"{t:.0e}", {"load_tolerance": t, "size": 0.36}, t) for t in (1e-3, 1e-4, 1e-5, 1e-6)),
-    ),
+    _FEM("element size", _reduced("size", "size {}", (0.5, 0.36, 0.25, 0.16), order=4), order=4.0),
+    _FEM("element order", _varied("order", "order {}", (2, 3, 4), size=0.25), order=4.0),
+    _FEM("outer boundary", _varied("far", "at {:g}", (125.0, 250.0, 500.0, 1000.0), size=0.36)),
+    _FEM("load balance", _reduced("load_tolerance", "{:.0e}", (1e-3, 1e-4, 1e-5, 1e-6), size=0.36)),
 )
 # Coarse numerics whose uncertainty is below the caps; stresses and thin coatings need smaller elements.
 METHOD_SOURCES = (

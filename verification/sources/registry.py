@@ -1,33 +1,17 @@
-"""Registry of the sources, in the order in which tables and figures show them."""
+"""Registry of the sources, in the order in which the report shows them."""
 
 from itertools import combinations
 
 from verification.problem.loading import Problem
 from verification.sources.exact import REFERENCE_SOURCES
 from verification.sources.methods import METHOD_SOURCES
-from verification.sources.source import Kind, Solver, Source, Style
-
-__all__ = [
-    "CLOSED",
-    "EXACT",
-    "METHODS",
-    "PUBLISHED",
-    "REFERENCES",
-    "SOURCES",
-    "pairs_of",
-    "solvers",
-    "sources_of",
-]
+from verification.sources.record import Kind, Solver, Source, Style
 
 PUBLISHED = "published"  # source of the profiles of a published table
 _OTHER = Style("other", (5.0, 1.5, 1.0, 1.5))
 SOURCES: dict[str, Source] = {
     source.name: source
-    for source in (
-        *METHOD_SOURCES,
-        *REFERENCE_SOURCES,
-        Source(PUBLISHED, Kind.PUBLISHED, PUBLISHED, _OTHER),
-    )
+    for source in (*METHOD_SOURCES, *REFERENCE_SOURCES, Source(PUBLISHED, Kind.PUBLISHED, PUBLISHED, _OTHER))
 }
 
 

@@ -17,8 +17,6 @@ from verification.running.provenance import fingerprint
 from verification.running.store import StoreError, read_checked, write_checked
 from verification.sources.registry import SOURCES
 
-__all__ = ["Cache", "code_version", "solve_key"]
-
 # Modules that an answer depends on beside the package of its source.
 _SEARCH = (
     "verification.study.quantities",
@@ -26,7 +24,7 @@ _SEARCH = (
     "verification.study.point",
     "verification.problem",
     "verification.sources.registry",
-    "verification.sources.source",
+    "verification.sources.record",
     "verification.sources.methods",
     "verification.sources.exact",
     "verification.sources.extrapolation",
@@ -72,9 +70,8 @@ class Cache:
 
     def put(self, key: str, request: Mapping[str, Any], answer: Mapping[str, Any]) -> None:
         """Store an answer. Raises StoreError where it cannot be written."""
-        write_checked(
-            self.path(key), {"key": key, "request": dict(request), "answer": _without_nan(dict(answer))}
-        )
+        content = {"key": key, "request": dict(request), "answer": _without_nan(dict(answer))}
+        write_checked(self.path(key), content)
 
 
 def _without_nan(value: Any) -> Any:

@@ -20,9 +20,6 @@ from verification.problem.arrays import Array
 from verification.study.curves import Curve
 from verification.study.quantities import Stress
 
-__all__ = ["MODES", "Criteria", "Judged", "judged"]
-
-
 # Failure mode of each stress.
 MODES = {
     "sigma_xx_surface": "the coating cracks at its surface",
@@ -104,17 +101,15 @@ def judged(curve: Curve, criteria: Criteria) -> Judged:
     if curve.h.size < 2:
         raise ValueError(f"{curve.h.size} thickness solved; a criterion needs two, sweep more")
     strengths = criteria.strengths(curve.p_h)
-    scale = {mode: criteria.safety * curve.p_h / value for mode, value in strengths.items()}
-    used = np.array([scale[mode] * curve.stress[mode] for mode in strengths])
-    bound = np.array(
-        [scale[mode] * (curve.stress[mode] + np.nan_to_num(curve.uncertainty[mode])) for mode in strengths]
-    )
+    scale = criteria.safety * curve.p_h / np.array([*strengths.values()])[:, None]
+    stress = np.array([curve.stress[mode] for mode in strengths])
+    used = scale * stress
+    bound = scale * (stress + np.nan_to_num([curve.uncertainty[mode] for mode in strengths]))
     s = np.log(curve.h)
     h = np.geomspace(curve.h[0], curve.h[-1], SAMPLES)
     h[0], h[-1] = curve.h[0], curve.h[-1]
     interpolated = PchipInterpolator(s, used, axis=1)(np.log(h))
-    largest = interpolated.max(axis=0)
-    governing = interpolated.argmax(axis=0)
+    largest, governing = interpolated.max(axis=0), interpolated.argmax(axis=0)
     best = int(largest.argmin())
     modes = tuple(strengths)
     return Judged(
@@ -137,15 +132,16 @@ def _ranges(h: Array, largest: Array) -> tuple[tuple[float, float], ...]:
     ranges = []
     starts = np.flatnonzero(inside & ~np.append(False, inside[:-1]))
     ends = np.flatnonzero(inside & ~np.append(inside[1:], False))
-    for i, j in zip(starts, ends, strict=True):
-        low = h[i] if i == 0 else _crossing(h[i - 1], h[i], largest[i - 1], largest[i])
-        high = h[j] if j == h.size - 1 else _crossing(h[j], h[j + 1], largest[j], largest[j + 1])
+
+    def crossing(k: int) -> float:
+        """Thickness between samples k and k + 1 where the utilisation is 1."""
+        return h[k] + (h[k + 1] - h[k]) * (1 - largest[k]) / (largest[k + 1] - largest[k])
+
+    for i, j in zip(starts.tolist(), ends.tolist(), strict=True):
+        low = h[i] if i == 0 else crossing(i - 1)
+        high = h[j] if j == h.size - 1 else crossing(j)
         ranges.append((float(low), float(high)))
     return tuple(ranges)
-
-
-def _crossing(h0: float, h1: float, u0: float, u1: float) -> float:
-    return h0 + (h1 - h0) * (1 - u0) / (u1 - u0)
 
 
 def _interpolation_error(s: Array, used: Array) -> float:

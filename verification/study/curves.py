@@ -1,4 +1,4 @@
-"""The table of a study as curves over the thickness, one for each modulus and friction.
+"""The table of a study as curves over the thickness, one for each modulus at each friction.
 
 The rows of the other sources are marks beside the curve.
 """
@@ -12,9 +12,7 @@ from numpy.typing import NDArray
 
 from verification.problem.arrays import Array
 from verification.study.quantities import QUANTITIES
-from verification.study.table import SCALARS, SOURCES
-
-__all__ = ["Curve", "Difference", "curves", "differences"]
+from verification.study.table import SCALARS, SCALES, SOURCES
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,37 +78,26 @@ def curves(columns: Mapping[str, NDArray[Any]]) -> tuple[Curve, ...]:
 
 def differences(columns: Mapping[str, NDArray[Any]]) -> tuple[Difference, ...]:
     """The largest difference of each other source by quantity; a source that solved nothing is absent."""
-    first = {
-        int(p): i
-        for i, (p, source, status) in enumerate(
-            zip(columns["point"], columns["source"], columns["status"], strict=True)
-        )
-        if source == SOURCES[0] and status == "solved"
-    }
+    point = columns["point"]
+    first, *others = (
+        np.flatnonzero((columns["source"] == source) & (columns["status"] == "solved")) for source in SOURCES
+    )
     found = []
-    for source in SOURCES[1:]:
-        here = np.flatnonzero((columns["source"] == source) & (columns["status"] == "solved"))
-        here = np.array([i for i in here if int(columns["point"][i]) in first], dtype=int)
+    for source, rows in zip(SOURCES[1:], others, strict=True):
+        _, mine, its = np.intersect1d(point[rows], point[first], return_indices=True)
+        here, beside = rows[mine], first[its]
         if not here.size:
             continue
-        beside = np.array([first[int(p)] for p in columns["point"][here]])
-        for quantity, scale in [*((q, "p_h") for q in QUANTITIES), *SCALARS.items()]:
+        for quantity, scale in SCALES.items():
             over = columns[scale][here]
             difference = np.abs(columns[quantity][here] - columns[quantity][beside]) / over
             uncertainty = columns[f"{quantity}_uncertainty"]
             i = int(np.nanargmax(difference))
-            found.append(
-                Difference(
-                    source,
-                    quantity,
-                    here.size,
-                    float(difference[i]),
-                    float((uncertainty[here[i]] + uncertainty[beside[i]]) / over[i]),
-                    float(columns["modulus_ratio"][here[i]]),
-                    float(columns["thickness_over_a_h"][here[i]]),
-                    float(columns["friction"][here[i]]),
-                )
-            )
+            largest = float(difference[i])
+            stated = float((uncertainty[here[i]] + uncertainty[beside[i]]) / over[i])
+            place = (columns[name][here[i]] for name in ("modulus_ratio", "thickness_over_a_h", "friction"))
+            ratio, h, friction = map(float, place)
+            found.append(Difference(source, quantity, here.size, largest, stated, ratio, h, friction))
     return tuple(found)
 
 
@@ -119,7 +106,7 @@ def _curve(columns: Mapping[str, NDArray[Any]], ratio: float, friction: float) -
     solved = mine & (columns["status"] == "solved")
     lead = columns["source"] == SOURCES[0]
     rows = _by_thickness(columns, solved & lead)
-    some = np.flatnonzero(mine)[0]
+    p_h, a_h, delta_h = (float(columns[name][np.flatnonzero(mine)[0]]) for name in ("p_h", "a_h", "delta_h"))
 
     def take(name: str) -> Array:
         return columns[name][rows].astype(float)
@@ -129,17 +116,13 @@ def _curve(columns: Mapping[str, NDArray[Any]], ratio: float, friction: float) -
         checked = _by_thickness(columns, solved & (columns["source"] == source))
         if checked.size:
             h = columns["thickness_over_a_h"][checked]
-            marks[source] = {
-                **{q: (h, columns[f"{q}_over_p_h"][checked]) for q in QUANTITIES},
-                **{q: (h, columns[f"{q}_over_{scale}"][checked]) for q, scale in SCALARS.items()},
-            }
-    p_h = float(columns["p_h"][some])
+            marks[source] = {q: (h, columns[f"{q}_over_{s}"][checked]) for q, s in SCALES.items()}
     return Curve(
         ratio,
         friction,
         p_h,
-        float(columns["a_h"][some]),
-        float(columns["delta_h"][some]),
+        a_h,
+        delta_h,
         take("thickness_over_a_h"),
         {q: take(f"{q}_over_p_h") for q in QUANTITIES},
         {q: take(f"{q}_uncertainty") / p_h for q in QUANTITIES},

@@ -15,24 +15,21 @@ import threading
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, nullcontext
-from dataclasses import dataclass
-from itertools import chain, groupby, islice
+from dataclasses import dataclass, field
+from itertools import chain, groupby, islice, takewhile
 from pathlib import Path
 from typing import Any
 
 from verification.running.pool import THREAD_VARIABLES, cores
-from verification.running.result import sentence
+from verification.running.result import message_of
 from verification.running.store import StoreError, locked
-from verification.study.cache import Cache, code_version, solve_key
+from verification.study.cache import Cache, code_version
 from verification.study.plan import Solve, Study
-from verification.study.point import answer, peak_memory, table_rows
+from verification.study.point import answer, failed_rows, peak_memory, table_rows
 from verification.study.table import SOURCES, write_table
-
-__all__ = ["Outcome", "SchedulerError", "connected", "run_study", "table_path"]
 
 WINDOW = 3  # solves submitted at a time for each thread of the cluster
 DIED = "every worker that it was submitted to was killed, most likely for lack of memory; use fewer --jobs"
-LOGGERS = ("distributed", "distributed.client", "tornado", "tornado.application")
 WAIT = 60.0  # s, for the first worker
 PAUSE = 5.0  # s between two writings of the table
 SHARE = 0.02  # of the time, at most, is spent on writing the table while it grows
@@ -47,9 +44,9 @@ class SchedulerError(Exception):
     """A cluster that cannot be used; the message says why."""
 
 
-@dataclass(frozen=True)
+@dataclass
 class Outcome:
-    """Outcome of a run of a study.
+    """Outcome of a run of a study, brought up to date while it runs.
 
     done, kept : solves answered by this run, found in the cache.
     damaged : messages on damaged stored answers.   failed : rows with a failure.
@@ -58,14 +55,14 @@ class Outcome:
 
     table: Path
     points: int
-    rows: int
-    failed: int
-    done: int
-    kept: int
-    damaged: tuple[str, ...]
-    lost: dict[str, str]
-    complete: bool
-    seconds: float
+    rows: int = 0
+    failed: int = 0
+    done: int = 0
+    kept: int = 0
+    damaged: list[str] = field(default_factory=list)
+    lost: dict[str, str] = field(default_factory=dict)
+    complete: bool = False
+    seconds: float = 0.0
 
 
 def table_path(folder: Path, study: Study) -> Path:
@@ -133,16 +130,13 @@ def _interrupt_ignored() -> Iterator[None]:
 
 @contextmanager
 def _silent_logs() -> Iterator[None]:
-    """Dask's loggers silent: the study reports failures of workers itself."""
-    loggers = [logging.getLogger(name) for name in LOGGERS]
-    levels = [logger.level for logger in loggers]
-    for logger in loggers:
-        logger.setLevel(logging.CRITICAL)
+    """No log of Dask below "critical": the study reports failures of workers itself."""
+    before = logging.root.manager.disable
+    logging.disable(logging.ERROR)
     try:
         yield
     finally:
-        for logger, level in zip(loggers, levels, strict=True):
-            logger.setLevel(level)
+        logging.disable(before)
 
 
 def run_study(
@@ -169,10 +163,10 @@ def run_study(
             try:
                 if first is not None:
                     run.solve(chain([first], waiting), open_client, solve)
-                run.complete = limit is None
+                run.outcome.complete = limit is None
             finally:
                 run.write_table()
-    return run.outcome()
+    return run.outcome
 
 
 def _threads(client: Any) -> int:
@@ -190,17 +184,12 @@ class _Run:
     """State of one run."""
 
     def __init__(self, study: Study, folder: Path, limit: int | None, report: Report) -> None:
-        self.study, self.limit, self.report = study, limit, report
-        self.cache = Cache(folder / "cache")
-        self.points = study.points if limit is None else min(limit, study.points)
-        self.table, self.ledger = table_path(folder, study), folder / "ledger.jsonl"
-        self.rows = self.failed = self.done = self.kept = 0
-        self.damaged: list[str] = []
-        self.lost: dict[str, str] = {}
-        self.complete = False
+        points = study.points if limit is None else min(limit, study.points)
+        self.study, self.report = study, report
+        self.cache, self.ledger = Cache(folder / "cache"), folder / "ledger.jsonl"
+        self.outcome = Outcome(table_path(folder, study), points)
         self.requested: set[bytes] = set()
-        self.total = dict.fromkeys(SOURCES, 0)
-        self.finished = dict.fromkeys(SOURCES, 0)
+        self.total, self.finished = dict.fromkeys(SOURCES, 0), dict.fromkeys(SOURCES, 0)
         for one in self.solves():
             self.total[one.source] += self.covered(one)
         for source, total in self.total.items():
@@ -209,22 +198,13 @@ class _Run:
         self.spent = 0.0  # s, in writing the table
         self.begin = self.written = time.perf_counter()
 
-    def outcome(self) -> Outcome:
-        """Outcome of the run so far."""
-        seconds = time.perf_counter() - self.begin
-        counts = (self.points, self.rows, self.failed, self.done, self.kept)
-        return Outcome(self.table, *counts, tuple(self.damaged), dict(self.lost), self.complete, seconds)
-
     def solves(self) -> Iterator[Solve]:
         """The solves of the requested points, in the order of the table."""
-        for one in self.study.solves():
-            if one.first >= self.points:
-                return
-            yield one
+        return takewhile(lambda one: one.first < self.outcome.points, self.study.solves())
 
     def covered(self, one: Solve) -> int:
         """Number of requested points that a solve covers."""
-        return min(len(self.study.frictions), self.points - one.first)
+        return min(len(self.study.frictions), self.outcome.points - one.first)
 
     def missing(self) -> Iterator[Solve]:
         """The distinct solves that are not in the cache: first the curves, then their checks."""
@@ -232,33 +212,30 @@ class _Run:
             for one in self.solves():
                 if one.source != source:
                     continue
-                key = solve_key(one.request)
-                digest = bytes.fromhex(key)
-                if digest in self.requested or self._stored(key, one):
+                digest = bytes.fromhex(one.key)
+                if digest in self.requested or self._stored(one):
                     self.count(one)
-                    continue
-                self.requested.add(digest)
-                yield one
+                else:
+                    self.requested.add(digest)
+                    yield one
 
     def solve(self, waiting: Iterator[Solve], client: Any, function: Callable[..., Any]) -> None:
         """Keep a bounded number of solves submitted until none is left; store each answer."""
         from distributed import as_completed
 
         threads = _threads(client)
-        pending: dict[Any, tuple[Solve, str]] = {}
+        pending: dict[Any, Solve] = {}
 
         def send(one: Solve) -> Any:
-            key = solve_key(one.request)
-            self._note("sent", key, one.source)
-            future = client.submit(function, one.request, key=f"{one.source}-{key}", pure=False)
-            pending[future] = (one, key)
+            self._note("sent", one)
+            future = client.submit(function, one.request, key=f"{one.source}-{one.key}", pure=False)
+            pending[future] = one
             return future
 
         arriving = as_completed([send(one) for one in islice(waiting, WINDOW * threads)], loop=client.loop)
         try:
             for future in arriving:
-                one, key = pending.pop(future)
-                self._take(one, key, future)
+                self._take(pending.pop(future), future)
                 future.release()
                 following = next(waiting, None)
                 if following is not None:
@@ -269,7 +246,7 @@ class _Run:
             if pending and client.status == "running":
                 client.cancel(list(pending), force=True)
 
-    def _take(self, one: Solve, key: str, future: Any) -> None:
+    def _take(self, one: Solve, future: Any) -> None:
         if future.cancelled():
             raise SchedulerError(
                 "the scheduler is lost; the answers are stored, and the same command continues"
@@ -278,8 +255,8 @@ class _Run:
         if error is not None:
             # A solver's failure is an answer; a worker's is not stored, so that the next run solves again.
             killed = type(error).__name__ == "KilledWorker"
-            self.lost[key] = DIED if killed else sentence(error)
-            self._note("lost", key, one.source)
+            self.outcome.lost[one.key] = DIED if killed else message_of(error)
+            self._note("lost", one)
             self.count(one)
             return
         found = future.result()
@@ -288,21 +265,23 @@ class _Run:
                 "a worker runs other code than this process; install the same coatcheck and the same "
                 "versions of its dependencies on every worker"
             )
-        self.cache.put(key, one.request, found)
-        self._note("stored", key, one.source, seconds=found["seconds"], memory=found.get("memory", 0))
-        self.done += 1
+        self.cache.put(one.key, one.request, found)
+        self._note("stored", one, seconds=found["seconds"], memory=found.get("memory", 0))
+        self.outcome.done += 1
         self.count(one)
-        self._write_at_intervals()
+        now = time.perf_counter()
+        if now - self.written > PAUSE and self.spent < SHARE * (now - self.begin):
+            self.write_table()
 
-    def _stored(self, key: str, one: Solve) -> bool:
-        if not self.cache.has(key):
+    def _stored(self, one: Solve) -> bool:
+        if not self.cache.has(one.key):
             return False
         try:
-            self.cache.get(key, one.request)
+            self.cache.get(one.key, one.request)
         except StoreError as error:
-            self.damaged.append(str(error))
+            self.outcome.damaged.append(str(error))
             return False
-        self.kept += 1
+        self.outcome.kept += 1
         return True
 
     def count(self, one: Solve) -> None:
@@ -310,50 +289,38 @@ class _Run:
         self.finished[one.source] += self.covered(one)
         self.report(one.source, self.finished[one.source], self.total[one.source])
 
-    def _note(self, event: str, key: str, source: str, **more: float) -> None:
+    def _note(self, event: str, one: Solve, **more: float) -> None:
         """A line of the ledger, with this process and, once stored, the worker's seconds and peak memory."""
-        line = {"event": event, "key": key, "source": source, "process": os.getpid(), **more}
+        line = {"event": event, "key": one.key, "source": one.source, "process": os.getpid(), **more}
         line |= {"at": round(time.perf_counter() - self.begin, 3), "client_memory": peak_memory()}
         with self.ledger.open("a") as file:
             file.write(json.dumps(line) + "\n")
 
-    def _write_at_intervals(self) -> None:
-        now = time.perf_counter()
-        if now - self.written > PAUSE and self.spent < SHARE * (now - self.begin):
-            self.write_table()
-
     def write_table(self) -> None:
         """Write the rows of everything stored, in the order of the points."""
-        begin = time.perf_counter()
-        self.failed = 0
-        about = {
-            "name": self.study.name,
-            "text": self.study.text,
-            "points": self.points,
-            "complete": self.complete,
-        }
-        self.rows = write_table(self.table, self._rows(), about)
+        begin, outcome = time.perf_counter(), self.outcome
+        outcome.failed = 0
+        about: dict[str, Any] = {"name": self.study.name, "text": self.study.text}
+        about |= {"points": outcome.points, "complete": outcome.complete}
+        outcome.rows = write_table(outcome.table, self._rows(), about)
         self.written = time.perf_counter()
         self.spent += self.written - begin
+        outcome.seconds = self.written - self.begin
 
     def _rows(self) -> Iterator[dict[str, Any]]:
         for _, sources in groupby(self.solves(), key=lambda one: one.first):
             rows = [row for one in sources for row in self._rows_of(one)]
             for row in sorted(rows, key=lambda row: row["point"]):
-                self.failed += row["status"] == "failed"
+                self.outcome.failed += row["status"] == "failed"
                 yield row
 
     def _rows_of(self, one: Solve) -> list[dict[str, Any]]:
-        key = solve_key(one.request)
-        if key in self.lost:
-            failed = [
-                {"friction": f, "status": "failed", "failure": self.lost[key]}
-                for f in one.request["frictions"]
-            ]
+        if one.key in self.outcome.lost:
+            failed = failed_rows(one.request, self.outcome.lost[one.key])
             found: dict[str, Any] = {"rows": failed, "seconds": 0.0, "versions": {}}
         else:
             try:
-                found = self.cache.get(key, one.request)
+                found = self.cache.get(one.key, one.request)
             except StoreError:
                 return []  # not solved yet
-        return table_rows(one.first, key, one.request, found)[: self.covered(one)]
+        return table_rows(one.first, one.key, one.request, found)[: self.covered(one)]

@@ -1,6 +1,7 @@
 """Error of formulas against the exact solution: effective moduli, limits of thickness, a family of moduli."""
 
 import time
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -28,8 +29,6 @@ from verification.sources.references.effective_modulus import (
 from verification.sources.references.flat_punch import pressed
 from verification.sources.references.layer_limits import spring_bed, squeezed_film, thick
 from verification.sources.registry import EXACT
-
-__all__ = ["EffectiveStudy", "Limit", "from_json", "measure", "task", "to_json"]
 
 Rows = tuple[tuple[float, ...], ...]
 
@@ -159,11 +158,9 @@ def _thin() -> list[Limit]:
         exact = [pressed(r, ((1.0, nu, 1.0),), RIGID) for r in a]
         law = [squeezed_film(r, 1.0, 1.0) if nu == 0.5 else spring_bed(r, 1.0, nu, 1.0) for r in a]
         for panel, n in (("stiffness, thin layer", 0), ("load of the sphere, thin layer", 1)):
-            over = [
-                ((2 * r * one.kappa / (1 - nu**2)) if n == 0 else one.load) / limit[n] - 1
-                for r, one, limit in zip(a, exact, law, strict=True)
-            ]
-            found.append(Limit(panel, f"nu = {nu:g}", tuple(a.tolist()), tuple(map(float, over))))
+            stiffness = [2 * r * one.kappa / (1 - nu**2) for r, one in zip(a, exact, strict=True)]
+            value = [one.load for one in exact] if n else stiffness
+            found.append(_limit(panel, f"nu = {nu:g}", a, value, [by_law[n] for by_law in law]))
     return found
 
 
@@ -175,10 +172,14 @@ def _thick() -> list[Limit]:
         exact = [pressed(r, layer, base, NODES, TAIL).kappa for r in a]
         laws = [thick(r, layer, base) for r in a]
         for n, law in enumerate(("Hertz", "first correction")):
-            over = [one / by_law[n] - 1 for one, by_law in zip(exact, laws, strict=True)]
-            panel = f"stiffness, thick coating: {law}"
-            found.append(Limit(panel, f"E1/E2 = {ratio:g}", tuple(a.tolist()), tuple(map(float, over))))
+            panel, values = f"stiffness, thick coating: {law}", [by_law[n] for by_law in laws]
+            found.append(_limit(panel, f"E1/E2 = {ratio:g}", a, exact, values))
     return found
+
+
+def _limit(panel: str, name: str, a: Array, exact: Sequence[float], law: Sequence[float]) -> Limit:
+    excess = tuple(float(one / by_law - 1) for one, by_law in zip(exact, law, strict=True))
+    return Limit(panel, name, tuple(a.tolist()), excess)
 
 
 def _member(ratio: float, friction: float) -> CaseResult:
@@ -187,10 +188,8 @@ def _member(ratio: float, friction: float) -> CaseResult:
     bare = CoatedContact(10e-3, 20.0, (), (210e9, 0.3), friction)
     problem = replace(bare, coatings=((ratio * 210e9, 0.3, bare.a_h),))
     found = solve_exactly(problem, {"estimate_uncertainty": False})
-    x, z = (
-        2.5 * bare.a_h * np.linspace(-1 if friction else 0, 1, 101),
-        4 * bare.a_h * np.linspace(0.005, 1, 60) ** 1.5,
-    )
+    x = 2.5 * bare.a_h * np.linspace(-1 if friction else 0, 1, 101)
+    z = 4 * bare.a_h * np.linspace(0.005, 1, 60) ** 1.5
     profiles = list(sample_contact(found, EXACT[0], problem))
     for line in lines_of(problem):
         profiles += sample(found, EXACT[0], line, z if line.depth is None else x)

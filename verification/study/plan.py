@@ -10,6 +10,8 @@ so that neighbours differ by 0.6 of an equal ratio's step (in log h) in the midd
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
+from functools import cached_property
+from itertools import product
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -17,12 +19,11 @@ import numpy as np
 from pydantic import Discriminator, Field, Tag, model_validator
 
 from verification.cases.contact import refuse_unfit_scales
-from verification.cases.toml import CaseError, Length, Modulus, Poisson, Strict, Text, read_bounded, read_toml
+from verification.cases.toml import CaseError, Poisson, Positive, Strict, Text, read_bounded, read_toml
 from verification.problem.contact import CoatedContact
+from verification.study.cache import solve_key
 from verification.study.criteria import Criteria
 from verification.study.table import SOURCES
-
-__all__ = ["Solve", "Study", "parse_study", "read_study_file", "shipped_studies", "thicknesses_between"]
 
 STUDIES = Path(__file__).parent.parent / "cases" / "shipped" / "studies"
 MOST_POINTS = 1_000_000
@@ -41,6 +42,11 @@ class Solve:
     @property
     def source(self) -> str:
         return self.request["source"]
+
+    @cached_property
+    def key(self) -> str:
+        """Key of the solve in the cache."""
+        return solve_key(self.request)
 
 
 @dataclass(frozen=True)
@@ -73,24 +79,20 @@ class Study:
     def solves(self) -> Iterator[Solve]:
         """Every solve, in the order of its points; of each point first the semi-analytical one."""
         step = len(self.frictions)
-        first = 0
-        for E in self.moduli:
-            for thickness in self.thicknesses:
-                yield Solve(first, self._request(SOURCES[0], E, thickness))
-                if self.cross_check and -(-first // self.cross_check) * self.cross_check < first + step:
-                    yield from (Solve(first, self._request(other, E, thickness)) for other in SOURCES[1:])
-                first += step
-
-    def _request(self, source: str, E: float, thickness: float) -> dict[str, Any]:
-        return {
-            "source": source,
-            "numerics": self.numerics.get(source, {}),
-            "radius": self.radius,
-            "load": self.load,
-            "coating": [E, self.coating_nu, thickness],
-            "substrate": list(self.substrate),
-            "frictions": list(self.frictions),
-        }
+        for i, (E, thickness) in enumerate(product(self.moduli, self.thicknesses)):
+            first = i * step
+            checked = self.cross_check and -(-first // self.cross_check) * self.cross_check < first + step
+            for source in SOURCES if checked else SOURCES[:1]:
+                request = {
+                    "source": source,
+                    "numerics": self.numerics.get(source, {}),
+                    "radius": self.radius,
+                    "load": self.load,
+                    "coating": [E, self.coating_nu, thickness],
+                    "substrate": list(self.substrate),
+                    "frictions": list(self.frictions),
+                }
+                yield Solve(first, request)
 
 
 def thicknesses_between(low: float, high: float, count: int) -> tuple[float, ...]:
@@ -102,26 +104,29 @@ def thicknesses_between(low: float, high: float, count: int) -> tuple[float, ...
     return (low, *(float(v) for v in values[1:-1]), high)
 
 
+Values = Annotated[list[Positive], Field(min_length=1, max_length=100_000)]
+
+
 class _Substrate(Strict):
-    E: Modulus
+    E: Positive
     nu: Poisson
 
 
 class _Coating(Strict):
-    E: Modulus | None = None
+    E: Positive | None = None
     nu: Poisson
 
 
 class _Problem(Strict):
-    radius: Length
-    load: Annotated[float, Field(gt=0)]
+    radius: Positive
+    load: Positive
     substrate: _Substrate
     coating: _Coating
 
 
 class _Range(Strict):
     start: Annotated[float, Field(alias="from", gt=0)]
-    to: Annotated[float, Field(gt=0)]
+    to: Positive
     count: Annotated[int, Field(ge=1, le=100_000)]
 
     @model_validator(mode="after")
@@ -129,10 +134,6 @@ class _Range(Strict):
         if not self.start < self.to:
             raise ValueError(f"runs from {self.start:g} to {self.to:g}; give from < to")
         return self
-
-
-Positive = Annotated[float, Field(gt=0)]
-Values = Annotated[list[Positive], Field(min_length=1, max_length=100_000)]
 
 
 # Discriminated by type, so that an error message concerns one of them only.
@@ -193,9 +194,7 @@ def parse_study(raw: bytes, path: Path) -> Study:
         raise CaseError(f"{path}: problem: {error}") from None
     if (p.coating.E is None) == (sweep.modulus_ratio is None):
         raise CaseError(f"{path}: needs exactly one of problem.coating.E or sweep.modulus_ratio, E1/E2")
-    moduli = (
-        [p.coating.E] if p.coating.E is not None else [r * p.substrate.E for r in sweep.modulus_ratio or ()]
-    )
+    moduli = [p.coating.E] if p.coating.E else [r * p.substrate.E for r in sweep.modulus_ratio or ()]
     refuse_unfit_scales(path, bare)
     key, scale, asked = "thickness", 1.0, sweep.thickness
     if asked is None:
@@ -217,7 +216,7 @@ def parse_study(raw: bytes, path: Path) -> Study:
         title=checked.title,
         radius=p.radius,
         load=p.load,
-        substrate=(p.substrate.E, p.substrate.nu),
+        substrate=bare.substrate,
         coating_nu=p.coating.nu,
         moduli=tuple(moduli),
         thicknesses=thicknesses,

@@ -22,8 +22,6 @@ from scipy.interpolate import make_interp_spline
 from verification.problem.arrays import Array
 from verification.problem.contact import Solution, stress_with_uncertainty
 
-__all__ = ["XX", "XZ", "YY", "ZZ", "Parts", "Plane", "crowded", "plane", "stress_at", "surface"]
-
 Curve = Callable[[Array], Array]
 
 XX, YY, ZZ, XZ = range(4)
@@ -48,7 +46,8 @@ class Parts:
         The uncertainty is the solution's own, NaN where it has none.
         """
         x = np.stack([r, -r]) if self.friction else r[None, :]
-        sigma, bound = self._sampled(x, z, layer)
+        full, U = stress_with_uncertainty(self.solution, x, 0.0, z, layer=layer)
+        sigma, bound = _components(full), _components(np.full_like(full, np.nan) if U is None else U)
         if not self.friction:
             return sigma[:, 0], np.zeros_like(sigma[:, 0]), np.stack([bound[:, 0]] * 2)
         right, left = sigma[:, 0], sigma[:, 1] * PARITY[:, None]
@@ -61,11 +60,6 @@ class Parts:
         """
         here = (1 + friction / self.friction) / 2 if self.friction else 1.0
         return here * bound[0] + np.abs(1 - here) * bound[1]
-
-    def _sampled(self, x: Array, z: float, layer: int) -> tuple[Array, Array]:
-        sigma, U = stress_with_uncertainty(self.solution, x, 0.0, z, layer=layer)
-        bound = np.full_like(sigma, np.nan) if U is None else U
-        return _components(sigma), _components(bound)
 
 
 def _components(sigma: Array) -> Array:
@@ -100,10 +94,8 @@ class Plane:
         i = int(np.clip(np.searchsorted(self.knots, abs(x)), 1, self.knots.size - 1))
         beside = self.bound[:, :, i - 1 : i + 1].max(axis=2)
         stated = self.parts.uncertainty(beside if x >= 0 else beside[::-1], friction)
-        at = np.array([x])
-        interpolation = (
-            np.abs(_signed(self.fine, at, friction) - _signed(self.coarse, at, friction))[:, 0] / 8
-        )
+        fine, coarse = (_signed(curve, np.array([x]), friction) for curve in (self.fine, self.coarse))
+        interpolation = np.abs(fine - coarse)[:, 0] / 8
         near = self.edge_radius * SKIP >= abs(abs(x) - self.edge_radius) * (1 - 1e-9)
         return stated + interpolation + (self.edge[0] + friction * self.edge[1] if near else 0.0)
 

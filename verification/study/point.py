@@ -15,13 +15,11 @@ from threadpoolctl import threadpool_limits
 from verification.problem.contact import CoatedContact
 from verification.problem.quantity import QUANTITIES
 from verification.running.provenance import versions
-from verification.running.result import sentence
+from verification.running.result import message_of
 from verification.sources.registry import SOURCES
 from verification.study.cache import code_version
 from verification.study.quantities import quantities
 from verification.study.table import SCALARS
-
-__all__ = ["answer", "peak_memory", "problem_of", "table_rows"]
 
 
 def answer(request: Mapping[str, Any]) -> dict[str, Any]:
@@ -42,7 +40,7 @@ def answer(request: Mapping[str, Any]) -> dict[str, Any]:
             solution = solve(problem, request["numerics"])
             rows = _rows(solution, problem, frictions)
     except Exception as error:  # a point that fails is a row with its message
-        rows = [{"friction": f, "status": "failed", "failure": sentence(error)} for f in frictions]
+        rows = failed_rows(request, message_of(error))
     return {
         "rows": rows,
         "seconds": time.perf_counter() - begin,
@@ -50,6 +48,11 @@ def answer(request: Mapping[str, Any]) -> dict[str, Any]:
         "code": code_version(request["source"]),
         "memory": peak_memory(),
     }
+
+
+def failed_rows(request: Mapping[str, Any], message: str) -> list[dict[str, Any]]:
+    """A row with the ``message`` for each friction of ``request``."""
+    return [{"friction": float(f), "status": "failed", "failure": message} for f in request["frictions"]]
 
 
 def peak_memory() -> int:
@@ -64,9 +67,8 @@ def peak_memory() -> int:
 
 def problem_of(request: Mapping[str, Any], friction: float) -> CoatedContact:
     """The contact of ``request`` at ``friction``."""
-    E1, nu1, thickness = request["coating"]
-    E2, nu2 = request["substrate"]
-    return CoatedContact(request["radius"], request["load"], ((E1, nu1, thickness),), (E2, nu2), friction)
+    coating, substrate = tuple(request["coating"]), tuple(request["substrate"])
+    return CoatedContact(request["radius"], request["load"], (coating,), substrate, friction)
 
 
 def table_rows(

@@ -18,8 +18,6 @@ from verification.problem.contact import CoatedContact, Solution
 from verification.problem.quantity import von_mises
 from verification.study.planes import XX, XZ, ZZ, Parts, Plane, crowded, plane, stress_at, surface
 
-__all__ = ["QUANTITIES", "Located", "Stress", "quantities"]
-
 Measure = Callable[[Array], Array]
 
 # The stresses of a study [Pa] in the order of the columns.
@@ -116,7 +114,7 @@ def _between(parts: Parts, planes: Sequence[Plane], knots: Array, friction: floa
     """The largest von Mises stress between the planes of a layer; none where it lies on an outer one."""
     x = _both_sides(knots, FINE)
     depth = np.array([p.z for p in planes])
-    z = np.append((depth[:-1, None] + np.diff(depth)[:, None] * np.arange(FINE) / FINE).ravel(), depth[-1])
+    z = _finer(depth, FINE)
     stress = CubicSpline(depth, np.stack([p(x, friction) for p in planes]), axis=0)
     value = von_mises(np.moveaxis(stress(z), 1, 0))
     i, j = np.unravel_index(int(np.argmax(value)), value.shape)
@@ -132,8 +130,14 @@ def _between(parts: Parts, planes: Sequence[Plane], knots: Array, friction: floa
 
 def _both_sides(knots: Array, fine: int) -> Array:
     """Points from -knots[-1] to knots[-1], the trailing side first, ``fine`` between two knots."""
-    r = np.append((knots[:-1, None] + np.diff(knots)[:, None] * np.arange(fine) / fine).ravel(), knots[-1])
+    r = _finer(knots, fine)
     return np.concatenate([-r[:0:-1], r])
+
+
+def _finer(points: Array, fine: int) -> Array:
+    """``points`` with each interval divided into ``fine`` equal ones."""
+    inner = points[:-1, None] + np.diff(points)[:, None] * np.arange(fine) / fine
+    return np.append(inner.ravel(), points[-1])
 
 
 def _propagated(measure: Measure, s: Array, bound: Array) -> float:

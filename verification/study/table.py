@@ -15,10 +15,10 @@ An unknown number is null: all of a failed point, the position of a tension that
 import io
 import json
 from collections.abc import Iterable, Mapping
+from itertools import islice
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
 from numpy.typing import NDArray
@@ -29,12 +29,11 @@ from verification.running.store import StoreError, write_atomically
 from verification.sources.registry import EXACT, METHODS
 from verification.study.quantities import QUANTITIES
 
-__all__ = ["COLUMNS", "SCALARS", "SOURCES", "read_columns", "read_study", "write_table"]
-
 # The first solves every point, the others those that are cross-checked.
 SOURCES = (*METHODS, *EXACT)
 # Each scalar of the contact with the scale of the bare substrate that it is given over.
 SCALARS = {name: ALL[name].scale for name in CONTACT_SCALARS}
+SCALES = dict.fromkeys(QUANTITIES, "p_h") | SCALARS
 
 _INPUT = (
     *("radius", "load", "coating_E", "coating_nu", "thickness", "substrate_E", "substrate_nu", "friction"),
@@ -70,22 +69,13 @@ def write_table(path: Path, rows: Iterable[Mapping[str, Any]], study: Mapping[st
     study : stored with the rows, plain JSON.  A column that a row lacks is null.
     """
     schema = COLUMNS.with_metadata({"coatcheck_study": json.dumps(study, sort_keys=True)})
-    content = io.BytesIO()
-    count = 0
+    content, following, count = io.BytesIO(), iter(rows), 0
     with pq.ParquetWriter(content, schema, compression="zstd") as writer:
-        group: list[dict[str, Any]] = []
-
-        def flush() -> None:
-            writer.write_table(pa.Table.from_pylist(group, schema=schema))
-            group.clear()
-
-        for row in rows:
-            group.append({name: _null(row.get(name)) for name in COLUMNS.names})
-            count += 1
-            if len(group) == GROUP:
-                flush()
-        if group or count == 0:
-            flush()
+        while group := list(islice(following, GROUP)):
+            # from_pandas: NaN becomes null
+            arrays = [pa.array([r.get(f.name) for r in group], f.type, from_pandas=True) for f in schema]
+            writer.write_table(pa.Table.from_arrays(arrays, schema=schema))
+            count += len(group)
     write_atomically(path, content.getvalue())
     return count
 
@@ -109,7 +99,3 @@ def _read(path: Path, reader: Any) -> Any:
         return reader(path)
     except (OSError, pa.ArrowException) as error:
         raise StoreError(f"{path}: cannot be read as a table ({str(error).splitlines()[0]})") from None
-
-
-def _null(value: Any) -> Any:
-    return None if isinstance(value, float) and np.isnan(value) else value

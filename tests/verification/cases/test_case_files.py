@@ -1,4 +1,4 @@
-"""Case files: good ones are read to the letter, bad ones end in one sentence with file and key."""
+"""Case files: good ones are read to the letter, bad ones end in one message with file and key."""
 
 import math
 from pathlib import Path
@@ -76,12 +76,12 @@ def test_thickness_may_be_given_in_contact_radii():
 )
 def test_bad_key_is_named(old, new, said):
     assert old in GOOD
-    with pytest.raises(CaseError) as complaint:
+    with pytest.raises(CaseError) as error:
         parse(GOOD.replace(old, new, 1))
-    sentence = str(complaint.value)
-    assert sentence.startswith("mine.toml: ")
-    assert said in sentence
-    assert "\n" not in sentence
+    message = str(error.value)
+    assert message.startswith("mine.toml: ")
+    assert said in message
+    assert "\n" not in message
 
 
 CLAIM = """

@@ -1,4 +1,4 @@
-"""The command line: exit codes, complaints in one sentence, nothing written on bad input."""
+"""The command line: exit codes, one-line messages, nothing written on bad input."""
 
 import json
 import os
@@ -9,7 +9,7 @@ from quick_case import COMMAND, QUICK, coatcheck
 
 from verification.cases.contact import Case, read_case, shipped_cases
 from verification.cases.published import published_cases
-from verification.commands.common import exit_code
+from verification.commands.common.exits import exit_code
 from verification.judging.verdict import Claim, Outcome, Verdict
 from verification.running.result import CaseResult
 from verification.running.tasks import run_cases

@@ -1,4 +1,4 @@
-"""The study command: bad input is one sentence with exit code 2, nothing written; else what came of it."""
+"""The study command: bad input is one message with exit code 2, nothing written; else what came of it."""
 
 import json
 
@@ -53,7 +53,7 @@ def test_a_study_of_one_point_from_the_command_line(tmp_path, capfd):
     found = read_columns(tmp_path / "out" / "one.parquet")
     assert found["status"].tolist() == ["solved"]
     assert found["sigma_xx_base"][0] > 0
-    # found again, said in a sentence
+    # found again, said in a message
     assert thickness(str(plan), **words) == 0
     out, err = capfd.readouterr()
     assert err == ""

@@ -18,7 +18,7 @@ from synthetic_results import INFO, contact, result_of
 
 from verification.cases.contact import shipped_cases
 from verification.cases.published import published_cases
-from verification.commands import common
+from verification.commands.common import terminal
 from verification.commands.compare import compare
 from verification.commands.list_cases import list_cases
 from verification.report.material import Material
@@ -47,7 +47,7 @@ COMMANDS = (
 
 
 def asked(capsys, *words):
-    """Exit code, output and complaints of a command in this process."""
+    """Exit code, output and messages of a command in this process."""
     from verification.cli import app
 
     code = app([str(word) for word in words], result_action="return_value")
@@ -176,9 +176,9 @@ def test_names_are_whole_in_a_terminal(stored, screen, width):
 
 def test_a_name_wider_than_half_the_terminal_is_folded_not_cut(screen):
     shown = screen(30)
-    table = common.named_table("case", "title")
+    table = terminal.named_table("case", "title")
     table.add_row("16_ratio_quarter_sliding", "Compliant coating, sliding")
-    common.print_out(table)
+    terminal.print_out(table)
     letters = [line[1:16].split(" ")[0] for line in shown().splitlines()[1:]]
     assert "16_ratio_quarter_sliding" in "".join(letters)
 

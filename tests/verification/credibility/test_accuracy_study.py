@@ -1,4 +1,4 @@
-"""Convergence of the methods: the yardsticks are right, the ladders fall, what fails is a sentence."""
+"""Convergence of the methods: the references are right, their errors fall, what fails is a message."""
 
 import json
 from dataclasses import replace
@@ -154,8 +154,9 @@ def test_study_goes_on_where_a_part_of_it_fails(monkeypatch):
         raise ValueError("no grid fits")
 
     good = refined_grid(BARE, (33,))
-    monkeypatch.setattr(accuracy_study, "ladder", lambda *_, **__: good)
-    monkeypatch.setattr(accuracy_study, "elements", lambda *_, **__: replace(good, failure="fine: no mesh"))
+    monkeypatch.setattr(accuracy_study, "refined_grid", lambda *_, **__: good)
+    failed = replace(good, failure="fine: no mesh")
+    monkeypatch.setattr(accuracy_study, "refined_mesh", lambda *_, **__: failed)
     monkeypatch.setattr(accuracy_study, "conversion_errors", broken)
     found = accuracy_study.measure()
     assert len(found.refinements) == 8

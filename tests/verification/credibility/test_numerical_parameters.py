@@ -1,4 +1,4 @@
-"""Ladders of the numerical knobs: of a made-up solver whose error is known, and of both methods."""
+"""Ladders of the numerical parameters: of a made-up solver whose error is known, and of both methods."""
 
 from dataclasses import replace
 
@@ -7,8 +7,8 @@ import pytest
 
 from verification.credibility.accuracy import BARE, COATED
 from verification.credibility.parameters import PARAMETERS, stated, study, sweep
+from verification.sources.record import NumericalParameter
 from verification.sources.references.hertz import Hertz
-from verification.sources.source import NumericalParameter
 
 EXACT = Hertz(BARE.radius, BARE.load, *BARE.substrate)
 KNOB = NumericalParameter(
@@ -49,20 +49,20 @@ def off(_, numerics=None, times=3.0):
 
 
 def test_ladder_of_a_second_order_method_gives_its_order_and_brackets_its_error():
-    ladder = sweep(BARE, KNOB, BARE.a_h, off)
-    assert ladder.failure is None
-    assert len(ladder.values) == 8
-    for name in ladder.values:
-        found = ladder.estimate(name)
+    refinement = sweep(BARE, KNOB, BARE.a_h, off)
+    assert refinement.failure is None
+    assert len(refinement.values) == 8
+    for name in refinement.values:
+        found = refinement.estimate(name)
         assert found.order == pytest.approx(2, abs=1e-3)
         assert 1 / 64**2 <= found.uncertainty <= 1.3 / 64**2
 
 
 def test_level_that_fails_ends_the_ladder_with_its_sentence():
     longer = replace(KNOB, levels=(*KNOB.levels, ("N = 128", {"patches": 128}, 1 / 128)))
-    ladder = sweep(BARE, longer, BARE.a_h, off)
-    assert ladder.levels == ("N = 8", "N = 16", "N = 32", "N = 64")
-    assert ladder.failure == "N = 128: too fine for this machine; take fewer patches"
+    refinement = sweep(BARE, longer, BARE.a_h, off)
+    assert refinement.levels == ("N = 8", "N = 16", "N = 32", "N = 64")
+    assert refinement.failure == "N = 128: too fine for this machine; take fewer patches"
     none = sweep(BARE, replace(KNOB, levels=longer.levels[4:]), BARE.a_h, off)
     assert none.estimate("p0") is None
 
@@ -76,8 +76,8 @@ def test_stated_uncertainty_stands_beside_the_true_error_on_one_scale():
 
 
 def test_every_knob_but_the_order_of_elements_has_four_levels_or_more():
-    assert {knob.name for knob in PARAMETERS if len(knob.levels) < 4} == {"element order"}
-    assert all(np.all(np.diff([step for *_, step in knob.levels]) < 0) for knob in PARAMETERS)
+    assert {parameter.name for parameter in PARAMETERS if len(parameter.levels) < 4} == {"element order"}
+    assert all(np.all(np.diff([step for *_, step in parameter.levels]) < 0) for parameter in PARAMETERS)
 
 
 @pytest.mark.slow
@@ -91,14 +91,14 @@ def test_every_knob_but_the_order_of_elements_has_four_levels_or_more():
     ids=["uncoated", "sliding", "two coatings"],
 )
 def test_stated_and_fitted_uncertainties_hold_the_true_error(problem):
-    ladders, found = study(problem, "solid")
-    assert [one.failure for one in ladders if one.failure] == []
+    refinements, found = study(problem, "solid")
+    assert [one.failure for one in refinements if one.failure] == []
     for one in found:
         fitted = {
             name: sum(
-                ladder.estimate(name).uncertainty
-                for ladder in ladders
-                if ladder.method == one.method and ladder.parameter != "element order"
+                refinement.estimate(name).uncertainty
+                for refinement in refinements
+                if refinement.method == one.method and refinement.parameter != "element order"
             )
             for name in one.error
         }

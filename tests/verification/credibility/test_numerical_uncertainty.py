@@ -11,13 +11,13 @@ STEPS = (8.0, 4.0, 2.0, 1.0)
 LIMIT = 3.7
 
 
-def ladder(order, alpha=0.05, steps=STEPS):
+def levels(order, alpha=0.05, steps=STEPS):
     return [LIMIT + alpha * h**order for h in steps]
 
 
 @pytest.mark.parametrize("order", [0.6, 1.0, 1.5, 2.0])
 def test_exact_power_law_gives_its_order_its_limit_and_five_quarters_of_its_error(order):
-    found = least_squares(STEPS, ladder(order))
+    found = least_squares(STEPS, levels(order))
     assert found.order == pytest.approx(order, abs=1e-4)
     assert found.limit == pytest.approx(LIMIT, rel=1e-5)
     assert found.uncertainty == pytest.approx(1.25 * 0.05, rel=1e-3)
@@ -25,14 +25,14 @@ def test_exact_power_law_gives_its_order_its_limit_and_five_quarters_of_its_erro
 
 def test_order_of_three_levels_is_that_of_the_power_law_on_uneven_steps():
     steps = (3.0, 1.7, 1.0)
-    found = convergence_index(steps, ladder(1.3, steps=steps))
+    found = convergence_index(steps, levels(1.3, steps=steps))
     assert found.order == pytest.approx(1.3, abs=1e-9)
     assert found.uncertainty == pytest.approx(1.25 * 0.05, rel=1e-9)
     assert found.limit == pytest.approx(LIMIT, rel=1e-12)
 
 
 def test_two_levels_take_the_theoretical_order_and_the_factor_three():
-    found = convergence_index((2.0, 1.0), ladder(2.0)[-2:], order=2.0)
+    found = convergence_index((2.0, 1.0), levels(2.0)[-2:], order=2.0)
     assert found.order is None
     assert found.uncertainty == pytest.approx(3 * 0.05)
     assert found.method == "two levels"
@@ -74,14 +74,14 @@ def test_oscillating_values_are_not_believed_and_their_swing_is_the_uncertainty(
 
 def test_order_beyond_the_theoretical_one_is_not_trusted():
     """The factor is 3, on the fit of order 1 or 2 that explains the values best."""
-    found = least_squares(STEPS, ladder(4.0))
+    found = least_squares(STEPS, levels(4.0))
     assert found.order is None
     assert found.uncertainty > 3 * 0.05
-    assert least_squares(STEPS, ladder(4.0), order=4.0).uncertainty == pytest.approx(1.25 * 0.05, rel=1e-3)
+    assert least_squares(STEPS, levels(4.0), order=4.0).uncertainty == pytest.approx(1.25 * 0.05, rel=1e-3)
 
 
 def test_order_below_one_half_is_not_trusted():
-    values = ladder(0.2)
+    values = levels(0.2)
     assert least_squares(STEPS, values).uncertainty > 1.25 * abs(values[-1] - values[-2])
 
 
@@ -92,13 +92,13 @@ def test_values_that_stand_still_are_as_uncertain_as_their_last_digit():
 
 
 def test_ladder_may_be_given_in_any_order_and_any_unit():
-    one = least_squares(STEPS, ladder(1.5))
-    other = least_squares(np.array(STEPS)[[2, 0, 3, 1]] * 1e-6, np.array(ladder(1.5))[[2, 0, 3, 1]])
+    one = least_squares(STEPS, levels(1.5))
+    other = least_squares(np.array(STEPS)[[2, 0, 3, 1]] * 1e-6, np.array(levels(1.5))[[2, 0, 3, 1]])
     assert other.uncertainty == pytest.approx(one.uncertainty, rel=1e-9)
 
 
 def test_number_of_levels_chooses_the_method():
-    values = ladder(1.5)
+    values = levels(1.5)
     methods = [uncertainty(STEPS[-n:], values[-n:]).method for n in (2, 3, 4)]
     assert methods == ["two levels", "three levels", "least squares"]
 

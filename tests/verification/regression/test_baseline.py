@@ -10,7 +10,7 @@ from quick_case import QUICK, coatcheck
 from synthetic_results import INFO, STEEL, contact, result_of
 
 from verification.cases.contact import shipped_cases
-from verification.commands.common import BASELINE
+from verification.commands.common.folders import BASELINE
 from verification.regression.baseline import (
     Baseline,
     against,
@@ -75,7 +75,7 @@ def test_a_number_drifts_beyond_1e_8_of_the_largest_of_its_profile(by, state):
 def test_a_change_between_the_kept_points_shows_in_the_root_mean_square():
     kept = measured(RESULT)[0]
     index = 3  # of 129 points every eighth is kept
-    profile = RESULT.profile("sigma_xx", "axis", "fem_reference")
+    profile = RESULT.profile_of["sigma_xx", "axis", "fem_reference"]
     assert profile is not None
     assert profile.value.size == 129
     assert kept.value.size <= 17
@@ -86,7 +86,7 @@ def test_a_change_between_the_kept_points_shows_in_the_root_mean_square():
 
 def test_a_profile_that_is_all_but_zero_is_measured_by_its_fellows():
     # sigma_xz on the axis vanishes by symmetry; what is there is noise of 1.2e-5 p_h times a random number.
-    profile = RESULT.profile("sigma_xz", "axis", "fem_reference")
+    profile = RESULT.profile_of["sigma_xz", "axis", "fem_reference"]
     assert profile is not None
     numbers = next(n for n in measured(RESULT) if n.key == ("fem_reference", "sigma_xz", "axis"))
     assert np.abs(profile.value).max() < 2e-5 * RESULT.problem["p_h"]

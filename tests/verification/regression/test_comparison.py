@@ -14,7 +14,7 @@ from synthetic_results import INFO, STEEL, contact, result_of
 from verification.judging.verdict import Outcome
 from verification.regression.comparison import compare_runs
 from verification.regression.drift import State
-from verification.report.comparison import comparison_page, comparison_sentence
+from verification.report.comparison import comparison_message, comparison_page
 from verification.report.material import Material
 from verification.report.write import report_json
 from verification.running.result import CaseResult, RunInfo
@@ -45,8 +45,8 @@ def test_a_run_beside_itself_shows_nothing():
     found = compare_runs(run_of(GOOD), run_of(GOOD))
     assert (found.drifted, found.worse, found.verdicts, found.versions) == (False, False, (), ())
     assert found.seconds == (("stiff", 3.4, 3.4),)
-    assert "No verdict changed; all" in comparison_sentence(found)
-    assert "by at most" not in comparison_sentence(found)
+    assert "No verdict changed; all" in comparison_message(found)
+    assert "by at most" not in comparison_message(found)
 
 
 def test_every_point_counts_not_only_those_of_a_baseline():

@@ -1,4 +1,4 @@
-"""The sections on accuracy: every curve drawn, every sentence from the numbers, nothing breaks the page."""
+"""The sections on accuracy: every curve drawn, every message from the numbers, nothing breaks the page."""
 
 import re
 from dataclasses import replace
@@ -16,7 +16,7 @@ from verification.report.material import Evidence, Material
 from verification.report.page import render
 from verification.report.sections.refinement import finite_element_section, semianalytic_section
 from verification.report.tables.numbers import factor
-from verification.sources.source import Style
+from verification.sources.record import Style
 
 
 def material(found, results=()) -> Material:
@@ -69,7 +69,6 @@ def test_slopes_are_written_beside_the_curves(page):
 
 def test_words_come_from_the_numbers():
     said = text_of(convergence_sections(study()))
-    assert f"pressure {33.0**-4:.1e} → 1.0e-7".replace("e-0", "e-") in said
     assert "from N = 65 on: another numerical parameter dominates there" in said
     assert "converges at order 1.0, to 3.9e-3 at N = 257" in said
     assert "a factor of 39000" in said
@@ -78,7 +77,7 @@ def test_words_come_from_the_numbers():
     assert "2.0e-9 " not in said
     assert "2.0e-12 of the largest coefficient" in said
     assert "2.0e9 times as large" in said
-    assert "Order 4 gains over order 2 factors of 40000 in p0" in said
+    assert "mesh, order 4 gains over order 2 factors of 40000 in p0" in said
     other = replace(
         study(), refinements=(falling(CORRECTED, 2.0), falling(STAIRCASE, 0.1), falling(PLAIN, 3.0))
     )
@@ -115,8 +114,8 @@ def test_study_that_died_is_its_reason_alone():
 def test_part_that_is_missing_leaves_the_others():
     whole = study()
     bare = replace(whole.refinements[0], levels=(), failure="N = 33: no grid fits")
-    for ladders in ((bare,), (bare, *whole.refinements[1:]), (bare, elements(3)), whole.refinements[1:2]):
-        Document(render(material(replace(whole, refinements=ladders))))
+    for studies in ((bare,), (bare, *whole.refinements[1:]), (bare, elements(3)), whole.refinements[1:2]):
+        Document(render(material(replace(whole, refinements=studies))))
     for conversions in ((), whole.conversions[:1], whole.conversions[1:2], (conversion("new", 4, 1, 1.0),)):
         Document(render(material(replace(whole, conversions=conversions))))
 
@@ -126,7 +125,7 @@ def test_no_number_whatever_keeps_a_report_from_being_written():
     odd = [1e308, -1e308, 5e-324, float("nan"), float("inf"), -float("inf"), 0.0, -1.0, 1e-30]
     whole = study()
     for _ in range(3):
-        ladders = tuple(
+        studies = tuple(
             replace(
                 one,
                 levels=tuple(
@@ -145,7 +144,7 @@ def test_no_number_whatever_keeps_a_report_from_being_written():
             replace(one, error=tuple(float(random.choice(odd)) for _ in one.error), largest=float("nan"))
             for one in whole.conversions
         )
-        Document(render(material(replace(whole, refinements=ladders, conversions=conversions))))
+        Document(render(material(replace(whole, refinements=studies, conversions=conversions))))
 
 
 def test_words_from_strangers_stay_words():

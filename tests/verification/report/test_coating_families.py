@@ -36,7 +36,7 @@ def test_its_numbers_are_those_of_the_cases(frictionless):
     table = family_section(frictionless).parts[0].tables[0]
     assert [row.head.text for row in table.rows] == ["0.25", "1", "2", "4"]
     stiff = frictionless[0]
-    radius = stiff.profile("contact_radius", "contact", "semianalytic").value[0] / stiff.problem["a_h"]
+    radius = stiff.profile_of["contact_radius", "contact", "semianalytic"].value[0] / stiff.problem["a_h"]
     column = next(n for n, name in enumerate(table.columns[1:]) if name == "a / a_h")
     assert float(table.rows[3].cells[column].text) == pytest.approx(radius, abs=5e-7)
 

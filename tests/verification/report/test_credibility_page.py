@@ -126,7 +126,7 @@ def test_the_fault_score_and_its_survivors_come_from_the_record(tmp_path):
 def test_a_damaged_record_is_named_and_its_figure_is_not_measured(tmp_path):
     (tmp_path / "alarms.json").write_text("{")
     found = section(gather(tmp_path))
-    assert any("alarms.json" in sentence for sentence in found.failures)
+    assert any("alarms.json" in message for message in found.failures)
     assert part(found, STEPS[6]).text.startswith("Not measured")
 
 
@@ -144,9 +144,9 @@ def test_figures_of_this_run_follow_its_results(evidence):
     ranges = said(part(good, STEPS[0]))
     assert "2 to 4" in ranges  # E1/E2
     assert "0.5 to 1" in ranges  # h/a_h
-    ladders = said(part(good, STEPS[1]))
-    assert "finite elements" in ladders
-    assert "order 4" in ladders
+    orders = said(part(good, STEPS[1]))
+    assert "in the accuracy sections" in orders
+    assert "order 4" in orders
 
 
 def test_regression_has_its_row(evidence):

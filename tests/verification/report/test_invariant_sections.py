@@ -1,4 +1,4 @@
-"""Invariants in a result: what they do to its outcome, its files and its page; coverage; knobs."""
+"""Invariants in a result: what they do to its outcome, its files and its page; coverage; parameters."""
 
 import json
 from dataclasses import replace
@@ -108,7 +108,7 @@ def test_dominating_parameter_is_the_largest_share_of_the_less_certain_side():
     assert found["approach", "contact"] == "semi-analytical: patch or element size"
     assert found["sigma_xx", "axis"] == "semi-analytical: patch or element size"
     claim, verdict = result.verdicts[0]
-    rows = tuple(("peak_pressure", knob, value) for knob, value in (("size", 1e3), ("domain", 1e9)))
+    rows = tuple(("peak_pressure", parameter, value) for parameter, value in (("size", 1e3), ("domain", 1e9)))
     sources = tuple(replace(s, budget=rows) for s in result.sources)
     assert dominating_parameter(replace(result, sources=sources), claim, verdict) == "semi-analytical: domain"
 
@@ -127,16 +127,16 @@ def test_coverage_counts_the_quantities_whose_error_lies_within_what_is_stated()
         assert theirs.cells[2].text == "100.0 %"
 
 
-def knobs():
+def studies():
     steps = (8.0, 4.0, 2.0, 1.0)
     values = {"p0": tuple(1 + 1e-3 * h**2 for h in steps), "a": tuple(1 + 1e-5 * h for h in steps)}
-    ladder = Sweep("semianalytic", "coated", "patch size", 2.0, tuple("abcd"), steps, values)
+    refinement = Sweep("semianalytic", "coated", "patch size", 2.0, tuple("abcd"), steps, values)
     stated = Stated("semianalytic", "coated", {"p0": 5e-4, "a": 1e-4}, (), {"p0": 1e-3, "a": 1e-5})
-    return (ladder,), (stated,)
+    return (refinement,), (stated,)
 
 
 def test_parameter_section_marks_a_stated_uncertainty_below_the_true_error():
-    section = parameter_section(*knobs())
+    section = parameter_section(*studies())
     totals, orders = section.parts[0].tables
     p0, a = totals.rows
     assert [cell.css for cell in p0.cells[1:3]] == ["flag disagrees", "flag agrees"]
@@ -149,8 +149,8 @@ def test_parameter_section_marks_a_stated_uncertainty_below_the_true_error():
 
 
 def test_knobs_survive_the_file_of_the_accuracy_study():
-    ladders, stated = knobs()
-    whole = replace(study(), sweeps=ladders, stated=stated)
+    refinements, stated = studies()
+    whole = replace(study(), sweeps=refinements, stated=stated)
     back = study_from_json(json.loads(json.dumps(study_to_json(whole), allow_nan=False)))
     assert back == whole
     assert np.isclose(back.sweeps[0].estimate("a").uncertainty, 1.25e-5)

@@ -44,7 +44,7 @@ def rows_of(page, anchor):
 
 def test_citation_and_how_it_was_read_are_said_in_full(page):
     assert "R. G. Ahlvin and H. H. Ulery, Highway Research Board Bulletin 342 (1962) 1-13" in page
-    assert "Second-hand, the primary source was not seen: as reproduced in textbooks." in page
+    assert "Second-hand; the primary source was not read: as reproduced in textbooks." in page
     # The notes of the table file.
     assert "do not hold a method against those six" in page
 

@@ -9,16 +9,17 @@ from synthetic_study import study
 
 from verification.commands.report import report
 from verification.credibility.alarms import counted, write_record
+from verification.credibility.self_tests import SelfTest
 from verification.regression.baseline import regression, updated
 from verification.report.material import Material, gather, rerun_command, stored_material
 from verification.report.write import write_report
 from verification.running.fields import plane_path, write_plane
 from verification.running.result import to_json
-from verification.running.self_tests import SelfTest
 from verification.running.store import write_checked
 from verification.sampling.plane import sample_plane
 from verification.sources.references.hertz import Hertz
 from verification.study.formulas import EffectiveStudy
+from verification.study.formulas import to_json as effective_json
 
 RESULTS = [
     result_of(contact((2 * STEEL[0], 0.3, 1.0)), name="z_first", text="the case file", points=11),
@@ -83,6 +84,10 @@ def test_a_case_solved_since_has_no_evidence_of_the_run(run):
     material, whole = stored_material(run)
     assert not whole
     assert material.evidence.baseline is None
+    assert material.evidence.formulas is None
+    formulas = EffectiveStudy(failure="stopped")
+    write_checked(run / "effective-modulus.json", effective_json(formulas))
+    assert stored_material(run)[0].evidence.formulas.failure == "stopped"
     assert "stopped before its report" in material.info.command
 
 

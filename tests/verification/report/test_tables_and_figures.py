@@ -3,6 +3,7 @@
 import csv
 import io
 import re
+from dataclasses import replace
 from math import inf, nan
 
 import numpy as np
@@ -15,7 +16,7 @@ from verification.report.figures import panels
 from verification.report.figures.curves import FLOOR, Curve, Difference, draw
 from verification.report.figures.panels import line_figures
 from verification.report.figures.plot import Axes, drawing, polyline
-from verification.report.sections.accuracy import accuracies, accuracy_sentence
+from verification.report.sections.accuracy import accuracies, coverage_table
 from verification.report.tables.case import budget_table, contact_table, verdict_table
 from verification.report.tables.csv import embedded, line_csv
 from verification.report.tables.labels import OUTCOMES, pair_style, source_style
@@ -104,8 +105,8 @@ def test_contact_table_states_the_true_difference():
     result = result_of(COATED, points=11)
     table = contact_table(result)
     row = next(row for row in table.rows if row.head.text == "semi-analytical")
-    theirs = result.profile("peak_pressure", "contact", "integral_equation").value[0]
-    ours = result.profile("peak_pressure", "contact", "semianalytic").value[0]
+    theirs = result.profile_of["peak_pressure", "contact", "integral_equation"].value[0]
+    ours = result.profile_of["peak_pressure", "contact", "semianalytic"].value[0]
     assert row.cells[0].sort == ours
     assert row.cells[2].sort == pytest.approx(abs(ours / theirs - 1), rel=1e-12)
     assert "±" in row.cells[0].text
@@ -137,8 +138,10 @@ def test_accuracy_tells_an_honest_estimate_from_a_vain_one():
     assert fem
     assert not any(item.covered for item in fem)
     assert all(item.css == "disagrees" for item in fem)
-    assert "(100.0 %)" in accuracy_sentence([honest], "fem_reference")
-    assert "none is stated" in accuracy_sentence([silent], "fem_reference")
+    rows = [row for row in coverage_table([honest]).rows if row.head.text == "finite elements"]
+    assert [row.cells[2].text for row in rows] == ["100.0 %", "100.0 %"]
+    rows = [row for row in coverage_table([silent]).rows if row.head.text == "finite elements"]
+    assert [row.cells[3].text for row in rows] == ["not stated", "not stated"]
 
 
 def test_accuracy_is_the_largest_error_outside_the_zone_around_the_edge():
@@ -150,16 +153,16 @@ def test_accuracy_is_the_largest_error_outside_the_zone_around_the_edge():
     assert contact_radius(result) == pytest.approx(a, rel=1e-9)
     assert here.tolist() == [True, False, False, True, True, True, False, False, True]
     item = next(i for i in accuracies(result) if (i.source, i.quantity) == ("semianalytic", "pressure"))
-    mine, exact = (result.profile("pressure", "surface", s) for s in ("semianalytic", "integral_equation"))
+    mine, exact = (result.profile_of["pressure", "surface", s] for s in ("semianalytic", "integral_equation"))
     error = np.abs(mine.value - exact.value) / COATED.p_h
     assert item.error == error[judged(result, claim, mine.position)].max()
 
 
 def test_nothing_is_subtracted_at_different_positions():
     few, many = result_of(COATED, points=11), result_of(COATED, points=21)
-    first = few.profile("pressure", "surface", "semianalytic")
-    assert difference(few, first, many.profile("pressure", "surface", "hertz")) is None
-    assert difference(few, first, many.profile("pressure", "surface", "semianalytic")) is None
+    first = few.profile_of["pressure", "surface", "semianalytic"]
+    assert difference(few, first, many.profile_of.get(("pressure", "surface", "hertz"))) is None
+    assert difference(few, first, many.profile_of["pressure", "surface", "semianalytic"]) is None
     gap, spread = difference(few, first, first)
     assert gap.max() == 0 < spread.min()
 
@@ -262,7 +265,9 @@ def test_figures_are_drawn_in_the_scales_of_the_bare_substrate(monkeypatch):
     for curve in curves:
         assert (curve.position.min(), curve.position.max()) == pytest.approx((-2, 2), rel=1e-12)
         assert curve.value.max() == pytest.approx(1, abs=5e-3)
-    ours, theirs = (result.profile("pressure", "surface", s) for s in ("semianalytic", "integral_equation"))
+    ours, theirs = (
+        result.profile_of["pressure", "surface", s] for s in ("semianalytic", "integral_equation")
+    )
     error = next(d for d in differences if d.style == pair_style(("semianalytic", "integral_equation")))
     assert error.value == pytest.approx(np.abs(ours.value - theirs.value) / COATED.p_h, rel=1e-12)
     assert error.uncertainty == pytest.approx(0.7 * 2e-3, rel=1e-3)
@@ -281,5 +286,5 @@ def test_a_claimless_line_shows_what_was_sampled():
         "sigma_xx / p_h",
         "sigma_zz / p_h",
     ]
-    bare = type(result)(**{**vars(result), "verdicts": ()})
+    bare = replace(result, verdicts=())
     assert len(line_figures(bare, "axis").panels) == 4

@@ -119,7 +119,7 @@ def test_result_survives_json(disc):
     back = from_json(to_json(result))
     assert to_json(back) == to_json(result)
     assert back.published["columns"][0]["text"][0] == "0.9349"
-    assert back.profile("sigma_xx", case.columns[0].profile.line, PUBLISHED) is not None
+    assert back.profile_of["sigma_xx", case.columns[0].profile.line, PUBLISHED] is not None
 
 
 def test_incompressible_solid_is_reached_by_extrapolation():

@@ -46,11 +46,11 @@ def test_von_mises_is_three_halves_of_the_deviator_squared(plane):
 
 def test_each_layer_has_both_its_interfaces():
     a, interfaces = 1.0, (0.1, 0.4)
-    ladders = depths_of(a, interfaces, 12)
-    assert len(ladders) == 3
-    assert [z[0] for z in ladders] == [0.0, 0.1, 0.4]
-    assert [z[-1] for z in ladders[:2]] == [0.1, 0.4]
-    assert all((np.diff(z) > 0).all() and z.size >= 4 for z in ladders)
+    refinements = depths_of(a, interfaces, 12)
+    assert len(refinements) == 3
+    assert [z[0] for z in refinements] == [0.0, 0.1, 0.4]
+    assert [z[-1] for z in refinements[:2]] == [0.1, 0.4]
+    assert all((np.diff(z) > 0).all() and z.size >= 4 for z in refinements)
     # An interface below the drawing ends nothing.
     assert len(depths_of(a, (50.0,), 12)) == 1
 

@@ -61,22 +61,23 @@ def test_default_contact_meets_the_exact_one_over_the_range(coatings):
 
 
 @pytest.mark.parametrize("friction", [pytest.param(0.0, marks=pytest.mark.slow), 0.25])
-@pytest.mark.parametrize("coatings", [(), QUICK[1], QUICK[2]])
-def test_stress_meets_the_exact_one(coatings, friction):
+@pytest.mark.parametrize(("coatings", "off_plane"), [((), 0), (QUICK[1], 0), (QUICK[2], 9)])
+def test_stress_meets_the_exact_one(coatings, off_plane, friction):
     problem = {"radius": R, "load": W, "coatings": coatings, "substrate": STEEL, "friction": friction}
     ours, exact = semianalytic.solve(**problem), integral_equation.solve(**problem)
     a, d = exact.contact_radius, ours.diagnostics.patch_size
-    x = np.linspace(-4, 4, 33) * a
-    x = x[np.abs(np.abs(x) - a) > 3 * d]
+    line = np.linspace(-4, 4, 33)
+    beside = np.random.default_rng(4).uniform(-1.2, 1.2, (2, off_plane))
+    x, y = np.concatenate([[line, 0 * line], beside], axis=1) * a
+    away = np.abs(np.hypot(x, y) - a) > 3 * d
+    x, y = x[away], y[away]
     depths = [(0.0, None), (1.5 * d, None), (0.2 * a, None), (a, None), (10 * a, None)]
     if coatings:
         h = coatings[0][2]
         depths += [(h, 0), (h, 1)]
     for z, layer in depths:
-        (found, bound), expected = (
-            ours.stress_with_uncertainty(x, 0.0, z, layer),
-            exact.stress(x, 0.0, z, layer),
-        )
+        found, bound = ours.stress_with_uncertainty(x, y, z, layer)
+        expected = exact.stress(x, y, z, layer)
         # the figure asked away from the contact edge
         np.testing.assert_allclose(found, expected, atol=2e-4 * P_H, rtol=0)
         assert np.all(np.abs(found - expected) <= bound + 1e-6 * P_H)

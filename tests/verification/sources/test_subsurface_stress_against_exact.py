@@ -15,13 +15,12 @@ P_H = 3 * W / (2 * np.pi * A_H**2)
 @pytest.mark.parametrize(
     ("layers", "friction"),
     [
-        (((4.0, 0.3, 1.0),), 0.25),
         (((0.1, 0.45, 0.3),), 0.5),
         pytest.param(((10.0, 0.2, 0.05),), 0.25, marks=pytest.mark.slow),
         (((2.0, 0.25, 10.0),), 0.0),
         pytest.param(((3.0, 0.2, 0.05), (0.4, 0.4, 0.2)), 0.25, marks=pytest.mark.slow),
     ],
-    ids=["4 x stiffer", "tenth, thin", "10 x, h = 0.05 a_h", "thick", "two"],
+    ids=["tenth, thin", "10 x, h = 0.05 a_h", "thick", "two"],
 )
 def test_stress_is_within_2e_4_of_p_h(layers, friction):
     coatings = tuple((ratio * SUBSTRATE[0], nu, h * A_H) for ratio, nu, h in layers)

@@ -19,8 +19,10 @@ SOURCES = ["closed form", "semianalytic", "fem_reference"]
 def solved(source, friction=0.0):
     if source == "closed form":
         return Hamilton(*SOLID, friction) if friction else Hertz(*SOLID)
+    if friction:
+        return solved(source).with_friction(friction)
     method = {"semianalytic": semianalytic, "fem_reference": fem_reference}[source]
-    return method.solve(**PROBLEM, friction=friction, estimate_uncertainty=False)
+    return method.solve(**PROBLEM, estimate_uncertainty=False)
 
 
 def von_mises(sigma):

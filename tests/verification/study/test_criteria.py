@@ -5,8 +5,8 @@ import pytest
 import study_table
 
 from verification.cases.toml import CaseError
-from verification.report.study.recommendation import recommendation_sentences
-from verification.report.study.summary import agreement_sentences, main_sentences
+from verification.report.study.recommendation import recommendation_messages
+from verification.report.study.summary import agreement_messages, main_messages
 from verification.study.criteria import Criteria, judged
 from verification.study.curves import curves, differences
 from verification.study.plan import parse_study
@@ -61,7 +61,7 @@ def test_safety_narrows_the_range_as_a_weaker_material_would(found):
 def test_nothing_is_admissible_where_every_thickness_breaks(found):
     judgement = judged(found[3], Criteria(strength={"sigma_xx_surface": 1e6}))
     assert judgement.admissible == ()
-    (text,) = recommendation_sentences([judgement])
+    (text,) = recommendation_messages([judgement])
     assert "no thickness of the sweep is admissible" in text
 
 
@@ -105,14 +105,14 @@ def test_differences_name_the_worst_point(tmp_path):
         assert d.largest == pytest.approx(
             0.0 if d.quantity in ("peak_pressure", "contact_radius", "approach") else 3e-4
         )
-    assert "3.0e-04 p_h" in agreement_sentences(found)[0]
+    assert "3.0e-04 p_h" in agreement_messages(found)[0]
 
 
 def test_sentences_say_which_way_a_stress_runs(found):
-    sentences = dict(zip(study_table.QUANTITIES, main_sentences(found)[:-1], strict=True))
-    assert "has a minimum of" in sentences["sigma_xx_surface"]
-    assert "falls from" in sentences["von_mises_substrate"]
-    assert "a factor of 3.50" in sentences["sigma_xx_surface"]
+    messages = dict(zip(study_table.QUANTITIES, main_messages(found)[:-1], strict=True))
+    assert "has a minimum of" in messages["sigma_xx_surface"]
+    assert "falls from" in messages["von_mises_substrate"]
+    assert "a factor of 3.50" in messages["sigma_xx_surface"]
 
 
 @pytest.mark.parametrize(

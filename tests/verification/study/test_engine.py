@@ -153,7 +153,7 @@ def test_damage_to_the_cache_is_noticed_named_mended(tmp_path, client, damage):
     before = len(sent(tmp_path))
     again = run_study(plan(), tmp_path, client, solve=made_up)
     assert sent(tmp_path)[before:] == [files[3].stem]
-    assert [str(files[3]) in sentence for sentence in again.damaged] == [True]
+    assert [str(files[3]) in message for message in again.damaged] == [True]
     assert again.table.read_bytes() == content
 
 

@@ -1,4 +1,4 @@
-"""A study file becomes its points; whatever is wrong with it is one sentence."""
+"""A study file becomes its points; whatever is wrong with it is one message."""
 
 from itertools import pairwise
 from pathlib import Path
@@ -86,7 +86,7 @@ def test_bad_study_is_one_sentence_with_file_and_key(old, new, said):
         text = text.replace("[0.0, 0.25]", f"{[0.1] * 200}")
     with pytest.raises(CaseError) as caught:
         parse_study(text.encode(), PATH)
-    sentence = str(caught.value)
-    assert sentence.startswith("mine.toml")
-    assert said in sentence
-    assert "\n" not in sentence
+    message = str(caught.value)
+    assert message.startswith("mine.toml")
+    assert said in message
+    assert "\n" not in message

@@ -3,7 +3,6 @@
 import time
 from collections.abc import Sequence
 from dataclasses import replace
-from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -17,17 +16,6 @@ from verification.running.provenance import fingerprint
 from verification.running.records import decode, encode
 from verification.running.result import CaseResult
 from verification.running.store import StoreError, read_checked, write_checked
-
-__all__ = [
-    "RECORD",
-    "clean_cases",
-    "clean_folder",
-    "cost",
-    "failed_source",
-    "kept_trial",
-    "record_of",
-    "trial_task",
-]
 
 RECORD = "faults.json"  # its name in a folder of records
 
@@ -60,14 +48,13 @@ def failed_source(clean: Sequence[CaseResult]) -> str:
 
 def trial_task(fault: Fault, output: Path) -> Task[Trial]:
     """The trial of ``fault`` in a process of its own."""
-    path = _path(fault, output)
-    words = (
-        "verification.credibility.faults.campaign:main",
-        fault.name,
-        str(clean_folder(output)),
-        str(path),
-    )
-    return Task(fault.name, words, path, _trial, partial(_failed, fault))
+    path, clean = _path(fault, output), str(clean_folder(output))
+    words = ("verification.credibility.faults.campaign:main", fault.name, clean, str(path))
+
+    def failed(reason: str, seconds: float) -> Trial:
+        return Trial(fault.name, seconds=seconds, failure=reason)
+
+    return Task(fault.name, words, path, _trial, failed)
 
 
 def kept_trial(fault: Fault, output: Path) -> Trial | None:
@@ -110,10 +97,6 @@ def _path(fault: Fault, output: Path) -> Path:
 
 def _trial(data: dict[str, Any]) -> Trial:
     return decode(Trial, data["trial"])
-
-
-def _failed(fault: Fault, reason: str, seconds: float) -> Trial:
-    return Trial(fault.name, seconds=seconds, failure=reason)
 
 
 def main(name: str, clean: str, path: str) -> None:

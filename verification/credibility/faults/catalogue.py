@@ -1,14 +1,12 @@
 """Every planted fault by name, read from ``lists/``, group after group, with the negative controls."""
 
 import ast
-import tomllib
 from pathlib import Path
 from typing import Any
 
+from verification.cases.toml import load_toml
 from verification.credibility.faults.planting import Constant, Edit, Fault
 from verification.running.records import decode
-
-__all__ = ["CONTROLS", "FAULTS", "GROUPS", "chosen"]
 
 LISTS = Path(__file__).parent / "lists"
 _ORDER = (
@@ -25,7 +23,7 @@ _ORDER = (
 
 def _listed(group: str) -> tuple[str, dict[str, Fault]]:
     """Title of a group, and its faults by name; what a fault leaves out is that of its group."""
-    content = tomllib.loads((LISTS / f"{group}.toml").read_text(encoding="utf-8"))
+    _, content = load_toml((LISTS / f"{group}.toml").read_bytes())
     common = {"group": group, "where": content["where"], "cases": content["cases"]}
     faults = [_fault(common | entry) for entry in content["fault"]]
     return content["title"], {fault.name: fault for fault in faults}

@@ -2,13 +2,11 @@
 
 from dataclasses import dataclass
 
+from verification.credibility.self_tests import SelfTest
 from verification.judging.invariants import Invariant
 from verification.judging.verdict import Claim, Outcome, Verdict
 from verification.regression.baseline import Drift
-from verification.running.self_tests import SelfTest
 from verification.sources.registry import CLOSED, EXACT
-
-__all__ = ["COLUMNS", "Check", "of_baseline", "of_claim", "of_invariant", "of_self_test"]
 
 # The columns of the matrix of faults: title and what is compared.
 COLUMNS = {
@@ -79,4 +77,4 @@ def of_baseline(row: Drift, case: str, same: bool) -> Check:
 def of_self_test(test: SelfTest) -> Check:
     """A self-test of the harness: passed or not."""
     outcome = Outcome.AGREES if test.passed else Outcome.DISAGREES
-    return Check("self-tests", test.name, "", test.sentence, outcome, test.found)
+    return Check("self-tests", test.name, "", test.statement, outcome, test.found)

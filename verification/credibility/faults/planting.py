@@ -19,8 +19,6 @@ from typing import Any
 
 from verification.sources.registry import METHODS, SOURCES
 
-__all__ = ["PACKAGES", "Constant", "Edit", "Fault", "PlantError", "planted"]
-
 PACKAGES = (*(SOURCES[name].package for name in METHODS), "verification")
 
 
@@ -77,45 +75,36 @@ def planted(changes: tuple[Edit | Constant, ...]) -> Iterator[None]:
     """Context in which the running code has ``changes``. Raises PlantError where one does not fit."""
     with ExitStack() as stack:
         for change in changes:
-            stack.enter_context(_edited(change) if isinstance(change, Edit) else _constant(change))
+            owner, name = _owner(change.target)
+            if name not in vars(owner):
+                raise PlantError(
+                    f"{change.target}: there is no such function; the fault no longer fits the source"
+                )
+            original = vars(owner)[name]
+            places: list[tuple[Any, str]] = [(owner, name)]
+            if isinstance(change, Constant):
+                if original == change.new:
+                    raise PlantError(f"{change.target} is {original!r} already; nothing would be planted")
+                changed = change.new
+            else:
+                changed = _changed(original, name, change)
+                if isinstance(owner, ModuleType):
+                    places = _holders(original)
+            for place, known in places:
+                stack.callback(setattr, place, known, original)
+                setattr(place, known, changed)
         yield
 
 
-@contextmanager
-def _constant(change: Constant) -> Iterator[None]:
-    owner, name = _owner(change.target)
-    original = _held(owner, name, change.target)
-    if original == change.new:
-        raise PlantError(f"{change.target} is {original!r} already; nothing would be planted")
-    setattr(owner, name, change.new)
-    try:
-        yield
-    finally:
-        setattr(owner, name, original)
-
-
-@contextmanager
-def _edited(change: Edit) -> Iterator[None]:
-    owner, name = _owner(change.target)
-    original = _held(owner, name, change.target)
-    changed = _changed(original, name, change)
-    places: list[tuple[Any, str]] = [(owner, name)]
-    if isinstance(owner, ModuleType):
-        # Functions are imported by name, so the function is replaced in every module that holds it.
-        places = [
-            (module, known)
-            for key, module in list(sys.modules.items())
-            if key.split(".")[0] in PACKAGES
-            for known, value in list(vars(module).items())
-            if value is original
-        ]
-    try:
-        for place, known in places:
-            setattr(place, known, changed)
-        yield
-    finally:
-        for place, known in places:
-            setattr(place, known, original)
+def _holders(function: Any) -> list[tuple[Any, str]]:
+    """Every module that holds ``function``, with its name there: functions are imported by name."""
+    return [
+        (module, known)
+        for key, module in list(sys.modules.items())
+        if key.split(".")[0] in PACKAGES
+        for known, value in list(vars(module).items())
+        if value is function
+    ]
 
 
 def _owner(target: str) -> tuple[Any, str]:
@@ -125,12 +114,6 @@ def _owner(target: str) -> tuple[Any, str]:
     for parent in parents:
         owner = getattr(owner, parent)
     return owner, name
-
-
-def _held(owner: Any, name: str, target: str) -> Any:
-    if name not in vars(owner):
-        raise PlantError(f"{target}: there is no such function; the fault no longer fits the source")
-    return vars(owner)[name]
 
 
 def _changed(original: Any, name: str, change: Edit) -> Any:

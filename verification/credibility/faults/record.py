@@ -13,22 +13,9 @@ from verification.judging.verdict import Outcome
 from verification.running.records import decode, encode, plain
 from verification.running.store import StoreError, read_checked, write_checked
 
-__all__ = [
-    "PASS_SHARE",
-    "SCHEMA",
-    "Catch",
-    "Record",
-    "Row",
-    "Tally",
-    "from_json",
-    "read_record",
-    "row_of",
-    "to_json",
-    "write_record",
-]
-
 SCHEMA = "coatcheck-faults/2"
 PASS_SHARE = 0.95
+WORST_FIRST = (Outcome.DISAGREES, Outcome.INCONCLUSIVE, Outcome.NO_RESULT)  # of those that do not pass
 SMALLEST_CHANGE = 1e-12  # of its scale; a smaller change is rounding
 
 
@@ -148,13 +135,9 @@ class Record:
 
 def row_of(fault: Fault, trial: Trial) -> Row:
     """The row of one trial: its checks counted column by column."""
-    columns = {}
-    for column in COLUMNS:
-        checks = [check for check in trial.checks if check.column == column]
-        if checks:
-            columns[column] = _tally(checks)
+    by_column = {column: [c for c in trial.checks if c.column == column] for column in COLUMNS}
     bad = [check for check in trial.checks if not check.passed]
-    decided = [c for c in bad if c.outcome in (Outcome.DISAGREES, Outcome.INCONCLUSIVE)]
+    decided = [c for c in bad if c.outcome is not Outcome.NO_RESULT]
     predicted = [c for c in decided if c.name in fault.predicted]
     catch = _catch(bad, fault, trial)
     return Row(
@@ -165,7 +148,7 @@ def row_of(fault: Fault, trial: Trial) -> Row:
         catch,
         bool(predicted),
         _worst_message(predicted or decided or bad),
-        columns,
+        {column: _tally(checks) for column, checks in by_column.items() if checks},
         trial.change,
         trial.changed,
         trial.seconds,
@@ -181,38 +164,26 @@ def _catch(bad: Sequence[Check], fault: Fault, trial: Trial) -> Catch:
         return Catch.NOT_TRIED
     # A changed number is not in itself an error; it counts where no other check can detect the fault.
     own = [check for check in bad if check.column != "baseline"]
-    for outcome, catch in (
-        (Outcome.DISAGREES, Catch.DISAGREES),
-        (Outcome.INCONCLUSIVE, Catch.INCONCLUSIVE),
-    ):
-        if any(check.outcome is outcome for check in own):
-            return catch
+    outcomes = {check.outcome for check in own}
+    if Outcome.DISAGREES in outcomes:
+        return Catch.DISAGREES
+    if Outcome.INCONCLUSIVE in outcomes:
+        return Catch.INCONCLUSIVE
     if "baseline" in fault.predicted and len(own) < len(bad):
         return Catch.DRIFTED
     return Catch.NO_RESULT if own else Catch.SURVIVED
 
 
 def _tally(checks: Sequence[Check]) -> Tally:
-    def count(outcome: Outcome) -> int:
-        return sum(check.outcome is outcome for check in checks)
-
-    bad = [check for check in checks if not check.passed]
-    return Tally(
-        len(checks),
-        count(Outcome.DISAGREES),
-        count(Outcome.INCONCLUSIVE),
-        count(Outcome.NO_RESULT),
-        _worst_message(bad),
-    )
+    disagree, inconclusive, no_result = (sum(c.outcome is one for c in checks) for one in WORST_FIRST)
+    message = _worst_message([check for check in checks if not check.passed])
+    return Tally(len(checks), disagree, inconclusive, no_result, message)
 
 
 def _worst_message(bad: Sequence[Check]) -> str:
     """Message of the worst check: the first disagreement, then the first inconclusive, then no result."""
-    for outcome in (Outcome.DISAGREES, Outcome.INCONCLUSIVE, Outcome.NO_RESULT):
-        for check in bad:
-            if check.outcome is outcome:
-                return check.message
-    return ""
+    ranked = sorted(bad, key=lambda check: WORST_FIRST.index(check.outcome))
+    return ranked[0].message if ranked else ""
 
 
 def to_json(record: Record) -> dict[str, Any]:

@@ -1,16 +1,17 @@
 """One planted fault tried against the checks of the default run."""
 
 import time
-from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 
+from verification.cases.columns import PublishedColumn
 from verification.cases.contact import Case, read_case, shipped_cases
 from verification.cases.published import PublishedCase, published_cases, read_published
 from verification.credibility.faults.checks import Check, of_baseline, of_claim, of_invariant, of_self_test
 from verification.credibility.faults.planting import Fault, planted
+from verification.credibility.self_tests import self_tests
 from verification.judging.invariants import check as invariants_of
 from verification.problem.contact import Solution
 from verification.problem.profile import Profile
@@ -18,14 +19,12 @@ from verification.regression.baseline import State, drift, measured
 from verification.running import contact as run
 from verification.running import published as published_run
 from verification.running.result import CaseResult, SourceResult, from_json
-from verification.running.self_tests import self_tests
 from verification.running.store import read_checked
 from verification.sampling.lines import sample, sample_contact
 from verification.sources.registry import METHODS
 
-__all__ = ["Trial", "clean_path", "try_fault"]
-
 Profiles = dict[tuple[str, str, str], Profile]
+Columns = list[tuple[PublishedColumn, np.ndarray]]  # each with the marks of the rows that count
 FOR_PUBLISHED = METHODS[:1]  # published tables are compared with the faster method only
 
 
@@ -57,12 +56,12 @@ def try_fault(fault: Fault, clean_folder: Path) -> Trial:
     """Plant ``fault``, solve and judge what it affects, restore the code.
 
     Sources without the fault are not solved: their profiles are those of the clean run in ``clean_folder``,
-    and the faulty source is sampled at the same points. Raises StoreError where the clean
-    run is missing, PlantError where the fault no longer fits the source.
+    and the faulty source is sampled at the same points. Raises StoreError where the clean run is missing,
+    PlantError where the fault no longer fits the source.
     """
     began = time.process_time()
     clean = {name: from_json(read_checked(clean_path(clean_folder, name))) for name in fault.cases}
-    published = {name: _as_read(read_published(published_cases()[name])) for name in fault.published}
+    published = {name: _as_read(name)[1] for name in fault.published}
     checks: list[Check] = []
     changes: list[tuple[float, str]] = []
     failing = {check.key: check for result in clean.values() for check in _of_clean(result)}
@@ -109,19 +108,19 @@ def _judged(case: Case, clean: CaseResult, fault: Fault) -> tuple[list[Check], P
         try:
             found = _sampled(case, clean, source, solution)
         except Exception as error:  # as in the run itself
-            outcomes[source] = SourceResult(source, 0.0, run.sentence(error))
+            outcomes[source] = SourceResult(source, 0.0, run.message_of(error))
             continue
         fresh |= {(p.quantity, p.line, source): p for p in found}
-        rows = invariants_of(solution, source, case.problem)
-        checks += [of_invariant(row, case.name) for row in rows]
+        checks += [of_invariant(row, case.name) for row in invariants_of(solution, source, case.problem)]
     profiles |= fresh
-    edge = _edge(clean, profiles)
-    touched = [c for c in case.claims if set(c.between) & set(solve)] if available else list(case.claims)
+    # Contact radius of the last source that has one, as in the run.
+    radii = [profiles.get(("contact_radius", "contact", source.source)) for source in clean.sources]
+    edge = next((float(r.value[0]) for r in reversed(radii) if r is not None), 0.0)
     checks += _drifts(clean, fresh)
-    verdicts = [(c, run.decide(c, profiles, outcomes, case.problem, edge)) for c in touched]
-    checks += [
-        of_claim(claim, verdict, case.name, bool(case.problem.coatings)) for claim, verdict in verdicts
-    ]
+    for claim in case.claims:
+        if not available or set(claim.between) & set(solve):
+            verdict = run.decide(claim, profiles, outcomes, case.problem, edge)
+            checks.append(of_claim(claim, verdict, case.name, bool(case.problem.coatings)))
     return checks, fresh
 
 
@@ -133,19 +132,12 @@ def _sampled(case: Case, clean: CaseResult, source: str, solution: Solution) -> 
     return found
 
 
-def _edge(clean: CaseResult, profiles: Mapping[tuple[str, str, str], Profile]) -> float:
-    """Contact radius of the last source that has one, as in the run."""
-    radii = [profiles.get(("contact_radius", "contact", source.source)) for source in clean.sources]
-    return next((float(r.value[0]) for r in reversed(radii) if r is not None), 0.0)
-
-
 def _drifts(clean: CaseResult, fresh: Profiles) -> list[Check]:
     """The numbers of the sources solved in the trial, compared with the clean run as with a baseline."""
     now = tuple(fresh.get((p.quantity, p.line, p.source), p) for p in clean.profiles)
-    stored = {numbers.key: numbers for numbers in measured(clean)}
     found = {numbers.key: numbers for numbers in measured(replace(clean, profiles=now))}
     solved = {source for _, _, source in fresh}
-    rows = [drift(then, found[key]) for key, then in stored.items() if key[0] in solved]
+    rows = [drift(then, found[then.key]) for then in measured(clean) if then.source in solved]
     return [of_baseline(row, clean.name, row.state is State.SAME) for row in rows]
 
 
@@ -154,7 +146,7 @@ def _changes(clean: CaseResult, fresh: Profiles) -> list[tuple[float, str]]:
     p_h = float(clean.problem["p_h"])
     values, uncertainties = [], []
     for (quantity, line, source), profile in fresh.items():
-        old = clean.profile(quantity, line, source)
+        old = clean.profile_of.get((quantity, line, source))
         if old is None:
             continue
         scale = p_h if line != "contact" else float(abs(old.value[0]))
@@ -171,36 +163,25 @@ def _largest(values: np.ndarray) -> float:
     return float(np.max(np.abs(values))) if np.isfinite(values).all() else float("inf")
 
 
-@dataclass(frozen=True, eq=False)
-class _AsRead:
-    """A column of a published table as read: values [SI], depths [m], which of them count."""
-
-    name: str
-    value: np.ndarray
-    z: np.ndarray
-    counted: np.ndarray
-    scale: float
-
-
-def _as_read(case: PublishedCase) -> list[_AsRead]:
-    return [
-        _AsRead(f"{p.column} of {p.file}", p.profile.value, p.at.z, p.counted, p.scale) for p in case.columns
-    ]
-
-
-def _published(name: str, before: list[_AsRead]) -> tuple[list[Check], tuple[float, str]]:
-    """Verdicts of a published table read under the fault, and how far the fault changed the values read."""
+def _as_read(name: str) -> tuple[PublishedCase, Columns]:
+    """A published case, and its columns as they are read now, with or without a fault."""
     case = read_published(published_cases()[name])
+    return case, [(column, column.counted) for column in case.columns]
+
+
+def _published(name: str, before: Columns) -> tuple[list[Check], tuple[float, str]]:
+    """Verdicts of a published table read under the fault, and how far the fault changed the values read."""
+    case, columns = _as_read(name)
     available = {m: s for m, s in run.solvers().items() if m in FOR_PUBLISHED}
     result = published_run.run(case, available)
     decided = [(c, v) for c, v in result.verdicts if set(c.between) & set(available)]
     checks = [of_claim(c, v, name, False, kind="published") for c, v in decided]
     change = (0.0, "nothing")
-    for old, new in zip(before, _as_read(case), strict=True):
+    for (old, old_counted), (new, counted) in zip(before, columns, strict=True):
         moved = max(
-            _largest(new.value - old.value) / old.scale,
-            _largest(new.z - old.z) / (_largest(old.z) or 1.0),
-            float(np.mean(new.counted != old.counted)),
+            _largest(new.profile.value - old.profile.value) / old.scale,
+            _largest(new.at.z - old.at.z) / (_largest(old.at.z) or 1.0),
+            float(np.mean(counted != old_counted)),
         )
-        change = max(change, (moved, f"{old.name} as read"))
+        change = max(change, (moved, f"{old.column} of {old.file} as read"))
     return checks, change

@@ -10,16 +10,6 @@ from verification.judging.invariants.stencil import Stencil
 from verification.problem.arrays import Array
 from verification.problem.contact import CoatedContact, PrescribedLoad, Solution, stress_with_uncertainty
 
-__all__ = [
-    "bonded_displacement",
-    "bonded_traction",
-    "displacement_bound",
-    "hooke",
-    "reciprocity",
-    "sphere",
-]
-
-
 RADII = np.array([0.0, 0.5, 0.9, 1.4])
 ANGLE = 0.35
 # Of the thinner neighbour; a tenth of a per cent curves a displacement by 1e-6 of its change in the layer.
@@ -57,9 +47,8 @@ def bonded_displacement(solution: Solution, source: str, problem: CoatedContact,
         U = displacement_bound(solution, problem, x, y, z, given_pressure=True)
         bound = (error + 2 * U) / solution.approach
     law = f"u passes interface {k} unchanged, over the approach"
-    return decide(
-        f"bonded displacements, interface {k}", source, law, (at[0] - at[1]) / solution.approach, bound
-    )
+    gap = (at[0] - at[1]) / solution.approach
+    return decide(f"bonded displacements, interface {k}", source, law, gap, bound)
 
 
 def hooke(solution: Solution, source: str, problem: CoatedContact, layer: int, stencil: Stencil) -> Invariant:

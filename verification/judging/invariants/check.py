@@ -7,8 +7,6 @@ from verification.judging.invariant import Invariant, failed
 from verification.judging.invariants import bond, influence, statics, symmetry
 from verification.problem.contact import CoatedContact, NotClaimed, Solution
 
-__all__ = ["check"]
-
 Law = Callable[[], Invariant | tuple[Invariant, ...]]
 
 

@@ -13,8 +13,6 @@ from verification.problem.contact import CoatedContact, Solution
 from verification.sources.exact import solve_exactly
 from verification.sources.references.patch import surface_coefficient
 
-__all__ = ["ConversionError", "conversion_errors", "influence_coefficients"]
-
 PATCHES = 33
 BOUND = 1e-7  # that the default conversion has to meet; its error is 1e-10
 

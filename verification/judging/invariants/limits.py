@@ -9,8 +9,6 @@ from verification.problem.contact import CoatedContact
 from verification.sources.references.layered import LayeredHalfSpace
 from verification.sources.references.quadrature import on_panels
 
-__all__ = ["thick_shift", "thin_shift"]
-
 
 def thick_shift(thick: CoatedContact, alone: CoatedContact) -> tuple[float, float]:
     """Displacement of the base of a thick coating under the load [m], with the error eta over the approach.

@@ -13,9 +13,6 @@ import numpy as np
 from verification.problem.arrays import Array
 from verification.problem.contact import Solution
 
-__all__ = ["INNER", "followed"]
-
-
 INNER = 0.95  # of a; out to here the uncertainty of the pressure is integrated
 # LAST: an error of order 3/2 on patches sqrt(2) coarser, 1/(2^(3/4) - 1). BEFORE guards against a last change
 # that is small by chance.

@@ -21,8 +21,6 @@ from verification.problem.quantity import QUANTITIES, SCALARS
 from verification.sources.references.hamilton import Hamilton
 from verification.sources.registry import METHODS, SOURCES
 
-__all__ = ["resolved"]
-
 Solve = Callable[[CoatedContact | PrescribedLoad], Solution]
 Law = Callable[[], Invariant]
 
@@ -44,10 +42,9 @@ def resolved(
     """
     found = []
     for source in (name for name in METHODS if name in available):
-        coarse, finer = (
-            partial(_solved, available[source], numerics)
-            for numerics in (SOURCES[source].coarse, SOURCES[source].coarse_stress)
-        )
+        solve, record = available[source], SOURCES[source]
+        coarse = partial(_solved, solve, record.coarse)
+        finer = partial(_solved, solve, record.coarse_stress)
         for name, law in _laws(coarse, finer, source, problem):
             try:
                 found.append(law())
@@ -80,22 +77,16 @@ def _laws(solve: Solve, finer: Solve, source: str, problem: CoatedContact) -> It
 
 def _scaling(solve: Solve, base: Solve, source: str, problem: CoatedContact) -> Invariant:
     """Another radius, load and modulus at the same h/a_h and E1/E2: the same dimensionless answer."""
-    scaled = replace(
-        problem,
-        radius=RADIUS * problem.radius,
-        load=LOAD * problem.load,
-        coatings=(),
-        substrate=(MODULUS * problem.substrate[0], problem.substrate[1]),
+    E, nu = problem.substrate
+    scaled = CoatedContact(
+        RADIUS * problem.radius, LOAD * problem.load, (), (MODULUS * E, nu), problem.friction
     )
     ratio = scaled.a_h / problem.a_h
     scaled = replace(scaled, coatings=tuple((MODULUS * E, nu, ratio * h) for E, nu, h in problem.coatings))
-    (one, U_one), (other, U_other) = (
-        _dimensionless(base(problem), problem),
-        _dimensionless(solve(scaled), scaled),
-    )
-    law = (
-        f"R x {RADIUS}, W x {LOAD}, E x {MODULUS} leave a/a_h, p0/p_h, approach/delta_h, sigma/p_h unchanged"
-    )
+    one, U_one = _dimensionless(base(problem), problem)
+    other, U_other = _dimensionless(solve(scaled), scaled)
+    factors = f"R x {RADIUS}, W x {LOAD}, E x {MODULUS}"
+    law = f"{factors} leave a/a_h, p0/p_h, approach/delta_h, sigma/p_h unchanged"
     return decide("scaling", source, law, one - other, U_one + U_other)
 
 
@@ -186,7 +177,5 @@ def _dimensionless(solution: Solution, problem: CoatedContact) -> tuple[Array, A
     sigma, U_sigma = stress_with_uncertainty(solution, x, y, z)
     if U_sigma is None:
         raise ValueError("states no uncertainty that would bound the invariant")
-    return (
-        np.concatenate([values, (sigma / problem.p_h).ravel()]),
-        np.concatenate([U, (U_sigma / problem.p_h).ravel()]),
-    )
+    over = [(field / problem.p_h).ravel() for field in (sigma, U_sigma)]
+    return np.concatenate([values, over[0]]), np.concatenate([U, over[1]])

@@ -9,9 +9,6 @@ from verification.judging.invariants.stencil import Stencil
 from verification.problem.arrays import Array
 from verification.problem.contact import CoatedContact, Solution, stress_with_uncertainty
 
-__all__ = ["equilibrium", "load_balance", "places_in", "surface"]
-
-
 # Of the contact radius. As in the claims, no point lies within 5 % of the edge.
 SURFACE = np.array([-1.2, -0.9, -0.5, 0.0, 0.25, 0.5, 0.75, 0.9, 1.1, 1.3])
 # Off the mirror planes of a square grid.
@@ -73,7 +70,6 @@ def surface(solution: Solution, source: str, problem: CoatedContact) -> tuple[In
     sigma = stress[:, 2] / p_h
     normal, shear = sigma[2] + p, np.stack([sigma[0] + f * p, sigma[1]])
     free = np.concatenate([sigma, p[None]])
-    laws: list[tuple[str, str, Array, Array | None]]
     bounds: list[Array | None] = [None, None, None]
     if spread is not None:
         Up = solution.pressure_uncertainty(x, y) / p_h
@@ -83,12 +79,12 @@ def surface(solution: Solution, source: str, problem: CoatedContact) -> tuple[In
             np.stack([U[0] + f * Up, U[1]])[:, inside],
             np.concatenate([U, Up[None]])[:, ~inside],
         ]
-    laws = [
-        ("surface pressure", "sigma_zz = -p at z = 0, over p_h", normal[inside], bounds[0]),
-        ("surface shear", "sigma_xz = -f p, sigma_yz = 0 at z = 0, over p_h", shear[:, inside], bounds[1]),
-        ("free surface", "no traction outside the contact, over p_h", free[:, ~inside], bounds[2]),
-    ]
-    return tuple(decide(name, source, law, residual, bound) for name, law, residual, bound in laws)
+    laws = (
+        ("surface pressure", "sigma_zz = -p at z = 0, over p_h", normal[inside]),
+        ("surface shear", "sigma_xz = -f p, sigma_yz = 0 at z = 0, over p_h", shear[:, inside]),
+        ("free surface", "no traction outside the contact, over p_h", free[:, ~inside]),
+    )
+    return tuple(decide(n, source, law, r, bound) for (n, law, r), bound in zip(laws, bounds, strict=True))
 
 
 def places_in(layer: int, solution: Solution, problem: CoatedContact) -> Stencil:

@@ -13,9 +13,6 @@ import numpy as np
 
 from verification.problem.arrays import Array
 
-__all__ = ["Stencil"]
-
-
 _WEIGHTS = np.array([64.0, -20.0, 1.0]) / 45
 _SHORTER = np.array([4.0, -1.0, 0.0]) / 3
 _STEPS = np.array([1.0, 2.0, 4.0])

@@ -6,9 +6,6 @@ from verification.judging.invariant import Invariant, decide
 from verification.problem.arrays import Array
 from verification.problem.contact import CoatedContact, Solution, stress_with_uncertainty
 
-__all__ = ["symmetry"]
-
-
 RADII = np.array([0.3, 0.7])
 # Off every mirror plane, mapped onto one another by both mirrors.
 TURNS = 2 * np.pi * (np.arange(8) + 0.5) / 8

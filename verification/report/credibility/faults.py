@@ -6,14 +6,12 @@ from collections.abc import Sequence
 from verification.credibility.faults.catalogue import GROUPS
 from verification.credibility.faults.checks import COLUMNS
 from verification.credibility.faults.record import Catch, Record, Tally
-from verification.credibility.faults.record import Row as FaultRow
+from verification.credibility.faults.record import Row as Fault
+from verification.report.html.templates import render_sections
 from verification.report.material import Material
-from verification.report.tables.cells import Cell, Part, Row, Section, Table
+from verification.report.tables.cells import Cell, Part, Section, Table, number, row, words
 from verification.report.tables.labels import source_label
 from verification.report.tables.numbers import plain, scientific, seconds
-from verification.report.templates import render_sections
-
-__all__ = ["faults_page", "faults_section", "faults_sentence", "section"]
 
 # Mark, class and words of each outcome of a planted fault.
 _CATCHES = {
@@ -24,26 +22,23 @@ _CATCHES = {
         "the uncertainty it leaves exceeds the cap",
     ),
     Catch.DRIFTED: ("~ baseline", "verdict inconclusive", "a number differs from the baseline"),
-    Catch.NO_RESULT: (
-        "∅ no result",
-        "verdict no-result",
-        "the source fails without a reason",
-    ),
+    Catch.NO_RESULT: ("∅ no result", "verdict no-result", "the source fails without a reason"),
     Catch.SURVIVED: ("✗ survived", "verdict disagrees", "every check passes"),
     Catch.NOT_TRIED: ("∅ not tried", "verdict no-result", "the trial failed"),
 }
 
 
-def faults_sentence(record: Record) -> str:
-    """The score in one sentence."""
+def faults_message(record: Record) -> str:
+    """The score as a message."""
     text = (
         f"{record.caught} of {len(record.rows)} planted faults are detected "
         f"({plain(100 * record.share, 3)} %), "
         f"{record.as_predicted} of them by the check predicted before the trial"
     )
     if record.controls:
-        number = len(record.controls)
-        text += f"; of {number} negative controls {len(record.alarms) or 'none'} raised an alarm"
+        text += (
+            f"; of {len(record.controls)} negative controls {len(record.alarms) or 'none'} raised an alarm"
+        )
     return text + "."
 
 
@@ -55,13 +50,19 @@ def section(material: Material) -> Section | None:
 
 def faults_section(record: Record) -> Section:
     """Planted faults as a section of any page: method, share detected, survivors, checks of each fault."""
-    parts = [Part(_method(record)), Part(faults_sentence(record), [_score(record)])]
-    if record.survivors:
+    method = (
+        "One fault at a time is planted in the running code by changing a few words of one function, and the "
+        "checks of the default run are applied to the result. Only the faulty source is solved again, with "
+        "the default numerics; the other sources keep the results of a clean run. Date "
+        f"{record.started[:10]}, commit {record.commit or 'unknown'}, {seconds(record.core_seconds)} on one "
+        "core."
+    )
+    parts = [Part(method), Part(faults_message(record), [_score(record)])]
+    if survivors := _survivors(record):
         parts.append(
-            Part("Faults that were not detected, with the reason and a possible check.", [_survivors(record)])
+            Part("Faults that were not detected, with the reason and a possible check.", [survivors])
         )
-    groups = [(title, [row for row in record.rows if row.group == key]) for key, title in GROUPS.items()]
-    parts.append(Part(_explained(record), [_matrix(rows, title) for title, rows in groups if rows]))
+    parts.append(Part(_explained(record), [_matrix(rows, title) for title, rows in _groups(record)]))
     if record.controls:
         text = "Negative controls, the same trials with nothing planted: any detection is a false alarm."
         parts.append(Part(text, [_matrix(record.controls, "Nothing planted")]))
@@ -86,20 +87,10 @@ def faults_page(record: Record) -> str:
     )
     return render_sections(
         "coatcheck faults",
-        faults_sentence(record),
+        faults_message(record),
         facts,
         [faults_section(record)],
         "Written by coatcheck faults.",
-    )
-
-
-def _method(record: Record) -> str:
-    return (
-        "One fault at a time is planted in the running code by changing a few words of one function, and the "
-        "checks of the default run are applied to the result. Only the faulty source is solved again, with "
-        "the default numerics; the other sources keep the results of a clean run. Date "
-        f"{record.started[:10]}, commit {record.commit or 'unknown'}, {seconds(record.core_seconds)} on one "
-        "core."
     )
 
 
@@ -119,7 +110,7 @@ def _explained(record: Record) -> str:
     )
 
 
-def _only_coated(row: FaultRow) -> bool:
+def _only_coated(row: Fault) -> bool:
     """True where comparisons on uncoated cases all pass and some on coated ones do not."""
     bare = [seen for column, seen in row.columns.items() if column.startswith("bare")]
     coated = [seen for column, seen in row.columns.items() if column.startswith("coated")]
@@ -127,21 +118,31 @@ def _only_coated(row: FaultRow) -> bool:
     return bool(bare) and passed and any(seen.disagree + seen.inconclusive for seen in coated)
 
 
+def _groups(record: Record) -> list[tuple[str, list[Fault]]]:
+    """Title and faults of each group that has any."""
+    groups = [
+        (title, [fault for fault in record.rows if fault.group == key]) for key, title in GROUPS.items()
+    ]
+    return [(title, faults) for title, faults in groups if faults]
+
+
 def _score(record: Record) -> Table:
-    shown = [catch for catch in Catch if any(row.catch is catch for row in record.rows)]
-    rows = []
-    groups = [(title, [row for row in record.rows if row.group == key]) for key, title in GROUPS.items()]
-    groups = [(title, rows) for title, rows in groups if rows]
+    shown = [catch for catch in Catch if any(fault.catch is catch for fault in record.rows)]
+    rows, groups = [], _groups(record)
     if len(groups) > 1:
         groups.append(("All", list(record.rows)))
     for title, members in groups:
-        count = Counter(row.catch for row in members)
-        cells = [Cell(str(len(members)), len(members))]
-        cells += [Cell(str(count[catch] or "–"), count[catch]) for catch in shown]
-        caught, named = sum(row.caught for row in members), sum(row.as_predicted for row in members)
-        cells.append(Cell(f"{plain(100 * caught / len(members), 3)} %", caught / len(members)))
-        cells.append(Cell(str(named), named))
-        rows.append(Row(Cell(title), cells))
+        count = Counter(fault.catch for fault in members)
+        caught = sum(fault.caught for fault in members) / len(members)
+        rows.append(
+            row(
+                title,
+                number(len(members), str),
+                *(Cell(str(count[catch] or "–"), count[catch]) for catch in shown),
+                number(caught, lambda share: f"{plain(100 * share, 3)} %"),
+                number(sum(fault.as_predicted for fault in members), str),
+            )
+        )
     return Table(
         "Outcome of the faults of each group. Predicted check: detected by the check that was named for the "
         "fault before the trial.",
@@ -152,39 +153,38 @@ def _score(record: Record) -> Table:
 
 def _survivors(record: Record) -> Table:
     rows = [
-        Row(
-            Cell(row.name, note=row.description),
-            [
-                _catch_cell(row),
-                Cell(row.description, css="words"),
-                Cell(row.reason or row.failure or "not known", css="words"),
-                Cell(row.remedy or "–", css="words"),
-            ],
+        row(
+            Cell(fault.name, note=fault.description),
+            _catch_cell(fault),
+            words(fault.description),
+            words(fault.reason or fault.failure or "not known"),
+            words(fault.remedy or "–"),
         )
-        for row in record.survivors
+        for fault in record.survivors
     ]
     columns = ["fault", "outcome", "fault planted", "reason", "possible check"]
     return Table("Survivors.", columns, rows)
 
 
-def _matrix(rows: Sequence[FaultRow], caption: str) -> Table:
-    made = []
-    for row in rows:
-        cells = [
-            Cell(row.description, css="words"),
-            Cell(source_label(row.where)),
-            _catch_cell(row),
-            Cell("✓" if row.as_predicted else "–", note=row.by),
-            *(_seen_cell(row.columns.get(column)) for column in COLUMNS),
-            Cell(scientific(row.change), row.change, note=f"{row.changed}; {seconds(row.seconds)}"),
-        ]
-        made.append(Row(Cell(row.name, note=row.by), cells))
+def _matrix(faults: Sequence[Fault], caption: str) -> Table:
+    made = [
+        row(
+            Cell(fault.name, note=fault.by),
+            words(fault.description),
+            source_label(fault.where),
+            _catch_cell(fault),
+            Cell("✓" if fault.as_predicted else "–", note=fault.by),
+            *(_seen_cell(fault.columns.get(column)) for column in COLUMNS),
+            Cell(scientific(fault.change), fault.change, note=f"{fault.changed}; {seconds(fault.seconds)}"),
+        )
+        for fault in faults
+    ]
     columns = ["fault", "fault planted", "in", "outcome", "predicted check", *COLUMNS, "change"]
     spans = [("", 5), ("checks that do not pass", len(COLUMNS)), ("", 1)]
     return Table(caption, columns, made, spans, "faults")
 
 
-def _catch_cell(row: FaultRow) -> Cell:
+def _catch_cell(row: Fault) -> Cell:
     text, css, meaning = _CATCHES[row.catch]
     return Cell(text, float(list(Catch).index(row.catch)), css, row.by or meaning)
 

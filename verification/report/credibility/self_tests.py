@@ -1,9 +1,7 @@
 """Self-tests of the harness on problems with a known answer."""
 
 from verification.report.material import Material
-from verification.report.tables.cells import Cell, Part, Row, Section, Table
-
-__all__ = ["section"]
+from verification.report.tables.cells import Cell, Part, Section, Table, row, words
 
 
 def section(material: Material) -> Section | None:
@@ -11,15 +9,9 @@ def section(material: Material) -> Section | None:
     tests = material.evidence.self_tests
     if not tests:
         return None
+    passed, failed = Cell("✓", 1.0, "verdict agrees"), Cell("✗", 0.0, "verdict disagrees")
     rows = [
-        Row(
-            Cell(test.name),
-            [
-                Cell("✓", 1.0, "verdict agrees") if test.passed else Cell("✗", 0.0, "verdict disagrees"),
-                Cell(test.sentence, css="words"),
-                Cell(test.found, css="words"),
-            ],
-        )
+        row(test.name, passed if test.passed else failed, words(test.statement), words(test.found))
         for test in tests
     ]
     table = Table("Made before the first case was solved.", ["part", "passed", "requirement", "found"], rows)

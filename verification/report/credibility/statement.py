@@ -1,4 +1,4 @@
-"""Credibility of the verdicts: evidence in eight steps, each figure with its date and commit.
+"""Credibility of the verdicts: evidence in eight steps, each figure with its date, its commit.
 
 In the order of ASME V&V 10-2006, Guide for Verification and Validation in Computational Solid Mechanics, with
 further requirements of NASA-STD-7009A (2016), Standard for Models and Simulations: limits of use, robustness
@@ -7,27 +7,27 @@ of the result, evidence for each.
 
 from collections.abc import Sequence
 
+from verification.credibility.alarms import AlarmRecord
+from verification.credibility.faults.record import Record
 from verification.credibility.independence import shared
 from verification.judging.verdict import Outcome
 from verification.report.credibility.tables import (
     alarm_table,
     design_table,
     import_table,
-    order_table,
     pair_table,
     parameter_table,
     range_table,
 )
 from verification.report.material import Evidence, Material
 from verification.report.sections.accuracy import accuracies, coverage_table
-from verification.report.sections.baseline import baseline_sentence
-from verification.report.tables.cells import Cell, Part, Row, Section, Table
+from verification.report.sections.baseline import baseline_message
+from verification.report.tables.cells import Part, Section, Table, row, words
 from verification.report.tables.numbers import plain
 from verification.running.result import CaseResult
 
-__all__ = ["ANCHOR", "figures", "section"]
-
 ANCHOR = "credibility"
+NO_RECORD = ("Not measured: there is no record of {}; make one with: coatcheck {} --record", "not measured")
 ASSUMED = (
     "A rigid, parabolic sphere, much larger than the contact; small strains; linear, isotropic, elastic "
     "layers with nu < 1/2, perfectly bonded, on a half-space; no adhesion, no roughness; Coulomb friction "
@@ -68,8 +68,9 @@ def section(material: Material) -> Section | None:
         ),
         Part(
             "Orders of convergence on problems with a known solution: manufactured fields in two bonded "
-            "materials for the finite element operator, exact solutions of the contact for both methods.",
-            [design_table(evidence.orders), order_table(evidence.accuracy)],
+            "materials for the finite element operator below, exact solutions of the contact for both "
+            "methods in the accuracy sections.",
+            [design_table(evidence.orders)],
             title="2. Code verification",
         ),
         Part(
@@ -101,51 +102,38 @@ def figures(evidence: Evidence) -> tuple[str, str]:
 
 def _overview(material: Material) -> Table:
     results, info, evidence = material.results, material.info, material.evidence
-    study, baseline = evidence.accuracy, evidence.baseline
-    here = f"this run, {_day(info.started)}, {info.commit or 'no commit'}"
+    here = f"this run, {info.started[:10]}, {info.commit or 'no commit'}"
     good = [one for one in evidence.orders if one.as_designed]
     invariants = [one for result in results for one in result.invariants]
     holding = sum(one.outcome is Outcome.AGREES for one in invariants)
     agreeing, total = _agreeing(results)
-    design = f"{len(good)} of {len(evidence.orders)} manufactured solutions at their design order"
-    refinements = (
-        "not measured in this run"
-        if study is None
-        else f"{len(study.refinements)} refinement studies on exact solutions"
-    )
+    design, refinements, regression = "not measured", "not measured in this run", "not measured"
+    if evidence.orders:
+        design = f"{len(good)} of {len(evidence.orders)} manufactured solutions at their design order"
+    if evidence.accuracy is not None:
+        refinements = f"{len(evidence.accuracy.refinements)} refinement studies on exact solutions"
+    if evidence.baseline is not None:
+        regression = baseline_message(evidence.baseline)
     held = f"{holding} of {len(invariants)} invariants hold" if invariants else "not measured"
     rows = [
-        (
-            "Code verification",
-            f"{design}; {refinements}" if evidence.orders else f"not measured; {refinements}",
-            here,
-        ),
+        ("Code verification", f"{design}; {refinements}", here),
         ("Solution verification", _bracketed(material.contacts), here),
         ("Invariants of each solution", held, here),
         ("Comparison", f"{agreeing} of {total} comparisons agree", here),
         ("Independence", _short_independence(evidence), here),
-        ("Regression", "not measured" if baseline is None else baseline_sentence(baseline), here),
-        ("Fault detection", *_recorded(_short_faults(evidence), evidence.faults)),
-        ("False alarms", *_recorded(_short_alarms(evidence), evidence.alarms)),
+        ("Regression", regression, here),
+        ("Fault detection", _faults(evidence, short=True), _when(evidence.faults)),
+        ("False alarms", _alarms(evidence, short=True), _when(evidence.alarms)),
     ]
     return Table(
         "Overview of the evidence.",
         ["question", "found", "measured"],
-        [Row(Cell(name), [Cell(found, css="words"), Cell(when, css="words")]) for name, found, when in rows],
+        [row(name, words(found), words(when)) for name, found, when in rows],
     )
 
 
-def _recorded(found: str, record: object) -> tuple[str, str]:
-    return found, "never" if record is None else _when(record)
-
-
-def _when(record: object) -> str:
-    commit = getattr(record, "commit", None) or "no commit"
-    return f"{_day(getattr(record, 'started', ''))}, {commit}"
-
-
-def _day(started: str) -> str:
-    return started[:10]
+def _when(record: Record | AlarmRecord | None) -> str:
+    return "never" if record is None else f"{record.started[:10]}, {record.commit or 'no commit'}"
 
 
 def _agreeing(results: Sequence[CaseResult]) -> tuple[int, int]:
@@ -192,52 +180,43 @@ def _independent(evidence: Evidence) -> str:
 def _short_independence(evidence: Evidence) -> str:
     if not evidence.parts:
         return "not measured"
-    bad = [sentence for part in evidence.parts for sentence in (*part.forbidden, *part.hidden)]
-    counted = sum(part.statements for part in evidence.parts)
-    files = sum(part.files for part in evidence.parts)
+    bad = [message for part in evidence.parts for message in (*part.forbidden, *part.hidden)]
     if bad:
         return f"{len(bad)} imports are forbidden: {'; '.join(bad[:5])}."
-    whole = f"{counted} imports in {files} files of both methods and the references"
-    return f"None of {whole} is forbidden."
+    counted = sum(part.statements for part in evidence.parts)
+    files = sum(part.files for part in evidence.parts)
+    return f"None of {counted} imports in {files} files of both methods and the references is forbidden."
 
 
-def _faults(evidence: Evidence) -> str:
+def _faults(evidence: Evidence, *, short: bool = False) -> str:
     record = evidence.faults
     if record is None:
-        return "Not measured: there is no record of planted faults; make one with: coatcheck faults --record"
-    return (
-        f"{_short_faults(evidence)} Measured {_when(record)}, by coatcheck faults, which also tabulates "
-        "faults against checks. A crash alone does not count as detected. "
-        + ("Those that were not are in the section on planted faults." if record.survivors else "")
-    )
-
-
-def _short_faults(evidence: Evidence) -> str:
-    record = evidence.faults
-    if record is None:
-        return "not measured"
-    return (
+        return NO_RECORD[short].format("planted faults", "faults")
+    text = (
         f"{record.caught} of {len(record.rows)} planted faults are detected, "
         f"{plain(100 * record.share, 3)} %; {record.as_predicted} of them by the predicted check."
     )
-
-
-def _alarms(evidence: Evidence) -> str:
-    record = evidence.alarms
-    if record is None:
-        return "Not measured: there is no record of false alarms; make one with: coatcheck alarms --record"
+    if short:
+        return text
+    survivors = "Those that were not are in the section on planted faults." if record.survivors else ""
     return (
-        f"{_short_alarms(evidence)} Measured {_when(record)}, by coatcheck alarms --count {record.problems} "
-        f"--seed {record.seed}. INCONCLUSIVE and a missing result count as alarms, too."
+        f"{text} Measured {_when(record)}, by coatcheck faults, which also tabulates faults against checks. "
+        f"A crash alone does not count as detected. {survivors}"
     )
 
 
-def _short_alarms(evidence: Evidence) -> str:
+def _alarms(evidence: Evidence, *, short: bool = False) -> str:
     record = evidence.alarms
     if record is None:
-        return "not measured"
-    return (
+        return NO_RECORD[short].format("false alarms", "alarms")
+    text = (
         f"{len(record.alarms)} false alarms in {record.comparisons} comparisons and {record.invariants} "
         f"invariants of {record.problems} clean random problems; {record.agreeing} of the problems agree "
         "throughout."
+    )
+    if short:
+        return text
+    return (
+        f"{text} Measured {_when(record)}, by coatcheck alarms --count {record.problems} --seed "
+        f"{record.seed}. INCONCLUSIVE and a missing result count as alarms, too."
     )

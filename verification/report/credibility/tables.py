@@ -4,29 +4,17 @@ from collections import Counter
 from collections.abc import Sequence
 
 from verification.cases.random_problems import FRICTION, MOST_COATINGS, POISSON, RATIO, THICKNESS, THINNEST
-from verification.credibility.accuracy import AccuracyStudy
 from verification.credibility.alarms import AlarmRecord
 from verification.credibility.independence import Part
 from verification.credibility.manufactured import DesignOrder
-from verification.credibility.refinement import QUANTITIES
 from verification.judging.verdict import Outcome
 from verification.problem.quantity import SCALARS
-from verification.report.tables.cells import Cell, Row, Table, number
+from verification.report.tables.cells import Cell, Table, number, row, tally, words
 from verification.report.tables.labels import pair_label, source_label
 from verification.report.tables.lookup import layers, scale
 from verification.report.tables.matrix import outcome_cell
-from verification.report.tables.numbers import plain, scientific
+from verification.report.tables.numbers import plain
 from verification.running.result import CaseResult
-
-__all__ = [
-    "alarm_table",
-    "design_table",
-    "import_table",
-    "order_table",
-    "pair_table",
-    "parameter_table",
-    "range_table",
-]
 
 MOST = 30
 
@@ -49,7 +37,7 @@ def range_table(results: Sequence[CaseResult]) -> Table:
     return Table(
         "Ranges of the problems solved.",
         ["quantity", "this run", "random problems"],
-        [Row(Cell(name), [Cell(_range(found)), Cell(_range(drawn))]) for name, found, drawn in rows],
+        [row(name, _range(found), _range(drawn)) for name, found, drawn in rows],
     )
 
 
@@ -58,41 +46,22 @@ def design_table(orders: Sequence[DesignOrder]) -> Table:
     rows = []
     for one in orders:
         css = "flag agrees" if one.as_designed else "flag disagrees"
-        cells = [
-            number(one.harmonic, str),
-            number(one.order + 1, str),
-            Cell(f"{one.displacement:.2f}", one.displacement, css),
-            number(one.order, str),
-            Cell(f"{one.gradient:.2f}", one.gradient, css),
-            number(one.errors[1]),
-        ]
-        rows.append(Row(Cell(f"order {one.order}", one.order), cells))
+        rows.append(
+            row(
+                Cell(f"order {one.order}", one.order),
+                number(one.harmonic, str),
+                number(one.order + 1, str),
+                number(one.displacement, "{:.2f}".format, css),
+                number(one.order, str),
+                number(one.gradient, "{:.2f}".format, css),
+                number(one.errors[1]),
+            )
+        )
     columns = ["elements", "harmonic", "design, u", "observed, u", "design, ∇u", "observed, ∇u"]
     return Table(
         "Finite element operator on manufactured solutions: order in the L2 norm from a mesh to one twice as "
         "fine.",
         [*columns, "error, finer mesh"],
-        rows,
-    )
-
-
-def order_table(study: AccuracyStudy | None) -> Table:
-    """Observed order of each quantity in each refinement study on exact solutions."""
-    rows = []
-    for one in study.refinements if study is not None else ():
-        if not one.levels:
-            continue
-        cells = [Cell(one.solid), Cell(one.setting)]
-        for quantity in QUANTITIES:
-            order = one.order(quantity)
-            least = min(level.errors[quantity] for level in one.levels)
-            text = "–" if order is None else f"{order:.1f}"
-            cells.append(Cell(f"{text} | {scientific(least)}", order, note="observed order | least error"))
-        rows.append(Row(Cell(source_label(one.method)), cells))
-    return Table(
-        "Contact against the exact solution: observed order | least error of each refinement study; a dash "
-        "where the error follows no power of the step. The figures are in the accuracy sections.",
-        ["method", "solid", "setting", *QUANTITIES],
         rows,
     )
 
@@ -109,8 +78,7 @@ def parameter_table(results: Sequence[CaseResult]) -> Table:
     found = []
     for (name, quantity), counter in sorted(counts.items()):
         text = ", ".join(f"{parameter} ({count})" for parameter, count in counter.most_common())
-        cells = [Cell(quantity.replace("_", " ")), Cell(text, css="words")]
-        found.append(Row(Cell(source_label(name)), cells))
+        found.append(row(source_label(name), quantity.replace("_", " "), words(text)))
     return Table(
         "Numerical parameter with the largest share of U, with the number of cases.",
         ["method", "quantity", "dominating parameter"],
@@ -127,8 +95,7 @@ def pair_table(results: Sequence[CaseResult]) -> Table:
         good = sum(v.outcome is Outcome.AGREES for v in mine)
         largest = max((v.difference for v in mine if v.difference is not None), default=None)
         widest = max((v.uncertainty for v in mine if v.uncertainty is not None), default=None)
-        cells = [Cell(f"{good} of {len(mine)}", good / len(mine)), number(largest), number(widest)]
-        rows.append(Row(Cell(pair_label(pair)), cells))
+        rows.append(row(pair_label(pair), tally(good, len(mine)), number(largest), number(widest)))
     return Table(
         "All comparisons by pair of sources; differences and U as fractions of their scale.",
         ["between", "agree", "largest difference", "largest U"],
@@ -141,13 +108,9 @@ def import_table(parts: Sequence[Part]) -> Table:
     rows = []
     for part in parts:
         bad = [*part.forbidden, *part.hidden]
-        cells = [
-            number(part.files, str),
-            number(part.statements, str),
-            Cell(", ".join(part.modules), css="words"),
-            Cell("; ".join(bad) or "none", css="words flag " + ("disagrees" if bad else "agrees")),
-        ]
-        rows.append(Row(Cell(part.name), cells))
+        modules = words(", ".join(part.modules))
+        forbidden = Cell("; ".join(bad) or "none", css=f"words flag {'disagrees' if bad else 'agrees'}")
+        rows.append(row(part.name, number(part.files, str), number(part.statements, str), modules, forbidden))
     return Table(
         "Imports of each part, without its own and the standard library.",
         ["part", "files", "imports", "modules from outside", "forbidden imports"],
@@ -159,15 +122,13 @@ def alarm_table(record: AlarmRecord | None) -> Table:
     """The false alarms on record."""
     alarms = record.alarms if record is not None else ()
     rows = [
-        Row(
+        row(
             Cell(alarm.title, note=alarm.case, css="words"),
-            [
-                outcome_cell(alarm.outcome),
-                Cell(alarm.quantity),
-                Cell(alarm.line),
-                Cell(" – ".join(source_label(source) for source in alarm.between)),
-                Cell(alarm.reason, css="words"),
-            ],
+            outcome_cell(alarm.outcome),
+            alarm.quantity,
+            alarm.line,
+            " – ".join(source_label(source) for source in alarm.between),
+            words(alarm.reason),
         )
         for alarm in alarms[:MOST]
     ]

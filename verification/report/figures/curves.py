@@ -9,9 +9,7 @@ from markupsafe import Markup
 
 from verification.problem.arrays import Array
 from verification.report.figures.plot import HUGE, Axes, drawing, power_of_ten, round_ticks
-from verification.sources.source import Style
-
-__all__ = ["FLOOR", "Curve", "Difference", "draw"]
+from verification.sources.record import Style
 
 FLOOR = 1e-9
 TOP = 1e-1

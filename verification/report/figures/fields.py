@@ -1,4 +1,4 @@
-"""Stresses in the plane below the contact: both methods and their difference side by side."""
+"""Stresses in the plane below the contact: both methods beside their difference."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -19,9 +19,6 @@ from verification.report.tables.numbers import plain, scientific
 from verification.running.result import CaseResult
 from verification.sampling.plane import Plane
 from verification.sources.registry import METHODS
-
-__all__ = ["Pictures", "pictures", "plane_csv"]
-
 
 SHOWN = ("von_mises", "sigma_xx", "sigma_xz")
 TITLES = {"von_mises": "von Mises"}
@@ -48,7 +45,7 @@ def pictures(result: CaseResult, plane: Plane | None) -> Pictures | None:
     a_h, p_h = float(scale_of(result, "a_h")), float(scale_of(result, "p_h"))
     if plane is None or not plane.stress or not a_h > 0 or not p_h > 0:
         return None
-    failures = tuple((source_label(name), sentence) for name, sentence in plane.failures.items())
+    failures = tuple((source_label(name), message) for name, message in plane.failures.items())
     sources = [name for name in METHODS if name in plane.stress]
     bottoms = [float(z[-1]) / a_h for z in plane.depths]
     frame = Frame(float(plane.x[-1]) / a_h, bottoms[-1], tuple(bottoms[:-1]), plane.radius / a_h)

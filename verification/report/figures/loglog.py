@@ -8,9 +8,8 @@ import numpy as np
 from markupsafe import Markup
 
 from verification.report.figures.plot import Axes, drawing, power_of_ten
-from verification.sources.source import Style
-
-__all__ = ["Trail", "decades", "draw_loglog"]
+from verification.report.tables.cells import Panel
+from verification.sources.record import Style
 
 WIDTH, HEIGHT = 320, 235
 BOX = (48.0, 5.9, 232.0, 190.4)  # left, top, width, height
@@ -18,6 +17,9 @@ BOX = (48.0, 5.9, 232.0, 190.4)  # left, top, width, height
 SMALLEST, LARGEST = 1e-16, 1e4
 # Of the height of the axes: the least distance between two written slopes.
 APART = 0.075
+# Dashes of curves side by side, and the style of a setting without one of its own.
+DOTS, DASHES, MIXED = (1.0, 1.4), (3.6, 3.0), (4.5, 1.4, 1.0, 1.4)
+UNKNOWN = Style("ink", (5.0, 1.5, 1.0, 1.5))
 
 
 @dataclass(frozen=True)
@@ -34,6 +36,28 @@ class Trail:
         """The points within logarithmic axes."""
         pairs = zip(self.resolution, self.error, strict=True)
         return [(x, min(max(e, SMALLEST), LARGEST)) for x, e in pairs if 1e-9 < x < 1e9 and np.isfinite(e)]
+
+
+@dataclass(frozen=True)
+class Plot:
+    """A panel of curves; ``label`` describes it to a screen reader, ``note`` is its axis in words."""
+
+    title: str
+    label: str
+    note: str
+    coordinate: str
+    ticks: Sequence[float]
+    trails: Sequence[Trail]
+
+
+def panels(plots: Sequence[Plot]) -> list[Panel]:
+    """The ``plots`` side by side on one scale of errors."""
+    height = decades([trail for plot in plots for trail in plot.trails])
+    drawn = [
+        draw_loglog(p.trails, label=p.label, coordinate=p.coordinate, height=height, ticks=p.ticks)
+        for p in plots
+    ]
+    return [Panel(plot.title, figure, plot.note, "") for plot, figure in zip(plots, drawn, strict=True)]
 
 
 def decades(trails: Sequence[Trail]) -> tuple[float, float]:

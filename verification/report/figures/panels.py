@@ -21,10 +21,8 @@ from verification.report.tables.lookup import (
 )
 from verification.report.tables.numbers import scientific
 from verification.running.result import CaseResult
+from verification.sources.record import Style
 from verification.sources.registry import METHODS
-from verification.sources.source import Style
-
-__all__ = ["LineFigures", "line_figures", "swatch"]
 
 
 @dataclass(frozen=True)
@@ -86,7 +84,7 @@ def _panel(result: CaseResult, line: str, quantity: str) -> Panel:
     differences = []
     for pair in _pairs(result, line, quantity):
         verdict = next(v for claim, v in claims if claim.between == pair)
-        first, second = (result.profile(quantity, line, source) for source in pair)
+        first, second = (result.profile_of.get((quantity, line, source)) for source in pair)
         found = difference(result, first, second)
         if found is None or first is None:
             continue

@@ -9,9 +9,7 @@ import numpy as np
 from markupsafe import Markup, escape
 
 from verification.problem.arrays import Array
-from verification.sources.source import Style
-
-__all__ = ["HUGE", "Axes", "drawing", "polyline", "power_of_ten", "round_ticks", "short"]
+from verification.sources.record import Style
 
 # Larger numbers are failures; a curve has a gap there.
 HUGE = 1e12

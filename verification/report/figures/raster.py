@@ -1,4 +1,4 @@
-"""A field of the x-z plane as a small inline picture with axes, contours and a bar of its colours.
+"""A field of the x-z plane as a small inline picture with axes, contours, a bar of its colours.
 
 The raster is a compressed image of a few kilobytes; axes, interfaces, contact and level lines are drawn over
 it as vectors in the colours of the page, so that they follow light, dark and print.
@@ -21,9 +21,6 @@ from scipy.interpolate import PchipInterpolator
 
 from verification.problem.arrays import Array
 from verification.report.figures.plot import Axes, polyline, power_of_ten, round_ticks
-
-__all__ = ["Frame", "Scale", "coloured", "draw_field", "rasterised"]
-
 
 LEFT, TOP, RIGHT, BOTTOM = 34.0, 12.0, 52.0, 32.0  # margins around the raster, in units of the drawing
 WIDTH = 250.0  # of the raster

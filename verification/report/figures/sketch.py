@@ -8,8 +8,6 @@ from verification.report.tables.lookup import contact_radius, layers, scale
 from verification.report.tables.numbers import engineering, plain
 from verification.running.result import CaseResult
 
-__all__ = ["sketch"]
-
 WIDTH, HEIGHT = 400, 250
 BLOCK = 216
 SURFACE = 92
@@ -49,7 +47,7 @@ def sketch(result: CaseResult) -> Markup:
     parts += [_contact(result, a_h, unit), *_labels(labels)]
     note = "thin layers drawn thicker" if stretched else "depth and width to one scale"
     text = f"Sphere on {len(found) - 1} coating(s) on a substrate, {note}."
-    inner = Markup("").join(parts)
+    inner = Markup("".join(parts))
     return Markup(
         '<svg class="figure sketch" viewBox="0 0 {} {}" role="img" aria-label="{}"><title>{}</title>{}</svg>'
     ).format(WIDTH, HEIGHT, text, text, inner)
@@ -60,52 +58,42 @@ def _shade(E: float, moduli: list[float]) -> float:
     return 0.18 if high == low else 0.12 + 0.5 * (log(E) - low) / (high - low)
 
 
-def _layer(top: float, height: float, shade: float) -> Markup:
-    return Markup(
-        '<rect x="0" y="{:.1f}" width="{}" height="{:.1f}" class="layer" fill-opacity="{:.2f}"/>'
-        '<path d="M0 {:.1f}h{}" class="s-ink" stroke-width="{}"/>'
-    ).format(top, BLOCK, height, shade, top, BLOCK, 1.4 if top == SURFACE else 0.8)
+def _layer(top: float, height: float, shade: float) -> str:
+    return (
+        f'<rect x="0" y="{top:.1f}" width="{BLOCK}" height="{height:.1f}" class="layer" '
+        f'fill-opacity="{shade:.2f}"/><path d="M0 {top:.1f}h{BLOCK}" class="s-ink" '
+        f'stroke-width="{1.4 if top == SURFACE else 0.8}"/>'
+    )
 
 
-def _sphere(unit: float) -> Markup:
+def _sphere(unit: float) -> str:
     # A radius of a few contact radii keeps the arc readable at any real ratio a_h/R.
     radius = 3.2 * unit
     half = min(sqrt(max(radius**2 - (radius - SURFACE + 4) ** 2, 0.0)), BLOCK / 2)
     rise = radius - sqrt(radius**2 - half**2)
     middle, left, right = BLOCK / 2, BLOCK / 2 - half, BLOCK / 2 + half
-    return Markup(
-        '<path d="M{:.1f} 4V{:.1f}A{:.1f} {:.1f} 0 0 0 {:.1f} {:.1f}V4" class="sphere"/>'
-        '<path d="M{:.1f} 10v36m-5-9l5 9 5-9" class="s-ink arrow"/>'
-        '<text x="{:.1f}" y="30" class="f-ink">W</text>'
-        '<text x="{}" y="22" class="f-muted small">rigid sphere, its</text>'
-        '<text x="{}" y="35" class="f-muted small">radius not to scale</text>'
-    ).format(
-        left,
-        SURFACE - rise,
-        radius,
-        radius,
-        right,
-        SURFACE - rise,
-        middle,
-        middle + 10,
-        BLOCK + 26,
-        BLOCK + 26,
+    at = SURFACE - rise
+    return (
+        f'<path d="M{left:.1f} 4V{at:.1f}A{radius:.1f} {radius:.1f} 0 0 0 {right:.1f} {at:.1f}V4" '
+        f'class="sphere"/><path d="M{middle:.1f} 10v36m-5-9l5 9 5-9" class="s-ink arrow"/>'
+        f'<text x="{middle + 10:.1f}" y="30" class="f-ink">W</text>'
+        f'<text x="{BLOCK + 26}" y="22" class="f-muted small">rigid sphere, its</text>'
+        f'<text x="{BLOCK + 26}" y="35" class="f-muted small">radius not to scale</text>'
     )
 
 
-def _contact(result: CaseResult, a_h: float, unit: float) -> Markup:
+def _contact(result: CaseResult, a_h: float, unit: float) -> str:
     a = contact_radius(result)
     if a is None or not isfinite(a_h):
-        return Markup("")
-    half = min(a / a_h * unit, BLOCK / 2)
-    middle = BLOCK / 2
-    return Markup(
-        '<path d="M{:.1f} {}h{:.1f}" class="s-cap" stroke-width="3.5"/>'
-        '<text x="{:.1f}" y="{}" class="f-ink small" text-anchor="middle">2a</text>'
-    ).format(middle - half, SURFACE, 2 * half, middle, SURFACE - 6)
+        return ""
+    half, middle = min(a / a_h * unit, BLOCK / 2), BLOCK / 2
+    return (
+        f'<path d="M{middle - half:.1f} {SURFACE}h{2 * half:.1f}" class="s-cap" stroke-width="3.5"/>'
+        f'<text x="{middle:.1f}" y="{SURFACE - 6}" class="f-ink small" text-anchor="middle">2a</text>'
+    )
 
 
-def _labels(labels: list[tuple[float, str, str, str]]) -> list[Markup]:
+def _labels(labels: list[tuple[float, str, str, str]]) -> list[str]:
     """Labels to the right of the block, pushed apart where layers are thin, each with a leader."""
     step = 44.0
     written = []
@@ -121,10 +109,8 @@ def _labels(labels: list[tuple[float, str, str, str]]) -> list[Markup]:
             if line
         ]
         written.append(
-            Markup('<path d="M{} {:.1f}l22 {:.1f}" class="s-muted" stroke-width=".8"/>').format(
-                BLOCK, depth, at + 8 - depth
-            )
-            + Markup(f'<text x="{BLOCK + 26}" y="{at + 12:.1f}" class="f-ink small">{"".join(lines)}</text>')
+            f'<path d="M{BLOCK} {depth:.1f}l22 {at + 8 - depth:.1f}" class="s-muted" stroke-width=".8"/>'
+            f'<text x="{BLOCK + 26}" y="{at + 12:.1f}" class="f-ink small">{"".join(lines)}</text>'
         )
         at += step
     return written

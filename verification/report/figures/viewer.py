@@ -13,8 +13,6 @@ import numpy as np
 
 from verification.running.fields import Fields, read_fields
 
-__all__ = ["plotter"]
-
 DEPTH = 1.6  # of the part of the finite element mesh shown, over the contact radius; wider by half a radius
 MICRO = 1e6
 SIZE = [1500, 760]

@@ -2,14 +2,14 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import lru_cache, partial
 
 import numpy as np
 
 from verification.judging.verdict import Claim
 from verification.problem.quantity import QUANTITIES, SCALARS
 from verification.report.material import Material
-from verification.report.tables.cells import Cell, Part, Row, Section, Table, number
+from verification.report.tables.cells import Cell, Part, Section, Table, number, row, tally
 from verification.report.tables.labels import source_label
 from verification.report.tables.lookup import (
     GROUPS,
@@ -20,19 +20,9 @@ from verification.report.tables.lookup import (
     sources_with_profiles,
 )
 from verification.report.tables.matrix import case_cell
-from verification.report.tables.numbers import plain, scientific
+from verification.report.tables.numbers import factor, plain, scientific
 from verification.running.result import CaseResult
 from verification.sources.registry import METHODS, REFERENCES
-
-__all__ = [
-    "Accuracy",
-    "accuracies",
-    "accuracy_overview",
-    "accuracy_sentence",
-    "accuracy_table",
-    "coverage_table",
-    "section",
-]
 
 # Ratio of stated to true error below which an estimate counts as wrong.
 TOO_SMALL = 0.5
@@ -72,7 +62,7 @@ def section(material: Material) -> Section | None:
     """How often the stated uncertainty covers the true error, then the errors of each method."""
     results = material.contacts
     parts = [
-        Part(accuracy_sentence(results, source), [overview])
+        Part("", [overview])
         for source in METHODS
         if (overview := accuracy_overview(results, material.anchors, source))
     ]
@@ -99,8 +89,8 @@ def accuracies(result: CaseResult) -> tuple[Accuracy, ...]:
 
 
 def _accuracy(result: CaseResult, claim: Claim, source: str, exact: str) -> Accuracy | None:
-    mine = result.profile(claim.quantity, claim.line, source)
-    theirs = result.profile(claim.quantity, claim.line, exact)
+    mine = result.profile_of.get((claim.quantity, claim.line, source))
+    theirs = result.profile_of.get((claim.quantity, claim.line, exact))
     found = difference(result, mine, theirs)
     if found is None or mine is None:
         return None
@@ -128,7 +118,7 @@ def accuracy_table(result: CaseResult) -> Table:
         for source in sources:
             match = [i for i in found if (i.source, i.quantity, i.line) == (source, quantity, line)]
             cells += _three_cells(match[0]) if match else [Cell("–")] * 3
-        rows.append(Row(Cell(quantity), cells))
+        rows.append(row(quantity, *cells))
     return Table(
         "Largest error against the exact reference, the uncertainty stated at that point, and the smallest "
         "ratio of stated to true over all judged points: the error is covered everywhere at 1 or more.",
@@ -158,7 +148,7 @@ def accuracy_overview(results: Sequence[CaseResult], anchors: Mapping[CaseResult
         cells = [
             _overview_cell([i for i in found if name in (i.quantity, group_of(i.line))]) for name in columns
         ]
-        rows.append(Row(case_cell(result, f"#{anchors[result]}-accuracy"), cells))
+        rows.append(row(case_cell(result, f"#{anchors[result]}-accuracy"), *cells))
     return Table(
         f"Error of {source_label(source)} against the exact reference, then the uncertainty it states for "
         "the same point. Marked where the estimate is below the error (▼) or below half of it (▼▼).",
@@ -183,12 +173,10 @@ def _overview_cell(found: Sequence[Accuracy]) -> Cell:
 
 def coverage_table(results: Sequence[CaseResult]) -> Table:
     """How often the uncertainty that a method states covers its true error, scalars and lines apart."""
-    rows = []
+    rows, columns = [], ["method", "quantities", "covered", "share", "largest error / U"]
+    scalar_names = ", ".join(QUANTITIES[name].symbol for name in SCALARS)
     for source in METHODS:
-        for name, scalars in (
-            (", ".join(QUANTITIES[s].symbol for s in SCALARS), True),
-            ("stresses, pressure", False),
-        ):
+        for name, scalars in ((scalar_names, True), ("stresses, pressure", False)):
             found = [
                 (result, item)
                 for result in results
@@ -200,46 +188,25 @@ def coverage_table(results: Sequence[CaseResult]) -> Table:
             share = sum(item.covered for _, item in found) / len(found)
             case, worst = min(found, key=lambda pair: -1.0 if pair[1].ratio is None else pair[1].ratio)
             stated = [item.ratio for _, item in found if item.ratio is not None and np.isfinite(item.ratio)]
-            cells = [
-                Cell(name),
-                Cell(f"{sum(item.covered for _, item in found)} of {len(found)}", share),
-                Cell(f"{100 * share:.1f} %", share, f"flag {'agrees' if share >= COVERED else 'disagrees'}"),
-                Cell(plain(1 / worst.ratio, 2), 1 / worst.ratio) if worst.ratio else Cell("not stated"),
-                Cell(f"{worst.quantity.replace('_', ' ')} on {worst.line}, {case.title}"),
-                number(float(np.median(stated)), lambda ratio: plain(ratio, 2)) if stated else Cell("–"),
-                number(max(item.error for _, item in found)),
-            ]
-            rows.append(Row(Cell(source_label(source)), cells))
+            rows.append(
+                row(
+                    source_label(source),
+                    name,
+                    tally(sum(item.covered for _, item in found), len(found)),
+                    Cell(
+                        f"{100 * share:.1f} %", share, f"flag {'agrees' if share >= COVERED else 'disagrees'}"
+                    ),
+                    number(1 / worst.ratio, partial(plain, digits=2)) if worst.ratio else "not stated",
+                    f"{worst.quantity.replace('_', ' ')} on {worst.line}, {case.title}",
+                    number(float(np.median(stated)) if stated else None, partial(factor, better=1.0)),
+                    number(max(item.error for _, item in found)),
+                )
+            )
     return Table(
         "Quantities on all lines of all cases whose true error, known from the exact reference, lies within "
         f"the stated uncertainty U at every judged point; {100 * COVERED:.0f} % are required. Largest "
         "ratio of error to U with its place; median of the smallest ratios of U to the error; largest error.",
-        [
-            "method",
-            "quantities",
-            "covered",
-            "share",
-            "largest error / U",
-            "there",
-            "median U / error",
-            "largest error",
-        ],
+        [*columns, "there", "median U / error", "largest error"],
         rows,
         css="overview",
-    )
-
-
-def accuracy_sentence(results: Sequence[CaseResult], source: str) -> str:
-    """How often the uncertainty stated by a method covers the true error."""
-    found = [item for result in results for item in accuracies(result) if item.source == source]
-    if not found:
-        return f"{source_label(source).capitalize()}: no case with an exact reference."
-    good = sum(item.covered for item in found)
-    low = sum(item.ratio is not None and item.ratio < TOO_SMALL for item in found)
-    unstated = sum(item.ratio is None for item in found)
-    without = f"; in {unstated} none is stated" if unstated else ""
-    share = f"{good} of {len(found)} quantities ({100 * good / len(found):.1f} %)"
-    return (
-        f"{source_label(source).capitalize()}: the stated uncertainty covers the true error in {share}; "
-        f"in {low} it is below half of it{without}."
     )

@@ -6,11 +6,9 @@ from math import isfinite
 from verification.regression.baseline import CaseDrift, Regression
 from verification.regression.drift import FACTOR, RELATIVE, Drift, State
 from verification.report.material import Material
-from verification.report.tables.cells import Cell, Part, Row, Section, Table, number
+from verification.report.tables.cells import Cell, Part, Section, Table, number, row
 from verification.report.tables.labels import source_label
 from verification.report.tables.numbers import scientific
-
-__all__ = ["ANCHOR", "baseline_sentence", "drift_table", "section", "state_cell"]
 
 ANCHOR = "baseline"
 MOST = 40
@@ -21,6 +19,7 @@ _STATES = {
     State.NEW: ("+", "", 2),
     State.SAME: ("=", "agrees", 3),
 }
+_COUNTED = (State.SAME, State.DRIFTED, State.GONE, State.NEW)
 _RULE = (
     f"A number is the same where it differs by at most {scientific(RELATIVE, 1)} of the largest magnitude of "
     "its profile. Compared of each profile: points over its whole length, its root mean square, and its "
@@ -31,18 +30,18 @@ _RULE = (
 def state_cell(case: CaseDrift, *, short: bool = False) -> Cell:
     """State of a case as mark and word, or as mark alone; it sorts by severity."""
     mark, css, rank = _STATES[case.state]
-    note = f"{case.state}: {case.message or f'largest change {_change(case.change)} of the scale'}"
+    note = f"{case.state}: {case.message or f'largest change {scientific(case.change)} of the scale'}"
     return Cell(mark if short else f"{mark} {case.state}", float(rank), f"verdict {css}".strip(), note)
 
 
-def baseline_sentence(found: Regression) -> str:
+def baseline_message(found: Regression) -> str:
     """Comparison of the run with its baseline, in one sentence."""
     if found.update is None:
         return f"There is no baseline in {found.folder}, so this run was not compared."
     counts = {state: sum(case.count(state) for case in found.cases) for state in State}
-    parts = [f"{counts[state]} {state}" for state in (State.SAME, State.DRIFTED, State.GONE, State.NEW)]
+    parts = [f"{counts[state]} {state}" for state in _COUNTED]
     largest = max((c.change for c in found.cases if c.change is not None), default=None)
-    by = f"; the largest change is {_change(largest)} of its scale" if largest is not None else ""
+    by = f"; the largest change is {scientific(largest)} of its scale" if largest is not None else ""
     return f"{', '.join(parts)}, of {sum(counts.values())} numbers{by}."
 
 
@@ -54,7 +53,7 @@ def section(material: Material) -> Section | None:
     anchors = {result.name: anchor for result, anchor in material.anchors.items()}
     if found.update is None:
         text = (
-            f"{baseline_sentence(found)} A complete run that agrees throughout becomes the baseline by: "
+            f"{baseline_message(found)} A complete run that agrees throughout becomes the baseline by: "
             'coatcheck baseline update --why "..."'
         )
         return Section(ANCHOR, "Baseline", [Part(text)])
@@ -62,7 +61,7 @@ def section(material: Material) -> Section | None:
     made = f"recorded {update.when.replace('T', ' ').replace('+00:00', ' UTC')}"
     made += f" at commit {update.commit}" if update.commit else ""
     parts = [
-        Part(f"{baseline_sentence(found)} The baseline in {found.folder} was {made}: “{update.why}”. {_RULE}")
+        Part(f"{baseline_message(found)} The baseline in {found.folder} was {made}: “{update.why}”. {_RULE}")
     ]
     if found.other_versions:
         differences = "; ".join(
@@ -72,7 +71,8 @@ def section(material: Material) -> Section | None:
     # A case that is gone as a whole has its row above.
     here = [c for c in found.cases if any(d.state is not State.GONE for d in c.drifts)]
     moved = [(c, d) for c in here for d in c.drifts if d.state in (State.DRIFTED, State.GONE)]
-    parts.append(Part("", [_case_table(found.cases, anchors), *([drift_table(moved)] if moved else [])]))
+    table = case_table(found.cases, anchors, "Numbers of each case compared with the baseline.")
+    parts.append(Part("", [table, drift_table(moved)]))
     return Section(ANCHOR, "Baseline", parts)
 
 
@@ -82,15 +82,10 @@ def drift_table(moved: Sequence[tuple[CaseDrift, Drift]]) -> Table:
     rows = []
     for case, drift in order[:MOST]:
         mark, css, rank = _STATES[drift.state]
-        cells = [
-            Cell(f"{mark} {drift.state}", float(rank), f"verdict {css}"),
-            Cell(source_label(drift.source)),
-            Cell(drift.quantity),
-            Cell(drift.line),
-            Cell(_change(drift.change), drift.change if _finite(drift.change) else None),
-            Cell(drift.message),
-        ]
-        rows.append(Row(Cell(case.name, note=case.title), cells))
+        state = Cell(f"{mark} {drift.state}", float(rank), f"verdict {css}")
+        head, source = Cell(case.name, note=case.title), source_label(drift.source)
+        change = _change(drift.change)
+        rows.append(row(head, state, source, drift.quantity, drift.line, change, drift.message))
     more = f" The {MOST} of {len(order)} with the largest change." if len(order) > MOST else ""
     return Table(
         f"Changed numbers; changes over the largest magnitude of the profile.{more}",
@@ -99,28 +94,16 @@ def drift_table(moved: Sequence[tuple[CaseDrift, Drift]]) -> Table:
     )
 
 
-def _case_table(cases: Sequence[CaseDrift], anchors: Mapping[str, str]) -> Table:
+def case_table(cases: Sequence[CaseDrift], anchors: Mapping[str, str], caption: str) -> Table:
+    """State and counts of numbers of each case; ``anchors`` leads to cases by name."""
     rows = []
     for case in cases:
-        counts = [case.count(state) for state in (State.SAME, State.DRIFTED, State.GONE, State.NEW)]
-        cells = [
-            state_cell(case),
-            *(number(count, str) for count in counts),
-            Cell(_change(case.change), case.change if _finite(case.change) else None),
-            Cell(case.message),
-        ]
         place = anchors.get(case.name)
-        rows.append(Row(Cell(case.title, note=case.name, href=f"#{place}" if place else ""), cells))
-    return Table(
-        "Numbers of each case compared with the baseline.",
-        ["case", "state", "same", "drifted", "gone", "new", "largest change", ""],
-        rows,
-    )
+        head = Cell(case.title, note=case.name, href=f"#{place}" if place else "")
+        counts = [number(case.count(state), str) for state in _COUNTED]
+        rows.append(row(head, state_cell(case), *counts, _change(case.change), case.message))
+    return Table(caption, ["case", "state", "same", "drifted", "gone", "new", "largest change", ""], rows)
 
 
-def _finite(change: float | None) -> bool:
-    return change is not None and isfinite(change)
-
-
-def _change(change: float | None) -> str:
-    return scientific(change)
+def _change(change: float | None) -> Cell:
+    return Cell(scientific(change), change if change is not None and isfinite(change) else None)

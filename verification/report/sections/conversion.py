@@ -1,27 +1,23 @@
 """Errors of the influence coefficients by conversion from the Fourier domain."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from itertools import groupby
 
 import numpy as np
 
 from verification.judging.invariants.influence import ConversionError
-from verification.report.figures.loglog import Trail, decades, draw_loglog
+from verification.report.figures.loglog import DASHES, DOTS, MIXED, UNKNOWN, Plot, Trail, panels
 from verification.report.figures.panels import swatch
-from verification.report.tables.cells import Cell, Gallery, Panel, Part, Row, Table, number
+from verification.report.tables.cells import Cell, Gallery, Panel, Part, Table, number, row
 from verification.report.tables.numbers import factor, plain, scientific
-from verification.sources.source import Style
+from verification.sources.record import Style
 
-__all__ = ["conversion_part"]
-
-_DOTS, _DASHES, _MIXED = (1.0, 1.4), (3.6, 3.0), (4.5, 1.4, 1.0, 1.4)
 _CONVERSIONS = {
     ("split", 0): ("split, no domain", Style("semi")),
-    ("split-fft", 2): ("split, by FFT", Style("hertz", _DASHES)),
-    ("plain", 0): ("plain, no aliases", Style("other", _DOTS)),
-    ("plain", 2): ("plain, 2 aliases a side", Style("pair", _MIXED)),
+    ("split-fft", 2): ("split, by FFT", Style("hertz", DASHES)),
+    ("plain", 0): ("plain, no aliases", Style("other", DOTS)),
+    ("plain", 2): ("plain, 2 aliases a side", Style("pair", MIXED)),
 }
-_UNKNOWN = Style("ink", (5.0, 1.5, 1.0, 1.5))
 _DOMAIN_SHOWN = 4  # of the curves over distance; the default of the solver
 
 
@@ -50,7 +46,7 @@ def _kind(one: ConversionError) -> tuple[str, int]:
 
 
 def _look(kind: tuple[str, int]) -> tuple[str, Style]:
-    return _CONVERSIONS.get(kind, (f"{kind[0]}, {kind[1]} aliases", _UNKNOWN))
+    return _CONVERSIONS.get(kind, (f"{kind[0]}, {kind[1]} aliases", UNKNOWN))
 
 
 def _rank(kind: tuple[str, int]) -> int:
@@ -74,30 +70,28 @@ def _panels(groups: dict[tuple[str, int], list[ConversionError]]) -> list[Panel]
         level = {float(w): errors[0] for w in widths} if 0 in errors else errors
         return Trail(tuple(float(w) for w in level), tuple(level.values()), _look(name)[1])
 
-    drawn: list[tuple[str, str, str, Sequence[float], Callable[[tuple[str, int]], Trail]]] = [
-        ("over distance", "distance / a", "distance", (0.1, 0.2, 0.5, 1, 2), over_distance)
-    ]
-    for title, place in places.items():
-        wide = (1, 2, 4, 8, 16, 32)
-        drawn.append((title, "domain / grid", f"{place}", wide, lambda n, place=place: over_domain(n, place)))  # type: ignore[misc]
     known = sorted(groups, key=_rank)
-    sets = [[trail(name) for name in known] for *_, trail in drawn]
-    height = decades([one for some in sets for one in some])
-    return [
-        Panel(
-            title,
-            draw_loglog(
-                some,
-                label=f"error of influence coefficients {title}, logarithmic",
-                coordinate=coordinate,
-                height=height,
-                ticks=ticks,
-            ),
-            "error over the coefficient itself",
-            "",
-        )
-        for (title, coordinate, key, ticks, _), some in zip(drawn, sets, strict=True)
+    near, wide = (0.1, 0.2, 0.5, 1, 2), (1, 2, 4, 8, 16, 32)
+    drawn = [
+        ("over distance", "distance / a", near, [over_distance(name) for name in known]),
+        *(
+            (title, "domain / grid", wide, [over_domain(n, at) for n in known])
+            for title, at in places.items()
+        ),
     ]
+    return panels(
+        [
+            Plot(
+                title,
+                f"error of influence coefficients {title}, logarithmic",
+                "error over the coefficient itself",
+                coordinate,
+                ticks,
+                trails,
+            )
+            for title, coordinate, ticks, trails in drawn
+        ]
+    )
 
 
 def _summary(found: Sequence[ConversionError]) -> str:
@@ -128,19 +122,15 @@ def _summary(found: Sequence[ConversionError]) -> str:
 
 
 def _table(found: Sequence[ConversionError]) -> Table:
-    rows = []
-    for one in sorted(found, key=lambda one: (_rank(_kind(one)), one.enlarge)):
-        numbers = (one.error[0], one.error[1], max(one.error), one.largest)
-        rows.append(
-            Row(
-                Cell(_look(_kind(one))[0]),
-                [
-                    Cell("–" if not one.enlarge else f"{one.enlarge}", float(one.enlarge)),
-                    *(number(e) for e in numbers),
-                    Cell(_milli(one.seconds), one.seconds),
-                ],
-            )
+    rows = [
+        row(
+            _look(_kind(one))[0],
+            Cell(f"{one.enlarge or '–'}", float(one.enlarge)),
+            *map(number, (one.error[0], one.error[1], max(one.error), one.largest)),
+            number(one.seconds, _milli),
         )
+        for one in sorted(found, key=lambda one: (_rank(_kind(one)), one.enlarge))
+    ]
     return Table(
         "Errors of the influence coefficients of the surface displacement, over the coefficient itself and, "
         "for the largest of all, over the largest coefficient.",

@@ -1,6 +1,7 @@
-"""Accuracy of effective-modulus formulas and of simple limits against the exact reference."""
+"""Effective-modulus formulas, simple limits: their accuracy against the exact reference."""
 
 from collections.abc import Sequence
+from functools import partial
 from itertools import pairwise
 from math import ceil, floor, log10
 
@@ -12,14 +13,12 @@ from verification.report.figures.panels import swatch
 from verification.report.figures.plot import Axes, drawing, power_of_ten
 from verification.report.material import Material
 from verification.report.sections import family
-from verification.report.tables.cells import Cell, Gallery, Panel, Part, Row, Section, Table
+from verification.report.tables.cells import Gallery, Panel, Part, Row, Section, Table, number, row
+from verification.report.tables.csv import written
 from verification.report.tables.numbers import plain, scientific
+from verification.sources.record import Style
 from verification.sources.references.effective_modulus import PERRIOT_BARTHEL_N
-from verification.sources.source import Style
 from verification.study.formulas import EffectiveStudy, Limit
-
-__all__ = ["family_section", "section"]
-
 
 WIDTH, HEIGHT = 320, 250
 BOX = (48.0, 5.0, 266.0, 207.5)  # left, top, width, height
@@ -53,15 +52,11 @@ def section(material: Material) -> Section | None:
 
 
 def _map_part(study: EffectiveStudy) -> Part:
-    exact = np.array(study.exact)
-    panels, rows = [], []
-    for name, table in study.formulas:
-        error = np.array(table) / exact - 1
-        high, low = float(error.max()), float(error.min())
-        note = f"from {_percent(low)} to {_percent(high)}"
-        figure = _draw_map(study, error, name)
-        panels.append(Panel(name, figure, note, ""))
-        rows.append(_formula_row(study, name, error))
+    errors = {name: np.array(table) / np.array(study.exact) - 1 for name, table in study.formulas}
+    panels = [
+        Panel(name, _draw_map(study, e, name), f"from {_percent(e.min())} to {_percent(e.max())}", "")
+        for name, e in errors.items()
+    ]
     text = (
         "Formulas that correct the contact stiffness of nanoindentation for the substrate, each compared "
         "with the exact solution over E1/E2 and h/a: S = 2 a E_eff at contact radius a, which of a "
@@ -84,7 +79,7 @@ def _map_part(study: EffectiveStudy) -> Part:
         "Departure from the exact solution over the whole map, E1/E2 from 0.01 to 100 and h/a from 0.05 to "
         "20, and over its middle, E1/E2 from 0.1 to 10; the share of either that is within 10 %.",
         ["formula", *["most compliant", "stiffest", "median", "within 10 %"] * 2],
-        rows,
+        [_formula_row(study, name, error) for name, error in errors.items()],
         [("", 1), ("whole map", 4), ("E1/E2 from 0.1 to 10", 4)],
     )
     return Part(text, [numbers], Gallery(legend, panels, caption, _map_csv(study)))
@@ -94,11 +89,10 @@ def _formula_row(study: EffectiveStudy, name: str, error: Array) -> Row:
     middle = np.abs(np.log10(study.ratio)) <= 1 + 1e-9
     cells = []
     for part in (error, error[middle]):
-        share = float((np.abs(part) <= 0.1).mean())
-        for value in (float(part.min()), float(part.max()), float(np.median(np.abs(part)))):
-            cells.append(Cell(_percent(value, sign=value is not None), value))
-        cells.append(Cell(f"{100 * share:.0f} %", share))
-    return Row(Cell(name), cells)
+        for value in (part.min(), part.max(), np.median(np.abs(part))):
+            cells.append(number(float(value), _percent))
+        cells.append(number(float((np.abs(part) <= 0.1).mean()), lambda share: f"{100 * share:.0f} %"))
+    return row(name, *cells)
 
 
 def _confirmation(study: EffectiveStudy) -> Part:
@@ -112,10 +106,7 @@ def _confirmation(study: EffectiveStudy) -> Part:
         f"{plain(apart, 2)} in its logarithm of what a least-squares fit to the exact solution gives, with n "
         f"from {plain(min(n), 3)} to {plain(max(n), 3)}."
     )
-    rows = [
-        Row(Cell(plain(ratio, 3), ratio), [Cell(plain(v, 3), v) for v in (theirs, fitted, exponent)])
-        for ratio, theirs, fitted, exponent in study.refitted
-    ]
+    rows = [row(*(number(value, partial(plain, digits=3)) for value in values)) for values in study.refitted]
     table = Table(
         "x0 of Perriot and Barthel, and x0 with n fitted to the exact solution at nu = 0.3.",
         ["E1/E2", "x0, published", "x0, fitted", "n, fitted"],
@@ -148,25 +139,15 @@ def _limit_part(limits: Sequence[Limit], text: str) -> Part:
     panels = list(dict.fromkeys(limit.panel for limit in limits))
     names = list(dict.fromkeys(limit.name for limit in limits))
     styles = dict(zip(names, _CURVES, strict=False))
-    drawn = [
-        Panel(
-            panel,
-            _draw_limit([one for one in limits if one.panel == panel], styles, panel),
-            "|exact over limit − 1|",
-            "",
-        )
-        for panel in panels
-    ]
+    drawn = []
+    for panel in panels:
+        figure = _draw_limit([one for one in limits if one.panel == panel], styles, panel)
+        drawn.append(Panel(panel, figure, "|exact over limit − 1|", ""))
     legend = [(swatch(styles[name]), name) for name in names]
-    rows = [
-        Row(
-            Cell(f"{one.panel}, {one.name}"),
-            [Cell(_percent(one.excess[i]), one.excess[i]) for i in (0, len(one.excess) // 2, -1)],
-        )
-        for one in limits
-    ]
     a = limits[0].a_over_h
-    heads = [f"a/h = {plain(a[i], 2)}" for i in (0, len(a) // 2, -1)]
+    shown = (0, len(a) // 2, -1)
+    rows = [row(f"{x.panel}, {x.name}", *(number(x.excess[i], _percent) for i in shown)) for x in limits]
+    heads = [f"a/h = {plain(a[i], 2)}" for i in shown]
     table = Table("Exact over limit, less 1, at three contact radii.", ["limit", *heads], rows)
     caption = "Over a/h, both logarithmic: a straight line is a power of the thickness left out."
     return Part(text, [table], Gallery(legend, drawn, caption, _limit_csv(limits)))
@@ -218,30 +199,25 @@ def _tint(colour: str, shade: float) -> Markup:
     ).format(colour, shade)
 
 
-def _percent(value: float, sign: bool = True) -> str:
+def _percent(value: float) -> str:
     if abs(value) < 5e-6:
         return "0 %"
-    text = f"{100 * value:+.2g} %" if sign else f"{100 * value:.2g} %"
-    if abs(value) >= 1:
-        text = f"{100 * value:+.0f} %"
-    return text.replace("-", "−")
+    return f"{100 * value:{'+.0f' if abs(value) >= 1 else '+.2g'}} %".replace("-", "−")
 
 
 def _map_csv(study: EffectiveStudy) -> str:
     names = ["exact", *(name for name, _ in study.formulas)]
     tables = [study.exact, *(table for _, table in study.formulas)]
-    lines = ["E1/E2,h/a," + ",".join(f"E_eff/E2* {name}" for name in names)]
+    rows = [["E1/E2", "h/a", *(f"E_eff/E2* {name}" for name in names)]]
     for i, ratio in enumerate(study.ratio):
         for j, thickness in enumerate(study.thickness):
-            lines.append(",".join(f"{v:.9g}" for v in (ratio, thickness, *(table[i][j] for table in tables))))
-    return "\n".join(lines) + "\n"
+            rows.append([f"{v:.9g}" for v in (ratio, thickness, *(table[i][j] for table in tables))])
+    return written(rows)
 
 
 def _limit_csv(limits: Sequence[Limit]) -> str:
-    lines = ["limit,solid,a/h,exact over limit less 1"]
+    rows = [["limit", "solid", "a/h", "exact over limit less 1"]]
     for one in limits:
-        lines += [
-            f'"{one.panel}",{one.name},{a:.9g},{excess:.9g}'
-            for a, excess in zip(one.a_over_h, one.excess, strict=True)
-        ]
-    return "\n".join(lines) + "\n"
+        pairs = zip(one.a_over_h, one.excess, strict=True)
+        rows += [[one.panel, one.name, f"{a:.9g}", f"{excess:.9g}"] for a, excess in pairs]
+    return written(rows)

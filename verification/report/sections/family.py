@@ -1,4 +1,4 @@
-"""Pressures and stresses of coatings that differ in their modulus alone, one plot for each quantity.
+"""Coatings that differ in their modulus alone, one plot for each quantity.
 
 The plots of O'Sullivan and King, J. Tribol. 110 (1988) 235-240: lengths over a_h, stresses over p_h, a curve
 for each E1/E2 at one thickness, without friction or with one coefficient.
@@ -16,15 +16,13 @@ from verification.problem.quantity import QUANTITIES, SCALARS
 from verification.report.figures.panels import swatch
 from verification.report.figures.plot import HUGE, Axes, drawing, round_ticks
 from verification.report.material import Material
-from verification.report.tables.cells import Cell, Gallery, Panel, Part, Row, Section, Table
+from verification.report.tables.cells import Cell, Gallery, Panel, Part, Section, Table, number, row
 from verification.report.tables.csv import written
 from verification.report.tables.labels import source_label, source_style
 from verification.report.tables.lookup import coordinate, layers, scalar, scale, sources_with_profiles
 from verification.report.tables.numbers import plain
 from verification.running.result import CaseResult
 from verification.sources.registry import CLOSED
-
-__all__ = ["family_section", "section"]
 
 WIDTH, HEIGHT = 320, 260
 BOX = (48.0, 6.5, 265.6, 215.8)  # left, top, width, height
@@ -143,8 +141,8 @@ def _numbers(members: Sequence[Member]) -> Table:
             for quantity in scalars:
                 found = scalar(member.result, quantity.name, source)
                 value = None if found is None else float(found[0] / scale(member.result, quantity.scale))
-                cells.append(Cell("–" if value is None else f"{value:.6f}", value))
-        rows.append(Row(Cell(plain(member.ratio, 3), member.ratio, note=member.result.title), cells))
+                cells.append(number(value, "{:.6f}".format))
+        rows.append(row(Cell(plain(member.ratio, 3), member.ratio, note=member.result.title), *cells))
     return Table(
         "Scalars of the contact over the Hertz scales of the bare substrate.",
         ["E1/E2", *(f"{q.symbol} / {q.scale}" for _ in sources for q in scalars)],
@@ -173,10 +171,7 @@ def _draw(members: Sequence[Member], quantity: str, line: str) -> Markup:
             texts.append((x[at], y[at], plain(member.ratio, 3)))
     values = np.concatenate([y[np.isfinite(y)] for _, y, _ in curves] or [np.zeros(0)])
     places = np.concatenate([x[np.abs(x) < HUGE] for x, _, _ in curves] or [np.zeros(0)])
-    low, high = (
-        (float(values.min()), float(values.max())) if values.size and np.ptp(values) > 0 else (-1.0, 1.0)
-    )
-    span = (float(places.min()), float(places.max())) if places.size and np.ptp(places) > 0 else (0.0, 1.0)
+    (low, high), span = _ends(values, (-1.0, 1.0)), _ends(places, (0.0, 1.0))
     margin = 0.09 * (high - low)
     axes = Axes(BOX, span, (low - margin, high + margin))
     axes.ticks(round_ticks(*span, 6), round_ticks(low, high, 6), f"{coordinate(line)} / a_h")
@@ -185,3 +180,8 @@ def _draw(members: Sequence[Member], quantity: str, line: str) -> Markup:
     for x, y, text in texts:
         axes.text(x, y, text)
     return drawing(WIDTH, HEIGHT, f"{quantity} on {line} for every E1/E2", axes)
+
+
+def _ends(values: np.ndarray, otherwise: tuple[float, float]) -> tuple[float, float]:
+    """The least and the largest of ``values``; ``otherwise`` where they do not differ."""
+    return (float(values.min()), float(values.max())) if values.size and np.ptp(values) > 0 else otherwise

@@ -2,17 +2,17 @@
 
 import re
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from functools import partial
 
 from verification.judging.invariants import Invariant
 from verification.judging.verdict import Outcome
 from verification.report.material import Material
-from verification.report.tables.cells import Cell, Part, Row, Section, Table, number
-from verification.report.tables.labels import OUTCOMES, source_label
+from verification.report.tables.cells import Cell, Part, Section, Table, number, row, tally
+from verification.report.tables.labels import OUTCOMES, row_css, source_label
 from verification.report.tables.matrix import outcome_cell
 from verification.report.tables.numbers import plain, scientific
 from verification.running.result import CaseResult
-
-__all__ = ["invariant_cell", "invariant_table", "section"]
 
 _NUMBERED = re.compile(r", (?:coating|interface|layer) \d+$|, substrate$")
 
@@ -22,18 +22,16 @@ def invariant_table(found: Sequence[Invariant]) -> Table | None:
     if not found:
         return None
     rows = [
-        Row(
+        row(
             outcome_cell(one.outcome),
-            [
-                Cell(one.name),
-                Cell(source_label(one.source)),
-                Cell(one.message, css="reason"),
-                number(one.value),
-                number(one.bound),
-                Cell(scientific(one.margin, sign=True), one.margin),
-                Cell(_percent(one.share), one.share),
-            ],
-            "" if one.outcome is Outcome.AGREES else OUTCOMES[one.outcome].css,
+            one.name,
+            source_label(one.source),
+            Cell(one.message, css="reason"),
+            number(one.value),
+            number(one.bound),
+            number(one.margin, partial(scientific, sign=True)),
+            number(one.share, _percent),
+            css=row_css(one.outcome),
         )
         for one in sorted(found, key=_badness)
     ]
@@ -74,7 +72,7 @@ def section(material: Material) -> Section | None:
         for source in sources:
             found = [(n, one) for n, one in rows if (_family(one), one.source) == (name, source)]
             cells += _family_cells(found, anchors)
-        lines.append(Row(Cell(name), cells))
+        lines.append(row(name, *cells))
     held = sum(one.outcome is Outcome.AGREES for _, one in rows)
     tightest = max((one for _, one in rows), key=lambda one: one.share or 0.0)
     text = (
@@ -103,9 +101,9 @@ def _family_cells(
     css = f"flag {OUTCOMES[worst.outcome].css}"
     href = f"#{anchors[case]}-invariants"
     return [
-        Cell(f"{held} of {len(found)}", held / len(found), css, worst.message, href),
+        replace(tally(held, len(found), css), note=worst.message, href=href),
         number(largest),
-        Cell(_percent(worst.share), worst.share),
+        number(worst.share, _percent),
     ]
 
 

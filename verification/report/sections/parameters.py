@@ -1,14 +1,13 @@
 """Solution verification: stated uncertainty, refinement of each numerical parameter, true error."""
 
 from collections.abc import Sequence
+from functools import partial
 
 from verification.credibility.parameters import Stated, Sweep
 from verification.report.material import Material
-from verification.report.tables.cells import Cell, Part, Row, Section, Table, number
+from verification.report.tables.cells import Cell, Part, Section, Table, number, row
 from verification.report.tables.labels import source_label
-from verification.report.tables.numbers import plain, scientific
-
-__all__ = ["parameter_section", "section"]
+from verification.report.tables.numbers import plain
 
 
 def section(material: Material) -> Section | None:
@@ -41,15 +40,10 @@ def _summary(one: Stated, sweeps: Sequence[Sweep]) -> str:
 def _totals(one: Stated, sweeps: Sequence[Sweep]) -> Table:
     rows = []
     for name, U in one.uncertainty.items():
-        cells = [
-            number(one.error[name]),
-            _held(U, one.error[name]),
-            _held(_sum(sweeps, name), one.error[name]),
-        ]
-        for sweep in sweeps:
-            found = sweep.estimate(name)
-            cells.append(Cell("–") if found is None else number(found.uncertainty))
-        rows.append(Row(Cell(name), cells))
+        error = one.error[name]
+        found = [sweep.estimate(name) for sweep in sweeps]
+        fitted = [number(None if fit is None else fit.uncertainty) for fit in found]
+        rows.append(row(name, number(error), _held(U, error), _held(_sum(sweeps, name), error), *fitted))
     return Table(
         "True error at the default numerics, the uncertainty stated, and the fitted one: the sum over "
         "the parameters, then each parameter, by least squares over four levels or more (Eca and Hoekstra "
@@ -68,7 +62,7 @@ def _orders(sweeps: Sequence[Sweep]) -> Table:
     for name in names:
         found = [sweep.estimate(name) for sweep in sweeps]
         orders = [None if one is None else one.order for one in found]
-        rows.append(Row(Cell(name), [Cell("–" if p is None else plain(p, 2), p) for p in orders]))
+        rows.append(row(name, *(number(p, partial(plain, digits=2)) for p in orders)))
     levels = "; ".join(f"{sweep.parameter}: {', '.join(sweep.levels)}" for sweep in sweeps)
     return Table(
         "Observed order in the step of each parameter; a dash where the values are constant, are noise or "
@@ -85,6 +79,4 @@ def _sum(sweeps: Sequence[Sweep], name: str) -> float | None:
 
 
 def _held(U: float | None, error: float) -> Cell:
-    if U is None:
-        return Cell("–")
-    return Cell(scientific(U), U, f"flag {'agrees' if error <= U else 'disagrees'}")
+    return number(U, css="" if U is None else f"flag {'agrees' if error <= U else 'disagrees'}")

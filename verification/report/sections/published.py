@@ -1,42 +1,20 @@
 """Published sources: citation, every table as published beside the values of the methods."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import numpy as np
 
-from verification.judging.verdict import Outcome
 from verification.problem.profile import Profile
 from verification.problem.quantity import QUANTITIES
-from verification.report.material import Material, rerun_command
-from verification.report.tables.case import budget_table, diagnostics_table, facts, layer_table, verdict_table
-from verification.report.tables.cells import Cell, Part, Row, Section, Table, number
-from verification.report.tables.labels import OUTCOMES, OutcomeStyle, source_label
+from verification.report.material import Material
+from verification.report.tables.cells import Cell, Part, Section, Table, number, row
+from verification.report.tables.labels import row_css, source_label
 from verification.report.tables.matrix import outcome_cell
 from verification.report.tables.numbers import plain, scientific
 from verification.running.result import CaseResult
 from verification.sources.registry import METHODS, PUBLISHED, REFERENCES
-
-__all__ = ["PublishedView", "published_view", "section"]
-
-
-@dataclass(frozen=True)
-class PublishedView:
-    """Everything on the page about one published source."""
-
-    anchor: str
-    result: CaseResult
-    outcome: OutcomeStyle
-    summary: str
-    command: str
-    facts: Sequence[tuple[str, str]]
-    failures: Sequence[tuple[str, str]]
-    layers: Table
-    tables: Sequence[tuple[str, Table]]
-    verdicts: Table
-    budget: Table | None
-    diagnostics: Table | None
 
 
 def _sources(result: CaseResult) -> tuple[str, ...]:
@@ -57,20 +35,18 @@ def section(material: Material) -> Section | None:
         total = sum(len(item["counted"]) for item in columns)
         cells = [
             outcome_cell(result.outcome),
-            Cell(str(result.published["year"]), result.published["year"]),
+            number(result.published["year"], str),
             Cell(
                 "primary" if result.published["primary_read"] else "second-hand",
                 note=result.published["read"],
             ),
-            Cell(str(counted), counted),
-            Cell(str(total - counted), total - counted),
+            number(counted, str),
+            number(total - counted, str),
         ]
         for source in sources:
             cells += _method_cells(result, source) if source in _sources(result) else [Cell("–"), Cell("–")]
         head = Cell(result.title, note=result.source, href=f"#{material.anchors[result]}")
-        rows.append(
-            Row(head, cells, "" if result.outcome is Outcome.AGREES else OUTCOMES[result.outcome].css)
-        )
+        rows.append(row(head, *cells, css=row_css(result.outcome)))
     table = Table(
         "A method meets a value when the difference is within the digitisation uncertainty of the source "
         "plus the uncertainty of the method. Values known to be misprints, or second-hand where better ones "
@@ -96,34 +72,11 @@ def _method_cells(result: CaseResult, method: str) -> list[Cell]:
         if gap is not None and allowed is not None:
             met += int((np.abs(gap) <= allowed)[counted].sum())
     numbers = [v.difference for c, v in result.verdicts if method in c.between and v.difference is not None]
-    largest = max(numbers, default=None)
-    return [
-        Cell(f"{met} of {total}", met, "verdict agrees" if met == total else "verdict disagrees"),
-        number(largest),
-    ]
+    css = "verdict agrees" if met == total else "verdict disagrees"
+    return [Cell(f"{met} of {total}", met, css), number(max(numbers, default=None))]
 
 
-def published_view(material: Material, result: CaseResult) -> PublishedView:
-    """Citation, problem, tables and verdicts of one published source."""
-    bad = sum(verdict.outcome is not Outcome.AGREES for _, verdict in result.verdicts)
-    total = len(result.verdicts)
-    return PublishedView(
-        anchor=material.anchors[result],
-        result=result,
-        outcome=OUTCOMES[result.outcome],
-        summary=f"{bad} of {total} comparisons do not agree." if bad else f"All {total} comparisons agree.",
-        command=rerun_command(result.name, material.info.command),
-        facts=facts(result),
-        failures=[(source_label(s.source), s.failure) for s in result.sources if s.failure is not None],
-        layers=layer_table(result),
-        tables=_tables(result),
-        verdicts=verdict_table(result.verdicts, 0.0),
-        budget=budget_table(result),
-        diagnostics=diagnostics_table(result),
-    )
-
-
-def _tables(result: CaseResult) -> list[tuple[str, Table]]:
+def tables(result: CaseResult) -> list[tuple[str, Table]]:
     """One table for each published column, its lines one below the other."""
     columns: dict[tuple[str, str, str], list[dict[str, Any]]] = {}
     for item in result.published["columns"]:
@@ -144,12 +97,9 @@ def _table(result: CaseResult, column: str, quantity: str, items: Sequence[Mappi
         }
         source = _profile(result, item, PUBLISHED)
         for n, text in enumerate(item["text"]):
-            counted = item["counted"][n]
-            uncertainty = (
-                source.uncertainty[n] if source is not None and source.uncertainty is not None else None
-            )
+            uncertainty = None if source is None or source.uncertainty is None else source.uncertainty[n]
             cells = [
-                Cell(plain(item["position"][n], 6), item["position"][n]),
+                number(item["position"][n], partial(plain, digits=6)),
                 Cell(text.replace("-", "−"), float(text)),
                 Cell(_in(uncertainty, item), uncertainty),
             ]
@@ -158,28 +108,25 @@ def _table(result: CaseResult, column: str, quantity: str, items: Sequence[Mappi
                 profile, gap, allowed = methods[method]
                 if method not in METHODS and profile is None:
                     cells += [Cell("–")] * 3
-                    continue
-                if profile is None or gap is None:
+                elif profile is None or gap is None:
                     cells += [Cell("no result", css="no-result"), Cell("–"), Cell("–")]
                     met.append(False)
-                    continue
-                value = float(profile.value[n]) / item["to_si"]
-                cells.append(Cell(plain(value, 7), value))
-                cells.append(Cell(_in(float(gap[n]), item, signed=True), abs(float(gap[n]))))
-                cells.append(Cell(_in(None if allowed is None else float(allowed[n]), item)))
-                met.append(allowed is not None and bool(abs(gap[n]) <= allowed[n]))
+                else:
+                    limit = None if allowed is None else float(allowed[n])
+                    cells += [
+                        number(float(profile.value[n]) / item["to_si"], partial(plain, digits=7)),
+                        Cell(_in(float(gap[n]), item, signed=True), abs(float(gap[n]))),
+                        Cell(_in(limit, item)),
+                    ]
+                    met.append(limit is not None and bool(abs(gap[n]) <= limit))
+            verdict = Cell("✓", css="verdict agrees") if all(met) else Cell("✗", css="verdict disagrees")
+            counted = item["counted"][n]
             if not counted:
                 why = item.get("why_not", ("misprint",) * len(item["text"]))[n]
-                cells.append(Cell(f"{why}, not counted", css="verdict inconclusive"))
-            else:
-                cells.append(
-                    Cell("✓", css="verdict agrees") if all(met) else Cell("✗", css="verdict disagrees")
-                )
-            head = Cell(
-                ", ".join(filter(None, (place, item["labels"][n]))),
-                note=f"{item['file']}, line {item['rows'][n]}",
-            )
-            rows.append(Row(head, cells, "" if counted else "inconclusive"))
+                verdict = Cell(f"{why}, not counted", css="verdict inconclusive")
+            label = ", ".join(filter(None, (place, item["labels"][n])))
+            head = Cell(label, note=f"{item['file']}, line {item['rows'][n]}")
+            rows.append(row(head, *cells, verdict, css="" if counted else "inconclusive"))
     unit = f" in {first['unit']}" if first["unit"] != "1" else ""
     meaning = (QUANTITIES[quantity].meaning or QUANTITIES[quantity].symbol) + (
         " here, of the other sign" if first["to_si"] < 0 else " here"
@@ -221,4 +168,4 @@ def _gap(
 
 
 def _profile(result: CaseResult, item: Mapping[str, Any], source: str) -> Profile | None:
-    return result.profile(item["quantity"], item["line"], source)
+    return result.profile_of.get((item["quantity"], item["line"], source))

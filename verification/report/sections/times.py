@@ -1,13 +1,11 @@
 """Run times of every source in every case."""
 
 from verification.report.material import Material
-from verification.report.tables.cells import Cell, Part, Row, Section, Table, number
+from verification.report.tables.cells import Cell, Part, Section, Table, number, row
 from verification.report.tables.labels import source_label
 from verification.report.tables.matrix import case_cell
 from verification.report.tables.numbers import seconds
 from verification.running.result import SourceResult
-
-__all__ = ["section"]
 
 
 def section(material: Material) -> Section | None:
@@ -20,8 +18,8 @@ def section(material: Material) -> Section | None:
     for result in material.results:
         times = {source.source: source for source in result.sources}
         cells = [_time_cell(times.get(name)) for name in names]
-        cells.append(number(result.seconds, seconds))
-        rows.append(Row(case_cell(result, f"#{material.anchors[result]}"), cells))
+        head = case_cell(result, f"#{material.anchors[result]}")
+        rows.append(row(head, *cells, number(result.seconds, seconds)))
     table = Table(
         "Wall-clock seconds of each source including its uncertainty estimate; the case in total.",
         ["case", *(source_label(name) for name in names), "case in total"],

@@ -14,9 +14,6 @@ from verification.sources.registry import METHODS, solvers
 from verification.study.curves import Curve
 from verification.study.plan import Study
 
-__all__ = ["contour_figure", "nearest"]
-
-
 LEVELS = 18
 COLUMNS, ROWS, FEWEST = 81, 28, 6
 WIDEST, DEEPEST = 2.0, 1.6  # of the largest contact radius, what is drawn

@@ -5,7 +5,7 @@ Lengths over a_h, stresses over p_h, both of the bare substrate; a second axis g
 
 import io
 import warnings
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -13,6 +13,7 @@ from typing import Any
 
 import matplotlib as mpl
 import numpy as np
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.backends.backend_pdf import FigureCanvasPdf
@@ -33,17 +34,6 @@ from verification.study.criteria import MODES, Judged
 from verification.study.curves import Curve
 from verification.study.quantities import QUANTITIES
 from verification.study.table import SCALARS, SOURCES
-
-__all__ = [
-    "Drawn",
-    "contact_figure",
-    "governing_figure",
-    "sheet",
-    "stress_figures",
-    "use_figures",
-    "write_drawn",
-]
-
 
 # Okabe and Ito's colours, distinct for the colour-blind; dashes distinguish friction.
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00", "#000000")
@@ -98,7 +88,7 @@ def drawn(figure: Figure, name: str, title: str, caption: str, rows: Sequence[Se
     FigureCanvasAgg(figure)
     figure.draw_without_rendering()
     # Laid out once, not again for each format.
-    figure.set_layout_engine("none")
+    figure.set_layout_engine(None)
     FigureCanvasPdf(figure).print_figure(pdf, format="pdf", metadata={"CreationDate": None})
     FigureCanvasAgg(figure).print_figure(png, format="png", dpi=DPI, metadata={"Software": None})
     return Drawn(name, title, caption, pdf.getvalue(), png.getvalue(), written(rows))
@@ -106,24 +96,18 @@ def drawn(figure: Figure, name: str, title: str, caption: str, rows: Sequence[Se
 
 def write_drawn(figure: Drawn, folder: Path) -> None:
     """NAME.pdf, NAME.png, NAME.csv under ``folder``. Raises StoreError where it cannot be written."""
-    write_atomically(folder / f"{figure.name}.pdf", figure.pdf)
-    write_atomically(folder / f"{figure.name}.png", figure.png)
-    write_atomically(folder / f"{figure.name}.csv", figure.csv)
+    for kind, data in (("pdf", figure.pdf), ("png", figure.png), ("csv", figure.csv)):
+        write_atomically(folder / f"{figure.name}.{kind}", data)
 
 
 def stress_figures(curves: Sequence[Curve]) -> list[Drawn]:
     """For each failure mode its stress against thickness, compliant beside stiff coatings."""
+    p_h = curves[0].p_h
     return [
         _against_thickness(
-            curves,
-            quantity,
-            f"stress_{quantity}",
-            f"{quantity}: {MODES[quantity]}",
-            NAMES[quantity] + r" / $p_h$",
-            lambda curve, q=quantity: curve.stress[q],  # type: ignore[misc]
-            in_pascal=True,
+            curves, f"stress_{name}", name, f"{name}: {MODES[name]}", f"{NAMES[name]} / $p_h$", p_h=p_h
         )
-        for quantity in QUANTITIES
+        for name in QUANTITIES
     ]
 
 
@@ -132,30 +116,19 @@ def contact_figure(curves: Sequence[Curve]) -> list[Drawn]:
     smallest = min(curve.friction for curve in curves)
     chosen = [curve for curve in curves if curve.friction == smallest]
     scales = {"delta_h": r"\delta_h"}
-    names = {name: f"${QUANTITY[name].tex} / {scales.get(scale, scale)}$" for name, scale in SCALARS.items()}
-    return [
-        _against_thickness(
-            chosen,
-            quantity,
-            f"contact_{quantity}",
-            quantity.replace("_", " "),
-            label,
-            lambda curve, q=quantity: curve.scalar[q],  # type: ignore[misc]
-            in_pascal=False,
-        )
-        for quantity, label in names.items()
-    ]
+    found = []
+    for name, scale in SCALARS.items():
+        label = f"${QUANTITY[name].tex} / {scales.get(scale, scale)}$"
+        found.append(_against_thickness(chosen, f"contact_{name}", name, name.replace("_", " "), label))
+    return found
+
+
+def _values(curve: Curve, quantity: str) -> Array:
+    return curve.stress[quantity] if quantity in curve.stress else curve.scalar[quantity]
 
 
 def _against_thickness(
-    curves: Sequence[Curve],
-    quantity: str,
-    name: str,
-    title: str,
-    label: str,
-    values: Callable[[Curve], Array],
-    *,
-    in_pascal: bool,
+    curves: Sequence[Curve], name: str, quantity: str, title: str, label: str, *, p_h: float | None = None
 ) -> Drawn:
     sides = [
         ("compliant coating, $E_1 < E_2$", [c for c in curves if c.ratio < 1]),
@@ -168,39 +141,34 @@ def _against_thickness(
     rows = [["E1/E2", "f", "h / a_h", f"{quantity} over its scale", "source"]]
     checked = any(curve.marks for curve in curves)
     with sheet(170 if len(sides) == 2 else 130, 92 if checked else 68) as figure:
+        heights = (3, 1)[: 1 + checked]
         grid = figure.subplots(
-            1 + checked,
-            len(sides),
-            sharey="row",
-            sharex="col",
-            squeeze=False,
-            height_ratios=(3, 1)[: 1 + checked],
+            len(heights), len(sides), sharey="row", sharex="col", squeeze=False, height_ratios=heights
         )
         panels = grid[0]
         for axes, (heading, members) in zip(panels, sides, strict=True):
             for curve in members:
                 colour = colours[curve.ratio]
                 dash = DASHES[frictions.index(curve.friction) % len(DASHES)]
-                axes.plot(curve.h, values(curve), color=colour, linestyle=dash)
+                axes.plot(curve.h, _values(curve, quantity), color=colour, linestyle=dash)
+                points = {SOURCES[0]: (curve.h, _values(curve, quantity))}
                 for source, marks in curve.marks.items():
                     _mark(axes, *marks[quantity], source, colour)
-                for source, (h, value) in {
-                    SOURCES[0]: (curve.h, values(curve)),
-                    **{s: m[quantity] for s, m in curve.marks.items()},
-                }.items():
-                    rows += [
-                        [f"{curve.ratio:g}", f"{curve.friction:g}", f"{x:.9g}", f"{y:.9g}", source]
-                        for x, y in zip(h, value, strict=True)
-                    ]
+                    points[source] = marks[quantity]
+                rows += [
+                    [f"{curve.ratio:g}", f"{curve.friction:g}", f"{x:.9g}", f"{y:.9g}", source]
+                    for source, (h, value) in points.items()
+                    for x, y in zip(h, value, strict=True)
+                ]
             _thickness_axis(axes, heading)
         panels[0].set_ylabel(label)
         if checked:
             for axes in panels:
                 axes.set_xlabel("")
-            _differences(grid[1], sides, quantity, lambda curve: colours[curve.ratio], values)
-        if in_pascal:
-            p_h = curves[0].p_h / 1e6
-            second = panels[-1].secondary_yaxis("right", functions=(lambda y: y * p_h, lambda y: y / p_h))
+            _differences(grid[1], sides, quantity, colours)
+        if p_h is not None:
+            unit = p_h / 1e6
+            second = panels[-1].secondary_yaxis("right", functions=(lambda y: y * unit, lambda y: y / unit))
             second.set_ylabel("MPa")
         _legend(figure, ratios, frictions, {s for c in curves for s in c.marks})
         caption = (
@@ -214,11 +182,7 @@ def _against_thickness(
 
 
 def _differences(
-    panels: Sequence[Axes],
-    sides: Sequence[tuple[str, Sequence[Curve]]],
-    quantity: str,
-    colour: Callable[[Curve], str],
-    values: Callable[[Curve], Array],
+    panels: Sequence[Axes], sides: Sequence[tuple[str, list[Curve]]], quantity: str, colours: dict[float, str]
 ) -> None:
     """|mark - curve| at every cross-checked thickness, on a logarithmic scale that ends at ``LEAST``."""
     for axes, (_, members) in zip(panels, sides, strict=True):
@@ -226,8 +190,9 @@ def _differences(
             for source, marks in curve.marks.items():
                 at, value = marks[quantity]
                 known = np.isin(at, curve.h)
-                here = values(curve)[np.searchsorted(curve.h, at[known])]
-                _mark(axes, at[known], np.maximum(np.abs(value[known] - here), LEAST), source, colour(curve))
+                here = _values(curve, quantity)[np.searchsorted(curve.h, at[known])]
+                gap = np.maximum(np.abs(value[known] - here), LEAST)
+                _mark(axes, at[known], gap, source, colours[curve.ratio])
         axes.set_yscale("log")
         axes.set_ylim(0.6 * LEAST, 1e-2)
         axes.set_yticks([1e-7, 1e-5, 1e-3])
@@ -246,34 +211,29 @@ def _thickness_axis(axes: Axes, title: str) -> None:
     axes.set_xscale("log")
     axes.xaxis.set_major_formatter(ScalarFormatter())
     axes.xaxis.set_minor_formatter(NullFormatter())
-    axes.set_xticks(
-        [t for t in (0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100) if _shown(axes, t)]
-    )
+    low, high = axes.get_xlim()
+    ticks = (0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100)
+    axes.set_xticks([tick for tick in ticks if low <= tick <= high])
     axes.set_xlabel(r"coating thickness, $h / a_h$")
     axes.set_title(title, fontsize=8)
     axes.grid(True, linewidth=0.3, color="#cccccc")
 
 
-def _shown(axes: Axes, tick: float) -> bool:
-    low, high = axes.get_xlim()
-    return low <= tick <= high
-
-
 def _legend(figure: Figure, ratios: Sequence[float], frictions: Sequence[float], sources: set[str]) -> None:
-    handles = [
-        Line2D([], [], color=COLOURS[i % len(COLOURS)], label=f"$E_1/E_2$ = {ratio:.4g}")
-        for i, ratio in enumerate(ratios)
-    ]
+    def key(label: str, colour: str = "#444444", **style: Any) -> Line2D:
+        return Line2D([], [], color=colour, label=label, **style)
+
+    handles = [key(f"$E_1/E_2$ = {r:.4g}", COLOURS[i % len(COLOURS)]) for i, r in enumerate(ratios)]
     if len(frictions) > 1:
-        handles += [
-            Line2D([], [], color="#444444", linestyle=DASHES[i % len(DASHES)], label=f"f = {f:g}")
-            for i, f in enumerate(frictions)
-        ]
-    handles += [
-        Line2D([], [], color="#444444", marker=mark, linestyle="none", markerfacecolor="none", label=label)
-        for mark, label in [(RECORDS[s].style.marker, RECORDS[s].label) for s in SOURCES[1:] if s in sources]
-    ]
-    figure.legend(handles=handles, loc="outside lower center", ncols=min(len(handles), 5), frameon=False)
+        handles += [key(f"f = {f:g}", linestyle=DASHES[i % len(DASHES)]) for i, f in enumerate(frictions)]
+    for record in (RECORDS[source] for source in SOURCES[1:] if source in sources):
+        marker = record.style.marker
+        handles.append(key(record.label, marker=marker, linestyle="none", markerfacecolor="none"))
+    _below(figure, handles, min(len(handles), 5))
+
+
+def _below(figure: Figure, handles: Sequence[Artist], columns: int) -> None:
+    figure.legend(handles=handles, loc="outside lower center", ncols=columns, frameon=False)
 
 
 def use_figures(judgements: Sequence[Judged]) -> list[Drawn]:
@@ -282,6 +242,10 @@ def use_figures(judgements: Sequence[Judged]) -> list[Drawn]:
     if not chosen:
         return []
     found = []
+    caption = (
+        "Green: admissible thicknesses, where every stress stays below its strength. Triangle: the "
+        "preferable thickness."
+    )
     for ratio in sorted({j.curve.ratio for j in chosen}):
         members = [j for j in chosen if j.curve.ratio == ratio]
         rows = [["E1/E2", "f", "h / a_h", "h [m]", *members[0].modes]]
@@ -305,18 +269,9 @@ def use_figures(judgements: Sequence[Judged]) -> list[Drawn]:
                     for i, h in enumerate(curve.h)
                 ]
             panels[0].set_ylabel("stress over strength")
-            handles = panels[0].get_legend_handles_labels()
-            figure.legend(*handles, loc="outside lower center", ncols=3, frameon=False)
-            found.append(
-                drawn(
-                    figure,
-                    f"use_{ratio:.4g}".replace(".", "_"),
-                    f"Stress over strength, E1/E2 = {ratio:.4g}",
-                    "Green: admissible thicknesses, where every stress stays below its strength. "
-                    "Triangle: the preferable thickness.",
-                    rows,
-                )
-            )
+            _below(figure, panels[0].get_legend_handles_labels()[0], 3)
+            name = f"use_{ratio:.4g}".replace(".", "_")
+            found.append(drawn(figure, name, f"Stress over strength, E1/E2 = {ratio:.4g}", caption, rows))
     return found
 
 
@@ -348,11 +303,9 @@ def governing_figure(judgements: Sequence[Judged]) -> list[Drawn]:
             if judgements[0].limited:
                 axes.contour(h, ratio, largest, levels=[1.0], colors="#c02a2a", linewidths=1.6)
             for judgement in judgements:
-                if judgement.curve.friction == friction:
-                    solved = judgement.curve.h
-                    axes.plot(
-                        solved, np.full_like(solved, judgement.curve.ratio), ".", color="#222222", ms=1.6
-                    )
+                curve = judgement.curve
+                if curve.friction == friction:
+                    axes.plot(curve.h, np.full_like(curve.h, curve.ratio), ".", color="#222222", ms=1.6)
             axes.set_yscale("log")
             axes.yaxis.set_minor_formatter(NullFormatter())
             axes.set_yticks(sorted({j.curve.ratio for j in judgements}))
@@ -361,9 +314,7 @@ def governing_figure(judgements: Sequence[Judged]) -> list[Drawn]:
             rows += [
                 [
                     f"{friction:g}",
-                    f"{ratio[i]:.6g}",
-                    f"{h[j]:.6g}",
-                    f"{largest[i, j]:.6g}",
+                    *(f"{x:.6g}" for x in (ratio[i], h[j], largest[i, j])),
                     modes[governing[i, j]],
                 ]
                 for i in range(0, ratio.size, 4)
@@ -371,18 +322,13 @@ def governing_figure(judgements: Sequence[Judged]) -> list[Drawn]:
             ]
         panels[0].set_ylabel("$E_1/E_2$")
         handles = [Patch(color=_pale(COLOURS[list(MODES).index(m)]), label=f"{m}: {MODES[m]}") for m in modes]
-        figure.legend(handles=handles, loc="outside lower center", ncols=2, frameon=False)
+        _below(figure, handles, 2)
         quantity = "stress over strength, red where it is 1" if judgements[0].limited else "stress over p_h"
-        return [
-            drawn(
-                figure,
-                "governing_mode",
-                "Governing failure mode",
-                "Colour: the mode whose stress is largest against its strength. Lines: the largest "
-                f"{quantity}. Dots: solved points.",
-                rows,
-            )
-        ]
+        caption = (
+            f"Colour: the mode whose stress is largest against its strength. Lines: the largest {quantity}. "
+            "Dots: solved points."
+        )
+        return [drawn(figure, "governing_mode", "Governing failure mode", caption, rows)]
 
 
 def _places(lines: QuadContourSet, h: Array, ratio: Array) -> list[tuple[float, float]]:

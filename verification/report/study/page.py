@@ -6,6 +6,7 @@ from pathlib import Path
 
 from markupsafe import Markup
 
+from verification.report.html.templates import render_sections
 from verification.report.study.contours import contour_figure, nearest
 from verification.report.study.figures import (
     Drawn,
@@ -15,20 +16,17 @@ from verification.report.study.figures import (
     use_figures,
     write_drawn,
 )
-from verification.report.study.recommendation import near, recommendation_sentences
-from verification.report.study.summary import agreement_sentences, main_sentences
-from verification.report.tables.cells import Cell, Gallery, Panel, Part, Row, Section, Table, number
+from verification.report.study.recommendation import near, recommendation_messages
+from verification.report.study.summary import agreement_messages, main_messages
+from verification.report.tables.cells import Cell, Gallery, Panel, Part, Section, Table, number, row
 from verification.report.tables.csv import embedded
 from verification.report.tables.labels import source_label
-from verification.report.templates import render_sections
 from verification.running.store import write_atomically
 from verification.study.criteria import MODES, Judged, judged
 from verification.study.curves import Curve, Difference, curves, differences
 from verification.study.plan import Study
 from verification.study.quantities import QUANTITIES
 from verification.study.table import SCALARS, SOURCES, read_columns
-
-__all__ = ["write_study_report"]
 
 CONTOURS = (0.1, 0.5, 2.0)  # h/a_h; the solved ones nearest to these
 
@@ -92,42 +90,35 @@ def write_study_report(
 def _summary(found: Sequence[Curve], checks: Sequence[Difference]) -> Section:
     if not found:
         return Section("summary", "Summary of the curves", [], ["No curve has two solved points."])
-    parts = [Part(sentence) for sentence in main_sentences(found)]
-    parts += [Part(sentence) for sentence in agreement_sentences(checks)]
-    if not checks:
-        parts.append(Part("No point was cross-checked."))
-    return Section("summary", "Summary of the curves", parts)
+    texts = [*main_messages(found), *(agreement_messages(checks) or ["No point was cross-checked."])]
+    return Section("summary", "Summary of the curves", [Part(text) for text in texts])
 
 
 def _extremes(found: Sequence[Curve]) -> Part:
-    rows = []
+    rows, ends = [], ("smallest", "at h / a_h", "largest", "at h / a_h")
     for curve in found:
         for quantity in (*QUANTITIES, *SCALARS):
             (h_low, low), (h_high, high) = curve.extremes(quantity)
-            scale = SCALARS.get(quantity, "p_h")
-            cells = [Cell(f"{curve.ratio:.4g}", curve.ratio), Cell(f"{curve.friction:g}", curve.friction)]
-            cells += [Cell(scale)]
-            for value, h in ((low, h_low), (high, h_high)):
-                cells += [Cell(f"{value:.5f}", value), Cell(f"{h:.3g}", h)]
             places = "–"
             if quantity in QUANTITIES:
                 i = int(curve.stress[quantity].argmax())
                 places = f"{curve.x[quantity][i]:.3f}, {curve.z[quantity][i]:.3f}".replace("nan", "–")
-            cells.append(Cell(places))
-            rows.append(Row(Cell(quantity), cells))
+            rows.append(
+                row(
+                    quantity,
+                    number(curve.ratio, "{:.4g}".format),
+                    number(curve.friction, "{:g}".format),
+                    SCALARS.get(quantity, "p_h"),
+                    number(low, "{:.5f}".format),
+                    number(h_low, "{:.3g}".format),
+                    number(high, "{:.5f}".format),
+                    number(h_high, "{:.3g}".format),
+                    places,
+                )
+            )
     table = Table(
         "Extremes of every curve among its solved points, and where in the solid the largest lies.",
-        [
-            "quantity",
-            "E1/E2",
-            "f",
-            "over",
-            "smallest",
-            "at h / a_h",
-            "largest",
-            "at h / a_h",
-            "x, z over a_h",
-        ],
+        ["quantity", "E1/E2", "f", "over", *ends, "x, z over a_h"],
         rows,
     )
     return Part("", [table], folded=f"{len(rows)} rows")
@@ -142,19 +133,17 @@ def _preference(study: Study, judgements: Sequence[Judged]) -> Section:
             f"{low * j.curve.a_h * 1e6:.3g} – {high * j.curve.a_h * 1e6:.3g}" for low, high in j.admissible
         )
         rows.append(
-            Row(
-                Cell(f"{j.curve.ratio:.4g}", j.curve.ratio),
-                [
-                    Cell(f"{j.curve.friction:g}", j.curve.friction),
-                    Cell(f"{'≤ ' if h == j.h[0] else '≥ ' if h == j.h[-1] else ''}{h:.3g}", h),
-                    Cell(f"{h * j.curve.a_h * 1e6:.3g}", h * j.curve.a_h),
-                    Cell(f"{use:.4f}", use),
-                    Cell(mode, note=MODES[mode]),
-                    *([Cell(ranges or "none")] if limited else []),
-                    number(j.interpolation_error),
-                    *_near_cells(j, h, mode),
-                ],
-                "" if j.admissible or not j.limited else "disagrees",
+            row(
+                number(j.curve.ratio, "{:.4g}".format),
+                number(j.curve.friction, "{:g}".format),
+                Cell(f"{'≤ ' if h == j.h[0] else '≥ ' if h == j.h[-1] else ''}{h:.3g}", h),
+                Cell(f"{h * j.curve.a_h * 1e6:.3g}", h * j.curve.a_h),
+                number(use, "{:.4f}".format),
+                Cell(mode, note=MODES[mode]),
+                *([ranges or "none"] if limited else []),
+                number(j.interpolation_error),
+                *_near_cells(j, h, mode),
+                css="" if j.admissible or not j.limited else "disagrees",
             )
         )
     table = Table(
@@ -177,28 +166,28 @@ def _preference(study: Study, judgements: Sequence[Judged]) -> Section:
         ],
         rows,
     )
-    parts = [Part(study.criteria.description()), *(Part(s) for s in recommendation_sentences(judgements))]
+    parts = [Part(study.criteria.description()), *(Part(s) for s in recommendation_messages(judgements))]
     return Section("preferable", "Which thickness", [*parts, Part("", [table])])
 
 
 def _near_cells(judgement: Judged, h: float, mode: str) -> list[Cell]:
     """The thickness checked next to ``h``, what each other source differs by there; dashes for none."""
     by_source = {one.source: one for one in near(judgement, h, mode)}
-    cells = [Cell("–")]
-    for source in SOURCES[1:]:
-        one = by_source.get(source)
-        if one is not None:
-            cells[0] = Cell(f"{one.h:.3g}", one.h)
-        cells.append(Cell("–") if one is None else number(one.difference))
-    return cells
+    checked = next((by_source[source].h for source in reversed(SOURCES[1:]) if source in by_source), None)
+    found = [by_source.get(source) for source in SOURCES[1:]]
+    differences = [number(None if one is None else one.difference) for one in found]
+    return [number(checked, "{:.3g}".format), *differences]
 
 
 def _drawn_section(anchor: str, title: str, drawings: Sequence[Drawn]) -> Section:
     panels = [
         Panel(
             d.title,
-            Markup('<img class="print" src="data:image/png;base64,{}" alt="{}" loading="lazy">{}').format(
-                base64.b64encode(d.png).decode(), f"{d.title}. {d.caption}", _download(d)
+            Markup(
+                '<img class="print" src="data:image/png;base64,{}" alt="{}" loading="lazy"><a class="csv" '
+                'href="{}" download="{}.csv.gz" data-csv="{}.csv">Numbers as CSV</a>'
+            ).format(
+                base64.b64encode(d.png).decode(), f"{d.title}. {d.caption}", embedded(d.csv), d.name, d.name
             ),
             d.caption,
             "wide",
@@ -207,12 +196,6 @@ def _drawn_section(anchor: str, title: str, drawings: Sequence[Drawn]) -> Sectio
     ]
     text = "For print, in the folder of figures: " + ", ".join(f"{d.name}.pdf" for d in drawings) + "."
     return Section(anchor, title, [Part("", gallery=Gallery([], panels, text))])
-
-
-def _download(d: Drawn) -> Markup:
-    return Markup(
-        '<a class="csv" href="{0}" download="{1}.csv.gz" data-csv="{1}.csv">Numbers as CSV</a>'
-    ).format(embedded(d.csv), d.name)
 
 
 def _maps(study: Study, found: Sequence[Curve]) -> tuple[list[Drawn], list[str]]:
@@ -233,41 +216,30 @@ def _checks(checks: Sequence[Difference]) -> list[Section]:
     if not checks:
         return []
     rows = [
-        Row(
-            Cell(source_label(d.source)),
-            [
-                Cell(d.quantity),
-                Cell(str(d.points), d.points),
-                number(d.largest),
-                number(d.stated),
-                Cell(f"{d.ratio:.4g}", d.ratio),
-                Cell(f"{d.h:.3g}", d.h),
-                Cell(f"{d.friction:g}", d.friction),
-            ],
-            "" if d.largest <= d.stated or d.stated != d.stated else "disagrees",
+        row(
+            source_label(d.source),
+            d.quantity,
+            number(d.points, str),
+            number(d.largest),
+            number(d.stated),
+            number(d.ratio, "{:.4g}".format),
+            number(d.h, "{:.3g}".format),
+            number(d.friction, "{:g}".format),
+            css="" if d.largest <= d.stated or d.stated != d.stated else "disagrees",
         )
         for d in checks
     ]
-    columns = [
-        "source",
-        "quantity",
-        "points",
-        "largest difference",
-        "uncertainty of both",
-        "E1/E2",
-        "h / a_h",
-        "f",
-    ]
+    columns = ["source", "quantity", "points", "largest difference", "uncertainty of both"]
     table = Table(
         "The largest difference from the semi-analytical method, over p_h, a_h or delta_h, where it occurs, "
         "the uncertainty both state there.",
-        columns,
+        [*columns, "E1/E2", "h / a_h", "f"],
         rows,
     )
     return [Section("checks", "Cross-check", [Part("", [table])])]
 
 
 def _failed(every: Sequence[Curve], more: Sequence[str]) -> list[Section]:
-    failures = [f"{c.label}, h = {h:.4g} a_h: {sentence}" for c in every for h, sentence in c.failures]
+    failures = [f"{c.label}, h = {h:.4g} a_h: {message}" for c in every for h, message in c.failures]
     failures += more
     return [Section("failed", "What could not be solved", [], failures[:200])] if failures else []

@@ -12,8 +12,6 @@ import numpy as np
 from verification.report.tables.labels import source_label
 from verification.study.criteria import MODES, Judged
 
-__all__ = ["Near", "near", "recommendation_sentences"]
-
 
 @dataclass(frozen=True)
 class Near:
@@ -43,10 +41,10 @@ def near(judgement: Judged, h: float, mode: str) -> tuple[Near, ...]:
     return tuple(found)
 
 
-def recommendation_sentences(judgements: Sequence[Judged]) -> list[str]:
+def recommendation_messages(judgements: Sequence[Judged]) -> list[str]:
     """For each modulus what is recommended, which failure bounds it, the cross-checks nearest to it.
 
-    Without strengths, or with none of them judged, a single sentence: where the preferable thicknesses lie.
+    Without strengths, or with none of them judged, a single message: where the preferable thicknesses lie.
     """
     limited = [j for j in judgements if j.limited]
     if not limited:

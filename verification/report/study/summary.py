@@ -1,4 +1,4 @@
-"""Summary of the curves of a study in sentences made from its numbers."""
+"""Summary of the curves of a study as text made from its numbers."""
 
 from collections.abc import Sequence
 
@@ -9,8 +9,6 @@ from verification.report.tables.labels import source_label
 from verification.study.criteria import MODES
 from verification.study.curves import Curve, Difference
 from verification.study.table import SCALARS
-
-__all__ = ["agreement_sentences", "main_sentences"]
 
 FLAT = 0.02  # of its own largest value; a curve that changes less does not depend on thickness
 NOWHERE = 1e-3  # of p_h
@@ -25,8 +23,8 @@ QUANTITY = {
 }
 
 
-def main_sentences(curves: Sequence[Curve]) -> list[str]:
-    """A sentence for each stress, one for the contact: how large, where, which way over the thickness."""
+def main_messages(curves: Sequence[Curve]) -> list[str]:
+    """A message for each stress, one for the contact: how large, where, which way over the thickness."""
     return [*(_main(quantity, curves) for quantity in MODES), _contact(curves)]
 
 
@@ -103,7 +101,7 @@ def _course(curve: Curve, quantity: str, largest: float) -> str:
     return f"{name} has {' and '.join(inner)}"
 
 
-def agreement_sentences(differences: Sequence[Difference]) -> list[str]:
+def agreement_messages(differences: Sequence[Difference]) -> list[str]:
     """How far the other sources are from the semi-analytical method over all checked points."""
     found = []
     for source in dict.fromkeys(d.source for d in differences):

@@ -1,30 +1,20 @@
 """The tables of one case: contact, verdicts, uncertainty budget, run times."""
 
 from collections.abc import Callable, Sequence
+from functools import partial
 from math import isfinite
 from typing import Any
 
 import numpy as np
 
-from verification.judging.verdict import Claim, Outcome, Verdict
+from verification.judging.verdict import Claim, Verdict
 from verification.problem.quantity import QUANTITIES, SCALARS, unit_of
-from verification.report.tables.cells import Cell, Row, Table, number
-from verification.report.tables.labels import OUTCOMES, pair_label, source_label
+from verification.report.tables.cells import Cell, Table, number, row
+from verification.report.tables.labels import OUTCOMES, pair_label, row_css, source_label
 from verification.report.tables.lookup import layers, reference_source, scalar, scale
 from verification.report.tables.matrix import outcome_cell
 from verification.report.tables.numbers import engineering, plain, scientific, with_uncertainty
 from verification.running.result import CaseResult
-
-__all__ = [
-    "budget_table",
-    "contact_table",
-    "diagnostics_table",
-    "dominating_parameter",
-    "facts",
-    "layer_table",
-    "verdict_table",
-]
-
 
 _FACTS = {
     "pressure": ("uniform pressure q", "Pa"),
@@ -59,14 +49,16 @@ def layer_table(result: CaseResult) -> Table:
     rows = []
     for layer, (E, nu, thickness) in enumerate(found, start=1):
         below = layer == len(found)
-        cells = [
-            Cell(engineering(E, "Pa"), E),
-            Cell(plain(E / found[-1][0], 3), E),
-            Cell(plain(nu), nu),
-            Cell("∞" if below else engineering(thickness, "m"), thickness),
-            Cell("∞" if below else plain(thickness / a_h, 3) if a_h > 0 else "–", thickness),
-        ]
-        rows.append(Row(Cell("substrate" if below else f"coating {layer}"), cells))
+        rows.append(
+            row(
+                "substrate" if below else f"coating {layer}",
+                Cell(engineering(E, "Pa"), E),
+                Cell(plain(E / found[-1][0], 3), E),
+                number(nu, plain),
+                Cell("∞" if below else engineering(thickness, "m"), thickness),
+                Cell("∞" if below else plain(thickness / a_h, 3) if a_h > 0 else "–", thickness),
+            )
+        )
     return Table("Layers from the surface down.", ["layer", "E", "E / E_s", "nu", "h", f"h / {length}"], rows)
 
 
@@ -79,8 +71,8 @@ def contact_table(result: CaseResult) -> Table:
         cells: list[Cell] = []
         for quantity in SCALARS:
             cells += _scalar_cells(result, quantity, source.source, base)
-        failed = source.failure is not None
-        rows.append(Row(Cell(source_label(source.source)), cells, "failed" if failed else ""))
+        css = "" if source.failure is None else "failed"
+        rows.append(row(source_label(source.source), *cells, css=css))
     columns = ["source"]
     groups = [("", 1)]
     for quantity in SCALARS:
@@ -100,11 +92,8 @@ def _scalar_cells(result: CaseResult, quantity: str, source: str, base: str | No
     if found is None:
         return [Cell("no result", css="no-result"), Cell("–"), Cell("–")]
     value, uncertainty = found
-    shown = Cell(
-        with_uncertainty(value, uncertainty, unit_of(quantity)),
-        value,
-        note="" if uncertainty else _note(uncertainty),
-    )
+    note = "" if uncertainty else "uncertainty not stated" if uncertainty is None else "exact"
+    shown = Cell(with_uncertainty(value, uncertainty, unit_of(quantity)), value, note=note)
     relative = value / scale(result, QUANTITIES[quantity].scale)
     ratio = Cell(f"{relative:.6f}", relative)
     reference = scalar(result, quantity, base) if base else None
@@ -112,10 +101,6 @@ def _scalar_cells(result: CaseResult, quantity: str, source: str, base: str | No
         return [shown, ratio, Cell("–")]
     gap = value / reference[0] - 1
     return [shown, ratio, Cell(scientific(gap, sign=True), abs(gap))]
-
-
-def _note(uncertainty: float | None) -> str:
-    return "uncertainty not stated" if uncertainty is None else "exact"
 
 
 def verdict_table(
@@ -134,21 +119,19 @@ def verdict_table(
         if verdict.worst is not None and claim.line != "contact" and a_h:
             where = f"{'z' if claim.line == 'axis' else 'x'} = {plain(verdict.worst / a_h, 3)} a_h"
         rows.append(
-            Row(
+            row(
                 outcome_cell(verdict.outcome),
-                [
-                    Cell(claim.quantity, note=claim.why),
-                    Cell(claim.line),
-                    Cell(pair_label(claim.between)),
-                    number(verdict.difference),
-                    number(verdict.uncertainty),
-                    number(claim.cap),
-                    Cell(scientific(verdict.margin, sign=True), verdict.margin),
-                    *([Cell(parameter(claim, verdict))] if parameter is not None else []),
-                    Cell(where, verdict.worst),
-                    Cell(verdict.reason, css="reason"),
-                ],
-                "" if verdict.outcome is Outcome.AGREES else OUTCOMES[verdict.outcome].css,
+                Cell(claim.quantity, note=claim.why),
+                claim.line,
+                pair_label(claim.between),
+                number(verdict.difference),
+                number(verdict.uncertainty),
+                number(claim.cap),
+                number(verdict.margin, partial(scientific, sign=True)),
+                *([parameter(claim, verdict)] if parameter is not None else []),
+                Cell(where, verdict.worst),
+                Cell(verdict.reason, css="reason"),
+                css=row_css(verdict.outcome),
             )
         )
     columns = ["verdict", "quantity", "line", "between", "max |A − B|", "max U", "cap", "margin"]
@@ -177,7 +160,7 @@ def dominating_parameter(result: CaseResult, claim: Claim, verdict: Verdict) -> 
     """
     sides = []
     for source in claim.between:
-        profile = result.profile(claim.quantity, claim.line, source)
+        profile = result.profile_of.get((claim.quantity, claim.line, source))
         if profile is not None and profile.uncertainty is not None and profile.position.size:
             at = 0 if verdict.worst is None else int(np.argmin(np.abs(profile.position - verdict.worst)))
             sides.append((float(profile.uncertainty[at]), source))
@@ -198,22 +181,23 @@ def dominating_parameter(result: CaseResult, claim: Claim, verdict: Verdict) -> 
 
 def budget_table(result: CaseResult) -> Table | None:
     """Uncertainty budget: a row for each numerical parameter of each method."""
-    rows: list[Row] = []
+    rows = []
     for source in result.sources:
-        quantities = list(dict.fromkeys(quantity for quantity, _, _ in source.budget))
-        for quantity in quantities:
+        for quantity in dict.fromkeys(quantity for quantity, _, _ in source.budget):
             parts = [(name, value) for q, name, value in source.budget if q == quantity]
             largest = max((value for _, value in parts if isfinite(value)), default=0.0)
             for name, value in parts:
                 dominant = value == largest > 0 and len(parts) > 1
-                cells = [
-                    Cell(quantity),
-                    Cell(name, css="dominant" if dominant else ""),
-                    Cell(engineering(value, unit_of(quantity), 2), value),
-                    Cell(scientific(_relative(result, source.source, quantity, value)), value),
-                    Cell("◀ dominates" if dominant else "", css="dominant"),
-                ]
-                rows.append(Row(Cell(source_label(source.source)), cells))
+                rows.append(
+                    row(
+                        source_label(source.source),
+                        quantity,
+                        Cell(name, css="dominant" if dominant else ""),
+                        Cell(engineering(value, unit_of(quantity), 2), value),
+                        Cell(scientific(_relative(result, source.source, quantity, value)), value),
+                        Cell("◀ dominates" if dominant else "", css="dominant"),
+                    )
+                )
     return Table(
         "Uncertainty of each method by numerical parameter, from its own refinement; relative to the value, "
         "to p_h for stresses.",
@@ -231,7 +215,7 @@ def _relative(result: CaseResult, source: str, quantity: str, value: float) -> f
 def diagnostics_table(result: CaseResult) -> Table | None:
     """Diagnostics of each source: iterations, residuals, unknowns."""
     rows = [
-        Row(Cell(source_label(source.source)), [Cell(name.replace("_", " ")), Cell(_shown(value))])
+        row(source_label(source.source), name.replace("_", " "), _shown(value))
         for source in result.sources
         for name, value in source.diagnostics.items()
     ]

@@ -9,8 +9,6 @@ from markupsafe import Markup
 from verification.report.tables.csv import embedded, written
 from verification.report.tables.numbers import scientific
 
-__all__ = ["Cell", "Gallery", "Panel", "Part", "Row", "Section", "Table", "number"]
-
 
 @dataclass(frozen=True)
 class Cell:
@@ -27,8 +25,18 @@ class Cell:
 
 
 def number(value: float | None, show: Callable[[Any], str] = scientific, css: str = "") -> Cell:
-    """A cell that shows ``value`` and sorts by it."""
-    return Cell(show(value), value, css)
+    """A cell that shows ``value``, a dash for None, and sorts by it."""
+    return Cell("–" if value is None else show(value), value, css)
+
+
+def words(text: str) -> Cell:
+    """A cell of running text, which may wrap."""
+    return Cell(text, css="words")
+
+
+def tally(good: int, total: int, css: str = "") -> Cell:
+    """A cell "good of total" that sorts by the share."""
+    return Cell(f"{good} of {total}", good / total, css)
 
 
 @dataclass(frozen=True)
@@ -38,6 +46,12 @@ class Row:
     head: Cell
     cells: Sequence[Cell]
     css: str = ""
+
+
+def row(head: Cell | str, *cells: Cell | str, css: str = "") -> Row:
+    """A row of cells; text alone becomes a cell."""
+    first, *others = (cell if isinstance(cell, Cell) else Cell(cell) for cell in (head, *cells))
+    return Row(first, others, css)
 
 
 @dataclass(frozen=True)

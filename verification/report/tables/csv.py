@@ -12,8 +12,6 @@ from verification.problem.quantity import unit_of
 from verification.report.tables.lookup import coordinate
 from verification.running.result import CaseResult
 
-__all__ = ["embedded", "line_csv", "written"]
-
 
 def line_csv(result: CaseResult, line: str) -> str:
     """Every quantity of every source on ``line`` as CSV, SI units in the column heads.

@@ -3,10 +3,8 @@
 from dataclasses import dataclass
 
 from verification.judging.verdict import Outcome
+from verification.sources.record import Style
 from verification.sources.registry import METHODS, SOURCES
-from verification.sources.source import Style
-
-__all__ = ["OUTCOMES", "OutcomeStyle", "pair_label", "pair_style", "source_label", "source_style"]
 
 _OTHER = SOURCES["published"].style
 _BETWEEN_METHODS = Style("pair", (4.5, 1.4, 1.0, 1.4), 1.4)
@@ -30,6 +28,11 @@ OUTCOMES = {
     Outcome.INCONCLUSIVE: OutcomeStyle("I", "?", "inconclusive", "inconclusive", 2),
     Outcome.AGREES: OutcomeStyle("A", "✓", "agrees", "agrees", 3),
 }
+
+
+def row_css(outcome: Outcome) -> str:
+    """Class of the row of a verdict: none where it agrees."""
+    return "" if outcome is Outcome.AGREES else OUTCOMES[outcome].css
 
 
 def source_label(source: str) -> str:

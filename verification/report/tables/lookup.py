@@ -12,23 +12,6 @@ from verification.problem.quantity import QUANTITIES, SCALARS
 from verification.running.result import CaseResult
 from verification.sources.registry import METHODS, REFERENCES
 
-__all__ = [
-    "GROUPS",
-    "claimed_quantities",
-    "contact_radius",
-    "coordinate",
-    "difference",
-    "group_of",
-    "judged",
-    "layers",
-    "lines",
-    "reference_source",
-    "scalar",
-    "scale",
-    "slug",
-    "sources_with_profiles",
-]
-
 GROUPS = (", ".join(QUANTITIES[name].symbol for name in SCALARS), "surface", "axis", "interfaces")
 
 
@@ -88,7 +71,7 @@ def layers(result: CaseResult) -> list[tuple[float, float, float]]:
 
 def scalar(result: CaseResult, quantity: str, source: str) -> tuple[np.float64, float | None] | None:
     """Value [SI] with uncertainty of a scalar of the contact; None where the source gave none."""
-    profile = result.profile(quantity, "contact", source)
+    profile = result.profile_of.get((quantity, "contact", source))
     if profile is None or profile.value.size == 0:
         return None
     uncertainty = None if profile.uncertainty is None else float(profile.uncertainty[0])

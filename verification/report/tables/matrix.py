@@ -10,8 +10,6 @@ from verification.report.tables.numbers import scientific
 from verification.running.result import CaseResult
 from verification.sources.registry import METHODS
 
-__all__ = ["case_cell", "outcome_cell", "verdict_matrix"]
-
 # With a soft hyphen, where a narrow column may break the word.
 _HEADS = {"interfaces": "inter\u00adfaces"}
 

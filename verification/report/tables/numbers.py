@@ -3,8 +3,6 @@
 from math import floor, isfinite, log10
 from typing import Any
 
-__all__ = ["engineering", "factor", "plain", "scientific", "seconds", "with_uncertainty"]
-
 _PREFIXES = {-15: "f", -12: "p", -9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G", 12: "T"}
 MOST_DIGITS = 9
 

@@ -18,8 +18,6 @@ from scipy.optimize import minimize_scalar
 from verification.problem.arrays import Array
 from verification.sources.references.quadrature import gauss_legendre
 
-__all__ = ["AbelPressure"]
-
 
 @dataclass(frozen=True, eq=False)
 class AbelPressure:
@@ -51,9 +49,8 @@ class AbelPressure:
         best = int(p.argmax())
         if best == 0:
             return float(p[0])
-        found = minimize_scalar(
-            lambda radius: -float(self.pressure(radius)), bounds=(r[best - 1], r[best + 1]), method="bounded"
-        )
+        around = (r[best - 1], r[best + 1])
+        found = minimize_scalar(lambda s: -float(self.pressure(s)), bounds=around, method="bounded")
         return float(max(-found.fun, p[best]))
 
     def pressure(self, r: ArrayLike) -> Array:
@@ -132,10 +129,8 @@ def _even_spherical_bessel(count: int, x: Array) -> Array:
             above[large], here[large] = above[large] * 1e-250, here[large] * 1e-250
             scratch[:, large] *= 1e-250
     # j_0 vanishes at multiples of pi, where j_1 does not: normalise by whichever is larger.
-    j0, j1 = (
-        np.sin(near) / near,
-        np.where(near > 1e-3, np.sin(near) / near**2 - np.cos(near) / near, near / 3),
-    )
+    j0 = np.sin(near) / near
+    j1 = np.where(near > 1e-3, np.sin(near) / near**2 - np.cos(near) / near, near / 3)
     even = np.abs(j0) >= np.abs(j1)
     found[:, ~up] = scratch * (np.where(even, j0, j1) / np.where(even, here, above))
     return found

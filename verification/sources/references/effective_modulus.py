@@ -20,8 +20,6 @@ import numpy as np
 
 from verification.problem.arrays import Array
 
-__all__ = ["FORMULAS", "I0", "I1", "PERRIOT_BARTHEL_N", "Formula", "perriot_barthel", "perriot_barthel_x0"]
-
 Material = tuple[float, float]
 
 # Between these n is fitted to each ratio of moduli, by Perriot and Barthel as the NIMS toolbox tells.

@@ -19,8 +19,6 @@ from verification.problem.arrays import Coatings
 from verification.sources.references.layered import LayeredHalfSpace, contact_modulus
 from verification.sources.references.quadrature import gauss_legendre, on_panels
 
-__all__ = ["Pressed", "pressed"]
-
 
 @dataclass(frozen=True)
 class Pressed:
@@ -36,11 +34,7 @@ class Pressed:
 
 
 def pressed(
-    a: float,
-    coatings: Coatings,
-    substrate: tuple[float, float],
-    nodes: int = 60,
-    tail: float = 40.0,
+    a: float, coatings: Coatings, substrate: tuple[float, float], nodes: int = 60, tail: float = 40.0
 ) -> Pressed:
     """Punch and sphere of contact radius ``a`` [m].
 

@@ -24,8 +24,6 @@ from verification.problem.arrays import Array
 from verification.problem.contact import NotClaimed
 from verification.sources.references.hertz import Hertz, HertzContact
 
-__all__ = ["Hamilton"]
-
 Complex = NDArray[np.complex128]
 
 

@@ -24,9 +24,6 @@ from verification.problem.geometry import layer_at
 from verification.sources.references.layered import Amplitudes, LayeredHalfSpace, bending_length
 from verification.sources.references.quadrature import wavenumber_panels
 
-__all__ = ["AxisymmetricPressure", "HankelField"]
-
-
 CHUNK = 2_000_000  # products of wavenumbers with radii held in memory at once
 
 
@@ -106,9 +103,8 @@ class HankelField:
             J = _bessel(k, r[part], highest=3 if self.friction else 2)
             total[:, :, part] += _normal(normal, weighted, J, theta[part])
             if self.friction:
-                total[:, :, part] += self.friction * _sliding(
-                    tangential[0], tangential[1], weighted, J, theta[part]
-                )
+                plane, anti = tangential
+                total[:, :, part] += self.friction * _sliding(plane, anti, weighted, J, theta[part])
         return total
 
     def _waves(self, r: Array, z: float, layer: int, *loads: str) -> tuple[Array, Array, list[Amplitudes]]:

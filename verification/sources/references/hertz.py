@@ -13,19 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from verification.problem.arrays import Array
-from verification.problem.contact import NotClaimed
-
-__all__ = ["Hertz", "HertzContact", "HertzUncertainty"]
-
-
-@dataclass(frozen=True)
-class HertzUncertainty:
-    """A closed form is exact."""
-
-    contact_radius: float = 0.0
-    approach: float = 0.0
-    peak_pressure: float = 0.0
-    budget: tuple[tuple[str, str, float], ...] = ()
+from verification.problem.contact import NotClaimed, Uncertainty
 
 
 @dataclass(frozen=True)
@@ -68,14 +56,14 @@ class HertzContact:
         return 3 * self.load / (2 * np.pi * self.contact_radius**2)
 
     @property
-    def uncertainty(self) -> HertzUncertainty:
+    def uncertainty(self) -> Uncertainty:
         """Zero: exact."""
-        return HertzUncertainty()
+        return Uncertainty()
 
     @property
-    def diagnostics(self) -> HertzUncertainty:
+    def diagnostics(self) -> Uncertainty:
         """Nothing to report of a closed form."""
-        return HertzUncertainty()
+        return Uncertainty()
 
     @property
     def surface_nodes(self) -> Array:

@@ -9,7 +9,7 @@ Lebedev and Ufliand, PMM 22 (1958) 320-326; Dhaliwal and Rau, Int. J. Engng Sci.
 Yu, Sanday and Rath, J. Mech. Phys. Solids 38 (1990) 745-764.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -17,23 +17,11 @@ from numpy.typing import ArrayLike
 from scipy.optimize import brentq
 
 from verification.problem.arrays import Array, Coatings
-from verification.problem.contact import NotClaimed
+from verification.problem.contact import NotClaimed, Uncertainty
 from verification.sources.references.axisymmetric_pressure import AbelPressure
 from verification.sources.references.hankel import HankelField
 from verification.sources.references.layered import LayeredHalfSpace, bending_length, contact_modulus
 from verification.sources.references.quadrature import gauss_legendre, wavenumber_panels
-
-__all__ = ["ExactSolution", "ExactUncertainty", "solve"]
-
-
-@dataclass(frozen=True)
-class ExactUncertainty:
-    """Absolute, SI: twice the change when every quadrature is made coarser by a quarter."""
-
-    contact_radius: float
-    approach: float
-    peak_pressure: float
-    budget: tuple[tuple[str, str, float], ...]
 
 
 @dataclass(frozen=True)
@@ -71,15 +59,15 @@ class ExactSolution:
         return 2 * self.abel.a * np.linspace(-1, 1, 401)
 
     @cached_property
-    def uncertainty(self) -> ExactUncertainty | None:
-        """Twice the difference from the coarser companion, with the rounding of the last digits."""
+    def uncertainty(self) -> Uncertainty | None:
+        """Twice the change when every quadrature is made coarser by a quarter, with the rounding."""
         if self.coarser is None:
             return None
-        names = ("contact_radius", "approach", "peak_pressure")
-        U = {
-            n: 2 * abs(getattr(self, n) - getattr(self.coarser, n)) + 1e-12 * getattr(self, n) for n in names
-        }
-        return ExactUncertainty(**U, budget=tuple((n, "quadrature", u) for n, u in U.items()))
+        U = {}
+        for name in ("contact_radius", "approach", "peak_pressure"):
+            value = getattr(self, name)
+            U[name] = 2 * abs(value - getattr(self.coarser, name)) + 1e-12 * value
+        return Uncertainty(**U, budget=tuple((n, "quadrature", u) for n, u in U.items()))
 
     @property
     def _rounding(self) -> float:
@@ -106,10 +94,16 @@ class ExactSolution:
         edge = np.abs(np.hypot(x, y) - a) <= 2 * abs(a - coarser.abel.a)
         return np.where(edge, np.maximum(U, np.sqrt(abs(1 - coarser.abel.a / a)) * self.peak_pressure), U)
 
+    def stress_with_uncertainty(
+        self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None
+    ) -> tuple[Array, Array]:
+        """Stress and its uncertainty [Pa], (3, 3) + points; ValueError where no companion was solved."""
+        sigma, coarser = self.stress(x, y, z, layer), self._companion().stress(x, y, z, layer)
+        return sigma, 2 * np.abs(sigma - coarser) + self._rounding * self.peak_pressure
+
     def stress_uncertainty(self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None) -> Array:
-        """Absolute [Pa], shape (3, 3) + points; raises ValueError where no companion was solved."""
-        coarser = self._companion().stress(x, y, z, layer)
-        return 2 * np.abs(self.stress(x, y, z, layer) - coarser) + self._rounding * self.peak_pressure
+        """The second part of ``stress_with_uncertainty``."""
+        return self.stress_with_uncertainty(x, y, z, layer)[1]
 
     def _companion(self) -> "ExactSolution":
         if self.coarser is None:
@@ -136,7 +130,7 @@ def solve(
     if not estimate_uncertainty:
         return fine
     coarse = _solve(radius, load, coatings, substrate, friction, 3 * nodes // 4, 12, 27.0)
-    return ExactSolution(fine.abel, fine.approach, fine.field, fine.diagnostics, coarse)
+    return replace(fine, coarser=coarse)
 
 
 def _solve(
@@ -186,12 +180,8 @@ def _solve(
     a = float(np.exp(brentq(excess, low, high, xtol=1e-15, rtol=1e-14)))
     phi, delta = contact(a)
     abel = AbelPressure.from_nodes(a, s, weight, phi)
-    return ExactSolution(
-        abel,
-        delta,
-        HankelField(abel, coatings, substrate, friction, panel, tail),
-        ExactDiagnostics(s.size, k.size, abs(abel.load / load - 1)),
-    )
+    field = HankelField(abel, coatings, substrate, friction, panel, tail)
+    return ExactSolution(abel, delta, field, ExactDiagnostics(s.size, k.size, abs(abel.load / load - 1)))
 
 
 def _radius_guess(

@@ -15,8 +15,6 @@ from verification.problem.arrays import Coatings
 from verification.sources.references.layered import LayeredHalfSpace, bending_length
 from verification.sources.references.quadrature import wavenumber_panels
 
-__all__ = ["spring_bed", "squeezed_film", "thick"]
-
 
 def spring_bed(a: float, E: float, nu: float, h: float) -> tuple[float, float]:
     """(S [N/m], W R [N m]) of a thin compressible layer: S = pi M a^2/h, W = pi M a^4/(4 R h)."""

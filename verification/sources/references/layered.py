@@ -19,9 +19,6 @@ import numpy as np
 
 from verification.problem.arrays import Array, Coatings
 
-__all__ = ["Amplitudes", "LayeredHalfSpace", "bending_length", "contact_modulus"]
-
-
 # Beyond this k h a layer is a half-space to better than rounding (exp(-80) is left of its lower side), while
 # the propagator's condition number grows like (k h)^2.
 THICK = 40.0
@@ -118,10 +115,8 @@ class LayeredHalfSpace:
             rise, depth = k * (self.top[layer + 1] - z), k * (z - self.top[layer])
             bottom = v / self._rise_a(layer, k * self.thickness[layer])
             # cosh and sinh of ``rise`` times exp(-k thickness), so that nothing overflows.
-            ch, sh = (
-                0.5 * (np.exp(-depth) + np.exp(-depth - 2 * rise)),
-                0.5 * (np.exp(-depth) - np.exp(-depth - 2 * rise)),
-            )
+            up, down = np.exp(-depth), np.exp(-depth - 2 * rise)
+            ch, sh = 0.5 * (up + down), 0.5 * (up - down)
             below = self.Za[layer + 1]
             v, t = bottom * (ch - below * sh / g), bottom * (below * ch - g * sh)
         return Amplitudes(zero, zero, zero, zero, zero, zero, v / (self.G[0] * k), t, g * v)
@@ -133,10 +128,7 @@ class LayeredHalfSpace:
     def _impedances(self) -> None:
         n = len(self.thickness)
         U0, T0 = _decaying(self.g[n], self.nu[n])
-        Z: list[Array] = [np.empty(0)] * (n + 1)
-        down: list[Array] = [np.empty(0)] * n
-        Za: list[Array] = [np.empty(0)] * (n + 1)
-        down_a: list[Array] = [np.empty(0)] * n
+        Z, Za, down, down_a = ([np.empty(0)] * (n + 1) for _ in range(4))
         Z[n] = np.broadcast_to(T0 @ np.linalg.inv(U0), (self.k.size, 2, 2))
         Za[n] = np.full(self.k.shape, -self.g[n])
         self.Za = Za

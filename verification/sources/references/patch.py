@@ -20,9 +20,6 @@ from verification.problem.arrays import Array, Coatings
 from verification.sources.references.layered import LayeredHalfSpace, bending_length, contact_modulus
 from verification.sources.references.quadrature import gauss_legendre, wavenumber_panels
 
-__all__ = ["over_square", "surface_coefficient"]
-
-
 NODES = 20  # Gauss points a panel: 1/r seen from half a side away is met to 2.4^-40
 
 

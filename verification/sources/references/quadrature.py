@@ -7,8 +7,6 @@ from numpy.polynomial import legendre
 
 from verification.problem.arrays import Array
 
-__all__ = ["gauss_legendre", "on_panels", "wavenumber_panels"]
-
 
 @cache
 def gauss_legendre(nodes: int) -> tuple[Array, Array]:

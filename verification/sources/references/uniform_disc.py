@@ -6,16 +6,15 @@ Stress and displacement as in ``hankel``; the surface of the homogeneous solid i
 Contact Mechanics (1985), (3.29).
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike
 from scipy.special import ellipe, ellipkm1, j1
 
 from verification.problem.arrays import Array, Coatings
+from verification.problem.contact import Uncertainty
 from verification.sources.references.hankel import HankelField
-
-__all__ = ["DiscSolution", "UniformDisc", "solve_prescribed"]
 
 
 @dataclass(frozen=True)
@@ -53,19 +52,6 @@ class UniformDisc:
 
 
 @dataclass(frozen=True)
-class DiscUncertainty:
-    """Absolute, SI: of u_z at the origin; the others are given."""
-
-    approach: float
-    contact_radius: float = 0.0
-    peak_pressure: float = 0.0
-
-    @property
-    def budget(self) -> tuple[tuple[str, str, float], ...]:
-        return (("approach", "quadrature", self.approach),)
-
-
-@dataclass(frozen=True)
 class DiscDiagnostics:
     """Gauss points a panel of wavenumbers, and the exponent at which the integrands are cut."""
 
@@ -97,9 +83,10 @@ class DiscSolution:
         return float(self.field.displacement(0.0, 0.0, 0.0)[2])
 
     @property
-    def uncertainty(self) -> DiscUncertainty:
-        """Twice the change when every quadrature is made coarser by a quarter."""
-        return DiscUncertainty(float(self.displacement_uncertainty(0.0, 0.0, 0.0)[2]))
+    def uncertainty(self) -> Uncertainty:
+        """Of u_z at the origin, twice the change when every quadrature is made coarser by a quarter."""
+        U = float(self.displacement_uncertainty(0.0, 0.0, 0.0)[2])
+        return Uncertainty(approach=U, budget=(("approach", "quadrature", U),))
 
     @property
     def diagnostics(self) -> DiscDiagnostics:
@@ -155,8 +142,5 @@ def solve_prescribed(
     if friction:
         raise ValueError(f"friction = {friction:g}; a sliding disc has infinite stress at its rim")
     disc = UniformDisc(load_radius, pressure)
-    fine, coarse = (
-        HankelField(disc, coatings, substrate, 0.0, n, t)
-        for n, t in ((nodes, tail), (3 * nodes // 4, 0.75 * tail))
-    )
-    return DiscSolution(disc, fine, coarse)
+    fine = HankelField(disc, coatings, substrate, 0.0, nodes, tail)
+    return DiscSolution(disc, fine, replace(fine, nodes=3 * nodes // 4, tail=0.75 * tail))

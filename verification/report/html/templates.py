@@ -10,9 +10,7 @@ from markupsafe import Markup
 
 from verification.report.tables.cells import Section
 
-__all__ = ["render_sections", "rendered"]
-
-HTML = Path(__file__).parent / "html"
+HTML = Path(__file__).parent
 
 
 def rendered(template: str, **content: object) -> str:

@@ -7,8 +7,6 @@ from typing import Any
 
 from verification.problem.loading import Problem
 
-__all__ = ["Kind", "NumericalParameter", "Solver", "Source", "Style"]
-
 Solver = Callable[..., Any]  # (problem, numerics) -> Solution, of a LoadingCurve a Loading
 
 

@@ -22,7 +22,7 @@ from verification.cases.table import FOLDER
 from verification.judging.claims import standard_claims
 from verification.judging.verdict import Outcome, Verdict, compare, judge
 from verification.problem.arrays import Array
-from verification.problem.contact import CoatedContact, PrescribedLoad
+from verification.problem.contact import CoatedContact, PrescribedLoad, Uncertainty
 from verification.problem.profile import Profile, lines_of
 from verification.running.contact import judge_case, solve_case
 from verification.running.provenance import fingerprint
@@ -31,7 +31,7 @@ from verification.running.result import CaseResult, describe, from_json, to_json
 from verification.running.store import StoreError, read_checked, write_checked
 from verification.running.tasks import kept_result, result_path
 from verification.sampling.lines import sample, sample_contact
-from verification.sources.references.hertz import Hertz, HertzUncertainty
+from verification.sources.references.hertz import Hertz
 from verification.sources.registry import REFERENCES, sources_of
 
 __all__ = ["SelfTest", "self_tests"]
@@ -41,20 +41,20 @@ Answers = Iterator[tuple[str, Any, Any]]  # what was asked, what came out, what 
 
 @dataclass(frozen=True)
 class SelfTest:
-    """``name`` of a part of the harness, the ``sentence`` it has to fulfil, what was ``found``."""
+    """``name`` of a part of the harness, the ``statement`` that must hold, what was ``found``."""
 
     name: str
-    sentence: str
+    statement: str
     passed: bool
     found: str
 
 
 def self_tests() -> tuple[SelfTest, ...]:
     """All of them, in the order in which a case runs through the harness."""
-    return tuple(_tried(name, sentence, ask) for name, sentence, ask in _TESTS)
+    return tuple(_tried(name, statement, ask) for name, statement, ask in _TESTS)
 
 
-def _tried(name: str, sentence: str, ask: Callable[[], Answers]) -> SelfTest:
+def _tried(name: str, statement: str, ask: Callable[[], Answers]) -> SelfTest:
     asked = 0
     try:
         for what, found, wanted in ask():
@@ -63,12 +63,12 @@ def _tried(name: str, sentence: str, ask: Callable[[], Answers]) -> SelfTest:
                 np.isclose(found, wanted, rtol=1e-9, atol=0) if isinstance(wanted, float) else found == wanted
             )
             if not same:
-                return SelfTest(name, sentence, False, f"{what}: {found}, where it has to be {wanted}")
+                return SelfTest(name, statement, False, f"{what}: {found}, where it has to be {wanted}")
     except Exception as error:  # whatever a part of the harness fails with is the answer
         return SelfTest(
-            name, sentence, False, f"{type(error).__name__}: {' '.join(str(error).split())[:300]}"
+            name, statement, False, f"{type(error).__name__}: {' '.join(str(error).split())[:300]}"
         )
-    return SelfTest(name, sentence, True, f"{asked} known answers")
+    return SelfTest(name, statement, True, f"{asked} known answers")
 
 
 def _of_case_file() -> Answers:
@@ -287,7 +287,7 @@ class _Labelled:
     """A solution whose every number says what it is."""
 
     contact_radius, approach, peak_pressure = 1e-4, 1e-6, 3e9
-    uncertainty = HertzUncertainty(3e-9, 4e-12, 2e6)
+    uncertainty = Uncertainty(3e-9, 4e-12, 2e6)
 
     def pressure(self, x: ArrayLike, y: ArrayLike = 0.0) -> Array:
         return 1e9 + 1e12 * np.asarray(x, dtype=float)
@@ -314,11 +314,9 @@ class _Stated(Hertz):
     share: float = 1e-4
 
     @property
-    def uncertainty(self) -> HertzUncertainty:
+    def uncertainty(self) -> Uncertainty:
         share = self.share
-        return HertzUncertainty(
-            share * self.contact_radius, share * self.approach, share * self.peak_pressure
-        )
+        return Uncertainty(share * self.contact_radius, share * self.approach, share * self.peak_pressure)
 
     def pressure_uncertainty(self, x: ArrayLike, y: ArrayLike = 0.0) -> Array:
         return np.full(np.broadcast_shapes(np.shape(x), np.shape(y)), self.share * self.peak_pressure)

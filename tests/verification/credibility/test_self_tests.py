@@ -3,15 +3,15 @@
 import pytest
 from synthetic_results import INFO, contact, result_of
 
-from verification.commands.common import EXIT
+from verification.commands.common.exits import EXIT
 from verification.commands.run import _code
 from verification.credibility.faults.catalogue import FAULTS
 from verification.credibility.faults.planting import planted
+from verification.credibility.self_tests import SelfTest, self_tests
 from verification.judging.verdict import Outcome
 from verification.regression.baseline import Regression
 from verification.report.credibility.self_tests import section
 from verification.report.material import Evidence, Material
-from verification.running.self_tests import SelfTest, self_tests
 
 PASSED = SelfTest("judging", "verdicts are what they must be", True, "21 known answers")
 FAILED = SelfTest(
@@ -49,6 +49,6 @@ def test_the_report_says_which_answer_was_wrong():
     shown = section(Material([], INFO, Evidence(self_tests=(PASSED, FAILED))))
     assert shown is not None
     assert shown.failures == [
-        "judging: NaN: AGREES, where it has to be NO_RESULT. The verdicts of this run mean nothing."
+        "judging: NaN: AGREES, where it has to be NO_RESULT. The verdicts of this run are not valid."
     ]
     assert len(shown.parts[0].tables[0].rows) == 2

@@ -1,0 +1,24 @@
+"""Options that several commands have in common.
+
+The command line imports this for each command, so nothing here needs numpy or rich.
+"""
+
+from pathlib import Path
+from typing import Annotated
+
+from cyclopts import Parameter
+
+_BASELINE_HELP = "Directory of the baseline; that of the package unless given."
+_RECORDS_HELP = "Directory of the credibility records; that of the package unless given."
+_JOBS_HELP = "Processes side by side; all cores unless given."
+
+Flag = Annotated[bool, Parameter(negative="")]
+Output = Annotated[Path, Parameter(name=["--output", "-o"])]
+BaselineFolder = Annotated[
+    Path, Parameter(name=["--baseline", "-b"], help=_BASELINE_HELP, show_default=False)
+]
+RecordsFolder = Annotated[Path, Parameter(help=_RECORDS_HELP, show_default=False)]
+Jobs = Annotated[int | None, Parameter(name=["--jobs", "-j"], help=_JOBS_HELP)]
+Resume = Annotated[bool, Parameter(negative="", help="Keep the valid results in the output directory.")]
+Quiet = Annotated[bool, Parameter(name=["--quiet", "-q"], negative="", help="Print nothing but errors.")]
+AsJson = Annotated[bool, Parameter(name="--json", negative="", help="Print JSON instead of text.")]

@@ -1,0 +1,68 @@
+"""Terminal output of the commands.
+
+The command line imports this for each command, so numpy and rich are imported where they are used.
+"""
+
+import json
+import sys
+from collections.abc import Iterable
+from difflib import get_close_matches
+from typing import TYPE_CHECKING, Any
+
+from verification.judging.outcome import Outcome
+
+if TYPE_CHECKING:
+    from rich.table import Table
+
+UNBROKEN = 100_000  # columns of a file or pipe
+STYLE = {
+    Outcome.AGREES: "green",
+    Outcome.DISAGREES: "bold red",
+    Outcome.NO_RESULT: "bold red",
+    Outcome.INCONCLUSIVE: "yellow",
+}
+
+
+def print_error(message: str) -> None:
+    """Print ``message`` on standard error, in one line."""
+    sys.stderr.write(f"coatcheck: {one_line(message)}\n")
+
+
+def print_json(content: Any) -> None:
+    """Print ``content`` on standard output as JSON."""
+    sys.stdout.write(json.dumps(content, indent=2) + "\n")
+
+
+def did_you_mean(name: str, known: Iterable[str]) -> str:
+    """ "; did you mean ...?" with the names nearest to a mistyped ``name``; "" where none is near."""
+    near = get_close_matches(name.casefold(), list(known), n=2)
+    return f"; did you mean {' or '.join(near)}?" if near else ""
+
+
+def named_table(*heads: str) -> "Table":
+    """A table for ``print_out``; its first column holds names that users type."""
+    from rich.table import Column, Table
+
+    return Table(Column(heads[0], overflow="fold"), *heads[1:], box=None, header_style="bold")
+
+
+def print_out(*items: "Table | str") -> None:
+    """Print tables with lines of markup. Names in a first column are never cut, in a file or pipe no line."""
+    from rich.console import Console
+    from rich.table import Table
+
+    console = Console(highlight=False)
+    if not console.is_terminal:
+        console = Console(highlight=False, width=UNBROKEN)
+    for item in items:
+        if isinstance(item, Table):
+            # The other columns give way first, unless the names fill half of the terminal.
+            longest = max((len(str(cell)) for cell in item.columns[0].cells), default=0)
+            item.columns[0].no_wrap = longest <= console.width / 2
+        console.print(item)
+
+
+def one_line(message: str, most: int = 1000) -> str:
+    """``message`` in one line without control characters, which an untrusted file may hold."""
+    shown = "".join(c if c.isprintable() else repr(c)[1:-1] for c in message)
+    return shown if len(shown) <= most else f"{shown[: most - 3]}..."
