@@ -1,4 +1,4 @@
-"""Stress and displacement of the layered half-space under an edge profile, without patches.
+"""Fields in the layered half-space under an edge profile, without patches.
 
 With phi of `abel` the Hankel transform of the pressure is phat(k) = int_0^a phi cos(kt) dt, and every field
 is a sum of integrals int F(k) phat(k) J_m(kr) k dk over the responses F to unit traction.

@@ -1,4 +1,4 @@
-"""Stress and displacement fields of a contact: exact for its edge profile, by patches for the rest of p."""
+"""Fields of a contact: exact for its edge profile, by patches for the remainder of p."""
 
 from collections.abc import Sequence
 
