@@ -37,7 +37,6 @@ Columns = list[tuple[Array, int]]
 
 BLOCK = 300_000  # points times nodes held at a time
 TAIL = 28.0  # exponent at which the layers' response is cut
-PHASE, NODES = 12.0, 16  # of J_m(kr) cos(ka) on a Gauss panel [rad], and its points: 1e-10
 NEAREST = 0.25  # |s|/a at which a path starts that would otherwise start nearer to the origin
 
 
@@ -105,7 +104,8 @@ def _radial(profiles, body, x, y, z, layer, columns, homogeneous, rest, power: i
                 row[first] = (c[0] * plain[order] + c[1] * linear[order])[where.ravel()]
     if body.coatings:
         for number, decay, at in _groups(body, z, layer):
-            k, weight = _wavenumbers(profiles[0].radius + float(r[at].max()), decay)
+            reach = profiles[0].radius + float(r[at].max())
+            k, weight = abel.wavenumbers(reach, TAIL / decay, 6 / decay)
             phat = weight * np.array([_transform(profile, k) for profile in profiles])
             _add_layers(total, columns, rest, k, phat, r, z, at, number)
     return total
@@ -166,20 +166,6 @@ def _groups(body: Body, z: Array, layer: Array) -> Iterator[tuple[int, float, Ar
     octave = np.floor(np.log2(decay) + 1e-9).astype(int)
     for number, power in np.unique(np.stack([layer, octave]), axis=1).T:
         yield int(number), 2.0**power, np.flatnonzero((layer == number) & (octave == power))
-
-
-def _wavenumbers(reach: float, decay: float) -> tuple[Array, Array]:
-    """Gauss points k and weights for responses that decay like exp(-k decay), phases up to k reach.
-
-    Panels shrink geometrically towards k = 0, where stiff films on soft solids bend.
-    """
-    width = min(PHASE / reach, 6 / decay)
-    last = TAIL / decay
-    regular = np.linspace(width, last, int(last / width) + 2)[1:] if last > width else np.empty(0)
-    edges = np.concatenate([[0], np.geomspace(1e-4 * width, width, 10), regular])
-    s, w = legendre.leggauss(NODES)
-    half = np.diff(edges)[:, None] / 2
-    return (edges[:-1, None] + half * (1 + s)).ravel(), (half * w).ravel()
 
 
 def _transform(profile: Profile, k: Array) -> Array:
