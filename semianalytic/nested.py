@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from semianalytic import convolution, influence
+from semianalytic.contact import NotConverged
 from semianalytic.defect_correction import corrected
 from semianalytic.edge_profile import Profile
 from semianalytic.grid import Grid, Window, odd, touches_rim, window_around
@@ -16,11 +17,17 @@ __all__ = ["levels", "solve_on"]
 
 Array = NDArray[np.floating]
 
+QUICK = 60  # iterations, more than a contact takes that the patches resolve
+
 
 def levels(
     half_width: float, indenter: Indenter, body: Body, numerics: Numerics, estimate_uncertainty: bool
 ) -> list[Level]:
-    """Contacts on .., N/4, N/2 and N patches a side, the last ones each with an edge profile of its own."""
+    """Contacts on .., N/4, N/2 and N patches a side, the last ones each with an edge profile of its own.
+
+    The first ones, without, give the start. Where they do not converge quickly, under films a thousand times
+    stiffer than what lies below, the start is the edge profile.
+    """
     sizes = [numerics.patches]
     while sizes[0] > 2 * COARSEST or len(sizes) < 3:
         sizes.insert(0, odd(sizes[0] / 2))
@@ -29,11 +36,19 @@ def levels(
     for k, shape in enumerate(indenter.shapes[:kept]):
         shapes[-1 - k] = shape
     starter = replace(numerics, tolerance=max(1e-5, numerics.tolerance))
+    if indenter.shapes:
+        starter = replace(starter, max_iterations=min(QUICK, numerics.max_iterations))
     found: list[Level] = []
     for k, (n, shape) in enumerate(zip(sizes, shapes, strict=True)):
         used = numerics if k >= len(sizes) - kept else starter
-        before = found[-1] if found else None
-        found.append(solve_on(Grid(n, 2 * half_width / n), before, indenter, body, used, shape))
+        before, grid = found[-1] if found else None, Grid(n, 2 * half_width / n)
+        try:
+            found.append(solve_on(grid, before, indenter, body, used, shape))
+        except NotConverged:
+            if not indenter.shapes:
+                raise
+            if shape is not None:
+                found.append(solve_on(grid, None, indenter, body, used, shape))
     return found
 
 
