@@ -93,7 +93,9 @@ def deflection(
     u = np.where(
         r <= a,
         CubicSpline(inner, over_circle(phi.size, inner / a) @ phi)(np.minimum(r, a)),
-        CubicSpline(np.sqrt(outer - a), over_circle(phi.size, outer / a) @ phi)(np.sqrt(np.maximum(r - a, 0))),
+        CubicSpline(np.sqrt(outer - a), over_circle(phi.size, outer / a) @ phi)(
+            np.sqrt(np.maximum(r - a, 0))
+        ),
     )
     if table is not None:
         u = u + CubicSpline(table.r, table.matrix @ (a * cosine_transform(phi, table.k * a)))(r)

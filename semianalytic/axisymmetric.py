@@ -116,7 +116,7 @@ def half_space_integrals(profile: Profile, r: Array, z: Array, power: int) -> tu
     a = profile.radius
     f = legendre.legmul([0.5, 0.5], abel.potential(profile.coefficients))  # phi / a of 1 - 2 (t/a)^2
     f1, f2 = legendre.legder(f), legendre.legder(f, 2)
-    # |s| at which a path starts that would otherwise start nearer to the origin: |f| still is of order 1 there
+    # |s| at which a path starts that would otherwise start nearer to the origin; |f| is of order 1 there
     nearest = min(0.25, 2 / f.size)
     nodes, weights = legendre.leggauss(int(14 + 1.4 * f.size))
     nodes, weights = (1 + nodes) / 2, weights / 2

@@ -4,9 +4,9 @@ With p = sqrt(t) q(t), t = 1 - (r/a)^2, the exact deflection of `abel` closes th
 
     u(r_i) - delta = -r_i^2 / (2 R),      t_i the Gauss-Legendre points of 0 < t < 1,
 
-linear in the M coefficients and in delta; the contact radius a follows from the load, or from delta, by secant
-steps. The pressure over sqrt(t) is analytic in t with its nearest singularities at 2 h beyond the edge, h the
-depth of what reflects, so that the error falls as exp(-c M sqrt(h/a)): Boyd, Chebyshev and Fourier Spectral
+linear in the M coefficients and in delta; the contact radius a follows from the load, or from delta, by
+secant steps. The pressure over sqrt(t) is analytic in t with its nearest singularities at 2 h beyond the
+edge, h the depth of what reflects, so that the error falls as exp(-c M sqrt(h/a)): Boyd, Chebyshev and Fourier Spectral
 Methods (2001), section 2.
 """
 
@@ -51,7 +51,9 @@ def contact(
     radius [m], and load [N] or approach [m], the other None.
     Raises NotConverged where no contact radius is found.
     """
-    excess = partial(frf.compliance_excess, **body.layers) if body.coatings else np.zeros_like
+    excess: Callable[[Array], Array] = np.zeros_like
+    if body.coatings:
+        excess = partial(frf.compliance_excess, **body.layers)
     E_star = body.moduli[0]
     depth = reflecting_depth(body) if body.coatings else np.inf
 
@@ -70,9 +72,10 @@ def contact(
         return problem.solve(a, radius, load, approach, E_star)
 
     # a film that bends makes the contact far wider than Hertz's, and the terms go by its width
-    rough = 0.0
-    while not 0.9 < rough / a < 1.1:
+    for _ in range(4):
         rough, a = a, solved(a, SHARES[-1])[0].radius
+        if 0.9 < a / rough < 1.1:
+            break
     return [solved(a, share) for share in SHARES]
 
 

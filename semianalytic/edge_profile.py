@@ -32,7 +32,7 @@ class Profile:
 
     @cached_property
     def peak(self) -> float:
-        """Largest p [Pa], off the axis where a stiff film bends: by the points of a fine grid and a parabola."""
+        """Largest p [Pa], off the axis where a stiff film bends: a parabola through points of a fine grid."""
         s = np.linspace(0, 1, 4001)
         p = self.pressure(self.radius * s)
         best = int(p.argmax())

@@ -20,8 +20,8 @@ Array = NDArray[np.floating]
 class Indenter:
     """Undeformed gap on a grid, and either the load [N] or the approach [m].
 
-    round : axisymmetric with a smooth edge, which ``shapes`` correct, the finest first; table : of the layers,
-    for their deflection.
+    round : axisymmetric with a smooth edge, which ``shapes`` correct, the finest first; table : of the
+    layers, for their deflection.
     """
 
     gap: Callable[[Grid], Array]
@@ -128,6 +128,8 @@ class LevelProblem:
         """Contact with ``defect`` [m] added to the gap and ``missing`` [N] of the load not on the patches."""
         grid, before, indenter = self.grid, self.before, self.indenter
         scale = indenter.approach or (before.found.approach if before else self.depth)
+        # a flat punch has no depth; its approach is this to a factor of order one
+        scale = scale or (indenter.load or 0.0) / (self.body.moduli[0] * grid.half_width)
         found = contact.solve(
             self.deflection,
             self.gap + defect,

@@ -33,8 +33,8 @@ def levels(
         sizes.insert(0, odd(sizes[0] / 2))
     shapes: list[Profile | None] = [None] * len(sizes)
     kept = 3 if estimate_uncertainty else 1
-    for k, shape in enumerate(indenter.shapes[:kept]):
-        shapes[-1 - k] = shape
+    for k, profile in enumerate(indenter.shapes[:kept]):
+        shapes[-1 - k] = profile
     starter = replace(numerics, tolerance=max(1e-5, numerics.tolerance))
     if indenter.shapes:
         starter = replace(starter, max_iterations=min(QUICK, numerics.max_iterations))

@@ -28,7 +28,7 @@ Array = NDArray[np.floating]
 # error of the stress of a given pressure, over its peak, against Hankel quadrature: above 4 patches, below
 EVALUATION = (5e-6, 5e-7)
 NEAR = 8.0  # patches from the edge, within which the error of its radius is felt
-EXACT = 1e-9  # that of an edge profile, and of the small rest by patches
+EXACT = 1e-9  # that of an edge profile, relative to the peak pressure and to the stress
 # likewise of a pressure: its response to the gap the iteration leaves, in proportion to the patches
 RESOLUTION = 1e-7
 
@@ -178,11 +178,10 @@ class Solution:
     def pressure_uncertainty(self, x: ArrayLike, y: ArrayLike = 0.0) -> Array:
         """Uncertainty of the pressure [Pa] from the coarser companion.
 
-        The largest difference of the two within a patch of the coarser, times ``safety``, or a sixth of that
-        of the next two; plus the changes of the peak by the other numerical parameters: twice, since they
-        were varied on half the patches and the pressure due to a gap is proportional to the patches. Plus
-        the change of the pressure by the uncertain radius within three patches of the coarser from the edge
-        or, where the edge is a staircase, twice the sum; and ``RESOLUTION`` of the peak.
+        With an edge profile as that of the stress. Else the largest difference of the two within two patches
+        of the coarser, times ``safety``, or a sixth of that of the next two; plus the changes of the peak by the
+        other numerical parameters, twice, since they were varied on half the patches and the pressure due to
+        a gap is proportional to the patches; plus ``RESOLUTION`` of the peak; twice the sum.
         Raises ValueError where no uncertainty was estimated.
         """
         coarser, floor = self._companion()
@@ -201,8 +200,9 @@ class Solution:
 
     def _profile_uncertainty(self, x: ArrayLike, y: ArrayLike) -> Array:
         """Uncertainty of the pressure [Pa] from the coarser edge profiles, as that of the stress."""
-        levels = self._studied
-        fine, second, third = (level.shape for level in levels)
+        shapes = self._studied
+        assert self.uncertainty is not None
+        fine, second, third = shapes
         r, rate = np.hypot(x, y), self._convergence
         p = fine.pressure(r)
         change = np.abs(p - second.pressure(r))
@@ -214,14 +214,15 @@ class Solution:
     @cached_property
     def _convergence(self) -> float:
         """Factor by which the last refinement reduced the error of the edge profile."""
-        return convergence(*(level.shape for level in self._studied))
+        return convergence(*self._studied)
 
     @property
-    def _studied(self) -> list[Level]:
-        """The levels of the refinement study, the finest first."""
+    def _studied(self) -> list[Profile]:
+        """The edge profiles of the refinement study, the finest first."""
         coarser, _ = self._companion()
         assert coarser.coarser is not None
-        return [self._level, coarser._level, coarser.coarser._level]
+        shapes = [one._level.shape for one in (self, coarser, coarser.coarser)]
+        return [shape for shape in shapes if isinstance(shape, Profile)]
 
     def stress_uncertainty(self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None) -> Array:
         """Uncertainty of the stress [Pa], shape (3, 3) + points; see ``stress_with_uncertainty``.
@@ -235,9 +236,11 @@ class Solution:
     ) -> tuple[Array, Array]:
         """Stress and its uncertainty [Pa], shape (3, 3) + points each, the latter from coarser companions.
 
-        The largest difference over the six components, for every component alike: of this grid and the
-        next, times ``safety``, or a third of that of the next and the one after; plus the changes of the peak
-        pressure by the other numerical parameters, and the error of the evaluation, ``EVALUATION`` of it.
+        The largest difference over the six components, for every component alike, of this level and the next,
+        or of the next and the one after. With an edge profile both are reduced by the observed convergence;
+        the change by the uncertain radius counts where it is larger; plus ``EXACT`` of the peak pressure and
+        of the stress. Without, times ``safety``, or a third; plus the changes of the peak pressure by the other
+        numerical parameters, and the error of the evaluation, ``EVALUATION`` of it.
         Raises ValueError where no uncertainty was estimated.
         """
         coarser, floor = self._companion()
@@ -249,8 +252,9 @@ class Solution:
         before = np.abs(second - third[0]).max(axis=(0, 1)) if third else np.zeros_like(change)
         if isinstance(self._level.shape, Profile):
             rate = self._convergence
-            total = rate * np.maximum(change, rate * before) + EXACT * self.peak_pressure
-            total = np.maximum(total, self._uncertain_edge(x, y, z, layer))
+            floor = EXACT * (self.peak_pressure + np.abs(sigma).max(axis=(0, 1)))
+            total = rate * np.maximum(change, rate * before)
+            total = np.maximum(total, self._uncertain_edge(x, y, z, layer)) + floor
         else:
             change = np.maximum(safety(len(self.nodes) / len(coarser.nodes)) * change, before / 3)
             total = change + floor * self.peak_pressure

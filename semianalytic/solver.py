@@ -11,7 +11,17 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
-from semianalytic import abel, collocation, contact, convolution, edge_profile, frf, influence, nested, uncertainty
+from semianalytic import (
+    abel,
+    collocation,
+    contact,
+    convolution,
+    edge_profile,
+    frf,
+    influence,
+    nested,
+    uncertainty,
+)
 from semianalytic.contact import NotConverged
 from semianalytic.grid import Grid, deconvolve, odd, touches_rim
 from semianalytic.inputs import Body, Numerics, check_control, check_finite, check_positive
@@ -77,8 +87,8 @@ def solve(
     a = found[0][0].radius
     if a > LARGEST * radius:
         raise ValueError(
-            f"contact radius a = {a:g} m is {a / radius:.2g} of the sphere's radius; the parabolic gap and small "
-            f"strains hold below {LARGEST:g}, and well below 0.1"
+            f"contact radius a = {a:g} m is {a / radius:.2g} of the sphere's radius; the parabolic gap and "
+            f"small strains hold below {LARGEST:g}, and well below 0.1"
         )
     half_width = fill * a
     if edge_correction:

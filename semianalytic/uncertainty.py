@@ -28,8 +28,8 @@ def safety(ratio: float) -> float:
 class Uncertainty:
     """Numerical uncertainty in SI units; budget : rows (quantity, numerical parameter, value).
 
-    Parameters: patch size, conversion, domain, iteration; of a contact with an edge profile its terms, and the
-    iteration. The three scalars are the sums of their rows.
+    Parameters: patch size, conversion, domain, iteration; of a contact with an edge profile its terms, the
+    quadrature, the iteration. The three scalars are the sums of their rows.
     """
 
     contact_radius: float
