@@ -32,14 +32,16 @@ class Profile:
 
     @cached_property
     def peak(self) -> float:
-        """Largest p [Pa], off the axis where a stiff film bends: a parabola through points of a fine grid."""
-        s = np.linspace(0, 1, 4001)
-        p = self.pressure(self.radius * s)
-        best = int(p.argmax())
-        if best in (0, s.size - 1):
-            return float(p[best])
-        left, middle, right = p[best - 1 : best + 2]
-        return float(middle + (right - left) ** 2 / (8 * (2 * middle - left - right)))
+        """Largest p [Pa], off the axis where a stiff film bends: the best of a grid, then of a finer one."""
+        low, high = 0.0, 1.0
+        for _ in range(2):
+            s = np.linspace(low, high, 1001)
+            p = self.pressure(self.radius * s)
+            best = int(p.argmax())
+            if best in (0, s.size - 1):
+                break
+            low, high = s[best - 1], s[best + 1]
+        return float(p[best])
 
     @property
     def load(self) -> float:

@@ -179,8 +179,8 @@ class Solution:
         """Uncertainty of the pressure [Pa] from the coarser companion.
 
         With an edge profile as that of the stress. Else the largest difference of the two within two patches
-        of the coarser, times ``safety``, or a sixth of that of the next two; plus the changes of the peak by the
-        other numerical parameters, twice, since they were varied on half the patches and the pressure due to
+        of the coarser, times ``safety``, or a sixth of that of the next two; plus the changes of the peak by
+        the other numerical parameters, twice, since they were varied on half the patches and the pressure due to
         a gap is proportional to the patches; plus ``RESOLUTION`` of the peak; twice the sum.
         Raises ValueError where no uncertainty was estimated.
         """
@@ -239,7 +239,7 @@ class Solution:
         The largest difference over the six components, for every component alike, of this level and the next,
         or of the next and the one after. With an edge profile both are reduced by the observed convergence;
         the change by the uncertain radius counts where it is larger; plus ``EXACT`` of the peak pressure and
-        of the stress. Without, times ``safety``, or a third; plus the changes of the peak pressure by the other
+        of the stress. Without, times ``safety``, or a third; plus the changes of the peak pressure by other
         numerical parameters, and the error of the evaluation, ``EVALUATION`` of it.
         Raises ValueError where no uncertainty was estimated.
         """
