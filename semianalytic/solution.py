@@ -180,8 +180,8 @@ class Solution:
 
         With an edge profile as that of the stress. Else the largest difference of the two within two patches
         of the coarser, times ``safety``, or a sixth of that of the next two; plus the changes of the peak by
-        the other numerical parameters, twice, since they were varied on half the patches and the pressure due to
-        a gap is proportional to the patches; plus ``RESOLUTION`` of the peak; twice the sum.
+        the other numerical parameters, twice, since they were varied on half the patches and the pressure
+        due to a gap is proportional to the patches; plus ``RESOLUTION`` of the peak; twice the sum.
         Raises ValueError where no uncertainty was estimated.
         """
         coarser, floor = self._companion()

@@ -98,6 +98,8 @@ def solve(
             depth, reach = collocation.reflecting_depth(body), 1.01 * 2**0.5 * half_width
             sphere = replace(sphere, table=abel.layer_table(excess, depth, a, reach))
     levels = nested.levels(half_width, sphere, body, numerics, estimate_uncertainty)
+    if touches_rim(levels[-1].found.pressure):
+        raise NotConverged(f"the contact reaches the rim of the grid, fill = {fill:g}; enlarge it")
     estimate = uncertainty.of_contact(levels, sphere, body, numerics) if estimate_uncertainty else None
     return Solution.of_levels(levels, body, estimate, began)
 
