@@ -96,7 +96,7 @@ def solve(
     state = ElasticState.of_contact(solid, final)
     found, stiffness_error = None, None
     if estimate_uncertainty:
-        found, stiffness_error = contact_estimates(levels, state, unit, target)
+        found, stiffness_error = contact_estimates(levels, state, unit, target, size)
     frictionless = Solution(
         contact_radius=final.contact_radius * unit.length,
         approach=final.approach * unit.displacement,
@@ -160,7 +160,7 @@ def solve_prescribed(
     if estimate_uncertainty:
         companion = state_on(mesh_at(solid, companion_grading(size), 1.0))
         change = abs(state.central_displacement - companion.central_displacement)
-        found = estimates(state, companion, unit, (0.0, change), load_residual=0.0, edge=0.0)
+        found = estimates(state, companion, unit, (0.0, change), load_residual=0.0, edge=0.0, size=size)
     d = state.discretisation
     nodes = _surface_nodes(d)
     frictionless = Solution(

@@ -47,7 +47,7 @@ BAD = (
 
 
 def refusal(solve, change):
-    with pytest.raises(ValueError) as caught:
+    with pytest.raises(ValueError, match=" = ") as caught:
         solve(**{**GOOD, **change})
     return str(caught.value)
 
