@@ -56,8 +56,8 @@ def test_the_estimate_covers_the_error_in_the_strip_around_the_edge(friction):
     stress, uncertainty = s.stress_with_uncertainty(*points)
     excess = np.abs(stress - exact.stress(*points)) > uncertainty + 1e-9 * P_H
     assert excess.mean() < 1e-3
-    # at the edge the radius is good to 1e-7 and sigma to its square root
-    assert s.stress_uncertainty(-a, 0.0, 0.0)[0, 0] < 1e-2 * P_H
+    # at the edge the uncertainty of sigma is about the square root of that of the radius
+    assert s.stress_uncertainty(-a, 0.0, 0.0)[0, 0] < 2e-2 * P_H
 
 
 def test_hard_ultra_thin_film_converges():
