@@ -72,10 +72,10 @@ class DissectionTree:
         np.maximum.at(last, elements, leaf[:, None])
         eliminated = np.frexp(first ^ last)[1]  # length in bits, the height of that smallest part
         # small parts are joined by fours: copying their matrices takes longer than the arithmetic
-        heights = [*range(0, min(top, _FOURFOLD), 2), *range(_FOURFOLD, top + 1)]
+        heights = sorted({*range(0, min(top, _FOURFOLD), 2), *range(_FOURFOLD, top), top})
         levels: list[tuple[_Group, ...]] = []
         pieces, below = [(leaf, elements)], 0
-        for height in heights if top else [0]:
+        for height in heights:
             level, pieces = _level(pieces, eliminated > height, height - below)
             levels.append(level)
             below = height
