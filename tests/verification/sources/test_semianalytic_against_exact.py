@@ -74,7 +74,7 @@ def test_stress_meets_the_exact_one(coatings, off_plane, friction):
     # sliding adds a linear part; that it equals a solve with friction is a law of tests/semianalytic
     ours, exact = ours_at_rest(coatings).with_friction(friction), integral_equation.solve(**problem)
     a, d = exact.contact_radius, ours.diagnostics.patch_size
-    line = np.linspace(-4, 4, 33)
+    line = np.linspace(-4, 4, 41)
     beside = np.random.default_rng(4).uniform(-1.2, 1.2, (2, off_plane))
     x, y = np.concatenate([[line, 0 * line], beside], axis=1) * a
     away = np.abs(np.hypot(x, y) - a) > 3 * d
