@@ -90,6 +90,13 @@ class Discretisation:
         # pickled without the cached properties, which are computed again on use: a hundred times smaller
         return {"mesh": self.mesh, "order": self.order}
 
+    def moved(self, mesh: MeridianMesh) -> "Discretisation":
+        """The same elements on another ``mesh``; one of the same triangles keeps the order of elimination."""
+        d = Discretisation(mesh, self.order)
+        if mesh.triangles is self.mesh.triangles:
+            vars(d)["tree"] = self.tree
+        return d
+
     @cached_property
     def triangulation(self) -> MeshTri:
         # sort_t: scikit-fem needs ascending vertex numbers to match edge unknowns of order 3 and above

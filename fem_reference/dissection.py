@@ -19,7 +19,7 @@ from scipy.linalg.lapack import dtrtri
 
 __all__ = ["CholeskyFactor", "DissectionTree", "bisected", "unknowns"]
 
-_BLOCK = 2**17  # entries of the fronts eliminated together, which stay in the cache of the processor
+_BLOCK = 2**15  # entries of the fronts eliminated together, which stay in the cache of the processor
 _FOURFOLD = 6  # height in the binary tree below which parts are joined by fours
 
 
@@ -210,12 +210,11 @@ def unknowns(nodes: np.ndarray, fields: int, stride: int) -> np.ndarray:
 def _assembled(group: _Group, fronts: slice, below: list[np.ndarray], fields: int) -> np.ndarray:
     """Sum of the matrices of the parts that make up each of the ``fronts``."""
     number, size = fronts.stop - fronts.start, group.nodes.shape[1] * fields
-    at, values = [], []
+    total = np.zeros(number * size**2)
     for source in group.sources:
         within = slice(*np.searchsorted(source.ours, (fronts.start, fronts.stop)))
         rows = unknowns(source.positions[within] * fields, fields, 1)
-        first = rows + (source.ours[within, None] - fronts.start) * size
-        at.append((first[:, :, None] * size + rows[:, None, :]).ravel())
-        values.append(below[source.group][source.theirs[within]].ravel())
-    total = np.bincount(np.concatenate(at), np.concatenate(values), number * size**2)
+        first = (rows + (source.ours[within, None] - fronts.start) * size) * size
+        at = first[:, :, None] + rows[:, None, :]
+        np.add.at(total, at.ravel(), below[source.group][source.theirs[within]].ravel())
     return total.reshape(number, size, size)
