@@ -124,7 +124,7 @@ def test_thin_coating_gives_hertz_of_the_substrate():
         load=W,
         coatings=((2 * E, NU, h),),
         substrate=(E, NU),
-        quality="fast",
+        size=0.5,
         estimate_uncertainty=False,
     )
     # the coating is felt in proportion to h/a
@@ -133,7 +133,8 @@ def test_thin_coating_gives_hertz_of_the_substrate():
 
 
 def test_scaling_with_load_radius_and_moduli():
-    base = solved("stiff", "fast")
+    cheap = {"size": 0.5, "order": 2, "estimate_uncertainty": False}
+    base = solve(radius=R, load=W, coatings=CASES["stiff"], substrate=(E, NU), **cheap)
     factor = 3.0  # all lengths; W ~ E L^2 keeps strains
     coatings = tuple((7 * E_k, nu, factor * h) for E_k, nu, h in CASES["stiff"])
     other = solve(
@@ -141,8 +142,7 @@ def test_scaling_with_load_radius_and_moduli():
         load=7 * factor**2 * W,
         coatings=coatings,
         substrate=(7 * E, NU),
-        quality="fast",
-        estimate_uncertainty=False,
+        **cheap,
     )
     assert other.contact_radius == pytest.approx(factor * base.contact_radius, rel=1e-9)
     assert other.approach == pytest.approx(factor * base.approach, rel=1e-9)
@@ -154,8 +154,7 @@ def test_scaling_with_load_radius_and_moduli():
         load=W / 2,
         coatings=CASES["stiff"],
         substrate=(E, NU),
-        quality="fast",
-        estimate_uncertainty=False,
+        **cheap,
     )
     assert half.contact_radius == pytest.approx(base.contact_radius, rel=1e-9)
     assert half.peak_pressure == pytest.approx(base.peak_pressure / 2, rel=1e-9)
@@ -207,7 +206,7 @@ def test_extreme_coatings_are_solved_with_positive_pressure_and_gap(ratio, thick
         load=W,
         coatings=((ratio * E, NU, thickness * A_H),),
         substrate=(E, NU),
-        quality="fast",
+        size=0.5,
         estimate_uncertainty=False,
     )
     assert s.diagnostics.residual_pressure == 0
