@@ -28,8 +28,7 @@ CASES = {
 }
 
 
-# a half-space in three layers of equal moduli
-HALF_SPACE = ((E, NU, 0.1 * A_H), (E, NU, 0.9 * A_H))
+HALF_SPACES = {"bare": (), "layers of equal moduli": ((E, NU, 0.1 * A_H), (E, NU, 0.9 * A_H))}
 
 
 @lru_cache
@@ -37,7 +36,7 @@ def solved(name, quality="default"):
     return solve(
         radius=R,
         load=W,
-        coatings=HALF_SPACE if name == "half-space" else CASES[name],
+        coatings=(CASES | HALF_SPACES)[name],
         substrate=(E, NU),
         quality=quality,
         estimate_uncertainty=False,
@@ -89,7 +88,7 @@ def test_tractions_are_continuous_across_every_interface(name):
 
 
 def test_equal_moduli_give_hertz():
-    s = solved("half-space")
+    s = solved("layers of equal moduli")
     assert s.contact_radius == pytest.approx(A_H, rel=1e-6)
     assert s.peak_pressure == pytest.approx(P_H, rel=1e-5)
     assert s.approach == pytest.approx(A_H**2 / R, rel=1e-6)
@@ -229,7 +228,7 @@ F = 0.5
 
 
 @lru_cache
-def sliding(friction=F, name="half-space", quality="default"):
+def sliding(friction=F, name="bare", quality="default"):
     """The contact is solved once; that sliding later equals sliding from the start has a test of its own."""
     return solved(name, quality).with_friction(friction)
 
