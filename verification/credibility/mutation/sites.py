@@ -204,6 +204,5 @@ def _changes(node: Any, place: _Place) -> Iterator[tuple[str, Any, Any]]:
             yield "extreme", node, _with(node, func=_with(node.func, **{field: _EXTREMES[name]}))
         elif name in _ABSOLUTE and len(node.args) == 1:
             yield "abs", node, node.args[0]
-    elif isinstance(node, ast.Return) and node.value and place.numeric:
-        if not isinstance(node.value, ast.Constant | ast.UnaryOp):
-            yield "sign", node.value, ast.UnaryOp(ast.USub(), node.value)
+    elif isinstance(node, ast.Return) and place.numeric and node.value:
+        yield "sign", node.value, ast.UnaryOp(ast.USub(), node.value)
