@@ -70,7 +70,7 @@ def gather(records: Path) -> Evidence:
             failures.append(" ".join(message.split())[:300])
             return otherwise
 
-    mutants = attempt("mutants", lambda: mutation.read_record(records), None)
+    mutants = attempt("mutants", lambda: mutation.read_record(records / mutation.RECORD), None)
     return Evidence(
         attempt("manufactured solutions", design_orders, ()),
         attempt("imports", parts, ()),

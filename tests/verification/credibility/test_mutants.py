@@ -2,6 +2,7 @@
 
 import os
 from dataclasses import replace
+from pathlib import Path
 
 import pytest
 from synthetic_results import INFO
@@ -13,6 +14,7 @@ from verification.credibility.mutation.sites import mutants, mutated
 from verification.credibility.mutation.trial import kept_trial, main, try_mutant
 from verification.report.credibility import mutants as page
 from verification.report.material import Evidence, Material
+from verification.running.store import StoreError, read_checked
 
 SMALL = '''"""A module of 3 words."""
 from dataclasses import dataclass
@@ -111,15 +113,16 @@ def toy(tmp_path_factory):
     }.items():
         (root / name).parent.mkdir(parents=True, exist_ok=True)
         (root / name).write_text(text)
+    (root / "fem_reference").mkdir()
     return root
 
 
 @pytest.mark.parametrize(
     ("after", "catch", "by"),
     [
-        ("", Catch.SURVIVED, "an area"),
-        ("SMALLEST = 2e-300", Catch.SURVIVED, "an area"),
-        ("a = (a - 1)", Catch.TIME, "processor time"),
+        ("", Catch.SURVIVED, "passed"),
+        ("SMALLEST = 2e-300", Catch.SURVIVED, "passed"),
+        ("a = (a - 1)", Catch.TIME, ""),
         ("a = a + 2", Catch.CHECKS, "an area"),
         ("while (a <= 0):", Catch.TESTS, "test_toy.py"),
         ("return (a / h) + SMALLEST", Catch.CRASH, "ZeroDivisionError"),
@@ -166,9 +169,13 @@ def test_survivors_that_were_read_keep_their_reason_and_equivalent_ones_do_not_c
     assert record.score() == record.score("judging") == (1, 2)
     assert not record.passed
     assert replace(record, trials=record.trials[::2]).passed
-    records.write_record(tmp_path, record)
-    assert records.read_record(tmp_path) == record
+    path = tmp_path / records.RECORD
+    records.write_record(path, record)
+    assert records.read_record(path) == record
     assert records.read_record(tmp_path / "nowhere") is None
+    path.write_text(path.read_text().replace('"judging"', '"judgment"'))
+    with pytest.raises(StoreError, match=r"mutants\.json"):
+        records.read_record(path)
 
 
 def test_the_section_shows_score_and_survivors(tmp_path):
@@ -199,17 +206,23 @@ def test_a_wrong_question_is_bad_input_and_writes_nothing(words, tmp_path, capsy
 
 
 def test_a_trial_is_kept_for_the_same_code_and_a_survivor_for_the_same_tests(tmp_path, monkeypatch):
-    module = "verification.credibility.mutation.trial"
-    found = Trial("judging", None, Catch.SURVIVED, seconds=1.0)
-    monkeypatch.setattr(f"{module}.try_mutant", lambda *_: found)
-    main("judging", "null", str(tmp_path), "5")
-    assert kept_trial("judging", None, tmp_path) == found
-    assert kept_trial("sampling", None, tmp_path) is None
-    monkeypatch.setattr(f"{module}._tests", lambda: "other tests")
-    assert kept_trial("judging", None, tmp_path) is None
-    monkeypatch.setattr(f"{module}.try_mutant", lambda *_: replace(found, catch=Catch.TESTS))
-    main("judging", "null", str(tmp_path), "5")
-    monkeypatch.setattr(f"{module}._tests", lambda: "further tests")
-    assert kept_trial("judging", None, tmp_path) is not None
-    monkeypatch.setattr(f"{module}.fingerprint", lambda *_: "other code")
-    assert kept_trial("judging", None, tmp_path) is None
+    module, path = (
+        "verification.credibility.mutation.trial",
+        str(tmp_path / "trials" / "control_judging.json"),
+    )
+    survived = Trial("judging", None, Catch.SURVIVED, seconds=1.0)
+    for trial, code in ((survived, "code, tests"), (replace(survived, catch=Catch.TESTS), "code")):
+        monkeypatch.setattr(f"{module}.try_mutant", lambda *_, found=trial: found)
+        monkeypatch.setattr(
+            f"{module}.fingerprint", lambda modules: "code" + ", tests" * ("tests" in modules)
+        )
+        main("judging", "", "clean", "5", path)
+        assert read_checked(Path(path))["made_by"] == code
+        assert kept_trial("judging", None, tmp_path) == trial
+        assert kept_trial("sampling", None, tmp_path) is None
+        monkeypatch.setattr(
+            f"{module}.fingerprint", lambda modules: "code" + ", others" * ("tests" in modules)
+        )
+        assert (kept_trial("judging", None, tmp_path) == trial) is trial.caught
+        monkeypatch.setattr(f"{module}.fingerprint", lambda modules: "other code")
+        assert kept_trial("judging", None, tmp_path) is None

@@ -22,43 +22,22 @@ SURVIVORS = Path(__file__).with_name("survivors.toml")
 
 @dataclass(frozen=True)
 class Room:
-    """A ``folder`` of code with its ``tests``; ``asked`` is the share of its mutants that should be caught.
-
-    checks : nothing planted, with the cases and the sources that are solved under each mutant.
-    """
+    """A ``folder`` of code with its ``tests``, see rooms.toml."""
 
     folder: str
     tests: tuple[str, ...]
     asked: float
-    checks: Fault
+    where: str
+    cases: tuple[str, ...]
+    solve: tuple[str, ...] = ()
+
+    @property
+    def checks(self) -> Fault:
+        """Nothing planted, with what is solved under each mutant."""
+        return Fault("none", "", "", self.where, cases=self.cases, solve=self.solve)
 
 
-def _checks(where: str, solve: tuple[str, ...], *cases: str) -> Fault:
-    return Fault("none", "", "", where, cases=(*cases, "14_ratio_4_sliding"), solve=solve)
-
-
-_SMOOTH, _SLIDING, _HOUSE = "01_uncoated_steel", "13_uncoated_sliding", "tests/verification"
-_HARNESS = _checks("harness", ("semianalytic", "integral_equation"))
-_RUN = (
-    f"{_HOUSE}/running",
-    "tests/robustness/test_failing_workers.py",
-    "tests/robustness/test_run_directories.py",
-)
-ROOMS = {
-    **{
-        name: Room(name, (f"tests/{name}",), 0.9, _checks(name, (name,), _SMOOTH))
-        for name in ("semianalytic", "fem_reference")
-    },
-    "references": Room(
-        "verification/sources/references",
-        (f"{_HOUSE}/sources",),
-        0.9,
-        _checks("integral_equation", ("integral_equation", "hertz", "hamilton"), _SMOOTH, _SLIDING),
-    ),
-    "judging": Room("verification/judging", (f"{_HOUSE}/judging",), 0.95, _HARNESS),
-    "sampling": Room("verification/sampling", (f"{_HOUSE}/sampling", f"{_HOUSE}/running"), 0.95, _HARNESS),
-    "running": Room("verification/running", _RUN, 0.95, _HARNESS),
-}
+ROOMS = decode(dict[str, Room], load_toml(Path(__file__).with_name("rooms.toml").read_bytes())[1])
 
 
 class Catch(StrEnum):
@@ -106,8 +85,8 @@ class MutantRecord:
     info: RunInfo
 
     @property
-    def survivors(self) -> tuple[Trial, ...]:
-        return tuple(trial for trial in self.trials if not trial.caught)
+    def survivors(self) -> list[tuple[Trial, Mutant]]:
+        return [(trial, trial.mutant) for trial in self.trials if trial.mutant and not trial.caught]
 
     def score(self, *rooms: str) -> tuple[int, int]:
         """Caught, and all but the equivalent ones, in ``rooms``; in all unless given."""
@@ -117,19 +96,18 @@ class MutantRecord:
     @property
     def passed(self) -> bool:
         """True where enough is caught in the rooms of each share asked, and every survivor was read."""
-        for asked in {room.asked for room in ROOMS.values()}:
-            caught, count = self.score(*(name for name, room in ROOMS.items() if room.asked == asked))
-            if caught < asked * count:
-                return False
-        return all(trial.kind for trial in self.survivors)
+        shares = {room.asked for room in ROOMS.values()}
+        scores = {s: self.score(*(name for name, room in ROOMS.items() if room.asked == s)) for s in shares}
+        enough = all(caught >= share * count for share, (caught, count) in scores.items())
+        return enough and all(trial.kind for trial, _ in self.survivors)
 
 
-def drawn(rooms: Sequence[str], count: int, seed: int, root: Path = ROOT) -> list[tuple[str, Mutant]]:
+def drawn(rooms: Sequence[str], count: int, seed: int) -> list[tuple[str, Mutant]]:
     """``count`` mutants, as many from each of ``rooms``; those of a larger count are these with more."""
     found = []
     for number, name in enumerate(rooms):
-        files = sorted((root / ROOMS[name].folder).rglob("*.py"))
-        known = [m for f in files for m in mutants(f.read_text("utf-8"), f.relative_to(root).as_posix())]
+        files = sorted((ROOT / ROOMS[name].folder).rglob("*.py"))
+        known = [m for f in files for m in mutants(f.read_text("utf-8"), f.relative_to(ROOT).as_posix())]
         random.Random(f"{seed} {name}").shuffle(known)
         share = count // len(rooms) + (number < count % len(rooms))
         found += [(name, mutant) for mutant in known[:share]]
@@ -140,12 +118,12 @@ def annotated(trials: Sequence[Trial], listed: Path = SURVIVORS) -> tuple[Trial,
     """``trials`` with kind and reason of the survivors listed by file, function and change."""
     rows = load_toml(listed.read_bytes())[1].get("survivor", [])
     known = {(row["file"], row["function"], row["change"]): row for row in rows}
-    found = []
-    for trial in trials:
-        m = trial.mutant
-        row = known.get((m.file, m.function, m.change)) if m and not trial.caught else None
-        found.append(replace(trial, kind=row["kind"], reason=row["reason"]) if row else trial)
-    return tuple(found)
+
+    def read(trial: Trial, m: Mutant | None) -> Trial:
+        row = known.get((m.file, m.function, m.change)) if m and trial.catch is Catch.SURVIVED else None
+        return replace(trial, kind=row["kind"], reason=row["reason"]) if row else trial
+
+    return tuple(read(trial, trial.mutant) for trial in trials)
 
 
 def to_json(record: MutantRecord) -> dict[str, Any]:
@@ -153,20 +131,16 @@ def to_json(record: MutantRecord) -> dict[str, Any]:
     return {"schema": SCHEMA, **encode(record), "score": list(record.score()), "passed": record.passed}
 
 
-def write_record(folder: Path, record: MutantRecord) -> None:
-    """Store ``record`` in ``folder``. Raises StoreError where it cannot be written."""
-    write_checked(folder / RECORD, to_json(record))
-
-
-def read_record(folder: Path) -> MutantRecord | None:
-    """The record in ``folder``; None where there is none. Raises StoreError where it is damaged."""
-    path = folder / RECORD
+def read_record(path: Path) -> MutantRecord | None:
+    """The record stored at ``path``; None where there is none. Raises StoreError where it is damaged."""
     if not path.exists():
         return None
     try:
-        data = read_checked(path)
-        if data.get("schema") == SCHEMA:
-            return decode(MutantRecord, data)
+        return decode(MutantRecord, read_checked(path))
     except ValueError as error:
-        raise StoreError(f"{path}: {error}") from None
-    raise StoreError(f"{path}: not a record of {SCHEMA}; run coatcheck mutants again")
+        raise StoreError(f"{path}: not a record of {SCHEMA} ({error}); run coatcheck mutants again") from None
+
+
+def write_record(path: Path, record: MutantRecord) -> None:
+    """Store ``record`` as a checked file. Raises StoreError where it cannot be written."""
+    write_checked(path, to_json(record))

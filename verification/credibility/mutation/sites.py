@@ -12,27 +12,24 @@ Left alone are annotations, decorators, messages of errors, assertions, text, an
 import ast
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from hashlib import sha256
-from pathlib import PurePath
 from typing import Any
 
-_SWAPPED: dict[type, tuple[type, ...]] = {
-    **{ast.Add: (ast.Sub,), ast.Sub: (ast.Add,), ast.Mult: (ast.Div,), ast.Div: (ast.Mult,)},
-    **{ast.Pow: (ast.Mult,), ast.FloorDiv: (ast.Mult,), ast.Mod: (ast.FloorDiv,), ast.MatMult: (ast.Mult,)},
-    **{ast.BitAnd: (ast.BitOr,), ast.BitOr: (ast.BitAnd,), ast.And: (ast.Or,), ast.Or: (ast.And,)},
-    **{ast.Lt: (ast.LtE, ast.GtE), ast.LtE: (ast.Lt, ast.Gt), ast.Gt: (ast.GtE, ast.LtE)},
-    **{ast.GtE: (ast.Gt, ast.Lt), ast.Eq: (ast.NotEq,), ast.NotEq: (ast.Eq,), ast.Is: (ast.IsNot,)},
-    **{ast.IsNot: (ast.Is,), ast.In: (ast.NotIn,), ast.NotIn: (ast.In,)},
-}
-_PAIRS = ("min max", "minimum maximum", "argmin argmax", "nanmin nanmax", "floor ceil", "any all")
-_EXTREMES = {a: b for pair in _PAIRS for a, b in (pair.split(), pair.split()[::-1])}
-_ABSOLUTE = {"abs", "absolute", "fabs"}
+_BECOMES = (
+    "Add Sub, Sub Add, Mult Div, Div Mult, Pow Mult, FloorDiv Mult, Mod FloorDiv, MatMult Mult, "
+    "BitAnd BitOr, BitOr BitAnd, And Or, Or And, Lt LtE GtE, LtE Lt Gt, Gt GtE LtE, GtE Gt Lt, Eq NotEq, "
+    "NotEq Eq, Is IsNot, IsNot Is, In NotIn, NotIn In"
+)
+_OPERATORS = {old: new for old, *new in (row.split() for row in _BECOMES.split(", "))}
+_PAIRS = "min max, minimum maximum, argmin argmax, nanmin nanmax, floor ceil, any all"
+_EXTREMES = {a: b for pair in _PAIRS.split(", ") for a, b in (pair.split(), pair.split()[::-1])}
 _NUMBER = re.compile(r"float|int|complex|Array|NDArray.*|np\.ndarray")
 _TEXT = re.compile(r"((list|Iterator|Sequence|tuple)\[)?str(, \.\.\.)?\]?( \| None)?")
-_SPEAKING = {"join", "format", "warn", "TypeVar", "ParamSpec", "isinstance"}  # text and types
+_SPEAKING = {"join", "format", "warn", "TypeVar", "ParamSpec", "isinstance"}  # calls about text, about types
+_TYPES = {"int", "float", "str", "bool", "list", "tuple", "dict"}
 _SKIPPED = (ast.Raise, ast.Assert, ast.JoinedStr, ast.arg, ast.Import, ast.ImportFrom)
-_CERTAIN = {"strict"}  # arguments that only guard against mistakes
+_OPERANDS = (ast.AugAssign, ast.Call, ast.Constant, ast.Name, ast.Attribute, ast.Subscript)
 
 
 @dataclass(frozen=True)
@@ -53,7 +50,7 @@ class Mutant:
     @property
     def name(self) -> str:
         """Its place with a digest, as the name of a file."""
-        place = PurePath(self.file).with_suffix("").as_posix().replace("/", ".")
+        place = self.file.removesuffix(".py").replace("/", ".")
         return f"{place}_{self.line}_{sha256(repr(self).encode()).hexdigest()[:8]}"
 
     @property
@@ -65,40 +62,22 @@ class Mutant:
 def mutated(source: str, mutant: Mutant) -> str:
     """``source`` with the change of ``mutant``."""
     lines = source.splitlines(keepends=True)
-    first = mutant.line - 1
-    assert "".join(lines[first:]).startswith(mutant.before)
-    return "".join(lines[:first]) + "".join(lines[first:]).replace(mutant.before, mutant.after, 1)
+    rest = "".join(lines[mutant.line - 1 :])
+    assert rest.startswith(mutant.before)
+    return "".join(lines[: mutant.line - 1]) + mutant.after + rest.removeprefix(mutant.before)
 
 
 def mutants(source: str, file: str) -> list[Mutant]:
     """Every mutant of a module's ``source``, from its first line to its last."""
     lines = source.encode().splitlines()
     found = {}
-    for place, operator, node, new in _sites(ast.parse(source), _Place()):
+    for function, operator, node, new in _sites(ast.parse(source)):
         before = lines[node.lineno - 1 : node.end_lineno]
-        head, tail = before[0][: node.col_offset], before[-1][node.end_col_offset :]
-        after = head + _operand(new).encode() + tail
+        text = ast.unparse(new) if isinstance(new, _OPERANDS) else f"({ast.unparse(new)})"
+        after = before[0][: node.col_offset] + text.encode() + before[-1][node.end_col_offset :]
         where = (node.lineno, node.col_offset, b"\n".join(before).decode(), after.decode())
-        found[where] = Mutant(file, place.function, operator, *where)
+        found[where] = Mutant(file, function, operator, *where)
     return [found[where] for where in sorted(found)]
-
-
-@dataclass(frozen=True)
-class _Place:
-    """Function around a node, whether that returns numbers, and what a constant there is."""
-
-    function: str = ""
-    numeric: bool = False
-    constant: str = "constant"
-
-
-Site = tuple[_Place, str, Any, Any]  # place, operator, node, what it becomes
-
-
-def _operand(node: ast.AST) -> str:
-    """``node`` as source text that stays one operand wherever it is put."""
-    bare = ast.AugAssign | ast.Call | ast.Constant | ast.Name | ast.Attribute | ast.Subscript
-    return ast.unparse(node) if isinstance(node, bare) else f"({ast.unparse(node)})"
 
 
 def _with(node: Any, **fields: Any) -> Any:
@@ -106,87 +85,78 @@ def _with(node: Any, **fields: Any) -> Any:
     return type(node)(**dict(ast.iter_fields(node)) | fields)
 
 
-def _name(node: ast.AST) -> str:
+def _other(operator: ast.AST) -> list[Any]:
+    return [getattr(ast, name)() for name in _OPERATORS.get(type(operator).__name__, ())]
+
+
+def _name(node: Any) -> str:
     return getattr(node, "id", "") or getattr(node, "attr", "")
 
 
-def _is_text(node: ast.AST) -> bool:
+def _is_text(node: Any) -> bool:
     return isinstance(node, ast.JoinedStr) or isinstance(getattr(node, "value", None), str)
 
 
-def _is_type(node: ast.AST) -> bool:
-    return _name(node)[:1].isupper() or _name(node) in {
-        "int",
-        "float",
-        "str",
-        "bool",
-        "list",
-        "tuple",
-        "dict",
-    }
+def _is_type(node: Any) -> bool:
+    return _name(node)[:1].isupper() or _name(node) in _TYPES
 
 
 def _speaks(node: Any) -> bool:
     return isinstance(node, ast.Call) and _name(node.func) in _SPEAKING
 
 
-def _sites(node: Any, place: _Place) -> Iterator[Site]:
-    """The changes of ``node`` and of everything in it."""
+def _sites(
+    node: Any, function: str = "", numeric: bool = False, kind: str = "constant"
+) -> Iterator[tuple[str, str, Any, Any]]:
+    """Function, operator, node, what it becomes, of ``node`` with all in it.
+
+    numeric : whether the function returns numbers.   kind : of a constant.
+    """
     if isinstance(node, _SKIPPED) or _speaks(node) or _speaks(getattr(node, "value", None)):
         return
-    parts: list[tuple[Any, _Place]]
-    inner = replace(place, constant="constant")
+    parts = [(part, "constant") for part in ast.iter_child_nodes(node)]
     if isinstance(node, ast.FunctionDef):
         returns = ast.unparse(node.returns) if node.returns else ""
-        if _TEXT.fullmatch(returns) or node.name in ("__repr__", "__str__"):
+        if _TEXT.fullmatch(returns):
             return
-        name = f"{place.function}.{node.name}".lstrip(".")
-        inside = _Place(name, bool(_NUMBER.fullmatch(returns)))
-        defaults = [*node.args.defaults, *filter(None, node.args.kw_defaults)]
-        parts = [(d, replace(inside, constant="default")) for d in defaults]
-        parts += [(statement, inside) for statement in node.body]
-    elif isinstance(node, ast.ClassDef):
-        parts = [(s, _Place(f"{place.function}.{node.name}".lstrip("."))) for s in node.body]
+        numeric = bool(_NUMBER.fullmatch(returns))
+        parts = [(d, "default") for d in (*node.args.defaults, *node.args.kw_defaults) if d]
+    if isinstance(node, ast.FunctionDef | ast.ClassDef):
+        function = f"{function}.{node.name}".lstrip(".")
+        parts = [*(parts if isinstance(node, ast.FunctionDef) else []), *((s, "constant") for s in node.body)]
     elif isinstance(node, ast.AnnAssign):
-        parts = [(node.value, inner)] if node.value else []
-    elif isinstance(node, ast.Call):
-        axis = replace(place, constant="axis")
-        keywords = [k for k in node.keywords if k.arg not in _CERTAIN]
-        parts = [(part, inner) for part in (node.func, *node.args)]
-        parts += [(k.value, axis if k.arg == "axis" else inner) for k in keywords]
+        parts = [(node.value, "constant")] if node.value else []
+    elif isinstance(node, ast.keyword):  # strict=True of zip only guards against mistakes
+        parts = [(node.value, "axis" if node.arg == "axis" else "constant")] if node.arg != "strict" else []
     elif isinstance(node, ast.Subscript):
-        parts = [(node.value, inner), (node.slice, replace(place, constant="index"))]
+        parts = [(node.value, "constant"), (node.slice, "index")]
     elif isinstance(node, ast.Slice):
-        bounds = [bound for bound in (node.lower, node.upper, node.step) if bound]
-        parts = [(bound, replace(place, constant="slice")) for bound in bounds]
-    else:
-        kept = isinstance(node, ast.UnaryOp | ast.Tuple)  # a constant in -1 or in [0, 1] is still an index
-        parts = [(part, place if kept else inner) for part in ast.iter_child_nodes(node)]
-    yield from ((place, operator, old, new) for operator, old, new in _changes(node, place))
-    for part, where in parts:
-        yield from _sites(part, where)
+        parts = [(part, "slice") for part, _ in parts]
+    elif isinstance(node, ast.UnaryOp | ast.Tuple):
+        parts = [(part, kind) for part, _ in parts]
+    yield from ((function, operator, old, new) for operator, old, new in _changes(node, numeric, kind))
+    for part, kind in parts:
+        yield from _sites(part, function, numeric, kind)
 
 
-def _changes(node: Any, place: _Place) -> Iterator[tuple[str, Any, Any]]:
+def _changes(node: Any, numeric: bool, kind: str) -> Iterator[tuple[str, Any, Any]]:
     """Operator, node, what it becomes, of the changes of ``node`` itself."""
-    if isinstance(node, ast.Constant) and isinstance(node.value, bool | int | float | complex):
-        n = node.value
-        larger = not n if isinstance(n, bool) else n + 1 if n == 0 or (type(n) is int and n < 10) else 2 * n
-        yield place.constant, node, ast.Constant(larger)
+    if isinstance(node, ast.Constant) and isinstance(n := node.value, bool | int | float | complex):
+        step = n == 0 or (type(n) is int and n < 10)
+        yield kind, node, ast.Constant(not n if isinstance(n, bool) else n + 1 if step else 2 * n)
     elif isinstance(node, ast.BinOp | ast.AugAssign):
         sides = (node.left, node.right) if isinstance(node, ast.BinOp) else (node.value,)
         if any(map(_is_text, sides)) or (isinstance(node.op, ast.BitOr) and any(map(_is_type, sides))):
             return
-        for op in _SWAPPED.get(type(node.op), ()):
-            yield "arithmetic", node, _with(node, op=op())
+        yield from (("arithmetic", node, _with(node, op=op)) for op in _other(node.op))
         if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Add | ast.Sub):
             yield "term", node, node.left
     elif isinstance(node, ast.Compare):
         for i, old in enumerate(node.ops):
-            for op in _SWAPPED[type(old)]:
-                yield "comparison", node, _with(node, ops=[*node.ops[:i], op(), *node.ops[i + 1 :]])
+            for op in _other(old):
+                yield "comparison", node, _with(node, ops=[*node.ops[:i], op, *node.ops[i + 1 :]])
     elif isinstance(node, ast.BoolOp):
-        yield "comparison", node, _with(node, op=_SWAPPED[type(node.op)][0]())
+        yield "comparison", node, _with(node, op=_other(node.op)[0])
     elif isinstance(node, ast.UnaryOp):
         yield "negation", node, node.operand
     elif isinstance(node, ast.If | ast.While | ast.IfExp | ast.comprehension):
@@ -194,15 +164,13 @@ def _changes(node: Any, place: _Place) -> Iterator[tuple[str, Any, Any]]:
             if not isinstance(test, ast.Compare | ast.BoolOp | ast.UnaryOp | ast.Constant):
                 yield "negation", test, ast.UnaryOp(ast.Not(), test)
     elif isinstance(node, ast.Slice):
-        one = ast.Constant(1)
-        for bound, by in ((node.lower, ast.Add), (node.upper, ast.Sub)):
+        for bound, by in ((node.lower, ast.Add()), (node.upper, ast.Sub())):
             if bound and not isinstance(bound, ast.Constant | ast.UnaryOp):
-                yield "slice", bound, ast.BinOp(bound, by(), one)
-    elif isinstance(node, ast.Call):
-        if (name := _name(node.func)) in _EXTREMES:
-            field = "id" if isinstance(node.func, ast.Name) else "attr"
-            yield "extreme", node, _with(node, func=_with(node.func, **{field: _EXTREMES[name]}))
-        elif name in _ABSOLUTE and len(node.args) == 1:
-            yield "abs", node, node.args[0]
-    elif isinstance(node, ast.Return) and place.numeric and node.value:
+                yield "slice", bound, ast.BinOp(bound, by, ast.Constant(1))
+    elif isinstance(node, ast.Call) and (other := _EXTREMES.get(_name(node.func))):
+        field = "id" if isinstance(node.func, ast.Name) else "attr"
+        yield "extreme", node, _with(node, func=_with(node.func, **{field: other}))
+    elif isinstance(node, ast.Call) and _name(node.func) in ("abs", "absolute", "fabs"):
+        yield "abs", node, node.args[0]
+    elif isinstance(node, ast.Return) and numeric and node.value:
         yield "sign", node.value, ast.UnaryOp(ast.USub(), node.value)

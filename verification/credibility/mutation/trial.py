@@ -29,13 +29,13 @@ PYTEST = ("-m", "pytest", "-x", "-q", "--tb=line", "--hypothesis-seed=0", "-p", 
 
 def trial_task(room: str, mutant: Mutant | None, output: Path, limit: float) -> Task[Trial]:
     """The trial of ``mutant``, each of its two steps limited to ``limit`` seconds of the processor."""
-    words = (room, json.dumps(encode(mutant) if mutant else None), str(output.absolute()), str(limit))
+    path = _path(room, mutant, output)
+    content = json.dumps(encode(mutant)) if mutant else ""
+    words = (room, content, str((output / "clean").absolute()), str(limit), str(path))
 
     def failed(reason: str, seconds: float) -> Trial:
-        catch = Catch.TIME if "not finished" in reason else Catch.NOT_TRIED
-        return Trial(room, mutant, catch, reason, seconds=seconds)
+        return Trial(room, mutant, Catch.NOT_TRIED, reason, seconds=seconds)
 
-    path = _path(room, mutant, output)
     return Task(path.stem, (f"{__name__}:main", *words), path, _stored, failed)
 
 
@@ -43,15 +43,14 @@ def kept_trial(room: str, mutant: Mutant | None, output: Path) -> Trial | None:
     """The trial of an earlier run by the same code, if it survived by the same tests; None without one."""
     try:
         data = read_checked(_path(room, mutant, output))
-        trial = _stored(data)
-    except (StoreError, ValueError, KeyError):
+    except StoreError:
         return None
-    same = data.get("made_by") == fingerprint() and (trial.caught or data.get("tests") == _tests())
-    return trial if same and trial.mutant == mutant else None
+    trial = _stored(data)
+    return trial if data["made_by"] == _made_by(trial) and trial.mutant == mutant else None
 
 
-def _tests() -> str:
-    return fingerprint(("tests",), ())
+def _made_by(trial: Trial) -> str:
+    return fingerprint(CODE if trial.caught else (*CODE, "tests"))
 
 
 def _path(room: str, mutant: Mutant | None, output: Path) -> Path:
@@ -62,14 +61,12 @@ def _stored(data: dict[str, Any]) -> Trial:
     return decode(Trial, data["trial"])
 
 
-def main(room: str, mutant: str, output: str, limit: str) -> None:
-    """Try the ``mutant`` of ``room`` given as JSON, null for none, and store its trial in ``output``."""
-    content = json.loads(mutant)
+def main(room: str, mutant: str, clean: str, limit: str, path: str) -> None:
+    """Try the ``mutant`` of ``room`` given as JSON, "" for none, and store its trial at ``path``."""
     trial = try_mutant(
-        room, decode(Mutant, content) if content else None, Path(output) / "clean", float(limit)
+        room, decode(Mutant, json.loads(mutant)) if mutant else None, Path(clean), float(limit)
     )
-    made = {"made_by": fingerprint(), "tests": _tests()}
-    write_checked(_path(room, trial.mutant, Path(output)), made | {"trial": encode(trial)})
+    write_checked(Path(path), {"made_by": _made_by(trial), "trial": encode(trial)})
 
 
 def try_mutant(room: str, mutant: Mutant | None, clean: Path, limit: float, root: Path = ROOT) -> Trial:
@@ -77,63 +74,49 @@ def try_mutant(room: str, mutant: Mutant | None, clean: Path, limit: float, root
     with tempfile.TemporaryDirectory(prefix="mutant-") as name:
         copy = Path(name)
         for part in (*CODE, "tests"):
-            if (root / part).exists():
-                shutil.copytree(root / part, copy / part)
+            shutil.copytree(root / part, copy / part)
         shutil.copy(root / "pyproject.toml", copy)
         if mutant:
             path = copy / mutant.file
             path.write_text(mutated(path.read_text("utf-8"), mutant), "utf-8")
-        catch, by, (change, changed) = Catch.SURVIVED, "", (0.0, "")
-        done = _run(("-m", __name__, room, str(clean)), copy, limit)
-        if done.returncode:
-            catch, by = _stopped(done, Catch.CRASH)
-        else:
-            found, by, change, changed = json.loads(done.stdout.splitlines()[-1])
-            catch = Catch(found)
+        change, changed = 0.0, ""
+        catch, lines = _run(("-m", __name__, room, str(clean)), copy, limit, Catch.CRASH)
+        if catch is Catch.SURVIVED:
+            word, message, change, changed = json.loads(lines[-1])
+            catch, lines = Catch(word), [message]
         if catch is Catch.SURVIVED:
             module = mutant.file.removesuffix(".py").replace("/", ".") if mutant else ""
             places = [copy / place for place in ROOMS[room].tests]
             files = [f for place in places for f in (sorted(place.rglob("test_*.py")) or [place])]
             files.sort(key=lambda file: module not in file.read_text("utf-8"))  # its own tests first
-            done = _run((*PYTEST, *map(str, files)), copy, limit)
-            if done.returncode:
-                catch, by = _stopped(done, Catch.TESTS)
+            catch, lines = _run((*PYTEST, *map(str, files)), copy, limit, Catch.TESTS)
+    by = next((line for line in lines if line.startswith(("FAILED", "ERROR"))), lines[-1])[:400]
     used = resource.getrusage(resource.RUSAGE_CHILDREN)
-    return Trial(room, mutant, catch, by, float(change), changed, used.ru_utime + used.ru_stime)
+    return Trial(room, mutant, catch, by, change, changed, used.ru_utime + used.ru_stime)
 
 
-def _run(words: tuple[str, ...], copy: Path, limit: float) -> subprocess.CompletedProcess[str]:
+def _run(words: tuple[str, ...], copy: Path, limit: float, failed: Catch) -> tuple[Catch, list[str]]:
+    """What a process in ``copy`` found, ``failed`` for exit code 1, with the lines that it printed."""
     limited = ("sh", "-c", f'ulimit -t {limit:.0f}; exec "$@"', "sh", sys.executable, *words)
     env = os.environ | dict.fromkeys(THREAD_VARIABLES, "1") | {"PYTHONPATH": str(copy)}
-    return subprocess.run(
+    done = subprocess.run(
         limited, cwd=copy, env=env, stdin=subprocess.DEVNULL, capture_output=True, text=True
     )
+    lines = [line for line in (done.stderr + done.stdout).splitlines() if line.strip()] or ["no message"]
+    found = {0: Catch.SURVIVED, 1: failed, **dict.fromkeys(KILLED, Catch.TIME)}
+    return found.get(done.returncode, Catch.CRASH), lines
 
 
-def _stopped(done: subprocess.CompletedProcess[str], otherwise: Catch) -> tuple[Catch, str]:
-    """What caught a mutant whose process failed, with the line that says why."""
-    lines = [line for line in (done.stdout + done.stderr).splitlines() if line.strip()] or ["no message"]
-    named = [line for line in lines if line.startswith(("FAILED", "ERROR"))]
-    by = (named or lines[-1:])[0][:400]
-    if done.returncode in KILLED:
-        return Catch.TIME, "its limit of processor time"
-    return (Catch.CRASH if done.returncode != 1 else otherwise), by
-
-
-def checked(room: str, clean: Path) -> tuple[str, str, float, str]:
+def checked(room: str, clean: Path) -> tuple[Catch, str, float, str]:
     """Catch, message, change and what changed, by the checks of the default run in this process."""
     trial = try_fault(ROOMS[room].checks, clean)
     # A changed number alone is no error, as with planted faults.
     bad = [check for check in trial.checks if not check.passed and check.column != "baseline"]
     answered = [check for check in bad if check.outcome is not Outcome.NO_RESULT]
     if not bad:
-        catch = Catch.SURVIVED
-    elif not answered:
-        catch = Catch.CRASH
-    else:
-        catch = Catch.SELF_TESTS if all(c.column == "self-tests" for c in answered) else Catch.CHECKS
-    first = (answered or bad)[:1]
-    return catch, "".join(check.message for check in first), trial.change, trial.changed
+        return Catch.SURVIVED, "no check", trial.change, trial.changed
+    catch = Catch.SELF_TESTS if {check.column for check in answered} == {"self-tests"} else Catch.CHECKS
+    return (catch if answered else Catch.CRASH), (answered or bad)[0].message, trial.change, trial.changed
 
 
 if __name__ == "__main__":

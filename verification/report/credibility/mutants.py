@@ -36,14 +36,10 @@ def section(material: Material) -> Section | None:
             share = f"{plain(100 * caught / count, 3)} %, {plain(100 * room.asked, 3)} % required"
             scores.append(row(name, *(number(n, str) for n in by), words(share)))
     parts = [Part(method, [Table("Mutants of each room.", ["room", *map(str, shown), "caught"], scores)])]
-    left = [(trial, trial.mutant) for trial in record.survivors if trial.mutant]
-    if left:
+    if record.survivors:
         listed = [
-            row(
-                f"{m.file}:{m.line}",
-                *map(words, (m.function, m.change, t.kind or "not read", t.reason or t.by)),
-            )
-            for t, m in left
+            row(f"{m.file}:{m.line}", *map(words, (m.function, m.change, t.kind or "not read", t.reason)))
+            for t, m in record.survivors
         ]
         heads = ["place", "function", "change", "kind", "reason"]
         parts.append(Part("Mutants that nothing caught.", [Table("Survivors.", heads, listed)]))
