@@ -209,17 +209,18 @@ def mutants(
 
     from verification.credibility.mutation.trial import kept_trial, trial_task
 
+    chosen, silent = list(dict.fromkeys(rooms)) or list(store.ROOMS), quiet or as_json
+
     def tried(work: Sequence[tuple[str, "Mutant | None"]], limits: dict[str, float]) -> list["MutantTrial"]:
         kept = {one: trial for one in work if resume and (trial := kept_trial(*one, output))}
         tasks = [trial_task(*one, output, limits[one[0]]) for one in work if one not in kept]
-        fresh = iter(solve(tasks, jobs, time_limit, quiet or as_json))
+        fresh = iter(solve(tasks, jobs, time_limit, silent))
         return [kept.get(one) or next(fresh) for one in work]
 
     started = datetime.datetime.now(datetime.UTC)
     with locked(output):
-        _solve_clean(
-            [store.ROOMS[name].checks for name in chosen], output, jobs, time_limit, resume, quiet or as_json
-        )
+        checks = [store.ROOMS[name].checks for name in chosen]
+        _solve_clean(checks, output, jobs, time_limit, resume, silent)
         controls = tried([(name, None) for name in chosen], dict.fromkeys(chosen, time_limit))
         for one in controls:
             if one.catch != "survived":

@@ -37,10 +37,9 @@ def section(material: Material) -> Section | None:
             scores.append(row(name, *(number(n, str) for n in by), words(share)))
     parts = [Part(method, [Table("Mutants of each room.", ["room", *map(str, shown), "caught"], scores)])]
     if record.survivors:
-        listed = [
-            row(f"{m.file}:{m.line}", *map(words, (m.function, m.change, t.kind or "not read", t.reason)))
-            for t, m in record.survivors
-        ]
         heads = ["place", "function", "change", "kind", "reason"]
-        parts.append(Part("Mutants that nothing caught.", [Table("Survivors.", heads, listed)]))
+        cells = [(m.function, m.change, t.kind or "not read", t.reason) for t, m in record.survivors]
+        places = [f"{m.file}:{m.line}" for _, m in record.survivors]
+        rows = [row(place, *map(words, texts)) for place, texts in zip(places, cells, strict=True)]
+        parts.append(Part("Mutants that nothing caught.", [Table("Survivors.", heads, rows)]))
     return Section("mutants", "Mutation testing", parts)
