@@ -95,15 +95,15 @@ def _of_case_file() -> Answers:
 def _of_printed_table() -> Answers:
     case = read_published(FOLDER / "kenpave_three_layer_axis.toml")
     inch, psi = 0.0254, 4.4482216152605 / 0.0254**2
-    first = {
-        (p.profile.quantity, p.column): (p.profile.value[0], p.profile.position[0]) for p in case.columns
+    third = {
+        (p.profile.quantity, p.column): (p.profile.value[2], p.profile.position[2]) for p in case.columns
     }
-    stress, depth = first["sigma_zz", "Vertical_Stress"]
+    stress, depth = third["sigma_zz", "Vertical_Stress"]
     yield "a compression of 84.247 psi", float(stress), -84.247 * psi
     yield "at 2 in", float(depth), 2 * inch
-    yield "radial compression of 88.377 psi", float(first["sigma_xx", "Radial_stress"][0]), -88.377 * psi
-    yield "sinking by 0.02246 in", float(first["u_z", "Displacement"][0]), 0.02246 * inch
-    yield "radial strain", float(first["eps_xx", "Radial_strain"][0]), -5.592e-5
+    yield "radial compression of 88.377 psi", float(third["sigma_xx", "Radial_stress"][0]), -88.377 * psi
+    yield "sinking by 0.02246 in", float(third["u_z", "Displacement"][0]), 0.02246 * inch
+    yield "radial strain", float(third["eps_xx", "Radial_strain"][0]), -5.592e-5
     yield "coatings", case.problem.coatings[0][2], 6 * inch
 
 
