@@ -31,7 +31,8 @@ def arguments(thickness):
         "load": 20.0,
         "coatings": ((420e9, 0.3, thickness),),
         "substrate": (210e9, 0.3),
-        "quality": "fast",
+        "size": 0.5,
+        "order": 2,
         "estimate_uncertainty": False,
     }
 
@@ -110,7 +111,7 @@ def test_nothing_reaches_the_terminal():
     code = (
         "from fem_reference import solve\n"
         "solve(radius=1e-2, load=20.0, coatings=((4e11, 0.3, 5e-5),), substrate=(2e11, 0.3), "
-        "quality='fast')\n"
+        "size=0.5, order=2)\n"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=120)
     assert (done.returncode, done.stdout, done.stderr) == (0, "", "")

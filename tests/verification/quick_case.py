@@ -4,12 +4,15 @@ import contextlib
 import io
 import subprocess
 import sys
+from functools import cache
 from pathlib import Path
 from unittest import mock
 
 import pytest
 
 from verification.cli import main
+from verification.commands import run
+from verification.report import material
 
 QUICK = """
 title = "Quick"
@@ -27,17 +30,24 @@ why = "two references, no method"
 COMMAND = [sys.executable, "-m", "verification.cli"]
 
 
+# What a run says of the program itself has tests of its own: measured once for all runs of a process.
+_ONCE = [
+    mock.patch.object(module, name, cache(getattr(module, name)))
+    for module, name in ((material, "design_orders"), (material, "parts"), (run, "self_tests"))
+]
+
+
 def coatcheck(*words: str, cwd: Path) -> subprocess.CompletedProcess[str]:
     """Exit code, output and messages of the command line, run in this process in the folder ``cwd``."""
     out, err = io.StringIO(), io.StringIO()
-    with (
-        contextlib.chdir(cwd),
-        contextlib.redirect_stdout(out),
-        contextlib.redirect_stderr(err),
-        mock.patch.object(sys, "argv", ["coatcheck", *words]),
-        pytest.raises(SystemExit) as ended,
-    ):
-        main()
+    with contextlib.ExitStack() as around:
+        for patch in (*_ONCE, mock.patch.object(sys, "argv", ["coatcheck", *words])):
+            around.enter_context(patch)
+        around.enter_context(contextlib.chdir(cwd))
+        around.enter_context(contextlib.redirect_stdout(out))
+        around.enter_context(contextlib.redirect_stderr(err))
+        with pytest.raises(SystemExit) as ended:
+            main()
     return subprocess.CompletedProcess(words, int(ended.value.code or 0), out.getvalue(), err.getvalue())
 
 
