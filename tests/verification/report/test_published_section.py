@@ -13,7 +13,7 @@ from verification.cases.published import published_cases, read_published
 from verification.report.junit import junit_xml
 from verification.report.material import Material
 from verification.report.page import render
-from verification.report.sections.published import counts
+from verification.report.sections.published import counts, published_message
 from verification.running.published import failed, run, with_digits
 from verification.running.result import RunInfo, from_json
 from verification.running.store import read_checked
@@ -86,7 +86,12 @@ def test_recomputed_values_are_called_so(results):
 
 
 def test_changed_digits_are_counted(results):
-    page = render(Material([with_digits(read_published(SHIPPED["jones_1962"]), results[1])], INFO))
+    digits = with_digits(read_published(SHIPPED["jones_1962"]), results[1])
+    assert published_message([digits]) == (
+        "1 published values count, 1 depart and are listed, 0 are recomputed; "
+        "47 of 47 changed digits of those that count are noticed"
+    )
+    page = render(Material([digits], INFO))
     assert "47 of 47 in cells of the group counted (100 %)" in page
 
 
