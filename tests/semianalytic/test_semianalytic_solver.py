@@ -500,9 +500,9 @@ def test_input_that_is_no_number_is_refused_by_name(changes, quantity):
 
 
 def test_numpy_numbers_are_accepted():
-    plain = solve(coatings=((E, NU, 1e-6),), friction=0.0, patches=65)
+    plain = solve(coatings=((E, NU, 5e-5),), friction=0.0, patches=65)
     numbers = solve(
-        coatings=((np.float64(E), np.float64(NU), np.float64(1e-6)),),
+        coatings=((np.float64(E), np.float64(NU), np.float64(5e-5)),),
         friction=np.int64(0),
         patches=np.int64(65),
     )

@@ -23,12 +23,15 @@ SHIPPED = published_cases()
 INFO = RunInfo("coatcheck run published", "2026-01-01T00:00:00+00:00", 1.0, 1, None, "a machine", {})
 
 
-@pytest.fixture(scope="module")
-def results():
+def both():
     """Two sources by the quick method alone, which here speaks for both."""
     quick = solvers()["semianalytic"]
-    both = {"semianalytic": quick, "fem_reference": quick}
-    return [run(read_published(SHIPPED[n]), both) for n in ("ahlvin_ulery_1962", "jones_1962")]
+    return {"semianalytic": quick, "fem_reference": quick}
+
+
+@pytest.fixture(scope="module")
+def results():
+    return [run(read_published(SHIPPED[n]), both()) for n in ("ahlvin_ulery_1962", "jones_1962")]
 
 
 @pytest.fixture(scope="module")
@@ -123,7 +126,8 @@ def test_junit_has_one_item_for_each_comparison(results):
     assert int(root.attrib["tests"]) == sum(len(result.verdicts) for result in results)
 
 
-def test_command_line_runs_a_table_of_ones_own(tmp_path):
+def test_command_line_runs_a_table_of_ones_own(tmp_path, monkeypatch):
+    monkeypatch.setattr("verification.running.published.solvers", lambda problem: both())
     (tmp_path / "mine.toml").write_text(SHIPPED["jones_1962"].read_text().replace("nu = 0.5", "nu = 0.3"))
     table = "factor,meaning,table_memory\nZZ1,a,0.500\nZZ1-RR1,b,1.000\n"
     (tmp_path / "jones_1962_three_layer.csv").write_text(table)
