@@ -28,8 +28,7 @@ CASES = {
 }
 
 
-# a half-space in three layers of equal moduli
-HALF_SPACE = ((E, NU, 0.1 * A_H), (E, NU, 0.9 * A_H))
+HALF_SPACES = {"bare": (), "layers of equal moduli": ((E, NU, 0.1 * A_H), (E, NU, 0.9 * A_H))}
 
 
 @lru_cache
@@ -37,7 +36,7 @@ def solved(name, quality="default"):
     return solve(
         radius=R,
         load=W,
-        coatings=HALF_SPACE if name == "half-space" else CASES[name],
+        coatings=(CASES | HALF_SPACES)[name],
         substrate=(E, NU),
         quality=quality,
         estimate_uncertainty=False,
@@ -89,7 +88,7 @@ def test_tractions_are_continuous_across_every_interface(name):
 
 
 def test_equal_moduli_give_hertz():
-    s = solved("half-space")
+    s = solved("layers of equal moduli")
     assert s.contact_radius == pytest.approx(A_H, rel=1e-6)
     assert s.peak_pressure == pytest.approx(P_H, rel=1e-5)
     assert s.approach == pytest.approx(A_H**2 / R, rel=1e-6)
@@ -124,7 +123,7 @@ def test_thin_coating_gives_hertz_of_the_substrate():
         load=W,
         coatings=((2 * E, NU, h),),
         substrate=(E, NU),
-        quality="fast",
+        size=0.5,
         estimate_uncertainty=False,
     )
     # the coating is felt in proportion to h/a
@@ -133,7 +132,8 @@ def test_thin_coating_gives_hertz_of_the_substrate():
 
 
 def test_scaling_with_load_radius_and_moduli():
-    base = solved("stiff", "fast")
+    cheap = {"size": 0.5, "order": 2, "estimate_uncertainty": False}
+    base = solve(radius=R, load=W, coatings=CASES["stiff"], substrate=(E, NU), **cheap)
     factor = 3.0  # all lengths; W ~ E L^2 keeps strains
     coatings = tuple((7 * E_k, nu, factor * h) for E_k, nu, h in CASES["stiff"])
     other = solve(
@@ -141,8 +141,7 @@ def test_scaling_with_load_radius_and_moduli():
         load=7 * factor**2 * W,
         coatings=coatings,
         substrate=(7 * E, NU),
-        quality="fast",
-        estimate_uncertainty=False,
+        **cheap,
     )
     assert other.contact_radius == pytest.approx(factor * base.contact_radius, rel=1e-9)
     assert other.approach == pytest.approx(factor * base.approach, rel=1e-9)
@@ -154,8 +153,7 @@ def test_scaling_with_load_radius_and_moduli():
         load=W / 2,
         coatings=CASES["stiff"],
         substrate=(E, NU),
-        quality="fast",
-        estimate_uncertainty=False,
+        **cheap,
     )
     assert half.contact_radius == pytest.approx(base.contact_radius, rel=1e-9)
     assert half.peak_pressure == pytest.approx(base.peak_pressure / 2, rel=1e-9)
@@ -207,7 +205,7 @@ def test_extreme_coatings_are_solved_with_positive_pressure_and_gap(ratio, thick
         load=W,
         coatings=((ratio * E, NU, thickness * A_H),),
         substrate=(E, NU),
-        quality="fast",
+        size=0.5,
         estimate_uncertainty=False,
     )
     assert s.diagnostics.residual_pressure == 0
@@ -230,7 +228,7 @@ F = 0.5
 
 
 @lru_cache
-def sliding(friction=F, name="half-space", quality="default"):
+def sliding(friction=F, name="bare", quality="default"):
     """The contact is solved once; that sliding later equals sliding from the start has a test of its own."""
     return solved(name, quality).with_friction(friction)
 

@@ -35,6 +35,7 @@ COMMANDS = (
     "view",
     "compare",
     "faults",
+    "mutants",
     "alarms",
     "bench",
     "completion",
