@@ -92,7 +92,7 @@ def solve_levels(
         found[level.name] = search.contact
     companion, near = found.get("companion"), None
     if companion is not None:
-        near = _solve_on(solid, order, companion.discretisation.mesh.with_nearer_boundary())
+        near = _solve_on(solid, order, companion.discretisation.mesh.with_nearer_boundary(), companion)
     return ContactLevels(found["final"], companion, near, slope, tuple(history))
 
 
@@ -108,5 +108,8 @@ def mesh_at(solid: LayeredSolid, grading: Grading, contact_radius: float) -> Mer
     )
 
 
-def _solve_on(solid: LayeredSolid, order: int, mesh: MeridianMesh) -> FixedRadiusContact:
-    return solve_at_radius(solid, Discretisation(mesh, order))
+def _solve_on(
+    solid: LayeredSolid, order: int, mesh: MeridianMesh, previous: FixedRadiusContact | None
+) -> FixedRadiusContact:
+    d = Discretisation(mesh, order) if previous is None else previous.discretisation.moved(mesh)
+    return solve_at_radius(solid, d)

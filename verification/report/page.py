@@ -9,7 +9,7 @@ import numpy as np
 
 from verification.judging.verdict import Outcome
 from verification.problem.quantity import PEAKS
-from verification.report.credibility import faults, self_tests, statement
+from verification.report.credibility import faults, mutants, self_tests, statement
 from verification.report.figures.fields import pictures
 from verification.report.figures.panels import line_figures
 from verification.report.figures.sketch import sketch
@@ -57,6 +57,7 @@ SECTIONS: tuple[Callable[[Material], Section | None], ...] = (
     self_tests.section,
     statement.section,
     faults.section,
+    mutants.section,
     effective.family_section,
     effective.section,
 )

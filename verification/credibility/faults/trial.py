@@ -24,7 +24,7 @@ from verification.sampling.lines import sample, sample_contact
 from verification.sources.registry import METHODS
 
 Profiles = dict[tuple[str, str, str], Profile]
-Columns = list[tuple[PublishedColumn, np.ndarray]]  # each with the marks of the rows that count
+Columns = list[tuple[PublishedColumn, np.ndarray]]  # each with the values the methods are compared with
 FOR_PUBLISHED = METHODS[:1]  # published tables are compared with the faster method only
 
 
@@ -163,7 +163,7 @@ def _largest(values: np.ndarray) -> float:
 def _as_read(name: str) -> tuple[PublishedCase, Columns]:
     """A published case, and its columns as they are read now, with or without a fault."""
     case = read_published(published_cases()[name])
-    return case, [(column, column.counted) for column in case.columns]
+    return case, [(column, column.reference.value) for column in case.columns]
 
 
 def _published(name: str, before: Columns) -> tuple[list[Check], tuple[float, str]]:
@@ -174,11 +174,10 @@ def _published(name: str, before: Columns) -> tuple[list[Check], tuple[float, st
     decided = [(c, v) for c, v in result.verdicts if set(c.between) & set(available)]
     checks = [of_claim(c, v, name, False, kind="published") for c, v in decided]
     change = (0.0, "nothing")
-    for (old, old_counted), (new, counted) in zip(before, columns, strict=True):
+    for (old, old_value), (new, value) in zip(before, columns, strict=True):
         moved = max(
-            _largest(new.profile.value - old.profile.value) / old.scale,
+            _largest(value - old_value) / old.scale,
             _largest(new.at.z - old.at.z) / (_largest(old.at.z) or 1.0),
-            float(np.mean(counted != old_counted)),
         )
         change = max(change, (moved, f"{old.column} of {old.file} as read"))
     return checks, change

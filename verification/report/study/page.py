@@ -259,8 +259,8 @@ def _tension_table(tensions: Sequence[TensionCheck]) -> Table:
     ]
     return Table(
         "The largest tension of the surface by the semi-analytical method at every cross-checked point, "
-        "over p_h; the difference of the other source and the uncertainty of both, over the smaller of p_h and p0; "
-        "the difference of the places, over a.",
+        "over p_h; the difference of the other source and the uncertainty of both, over the smaller of p_h "
+        "and p0; the difference of the places, over a.",
         ["source", "E1/E2", "h / a_h", "f", "tension", "difference", "uncertainty of both", "place"],
         rows,
     )
