@@ -4,7 +4,6 @@ import ctypes.util
 import hashlib
 import platform
 import subprocess
-from collections.abc import Sequence
 from functools import cache
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
@@ -71,17 +70,13 @@ def commit() -> str | None:
         return None
 
 
-def fingerprint(modules: Sequence[str] = CODE, packages: Sequence[str] = ("python", *PACKAGES)) -> str:
+@cache
+def fingerprint(modules: tuple[str, ...] = CODE, packages: tuple[str, ...] = ("python", *PACKAGES)) -> str:
     """SHA-256 over the source of ``modules`` and the versions of ``packages``.
 
     Results of equal fingerprints come from the same code; by default that is all of this program. It is read
     once: code that changes later is not the code that this process has loaded.
     """
-    return _fingerprint(tuple(modules), tuple(packages))
-
-
-@cache
-def _fingerprint(modules: tuple[str, ...], packages: tuple[str, ...]) -> str:
     root, known = Path(__file__).resolve().parents[2], versions()
     found = hashlib.sha256(repr([(name, known[name]) for name in packages]).encode())
     for module in modules:

@@ -9,7 +9,6 @@ import hashlib
 import json
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -41,7 +40,6 @@ def solve_key(request: Mapping[str, Any]) -> str:
     return hashlib.sha256(f"{canonical}\n{code_version(request['source'])}".encode()).hexdigest()
 
 
-@cache
 def code_version(source: str) -> str:
     """Fingerprint of the code behind an answer of ``source``."""
     return fingerprint((SOURCES[source].package, *_SEARCH), _DIGITS)
