@@ -19,10 +19,6 @@ from verification.problem.loading import CONTROLS, PUNCH, LoadingCurve, Problem
 from verification.problem.quantity import QUANTITIES
 from verification.sources.registry import EXACT, METHODS, PUBLISHED, SOURCES
 
-# Largest admissible uncertainty of a method, as on the lines of every other case; the uncertainty of the
-# published value, which ``columns`` limits, is added to it.
-CAP = 5e-3
-
 
 @dataclass(frozen=True)
 class PublishedCase:
@@ -157,6 +153,7 @@ def _units(problem: Problem) -> dict[str, float]:
 def _claim(item: PublishedColumn, source: str) -> Claim:
     U = item.profile.uncertainty
     assert U is not None
-    cap = CAP + float(U.max()) / item.scale
+    # As in every other case; the uncertainty of the published value, which ``columns`` limits, is added.
+    cap = QUANTITIES[item.profile.quantity].cap + float(U.max()) / item.scale
     why = f"published in column {item.column} of {item.file}"
     return Claim(item.profile.quantity, item.profile.line, (source, PUBLISHED), cap, why)

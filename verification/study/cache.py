@@ -27,7 +27,8 @@ _SEARCH = (
     "verification.sources.methods",
     "verification.sources.exact",
     "verification.sources.extrapolation",
-    "verification.sampling.plane",
+    "verification.sampling.tension",
+    "verification.judging.invariants.refinement",
     "verification.running.result",
 )
 _DIGITS = ("python", "numpy", "scipy", "ducc0", "scikit-fem", "gmsh")

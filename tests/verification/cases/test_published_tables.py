@@ -197,7 +197,7 @@ def test_lines_are_named_by_where_they_run(files):
 
 
 SHIPPED = published_cases()
-COUNTS = (463, 239, 541)  # published values that count, that depart; values of recomputed tables
+COUNTS = (463, 239, 550)  # published values that count, that depart; values of recomputed tables
 
 
 @pytest.mark.parametrize("name", SHIPPED)

@@ -113,13 +113,10 @@ def _judged(case: Case, clean: CaseResult, fault: Fault) -> tuple[list[Check], P
         fresh |= {(p.quantity, p.line, source): p for p in found}
         checks += [of_invariant(row, case.name) for row in invariants_of(solution, source, case.problem)]
     profiles |= fresh
-    # Contact radius of the last source that has one, as in the run.
-    radii = [profiles.get(("contact_radius", "contact", source.source)) for source in clean.sources]
-    edge = next((float(r.value[0]) for r in reversed(radii) if r is not None), 0.0)
     checks += _drifts(clean, fresh)
     for claim in case.claims:
         if not available or set(claim.between) & set(solve):
-            verdict = run.decide(claim, profiles, outcomes, case.problem, edge)
+            verdict = run.decide(claim, profiles, outcomes, case.problem)
             checks.append(of_claim(claim, verdict, case.name, bool(case.problem.coatings)))
     return checks, fresh
 
@@ -128,7 +125,7 @@ def _sampled(case: Case, clean: CaseResult, source: str, solution: Solution) -> 
     places = {profile.line: profile.position for profile in clean.profiles}
     found = list(sample_contact(solution, source, case.problem))
     for line in case.lines:
-        found += sample(solution, source, line, places[line.name])
+        found += sample(solution, source, line, places[line.name], case.problem)
     return found
 
 

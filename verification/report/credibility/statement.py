@@ -37,11 +37,11 @@ ASSUMED = (
 )
 NOT_CLAIMED = (
     "Validity for a real coating: nothing was compared with an experiment, so this is verification, not "
-    "validation. Detection of an error in the assumptions common to both methods. Accuracy of the surface "
-    "stresses within the unjudged zone around the contact edge. A strict bound by the uncertainty: it is an "
-    "estimate from coarser solutions, and the share in which it covers the true error is given above. "
-    "Detection of other kinds of faults at the rate of those that were planted. The same accuracy outside "
-    "the ranges above."
+    "validation. Detection of an error in the assumptions common to both methods. Surface stresses at fixed "
+    "points next to the contact edge better than the root of the error of the radius; the largest tension "
+    "has no such root. A strict bound by the uncertainty: it is an estimate from coarser solutions, and the "
+    "share in which it covers the true error is given above. Detection of other kinds of faults at the rate "
+    "of those that were planted. The same accuracy outside the ranges above."
 )
 
 
