@@ -110,5 +110,8 @@ def mesh_at(solid: LayeredSolid, grading: Grading, contact_radius: float) -> Mer
     )
 
 
-def _solve_on(solid: LayeredSolid, order: int, mesh: MeridianMesh) -> FixedRadiusContact:
-    return solve_at_radius(solid, Discretisation(mesh, order))
+def _solve_on(
+    solid: LayeredSolid, order: int, mesh: MeridianMesh, previous: FixedRadiusContact | None
+) -> FixedRadiusContact:
+    d = Discretisation(mesh, order) if previous is None else previous.discretisation.moved(mesh)
+    return solve_at_radius(solid, d)
