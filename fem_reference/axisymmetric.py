@@ -21,7 +21,6 @@ from functools import cached_property
 
 import numpy as np
 import scipy.sparse as sp
-import scipy.sparse.linalg as sla
 from skfem import (
     Basis,
     BilinearForm,
@@ -34,12 +33,13 @@ from skfem import (
     asm,
 )
 
+from .dissection import CholeskyFactor, DissectionTree, bisected, unknowns
 from .location import Locator
 from .mesh import MeridianMesh
 
-__all__ = ["ELEMENTS", "Discretisation", "constrained_solve", "elasticity", "strain_operator"]
+__all__ = ["ELEMENTS", "Discretisation", "Stiffness", "constrained_solve", "elasticity", "strain_operator"]
 
-BLOCK = 64  # triangles whose stiffness is computed together
+_BLOCK = 64  # triangles whose stiffness is computed together
 ELEMENTS = {2: ElementTriP2, 3: ElementTriP3, 4: ElementTriP4}
 
 
@@ -89,6 +89,13 @@ class Discretisation:
     def __getstate__(self) -> dict[str, object]:
         # pickled without the cached properties, which are computed again on use: a hundred times smaller
         return {"mesh": self.mesh, "order": self.order}
+
+    def moved(self, mesh: MeridianMesh) -> "Discretisation":
+        """The same elements on another ``mesh``; one of the same triangles keeps the order of elimination."""
+        d = Discretisation(mesh, self.order)
+        if mesh.triangles is self.mesh.triangles:
+            vars(d)["tree"] = self.tree
+        return d
 
     @cached_property
     def triangulation(self) -> MeshTri:
@@ -142,46 +149,47 @@ class Discretisation:
         far = self.locations.max(axis=1)[:, None] * (1 - 1e-9)
         return self.unknowns_on(self.facets(lambda x: np.any(x >= far, axis=0)))
 
-    def stiffness(self, materials: tuple[tuple[float, float], ...], harmonic: int) -> sp.csc_matrix:
+    @cached_property
+    def tree(self) -> DissectionTree:
+        """Order of elimination of the unknowns of one field."""
+        xi, zeta = self.mesh.plane(*self.mesh.points[:, self.triangulation.t].mean(axis=1))
+        leaf = bisected(self.triangulation.t, np.stack([xi, zeta, np.hypot(xi, zeta)]))
+        return DissectionTree.of(np.asarray(self.basis.element_dofs).T, leaf)
+
+    def stiffness(self, materials: tuple[tuple[float, float], ...], harmonic: int) -> "Stiffness":
         """Stiffness matrix: virtual work over the angular factor common to all terms.
 
             v^T K u = int eps(v) : D(layer) eps(u) r dr dz
 
-        That factor is 2 pi for harmonic 0, pi for harmonic 1. ``materials`` = (E, nu) per layer.
+        That factor is 2 pi for harmonic 0, pi for harmonic 1. ``materials`` = (E, nu) per layer. With
+        s = (dphi/dr, dphi/dz, phi/r) of the shape functions and a, b = r, z, 0, the fields f and g of the
+        functions i and j are coupled by
+
+            K_if,jg = sum_ab (A_a^T D A_b)_fg int s_ai s_bj r dr dz.
         """
-        A_r, A_z, A_0 = strain_operator(harmonic)
-        fields = A_r.shape[1]
+        A = np.stack(strain_operator(harmonic), axis=1)
+        strains, kinds, fields = A.shape
         r = np.asarray(self.basis.global_coordinates())[0]
         weight = r * self.basis.dx
-        triangles, points = weight.shape
-        local = len(self.basis.basis)
+        triangles, local = len(r), len(self.basis.basis)
         phi = np.stack([np.broadcast_to(np.asarray(b[0]), r.shape) for b in self.basis.basis], axis=-1)
         d_r, d_z = (np.stack([b[0].grad[i] for b in self.basis.basis], axis=-1) for i in (0, 1))
-        hoop = phi / r[..., None]
         D = np.stack([elasticity(E, nu, harmonic) for E, nu in materials])[self.mesh.layer]
-        K = np.empty((triangles, fields * local, fields * local))
+        A = A.reshape(strains, kinds * fields)
+        # by (f, g), (a, b)
+        coupling = (A.T @ D @ A).reshape(triangles, kinds, fields, kinds, fields).transpose(0, 2, 4, 1, 3)
+        coupling = coupling.reshape(triangles, fields**2, kinds**2)
+        K = np.empty((triangles, local, fields, local, fields))
         # in blocks that stay in the cache of the processor
-        for begin in range(0, triangles, BLOCK):
-            block = slice(begin, begin + BLOCK)
-            # strain of every (field, shape function) at every quadrature point
-            B = np.zeros((len(K[block]), points, A_r.shape[0], fields, local))
-            for A, shape in ((A_r, d_r[block]), (A_z, d_z[block]), (A_0, hoop[block])):
-                for s, field in zip(*np.nonzero(A), strict=True):
-                    B[:, :, s, field] += A[s, field] * shape
-            flat = B.reshape(-1, points, A_r.shape[0], fields * local)
-            stress = np.matmul(D[block, None], flat) * weight[block, :, None, None]
-            rows = points * A_r.shape[0]
-            transposed = flat.reshape(-1, rows, fields * local).transpose(0, 2, 1)
-            K[block] = np.matmul(transposed, stress.reshape(-1, rows, fields * local))
-        # 32 bits as in the sparse matrix: it would copy others
-        dofs = np.asarray(self.basis.element_dofs, dtype=np.int32).T
-        numbers = (np.arange(fields, dtype=np.int32)[:, None] * self.N + dofs[:, None, :]).reshape(
-            triangles, -1
-        )
-        i = np.repeat(numbers, numbers.shape[1], axis=1)
-        j = np.tile(numbers, (1, numbers.shape[1]))
-        shape = (fields * self.N, fields * self.N)
-        return sp.coo_matrix((K.ravel(), (i.ravel(), j.ravel())), shape=shape).tocsc()
+        for begin in range(0, triangles, _BLOCK):
+            block = slice(begin, begin + _BLOCK)
+            s = np.concatenate([d_r[block], d_z[block], phi[block] / r[block, :, None]], axis=-1)
+            integrals = s.transpose(0, 2, 1) @ (s * weight[block, :, None])
+            integrals = integrals.reshape(-1, kinds, local, kinds, local).transpose(0, 1, 3, 2, 4)
+            coupled = coupling[block] @ integrals.reshape(-1, kinds**2, local**2)
+            K[block] = coupled.reshape(-1, fields, fields, local, local).transpose(0, 3, 1, 4, 2)
+        elements = K.reshape(triangles, local * fields, local * fields)
+        return Stiffness(elements, np.asarray(self.basis.element_dofs).T, self.tree)
 
     def surface_basis(self, facets: np.ndarray) -> FacetBasis:
         """Shape functions on surface edges, with quadrature exact for products of two and r."""
@@ -205,22 +213,46 @@ def _mass(u, v, w):
     return u * v * w.x[0]
 
 
+@dataclass(frozen=True, eq=False)
+class Stiffness:
+    """Symmetric positive definite matrix as the sum of those of its triangles.
+
+    elements : (triangles, size, size), unknowns by node, then field
+    nodes : (triangles, nodes) of one field
+    tree : order of elimination
+    """
+
+    elements: np.ndarray
+    nodes: np.ndarray
+    tree: DissectionTree
+
+    @property
+    def fields(self) -> int:
+        return self.elements.shape[1] // self.nodes.shape[1]
+
+    def __matmul__(self, u: np.ndarray) -> np.ndarray:
+        """Product with a field vector or several, (n,) or (n, columns)."""
+        columns = u.reshape(len(u), -1)
+        numbers = unknowns(self.nodes, self.fields, len(u) // self.fields)
+        force = self.elements @ columns[numbers]
+        total = [np.bincount(numbers.ravel(), one.ravel(), len(u)) for one in np.moveaxis(force, 2, 0)]
+        return np.stack(total, axis=1).reshape(u.shape)
+
+
 def constrained_solve(
-    K: sp.csc_matrix, given: np.ndarray, fixed: np.ndarray, load: np.ndarray | None = None
+    K: Stiffness, given: np.ndarray, fixed: np.ndarray, load: np.ndarray | None = None
 ) -> np.ndarray:
     """Solve K u = load with u = ``given`` at the unknowns ``fixed``; several columns share one factorisation.
 
     given, load : (n,) or (n, columns).  Returns u of the shape of ``given``.
+    Raises numpy.linalg.LinAlgError where K is not positive definite on the other unknowns.
     """
-    u = np.array(given, dtype=float)
-    free = np.setdiff1d(np.arange(K.shape[0]), fixed)
-    rows = K[free]
-    rhs = -(rows[:, fixed] @ u[fixed])
-    if load is not None:
-        rhs = rhs + load[free]
-    A = rows[:, free].tocsc()
-    # symmetric mode with a symmetric minimum degree ordering: K is positive definite and needs no pivoting
-    lu = sla.splu(A, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
-    x = lu.solve(rhs)
-    u[free] = x + lu.solve(rhs - A @ x)
+    held = np.zeros(len(given), dtype=bool)
+    held[fixed] = True
+    factor = CholeskyFactor(K.tree, K.elements, held)
+    u = np.where(held[:, None] if given.ndim == 2 else held, given, 0.0)
+    for _ in range(2):  # the second time for the rounding of the factor
+        residual = -(K @ u) if load is None else load - K @ u
+        residual[held] = 0.0
+        u += factor.solve(residual)
     return u

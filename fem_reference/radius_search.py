@@ -35,18 +35,20 @@ def find_contact_radius(
     tolerance: float,
     max_iterations: int,
     mesh_at: Callable[[float], MeridianMesh],
-    solve_on: Callable[[MeridianMesh], FixedRadiusContact],
+    solve_on: Callable[[MeridianMesh, FixedRadiusContact | None], FixedRadiusContact],
 ) -> RadiusSearch:
     """Find a with |W(a)/load - 1| <= ``tolerance``, from ``start`` and an initial ``slope``.
 
-    mesh_at : contact radius -> mesh with a vertex there.  solve_on : mesh -> contact with its radius.
+    mesh_at : contact radius -> mesh with a vertex there
+    solve_on : mesh, contact found before (None at first) -> contact with the radius of the mesh
     """
     a = start
     mesh = mesh_at(a)
     history: list[tuple[float, float]] = []
     last: tuple[MeridianMesh, float, float] | None = None
+    contact: FixedRadiusContact | None = None
     while True:
-        contact = solve_on(mesh.stretched(a / mesh.contact_radius))
+        contact = solve_on(mesh.stretched(a / mesh.contact_radius), contact)
         history.append((a, contact.load))
         positive = contact.load > 0 and math.isfinite(contact.load)
         miss = math.log(load / contact.load) if positive else math.inf

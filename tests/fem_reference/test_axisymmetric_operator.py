@@ -32,6 +32,23 @@ def test_constant_strain_across_an_interface_is_exact(order, harmonic):
     np.testing.assert_allclose(u.reshape(exact.shape), exact, atol=1e-11)
 
 
+@pytest.mark.parametrize("order", [2, 3, 4])
+@pytest.mark.parametrize("harmonic", [0, 1])
+def test_nested_dissection_solves_as_a_dense_matrix(order, harmonic):
+    d = Discretisation(unit_square(4, skew=0.3), order)
+    K = d.stiffness(MATERIALS, harmonic)
+    dense = K @ np.eye(K.fields * d.N)
+    np.testing.assert_allclose(dense, dense.T, atol=1e-14 * np.abs(dense).max())
+    fixed = np.unique(np.concatenate([field * d.N + d.outer for field in range(K.fields)] + [d.axis]))
+    given, load = np.random.default_rng(2).normal(size=(2, len(dense), 3))
+    free = np.setdiff1d(np.arange(len(dense)), fixed)
+    expected = given.copy()
+    rest = load[free] - dense[np.ix_(free, fixed)] @ given[fixed]
+    expected[free] = np.linalg.solve(dense[np.ix_(free, free)], rest)
+    # condition of the stiffness matrix, about 1e4, times rounding
+    np.testing.assert_allclose(constrained_solve(K, given, fixed, load), expected, atol=1e-11)
+
+
 def test_manufactured_solution_converges_at_the_design_order():
     found = design_orders()
     assert {(one.order, one.harmonic) for one in found} == {(p, n) for p in (2, 3, 4) for n in (0, 1)}

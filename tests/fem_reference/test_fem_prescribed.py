@@ -50,7 +50,8 @@ def test_response_is_linear_in_the_pressure():
             coatings=coatings,
             substrate=(E, NU),
             friction=0.2,
-            quality="fast",
+            size=0.5,
+            order=2,
             estimate_uncertainty=False,
         )
         for factor in (1.0, 2.5)

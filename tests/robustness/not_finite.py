@@ -74,7 +74,7 @@ PLACES = (
     Place("semianalytic.convolution", "circulant_inverse"),
     Place("semianalytic.contact", "solve", "pressure"),
     Place("semianalytic.contact", "solve", "approach"),
-    Place("semianalytic.edge_profile", "patch_mean"),
+    Place("semianalytic.axisymmetric", "stress"),
     Place("semianalytic.hankel", "hankel"),
     Place("semianalytic.nodal_convolution", "nodal_forces"),
     Place("semianalytic.subsurface", "stress"),

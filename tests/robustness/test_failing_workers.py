@@ -76,7 +76,7 @@ def test_each_death_has_its_reason_and_the_others_finish(tmp_path):
 
 def test_hanging_worker_is_stopped_with_what_it_started(tmp_path):
     # The good one ends long before; only what hangs meets the limit.
-    reason, good = run_tasks([task("hang", tmp_path), task("good", tmp_path)], jobs=2, time_limit=6)
+    reason, good = run_tasks([task("hang", tmp_path), task("good", tmp_path)], jobs=2, time_limit=3)
     assert good == "good"
     assert re.fullmatch(REASONS["hang"], reason)
     pids = [int(pid) for pid in (tmp_path / "hang-0.json.pids").read_text().split()]

@@ -1,7 +1,26 @@
-"""Lets the tests of this folder share their helper modules by name."""
+"""Helper modules shared by name; what a report says of the program itself, measured once a process."""
 
 import sys
+from functools import cache
 from pathlib import Path
+from unittest import mock
+
+import pytest
 
 # pytest's importlib mode leaves sys.path alone, so a helper beside the tests would not be found.
 sys.path.insert(0, str(Path(__file__).parent))
+
+
+@pytest.fixture(scope="session", autouse=True)
+def _measured_once():
+    """Each of these has tests of its own, which call it by its own name."""
+    from verification.commands import report, run
+    from verification.report import material
+
+    with (
+        mock.patch.object(material, "design_orders", cache(material.design_orders)),
+        mock.patch.object(material, "parts", cache(material.parts)),
+        mock.patch.object(run, "self_tests", cache(run.self_tests)),
+        mock.patch.object(report, "self_tests", cache(report.self_tests)),
+    ):
+        yield

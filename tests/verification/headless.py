@@ -64,15 +64,19 @@ class Page:
     def open(self, path: Path, *, width: int, dark: bool = False) -> None:
         """Load a file at a window ``width`` and wait until it is there."""
         self.events.clear()
-        mobile = width < 500
-        self.call(
-            "Emulation.setDeviceMetricsOverride", width=width, height=800, deviceScaleFactor=1, mobile=mobile
-        )
+        self.resize(width)
         scheme = {"name": "prefers-color-scheme", "value": "dark" if dark else "light"}
         self.call("Emulation.setEmulatedMedia", features=[scheme])
         self.call("Page.navigate", url=path.as_uri())
         while not any(event["method"] == "Page.loadEventFired" for event in self.events):
             self._receive()
+
+    def resize(self, width: int) -> None:
+        """Give the window this ``width``; the page lays itself out anew."""
+        mobile = width < 500
+        self.call(
+            "Emulation.setDeviceMetricsOverride", width=width, height=800, deviceScaleFactor=1, mobile=mobile
+        )
 
     def evaluate(self, expression: str) -> Any:
         """The value of a JavaScript expression on the page."""

@@ -4,12 +4,15 @@ import contextlib
 import io
 import subprocess
 import sys
+from importlib import import_module
 from pathlib import Path
 from unittest import mock
 
 import pytest
 
 from verification.cli import main
+from verification.commands import solving
+from verification.running.store import read_checked
 
 QUICK = """
 title = "Quick"
@@ -27,14 +30,30 @@ why = "two references, no method"
 COMMAND = [sys.executable, "-m", "verification.cli"]
 
 
+def solved_here(
+    tasks, *, started=lambda name: None, finished=lambda name, result: None, meanwhile=lambda: None, **_
+):
+    """As ``run_tasks``, but in this process: for tests of what stands around the solving."""
+    meanwhile()
+    results = []
+    for task in tasks:
+        started(task.name)
+        module, _, function = task.command[0].partition(":")
+        getattr(import_module(module), function)(*task.command[1:])
+        results.append(task.read(read_checked(task.path)))
+        finished(task.name, results[-1])
+    return results
+
+
 def coatcheck(*words: str, cwd: Path) -> subprocess.CompletedProcess[str]:
-    """Exit code, output and messages of the command line, run in this process in the folder ``cwd``."""
+    """Exit code, output and messages of the command line, all in this process in the folder ``cwd``."""
     out, err = io.StringIO(), io.StringIO()
     with (
         contextlib.chdir(cwd),
         contextlib.redirect_stdout(out),
         contextlib.redirect_stderr(err),
         mock.patch.object(sys, "argv", ["coatcheck", *words]),
+        mock.patch.object(solving, "run_tasks", solved_here),
         pytest.raises(SystemExit) as ended,
     ):
         main()
@@ -42,7 +61,7 @@ def coatcheck(*words: str, cwd: Path) -> subprocess.CompletedProcess[str]:
 
 
 def coatcheck_process(*words: str, cwd: Path, **keywords) -> subprocess.CompletedProcess[str]:
-    """The same in a process of its own."""
+    """The same in a process of its own, which starts others to solve."""
     return subprocess.run(
         [*COMMAND, *words], cwd=cwd, capture_output=True, text=True, timeout=300, check=False, **keywords
     )

@@ -1,6 +1,12 @@
-"""Columns of a published table as profiles on lines with the digitisation uncertainty of the source."""
+"""Columns of a published table as profiles on lines with the digitisation uncertainty of the source.
 
-from dataclasses import dataclass
+The uncertainty of a cell is what the source printed (half of its last digit) or a digitisation uncertainty
+stated by the case file. It depends on no value of the table and is at most ``CEILING`` of the scale. Neither
+the disagreement of several programs nor the error of a program is part of it: a cell that is off by more is
+a departure of the source and listed with its size.
+"""
+
+from dataclasses import dataclass, replace
 from math import isfinite
 
 import numpy as np
@@ -13,21 +19,27 @@ from verification.problem.contact import PrescribedLoad
 from verification.problem.loading import CONTROLS, LoadingCurve, Problem
 from verification.problem.points import Points
 from verification.problem.profile import Profile
-from verification.problem.quantity import CURVES, EXTREMES, QUANTITIES, SCALARS
+from verification.problem.quantity import CURVES, EXTREMES, PEAKS, QUANTITIES, SCALARS
 from verification.sources.registry import PUBLISHED
+
+CEILING = 0.01  # largest uncertainty of a cell as a fraction of the scale, unless the case file states why
+DEPARTURE = "_departure"  # a column of this ending lists the departures of the column named before it
+RECOMPUTED = "recomputed"  # value of ``seen`` for tables that the source does not print
 
 
 @dataclass(frozen=True, eq=False)
 class PublishedColumn:
     """One column of a table on one line.
 
-    profile : in SI, tension positive, with the digitisation uncertainty.   at : the points of its values.
-    rows : their lines in ``file``, with their ``labels``.   text : the cells as printed, in ``unit``.
-    to_si : SI value of a printed 1, with its sign.   why_not : reason why a row does not count, or "".
+    profile : as published, in SI, tension positive, with its uncertainty.   at : the points of its values.
+    departure : exact solution less published value [SI], 0 where none is listed.
+    rows : their lines in ``file``, with their ``labels``.   text : the cells as published, in ``unit``.
+    to_si : SI value of a published 1, with its sign.   seen : what was seen of the source.
     scale : divisor of differences [SI].   series : coefficients of a power series, see ``ColumnEntry``.
     """
 
     profile: Profile
+    departure: Array
     at: Points
     file: str
     column: str
@@ -36,14 +48,24 @@ class PublishedColumn:
     labels: tuple[str, ...]
     unit: str
     to_si: float
-    why_not: tuple[str, ...]
+    seen: str
     scale: float
     series: tuple[float, ...] = ()
 
     @property
+    def reference(self) -> Profile:
+        """The profile with the listed departures added, to which the methods are compared."""
+        return replace(self.profile, value=self.profile.value + self.departure)
+
+    @property
+    def departs(self) -> NDArray[np.bool_]:
+        """True for the rows with a listed departure."""
+        return self.departure != 0
+
+    @property
     def counted(self) -> NDArray[np.bool_]:
-        """True for the rows that count."""
-        return np.array([not why for why in self.why_not])
+        """True for the rows that count as published values: not recomputed, without a departure."""
+        return ~self.departs & (self.seen != RECOMPUTED)
 
 
 def si_of(name: str, units: dict[str, float], where: str) -> float:
@@ -64,8 +86,9 @@ def columns_of(
     for i, column in enumerate(table.column):
         here = f"{table.file}, column {column.name}"
         named = f"{here}: quantity {column.quantity!r}"
-        if column.quantity not in QUANTITIES:
-            raise PublishedError(f"{named} is unknown; known are {', '.join(QUANTITIES)}")
+        known = [name for name in QUANTITIES if name not in PEAKS]
+        if column.quantity not in known:
+            raise PublishedError(f"{named} is unknown; known are {', '.join(known)}")
         fits = (column.quantity in CURVES) == isinstance(problem, LoadingCurve)
         if not fits and column.quantity not in SCALARS:
             raise PublishedError(
@@ -81,10 +104,11 @@ def columns_of(
             raise PublishedError(str(error)) from None
         points = _points(at, content, units, problem, here)
         value = np.array(content.numbers(column.name)) * to_si
-        why_not = _why_not(table, content, column.name)
-        counted = np.array([not why for why in why_not])
-        U = _uncertainty(column, content, counted) * abs(to_si)
+        U = _uncertainty(column, content) * abs(to_si)
         scale = _scale(column, table, content, units, problem)
+        _check_ceiling(table, content, U / scale if scale else np.full(len(U), np.inf), here)
+        departure = _departure(column, content) * to_si
+        _check_departures(content, departure, U, here)
         for name, rows in points.lines():
             line = f"{name}, {content.path.stem}, column {column.name}"
             part = points.part(rows)
@@ -92,6 +116,7 @@ def columns_of(
             found.append(
                 PublishedColumn(
                     profile,
+                    departure[rows],
                     part,
                     table.file,
                     column.name,
@@ -100,7 +125,7 @@ def columns_of(
                     tuple(labels[n] for n in rows),
                     column.unit,
                     to_si,
-                    tuple(column.not_counted or why_not[n] for n in rows),
+                    table.seen,
                     scale,
                     tuple(column.series),
                 )
@@ -136,33 +161,37 @@ def _points(
         raise PublishedError(f"{where}: {error}") from None
 
 
-def _why_not(table: TableEntry, content: PublishedTable, column: str) -> list[str]:
-    """Reason why each row does not count, flagged or named as a misprint; "" for one that counts."""
-    why = [""] * len(content.rows)
-    if table.flag is not None:
-        why = ["misprint" if cell else "" for cell in content.text(table.flag)]
-    for misprint in table.misprint:
-        content.text(misprint.column)
-        named = content.where(misprint.row).lines
-        if misprint.column == column:
-            why = [misprint.why if line in named else w for line, w in zip(content.lines, why, strict=True)]
-    return why
-
-
-def _uncertainty(column: ColumnEntry, content: PublishedTable, counted: NDArray[np.bool_]) -> Array:
-    """Digitisation uncertainty of every row, in the unit of the column.
-
-    As stated by the file; or half of the last digit, plus the error of the program that printed it or, where
-    each row is of another program, the range of the rows.
-    """
-    if column.relative is not None:
-        return column.relative * np.abs(content.numbers(column.name))
-    if isinstance(column.uncertainty, float):
+def _uncertainty(column: ColumnEntry, content: PublishedTable) -> Array:
+    """Uncertainty of every row in the unit of the column: of digitisation, or half of the last digit."""
+    if column.uncertainty is not None:
         return np.full(len(content.rows), column.uncertainty)
-    rounding = np.array(content.half_digits(column.name, column.significant))
-    if column.uncertainty == "range":
-        return rounding + (np.ptp(np.array(content.numbers(column.name))[counted]) if counted.any() else 0.0)
-    return rounding + column.program_error
+    return np.array(content.half_digits(column.name, column.significant))
+
+
+def _departure(column: ColumnEntry, content: PublishedTable) -> Array:
+    """Listed departure of every row in the unit of the column, 0 where none is listed."""
+    name = column.name + DEPARTURE
+    if name not in content.columns:
+        return np.zeros(len(content.rows))
+    return np.array(content.numbers(name, empty=0.0))
+
+
+def _check_departures(content: PublishedTable, departure: Array, U: Array, where: str) -> None:
+    """Raise PublishedError naming the first row whose listed departure is no larger than its uncertainty."""
+    for line, size, least in zip(content.lines, abs(departure), U, strict=True):
+        if 0 < size <= least:
+            raise PublishedError(f"{where}, line {line}: the departure is within the uncertainty; remove it")
+
+
+def _check_ceiling(table: TableEntry, content: PublishedTable, fraction: Array, where: str) -> None:
+    """Raise PublishedError naming the first row whose uncertainty exceeds the ceiling."""
+    ceiling = CEILING if table.ceiling is None else table.ceiling.fraction
+    for line, found in zip(content.lines, fraction, strict=True):
+        if not found <= ceiling:
+            raise PublishedError(
+                f"{where}, line {line}: the uncertainty is {found:.2g} of the scale, above the ceiling "
+                f"{ceiling:g}; give ceiling = {{ fraction, why }} where the source supports no less"
+            )
 
 
 def _scale(
@@ -178,7 +207,6 @@ def _scale(
         alike = [column]
     largest = 0.0
     for c in alike:
-        counted = np.array([not why for why in _why_not(table, content, c.name)])
-        printed = np.abs(content.numbers(c.name))[counted]
-        largest = max(largest, float(printed.max(initial=0.0) * abs(c.factor) * units[c.unit]))
+        published = np.abs(content.numbers(c.name))
+        largest = max(largest, float(published.max() * abs(c.factor) * units[c.unit]))
     return largest

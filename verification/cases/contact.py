@@ -16,7 +16,7 @@ from verification.cases.toml import (
     read_bounded,
     read_toml,
 )
-from verification.judging.claims import EDGE, standard_claims
+from verification.judging.claims import standard_claims
 from verification.judging.verdict import Claim
 from verification.problem.contact import CoatedContact
 from verification.problem.profile import Line, line_of, lines_of
@@ -81,7 +81,7 @@ class _Claim(Strict):
     between: Annotated[list[Text], Field(min_length=2, max_length=2)]
     cap: Annotated[float, Field(gt=0, le=1)]
     why: Text
-    edge: Annotated[float, Field(ge=0, lt=1)] | None = None
+    edge: Annotated[float, Field(ge=0, lt=1)] = 0.0
 
 
 def _odd(number: int) -> int:
@@ -175,8 +175,7 @@ def _claims(path: Path, checked: _CaseFile, problem: CoatedContact) -> tuple[Cla
         first, second = claim.between
         if first == second or not {first, second} <= set(sources):
             raise CaseError(f"{key}.between = {claim.between}; give two of {', '.join(sources)}")
-        edge = claim.edge if claim.edge is not None else (EDGE if claim.line == "surface" else 0.0)
-        claims.append(Claim(claim.quantity, claim.line, (first, second), claim.cap, claim.why, edge))
+        claims.append(Claim(claim.quantity, claim.line, (first, second), claim.cap, claim.why, claim.edge))
     return tuple(claims)
 
 

@@ -19,17 +19,13 @@ from verification.problem.loading import CONTROLS, PUNCH, LoadingCurve, Problem
 from verification.problem.quantity import QUANTITIES
 from verification.sources.registry import EXACT, METHODS, PUBLISHED, SOURCES
 
-# Largest admissible uncertainty of a method, as on the lines of every other case; the digitisation
-# uncertainty is added to it.
-CAP = 5e-3
-
 
 @dataclass(frozen=True)
 class PublishedCase:
     """``problem`` with the ``columns`` published about it.
 
     path : of its file.   text : that of its files, tables included.
-    citation : year, origin of the numbers, whether the primary source was read, remarks.
+    citation : year, remark, notes; of each table its file, what was ``seen`` of the source, where ``read``.
     """
 
     name: str
@@ -85,13 +81,13 @@ def parse_published(raw: bytes, path: Path) -> PublishedCase:
         claims=tuple(
             _claim(item, source)
             for item in columns
-            if item.counted.any()
             for source in (*METHODS, *EXACT)
             if SOURCES[source].supports(problem, QUANTITIES[item.profile.quantity].kind)
         ),
         columns=tuple(columns),
         citation={
-            **checked.model_dump(include={"year", "primary_read", "read", "remark"}),
+            **checked.model_dump(include={"year", "remark"}),
+            "tables": [table.model_dump(include={"file", "seen", "read"}) for table in checked.table],
             "notes": "\n".join(dict.fromkeys(notes)),
         },
         source=checked.source,
@@ -157,6 +153,7 @@ def _units(problem: Problem) -> dict[str, float]:
 def _claim(item: PublishedColumn, source: str) -> Claim:
     U = item.profile.uncertainty
     assert U is not None
-    cap = CAP + float(U[item.counted].max()) / item.scale if item.scale else CAP
+    # As in every other case; the uncertainty of the published value, which ``columns`` limits, is added.
+    cap = QUANTITIES[item.profile.quantity].cap + float(U.max()) / item.scale
     why = f"published in column {item.column} of {item.file}"
     return Claim(item.profile.quantity, item.profile.line, (source, PUBLISHED), cap, why)

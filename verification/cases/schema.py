@@ -65,13 +65,14 @@ class PositionEntry(Strict):
 
 
 class ColumnEntry(Strict):
-    """A column of a table: ``quantity`` = ``factor`` times the printed number, in ``unit``.
+    """A column of a table: ``quantity`` = ``factor`` times the published number, in ``unit``.
 
-    uncertainty : digitisation uncertainty in that unit, or "range" of the rows; otherwise half of the last
-    digit, or of the last of ``significant`` digits, plus ``program_error``.
-    relative : digitisation uncertainty as a fraction of each value, instead.
-    not_counted : reason why the column is shown but not compared.
+    uncertainty : of digitisation, in that unit; otherwise half of the last digit of the column, or of the
+    last of ``significant`` digits of each cell.
     series : coefficients c1, c2, .. of a power series whose ratio to the exact solution is published.
+
+    A column ``name_departure`` beside it lists the departures of the source: exact solution less published
+    number, in the same unit and sign; empty where the number is correct.
     """
 
     name: Text
@@ -79,35 +80,33 @@ class ColumnEntry(Strict):
     unit: Text
     factor: float = 1.0
     at: PositionEntry | None = None
-    uncertainty: Positive | Literal["range"] | None = None
+    uncertainty: Positive | None = None
     significant: Annotated[int, Field(ge=1, le=16)] | None = None
-    program_error: Annotated[float, Field(ge=0)] = 0.0
-    relative: Positive | None = None
-    not_counted: Text | None = None
     series: Annotated[list[float], Field(default_factory=list, max_length=20)]
 
 
-class MisprintEntry(Strict):
-    """Cells known to be wrong, with the reason ``why``: shown, never counted."""
+class CeilingEntry(Strict):
+    """Largest admissible uncertainty of a cell as a fraction of the scale, with the reason ``why``."""
 
-    row: Cells
-    column: Text
+    fraction: Annotated[float, Field(gt=0, lt=1)]
     why: Text
 
 
 class TableEntry(Strict):
     """One CSV file with the rows selected and their columns.
 
-    flag : a column that is empty except in rows with misprints.   label : a column that names rows.
+    seen : what was seen of the source; ``read``, in which document or by which formula.
+    label : a column that names rows.   ceiling : where the source supports less than 1 %.
     """
 
     file: Annotated[str, Field(pattern=r"^[A-Za-z0-9_.-]+\.csv$")]
+    seen: Literal["primary", "second source", "quoted", "recomputed"]
+    read: Text
     at: PositionEntry | None = None
     rows: Cells = Field(default_factory=dict)
-    flag: Text | None = None
     label: Text | None = None
+    ceiling: CeilingEntry | None = None
     column: Annotated[list[ColumnEntry], Field(min_length=1, max_length=100)]
-    misprint: list[MisprintEntry] = Field(default_factory=list)
 
 
 class PublishedFile(Strict):
@@ -116,8 +115,6 @@ class PublishedFile(Strict):
     title: Text
     source: Text
     year: Annotated[int, Field(ge=1600, le=2100)]
-    primary_read: bool
-    read: Text
     remark: Annotated[str, Field(max_length=2000)] = ""
     problem: ProblemEntry
     table: Annotated[list[TableEntry], Field(min_length=1, max_length=100)]

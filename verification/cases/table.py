@@ -1,7 +1,7 @@
 """Published tables in CSV files: notes, columns, numbers with their digits.
 
-The first lines, marked #, are notes on the source. Cells are kept as printed; ``columns`` converts units and
-signs and excludes misprints.
+The first lines, marked #, are notes on the source. Cells are kept as published; ``columns`` converts units
+and signs.
 """
 
 import csv
@@ -54,9 +54,15 @@ class PublishedTable:
         number = self.columns.index(column)
         return tuple(row[number] for row in self.rows)
 
-    def numbers(self, column: str) -> tuple[float, ...]:
-        """The cells of a column as numbers. Raises PublishedError where one is not a finite number."""
-        return tuple(self._number(i, column, cell) for i, cell in enumerate(self.text(column)))
+    def numbers(self, column: str, empty: float | None = None) -> tuple[float, ...]:
+        """The cells of a column as numbers; ``empty``, where given, is the value of an empty cell.
+
+        Raises PublishedError where one is not a finite number.
+        """
+        return tuple(
+            self._number(i, column, cell) if cell or empty is None else empty
+            for i, cell in enumerate(self.text(column))
+        )
 
     def half_digits(self, column: str, significant: int | None = None) -> tuple[float, ...]:
         """Half a unit of the last digit printed, the uncertainty by rounding.

@@ -20,6 +20,9 @@ from verification.running.tasks import case_task
 if TYPE_CHECKING:
     from verification.credibility.faults.planting import Fault
     from verification.credibility.faults.record import Record
+    from verification.credibility.mutation.record import MutantRecord
+    from verification.credibility.mutation.record import Trial as MutantTrial
+    from verification.credibility.mutation.sites import Mutant
 
 
 @with_exit_code
@@ -79,13 +82,7 @@ def faults(
 
     started = datetime.datetime.now(datetime.UTC)
     with locked(output):
-        cases = campaign.clean_cases(wanted)
-        clean = kept_results(cases, campaign.clean_folder(output)) if resume else {}
-        tasks = [case_task(c, campaign.clean_folder(output)) for c in cases if c.name not in clean]
-        if reason := campaign.failed_source(
-            [*clean.values(), *solve(tasks, jobs, time_limit, quiet or as_json)]
-        ):
-            raise no_result(reason)
+        _solve_clean(wanted, output, jobs, time_limit, resume, quiet or as_json)
         kept = {f.name: t for f in wanted if resume and (t := campaign.kept_trial(f, output))}
         # the long ones first, so that no core waits at the end
         order = sorted((f for f in wanted if f.name not in kept), key=campaign.cost, reverse=True)
@@ -110,6 +107,20 @@ def faults(
     elif not quiet:
         _print(found, page)
     return 0 if found.passed else 1
+
+
+def _solve_clean(
+    wanted: Sequence["Fault"], output: Path, jobs: int, time_limit: float, resume: bool, silent: bool
+) -> None:
+    """Solve the cases of ``wanted`` without a fault; ends the command where that fails."""
+    from verification.credibility.faults import campaign
+
+    folder = campaign.clean_folder(output)
+    cases = campaign.clean_cases(wanted)
+    clean = kept_results(cases, folder) if resume else {}
+    tasks = [case_task(case, folder) for case in cases if case.name not in clean]
+    if reason := campaign.failed_source([*clean.values(), *solve(tasks, jobs, time_limit, silent)]):
+        raise no_result(reason)
 
 
 def _list(wanted: Sequence["Fault"], as_json: bool) -> None:
@@ -152,3 +163,85 @@ def _print(found: "Record", page: Path) -> None:
     if found.controls:
         text += f"; {len(found.alarms)} alarms in {len(found.controls)} negative controls"
     print_out(f"{text}; {found.seconds:.0f} s; matrix: {escape(str(page))}")
+
+
+@with_exit_code
+def mutants(
+    *rooms: str,
+    count: int = 400,
+    seed: int = 1,
+    output: Output = Path("reports/mutants"),
+    record: Flag = False,
+    records: RecordsFolder = RECORDS,
+    jobs: Jobs = None,
+    time_limit: float = 7200.0,
+    resume: Resume = False,
+    quiet: Quiet = False,
+    as_json: AsJson = False,
+) -> int:
+    """Change one operator, constant, index or term at a time; report the changes that nothing catches.
+
+    As many mutants of each room, drawn at random, meet the checks of the default run, then the unit tests of
+    the room, which both have to pass without any change. A source checkout is needed.
+
+    Exit codes: 0 enough are caught, every survivor was read; 1 not so; 2 bad input.
+
+    Args:
+        rooms: semianalytic, fem_reference, references, judging, sampling, running; all of them unless given.
+        count: Number of mutants, in all.
+        seed: Seed of the random numbers.
+        output: Directory of mutants.json, of the clean runs, of the trials.
+        record: Store the record as RECORDS/mutants.json, for the credibility page of every report.
+        time_limit: Seconds one mutant may take before it is stopped and counted as not tried.
+    """
+    jobs = worker_count(jobs, time_limit)
+    from verification.credibility.mutation import record as store
+
+    for name in rooms:
+        if name not in store.ROOMS:
+            near = did_you_mean(name, store.ROOMS)
+            raise CommandError(f"{name}: choose rooms of {', '.join(store.ROOMS)}{near}")
+    if count < 1 or seed < 0:
+        raise CommandError(f"--count = {count}, --seed = {seed}; only the seed may be zero, none negative")
+    if not (store.ROOT / "tests").is_dir():
+        raise CommandError("this coatcheck has no unit tests beside it; run it in a source checkout")
+    require_gmsh()
+
+    from verification.credibility.mutation.trial import kept_trial, trial_task
+
+    chosen, silent = list(dict.fromkeys(rooms)) or list(store.ROOMS), quiet or as_json
+
+    def tried(work: Sequence[tuple[str, "Mutant | None"]], limits: dict[str, float]) -> list["MutantTrial"]:
+        kept = {one: trial for one in work if resume and (trial := kept_trial(*one, output))}
+        tasks = [trial_task(*one, output, limits[one[0]]) for one in work if one not in kept]
+        fresh = iter(solve(tasks, jobs, time_limit, silent))
+        return [kept.get(one) or next(fresh) for one in work]
+
+    started = datetime.datetime.now(datetime.UTC)
+    with locked(output):
+        checks = [store.ROOMS[name].checks for name in chosen]
+        _solve_clean(checks, output, jobs, time_limit, resume, silent)
+        controls = tried([(name, None) for name in chosen], dict.fromkeys(chosen, time_limit))
+        for one in controls:
+            if one.catch != "survived":
+                raise no_result(f"{one.room}: nothing changed, yet caught by {one.catch}: {one.by}")
+        trials = tried(store.drawn(chosen, count, seed), {one.room: 30 + 3 * one.seconds for one in controls})
+        info = run_info(f"coatcheck mutants {' '.join(rooms)} --count {count} --seed {seed}", started, jobs)
+        seconds = sum(trial.seconds for trial in (*controls, *trials))
+        found = store.MutantRecord(seed, store.annotated(trials), seconds, info)
+        for folder in (output, *([records] if record else [])):
+            store.write_record(folder / store.RECORD, found)
+    if as_json:
+        print_json(store.to_json(found))
+    elif not quiet:
+        _print_mutants(found)
+    return 0 if found.passed else 1
+
+
+def _print_mutants(found: "MutantRecord") -> None:
+    for trial, m in found.survivors:
+        text = f"{m.file}:{m.line} {m.function}: {m.change}  {trial.kind} {trial.reason}"
+        print_out(f"[bold red]{trial.catch}[/] {escape(text)}")
+    caught, count = found.score()
+    by = ", ".join(f"{number} {catch}" for catch, number in Counter(t.catch for t in found.trials).items())
+    print_out(f"{caught} of {count} mutants caught, equivalent ones apart ({by}); {found.info.seconds:.0f} s")

@@ -13,7 +13,7 @@ def list_cases(*, as_json: AsJson = False) -> int:
     cases = [read_case(path) for path in shipped_cases().values()]
     published = [read_published(path) for path in published_cases().values()]
     if as_json:
-        keys = ("year", "primary_read")
+        keys = ("year", "tables")
         rows = [_listed(case) for case in cases]
         print_json(rows + [_listed(p) | {key: p.citation[key] for key in keys} for p in published])
         return 0

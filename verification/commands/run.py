@@ -254,7 +254,10 @@ def _print_table(results: Sequence[CaseResult], page: Path, seconds: float, besi
     if laws:
         say(f"{sum(law.outcome is Outcome.AGREES for law in laws)} of {len(laws)} invariants hold")
     from verification.report.sections.baseline import baseline_message
+    from verification.report.sections.published import published_message
 
+    if published := [result for result in results if result.published]:
+        say(published_message(published))
     known = f"baseline of {beside.update.when[:10]} in {beside.folder}: " if beside.update is not None else ""
     say(escape(f"{known}{baseline_message(beside)}"))
     number = "1 case" if len(results) == 1 else f"{len(results)} cases"

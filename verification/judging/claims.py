@@ -3,24 +3,21 @@
 from verification.judging.verdict import Claim
 from verification.problem.contact import CoatedContact
 from verification.problem.profile import Line, lines_of
-from verification.problem.quantity import IN_PLANE, QUANTITIES, SCALARS
+from verification.problem.quantity import IN_PLANE, PEAKS, QUANTITIES, SCALARS
 from verification.sources.registry import pairs_of, sources_of
-
-# The pressure falls to zero with a vertical tangent, so no method has a meaningful value within a few
-# patches of the edge; this fraction of a is left unjudged on the surface.
-EDGE = 0.05
 
 
 def standard_claims(problem: CoatedContact) -> tuple[Claim, ...]:
-    """Every quantity on every line, for every pair of the sources that support ``problem``."""
+    """Every quantity on every line, no zone left out, for every pair of the sources of ``problem``."""
     pairs = pairs_of(sources_of(problem))
-    why = "scalars of the contact, from one number each"
+    why = "numbers of the contact as a whole"
     claims = [Claim(name, "contact", pair, QUANTITIES[name].cap, why) for pair in pairs for name in SCALARS]
+    why = "the tension a coating cracks by, where each source has it"
+    claims += [Claim(name, "contact", pair, QUANTITIES[name].cap, why) for pair in pairs for name in PEAKS]
     why = "the stress a coating cracks or peels by"
     for line in lines_of(problem):
-        edge = EDGE if line.name == "surface" else 0.0
         for name in _quantities(line, problem):
-            claims += [Claim(name, line.name, pair, QUANTITIES[name].cap, why, edge) for pair in pairs]
+            claims += [Claim(name, line.name, pair, QUANTITIES[name].cap, why) for pair in pairs]
     return tuple(claims)
 
 

@@ -19,8 +19,8 @@ class Claim:
     """``quantity`` on ``line`` is the same ``between`` two sources.
 
     cap : largest admissible uncertainty, also the largest admissible difference, as a fraction of the
-          comparison's scale (p_h for stresses, the value itself for the scalars of the contact).
-    edge : half-width of the zone around the contact edge that is not judged, as a fraction of a.
+          comparison's scale, see ``Quantity.divisor``.
+    edge : half-width of a zone around the contact edge that this claim leaves out, as a fraction of a.
     """
 
     quantity: str

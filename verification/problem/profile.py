@@ -18,7 +18,7 @@ class Profile:
     """``value`` of ``quantity`` at ``position`` [m] along ``line``, in SI units.
 
     uncertainty : absolute, shape of ``value``; None where it is not stated, 0 of an exact value.
-    ``line`` "contact" holds the scalars of the contact, at position 0.
+    ``line`` "contact" holds the numbers of the contact as a whole, at position 0.
     """
 
     quantity: str

@@ -1,4 +1,10 @@
-"""Registry of the quantities that a source can give: symbol, kind, unit, scale, cap, place of each."""
+"""Registry of the quantities that a source can give: symbol, kind, unit, scale, cap, place of each.
+
+At the contact edge r = a on the surface the pressure has a vertical tangent, and sigma_rr a cusp: under p it
+is smooth outside with the root of the pressure inside, under q = f p smooth inside with a root outside. A
+value at a fixed point there changes by the square root of the error of the radius, as its uncertainty does.
+The largest tension with its place, found by each source on its own solution, has no such root.
+"""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -14,12 +20,12 @@ from verification.problem.arrays import Array
 class Quantity:
     """One quantity that cases, tables and figures name.
 
-    kind : scalar, curve, pressure, stress, strain or displacement.
-    sampled : "contact" (one number of a contact), "axis" (the largest on the axis), "curve" (of a loading
-    curve), "points" (any points of the solid).
+    kind : scalar, peak, curve, pressure, stress, strain or displacement.
+    sampled : "contact" (one number of a contact), "axis" (the largest on the axis), "surface" (the largest
+    there), "curve" (of a loading curve), "points" (any points of the solid).
     symbol, tex : in text and in formulas.   meaning : in words, where the symbol does not say it.
     unit : SI, "1" for none.   scale : property of CoatedContact that values are divided by.
-    cap : largest admissible uncertainty, over the value of a scalar, over p_h of any other.
+    cap : largest admissible uncertainty, over the same divisor as differences, see ``divisor``.
     component : of a stress or strain tensor.
     derived : (solution, problem) -> value [SI], of a scalar that follows from the others of the contact.
     """
@@ -31,10 +37,22 @@ class Quantity:
     tex: str
     unit: str
     scale: str = "p_h"
-    cap: float = 5e-3
+    cap: float = 1e-3
     component: tuple[int, int] | None = None
     meaning: str = ""
     derived: Callable[[Any, Any], float] | None = None
+
+    def divisor(self, value: float, p_h: float, p0: float, a: float) -> float:
+        """Divisor of a difference [SI]: |value| of a scalar, a of a place, the smaller of p_h and p0 else.
+
+        value : of the reference.   p0, a : peak pressure and contact radius of the best source; p_h alone
+        counts where p0 is not a positive number.
+        """
+        if self.kind == "scalar":
+            return abs(value)
+        if self.unit == "m":
+            return a
+        return min(p_h, p0) if p0 > 0 else p_h
 
     def value(self, solution: Any, problem: Any) -> float:
         """The scalar of a ``solution`` of ``problem`` [SI]."""
@@ -53,17 +71,21 @@ class Quantity:
         return float(sum(abs(self.derived(SimpleNamespace(**one), problem) - middle) for one in moved))
 
 
-def _tensor(kind: str, name: str, tex: str, unit: str, components: Sequence[str]) -> list[Quantity]:
+def _tensor(
+    kind: str, name: str, tex: str, unit: str, components: Sequence[str], cap: float = 1e-3
+) -> list[Quantity]:
     return [
-        Quantity(f"{name}_{c}", kind, ("points",), f"{name}_{c}", f"{tex}_{{{c}}}", unit, component=place)
+        Quantity(f"{name}_{c}", kind, ("points",), f"{name}_{c}", f"{tex}_{{{c}}}", unit, "p_h", cap, place)
         for c in components
         for place in [("xyz".index(c[0]), "xyz".index(c[1]))]
     ]
 
 
-_AXIS, _CONTACT, _CURVE, _POINTS = ("axis",), ("contact",), ("curve",), ("points",)
+_AXIS, _CONTACT, _CURVE, _POINTS, _SURFACE = ("axis",), ("contact",), ("curve",), ("points",), ("surface",)
 _BOTH = (*_CONTACT, *_CURVE)
 _SHEAR, _MISES = "largest shear on the axis", "largest von Mises stress on the axis"
+_TENSION, _PLACE = "largest sigma_xx of the surface on y = 0", "x of the largest sigma_xx of the surface"
+_LOOSE = 5e-3  # of quantities that only published tables hold
 _PUNCH = "stiffness of the flat punch over 2 a E1*"
 _LOADS, _STIFFNESSES = "load by the formula over W", "stiffness by the formula over that of the flat punch"
 
@@ -71,21 +93,37 @@ _LOADS, _STIFFNESSES = "load by the formula over W", "stiffness by the formula o
 QUANTITIES: dict[str, Quantity] = {
     quantity.name: quantity
     for quantity in (
-        Quantity("peak_pressure", "scalar", _CONTACT, "p0", "p_0", "Pa", "p_h", 1e-3),
-        Quantity("contact_radius", "scalar", _BOTH, "a", "a", "m", "a_h", 5e-3),
-        Quantity("approach", "scalar", _BOTH, "approach", r"\delta", "m", "delta_h", 1e-3),
+        Quantity("peak_pressure", "scalar", _CONTACT, "p0", "p_0", "Pa", "p_h", 1e-4),
+        Quantity("contact_radius", "scalar", _BOTH, "a", "a", "m", "a_h", 2e-4),
+        Quantity("approach", "scalar", _BOTH, "approach", r"\delta", "m", "delta_h", 1e-4),
         Quantity("tau_max", "scalar", _AXIS, "tau_max", r"\tau_{max}", "Pa", meaning=_SHEAR),
         Quantity("von_mises_max", "scalar", _AXIS, "von_mises_max", r"\sigma_{vM}", "Pa", meaning=_MISES),
-        Quantity("load", "curve", _CURVE, "W", "W", "N"),
-        Quantity("kappa", "curve", _CURVE, "kappa", r"\kappa", "1", meaning=_PUNCH),
-        Quantity("series_over_load", "curve", _CURVE, "series / W", "", "1", meaning=_LOADS),
-        Quantity("series_over_kappa", "curve", _CURVE, "series / kappa", "", "1", meaning=_STIFFNESSES),
+        Quantity(
+            "largest_tension", "peak", _SURFACE, "max sigma_xx", r"\max\sigma_{xx}", "Pa", meaning=_TENSION
+        ),
+        Quantity(
+            "tension_place", "peak", _SURFACE, "x of max sigma_xx", "x", "m", "a_h", 2e-4, meaning=_PLACE
+        ),
+        Quantity("load", "curve", _CURVE, "W", "W", "N", cap=_LOOSE),
+        Quantity("kappa", "curve", _CURVE, "kappa", r"\kappa", "1", "p_h", _LOOSE, meaning=_PUNCH),
+        Quantity("series_over_load", "curve", _CURVE, "series / W", "", "1", "p_h", _LOOSE, meaning=_LOADS),
+        Quantity(
+            "series_over_kappa",
+            "curve",
+            _CURVE,
+            "series / kappa",
+            "",
+            "1",
+            "p_h",
+            _LOOSE,
+            meaning=_STIFFNESSES,
+        ),
         Quantity("pressure", "pressure", _POINTS, "p", "p", "Pa"),
         *_tensor("stress", "sigma", r"\sigma", "Pa", ("xx", "yy", "zz", "xz", "xy", "yz")),
         Quantity("sigma_kk", "stress", _POINTS, "sigma_kk", r"\sigma_{kk}", "Pa"),
         Quantity("sigma_zz - sigma_xx", "stress", _POINTS, "sigma_zz - sigma_xx", "", "Pa"),
-        *_tensor("strain", "eps", r"\varepsilon", "1", ("xx", "yy", "zz")),
-        *(Quantity(f"u_{c}", "displacement", _POINTS, f"u_{c}", f"u_{c}", "m") for c in "xyz"),
+        *_tensor("strain", "eps", r"\varepsilon", "1", ("xx", "yy", "zz"), _LOOSE),
+        *(Quantity(f"u_{c}", "displacement", _POINTS, f"u_{c}", f"u_{c}", "m", cap=_LOOSE) for c in "xyz"),
     )
 }
 
@@ -97,6 +135,7 @@ def _names(kind: str = "", sampled: str = "") -> tuple[str, ...]:
 
 
 SCALARS = _names("scalar", "contact")
+PEAKS = _names("peak")
 EXTREMES = _names("scalar", "axis")
 CURVES = _names(sampled="curve")
 STRESSES = {q.name: q.component for q in QUANTITIES.values() if q.kind == "stress" and q.component}

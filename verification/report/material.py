@@ -19,6 +19,8 @@ from verification.credibility.faults.campaign import RECORD
 from verification.credibility.faults.record import Record, read_record
 from verification.credibility.independence import Part, parts
 from verification.credibility.manufactured import DesignOrder, design_orders
+from verification.credibility.mutation import record as mutation
+from verification.credibility.mutation.record import MutantRecord
 from verification.credibility.self_tests import SelfTest
 from verification.regression.baseline import Regression
 from verification.report.tables.lookup import slug
@@ -38,8 +40,9 @@ T = TypeVar("T")
 class Evidence:
     """What a report shows beside the results; None or () for what is missing, see ``failures``.
 
-    orders, parts : manufactured solutions and imports, measured.   faults, alarms : read from records.
-    accuracy : errors of the methods over resolution.   formulas : effective-modulus formulas.
+    orders, parts : manufactured solutions and imports, measured.
+    faults, alarms, mutants : read from records.   accuracy : errors of the methods over resolution.
+    formulas : effective-modulus formulas.
     baseline : the change of each number since the baseline.
     """
 
@@ -52,6 +55,7 @@ class Evidence:
     baseline: Regression | None = None
     self_tests: tuple[SelfTest, ...] = ()
     formulas: EffectiveStudy | None = None
+    mutants: MutantRecord | None = None
 
 
 def gather(records: Path) -> Evidence:
@@ -66,12 +70,14 @@ def gather(records: Path) -> Evidence:
             failures.append(" ".join(message.split())[:300])
             return otherwise
 
+    mutants = attempt("mutants", lambda: mutation.read_record(records / mutation.RECORD), None)
     return Evidence(
         attempt("manufactured solutions", design_orders, ()),
         attempt("imports", parts, ()),
         attempt("planted faults", lambda: read_record(records / RECORD), None),
         attempt("false alarms", lambda: alarms.read_record(records), None),
         tuple(failures),
+        mutants=mutants,
     )
 
 

@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 
 from verification.judging.verdict import Outcome
-from verification.report.credibility import faults, self_tests, statement
+from verification.problem.quantity import PEAKS
+from verification.report.credibility import faults, mutants, self_tests, statement
 from verification.report.figures.fields import pictures
 from verification.report.figures.panels import line_figures
 from verification.report.figures.sketch import sketch
@@ -56,6 +57,7 @@ SECTIONS: tuple[Callable[[Material], Section | None], ...] = (
     self_tests.section,
     statement.section,
     faults.section,
+    mutants.section,
     effective.family_section,
     effective.section,
 )
@@ -166,7 +168,7 @@ def _contact(material: Material, result: CaseResult) -> dict[str, Any]:
     bad = [item for item in result.verdicts if item[1].outcome is not Outcome.AGREES]
     return _common(material, result) | {
         "sketch": sketch(result),
-        "contact": contact_table(result),
+        "contact": [contact_table(result), contact_table(result, PEAKS)],
         "contact_csv": embedded(line_csv(result, "contact")),
         "contact_file": f"{file}-contact.csv",
         "pictures": pictures(result, material.planes.get(result.name)),

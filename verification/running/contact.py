@@ -79,7 +79,7 @@ def judge_case(case: Case, solved: Solved, *, invariants: bool = True) -> CaseRe
         try:
             found = list(sample_contact(solution, source, case.problem))
             for line in case.lines:
-                found += sample(solution, source, line, places[line])
+                found += sample(solution, source, line, places[line], case.problem)
         except Exception as error:  # as above
             outcomes[source] = SourceResult(source, outcomes[source].seconds, message_of(error))
             continue
@@ -88,15 +88,12 @@ def judge_case(case: Case, solved: Solved, *, invariants: bool = True) -> CaseRe
         outcomes[source] = SourceResult(source, seconds, None, old.diagnostics, old.budget)
         profiles |= {(p.quantity, p.line, source): p for p in found}
 
-    edge = next(
-        (solutions[s].contact_radius for s in reversed(list(solutions)) if not outcomes[s].failure), 0.0
-    )
     held: list[Invariant] = []
     if invariants:
         for source, solution in solutions.items():
             held += check(solution, source, case.problem)
         held += solved.resolved
-    verdicts = tuple((claim, decide(claim, profiles, outcomes, case.problem, edge)) for claim in case.claims)
+    verdicts = tuple((claim, decide(claim, profiles, outcomes, case.problem)) for claim in case.claims)
     return CaseResult(
         name=case.name,
         title=case.title,
@@ -131,9 +128,8 @@ def decide(
     profiles: Mapping[tuple[str, str, str], Profile],
     outcomes: Mapping[str, SourceResult],
     problem: CoatedContact,
-    edge: float,
 ) -> Verdict:
-    """The verdict of ``claim``; ``profiles`` by (quantity, line, source), ``edge`` the contact radius [m]."""
+    """The verdict of ``claim``; ``profiles`` by (quantity, line, source)."""
     sides = []
     for source in claim.between:
         outcome = outcomes.get(source)
@@ -142,6 +138,15 @@ def decide(
             return Verdict(Outcome.NO_RESULT, f"{source}: {reason}")
         sides.append(profiles[claim.quantity, claim.line, source])
     a, b = sides
-    scale = problem.p_h if claim.line != "contact" else float(abs(b.value[0]))
+    p0, edge = (_of_best(name, profiles, outcomes) for name in ("peak_pressure", "contact_radius"))
+    scale = QUANTITIES[claim.quantity].divisor(float(b.value[0]), problem.p_h, p0, edge)
     excluded = np.abs(np.abs(a.position) - edge) < claim.edge * edge
     return judge(compare(a, b, scale=scale, excluded=excluded), claim.cap)
+
+
+def _of_best(
+    quantity: str, profiles: Mapping[tuple[str, str, str], Profile], outcomes: Mapping[str, SourceResult]
+) -> float:
+    """A scalar of the contact [SI] by the last source that has one, an exact reference where there is any."""
+    found = [profiles.get((quantity, "contact", source)) for source in outcomes]
+    return next((float(profile.value[0]) for profile in reversed(found) if profile is not None), 0.0)

@@ -4,7 +4,7 @@ import ctypes.util
 import hashlib
 import platform
 import subprocess
-from collections.abc import Sequence
+from functools import cache
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
@@ -41,13 +41,16 @@ GMSH_LIBRARIES = {
 
 def versions() -> dict[str, str]:
     """Version of Python and of each package that results depend on."""
-    found = {"python": platform.python_version()}
-    for name in PACKAGES:
-        try:
-            found[name] = version(name)
-        except PackageNotFoundError:
-            found[name] = "not installed"
-    return found
+    return {"python": platform.python_version()} | {name: _version(name) for name in PACKAGES}
+
+
+@cache
+def _version(name: str) -> str:
+    """Version of an installed package; a process has loaded one of it, so that it is looked up once."""
+    try:
+        return version(name)
+    except PackageNotFoundError:
+        return "not installed"
 
 
 def commit() -> str | None:
@@ -67,10 +70,12 @@ def commit() -> str | None:
         return None
 
 
-def fingerprint(modules: Sequence[str] = CODE, packages: Sequence[str] = ("python", *PACKAGES)) -> str:
+@cache
+def fingerprint(modules: tuple[str, ...] = CODE, packages: tuple[str, ...] = ("python", *PACKAGES)) -> str:
     """SHA-256 over the source of ``modules`` and the versions of ``packages``.
 
-    Results of equal fingerprints come from the same code; by default that is all of this program.
+    Results of equal fingerprints come from the same code; by default that is all of this program. It is read
+    once: code that changes later is not the code that this process has loaded.
     """
     root, known = Path(__file__).resolve().parents[2], versions()
     found = hashlib.sha256(repr([(name, known[name]) for name in packages]).encode())

@@ -5,7 +5,10 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
+import numpy as np
+
 from verification.cases.columns import PublishedColumn
+from verification.cases.digits import digit_changes
 from verification.cases.published import PublishedCase
 from verification.judging.verdict import Outcome, Verdict, compare, judge
 from verification.problem.contact import Solution
@@ -65,8 +68,8 @@ def run(case: PublishedCase, available: Mapping[str, Solver] | None = None) -> C
             verdicts.append((claim, Verdict(Outcome.NO_RESULT, f"{source}: {failure}")))
             continue
         mine = profiles[claim.quantity, claim.line, source]
-        comparison = compare(mine, item.profile, scale=item.scale, excluded=~item.counted)
-        verdicts.append((claim, judge(comparison, claim.cap)))
+        verdict = judge(compare(mine, item.reference, scale=item.scale), claim.cap)
+        verdicts.append((claim, replace(verdict, reason=verdict.reason + _departures(item))))
     return replace(
         _blank(case),
         sources=tuple(outcomes.values()),
@@ -74,6 +77,12 @@ def run(case: PublishedCase, available: Mapping[str, Solver] | None = None) -> C
         verdicts=tuple(verdicts),
         seconds=time.perf_counter() - started,
     )
+
+
+def with_digits(case: PublishedCase, result: CaseResult) -> CaseResult:
+    """``result`` with the changes of single digits that its verdicts would notice."""
+    digits = digit_changes(case.columns, case.claims, result.profile_of)
+    return replace(result, published=result.published | {"digits": digits})
 
 
 def failed(case: PublishedCase, reason: str, seconds: float) -> CaseResult:
@@ -116,10 +125,20 @@ def _record(item: PublishedColumn) -> dict[str, Any]:
         "labels": item.labels,
         "unit": item.unit,
         "to_si": item.to_si,
+        "seen": item.seen,
+        "departure": (item.departure / item.to_si).tolist(),
         "counted": item.counted.tolist(),
-        "why_not": item.why_not,
         "scale": item.scale,
     }
+
+
+def _departures(item: PublishedColumn) -> str:
+    """Message on the listed departures of a column; empty where there are none."""
+    if not item.departs.any():
+        return ""
+    largest = np.abs(item.departure).max() / item.scale
+    count = f"{item.departs.sum()} of {item.departs.size} values, listed and not counted"
+    return f"; {count}, depart from the exact solution by up to {largest:.2e}"
 
 
 def _profile(

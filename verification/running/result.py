@@ -102,6 +102,8 @@ def from_json(data: dict[str, Any]) -> CaseResult:
         result = decode(CaseResult, data | {"verdicts": verdicts, "text": data["case_file"]})
     except (KeyError, TypeError) as error:
         raise ValueError(f"not a result of this program ({error!r}); run the case again") from None
+    if result.published and not {"tables", "columns"} <= result.published.keys():
+        raise ValueError("a published result of another version; run the case again")
     for p in result.profiles:
         if any(found is not None and found.shape != p.position.shape for found in (p.value, p.uncertainty)):
             raise ValueError(f"profile of {p.quantity} on {p.line}: as many values as positions are needed")

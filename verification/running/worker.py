@@ -41,7 +41,8 @@ def contact(name: str, text: str, path: str, plane: str, directory: str | None =
 
 def published(file: str, path: str) -> None:
     """Solve the published case of ``file`` and store its result at ``path``."""
-    result = published_run.run(read_published(Path(file)))
+    case = read_published(Path(file))
+    result = published_run.with_digits(case, published_run.run(case))
     write_checked(Path(path), to_json(result) | {"made_by": fingerprint()})
 
 

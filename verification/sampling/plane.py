@@ -24,7 +24,6 @@ COLUMNS = 65
 LEVELS = 12  # over the depth of an uncoated solid
 FEWEST = 4  # in a layer, both its sides included
 CROWDING = 0.6  # levels are even in z ** CROWDING: close below the surface, wide apart below
-EDGE = 0.06  # of a: so close to the contact edge no node is left out
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,7 +69,6 @@ def _columns(solution: Solution) -> Array:
     middle = int(np.argmin(np.abs(nodes)))
     step = max(1, round((inside.size - 1) / (COLUMNS - 1)))
     chosen = (np.arange(nodes.size) - middle) % step == 0
-    chosen |= np.abs(np.abs(nodes) - a) < EDGE * a
     return nodes[inside[chosen[inside]]]
 
 

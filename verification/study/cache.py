@@ -9,7 +9,6 @@ import hashlib
 import json
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -28,7 +27,8 @@ _SEARCH = (
     "verification.sources.methods",
     "verification.sources.exact",
     "verification.sources.extrapolation",
-    "verification.sampling.plane",
+    "verification.sampling.tension",
+    "verification.judging.invariants.refinement",
     "verification.running.result",
 )
 _DIGITS = ("python", "numpy", "scipy", "ducc0", "scikit-fem", "gmsh")
@@ -40,7 +40,6 @@ def solve_key(request: Mapping[str, Any]) -> str:
     return hashlib.sha256(f"{canonical}\n{code_version(request['source'])}".encode()).hexdigest()
 
 
-@cache
 def code_version(source: str) -> str:
     """Fingerprint of the code behind an answer of ``source``."""
     return fingerprint((SOURCES[source].package, *_SEARCH), _DIGITS)

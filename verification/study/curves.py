@@ -3,7 +3,7 @@
 The rows of the other sources are marks beside the curve.
 """
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -56,8 +56,8 @@ class Curve:
 class Difference:
     """Largest difference of ``source`` from the semi-analytical method in ``quantity``.
 
-    largest : |difference| over p_h, a_h or delta_h.   stated : sum of the uncertainties at that point, over
-    the same.
+    largest : |difference| over a_h, delta_h, of a pressure or stress over the smaller of p_h and p0.
+    stated : sum of the uncertainties at that point, over the same.
     """
 
     source: str
@@ -70,6 +70,24 @@ class Difference:
     friction: float
 
 
+@dataclass(frozen=True)
+class TensionCheck:
+    """The largest tension of the surface by the semi-analytical method and by ``source`` at one point.
+
+    tension : by the first, over p_h.   difference, stated : of the two, and the sum of their uncertainties,
+    over the smaller of p_h and p0.   place : difference of x over a; NaN where there is no tension.
+    """
+
+    source: str
+    ratio: float
+    h: float
+    friction: float
+    tension: float
+    difference: float
+    stated: float
+    place: float
+
+
 def curves(columns: Mapping[str, NDArray[Any]]) -> tuple[Curve, ...]:
     """Every curve of a table, by modulus, then by friction."""
     keys = sorted(set(zip(columns["modulus_ratio"].tolist(), columns["friction"].tolist(), strict=True)))
@@ -78,18 +96,10 @@ def curves(columns: Mapping[str, NDArray[Any]]) -> tuple[Curve, ...]:
 
 def differences(columns: Mapping[str, NDArray[Any]]) -> tuple[Difference, ...]:
     """The largest difference of each other source by quantity; a source that solved nothing is absent."""
-    point = columns["point"]
-    first, *others = (
-        np.flatnonzero((columns["source"] == source) & (columns["status"] == "solved")) for source in SOURCES
-    )
     found = []
-    for source, rows in zip(SOURCES[1:], others, strict=True):
-        _, mine, its = np.intersect1d(point[rows], point[first], return_indices=True)
-        here, beside = rows[mine], first[its]
-        if not here.size:
-            continue
+    for source, here, beside in _checked(columns):
         for quantity, scale in SCALES.items():
-            over = columns[scale][here]
+            over = _scale(columns, here) if scale == "p_h" else columns[scale][here]
             difference = np.abs(columns[quantity][here] - columns[quantity][beside]) / over
             uncertainty = columns[f"{quantity}_uncertainty"]
             i = int(np.nanargmax(difference))
@@ -99,6 +109,42 @@ def differences(columns: Mapping[str, NDArray[Any]]) -> tuple[Difference, ...]:
             ratio, h, friction = map(float, place)
             found.append(Difference(source, quantity, here.size, largest, stated, ratio, h, friction))
     return tuple(found)
+
+
+def tension_checks(columns: Mapping[str, NDArray[Any]]) -> tuple[TensionCheck, ...]:
+    """The largest tension of the surface at every cross-checked point, by source, then by point."""
+    name, found = "sigma_xx_surface", []
+    for source, here, beside in _checked(columns):
+        over = _scale(columns, here)
+        uncertainty = columns[f"{name}_uncertainty"]
+        numbers = (
+            *(columns[key][here] for key in ("modulus_ratio", "thickness_over_a_h", "friction")),
+            columns[f"{name}_over_p_h"][beside],
+            (columns[name][here] - columns[name][beside]) / over,
+            (uncertainty[here] + uncertainty[beside]) / over,
+            (columns[f"{name}_x"][here] - columns[f"{name}_x"][beside]) / columns["contact_radius"][here],
+        )
+        found += [TensionCheck(source, *row) for row in np.stack(numbers, axis=1).tolist()]
+    return tuple(found)
+
+
+def _checked(
+    columns: Mapping[str, NDArray[Any]],
+) -> Iterator[tuple[str, NDArray[np.int_], NDArray[np.int_]]]:
+    """Each other source, its solved rows, those of the semi-analytical method at the same points."""
+    point = columns["point"]
+    first, *others = (
+        np.flatnonzero((columns["source"] == source) & (columns["status"] == "solved")) for source in SOURCES
+    )
+    for source, rows in zip(SOURCES[1:], others, strict=True):
+        _, mine, its = np.intersect1d(point[rows], point[first], return_indices=True)
+        if mine.size:
+            yield source, rows[mine], first[its]
+
+
+def _scale(columns: Mapping[str, NDArray[Any]], rows: NDArray[np.int_]) -> Array:
+    """Divisor of a difference of stresses [Pa]: the smaller of p_h and p0."""
+    return np.minimum(columns["p_h"][rows], columns["peak_pressure"][rows])
 
 
 def _curve(columns: Mapping[str, NDArray[Any]], ratio: float, friction: float) -> Curve:

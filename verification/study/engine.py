@@ -32,6 +32,7 @@ WINDOW = 3  # solves submitted at a time for each thread of the cluster
 DIED = "every worker that it was submitted to was killed, most likely for lack of memory; use fewer --jobs"
 WAIT = 60.0  # s, for the first worker
 PAUSE = 5.0  # s between two writings of the table
+CONNECT_WITHIN = 5.0  # s, to a scheduler that was named
 SHARE = 0.02  # of the time, at most, is spent on writing the table while it grows
 # With Dask's own setting every freed array is returned to the system, and a third of the time is spent on
 # allocating anew; the memory kept between solves here is bounded too.
@@ -84,7 +85,7 @@ def connected(scheduler: str | None, jobs: int | None) -> Iterator[Any]:
     if scheduler is not None:
         with _silent_logs():
             try:
-                client = Client(scheduler, timeout="5s", set_as_default=False)
+                client = Client(scheduler, timeout=CONNECT_WITHIN, set_as_default=False)
             except (OSError, ValueError, TimeoutError) as error:
                 message = " ".join(str(error).split())[:200]
                 raise SchedulerError(

@@ -8,37 +8,41 @@ gives the stress at every f:
 In the plane y = 0 the two parts have opposite parity in x, so that the values at x and -x determine both.
 Between the samples both are quintic splines. At the contact edge the surface stress has a cusp: sigma_n is
 smooth outside r = a and has the root of the pressure inside; sigma_t is smooth inside and has a root outside.
-Its value at r = a is therefore the limit of sigma_n from outside with that of sigma_t from inside, for every
-source alike.
+Splines on either side of it, smooth up to the edge, meet at the solution's own value there.
 """
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import make_interp_spline
 
+from verification.judging.invariants.refinement import followed
 from verification.problem.arrays import Array
 from verification.problem.contact import Solution, stress_with_uncertainty
+from verification.sampling.tension import around_edge, edge_uncertainty
 
 Curve = Callable[[Array], Array]
 
 XX, YY, ZZ, XZ = range(4)
 # factor of the response to p under x -> -x; that to q has the opposite sign
 PARITY = np.array([1.0, 1.0, 1.0, -1.0])
-SKIP = 0.02  # of a; nearer to the contact edge no method is evaluated at the surface
-WINDOW, BESIDE = 0.05, 8  # of a, samples in it: the strip from which the limit at the edge is extrapolated
 LEAST = 33  # samples of a plane; below, the semi-analytical method sums point by point, which takes longer
 MIRRORED = 5  # samples repeated beyond x = 0, so that the splines know the parity
 
 
 @dataclass(frozen=True)
 class Parts:
-    """Stress due to p and due to q = p, from ``solution`` at ``friction`` g > 0, or 0 without sliding."""
+    """Stress due to p and due to q = p, from ``solution`` at ``friction`` g > 0, or 0 without sliding.
+
+    stated : whether its uncertainty is evaluated too.
+    """
 
     solution: Solution
     friction: float
+    stated: bool = True
 
     def __call__(self, r: Array, z: float, layer: int) -> tuple[Array, Array, Array]:
         """sigma_n, sigma_t at x = ``r`` >= 0, (4, n) each, with the uncertainty at r, -r, (2, 4, n).
@@ -46,7 +50,10 @@ class Parts:
         The uncertainty is the solution's own, NaN where it has none.
         """
         x = np.stack([r, -r]) if self.friction else r[None, :]
-        full, U = stress_with_uncertainty(self.solution, x, 0.0, z, layer=layer)
+        if self.stated:
+            full, U = stress_with_uncertainty(self.solution, x, 0.0, z, layer=layer)
+        else:
+            full, U = self.solution.stress(x, 0.0, z, layer=layer), None
         sigma, bound = _components(full), _components(np.full_like(full, np.nan) if U is None else U)
         if not self.friction:
             return sigma[:, 0], np.zeros_like(sigma[:, 0]), np.stack([bound[:, 0]] * 2)
@@ -71,8 +78,8 @@ class Plane:
     """Stress at one depth in one layer as a function of x and f.
 
     knots : radii [m] of the samples.   fine, coarse : sigma_n and sigma_t over r, (4,) + shape of r, from all
-    the samples and from every other one.   bound : uncertainty at knots and -knots, (2, 4, knots).
-    edge : uncertainty of the limits at r = ``edge_radius``, of sigma_n and sigma_t, (2, 4).
+    the samples and from every other one.   bound : uncertainty at knots and -knots, (2, 4, knots), at the
+    contact edge on the surface that of values which move with it.
     """
 
     parts: Parts
@@ -82,8 +89,6 @@ class Plane:
     fine: tuple[Curve, Curve]
     coarse: tuple[Curve, Curve]
     bound: Array
-    edge: Array
-    edge_radius: float
 
     def __call__(self, x: Array, friction: float) -> Array:
         """xx, yy, zz, xz [Pa] at signed ``x`` [m], (4,) + shape of ``x``."""
@@ -92,12 +97,12 @@ class Plane:
     def uncertainty(self, x: float, friction: float) -> Array:
         """Uncertainty [Pa] at ``x``: that of the solution plus 1/8 of the error with half the samples."""
         i = int(np.clip(np.searchsorted(self.knots, abs(x)), 1, self.knots.size - 1))
-        beside = self.bound[:, :, i - 1 : i + 1].max(axis=2)
+        at_knot = np.isclose(abs(x), self.knots, rtol=1e-12, atol=0)
+        beside = self.bound[:, :, at_knot if at_knot.any() else slice(i - 1, i + 1)].max(axis=2)
         stated = self.parts.uncertainty(beside if x >= 0 else beside[::-1], friction)
         fine, coarse = (_signed(curve, np.array([x]), friction) for curve in (self.fine, self.coarse))
         interpolation = np.abs(fine - coarse)[:, 0] / 8
-        near = self.edge_radius * SKIP >= abs(abs(x) - self.edge_radius) * (1 - 1e-9)
-        return stated + interpolation + (self.edge[0] + friction * self.edge[1] if near else 0.0)
+        return stated + interpolation
 
 
 def _signed(curves: tuple[Curve, Curve], x: Array, friction: float) -> Array:
@@ -133,7 +138,7 @@ def plane(parts: Parts, knots: Array, z: float, layer: int) -> Plane:
         return _spline(r, normal[:, keep], PARITY), _spline(r, tangential[:, keep], -PARITY)
 
     fine, coarse = curves(np.arange(knots.size)), curves(_every_other(knots.size))
-    return Plane(parts, z, layer, knots, fine, coarse, bound, np.zeros((2, 4)), 0.0)
+    return Plane(parts, z, layer, knots, fine, coarse, bound)
 
 
 def surface(parts: Parts, a: float, h: float, reach: float) -> Plane:
@@ -142,37 +147,36 @@ def surface(parts: Parts, a: float, h: float, reach: float) -> Plane:
     Splines in theta = arcsin(r/a) inside, eta = arcosh(r/a) outside: the roots of the edge are smooth there.
     """
     more = 0.5 * min(a / h, 20)
-    strip = SKIP + WINDOW * np.arange(BESIDE) / (BESIDE - 1)
-    theta = np.linspace(0, np.arcsin(1 - strip[-1]), int(16 + more))
-    theta = np.append(theta[:-1], np.arcsin(1 - strip[::-1]))
-    eta = np.linspace(np.arccosh(1 + strip[-1]), np.arccosh(1 + reach / a), int(10 + more + 2 * reach / a))
-    eta = np.append(np.arccosh(1 + strip[:-1]), eta)
-    inside, outside = theta.size, eta.size
-    r = np.concatenate([a * np.sin(theta), a * np.cosh(eta)])
-    normal, tangential, bound = parts(r, 0.0, 0)
-    # The thinner the coating, the larger the curvature of the stress within the strip.
-    degree = 3 + int(h < 0.25 * a) + int(h < 0.08 * a)
-    edge_n, error_n = _limit(strip, normal[:, inside : inside + BESIDE], degree)
-    edge_t, error_t = _limit(strip, tangential[:, inside - 1 : inside - 1 - BESIDE : -1], degree)
-    for edge, error in ((edge_n, error_n), (edge_t, error_t)):
-        edge[[ZZ, XZ]] = error[[ZZ, XZ]] = 0.0  # p and q vanish at the edge
+    theta = np.linspace(0, np.pi / 2, int(22 + more))
+    eta = np.linspace(0, np.arccosh(1 + reach / a), int(17 + more + 2 * reach / a))
+    inside = theta.size
+    knots = np.concatenate([a * np.sin(theta), a * np.cosh(eta[1:])])
+    around = around_edge(parts.solution)
+    normal, tangential, bound = parts(np.append(knots, around), 0.0, 0)
+    edge = slice(knots.size, None)
+    sides = np.stack([normal + g * tangential for g in (parts.friction, -parts.friction)])
+    bound[:, :, inside - 1] = edge_uncertainty(sides[:, :, edge], bound[:, :, edge], _change(parts))
 
-    def joined(values: Array, edge: Array, parity: Array, keep: Callable[[int], NDArray[np.int_]]) -> _Joined:
-        i, o = keep(inside), keep(outside)
-        within = _spline(np.append(theta[i], np.pi / 2), np.column_stack([values[:, i], edge]), parity)
-        beyond = _spline(np.append(0.0, eta[o]), np.column_stack([edge, values[:, inside + o]]), None)
-        return _Joined(a, within, beyond)
+    def joined(values: Array, parity: Array, keep: Callable[[int], NDArray[np.int_]]) -> _Joined:
+        i, o = keep(inside), keep(eta.size)
+        within = _spline(theta[i], values[:, i], parity)
+        return _Joined(a, within, _spline(eta[o], values[:, inside - 1 + o], None))
 
     def curves(keep: Callable[[int], NDArray[np.int_]]) -> tuple[Curve, Curve]:
-        return joined(normal, edge_n, PARITY, keep), joined(tangential, edge_t, -PARITY, keep)
+        return joined(normal, PARITY, keep), joined(tangential, -PARITY, keep)
 
-    knots = np.insert(r, inside, a)
-    # The edge takes the larger uncertainty of its two sides.
-    beside = bound[:, :, inside - 1 : inside + 1].max(axis=2, keepdims=True)
-    bound = np.concatenate([bound[:, :, :inside], beside, bound[:, :, inside:]], axis=2)
-    return Plane(
-        parts, 0.0, 0, knots, curves(np.arange), curves(_every_other), bound, np.stack([error_n, error_t]), a
-    )
+    return Plane(parts, 0.0, 0, knots, curves(np.arange), curves(_every_other), bound[:, :, : knots.size])
+
+
+def _change(parts: Parts) -> Array | None:
+    """Change of the stress at the contact edge, at x = a and -a, over the coarser companions, (2, 4)."""
+
+    def at_edge(solution: Any) -> Array:
+        edge = np.array([float(solution.contact_radius)])
+        normal, tangential, _ = Parts(solution, parts.friction, stated=False)(edge, 0.0, 0)
+        return np.stack([normal + g * tangential for g in (parts.friction, -parts.friction)])[..., 0]
+
+    return followed(parts.solution, at_edge)
 
 
 @dataclass(frozen=True)
@@ -187,12 +191,6 @@ class _Joined:
         s = r / self.a
         within = self.within(np.arcsin(np.minimum(s, 1)))
         return np.where(s <= 1, within, self.beyond(np.arccosh(np.maximum(s, 1))))
-
-
-def _limit(distance: Array, values: Array, degree: int) -> tuple[Array, Array]:
-    """Extrapolation of a smooth function to distance 0, with the change by the last ``degree``."""
-    fits = [np.polynomial.polynomial.polyfit(distance, values.T, n)[0] for n in (degree, degree - 1)]
-    return fits[0], np.abs(fits[0] - fits[1])
 
 
 def _spline(at: Array, values: Array, parity: Array | None) -> Curve:

@@ -5,6 +5,7 @@ import shutil
 import numpy as np
 import pytest
 
+from verification.cases.columns import RECOMPUTED
 from verification.cases.contact import shipped_cases
 from verification.cases.published import is_published, published_cases, read_published
 from verification.cases.table import FOLDER, PublishedError, read_table
@@ -15,8 +16,6 @@ TOML = """
 title = "A disc"
 source = "nobody"
 year = 1900
-primary_read = true
-read = "written for this test"
 
 [problem]
 length_unit = "in"
@@ -28,14 +27,15 @@ coatings = [ { E = 40.0, nu = 0.4, thickness = 10.0 } ]
 
 [[table]]
 file = "t.csv"
+seen = "primary"
+read = "written for this test"
 at = { z = "depth", unit = "in" }
-flag = "flag"
 column = [
     { name = "s", quantity = "sigma_zz", unit = "psi", factor = -1.0 },
-    { name = "w", quantity = "u_z", unit = "in", uncertainty = 0.003 },
+    { name = "w", quantity = "u_z", unit = "in", uncertainty = 0.0003 },
 ]
 """
-CSV = "# a note\ndepth,s,w,flag\n0,100,0.05,\n2.5,90.25,0.0400,\n10,60.5,0.031,TYPO\n"
+CSV = "# a note\ndepth,s,w,s_departure\n0,100,0.05,\n2.5,90.25,0.0400,\n10,60.5,0.031,-0.7\n"
 
 
 @pytest.fixture
@@ -68,12 +68,7 @@ def test_units_and_signs_are_converted_at_the_border(files):
 def test_reading_uncertainty_is_half_the_last_digit_of_the_column_unless_stated(files):
     stress, sink = files().columns
     assert stress.profile.uncertainty == pytest.approx(np.full(3, 0.005 * 6894.757293168361))
-    assert sink.profile.uncertainty == pytest.approx(np.full(3, 0.003 * 0.0254))
-
-
-def test_error_of_the_program_comes_on_top_of_the_rounding(files):
-    toml = TOML.replace('"psi", factor = -1.0', '"psi", factor = -1.0, program_error = 0.02')
-    assert files(toml).columns[0].profile.uncertainty == pytest.approx(np.full(3, 0.025 * 6894.757293168361))
+    assert sink.profile.uncertainty == pytest.approx(np.full(3, 0.0003 * 0.0254))
 
 
 def test_significant_digits_give_each_row_its_own_rounding(files):
@@ -82,20 +77,48 @@ def test_significant_digits_give_each_row_its_own_rounding(files):
     assert found == pytest.approx([0.5, 0.05, 0.05])
 
 
-def test_spread_of_several_programs_is_their_uncertainty(files):
-    toml = TOML.replace("uncertainty = 0.003", 'uncertainty = "range"')
-    # 0.05 to 0.0400, without the flagged row, and half of the fourth decimal.
-    assert files(toml).columns[1].profile.uncertainty == pytest.approx(np.full(3, 0.01005 * 0.0254))
+@pytest.mark.parametrize("cell", ["90.25", "190.25", "00.01", "-90.25"])
+def test_uncertainty_of_a_cell_depends_on_no_value_of_its_column(files, cell):
+    before = [item.profile.uncertainty for item in files().columns]
+    after = [item.profile.uncertainty for item in files(csv=CSV.replace("90.25", cell)).columns]
+    assert all((old == new).all() for old, new in zip(before, after, strict=True))
 
 
-def test_rows_marked_as_misprints_stay_but_do_not_count(files):
-    stress, _ = files().columns
-    assert stress.counted.tolist() == [True, True, False]
+def test_uncertainty_above_the_ceiling_is_refused_unless_the_file_states_why(files):
+    # 1 % of the largest displacement, 0.05 in.
+    assert files(TOML.replace("0.0003", "0.0005"))
+    coarse = TOML.replace("0.0003", "0.00051")
+    with pytest.raises(CaseError, match=r"t\.csv, column w, line 3: the uncertainty is 0\.01 of the"):
+        files(coarse)
+    ceiling = 'file = "t.csv"\nceiling = { fraction = 0.02, why = "a figure" }'
+    assert files(coarse.replace('file = "t.csv"', ceiling)).claims
+    # A value printed in steps of 1000 psi, under a load of 100 psi.
+    with pytest.raises(CaseError, match=r"t\.csv, column s, line 2: the uncertainty is 5 of the scale"):
+        files(csv="depth,s,w\n0,1e3,0.05\n")
+
+
+def test_listed_departures_correct_the_reference_and_are_not_counted(files):
+    stress, sink = files().columns
     assert stress.text == ("100", "90.25", "60.5")
-    misprint = '[[table.misprint]]\nrow = { depth = 2.5 }\ncolumn = "w"\nwhy = "digits swapped"\n'
-    stress, sink = files(TOML + misprint).columns
     assert stress.counted.tolist() == [True, True, False]
-    assert sink.counted.tolist() == [True, False, False]
+    assert sink.counted.tolist() == [True, True, True]
+    psi = 6894.757293168361
+    assert stress.profile.value[2] == pytest.approx(-60.5 * psi)
+    assert stress.reference.value == pytest.approx(-np.array([100, 90.25, 59.8]) * psi)
+
+
+def test_departure_within_the_uncertainty_is_refused(files):
+    with pytest.raises(CaseError, match=r"t\.csv, column s, line 5: the departure is within the uncertainty"):
+        files(csv=CSV.replace("-0.7", "0.005"))
+
+
+def test_recomputed_tables_are_compared_and_not_counted(files):
+    case = files(TOML.replace('seen = "primary"', 'seen = "recomputed"'))
+    assert case.claims == files().claims
+    assert not any(item.counted.any() for item in case.columns)
+    assert case.citation["tables"] == [
+        {"file": "t.csv", "seen": "recomputed", "read": "written for this test"}
+    ]
 
 
 @pytest.mark.parametrize(
@@ -106,11 +129,11 @@ def test_rows_marked_as_misprints_stay_but_do_not_count(files):
         (CSV.replace("90.25", "inf"), r"t\.csv, line 4, column s: 'inf' is not a finite number"),
         (CSV.replace("90.25", ""), r"t\.csv, line 4, column s: '' is not a finite number"),
         (CSV.replace("\n0,", "\nzero,"), r"t\.csv, line 3, column depth: 'zero'"),
-        (CSV.replace(",s,", ",t,"), r"t\.csv: has no column 's'; it has depth, t, w, flag"),
+        (CSV.replace(",s,", ",t,"), r"t\.csv: has no column 's'; it has depth, t, w, s_departure"),
         (CSV.replace(",s,", ",w,"), r"t\.csv: column names must be given and differ"),
         (CSV.replace("90.25,", ""), r"t\.csv, line 4: 3 cells under 4 columns"),
         ("# nothing but notes\n", r"t\.csv: no columns in it"),
-        ("depth,s,w,flag\n", r"t\.csv: no rows in it"),
+        ("depth,s,w,s_departure\n", r"t\.csv: no rows in it"),
     ],
 )
 def test_malformed_table_is_refused_with_file_row_and_column(files, csv, said):
@@ -127,6 +150,7 @@ def test_malformed_table_is_refused_with_file_row_and_column(files, csv, said):
         ('"sigma_zz"', '"sigma_rr"', r"t\.csv, column s: quantity 'sigma_rr' is unknown"),
         ('z = "depth"', 'z = "deep"', r"t\.csv: has no column 'deep'"),
         ("year = 1900", 'year = "1900"', r"disc\.toml: year must be a whole number"),
+        ('seen = "primary"', 'seen = "maybe"', r"disc\.toml: table\.0\.seen"),
         ('file = "t.csv"', 'file = "../t.csv"', r"disc\.toml: table\.0\.file"),
         ('file = "t.csv"', 'file = "u.csv"', r"u\.csv: cannot be read"),
         ("pressure = 0.1", "radius = 0.1", r"disc\.toml: problem needs pressure and load_radius"),
@@ -141,12 +165,9 @@ def test_malformed_case_is_refused_with_file_and_key(files, old, new, said):
 
 
 def test_whole_numbers_are_numbers(files):
-    toml = TOML.replace("uncertainty = 0.003", "uncertainty = 1").replace(
-        "load_radius = 6.0", "load_radius = 6"
-    )
+    toml = TOML.replace("load_radius = 6.0", "load_radius = 6")
     toml = toml.replace('file = "t.csv"', 'file = "t.csv"\nrows = { depth = 0 }')
-    stress, sink = files(toml).columns
-    assert sink.profile.uncertainty == pytest.approx([0.0254])
+    stress, _ = files(toml).columns
     assert stress.text == ("100",)
 
 
@@ -176,22 +197,26 @@ def test_lines_are_named_by_where_they_run(files):
 
 
 SHIPPED = published_cases()
+COUNTS = (463, 239, 550)  # published values that count, that depart; values of recomputed tables
 
 
 @pytest.mark.parametrize("name", SHIPPED)
 def test_shipped_case_states_its_source_and_how_it_was_read(name):
     case = read_published(SHIPPED[name])
     assert case.claims
-    assert case.citation["read"]
+    assert all(table["read"] for table in case.citation["tables"])
     assert str(case.citation["year"]) in case.source
     assert case.citation["notes"]
     # Whatever is printed has an uncertainty, and more than nothing.
     assert all((item.profile.uncertainty > 0).all() for item in case.columns)
 
 
-def test_six_misprints_of_ahlvin_and_ulery_are_marked():
-    case = read_published(SHIPPED["ahlvin_ulery_1962"])
-    assert sum((~item.counted).sum() for item in case.columns) == 6
+def test_values_of_the_shipped_cases_are_counted_as_stated_in_the_readme():
+    columns = [item for path in SHIPPED.values() for item in read_published(path).columns]
+    cells = sum(len(item.text) for item in columns)
+    counted = sum(int(item.counted.sum()) for item in columns)
+    recomputed = sum(len(item.text) for item in columns if item.seen == RECOMPUTED)
+    assert (counted, cells - counted - recomputed, recomputed) == COUNTS
 
 
 def test_contact_units_are_the_hertz_scales_of_the_case():

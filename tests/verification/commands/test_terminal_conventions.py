@@ -35,6 +35,7 @@ COMMANDS = (
     "view",
     "compare",
     "faults",
+    "mutants",
     "alarms",
     "bench",
     "completion",
@@ -302,16 +303,17 @@ def test_printing_without_a_browser_is_one_sentence(stored, capsys, monkeypatch)
 
 
 @pytest.mark.parametrize(
-    ("script", "said"), [("exit 7", "ended with code 7"), ("exec sleep 60", "did not print")]
+    ("script", "time_limit", "said"),
+    [("exit 7", 60.0, "ended with code 7"), ("exec sleep 60", 0.2, "did not print")],
 )
-def test_a_browser_that_fails_is_one_sentence(tmp_path, monkeypatch, script, said):
+def test_a_browser_that_fails_is_one_sentence(tmp_path, monkeypatch, script, time_limit, said):
     program = tmp_path / "bin" / "chromium"
     program.parent.mkdir()
     program.write_text(f"#!/bin/sh\n{script}\n")
     program.chmod(0o755)
     monkeypatch.setenv("PATH", f"{program.parent}:/usr/bin:/bin")
     with pytest.raises(NoBrowser, match=said):
-        printed(tmp_path / "page.html", tmp_path / "page.pdf", 1.0)
+        printed(tmp_path / "page.html", tmp_path / "page.pdf", time_limit)
     assert not (tmp_path / "page.pdf").exists()
 
 

@@ -6,9 +6,11 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from quick_case import solved_here
 from synthetic_study import study
 
 from verification.commands import run as command
+from verification.commands import solving
 from verification.credibility import accuracy as accuracy_study
 from verification.credibility.accuracy import BARE, COATED, STEEL, AccuracyStudy, from_json, to_json
 from verification.credibility.refinement import QUANTITIES, order_of, refined_grid, refined_mesh, settled
@@ -279,12 +281,14 @@ def test_study_that_fails_is_a_sentence_of_the_report_and_no_verdict(one_case, t
     assert [c["outcome"] for c in report["cases"]] == ["AGREES"]
 
     # A run of chosen cases measures no convergence.
+    monkeypatch.setattr(solving, "run_tasks", solved_here)
     assert command.run("quick", output=tmp_path / "one", **one_case) == 0
     assert 'id="semi-analytical-accuracy"' not in (tmp_path / "one" / "report.html").read_text()
     assert json.loads((tmp_path / "one" / "report.json").read_text())["accuracy"] is None
 
 
 def test_resumed_run_keeps_the_study(one_case, tmp_path, monkeypatch):
+    monkeypatch.setattr(solving, "run_tasks", solved_here)
     monkeypatch.setattr(accuracy_study, "stored", lambda folder: study())
     monkeypatch.setattr(accuracy_study, "task", lambda folder: pytest.fail("measured again"))
     assert command.run(output=tmp_path / "out", resume=True, **one_case) == 0

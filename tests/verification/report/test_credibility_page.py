@@ -69,6 +69,7 @@ def test_what_was_never_measured_is_said_and_not_invented(evidence):
     assert part(found, STEPS[6]).text.startswith("Not measured")
     glance = {row.head.text: [c.text for c in row.cells] for row in found.parts[0].tables[0].rows}
     assert glance["Fault detection"] == ["not measured", "never"]
+    assert glance["Mutation testing"] == ["not measured", "never"]
     assert glance["False alarms"] == ["not measured", "never"]
     assert glance["Regression"][0] == "not measured"
     assert glance["Code verification"][0].endswith("not measured in this run")

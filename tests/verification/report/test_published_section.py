@@ -13,7 +13,8 @@ from verification.cases.published import published_cases, read_published
 from verification.report.junit import junit_xml
 from verification.report.material import Material
 from verification.report.page import render
-from verification.running.published import failed, run
+from verification.report.sections.published import counts, published_message
+from verification.running.published import failed, run, with_digits
 from verification.running.result import RunInfo, from_json
 from verification.running.store import read_checked
 from verification.sources.registry import solvers
@@ -22,12 +23,15 @@ SHIPPED = published_cases()
 INFO = RunInfo("coatcheck run published", "2026-01-01T00:00:00+00:00", 1.0, 1, None, "a machine", {})
 
 
-@pytest.fixture(scope="module")
-def results():
+def both():
     """Two sources by the quick method alone, which here speaks for both."""
     quick = solvers()["semianalytic"]
-    both = {"semianalytic": quick, "fem_reference": quick}
-    return [run(read_published(SHIPPED[n]), both) for n in ("ahlvin_ulery_1962", "jones_1962")]
+    return {"semianalytic": quick, "fem_reference": quick}
+
+
+@pytest.fixture(scope="module")
+def results():
+    return [run(read_published(SHIPPED[n]), both()) for n in ("ahlvin_ulery_1962", "jones_1962")]
 
 
 @pytest.fixture(scope="module")
@@ -44,9 +48,9 @@ def rows_of(page, anchor):
 
 def test_citation_and_how_it_was_read_are_said_in_full(page):
     assert "R. G. Ahlvin and H. H. Ulery, Highway Research Board Bulletin 342 (1962) 1-13" in page
-    assert "Second-hand; the primary source was not read: as reproduced in textbooks." in page
+    assert "quoted, no document seen: as textbooks reproduce it; which of them is not recorded" in page
     # The notes of the table file.
-    assert "do not hold a method against those six" in page
+    assert "exact_A and exact_B: Hankel quadrature" in page
 
 
 def test_every_printed_value_stands_beside_both_methods(page, results):
@@ -58,24 +62,47 @@ def test_every_printed_value_stands_beside_both_methods(page, results):
     first = beside[0]
     # axis, z = 0.1 a: printed 0.90050, computed 0.900496 by both, met.
     assert first[:3] == ["axis", "0.1", "0.90050"]
-    assert float(first[4]) == pytest.approx(0.900496, abs=5e-6)
-    assert first[4] == first[7]
+    assert float(first[5]) == pytest.approx(0.900496, abs=5e-6)
+    assert first[5] == first[8]
     assert first[-1] == "✓"
 
 
-def test_misprints_are_shown_and_not_counted(page):
+def test_departures_are_shown_with_their_size_and_not_counted(page, results):
     rows = rows_of(page, "ahlvin-ulery-1962")
-    assert sum("misprint, not counted" in row for row in rows) == 6
+    departing = [row for row in rows if row.endswith("departs, not counted")]
+    assert len(departing) == 93
+    misprint = next(row for row in departing if "|0.21727|" in row).split("|")
+    assert misprint[3] == "+1.6e-2"
     overview = page.split('id="published"')[1].split("</section>")[0]
-    assert "133 of 133" in overview
-    assert "139" not in overview
+    assert "47 published values count. 94 more are off" in overview
+    assert "Departures of the sources" in overview
+    assert counts(results) == (47, 94, 0)
+
+
+def test_recomputed_values_are_called_so(results):
+    items = [item | {"seen": "recomputed", "counted": [False]} for item in results[1].published["columns"]]
+    recomputed = replace(results[1], published=results[1].published | {"columns": items})
+    assert counts([recomputed]) == (0, 0, 2)
+    page = render(Material([recomputed], INFO))
+    assert "2 values are recomputed" in page
+    assert "table_memory in q, recomputed (" in page
+
+
+def test_changed_digits_are_counted(results):
+    digits = with_digits(read_published(SHIPPED["jones_1962"]), results[1])
+    assert published_message([digits]) == (
+        "1 published values count, 1 depart and are listed, 0 are recomputed; "
+        "47 of 47 changed digits of those that count are noticed"
+    )
+    page = render(Material([digits], INFO))
+    assert "47 of 47 in cells of the group counted (100 %)" in page
 
 
 def test_values_keep_the_sign_and_unit_of_the_source(page):
     factor = next(row for row in rows_of(page, "jones-1962") if "|1.97428|" in row).split("|")
-    assert float(factor[4]) == pytest.approx(1.974308, abs=1e-5)
-    # Computed less printed, in the source's own sign.
-    assert float(factor[5]) == pytest.approx(2.9e-5, abs=3e-6)
+    assert float(factor[5]) == pytest.approx(1.974308, abs=1e-5)
+    # Computed less published, in the source's own sign.
+    assert float(factor[6]) == pytest.approx(2.9e-5, abs=3e-6)
 
 
 def test_a_value_that_is_not_met_is_marked(results):
@@ -99,9 +126,10 @@ def test_junit_has_one_item_for_each_comparison(results):
     assert int(root.attrib["tests"]) == sum(len(result.verdicts) for result in results)
 
 
-def test_command_line_runs_a_table_of_ones_own(tmp_path):
+def test_command_line_runs_a_table_of_ones_own(tmp_path, monkeypatch):
+    monkeypatch.setattr("verification.running.published.solvers", lambda problem: both())
     (tmp_path / "mine.toml").write_text(SHIPPED["jones_1962"].read_text().replace("nu = 0.5", "nu = 0.3"))
-    table = "factor,meaning,table_memory\nZZ1,a,0.5\nZZ1-RR1,b,1.0\n"
+    table = "factor,meaning,table_memory\nZZ1,a,0.500\nZZ1-RR1,b,1.000\n"
     (tmp_path / "jones_1962_three_layer.csv").write_text(table)
     words = ("run", "mine.toml", "-o", "out", "--json")
     done = coatcheck(*words, cwd=tmp_path)
@@ -109,8 +137,8 @@ def test_command_line_runs_a_table_of_ones_own(tmp_path):
     assert done.returncode == 1, done.stderr
     assert json.loads(done.stdout)["cases"]["mine"]["outcome"] == "DISAGREES"
     result = from_json(read_checked(tmp_path / "out" / "cases" / "mine.json"))
-    assert result.published["columns"][0]["text"] == ["0.5"]
-    (tmp_path / "jones_1962_three_layer.csv").write_text(table.replace("1.0", "one"))
+    assert result.published["columns"][0]["text"] == ["0.500"]
+    (tmp_path / "jones_1962_three_layer.csv").write_text(table.replace("1.000", "one"))
     done = coatcheck(*words, cwd=tmp_path)
     assert done.returncode == 2
     said = "jones_1962_three_layer.csv, line 3, column table_memory: 'one' is not a finite number"

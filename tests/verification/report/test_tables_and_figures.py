@@ -144,18 +144,20 @@ def test_accuracy_tells_an_honest_estimate_from_a_vain_one():
     assert [row.cells[3].text for row in rows] == ["not stated", "not stated"]
 
 
-def test_accuracy_is_the_largest_error_outside_the_zone_around_the_edge():
+def test_accuracy_is_the_largest_error_of_all_points_that_a_claim_judges():
     a = COATED.a_h
     result = result_of(COATED, points=201)
-    claim = next(c for c, _ in result.verdicts if c.line == "surface")
+    found = next(c for c, _ in result.verdicts if c.line == "surface")
+    claim = replace(found, edge=0.05)
     x = np.array([-1.051, -1.049, -0.951, -0.949, 0, 0.949, 0.951, 1.049, 1.051]) * a
     here = judged(result, claim, x)
     assert contact_radius(result) == pytest.approx(a, rel=1e-9)
     assert here.tolist() == [True, False, False, True, True, True, False, False, True]
+    assert judged(result, found, x).all()
     item = next(i for i in accuracies(result) if (i.source, i.quantity) == ("semianalytic", "pressure"))
     mine, exact = (result.profile_of["pressure", "surface", s] for s in ("semianalytic", "integral_equation"))
     error = np.abs(mine.value - exact.value) / COATED.p_h
-    assert item.error == error[judged(result, claim, mine.position)].max()
+    assert item.error == pytest.approx(error.max(), rel=1e-9)
 
 
 def test_nothing_is_subtracted_at_different_positions():
@@ -275,9 +277,13 @@ def test_figures_are_drawn_in_the_scales_of_the_bare_substrate(monkeypatch):
         v for c, v in result.verdicts if (c.quantity, c.between[1]) == ("pressure", "integral_equation")
     )
     assert error.worst == verdict.worst / COATED.a_h
-    assert more["cap"] == 5e-3
+    assert more["cap"] == 1e-3
     assert more["coordinate"] == "x / a_h"
-    assert np.array(more["unjudged"]) == pytest.approx(np.array([(-1.05, -0.95), (0.95, 1.05)]), rel=1e-6)
+    assert more["unjudged"] == []
+    zoned = replace(result, verdicts=tuple((replace(c, edge=0.05), v) for c, v in result.verdicts))
+    line_figures(zoned, "surface")
+    zones = np.array(drawn[-1][2]["unjudged"])
+    assert zones == pytest.approx(np.array([(-1.05, -0.95), (0.95, 1.05)]), rel=1e-6)
 
 
 def test_a_claimless_line_shows_what_was_sampled():

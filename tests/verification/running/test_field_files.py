@@ -45,7 +45,7 @@ def solutions(case):
     }
     return {
         "semianalytic": semianalytic.solve(**problem, patches=65, estimate_uncertainty=False),
-        "fem_reference": fem_reference.solve(**problem, quality="fast", estimate_uncertainty=False),
+        "fem_reference": fem_reference.solve(**problem, size=0.5, estimate_uncertainty=False),
     }
 
 

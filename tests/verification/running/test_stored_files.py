@@ -1,10 +1,13 @@
 """Stored results: whole or refused, never half."""
 
 import random
+from pathlib import Path
 
 import pytest
+from synthetic_results import INFO, contact, result_of
 
 from verification.running.store import StoreError, locked, read_checked, write_atomically, write_checked
+from verification.running.stored import StoredRun
 
 PAYLOAD = {"name": "β-film <script>", "value": [1.0, 1e-300, -0.0, 0.1 + 0.2], "none": None}
 
@@ -47,3 +50,11 @@ def test_file_that_cannot_be_written_leaves_the_old_one(tmp_path):
 def test_second_writer_is_told(tmp_path):
     with locked(tmp_path), pytest.raises(StoreError, match="another coatcheck run"), locked(tmp_path):
         pass
+
+
+def test_a_stored_run_gives_the_result_of_the_case_named():
+    first, second = (result_of(contact(), name=name, points=9) for name in ("first", "second"))
+    run = StoredRun(Path("report.json"), INFO, (first, second))
+    assert run.result("first") is first
+    assert run.result("second") is second
+    assert run.result("third") is None

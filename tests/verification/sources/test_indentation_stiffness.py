@@ -21,7 +21,10 @@ def solver(method, **numerics):
     )
 
 
-METHODS = {"semianalytic": solver(semianalytic), "fem_reference": solver(fem_reference, size=0.36)}
+METHODS = {
+    "semianalytic": solver(semianalytic, patches=129),
+    "fem_reference": solver(fem_reference, size=0.36),
+}
 
 
 @pytest.mark.parametrize(

@@ -8,9 +8,10 @@ from pathlib import Path
 import pytest
 from synthetic_solves import STUDY, made_up
 
+from verification.running.provenance import fingerprint
 from verification.running.store import StoreError
 from verification.study import cache
-from verification.study.cache import Cache, code_version, solve_key
+from verification.study.cache import Cache, solve_key
 from verification.study.plan import parse_study
 
 
@@ -49,11 +50,11 @@ def test_a_changed_source_file_changes_every_key(request_, monkeypatch):
     planes = find_spec("verification.study.planes").origin
     read = Path.read_bytes
     monkeypatch.setattr(Path, "read_bytes", lambda path: read(path) + b" " * (str(path) == planes))
-    code_version.cache_clear()
+    fingerprint.cache_clear()
     try:
         assert solve_key(request_) != before
     finally:
-        code_version.cache_clear()
+        fingerprint.cache_clear()
 
 
 def test_an_answer_comes_back_as_it_was_put(request_, tmp_path):

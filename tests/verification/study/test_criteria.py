@@ -8,7 +8,7 @@ from verification.cases.toml import CaseError
 from verification.report.study.recommendation import recommendation_messages
 from verification.report.study.summary import agreement_messages, main_messages
 from verification.study.criteria import Criteria, judged
-from verification.study.curves import curves, differences
+from verification.study.curves import curves, differences, tension_checks
 from verification.study.plan import parse_study
 from verification.study.table import read_columns
 
@@ -105,7 +105,14 @@ def test_differences_name_the_worst_point(tmp_path):
         assert d.largest == pytest.approx(
             0.0 if d.quantity in ("peak_pressure", "contact_radius", "approach") else 3e-4
         )
-    assert "3.0e-04 p_h" in agreement_messages(found)[0]
+    assert "3.0e-04 of the smaller of p_h and p0" in agreement_messages(found)[0]
+    checks = tension_checks(read_columns(tmp_path / "s.parquet"))
+    assert len(checks) == found[0].points
+    for check in checks:
+        assert check.tension == pytest.approx(
+            study_table.stress("sigma_xx_surface", check.ratio, check.h, check.friction)
+        )
+        assert (check.difference, check.stated, check.place) == pytest.approx((3e-4, 2e-5, 0.0), abs=1e-15)
 
 
 def test_sentences_say_which_way_a_stress_runs(found):

@@ -11,6 +11,7 @@ import synthetic_solves
 from synthetic_solves import CRASHING, FAILING, STUDY, made_up
 
 from verification.running.store import StoreError, locked
+from verification.study import engine
 from verification.study.engine import SchedulerError, connected, run_study
 from verification.study.plan import parse_study
 from verification.study.point import answer
@@ -193,7 +194,8 @@ def test_two_runs_into_one_directory_do_not_mix(tmp_path, client):
         run_study(plan(), tmp_path, client, solve=made_up)
 
 
-def test_a_scheduler_that_is_not_there_is_one_sentence():
+def test_a_scheduler_that_is_not_there_is_one_sentence(monkeypatch):
+    monkeypatch.setattr(engine, "CONNECT_WITHIN", 0.2)
     with (
         pytest.raises(SchedulerError, match="start one with: dask scheduler"),
         connected("tcp://127.0.0.1:9", 1),

@@ -49,10 +49,9 @@ def test_surface_tension_peaks_at_the_trailing_edge(uncoated, h, f):
     at = uncoated[h].found[f]["sigma_xx_surface"]
     # Johnson (3.43), Hamilton (1983)
     expected = exact.peak_pressure * ((1 - 2 * NU) / 3 + f * pi * (4 + NU) / 8)
-    # a cubic through the strip beside the edge; the fifth order of a thin coating's costs no more
-    assert at.value == pytest.approx(expected, rel=1e-4)
-    assert abs(at.value - expected) <= at.uncertainty
-    assert at.x == pytest.approx(-exact.contact_radius, rel=1e-9)
+    assert at.value == pytest.approx(expected, rel=1e-12)
+    assert at.uncertainty < 1e-12 * exact.peak_pressure
+    assert at.x == -exact.contact_radius
     assert at.z == 0
 
 

@@ -24,7 +24,7 @@ from verification.sampling.lines import sample, sample_contact
 from verification.sources.registry import METHODS
 
 Profiles = dict[tuple[str, str, str], Profile]
-Columns = list[tuple[PublishedColumn, np.ndarray]]  # each with the marks of the rows that count
+Columns = list[tuple[PublishedColumn, np.ndarray]]  # each with the values the methods are compared with
 FOR_PUBLISHED = METHODS[:1]  # published tables are compared with the faster method only
 
 
@@ -113,13 +113,10 @@ def _judged(case: Case, clean: CaseResult, fault: Fault) -> tuple[list[Check], P
         fresh |= {(p.quantity, p.line, source): p for p in found}
         checks += [of_invariant(row, case.name) for row in invariants_of(solution, source, case.problem)]
     profiles |= fresh
-    # Contact radius of the last source that has one, as in the run.
-    radii = [profiles.get(("contact_radius", "contact", source.source)) for source in clean.sources]
-    edge = next((float(r.value[0]) for r in reversed(radii) if r is not None), 0.0)
     checks += _drifts(clean, fresh)
     for claim in case.claims:
         if not available or set(claim.between) & set(solve):
-            verdict = run.decide(claim, profiles, outcomes, case.problem, edge)
+            verdict = run.decide(claim, profiles, outcomes, case.problem)
             checks.append(of_claim(claim, verdict, case.name, bool(case.problem.coatings)))
     return checks, fresh
 
@@ -128,7 +125,7 @@ def _sampled(case: Case, clean: CaseResult, source: str, solution: Solution) -> 
     places = {profile.line: profile.position for profile in clean.profiles}
     found = list(sample_contact(solution, source, case.problem))
     for line in case.lines:
-        found += sample(solution, source, line, places[line.name])
+        found += sample(solution, source, line, places[line.name], case.problem)
     return found
 
 
@@ -166,7 +163,7 @@ def _largest(values: np.ndarray) -> float:
 def _as_read(name: str) -> tuple[PublishedCase, Columns]:
     """A published case, and its columns as they are read now, with or without a fault."""
     case = read_published(published_cases()[name])
-    return case, [(column, column.counted) for column in case.columns]
+    return case, [(column, column.reference.value) for column in case.columns]
 
 
 def _published(name: str, before: Columns) -> tuple[list[Check], tuple[float, str]]:
@@ -177,11 +174,10 @@ def _published(name: str, before: Columns) -> tuple[list[Check], tuple[float, st
     decided = [(c, v) for c, v in result.verdicts if set(c.between) & set(available)]
     checks = [of_claim(c, v, name, False, kind="published") for c, v in decided]
     change = (0.0, "nothing")
-    for (old, old_counted), (new, counted) in zip(before, columns, strict=True):
+    for (old, old_value), (new, value) in zip(before, columns, strict=True):
         moved = max(
-            _largest(new.profile.value - old.profile.value) / old.scale,
+            _largest(value - old_value) / old.scale,
             _largest(new.at.z - old.at.z) / (_largest(old.at.z) or 1.0),
-            float(np.mean(counted != old_counted)),
         )
         change = max(change, (moved, f"{old.column} of {old.file} as read"))
     return checks, change

@@ -9,7 +9,7 @@ from verification.judging.invariants.stencil import Stencil
 from verification.problem.arrays import Array
 from verification.problem.contact import CoatedContact, Solution, stress_with_uncertainty
 
-# Of the contact radius. As in the claims, no point lies within 5 % of the edge.
+# Of the contact radius.
 SURFACE = np.array([-1.2, -0.9, -0.5, 0.0, 0.25, 0.5, 0.75, 0.9, 1.1, 1.3])
 # Off the mirror planes of a square grid.
 ANGLE = 0.35

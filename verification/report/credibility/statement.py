@@ -10,7 +10,9 @@ from collections.abc import Sequence
 from verification.credibility.alarms import AlarmRecord
 from verification.credibility.faults.record import Record
 from verification.credibility.independence import shared
+from verification.credibility.mutation.record import MutantRecord
 from verification.judging.verdict import Outcome
+from verification.report.credibility.mutants import mutants_message
 from verification.report.credibility.tables import (
     alarm_table,
     design_table,
@@ -35,11 +37,11 @@ ASSUMED = (
 )
 NOT_CLAIMED = (
     "Validity for a real coating: nothing was compared with an experiment, so this is verification, not "
-    "validation. Detection of an error in the assumptions common to both methods. Accuracy of the surface "
-    "stresses within the unjudged zone around the contact edge. A strict bound by the uncertainty: it is an "
-    "estimate from coarser solutions, and the share in which it covers the true error is given above. "
-    "Detection of other kinds of faults at the rate of those that were planted. The same accuracy outside "
-    "the ranges above."
+    "validation. Detection of an error in the assumptions common to both methods. Surface stresses at fixed "
+    "points next to the contact edge better than the root of the error of the radius; the largest tension "
+    "has no such root. A strict bound by the uncertainty: it is an estimate from coarser solutions, and the "
+    "share in which it covers the true error is given above. Detection of other kinds of faults at the rate "
+    "of those that were planted. The same accuracy outside the ranges above."
 )
 
 
@@ -88,7 +90,7 @@ def section(material: Material) -> Section | None:
         Part(
             _independent(evidence), [import_table(evidence.parts)], title="5. Independence of the two methods"
         ),
-        Part(_faults(evidence), [], title="6. Fault detection"),
+        Part(f"{_faults(evidence)} {_mutants(evidence)}", [], title="6. Fault detection"),
         Part(_alarms(evidence), [alarm_table(evidence.alarms)], title="7. False alarms"),
         Part(NOT_CLAIMED, title="8. Not claimed"),
     ]
@@ -123,6 +125,7 @@ def _overview(material: Material) -> Table:
         ("Independence", _short_independence(evidence), here),
         ("Regression", regression, here),
         ("Fault detection", _faults(evidence, short=True), _when(evidence.faults)),
+        ("Mutation testing", _mutants(evidence, short=True), _when(evidence.mutants)),
         ("False alarms", _alarms(evidence, short=True), _when(evidence.alarms)),
     ]
     return Table(
@@ -132,8 +135,9 @@ def _overview(material: Material) -> Table:
     )
 
 
-def _when(record: Record | AlarmRecord | None) -> str:
-    return "never" if record is None else f"{record.started[:10]}, {record.commit or 'no commit'}"
+def _when(record: Record | AlarmRecord | MutantRecord | None) -> str:
+    made = record.info if isinstance(record, MutantRecord) else record
+    return "never" if made is None else f"{made.started[:10]}, {made.commit or 'no commit'}"
 
 
 def _agreeing(results: Sequence[CaseResult]) -> tuple[int, int]:
@@ -203,6 +207,14 @@ def _faults(evidence: Evidence, *, short: bool = False) -> str:
         f"{text} Measured {_when(record)}, by coatcheck faults, which also tabulates faults against checks. "
         f"A crash alone does not count as detected. {survivors}"
     )
+
+
+def _mutants(evidence: Evidence, *, short: bool = False) -> str:
+    record = evidence.mutants
+    if record is None:
+        return NO_RECORD[short].format("mutants", "mutants")
+    text = mutants_message(record)
+    return text if short else f"Apart from these, changes at random places: {text} Measured {_when(record)}."
 
 
 def _alarms(evidence: Evidence, *, short: bool = False) -> str:

@@ -5,7 +5,6 @@ from dataclasses import dataclass
 from itertools import zip_longest
 
 import numpy as np
-from numpy.typing import NDArray
 
 from verification.problem.arrays import Array
 from verification.problem.quantity import IN_PLANE, von_mises
@@ -24,7 +23,6 @@ SHOWN = ("von_mises", "sigma_xx", "sigma_xz")
 TITLES = {"von_mises": "von Mises"}
 SEQUENTIAL, DIVERGING, DIFFERENCE = "viridis", "RdBu_r", "cividis"
 FLOOR, TOP = -8.0, -3.0  # exponents of the difference over p_h; the same in all cases, to be compared
-EDGE = 0.05  # of a: as near to the contact edge nothing is judged on the surface
 EVERY = 3  # of the columns in the table of numbers
 
 
@@ -85,8 +83,7 @@ def _row(
     """A panel a method on one scale of colours, then the difference of the two."""
     x, depths = plane.x / a_h, [z / a_h for z in plane.depths]
     fields = {s: [_quantity(sigma, quantity) / p_h for sigma in plane.stress[s]] for s in sources}
-    away = [_away(plane, z) for z in plane.depths]
-    colours = _colours(quantity, [f[m] for some in fields.values() for f, m in zip(some, away, strict=True)])
+    colours = _colours(quantity, [f for some in fields.values() for f in some])
     title = f"{TITLES.get(quantity, quantity)} / p_h"
     panels = []
     for source, some in fields.items():
@@ -98,7 +95,7 @@ def _row(
         )
         panels.append(Panel(f"{title}, {source_label(source)}", drawn, span, ""))
     if len(sources) == 2:
-        panels.append(_difference(fields, x, depths, away, frame, title))
+        panels.append(_difference(fields, x, depths, frame, title))
     return panels
 
 
@@ -106,15 +103,11 @@ def _difference(
     fields: dict[str, list[Array]],
     x: Array,
     depths: Sequence[Array],
-    away: Sequence[NDArray[np.bool_]],
     frame: Frame,
     title: str,
 ) -> Panel:
     gaps = [np.abs(one - other) for one, other in zip(*fields.values(), strict=True)]
-    found = np.concatenate([g[m] for g, m in zip(gaps, away, strict=True)])
-    largest = float(found.max()) if found.size else 0.0
-    near = max((float(g[~m].max()) for g, m in zip(gaps, away, strict=True) if (~m).any()), default=0.0)
-    note = f"largest {scientific(largest)}; on the surface at the contact edge {scientific(near)}"
+    largest = max((float(g.max()) for g in gaps), default=0.0)
     with np.errstate(divide="ignore"):
         exponents = [np.log10(np.maximum(g, 10.0 ** (FLOOR - 1))) for g in gaps]
     top = max(TOP, float(np.ceil(np.log10(largest)))) if 0 < largest < np.inf else TOP
@@ -126,13 +119,7 @@ def _difference(
         label=f"difference of both methods in {title}, logarithmic",
         lines=False,
     )
-    return Panel(f"|difference| of {title}", drawn, note, "")
-
-
-def _away(plane: Plane, z: Array) -> NDArray[np.bool_]:
-    """Marks the points of a layer, (nz, nx), that do not lie on the surface close to the contact edge."""
-    close = np.abs(np.abs(plane.x) - plane.radius) < EDGE * plane.radius
-    return ~((z == 0)[:, None] & close[None, :])
+    return Panel(f"|difference| of {title}", drawn, f"largest {scientific(largest)}", "")
 
 
 def _colours(quantity: str, values: Sequence[Array]) -> Scale:

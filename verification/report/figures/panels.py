@@ -126,8 +126,9 @@ def _unjudged(result: CaseResult, claims: list[Claim], curves: list[Curve]) -> l
 def _caption(result: CaseResult, line: str) -> str:
     text = (
         f"Above: the quantity in units of p_h over {coordinate(line)} / a_h, tension positive. Below: "
-        f"|A − B| / p_h, logarithmic, from {scientific(FLOOR, 1)}; the thin line that bounds a tint is "
-        "U_A + U_B, and a difference below its own line agrees; red dashes: the cap on U."
+        f"|A − B| over the smaller of p_h and p0, logarithmic, from {scientific(FLOOR, 1)}; the thin line "
+        "that bounds a tint is U_A + U_B, and a difference below its own line agrees; red dashes: the cap "
+        "on U."
     )
     edges = [claim.edge for claim, _ in result.verdicts if claim.line == line and claim.edge]
     if edges:

@@ -3,6 +3,7 @@
 import base64
 import hashlib
 from collections.abc import Sequence
+from functools import cache
 from pathlib import Path
 
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
@@ -13,21 +14,30 @@ from verification.report.tables.cells import Section
 HTML = Path(__file__).parent
 
 
-def rendered(template: str, **content: object) -> str:
-    """One HTML text that needs nothing else; of ``content`` only ``Markup`` stays as it is."""
-    environment = Environment(
+@cache
+def _environment() -> Environment:
+    """One for all pages, so that each template is compiled once."""
+    return Environment(
         loader=FileSystemLoader(HTML),
         autoescape=True,
         undefined=StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,
     )
+
+
+def rendered(template: str, **content: object) -> str:
+    """One HTML text that needs nothing else; of ``content`` only ``Markup`` stays as it is."""
     script = (HTML / "script.js").read_text(encoding="utf-8")
-    return environment.get_template(template).render(
-        content,
-        style=Markup((HTML / "style.css").read_text(encoding="utf-8")),
-        script=Markup(script),
-        script_hash=base64.b64encode(hashlib.sha256(script.encode()).digest()).decode(),
+    return (
+        _environment()
+        .get_template(template)
+        .render(
+            content,
+            style=Markup((HTML / "style.css").read_text(encoding="utf-8")),
+            script=Markup(script),
+            script_hash=base64.b64encode(hashlib.sha256(script.encode()).digest()).decode(),
+        )
     )
 
 

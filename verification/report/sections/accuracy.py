@@ -7,7 +7,7 @@ from functools import lru_cache, partial
 import numpy as np
 
 from verification.judging.verdict import Claim
-from verification.problem.quantity import QUANTITIES, SCALARS
+from verification.problem.quantity import PEAKS, QUANTITIES, SCALARS
 from verification.report.material import Material
 from verification.report.tables.cells import Cell, Part, Section, Table, number, row, tally
 from verification.report.tables.labels import source_label
@@ -139,7 +139,7 @@ def _three_cells(item: Accuracy) -> list[Cell]:
 
 def accuracy_overview(results: Sequence[CaseResult], anchors: Mapping[CaseResult, str], source: str) -> Table:
     """The errors of one method over all cases, the worst quantity of each group; None where there is none."""
-    columns = [*SCALARS, *GROUPS[1:]]
+    columns = [*SCALARS, *PEAKS, *GROUPS[1:]]
     rows = []
     for result in results:
         found = [item for item in accuracies(result) if item.source == source]

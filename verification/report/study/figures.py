@@ -86,8 +86,10 @@ def drawn(figure: Figure, name: str, title: str, caption: str, rows: Sequence[Se
     """``figure`` written both ways; the same figure always gives the same bytes."""
     pdf, png = io.BytesIO(), io.BytesIO()
     FigureCanvasAgg(figure)
-    figure.draw_without_rendering()
     # Laid out once, not again for each format.
+    layout = figure.get_layout_engine()
+    assert layout is not None
+    layout.execute(figure)
     figure.set_layout_engine(None)
     FigureCanvasPdf(figure).print_figure(pdf, format="pdf", metadata={"CreationDate": None})
     FigureCanvasAgg(figure).print_figure(png, format="png", dpi=DPI, metadata={"Software": None})

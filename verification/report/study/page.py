@@ -2,6 +2,7 @@
 
 import base64
 from collections.abc import Sequence
+from functools import partial
 from pathlib import Path
 
 from markupsafe import Markup
@@ -21,9 +22,10 @@ from verification.report.study.summary import agreement_messages, main_messages
 from verification.report.tables.cells import Cell, Gallery, Panel, Part, Section, Table, number, row
 from verification.report.tables.csv import embedded
 from verification.report.tables.labels import source_label
+from verification.report.tables.numbers import scientific
 from verification.running.store import write_atomically
 from verification.study.criteria import MODES, Judged, judged
-from verification.study.curves import Curve, Difference, curves, differences
+from verification.study.curves import Curve, Difference, TensionCheck, curves, differences, tension_checks
 from verification.study.plan import Study
 from verification.study.quantities import QUANTITIES
 from verification.study.table import SCALARS, SOURCES, read_columns
@@ -63,7 +65,7 @@ def write_study_report(
         _preference(study, judgements),
         _summary(found, checks),
         *(_drawn_section(*group) for group in groups if group[2]),
-        *_checks(checks),
+        *_checks(checks, tension_checks(columns)),
         Section("extremes", "Extremes of every curve", [_extremes(found)]),
         *_failed(every, failures),
     ]
@@ -212,7 +214,7 @@ def _maps(study: Study, found: Sequence[Curve]) -> tuple[list[Drawn], list[str]]
     return drawings, failures
 
 
-def _checks(checks: Sequence[Difference]) -> list[Section]:
+def _checks(checks: Sequence[Difference], tensions: Sequence[TensionCheck]) -> list[Section]:
     if not checks:
         return []
     rows = [
@@ -231,12 +233,37 @@ def _checks(checks: Sequence[Difference]) -> list[Section]:
     ]
     columns = ["source", "quantity", "points", "largest difference", "uncertainty of both"]
     table = Table(
-        "The largest difference from the semi-analytical method, over p_h, a_h or delta_h, where it occurs, "
-        "the uncertainty both state there.",
+        "The largest difference from the semi-analytical method, over a_h, delta_h or the smaller of p_h and "
+        "p0, where it occurs, the uncertainty both state there.",
         [*columns, "E1/E2", "h / a_h", "f"],
         rows,
     )
-    return [Section("checks", "Cross-check", [Part("", [table])])]
+    every = Part("", [_tension_table(tensions)], folded=f"{len(tensions)} rows")
+    return [Section("checks", "Cross-check", [Part("", [table]), every])]
+
+
+def _tension_table(tensions: Sequence[TensionCheck]) -> Table:
+    rows = [
+        row(
+            source_label(t.source),
+            number(t.ratio, "{:.4g}".format),
+            number(t.h, "{:.3g}".format),
+            number(t.friction, "{:g}".format),
+            number(t.tension, "{:.6f}".format),
+            number(t.difference, partial(scientific, sign=True)),
+            number(t.stated),
+            number(t.place, partial(scientific, sign=True)),
+            css="" if abs(t.difference) <= t.stated or t.stated != t.stated else "disagrees",
+        )
+        for t in tensions
+    ]
+    return Table(
+        "The largest tension of the surface by the semi-analytical method at every cross-checked point, "
+        "over p_h; the difference of the other source and the uncertainty of both, over the smaller of p_h "
+        "and p0; the difference of the places, over a.",
+        ["source", "E1/E2", "h / a_h", "f", "tension", "difference", "uncertainty of both", "place"],
+        rows,
+    )
 
 
 def _failed(every: Sequence[Curve], more: Sequence[str]) -> list[Section]:

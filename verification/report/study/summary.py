@@ -111,7 +111,7 @@ def agreement_messages(differences: Sequence[Difference]) -> list[str]:
         where = f"E1/E2 = {stress.ratio:.3g}, h = {stress.h:.3g} a_h, f = {stress.friction:g}"
         found.append(
             f"{stress.points} points were also solved by the {source_label(source)}: no stress differs "
-            f"by more than {stress.largest:.1e} p_h ({stress.quantity} at {where}), "
+            f"by more than {stress.largest:.1e} of the smaller of p_h and p0 ({stress.quantity} at {where}), "
             f"no scalar of the contact by more than {scalar.largest:.1e} of its scale "
             f"({scalar.quantity.replace('_', ' ')})."
         )

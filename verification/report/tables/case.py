@@ -11,7 +11,7 @@ from verification.judging.verdict import Claim, Verdict
 from verification.problem.quantity import QUANTITIES, SCALARS, unit_of
 from verification.report.tables.cells import Cell, Table, number, row
 from verification.report.tables.labels import OUTCOMES, pair_label, row_css, source_label
-from verification.report.tables.lookup import layers, reference_source, scalar, scale
+from verification.report.tables.lookup import divisor, layers, reference_source, scalar, scale
 from verification.report.tables.matrix import outcome_cell
 from verification.report.tables.numbers import engineering, plain, scientific, with_uncertainty
 from verification.running.result import CaseResult
@@ -62,25 +62,26 @@ def layer_table(result: CaseResult) -> Table:
     return Table("Layers from the surface down.", ["layer", "E", "E / E_s", "nu", "h", f"h / {length}"], rows)
 
 
-def contact_table(result: CaseResult) -> Table:
-    """Peak pressure, contact radius and approach of every source, with uncertainty and difference."""
+def contact_table(result: CaseResult, quantities: Sequence[str] = SCALARS) -> Table:
+    """``quantities``, one number each, of every source with uncertainty and difference."""
     base = reference_source(result)
     against = f"vs {source_label(base)}" if base else "difference"
     rows = []
     for source in result.sources:
         cells: list[Cell] = []
-        for quantity in SCALARS:
+        for quantity in quantities:
             cells += _scalar_cells(result, quantity, source.source, base)
         css = "" if source.failure is None else "failed"
         rows.append(row(source_label(source.source), *cells, css=css))
     columns = ["source"]
     groups = [("", 1)]
-    for quantity in SCALARS:
+    for quantity in quantities:
         columns += [QUANTITIES[quantity].symbol, f"/ {QUANTITIES[quantity].scale}", against]
         groups.append((quantity.replace("_", " "), 3))
     return Table(
-        "Scalars of the contact with the numerical uncertainty each source states (±), made dimensionless "
-        "with the Hertz scales of the bare substrate, and the relative difference.",
+        "Numbers of the contact with the numerical uncertainty each source states (±), made dimensionless "
+        "with the Hertz scales of the bare substrate, and the difference over the value, of the largest "
+        "tension over the smaller of p_h and p0, of its place over a.",
         columns,
         rows,
         groups,
@@ -97,9 +98,10 @@ def _scalar_cells(result: CaseResult, quantity: str, source: str, base: str | No
     relative = value / scale(result, QUANTITIES[quantity].scale)
     ratio = Cell(f"{relative:.6f}", relative)
     reference = scalar(result, quantity, base) if base else None
-    if reference is None or source == base or not reference[0]:
+    reach = divisor(result, quantity, reference[0]) if reference else None
+    if reference is None or source == base or not reach:
         return [shown, ratio, Cell("–")]
-    gap = value / reference[0] - 1
+    gap = (value - reference[0]) / reach
     return [shown, ratio, Cell(scientific(gap, sign=True), abs(gap))]
 
 
@@ -139,7 +141,8 @@ def verdict_table(
     part = "the source and the numerical parameter with the largest part of U; " if parameter else ""
     return Table(
         "Largest difference and largest uncertainty U = U_A + U_B over the judged points, the cap on U, the "
-        "smallest margin U − |A − B|, all as fractions of the value (p0, a, approach) or of p_h; "
+        "smallest margin U − |A − B|, all as fractions of the value (p0, a, approach), of a (places) "
+        "or of the smaller of p_h and p0; "
         f"{part}the deciding point.",
         [*columns, "at", "reason"],
         rows,

@@ -8,11 +8,11 @@ from numpy.typing import NDArray
 
 from verification.judging.verdict import Claim
 from verification.problem.profile import Profile
-from verification.problem.quantity import QUANTITIES, SCALARS
+from verification.problem.quantity import QUANTITIES
 from verification.running.result import CaseResult
 from verification.sources.registry import METHODS, REFERENCES
 
-GROUPS = (", ".join(QUANTITIES[name].symbol for name in SCALARS), "surface", "axis", "interfaces")
+GROUPS = ("contact", "surface", "axis", "interfaces")
 
 
 def group_of(line: str) -> str:
@@ -110,19 +110,27 @@ def judged(result: CaseResult, claim: Claim, position: NDArray[np.float64]) -> N
 def difference(
     result: CaseResult, first: Profile | None, second: Profile | None
 ) -> tuple[NDArray[np.float64], NDArray[np.float64] | None] | None:
-    """|A - B| with U_A + U_B, both over p_h, or over the value of B for the scalars of the contact.
+    """|A - B| with U_A + U_B, both over ``Quantity.divisor``, as in the verdicts.
 
     None where the two are not at the same positions, so that nothing may be subtracted.
     """
     if first is None or second is None or not np.array_equal(first.position, second.position):
         return None
-    reach: Any = scale(result, "p_h")
-    if first.quantity in SCALARS:
-        reach = np.abs(second.value)
+    reach = divisor(result, first.quantity, second.value[0])
     gap = np.abs(first.value - second.value) / reach
     if first.uncertainty is None or second.uncertainty is None:
         return gap, None
     return gap, (first.uncertainty + second.uncertainty) / reach
+
+
+def divisor(result: CaseResult, quantity: str, value: Any) -> np.float64:
+    """Divisor of a difference of ``quantity``, with ``value`` of the reference [SI], as in the verdicts."""
+    best = reference_source(result)
+    found = scalar(result, "peak_pressure", best) if best else None
+    p_h, p0 = scale(result, "p_h"), np.float64(0.0 if found is None else found[0])
+    if quantity not in QUANTITIES:
+        return p_h
+    return np.float64(QUANTITIES[quantity].divisor(value, p_h, p0, contact_radius(result) or np.nan))
 
 
 def slug(text: str) -> str:

@@ -38,7 +38,8 @@ def verdict_matrix(
     spans = [(title, sum(b == (rank, title) for b, _ in columns)) for rank, title in blocks]
     return Table(
         "Largest difference of each pair of sources, as a fraction of the value for p0, a and approach, "
-        "of p_h for stresses. A cell links to the figures behind it. Numbers since the baseline, where they "
+        "of the smaller of p_h and p0 for stresses, of a for the place of the largest tension. A cell links "
+        "to the figures behind it. Numbers since the baseline, where they "
         "were compared: = same, ≠ drifted, − gone, + new.",
         ["case", "verdict", *(name for name, _ in more), *(_HEADS.get(group, group) for _, group in columns)],
         rows,

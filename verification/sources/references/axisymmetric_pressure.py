@@ -41,6 +41,12 @@ class AbelPressure:
         """W = 2 pi int_0^a phi dt [N]: only P_0 has a mean."""
         return float(2 * np.pi * self.a * self.c[0])
 
+    @property
+    def edge_slope(self) -> float:
+        """-phi'(a) [Pa]: p -> -phi'(a) sqrt(2 (1 - r/a)) at the edge; P_2n'(1) = n (2n + 1)."""
+        n = np.arange(self.c.size)
+        return float(-(self.c @ (n * (2 * n + 1))) / self.a)
+
     @cached_property
     def peak(self) -> float:
         """Largest p [Pa]: at r = 0, but on a ring where a stiff film on a soft solid bends like a plate."""

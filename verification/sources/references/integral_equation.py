@@ -88,22 +88,29 @@ class ExactSolution:
 
     def pressure_uncertainty(self, x: ArrayLike, y: ArrayLike = 0.0) -> Array:
         """Absolute [Pa]; raises ValueError where no companion was solved."""
-        a, coarser = self.abel.a, self._companion()
-        U = 2 * np.abs(self.pressure(x, y) - coarser.pressure(x, y)) + self._rounding * self.peak_pressure
-        # The vertical tangent at the edge turns an uncertain radius into an uncertain pressure.
-        edge = np.abs(np.hypot(x, y) - a) <= 2 * abs(a - coarser.abel.a)
-        return np.where(edge, np.maximum(U, np.sqrt(abs(1 - coarser.abel.a / a)) * self.peak_pressure), U)
+        U = 2 * np.abs(self.pressure(x, y) - self._companion().pressure(x, y))
+        return U + self._rounding * self.peak_pressure + self._by_radius(x, y)
 
     def stress_with_uncertainty(
         self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None
     ) -> tuple[Array, Array]:
         """Stress and its uncertainty [Pa], (3, 3) + points; ValueError where no companion was solved."""
         sigma, coarser = self.stress(x, y, z, layer), self._companion().stress(x, y, z, layer)
-        return sigma, 2 * np.abs(sigma - coarser) + self._rounding * self.peak_pressure
+        U = 2 * np.abs(sigma - coarser) + self._rounding * self.peak_pressure
+        # sigma_rr has the root of p inside; under q = f p, 2 f times that outside.
+        root = np.where(np.asarray(z) == 0, (1 + 2 * self.field.friction) * self._by_radius(x, y), 0.0)
+        return sigma, U + root
 
     def stress_uncertainty(self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None) -> Array:
         """The second part of ``stress_with_uncertainty``."""
         return self.stress_with_uncertainty(x, y, z, layer)[1]
+
+    def _by_radius(self, x: ArrayLike, y: ArrayLike) -> Array:
+        """Change [Pa] of the root of the pressure at the edge by the uncertain radius."""
+        assert self.uncertainty is not None
+        a = self.abel.a
+        distance, shift = np.abs(1 - np.hypot(x, y) / a), self.uncertainty.contact_radius / a
+        return self.abel.edge_slope * np.sqrt(2) * (np.sqrt(distance + shift) - np.sqrt(distance))
 
     def _companion(self) -> "ExactSolution":
         if self.coarser is None:

@@ -7,21 +7,28 @@ import pytest
 import study_table
 from PIL import Image
 
-from verification.report.study.figures import contact_figure
+from verification.report.study.figures import governing_figure
 from verification.report.study.page import write_study_report
+from verification.study.criteria import judged
 from verification.study.curves import curves
 from verification.study.quantities import QUANTITIES
 from verification.study.table import read_columns
 
 
 @pytest.fixture(scope="module")
-def folder(tmp_path_factory):
+def report(tmp_path_factory):
+    """Where a study was reported, and the study."""
     folder = tmp_path_factory.mktemp("study")
     text = study_table.TEXT.replace("Made of formulas", "<script>alert(1)</script>")
     text += "[criteria.strength]\nsigma_xx_surface = 8e8\nvon_mises_substrate = 9e8\n"
     study = study_table.write(folder / "study.parquet", failed=(3,), text=text)
     write_study_report(folder / "study.parquet", study, folder, maps=False)
-    return folder
+    return folder, study
+
+
+@pytest.fixture
+def folder(report):
+    return report[0]
 
 
 def test_every_failure_mode_has_its_figure_for_print_with_its_numbers(folder):
@@ -52,8 +59,11 @@ def test_page_needs_nothing_from_outside_and_names_the_failed_point(folder):
     assert "admissible h [µm]" in page
 
 
-def test_the_same_table_gives_the_same_figures(folder):
-    for again in contact_figure(curves(read_columns(folder / "study.parquet"))):
+def test_the_same_table_gives_the_same_figures(report):
+    folder, study = report
+    # the one with lines, raster, contours, labels
+    judgements = [judged(curve, study.criteria) for curve in curves(read_columns(folder / "study.parquet"))]
+    for again in governing_figure(judgements):
         stem = folder / "figures" / "study" / again.name
         assert stem.with_suffix(".pdf").read_bytes() == again.pdf
         assert stem.with_suffix(".png").read_bytes() == again.png

@@ -1,0 +1,112 @@
+"""The largest tension of the surface: closed forms at the edge, smooth maxima beside it, no zone left out."""
+
+from itertools import chain
+
+import numpy as np
+import pytest
+from synthetic_results import contact
+
+from verification.cases.contact import read_case, shipped_cases
+from verification.judging.claims import standard_claims
+from verification.problem.contact import stress_with_uncertainty
+from verification.problem.profile import lines_of
+from verification.problem.quantity import PEAKS
+from verification.sampling.lines import positions, sample
+from verification.sampling.tension import Search, Tension
+from verification.sources.exact import solve_exactly
+from verification.sources.references.hamilton import Hamilton
+
+STEEL, NU = 210e9, 0.3
+
+
+def largest(solution, problem) -> Tension:
+    search = Search(solution, problem)
+    sigma, U = stress_with_uncertainty(solution, search.x, 0.0, np.zeros(search.x.size), layer=0)
+    return search.largest(sigma[0, 0], None if U is None else U[0, 0])
+
+
+@pytest.mark.parametrize("f", [0.0, 0.05, 0.25, 0.8])
+@pytest.mark.parametrize("nu", [0.0, 0.3, 0.45])
+def test_tension_of_hamilton_peaks_at_the_trailing_edge(f, nu):
+    problem = contact(substrate=(STEEL, nu), friction=f)
+    exact = Hamilton(problem.radius, problem.load, STEEL, nu, f)
+    found = largest(exact, problem)
+    # Johnson (3.43), Hamilton (1983)
+    expected = exact.peak_pressure * ((1 - 2 * nu) / 3 + f * np.pi * (4 + nu) / 8)
+    assert found.value == pytest.approx(expected, rel=1e-12)
+    assert found.place == -exact.contact_radius
+    assert found.uncertainty == found.place_uncertainty == 0
+
+
+# A soft coating keeps the peak at the edge; a stiff one bends, and has it beside the edge unless it slides.
+SOLIDS = [
+    (0.25, 1.0, 0.0),
+    (0.25, 0.1, 0.25),
+    (4.0, 1.0, 0.0),
+    (4.0, 0.1, 0.0),
+    (4.0, 0.1, 0.5),
+    (30.0, 0.03, 0.0),
+]
+
+
+@pytest.mark.parametrize(("ratio", "h", "f"), SOLIDS)
+def test_no_place_of_a_dense_line_exceeds_the_largest_tension(ratio, h, f):
+    problem = contact((ratio * STEEL, NU, h), friction=f)
+    exact = solve_exactly(problem)
+    found = largest(exact, problem)
+    a, p0 = exact.contact_radius, exact.peak_pressure
+    x = np.concatenate([a * np.linspace(-12, 12, 6001), -a * (1 + np.geomspace(1e-9, 0.3, 200)), [-a, a]])
+    sigma = exact.stress(x if f else -np.abs(x), 0.0, 0.0, layer=0)[0, 0]
+    assert found.value >= sigma.max() - 1e-10 * p0
+    assert found.value == pytest.approx(sigma.max(), abs=1e-3 * p0)
+    assert 0 < found.uncertainty < 1e-8 * p0
+    at_edge = abs(found.place) == a
+    assert at_edge == (f > 0 or ratio < 1)
+    if not at_edge:  # the slope vanishes there, to the error that the place states
+        step = 1e-4 * a
+        low, here, high = exact.stress(found.place + step * np.array([-1, 0, 1]), 0.0, 0.0, layer=0)[0, 0]
+        curvature = (2 * here - low - high) / step**2
+        assert curvature > 0
+        assert abs(high - low) / (2 * step * curvature) < 1e-6 * a
+        assert found.place_uncertainty < 1e-6 * a
+
+
+def test_a_solution_off_at_the_edge_states_the_error_of_its_radius_as_that_of_the_place():
+    problem = contact((4 * STEEL, NU, 1.0), friction=0.25)
+    exact = solve_exactly(problem)
+    assert largest(exact, problem).place_uncertainty == exact.uncertainty.contact_radius
+
+
+def test_surface_line_has_points_at_the_edge_and_next_to_it():
+    problem = contact((4 * STEEL, NU, 0.5), friction=0.25)
+    exact = solve_exactly(problem)
+    places = positions(problem, lines_of(problem), {"integral_equation": exact})
+    surface = next(x for line, x in places.items() if line.name == "surface") / exact.contact_radius
+    for d in (0.0, 1e-4, 1e-3, 1e-2):
+        for wanted in (1 + d, 1 - d, -1 - d, -1 + d):
+            assert np.abs(surface - wanted).min() < 1e-15
+    base = next(x for line, x in places.items() if line.name.startswith("interface"))
+    assert base.size < surface.size
+
+
+def test_peaks_are_numbers_of_the_contact():
+    problem = contact((4 * STEEL, NU, 0.5), friction=0.25)
+    exact = solve_exactly(problem)
+    line = lines_of(problem)[0]
+    x = exact.contact_radius * np.linspace(-2, 2, 9)
+    found = {
+        p.quantity: p for p in sample(exact, "integral_equation", line, x, problem) if p.line == "contact"
+    }
+    wanted = largest(exact, problem)
+    assert tuple(found) == PEAKS
+    assert [float(p.value[0]) for p in found.values()] == [wanted.value, wanted.place]
+    assert all(p.position.shape == (9,) for p in sample(exact, "integral_equation", line, x))
+
+
+def test_no_shipped_claim_leaves_a_zone_out():
+    shipped = [read_case(path) for path in shipped_cases().values()]
+    for claim in chain.from_iterable(case.claims for case in shipped):
+        assert claim.edge == 0
+    for case in shipped:
+        peaks = [claim.between for claim in case.claims if claim.quantity in PEAKS]
+        assert len(peaks) == 2 * len({claim.between for claim in standard_claims(case.problem)})
