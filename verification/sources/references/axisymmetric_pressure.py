@@ -50,13 +50,18 @@ class AbelPressure:
     @cached_property
     def peak(self) -> float:
         """Largest p [Pa]: at r = 0, but on a ring where a stiff film on a soft solid bends like a plate."""
-        r = np.linspace(0, self.a, 401)
-        p = self.pressure(r)
+        # r = a sin(theta): a thin film bends over its own thickness, next to the contact edge
+        theta = np.pi / 2 * np.linspace(0, 1, 1601)
+        p = self.pressure(self.a * np.sin(theta))
         best = int(p.argmax())
         if best == 0:
             return float(p[0])
-        around = (r[best - 1], r[best + 1])
-        found = minimize_scalar(lambda s: -float(self.pressure(s)), bounds=around, method="bounded")
+        found = minimize_scalar(
+            lambda angle: -float(self.pressure(self.a * np.sin(angle))),
+            bounds=(theta[best - 1], theta[min(best + 1, theta.size - 1)]),
+            method="bounded",
+            options={"xatol": 1e-8},
+        )
         return float(max(-found.fun, p[best]))
 
     def pressure(self, r: ArrayLike) -> Array:
