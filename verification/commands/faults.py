@@ -182,7 +182,8 @@ def mutants(
     """Change one operator, constant, index or term at a time; report the changes that nothing catches.
 
     As many mutants of each room, drawn at random, meet the checks of the default run, then the unit tests of
-    the room, which both have to pass without any change. A source checkout is needed.
+    the room, which both have to pass without any change. It needs a source checkout that nobody edits
+    meanwhile.
 
     Exit codes: 0 enough are caught, every survivor was read; 1 not so; 2 bad input.
 
