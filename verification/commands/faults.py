@@ -204,6 +204,8 @@ def mutants(
             raise CommandError(f"{name}: choose rooms of {', '.join(store.ROOMS)}{near}")
     if count < 1 or seed < 0:
         raise CommandError(f"--count = {count}, --seed = {seed}; only the seed may be zero, none negative")
+    if record and rooms:
+        raise CommandError("--record stores mutants of all rooms; leave the rooms out")
     if not (store.ROOT / "tests").is_dir():
         raise CommandError("this coatcheck has no unit tests beside it; run it in a source checkout")
     require_gmsh()
