@@ -72,17 +72,6 @@ class MeridianMesh:
         points, stretch = self.points * np.array([[factor], [1.0]]), self.stretch * factor
         return replace(self, points=points, contact_radius=self.contact_radius * factor, stretch=stretch)
 
-    def with_nearer_boundary(self) -> "MeridianMesh":
-        """The same triangles with the outer boundary at half the distance, unchanged in the near field.
-
-        r -> r0 (r/r0)^alpha beyond r0 = far/10, and z likewise.
-        """
-        r0 = self.far / 10
-        alpha = 1 - np.log(2.0) / np.log(self.far / r0)
-        beyond = np.maximum(self.points / r0, 1.0)
-        points = np.where(self.points > r0, r0 * beyond**alpha, self.points)
-        return replace(self, points=points, far=float(points.max()))
-
     def plane(self, r: np.ndarray, z: np.ndarray) -> np.ndarray:
         """Stretched-plane coordinates (xi, zeta) of the points (r, z); shape (2,) + points."""
         offset = (r - self.contact_radius) / (self.stretch * self.length)

@@ -8,17 +8,40 @@ differentiation, the other components follow from the in-plane strains, derivati
 
 On the surface the tractions are the applied ones, sigma_zz = -p. On an interface they are a mean
 of both sides, dominated by the more compliant one, where an error of strain changes the stress less.
+
+At the edge r = a of a contact p ~ sqrt(a - r), and the in-plane surface strains on either side are series in
+half-integer powers of d = |r - a| with one common value at d = 0 (K. L. Johnson, Contact Mechanics, 1985,
+sections 3.4 and 7.1, for one material). Polynomials of the last triangles miss that by the square root of
+their size, so there the series is used, fitted where triangles are small beside d.
 """
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
 from .axisymmetric import Discretisation, elasticity, strain_operator
 from .location import LocatedPoints
+from .mesh import EDGE_SIZE, MeridianMesh
 
-__all__ = ["HarmonicField"]
+__all__ = ["EDGE_SERIES", "HarmonicField", "edge_distances"]
+
+# Distances from the edge over EDGE_SIZE times the radius: the series replaces the strains below the first
+# and is fitted from there to the second.
+EDGE_SERIES = 20.0, 1000.0
+# A displaced edge adds the power -1/2, which is fitted and left out.
+_POWERS = np.array([-0.5, 0.5, 1.0, 1.5, 2.0])
+
+
+def edge_distances(mesh: MeridianMesh) -> np.ndarray:
+    """Distances from the edge at which the series is fitted, over the smallest of them.
+
+    A film on the surface limits the series to distances far below its thickness.
+    """
+    smallest, largest = EDGE_SERIES
+    film = 0.05 * mesh.length / (EDGE_SIZE * mesh.contact_radius)
+    return np.geomspace(1.0, max(min(largest, film), 5 * smallest) / smallest, 32)
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,6 +51,7 @@ class HarmonicField:
     fields    : stacked field vector, see ``axisymmetric``
     materials : (E, nu) per layer
     pressure, factor : factor * pressure(r) is sigma_zz on the surface for harmonic 0, sigma_rz for harmonic 1
+    root_at_edge : whether the pressure vanishes like sqrt(a - r) at the contact edge
     """
 
     discretisation: Discretisation
@@ -36,6 +60,7 @@ class HarmonicField:
     harmonic: int
     pressure: Callable[[np.ndarray], np.ndarray]
     factor: float
+    root_at_edge: bool
 
     def __call__(self, at: LocatedPoints) -> tuple[np.ndarray, np.ndarray]:
         """Displacement (3, n) as (u_r, u_theta, u_z) and stress (6, n) as (rr, tt, zz, rz, rt, tz).
@@ -46,7 +71,8 @@ class HarmonicField:
         stress = self._hooke(strain, at.layer)
         surface = at.z == 0
         if np.any(surface):
-            stress[:, surface] = self._on_plane(0, strain[:, surface], self._surface_tractions(at.r[surface]))
+            in_plane = self._with_series(at.r[surface], strain[:, surface])
+            stress[:, surface] = self._on_plane(0, in_plane, self._surface_tractions(at.r[surface]))
         for upper, on_interface, sides in at.interfaces:
             tractions = self._interface_tractions(upper, sides)
             for layer in (upper, upper + 1):
@@ -78,6 +104,38 @@ class HarmonicField:
             d_r += u * (dphi[0] * J[1, 1] - dphi[1] * J[1, 0]) / det
             d_z += u * (dphi[1] * J[0, 0] - dphi[0] * J[0, 1]) / det
         return values, A_r @ d_r + A_z @ d_z + A_0 @ (values / at.r)
+
+    @cached_property
+    def _series(self) -> np.ndarray:
+        """Coefficients (1 + 2 powers, strains) of the surface strains: edge value, powers inside, outside."""
+        d = self.discretisation
+        a = d.mesh.contact_radius
+        distance = edge_distances(d.mesh)
+        r = a + a * EDGE_SIZE * EDGE_SERIES[0] * np.concatenate([-distance, distance])
+        zero = np.zeros(r.size, dtype=int)
+        _, strain = self._fields_and_strains(d.locator.points(r, 0.0 * r, zero))
+        powers = distance[:, None] ** _POWERS
+        none = np.zeros_like(powers)
+        terms = np.hstack([np.ones((r.size, 1)), np.block([[powers, none], [none, powers]])])
+        return np.linalg.lstsq(terms, strain.T, rcond=None)[0]
+
+    def _with_series(self, r: np.ndarray, strain: np.ndarray) -> np.ndarray:
+        """Surface strains (strains, n), the derivatives among them from the series next to the edge."""
+        a = self.discretisation.mesh.contact_radius
+        offset = (r / a - 1) / (EDGE_SIZE * EDGE_SERIES[0])
+        near = np.abs(offset) < 1
+        if not (self.root_at_edge and np.any(near)):
+            return strain
+        regular = _POWERS > 0
+        inside, outside = np.maximum(-offset[near], 0.0), np.maximum(offset[near], 0.0)
+        terms = [side[:, None] ** _POWERS[regular] for side in (inside, outside)]
+        kept = np.concatenate([[True], regular, regular])
+        value = np.hstack([np.ones((inside.size, 1)), *terms]) @ self._series[kept]
+        strain = strain.copy()
+        # u_r / r is continuous and smooth enough as it is
+        for row in (0, 4) if self.harmonic == 1 else (0,):
+            strain[row, near] = value[:, row]
+        return strain
 
     def _interface_tractions(self, upper: int, sides: list[LocatedPoints]) -> np.ndarray:
         """(sigma_zz, sigma_rz, sigma_tz) on the interface below layer ``upper``, shape (3, n).

@@ -24,6 +24,7 @@ from .validation import (
     check_materials,
     check_positive,
     check_proportions,
+    check_radius,
     prescribed_pressure,
 )
 
@@ -90,11 +91,7 @@ def solve(
         with_companion=estimate_uncertainty,
     )
     final, d = levels.final, levels.final.discretisation
-    if final.contact_radius * a_h >= radius:
-        raise ValueError(
-            f"load = {load:g} N presses the contact radius to {final.contact_radius * a_h:g} m, beyond the "
-            f"radius of the sphere, {radius:g} m; small strains need a far smaller load"
-        )
+    check_radius(final.contact_radius * a_h, radius)
     penetration, tension = _checked_complementarity(levels.final)
     state = ElasticState.of_contact(solid, final)
     found, stiffness_error = None, None
@@ -161,10 +158,9 @@ def solve_prescribed(
 
     state, found = state_on(mesh_at(solid, Grading.of(size), 1.0)), None
     if estimate_uncertainty:
-        mesh = mesh_at(solid, companion_grading(size), 1.0)
-        companion, near = state_on(mesh), state_on(mesh.with_nearer_boundary())
-        changes = 0.0, abs(companion.central_displacement - near.central_displacement), 0.0
-        found = estimates(state, companion, unit, changes, load_residual=0.0, size=size)
+        companion = state_on(mesh_at(solid, companion_grading(size), 1.0))
+        change = abs(state.central_displacement - companion.central_displacement)
+        found = estimates(state, companion, unit, (0.0, change), load_residual=0.0, edge=0.0, size=size)
     d = state.discretisation
     nodes = _surface_nodes(d)
     frictionless = Solution(

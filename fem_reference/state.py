@@ -7,7 +7,7 @@ import numpy as np
 
 from .axisymmetric import Discretisation
 from .contact import FixedRadiusContact
-from .loading import solve_traction
+from .loading import resultant, solve_traction
 from .mesh import MeridianMesh
 from .recovery import HarmonicField
 from .scaling import LayeredSolid
@@ -27,7 +27,7 @@ class ElasticState:
     def of_contact(cls, solid: LayeredSolid, contact: FixedRadiusContact) -> "ElasticState":
         """The state of the frictionless ``contact``."""
         d, pressure = contact.discretisation, contact.pressure
-        return cls(solid, HarmonicField(d, contact.fields, solid.materials, 0, pressure, -1.0), None)
+        return cls(solid, HarmonicField(d, contact.fields, solid.materials, 0, pressure, -1.0, True), None)
 
     @classmethod
     def under_pressure(
@@ -35,7 +35,7 @@ class ElasticState:
     ) -> "ElasticState":
         """The state under a prescribed ``pressure`` (r) within the contact radius of the mesh of ``d``."""
         fields = solve_traction(d, solid, 0, pressure)
-        return cls(solid, HarmonicField(d, fields, solid.materials, 0, pressure, -1.0), None)
+        return cls(solid, HarmonicField(d, fields, solid.materials, 0, pressure, -1.0, False), None)
 
     def with_friction(self, friction: float) -> "ElasticState":
         """The state with the tangential traction ``friction`` times the pressure; the pressure stays."""
@@ -43,7 +43,8 @@ class ElasticState:
             return replace(self, tangential=None)
         d, pressure = self.discretisation, self.pressure
         fields = solve_traction(d, self.solid, 1, lambda r: friction * pressure(r))
-        sliding = HarmonicField(d, fields, self.solid.materials, 1, pressure, -friction)
+        root_at_edge = self.normal.root_at_edge
+        sliding = HarmonicField(d, fields, self.solid.materials, 1, pressure, -friction, root_at_edge)
         return replace(self, tangential=sliding)
 
     @property
@@ -57,6 +58,27 @@ class ElasticState:
     @property
     def pressure(self) -> Callable[[np.ndarray], np.ndarray]:
         return self.normal.pressure
+
+    def truncation(self, harmonic: int) -> tuple[float, float]:
+        """Changes of displacement and stress due to the far field prescribed on the outer boundary.
+
+        What the far field leaves out falls with a power of the distance, at least the first, and is set to
+        zero on the boundary: so at half the distance at least as much is found as was left out there. Its
+        strain is that over the distance.
+        """
+        d, field = self.discretisation, self.tangential if harmonic else self.normal
+        assert field is not None
+        distance = d.locations.max(axis=0) / self.mesh.far
+        halfway = np.flatnonzero((distance > 0.35) & (distance < 0.55))
+        load = -field.factor * resultant(d, self.pressure)
+        if harmonic == 0:
+            far = load * self.solid.far_displacement(*d.locations[:, halfway])
+        else:
+            U, V, Z = load * self.solid.far_sliding(*d.locations[:, halfway])
+            far = np.stack([U + V, V, Z])
+        missing = float(np.abs(field.fields.reshape(-1, d.N)[:, halfway] - far).max())
+        stiffest = max(E / (1 - 2 * nu) for E, nu in self.solid.materials)
+        return missing, stiffest * missing / self.mesh.far
 
     @property
     def central_displacement(self) -> float:

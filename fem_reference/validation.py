@@ -1,6 +1,5 @@
 """Checks of the input; each failure raises ValueError with a message of one line."""
 
-import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
@@ -13,6 +12,7 @@ __all__ = [
     "check_materials",
     "check_positive",
     "check_proportions",
+    "check_radius",
     "prescribed_pressure",
 ]
 
@@ -20,12 +20,13 @@ MAX_COATINGS = 50
 MAX_CONTRAST = 1e4
 MIN_THICKNESS = 1e-4
 MAX_THICKNESS = 1e4
+LARGEST_RADIUS = 0.9  # of the contact over that of the sphere
 
 
 def check_positive(**quantities: float) -> None:
     """Raise ValueError naming the first quantity that is not a positive finite number."""
     for name, value in quantities.items():
-        if not _is_number(value) or not math.isfinite(value) or not value > 0:
+        if not (_is_number(value) and np.isfinite(value) and value > 0):
             raise ValueError(f"{name} = {value!r}; it has to be a positive finite number")
 
 
@@ -37,7 +38,7 @@ def check_choice(name: str, value: object, choices: Sequence[object]) -> None:
 
 def check_friction(friction: float) -> None:
     """Raise ValueError when ``friction`` is not a finite number."""
-    if not _is_number(friction) or not math.isfinite(friction):
+    if not (_is_number(friction) and np.isfinite(friction)):
         raise ValueError(f"friction = {friction!r}; it has to be a finite number")
 
 
@@ -86,6 +87,16 @@ def check_proportions(thicknesses: Sequence[float], unit: str) -> None:
             )
 
 
+def check_radius(contact_radius: float, radius: float) -> None:
+    """Raise ValueError for a contact as wide as the sphere, of which the gap is not a parabola."""
+    if contact_radius > LARGEST_RADIUS * radius:
+        share = contact_radius / radius
+        raise ValueError(
+            f"contact radius a = {contact_radius:g} m is {share:.2g} of the sphere's radius; the parabolic "
+            f"gap and small strains hold below {LARGEST_RADIUS:g}, and well below 0.1"
+        )
+
+
 @dataclass(frozen=True)
 class GivenPressure:
     """A prescribed pressure over ``scale`` as a function of r over ``radius``; zero beyond the load."""
@@ -130,7 +141,9 @@ def prescribed_pressure(
 
 def _check_material(where: str, E: float, nu: float) -> None:
     check_positive(**{f"E {where}": E})
-    if not _is_number(nu) or not -1 < nu < 0.5:
+    if not (_is_number(nu) and -1 < nu <= 0.5):
+        raise ValueError(f"nu {where} = {nu!r}; an isotropic solid has -1 < nu <= 0.5")
+    if nu == 0.5:
         raise ValueError(
             f"nu {where} = {nu!r}; the finite element method needs -1 < nu < 0.5, such as 0.499 for nearly "
             "incompressible"
@@ -138,5 +151,5 @@ def _check_material(where: str, E: float, nu: float) -> None:
 
 
 def _is_number(value: object) -> bool:
-    numpy = hasattr(value, "dtype") and getattr(value, "shape", None) == () and hasattr(value, "__float__")
-    return numpy or (isinstance(value, (int, float)) and not isinstance(value, bool))
+    """Whether a value is a real number, a NumPy scalar included: neither a truth value nor text."""
+    return isinstance(value, (int, float, np.integer, np.floating)) and not isinstance(value, bool)

@@ -14,6 +14,7 @@ Independent of any patches, it gives the error of a grid of constant patches at 
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from numpy.polynomial import legendre
@@ -21,11 +22,22 @@ from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 from scipy.special import j0, spherical_jn
 
-__all__ = ["LayerTable", "cosine_transform", "deflection", "layer_table", "potential"]
+__all__ = [
+    "LayerTable",
+    "cosine_transform",
+    "cosine_transforms",
+    "deflection",
+    "from_potential",
+    "layer_table",
+    "over_circle",
+    "potential",
+    "wavenumbers",
+]
 
 Array = NDArray[np.floating]
 
-CYCLES = 1400.0  # largest k a: complete for coatings down to h = a/100
+CYCLES = 3000.0  # largest k a: complete for coatings down to h = a/200
+PHASE, NODES = 12.0, 16  # of two oscillating factors on a Gauss panel [rad], and its points: 1e-10
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,29 +52,28 @@ class LayerTable:
     matrix: Array
 
 
-def layer_table(
-    excess: Callable[[Array], Array],
-    thickness: float,
-    radius: float,
-    reach: float,
-    *,
-    cycles: float = CYCLES,
-) -> LayerTable:
-    """Table for contacts of about ``radius`` and points r <= reach, by Gauss panels of half an oscillation.
+def wavenumbers(reach: float, last: float, scale: float = np.inf) -> tuple[Array, Array]:
+    """Gauss points k <= last and their weights, for phases up to k reach and panels up to ``scale``.
 
-    excess : M(k) - 1, k [rad/m].  thickness : of the first coating [m].  cycles : largest k a.
+    Panels shrink geometrically towards k = 0, where stiff films on soft solids bend.
     """
-    k_max = min(14 / thickness, cycles / radius)  # exp(-28) is rounding
-    width = 5 / (1.1 * radius + reach)
-    edges = np.concatenate(
-        [[0], np.geomspace(1e-4 * width, width, 10), np.linspace(width, k_max, int(k_max / width) + 2)[1:]]
-    )
-    s, w = legendre.leggauss(10)
+    width = min(PHASE / reach, scale, last / 4)
+    regular = np.linspace(width, last, int(last / width) + 2)[1:] if last > width else np.empty(0)
+    edges = np.concatenate([[0], np.geomspace(1e-4 * width, width, 10), regular])
+    s, w = legendre.leggauss(NODES)
     half = np.diff(edges)[:, None] / 2
-    k = (edges[:-1, None] + half * (1 + s)).ravel()
-    spacing = min(thickness, 0.1 * radius) / 20
+    return (edges[:-1, None] + half * (1 + s)).ravel(), (half * w).ravel()
+
+
+def layer_table(excess: Callable[[Array], Array], depth: float, radius: float, reach: float) -> LayerTable:
+    """Table for contacts of about ``radius`` and points r <= reach.
+
+    excess : M(k) - 1, k [rad/m].  depth : of the first interface that reflects [m], for exp(-2 k depth).
+    """
+    k, weight = wavenumbers(1.1 * radius + reach, min(14 / depth, CYCLES / radius))
+    spacing = min(depth, 0.1 * radius) / 20
     r = np.linspace(0, reach, int(np.clip(reach / spacing, 120, 1000)))
-    return LayerTable(k, r, j0(np.outer(r, k)) * ((half * w).ravel() * excess(k)))
+    return LayerTable(k, r, j0(np.outer(r, k)) * (weight * excess(k)))
 
 
 def deflection(
@@ -81,8 +92,10 @@ def deflection(
     # smooth in r inside, in sqrt(r - a) outside
     u = np.where(
         r <= a,
-        CubicSpline(inner, _over_circle(phi, inner / a))(np.minimum(r, a)),
-        CubicSpline(np.sqrt(outer - a), _over_circle(phi, outer / a))(np.sqrt(np.maximum(r - a, 0))),
+        CubicSpline(inner, over_circle(phi.size, inner / a) @ phi)(np.minimum(r, a)),
+        CubicSpline(np.sqrt(outer - a), over_circle(phi.size, outer / a) @ phi)(
+            np.sqrt(np.maximum(r - a, 0))
+        ),
     )
     if table is not None:
         u = u + CubicSpline(table.r, table.matrix @ (a * cosine_transform(phi, table.k * a)))(r)
@@ -94,42 +107,66 @@ def potential(coefficients: Array) -> Array:
     return np.linalg.solve(_abel(len(coefficients)), coefficients)
 
 
+def from_potential(phi: Array) -> Array:
+    """b_m [Pa] from phi_m [Pa], the inverse of `potential`."""
+    return _abel(len(phi)) @ phi
+
+
+@lru_cache
 def _abel(terms: int) -> Array:
     """Column j: Legendre coefficients of q(t) = 2 int_0^1 phi'(t (1 - v^2)) dv for phi = x' P_j(2x' - 1)."""
     v, w = legendre.leggauss(terms + 1)
     v, w = (1 + v) / 2, w / 2
     s, ws = legendre.leggauss(terms)
-    t = (1 + s) / 2
-    y = t[:, None] * (1 - v**2)
-    basis = np.eye(terms)
+    y = (1 + s)[:, None] / 2 * (1 - v**2)
+    P = legendre.legvander(2 * y - 1, terms - 1)
+    slope = P + 2 * y[..., None] * (P[..., : max(terms - 1, 1)] @ legendre.legder(np.eye(terms)))
     project = (ws[:, None] * legendre.legvander(s, terms - 1)).T * (np.arange(terms)[:, None] + 0.5)
-    columns = []
-    for unit in basis:
-        slope = legendre.legval(2 * y - 1, unit) + 2 * y * legendre.legval(2 * y - 1, legendre.legder(unit))
-        columns.append(project @ (2 * slope @ w))
-    return np.array(columns).T
+    return project @ np.einsum("tvj,v->tj", 2 * slope, w)
 
 
-def _over_circle(phi: Array, rho: Array) -> Array:
-    """int_0^min(rho, 1) phi(x) dx / sqrt(rho^2 - x^2), x = rho sin(theta); exact to rounding by 48 points."""
-    s, w = legendre.leggauss(48)
+def over_circle(terms: int, rho: Array) -> Array:
+    """int_0^min(rho, 1) x' P_m(2x' - 1) dx / sqrt(rho^2 - x^2) for m < terms, (rho.size, terms).
+
+    x' = 1 - x^2, x = rho sin(theta): a polynomial in sin(theta), exact to rounding.
+    """
+    s, w = legendre.leggauss(2 * terms + 16)
     end = np.arcsin(np.minimum(1, 1 / np.maximum(rho, 1e-300)))
     x = rho[:, None] * np.sin(end[:, None] * (1 + s) / 2)
     y = 1 - np.minimum(x, 1) ** 2
-    return (y * legendre.legval(2 * y - 1, phi)) @ w * end / 2
+    return np.einsum("rs,rsm,s,r->rm", y, legendre.legvander(2 * y - 1, terms - 1), w, end / 2, optimize=True)
 
 
 def cosine_transform(phi: Array, k: Array) -> Array:
-    """int_0^1 phi(x) cos(kx) dx of phi = x' sum phi_m P_m(2x' - 1), x' = 1 - x^2.
+    """int_0^1 phi(x) cos(kx) dx of phi = x' sum phi_m P_m(2x' - 1), x' = 1 - x^2."""
+    return (phi @ _even_legendre(len(phi))) @ _even_spherical_bessel(len(phi) + 1, k)
 
-    From the even Legendre polynomials of phi: int_0^1 P_2i(x) cos(kx) dx = (-1)^i j_2i(k).
-    """
-    n = len(phi) + 1
-    s, w = legendre.leggauss(2 * n + 2)
+
+def cosine_transforms(terms: int, k: Array) -> Array:
+    """The same of every x' P_m(2x' - 1), m < terms, (terms, k.size)."""
+    return _even_legendre(terms) @ _even_spherical_bessel(terms + 1, k)
+
+
+def _even_legendre(terms: int) -> Array:
+    """x' P_m(2x' - 1) = sum_i c_mi (-1)^i P_2i(x), (terms, terms + 1): int_0^1 P_2i cos(kx) = (-1)^i j_2i."""
+    n = np.arange(terms + 1)
+    s, w = legendre.leggauss(2 * terms + 4)
     y = 1 - s**2
-    value = y * legendre.legval(2 * y - 1, phi)
-    total = np.zeros_like(k)
-    for i in range(n):
-        c = (2 * i + 0.5) * np.sum(w * value * legendre.legval(s, [0] * (2 * i) + [1]))
-        total += c * (-1) ** i * spherical_jn(2 * i, k)
-    return total
+    value = y[:, None] * legendre.legvander(2 * y - 1, terms - 1)
+    even = legendre.legvander(s, 2 * terms)[:, ::2]
+    return (value * w[:, None]).T @ (even * ((2 * n + 0.5) * (-1.0) ** n))
+
+
+def _even_spherical_bessel(count: int, x: Array) -> Array:
+    """j_0, j_2, .. j_2(count-1), (count, x.size): upward recurrence where x exceeds the order."""
+    found = np.empty((count, x.size))
+    large = x > 2 * count
+    for i in range(count):
+        found[i, ~large] = spherical_jn(2 * i, x[~large])
+    y = x[large]
+    below, here = np.sin(y) / y, np.sin(y) / y**2 - np.cos(y) / y
+    for i in range(count):
+        found[i, large] = below
+        for n in (2 * i, 2 * i + 1):
+            below, here = here, (2 * n + 3) / y * here - below
+    return found

@@ -11,7 +11,8 @@ R = sqrt(r^2 + zeta^2), s = R + zeta, int_0^inf e^{-k zeta} J_m(kr) dk = (r/s)^m
     C_m = int phat J_m e^{-kz} dk       = -Im int phi(t) (r/s)^m d(ln s),      t = i (s - r^2/s - 2z) / 2,
 
 from any point of the imaginary axis of t to t = a, because dt / R = i d(ln s). In ln s the integrands are
-entire, at the contact edge as well: Gauss points along a straight line serve every point z >= 0.
+entire, at the contact edge as well: Gauss points along three straight lines, joined where t is real, serve
+every point z >= 0; one joint is t = r, since far from the real axis a polynomial of high degree would cancel.
 
 The rest of the response decays like exp(-k L), L = 2 h - z in the first coating, and so does the whole
 response in a deeper layer, L = z: Gauss panels in k. Sneddon, Fourier Transforms (1951), chapter 10.
@@ -37,8 +38,6 @@ Columns = list[tuple[Array, int]]
 
 BLOCK = 300_000  # points times nodes held at a time
 TAIL = 28.0  # exponent at which the layers' response is cut
-PHASE, NODES = 12.0, 16  # of J_m(kr) cos(ka) on a Gauss panel [rad], and its points: 1e-10
-NEAREST = 0.25  # |s|/a at which a path starts that would otherwise start nearer to the origin
 
 
 def stress(profiles: Sequence[Profile], body: Body, x: Array, y: Array, z: Array, layer: Array) -> Array:
@@ -105,7 +104,8 @@ def _radial(profiles, body, x, y, z, layer, columns, homogeneous, rest, power: i
                 row[first] = (c[0] * plain[order] + c[1] * linear[order])[where.ravel()]
     if body.coatings:
         for number, decay, at in _groups(body, z, layer):
-            k, weight = _wavenumbers(profiles[0].radius + float(r[at].max()), decay)
+            reach = profiles[0].radius + float(r[at].max())
+            k, weight = abel.wavenumbers(reach, TAIL / decay, 6 / decay)
             phat = weight * np.array([_transform(profile, k) for profile in profiles])
             _add_layers(total, columns, rest, k, phat, r, z, at, number)
     return total
@@ -116,21 +116,28 @@ def half_space_integrals(profile: Profile, r: Array, z: Array, power: int) -> tu
     a = profile.radius
     f = legendre.legmul([0.5, 0.5], abel.potential(profile.coefficients))  # phi / a of 1 - 2 (t/a)^2
     f1, f2 = legendre.legder(f), legendre.legder(f, 2)
-    nodes, weights = legendre.leggauss(24 + 2 * f.size)
+    # |s| at which a path starts that would otherwise start nearer to the origin; |f| is of order 1 there
+    nearest = min(0.25, 2 / f.size)
+    nodes, weights = legendre.leggauss(int(14 + 1.4 * f.size))
     nodes, weights = (1 + nodes) / 2, weights / 2
     plain, linear = np.empty((4, r.size)), np.empty((4, r.size))
-    step = max(1, BLOCK // nodes.size)
+    step = max(1, BLOCK // (3 * nodes.size))
     for begin in range(0, r.size, step):
         part = slice(begin, begin + step)
         radius, depth = r[part] / a, z[part] / a
         R_a = _root(radius, depth)
-        end = np.log(R_a + (depth - 1j))
-        start = np.log(np.maximum(np.hypot(radius, depth) + depth, NEAREST))
-        s = np.exp(start[:, None] + (end - start)[:, None] * nodes)
+        start = np.log(np.maximum(np.hypot(radius, depth) + depth, nearest))
+        first = np.where(radius < 1, np.maximum(radius, nearest / 2), 1 / 3)
+        joints = [start]
+        for real in (first, np.where(radius < 1, np.maximum(radius, 0.25), 2 / 3), np.ones(radius.size)):
+            joints.append(np.log(real * (_root(radius / real, depth / real) - 1j) + depth))
+        end = joints[-1]
+        legs = np.diff(joints, axis=0).T[:, :, None]
+        s = np.transpose(joints[:-1])[:, :, None] + legs * nodes
+        s, measure = np.exp(s.reshape(radius.size, -1)), (legs * weights).reshape(radius.size, -1)
         t = 0.5j * (s - radius[:, None] ** 2 / s - 2 * depth[:, None])
         tau = radius[:, None] / s
         y = 1 - 2 * t**2
-        measure = (end - start)[:, None] * weights
         slope = -4 * t * legendre.legval(y, f1) * measure
         if power:
             other = (16 * t**2 * legendre.legval(y, f2) - 4 * legendre.legval(y, f1)) * measure
@@ -166,20 +173,6 @@ def _groups(body: Body, z: Array, layer: Array) -> Iterator[tuple[int, float, Ar
     octave = np.floor(np.log2(decay) + 1e-9).astype(int)
     for number, power in np.unique(np.stack([layer, octave]), axis=1).T:
         yield int(number), 2.0**power, np.flatnonzero((layer == number) & (octave == power))
-
-
-def _wavenumbers(reach: float, decay: float) -> tuple[Array, Array]:
-    """Gauss points k and weights for responses that decay like exp(-k decay), phases up to k reach.
-
-    Panels shrink geometrically towards k = 0, where stiff films on soft solids bend.
-    """
-    width = min(PHASE / reach, 6 / decay)
-    last = TAIL / decay
-    regular = np.linspace(width, last, int(last / width) + 2)[1:] if last > width else np.empty(0)
-    edges = np.concatenate([[0], np.geomspace(1e-4 * width, width, 10), regular])
-    s, w = legendre.leggauss(NODES)
-    half = np.diff(edges)[:, None] / 2
-    return (edges[:-1, None] + half * (1 + s)).ravel(), (half * w).ravel()
 
 
 def _transform(profile: Profile, k: Array) -> Array:

@@ -211,7 +211,10 @@ def solve(
 
 
 def _first_guess(problem: _Problem) -> _State:
-    p = problem.balanced(np.maximum(problem.start, 0.0))
+    start = np.maximum(problem.start, 0.0)
+    if not start.any():  # a flat punch, or a contact narrower than a patch
+        start = (problem.gap == problem.gap.min()).astype(float)
+    p = problem.balanced(start)
     contact = _ContactSet(p > 0, problem.extension)
     state = _State(p, problem.deflection(p), contact, problem.approach or 0.0)
     _find_P_one(state, problem)

@@ -2,23 +2,20 @@
 
     p(r) = sqrt(t) q(t),   t = 1 - (r/a)^2,   q = sum_m b_m P_m(2t - 1)
 
-is the pressure of a smooth indenter; the polynomial q is smooth where p is not. Fitted to patch pressures
-inside the contact it gives the contact radius a and the pressure between the last patch and the edge.
+is the pressure of a smooth indenter; the polynomial q is smooth where p is not.
 """
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.polynomial import legendre
 from numpy.typing import ArrayLike, NDArray
 
-__all__ = ["Prescribed", "Profile", "fit", "of_contact", "patch_mean"]
+__all__ = ["Prescribed", "Profile", "convergence", "patch_mean"]
 
 Array = NDArray[np.floating]
-
-MISFIT = 0.02  # of the peak, above which a contact has no edge of this kind
-GOOD = 0.003  # of the peak, below which no better fit is sought
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,6 +29,19 @@ class Profile:
         """p(r) [Pa], 0 outside; shape of ``r`` [m]."""
         t = np.maximum(1 - (np.asarray(r, dtype=float) / self.radius) ** 2, 0)
         return np.sqrt(t) * legendre.legval(2 * t - 1, self.coefficients)
+
+    @cached_property
+    def peak(self) -> float:
+        """Largest p [Pa], off the axis where a stiff film bends: the best of a grid, then of a finer one."""
+        low, high = 0.0, 1.0
+        for _ in range(2):
+            s = np.linspace(low, high, 1001)
+            p = self.pressure(self.radius * s)
+            best = int(p.argmax())
+            if best in (0, s.size - 1):
+                break
+            low, high = s[best - 1], s[best + 1]
+        return float(p[best])
 
     @property
     def load(self) -> float:
@@ -72,63 +82,16 @@ class Prescribed:
         return float(2 * np.pi * self.radius * np.sum(w * p * r * t))
 
 
-def fit(pressure: Array, r: Array, d: float, *, radius: float, terms: int, skip: float) -> Profile:
-    """Least squares of the profile on the patches r < a - skip d, the radius by Newton steps.
+def convergence(fine: Profile, middle: Profile, coarse: Profile) -> float:
+    """Factor by which the error falls from the middle to the fine profile, as observed: at most 1.
 
-    A change of a adds da/a q(0) / sqrt(t) to p, so the coefficient of that column, fitted along, is the step.
-
-    pressure [Pa], r [m] : same shape.  d : side of the patches [m].  radius : first guess of a [m].
-    terms : M.  Returns the profile; its radius stays within a patch of the guess.
+    The largest differences of the pressure, over the same r/a. Of a geometric convergence at terms in the
+    same ratio, the error of the fine one is below this factor times its difference from the middle one.
     """
-    a = radius
-    p, r = pressure.ravel(), r.ravel()
-    for _ in range(8):
-        used = r < a - skip * d
-        t = 1 - (r[used] / a) ** 2
-        root = np.sqrt(t)
-        columns = np.concatenate(
-            [legendre.legvander(2 * t - 1, terms - 1) * root[:, None], 1 / root[:, None]], 1
-        )
-        b = np.linalg.lstsq(columns, p[used], rcond=None)[0]
-        at_edge = legendre.legval(-1.0, b[:terms])
-        # a slope of the wrong sign at the edge does not determine the radius
-        step = a * b[terms] / at_edge if at_edge > 0 else 0.0
-        a = float(np.clip(a + step, radius - d, radius + d))
-        if abs(step) < 1e-10 * a:
-            break
-    return Profile(a, b[:terms])
-
-
-def of_contact(
-    pressure: Array, r: Array, d: float, *, thickness: float | None, skip: float, share: float = 1.0
-) -> Profile | None:
-    """Profile of a contact's patch pressures, None where none fits to within ``MISFIT`` of their peak.
-
-    A coating much thinner than the contact bends the pressure within its thickness of the edge, so the number
-    of terms grows as the square root of the radius over it, as far as the patches resolve them; a refinement
-    study of the patches refines the terms too, by ``share``.
-
-    pressure [Pa], r [m] : (n, n), n odd, symmetric; one quadrant is used.  thickness : of the first coating
-    [m], None when uncoated.  skip : patches inside the edge that are left out.  share : of the usual terms.
-    """
-    c = len(pressure) // 2
-    p, r = pressure[c:, c:], r[c:, c:]
-    a = float(np.sqrt(np.count_nonzero(pressure) / np.pi) * d)
-    usual = 6 + 3.2 * np.sqrt(a / thickness) if thickness else 6
-    terms = int(min(share * usual, 20, a / d / 5))
-    least, best = MISFIT * float(p.max()), None
-    while terms >= 3:
-        # patches next to the edge may be too rough for as many terms: leave out more, then fewer terms
-        for more in (0.0, 0.5, 1.5):
-            shape = fit(p, r, d, radius=a, terms=terms, skip=skip + more)
-            used = r < shape.radius - (skip + more) * d
-            misfit = float(np.max(np.abs(p - shape.pressure(r)), where=used, initial=0))
-            if misfit < least:
-                least, best = misfit, shape
-            if least < GOOD * float(p.max()):
-                return best
-        terms = int(0.8 * terms)
-    return best
+    s = 1 - np.linspace(0, 1, 400) ** 2
+    p = [shape.pressure(shape.radius * s) for shape in (fine, middle, coarse)]
+    last, before = np.abs(p[0] - p[1]).max(), np.abs(p[1] - p[2]).max()
+    return float(last / before) if last < before else 1.0
 
 
 def patch_mean(shape: Profile | Prescribed, x: Array, d: float) -> Array:

@@ -29,8 +29,10 @@ def stress(
     x, y, z, where = np.broadcast_arrays(x, y, z, body.layer_of(z, layer))
     result = np.zeros((len(levels), 3, 3, *z.shape))
     kept: subsurface.Tables = {}  # a point force does not depend on the grid
-    for out, level in zip(result, levels, strict=True):
+    for number, (out, level) in enumerate(zip(result, levels, strict=True)):
         small = isinstance(level.shape, Profile)
+        if small and (number > 0 or not level.rest.any()):
+            continue  # the rest of a companion is the error of its profile, which the difference shall show
         fine = (z < FINE * level.grid.d) & isinstance(level.shape, Prescribed)
         for part, (patches, p) in ((fine, level.finer), (~fine, (level.grid, _on_patches(level)))):
             if part.any():

@@ -18,8 +18,7 @@ class Numerics:
 
     patches : per side of the finest grid.  tolerance : gap and penetration over the approach.
     conversion : "split", with ``hankel_points``; "split-fft" or "plain", with ``enlarge``.
-    fill : half-width of the grid over the contact radius.  edge_rounds : corrections of the contact edge.
-    edge_terms : terms of the edge profile over those on the finest grid.
+    fill : half-width of the grid over the contact radius.  edge_correction : by the edge profile.
     """
 
     patches: int = 257
@@ -29,19 +28,18 @@ class Numerics:
     hankel_points: int = 4096
     enlarge: int = 4
     fill: float = 1.12
-    edge_rounds: int = 3
-    edge_terms: float = 1.0
+    edge_correction: bool = True
     threads: int = 1
 
     def __post_init__(self) -> None:
-        for name in ("patches", "max_iterations", "hankel_points", "enlarge", "edge_rounds", "threads"):
+        for name in ("patches", "max_iterations", "hankel_points", "enlarge", "threads"):
             value = getattr(self, name)
             if not isinstance(value, (int, np.integer)) or isinstance(value, bool):
                 raise ValueError(f"{name} = {value!r}; it has to be an integer")
         for name in ("tolerance", "fill"):
             if not _is_number(getattr(self, name)):
                 raise ValueError(f"{name} = {getattr(self, name)!r}; it has to be a number")
-        if self.patches < COARSEST or (self.patches % 2 == 0 and self.edge_rounds > 0):
+        if self.patches < COARSEST or (self.patches % 2 == 0 and self.edge_correction):
             raise ValueError(f"patches = {self.patches}; it must be odd and at least {COARSEST}")
         if not 1e-13 <= self.tolerance < 1:
             raise ValueError(f"tolerance = {self.tolerance:g}; give 1e-13 or more, 1e-8 is the default")
@@ -54,8 +52,8 @@ class Numerics:
                 raise ValueError(f"{name} = {getattr(self, name)}; it must be at least 1")
         if self.hankel_points < 512:
             raise ValueError(f"hankel_points = {self.hankel_points}; give 512 or more, 4096 is the default")
-        if self.edge_rounds < 0:
-            raise ValueError(f"edge_rounds = {self.edge_rounds}; 0 leaves the contact edge a staircase")
+        if not isinstance(self.edge_correction, bool):
+            raise ValueError(f"edge_correction = {self.edge_correction!r}; give True or False")
 
 
 @dataclass(frozen=True)

@@ -20,27 +20,31 @@ Array = NDArray[np.floating]
 class Indenter:
     """Undeformed gap on a grid, and either the load [N] or the approach [m].
 
-    round : axisymmetric with a smooth edge, which can be corrected; table : of the layers, for that;
-    coarse_table : with half the wavenumbers, where the coating is too thin for ``table`` to be complete.
+    round : axisymmetric with a smooth edge, which ``shapes`` correct, the finest first; table : of the
+    layers, for their deflection.
     """
 
     gap: Callable[[Grid], Array]
     load: float | None
     approach: float | None
     round: bool
+    shapes: tuple[edge_profile.Profile, ...] = ()
     table: abel.LayerTable | None = None
-    coarse_table: abel.LayerTable | None = None
 
 
 @dataclass(frozen=True)
 class Level:
-    """A contact on one grid; ``shape`` is the edge profile of its correction."""
+    """A contact on one grid; ``shape`` is the edge profile of its correction.
+
+    noise : pressure [Pa] that the gap left by the iteration may cause on a patch.
+    """
 
     grid: Grid
     found: contact.Contact
     shape: edge_profile.Profile | edge_profile.Prescribed | None
     load: float
     convolutions: int
+    noise: float = 0.0
 
     @property
     def radius(self) -> float:
@@ -53,8 +57,17 @@ class Level:
         return {
             "contact_radius": self.radius,
             "approach": self.found.approach,
-            "peak_pressure": float(self.found.pressure.max()),
+            "peak_pressure": self._peak,
         }
+
+    @property
+    def _peak(self) -> float:
+        """Of the patches; a ring of highest pressure between their centres is that of the edge profile."""
+        peak = float(self.found.pressure.max())
+        if isinstance(self.shape, edge_profile.Profile):
+            on_patches = self.shape.pressure(self.grid.radius)
+            peak = self.shape.peak + float((on_patches + self.rest).max() - on_patches.max())
+        return peak
 
     @cached_property
     def mean(self) -> Array:
@@ -71,12 +84,14 @@ class Level:
     def rest(self) -> Array:
         """Pressure at the patch centres less its edge profile [Pa].
 
-        Zero within a patch of the edge: there the profile is the better of the two.
+        Zero within a patch of the edge, where the profile is the better of the two, and everywhere if the
+        iteration does not resolve it.
         """
         assert isinstance(self.shape, edge_profile.Profile)
         r = self.grid.radius
         rest = self.found.pressure - self.shape.pressure(r)
-        return np.where(r < self.shape.radius - self.grid.d, rest, 0.0)
+        rest = np.where(r < self.shape.radius - self.grid.d, rest, 0.0)
+        return rest if np.abs(rest).max() > self.noise else np.zeros_like(rest)
 
     def _mean_on(self, grid: Grid) -> Array:
         if isinstance(self.shape, edge_profile.Prescribed):
@@ -109,30 +124,32 @@ class LevelProblem:
         self.deflection = convolution.even_convolution(kernel, threads=numerics.threads)
         self.precondition = convolution.circulant_inverse(kernel, threads=numerics.threads)
 
-    def solve(self, defect: Array | float, missing: float, start: Level | None, tolerance: float) -> Level:
-        """Contact with ``defect`` [m] added to the gap and ``missing`` [N] of the load not on the patches.
-
-        start : level on the same window, None to start from ``before``.
-        """
+    def solve(self, defect: Array | float, missing: float) -> Level:
+        """Contact with ``defect`` [m] added to the gap and ``missing`` [N] of the load not on the patches."""
         grid, before, indenter = self.grid, self.before, self.indenter
+        scale = indenter.approach or (before.found.approach if before else self.depth)
+        # a flat punch has no depth; its approach is this to a factor of order one
+        scale = scale or (indenter.load or 0.0) / (self.body.moduli[0] * grid.half_width)
         found = contact.solve(
             self.deflection,
             self.gap + defect,
             total=None if indenter.load is None else (indenter.load - missing) / grid.d**2,
             approach=indenter.approach,
-            start=self._first_guess() if start is None else start.found.pressure,
+            start=self._first_guess(),
             precondition=self.precondition,
-            scale=indenter.approach or (before.found.approach if before else self.depth),
-            tolerance=tolerance,
+            scale=scale,
+            tolerance=self.numerics.tolerance,
             max_iterations=self.numerics.max_iterations,
             extension=_extension(self.body, grid.d),
         )
         load = float(found.pressure.sum() * grid.d**2) + missing
-        spent = 0 if start is None else start.convolutions + 1
-        return Level(grid, found, None, load, spent + found.convolutions)
+        noise = self.numerics.tolerance * scale * self.body.moduli[0] / grid.d
+        return Level(grid, found, None, load, found.convolutions, noise)
 
     def _first_guess(self) -> Array:
         before = self.before
+        if before is None and self.indenter.shapes:
+            return self.indenter.shapes[0].pressure(self.grid.radius)
         if before is None:
             approach = self.indenter.approach or 0.25 * self.depth
             return self.precondition(np.maximum(self.gap.min() + approach - self.gap, 0))

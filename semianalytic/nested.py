@@ -8,85 +8,76 @@ from numpy.typing import NDArray
 from semianalytic import convolution, influence
 from semianalytic.contact import NotConverged
 from semianalytic.defect_correction import corrected
+from semianalytic.edge_profile import Profile
 from semianalytic.grid import Grid, Window, odd, touches_rim, window_around
 from semianalytic.inputs import COARSEST, Body, Numerics
 from semianalytic.level import Indenter, Level, LevelProblem
 
-__all__ = ["first_level", "levels", "solve_on"]
+__all__ = ["levels", "solve_on"]
 
 Array = NDArray[np.floating]
 
+QUICK = 60  # iterations, more than a contact takes that the patches resolve
+
 
 def levels(
-    half_width: float,
-    first: Level | None,
-    indenter: Indenter,
-    body: Body,
-    numerics: Numerics,
-    estimate_uncertainty: bool,
+    half_width: float, indenter: Indenter, body: Body, numerics: Numerics, estimate_uncertainty: bool
 ) -> list[Level]:
-    """Contacts on .., N/4, N/2 and N patches a side.
+    """Contacts on .., N/4, N/2 and N patches a side, the last ones each with an edge profile of its own.
 
-    Where the edge is corrected the error falls fast: half the patches would overestimate it, so that N is
-    compared with N/sqrt(2) patches, the terms of their edge profile reduced as the square root.
+    The first ones, without, give the start. Where they do not converge quickly, under films a thousand times
+    stiffer than what lies below, the start is the edge profile.
     """
     sizes = [numerics.patches]
     while sizes[0] > 2 * COARSEST or len(sizes) < 3:
         sizes.insert(0, odd(sizes[0] / 2))
-    if estimate_uncertainty and numerics.edge_rounds:
-        sizes.insert(-1, odd(sizes[-1] / 2**0.5))
+    shapes: list[Profile | None] = [None] * len(sizes)
     kept = 3 if estimate_uncertainty else 1
-    starter = replace(numerics, tolerance=max(1e-5, numerics.tolerance), edge_rounds=0)
-    found, level = [], first
-    for k, n in enumerate(sizes):
-        terms = (n / numerics.patches) ** 0.5
-        used = replace(numerics, edge_terms=terms) if k >= len(sizes) - kept else starter
-        level = solve_on(Grid(n, 2 * half_width / n), level, indenter, body, used)
-        found.append(level)
+    for k, profile in enumerate(indenter.shapes[:kept]):
+        shapes[-1 - k] = profile
+    starter = replace(numerics, tolerance=max(1e-5, numerics.tolerance))
+    if indenter.shapes:
+        starter = replace(starter, max_iterations=min(QUICK, numerics.max_iterations))
+    found: list[Level] = []
+    for k, (n, shape) in enumerate(zip(sizes, shapes, strict=True)):
+        used = numerics if k >= len(sizes) - kept else starter
+        before, grid = found[-1] if found else None, Grid(n, 2 * half_width / n)
+        try:
+            found.append(solve_on(grid, before, indenter, body, used, shape))
+        except NotConverged:
+            if not indenter.shapes:
+                raise
+            if shape is not None:
+                found.append(solve_on(grid, None, indenter, body, used, shape))
     return found
 
 
-def first_level(half_width: float, indenter: Indenter, body: Body, numerics: Numerics) -> Level:
-    """Contact on a coarse grid fitted to it, starting from a grid of ``half_width`` [m].
-
-    Raises NotConverged where no grid fits.
-    """
-    rough = replace(numerics, tolerance=max(1e-4, numerics.tolerance), edge_rounds=0)
-    for _ in range(12):
-        grid = Grid(COARSEST, 2 * half_width / COARSEST)
-        level = solve_on(grid, None, indenter, body, rough)
-        a = level.radius
-        if touches_rim(level.found.pressure):
-            half_width *= 1.5  # a contact that reaches the rim hides its size
-        elif numerics.fill * a > 0.75 * half_width:
-            return level
-        else:
-            half_width = numerics.fill * max(a, 1.5 * grid.d)
-    raise NotConverged(
-        f"no grid was found that fits the contact, last half-width {half_width:.3g} m; "
-        "the moduli of the layers may lie too far apart"
-    )
-
-
-def solve_on(grid: Grid, before: Level | None, indenter: Indenter, body: Body, numerics: Numerics) -> Level:
-    """Contact on a grid: of a sphere its edge corrected, of another indenter on the window it needs."""
+def solve_on(
+    grid: Grid,
+    before: Level | None,
+    indenter: Indenter,
+    body: Body,
+    numerics: Numerics,
+    shape: Profile | None = None,
+) -> Level:
+    """Contact on a grid: of a sphere corrected by an edge profile, of others on the window they need."""
     gap = indenter.gap(grid)
     if indenter.round:
-        return corrected(grid, gap, before, indenter, body, numerics)
+        return corrected(grid, gap, before, shape, indenter, body, numerics)
     whole, depth = Window(0, grid.n, 0, grid.n), float(np.ptp(gap))
     if before is not None:
         window = window_around(before.found.pressure, before.grid, grid)
         if window.shape != whole.shape:
             lowest, gap = _lowest_of_four(gap), gap[window.slices].copy()
             problem = LevelProblem(grid, gap, depth, window, before, indenter, body, numerics)
-            level = problem.solve(0.0, 0.0, None, numerics.tolerance)
+            level = problem.solve(0.0, 0.0)
             del problem  # frees the memory of its transforms for those below
             level = replace(level, found=level.found.embedded(window.slices, grid.n, depth))
             if _is_alone(level, lowest, window, body, numerics):
                 return level
             gap = indenter.gap(grid)
     problem = LevelProblem(grid, gap, depth, whole, before, indenter, body, numerics)
-    return problem.solve(0.0, 0.0, None, numerics.tolerance)
+    return problem.solve(0.0, 0.0)
 
 
 def _lowest_of_four(gap: Array) -> Array:

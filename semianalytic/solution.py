@@ -8,6 +8,7 @@ two does not count as accuracy.
 import time
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -15,7 +16,7 @@ from scipy.interpolate import RectBivariateSpline
 from scipy.ndimage import maximum_filter
 
 from semianalytic import fields
-from semianalytic.edge_profile import Profile
+from semianalytic.edge_profile import Profile, convergence
 from semianalytic.inputs import Body, check_finite
 from semianalytic.level import Level
 from semianalytic.uncertainty import Uncertainty, safety
@@ -27,7 +28,7 @@ Array = NDArray[np.floating]
 # error of the stress of a given pressure, over its peak, against Hankel quadrature: above 4 patches, below
 EVALUATION = (5e-6, 5e-7)
 NEAR = 8.0  # patches from the edge, within which the error of its radius is felt
-EXACT = 1e-9  # that of an edge profile, and of the small rest by patches
+EXACT = 1e-9  # that of an edge profile, relative to the peak pressure and to the stress
 # likewise of a pressure: its response to the gap the iteration leaves, in proportion to the patches
 RESOLUTION = 1e-7
 
@@ -138,9 +139,11 @@ class Solution:
             square = self.patch_pressure**2
             touched = _at(self.nodes, square, x, y, order=1) > 0  # the cubic may oscillate beyond
             return np.sqrt(np.maximum(np.where(touched, _at(self.nodes, square, x, y), 0), 0))
+        value = shape.pressure(np.hypot(x, y))
+        if isinstance(shape, Profile) and not self._level.rest.any():
+            return np.maximum(value, 0)
         rest = self.patch_pressure - shape.pressure(np.hypot(self.nodes[:, None], self.nodes[None, :]))
-        value = shape.pressure(np.hypot(x, y)) + _at(self.nodes, rest, x, y, order=1)
-        return np.maximum(value, 0)
+        return np.maximum(value + _at(self.nodes, rest, x, y, order=1), 0)
 
     def stress(self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None) -> Array:
         """Stress tensor [Pa], shape (3, 3) + points.
@@ -175,30 +178,51 @@ class Solution:
     def pressure_uncertainty(self, x: ArrayLike, y: ArrayLike = 0.0) -> Array:
         """Uncertainty of the pressure [Pa] from the coarser companion.
 
-        The largest difference of the two within a patch of the coarser, times ``safety``, or a sixth of that
-        of the next two; plus the changes of the peak by the other numerical parameters: twice, since they
-        were varied on half the patches and the pressure due to a gap is proportional to the patches. Plus
-        the change of the pressure by the uncertain radius within three patches of the coarser from the edge
-        or, where the edge is a staircase, twice the sum; and ``RESOLUTION`` of the peak.
+        With an edge profile as that of the stress. Else the largest difference of the two within two patches
+        of the coarser, times ``safety``, or a sixth of that of the next two; plus the changes of the peak by
+        the other numerical parameters, twice, since they were varied on half the patches and the pressure
+        due to a gap is proportional to the patches; plus ``RESOLUTION`` of the peak; twice the sum.
         Raises ValueError where no uncertainty was estimated.
         """
         coarser, floor = self._companion()
-        shape = self._level.shape
+        if isinstance(self._level.shape, Profile):
+            return self._profile_uncertainty(x, y)
         i, j = self.nodes[:, None], self.nodes[None, :]
         second = coarser.pressure(i, j)
         ratio = len(self.nodes) / len(coarser.nodes)
         difference = safety(ratio) * np.abs(self.patch_pressure - second)
         if coarser.coarser is not None:
             difference = np.maximum(difference, np.abs(second - coarser.coarser.pressure(i, j)) / 6)
-        reach = 2 * int(np.ceil(ratio if shape is not None else 2 * ratio)) + 1
+        reach = 2 * int(np.ceil(ratio if self._level.shape is not None else 2 * ratio)) + 1
         widened = maximum_filter(difference, size=reach, mode="nearest")
         total = _at(self.nodes, widened, x, y, order=1) + (2 * floor + RESOLUTION) * self.peak_pressure
-        if shape is None or self.uncertainty is None:
-            return 2 * total
-        r, shift = np.hypot(x, y), self.uncertainty.contact_radius
-        moved = np.abs([shape.pressure(r + s) - shape.pressure(r) for s in (-shift, shift)]).max(axis=0)
-        edge = np.abs(r - self.contact_radius) < 3 * coarser.diagnostics.patch_size + shift
-        return total + np.where(edge, moved, 0.0)
+        return 2 * total
+
+    def _profile_uncertainty(self, x: ArrayLike, y: ArrayLike) -> Array:
+        """Uncertainty of the pressure [Pa] from the coarser edge profiles, as that of the stress."""
+        shapes = self._studied
+        assert self.uncertainty is not None
+        fine, second, third = shapes
+        r, rate = np.hypot(x, y), self._convergence
+        p = fine.pressure(r)
+        change = np.abs(p - second.pressure(r))
+        change = rate * np.maximum(change, rate * np.abs(second.pressure(r) - third.pressure(r)))
+        shift = self.uncertainty.contact_radius
+        moved = np.abs([fine.pressure(r + s) - p for s in (-shift, shift)]).max(axis=0)
+        return np.maximum(change, moved) + EXACT * self.peak_pressure
+
+    @cached_property
+    def _convergence(self) -> float:
+        """Factor by which the last refinement reduced the error of the edge profile."""
+        return convergence(*self._studied)
+
+    @property
+    def _studied(self) -> list[Profile]:
+        """The edge profiles of the refinement study, the finest first."""
+        coarser, _ = self._companion()
+        assert coarser.coarser is not None
+        shapes = [one._level.shape for one in (self, coarser, coarser.coarser)]
+        return [shape for shape in shapes if isinstance(shape, Profile)]
 
     def stress_uncertainty(self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None) -> Array:
         """Uncertainty of the stress [Pa], shape (3, 3) + points; see ``stress_with_uncertainty``.
@@ -212,9 +236,11 @@ class Solution:
     ) -> tuple[Array, Array]:
         """Stress and its uncertainty [Pa], shape (3, 3) + points each, the latter from coarser companions.
 
-        The largest difference over the six components, for every component alike: of this grid and the
-        next, times ``safety``, or a third of that of the next and the one after; plus the changes of the peak
-        pressure by the other numerical parameters, and the error of the evaluation, ``EVALUATION`` of it.
+        The largest difference over the six components, for every component alike, of this level and the next,
+        or of the next and the one after. With an edge profile both are reduced by the observed convergence;
+        the change by the uncertain radius counts where it is larger; plus ``EXACT`` of the peak pressure and
+        of the stress. Without, times ``safety``, or a third; plus the changes of the peak pressure by other
+        numerical parameters, and the error of the evaluation, ``EVALUATION`` of it.
         Raises ValueError where no uncertainty was estimated.
         """
         coarser, floor = self._companion()
@@ -222,13 +248,16 @@ class Solution:
         if coarser.coarser is not None:
             levels.append(coarser.coarser._level)
         sigma, second, *third = fields.stress(levels, self._body, x, y, z, layer)
-        change = safety(len(self.nodes) / len(coarser.nodes)) * np.abs(sigma - second).max(axis=(0, 1))
-        for other in third:
-            change = np.maximum(change, np.abs(second - other).max(axis=(0, 1)) / 3)
-        total = change + floor * self.peak_pressure
+        change = np.abs(sigma - second).max(axis=(0, 1))
+        before = np.abs(second - third[0]).max(axis=(0, 1)) if third else np.zeros_like(change)
         if isinstance(self._level.shape, Profile):
-            total += EXACT * self.peak_pressure + self._uncertain_edge(x, y, z, layer)
+            rate = self._convergence
+            floor = EXACT * (self.peak_pressure + np.abs(sigma).max(axis=(0, 1)))
+            total = rate * np.maximum(change, rate * before)
+            total = np.maximum(total, self._uncertain_edge(x, y, z, layer)) + floor
         else:
+            change = np.maximum(safety(len(self.nodes) / len(coarser.nodes)) * change, before / 3)
+            total = change + floor * self.peak_pressure
             shallow = np.asarray(z) < 4 * self.diagnostics.patch_size
             total += np.where(shallow, *EVALUATION) * self.peak_pressure
         return sigma, np.broadcast_to(total, (3, 3, *change.shape)).copy()

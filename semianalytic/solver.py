@@ -11,7 +11,17 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
-from semianalytic import abel, contact, convolution, edge_profile, frf, influence, nested, uncertainty
+from semianalytic import (
+    abel,
+    collocation,
+    contact,
+    convolution,
+    edge_profile,
+    frf,
+    influence,
+    nested,
+    uncertainty,
+)
 from semianalytic.contact import NotConverged
 from semianalytic.grid import Grid, deconvolve, odd, touches_rim
 from semianalytic.inputs import Body, Numerics, check_control, check_finite, check_positive
@@ -25,8 +35,7 @@ Array = NDArray[np.floating]
 Coatings = tuple[tuple[float, float, float], ...]
 Substrate = tuple[float, float]
 
-USUAL, MOST = 257, 513  # patches a side
-PER_COATING = 12  # patches that the pressure needs to follow a coating at the contact edge
+LARGEST = 0.9  # contact radius over that of the sphere
 
 
 def solve(
@@ -37,14 +46,14 @@ def solve(
     substrate: Substrate,
     friction: float = 0.0,
     approach: float | None = None,
-    patches: int | None = None,
+    patches: int = 257,
     tolerance: float = 1e-8,
     max_iterations: int = 600,
     conversion: str = "split",
     hankel_points: int = 4096,
     enlarge: int = 4,
     fill: float = 1.12,
-    edge_rounds: int = 3,
+    edge_correction: bool = True,
     estimate_uncertainty: bool = True,
     threads: int = 1,
 ) -> Solution:
@@ -52,47 +61,45 @@ def solve(
 
     coatings ((E, nu, thickness), ...) from the surface down; substrate (E, nu); friction f in q = f p.
     approach : delta [m] instead of the load, which then is None.
-    patches : per side of the finest grid, odd; None for 257, or up to 513 where a first coating is thin
-    enough to need them. The other numerics: ``inputs.Numerics``; the conversions: ``influence``. The
-    correction of the edge (edge_rounds > 0) also removes the error of an inaccurate conversion.
+    patches : per side of the finest grid, odd. The other numerics: ``inputs.Numerics``; the conversions:
+    ``influence``. The correction of the edge also removes the error of an inaccurate conversion.
 
-    Raises ValueError for input without meaning, NotConverged when the iteration stops short.
+    Raises ValueError for input without meaning and for a contact as wide as the sphere, NotConverged when the
+    iteration stops short.
     """
     began = time.perf_counter()
     check_control(load, approach)
     check_positive(radius=radius)
     body = _body(coatings, substrate, friction)
     numerics = Numerics(
-        patches=USUAL if patches is None else patches,
+        patches=patches,
         tolerance=tolerance,
         max_iterations=max_iterations,
         conversion=conversion,
         hankel_points=hankel_points,
         enlarge=enlarge,
         fill=fill,
-        edge_rounds=edge_rounds,
+        edge_correction=edge_correction,
         threads=threads,
     )
     sphere = Indenter(lambda grid: grid.radius**2 / (2 * radius), load, approach, round=True)
-    if load is not None:
-        largest = (0.75 * load * radius / min(body.moduli)) ** (1 / 3)  # Hertz on the softest material
-    else:
-        assert approach is not None
-        largest = (2 * radius * approach) ** 0.5  # the sphere's section at the surface
-    first = nested.first_level(fill * largest, sphere, body, numerics)
-    half_width = fill * first.radius
-    if coatings and edge_rounds:
-        reach = 1.01 * 2**0.5 * WIDER * half_width
-        excess = partial(frf.compliance_excess, **body.layers)
-        geometry = (excess, body.thickness[0], first.radius, reach)
-        table = coarse = abel.layer_table(*geometry)
-        if estimate_uncertainty and table.k[-1] * first.radius > abel.CYCLES / 2:
-            coarse = abel.layer_table(*geometry, cycles=abel.CYCLES / 2)
-        sphere = replace(sphere, table=table, coarse_table=coarse)
-    if patches is None and coatings:
-        resolved = odd(PER_COATING * 2 * half_width / body.thickness[0])
-        numerics = replace(numerics, patches=min(max(USUAL, resolved), MOST))
-    levels = nested.levels(half_width, first, sphere, body, numerics, estimate_uncertainty)
+    found = collocation.contact(radius, load, approach, body)
+    a = found[0][0].radius
+    if a > LARGEST * radius:
+        raise ValueError(
+            f"contact radius a = {a:g} m is {a / radius:.2g} of the sphere's radius; the parabolic gap and "
+            f"small strains hold below {LARGEST:g}, and well below 0.1"
+        )
+    half_width = fill * a
+    if edge_correction:
+        sphere = replace(sphere, shapes=tuple(shape for shape, _ in found))
+        if coatings:
+            excess = partial(frf.compliance_excess, **body.layers)
+            depth, reach = collocation.reflecting_depth(body), 1.01 * 2**0.5 * half_width
+            sphere = replace(sphere, table=abel.layer_table(excess, depth, a, reach))
+    levels = nested.levels(half_width, sphere, body, numerics, estimate_uncertainty)
+    if touches_rim(levels[-1].found.pressure):
+        raise NotConverged(f"the contact reaches the rim of the grid, fill = {fill:g}; enlarge it")
     estimate = uncertainty.of_contact(levels, sphere, body, numerics) if estimate_uncertainty else None
     return Solution.of_levels(levels, body, estimate, began)
 
@@ -144,7 +151,7 @@ def indent(
         conversion=conversion,
         hankel_points=hankel_points,
         enlarge=enlarge,
-        edge_rounds=0,
+        edge_correction=False,
         threads=threads,
     )
 
@@ -160,7 +167,7 @@ def indent(
         return z - z.min()
 
     indenter = Indenter(gap, load, approach, round=False)
-    levels = nested.levels(half_width, None, indenter, body, numerics, estimate_uncertainty)
+    levels = nested.levels(half_width, indenter, body, numerics, estimate_uncertainty)
     if heights is None and touches_rim(levels[-1].found.pressure):
         raise NotConverged(
             f"the contact reaches the rim of the square, half_width = {half_width:g} m; widen it, or give "

@@ -4,7 +4,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from semianalytic.edge_profile import Profile
+from semianalytic.edge_profile import Profile, convergence
 from semianalytic.grid import Grid, odd
 from semianalytic.inputs import Body, Numerics
 from semianalytic.level import Indenter, Level
@@ -12,6 +12,7 @@ from semianalytic.nested import solve_on
 
 __all__ = ["WIDER", "Uncertainty", "of_contact", "other_conversion", "safety"]
 
+QUADRATURE = 1e-9  # of the layers' response by Gauss panels
 WIDER = 1.25  # the box that tests the domain over the box in use
 
 
@@ -27,8 +28,8 @@ def safety(ratio: float) -> float:
 class Uncertainty:
     """Numerical uncertainty in SI units; budget : rows (quantity, numerical parameter, value).
 
-    Parameters: patch size, conversion, domain, iteration; edge profile, of the contact radius; coating, where
-    the first is thinner than four patches. The three scalars are the sums of their rows.
+    Parameters: patch size, conversion, domain, iteration; of a contact with an edge profile its terms, the
+    quadrature, the iteration. The three scalars are the sums of their rows.
     """
 
     contact_radius: float
@@ -68,34 +69,36 @@ class Uncertainty:
 
 def of_contact(levels: list[Level], indenter: Indenter, body: Body, numerics: Numerics) -> Uncertainty:
     """Refinement study of the last three levels; the other parameters on the coarsest of them."""
+    if isinstance(levels[-1].shape, Profile):
+        return _of_profiles(levels, numerics)
     fine, middle, coarse = (level.scalars for level in levels[:-4:-1])
     grid, start = levels[-3].grid, levels[-4] if len(levels) > 3 else None
-    numerics = replace(numerics, edge_terms=(grid.n / numerics.patches) ** 0.5)
     looser = replace(numerics, tolerance=min(100 * numerics.tolerance, 1e-2))
     wider = Grid(odd(WIDER * grid.n), grid.d)
-    poorer = replace(indenter, table=indenter.coarse_table)
     variations = {
-        "conversion": solve_on(grid, start, poorer, body, other_conversion(numerics)).scalars,
+        "conversion": solve_on(grid, start, indenter, body, other_conversion(numerics)).scalars,
         "domain": solve_on(wider, start, indenter, body, numerics).scalars,
         "iteration": solve_on(grid, start, indenter, body, looser).scalars,
     }
     ratio = numerics.patches / levels[-2].grid.n
-    estimate = Uncertainty.from_levels(fine, middle, coarse, variations, base=coarse, ratio=ratio)
-    shape = levels[-1].shape
-    if isinstance(shape, Profile):
-        # measured on films down to h = a/200: the radius errs by 0.1 to 0.9 of what the profile leaves
-        left = float(np.abs(levels[-1].rest).max()) / fine["peak_pressure"]
-        rows = [*estimate.budget, ("contact_radius", "edge profile", left * shape.radius)]
-        estimate = Uncertainty._of(rows)
-    if indenter.round and body.coatings:
-        # no level resolves how the pressure bends at the edge within a coating thinner than the patches
-        h, d = body.thickness[0], levels[-1].grid.d
-        unresolved = 0.3 * h / levels[-1].radius * max(0.0, 1 - h / (4 * d))
-        if unresolved:
-            powers = {"contact_radius": 1, "approach": 2, "peak_pressure": 2}
-            rows = [(name, "coating", unresolved**power * fine[name]) for name, power in powers.items()]
-            estimate = Uncertainty._of([*estimate.budget, *rows])
-    return estimate
+    return Uncertainty.from_levels(fine, middle, coarse, variations, base=coarse, ratio=ratio)
+
+
+def _of_profiles(levels: list[Level], numerics: Numerics) -> Uncertainty:
+    """Refinement study of the edge profile's terms, which the patches follow.
+
+    Terms: the change to the finest profile, times the observed convergence.  Quadrature: of the layers'
+    response.  Iteration: the gap it leaves, over the approach.
+    """
+    fine, middle, coarse = levels[:-4:-1]
+    shapes = [level.shape for level in (fine, middle, coarse)]
+    rate = convergence(*(shape for shape in shapes if isinstance(shape, Profile)))
+    rows = [("approach", "iteration", numerics.tolerance * fine.found.approach)]
+    for name, value in fine.scalars.items():
+        last, before = abs(value - middle.scalars[name]), abs(middle.scalars[name] - coarse.scalars[name])
+        rows.append((name, "edge terms", rate * max(last, rate * before)))
+        rows.append((name, "quadrature", QUADRATURE * value))
+    return Uncertainty._of(rows)
 
 
 def other_conversion(numerics: Numerics) -> Numerics:

@@ -32,7 +32,7 @@ BAD = [
     ({"quality": "superb"}, "quality = 'superb'"),
     ({"size": 2.0}, "size = 2"),
     ({"far": 5.0}, "larger far boundary"),
-    ({"load": 1e9}, "radius of the sphere"),
+    ({"load": 1e9}, "of the sphere's radius; the parabolic gap"),
 ]
 
 

@@ -49,7 +49,7 @@ def test_equal_moduli_give_hertz(coatings):
 
 
 def test_without_edge_correction_hertz_is_of_first_order():
-    s = solve(edge_rounds=0)
+    s = solve(edge_correction=False)
     assert s.peak_pressure == pytest.approx(P_H, rel=1e-4)
     # counted patches: one of 58 to the radius
     assert s.contact_radius == pytest.approx(A_H, rel=1 / 58)
@@ -242,7 +242,7 @@ def test_approach_control_inverts_load_control(coated):
 
 
 def test_uncertainty_brackets_the_error_and_not_by_orders():
-    s = solve(edge_rounds=0, estimate_uncertainty=True)
+    s = solve(edge_correction=False, estimate_uncertainty=True)
     u = s.uncertainty
     assert u is not None
     for name, exact in (("approach", A_H**2 / R), ("peak_pressure", P_H)):
@@ -277,8 +277,8 @@ def test_uncertainty_not_estimated_is_refused():
 
 @pytest.mark.parametrize(("conversion", "worse_than"), [("split-fft", 1e-6), ("plain", 1e-4)])
 def test_other_conversions_are_worse_and_say_so(conversion, worse_than):
-    best = solve(STIFF, edge_rounds=0)
-    other = solve(STIFF, edge_rounds=0, conversion=conversion, estimate_uncertainty=True)
+    best = solve(STIFF, edge_correction=False)
+    other = solve(STIFF, edge_correction=False, conversion=conversion, estimate_uncertainty=True)
     assert other.uncertainty is not None
     error = abs(other.approach - best.approach)
     assert error > worse_than * best.approach
@@ -302,7 +302,8 @@ def test_surface_nodes_cover_twice_the_contact(coated):
     assert x[c] == 0
     inside = np.abs(x) <= coated.nodes[-1]
     middle = len(coated.nodes) // 2
-    np.testing.assert_allclose(coated.pressure(x[inside]), coated.patch_pressure[:, middle], atol=1e-12 * P_H)
+    # the iteration resolves no difference from the profile, here on 58 patches to the radius
+    np.testing.assert_allclose(coated.pressure(x[inside]), coated.patch_pressure[:, middle], atol=1e-6 * P_H)
 
 
 # Solutions as plain records
@@ -444,7 +445,7 @@ def test_contact_at_the_rim_of_the_square_is_refused():
 
 def test_stopping_short_raises():
     with pytest.raises(semianalytic.NotConverged, match="raise max_iterations"):
-        solve(max_iterations=1)
+        solve(max_iterations=1, edge_correction=False)
 
 
 @pytest.mark.parametrize(

@@ -70,11 +70,11 @@ def measure() -> AccuracyStudy:
     mesh = partial(refined_mesh, COATED, solid="coated", solve=available["fem_reference"])
     refinements = (
         grid(COATED, FINE, solid="coated", setting=CORRECTED),
-        grid(COATED, solid="coated", setting=STAIRCASE, edge_rounds=0),
+        grid(COATED, solid="coated", setting=STAIRCASE, edge_correction=False),
         # Its convolution kernel alone costs more than the rest, so it ends one level earlier.
-        grid(COATED, (33, 65, 129), solid="coated", setting=PLAIN, edge_rounds=0, conversion="plain"),
+        grid(COATED, (33, 65, 129), solid="coated", setting=PLAIN, edge_correction=False, conversion="plain"),
         grid(BARE, FINE, solid="uncoated", setting=CORRECTED),
-        grid(BARE, solid="uncoated", setting=STAIRCASE, edge_rounds=0),
+        grid(BARE, solid="uncoated", setting=STAIRCASE, edge_correction=False),
         *(mesh(order) for order in (2, 3, 4)),
     )
     failures += [f"{r.method}, {r.solid}, {r.setting}, {r.failure}" for r in refinements if r.failure]

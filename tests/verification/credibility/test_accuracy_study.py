@@ -110,7 +110,7 @@ def test_uncoated_split_conversion_is_loves_rectangle():
 
 @pytest.fixture(scope="module")
 def staircase():
-    return refined_grid(COATED, (33, 65, 129), setting="staircase", edge_rounds=0)
+    return refined_grid(COATED, (33, 65, 129), setting="staircase", edge_correction=False)
 
 
 def test_staircase_edge_leaves_the_pressure_at_first_order(staircase):

@@ -1,0 +1,68 @@
+"""Stresses at the contact edge: the peak of sigma_xx, its sides, the estimate in the strip around it."""
+
+import numpy as np
+import pytest
+
+from fem_reference import solve
+from verification.sources.references import hamilton, integral_equation
+
+R, W, E, NU = 10e-3, 20.0, 210e9, 0.3
+A_H = (3 * W * R * (1 - NU**2) / (4 * E)) ** (1 / 3)
+P_H = 3 * W / (2 * np.pi * A_H**2)
+
+
+def problem(ratio, thickness, friction=0.25):
+    coatings = ((ratio * E, NU, thickness * A_H),) if thickness else ()
+    return {"radius": R, "load": W, "coatings": coatings, "substrate": (E, NU), "friction": friction}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("friction", [0.0, 0.25, 0.5])
+@pytest.mark.parametrize(("ratio", "thickness"), [(1, 0), (0.25, 0.1), (0.25, 1.0), (4.0, 0.1), (4.0, 1.0)])
+def test_tension_at_the_edge_equals_the_exact_value_on_both_sides(ratio, thickness, friction):
+    given = problem(ratio, thickness, friction)
+    s = solve(**given, estimate_uncertainty=False)
+    exact = integral_equation.solve(**given, estimate_uncertainty=False)
+    assert s.contact_radius == pytest.approx(exact.contact_radius, rel=1e-6)
+    for side in (-1, 1):
+        expected = exact.stress(side * exact.contact_radius, 0.0, 0.0)[0, 0]
+        x = side * s.contact_radius * np.array([1 - 1e-12, 1.0, 1 + 1e-12])
+        got = s.stress(x, 0.0, 0.0)[0, 0]
+        assert np.abs(got - expected).max() < 2e-5 * P_H
+        assert np.ptp(got) < 1e-5 * P_H
+
+
+def test_largest_tension_of_a_sliding_contact_lies_at_the_edge():
+    given = problem(1, 0)
+    s, exact = (
+        solve(**given, quality="fast", estimate_uncertainty=False),
+        hamilton.Hamilton(R, W, E, NU, 0.25),
+    )
+    offsets = 10 ** np.linspace(-9, -1.5, 100)
+    x = -s.contact_radius * (1 + np.concatenate([-offsets, [0.0], offsets]))
+    sigma = s.stress(x, 0.0, 0.0)[0, 0]
+    assert abs(x[np.argmax(sigma)] / exact.contact_radius + 1) < 1e-5
+    assert sigma.max() == pytest.approx(exact.stress(-exact.contact_radius, 0.0, 0.0)[0, 0], abs=2e-5 * P_H)
+
+
+@pytest.mark.parametrize("friction", [0.0, 0.5])
+def test_the_estimate_covers_the_error_in_the_strip_around_the_edge(friction):
+    s, exact = solve(**problem(1, 0, friction), quality="fast"), hamilton.Hamilton(R, W, E, NU, friction)
+    rng = np.random.default_rng(1)
+    n, a = 3000, exact.contact_radius
+    offset = np.where(rng.random(n) < 0.5, rng.uniform(0, 0.1, n), 10 ** rng.uniform(-9, -1, n))
+    r, theta = a * (1 + rng.choice([-1, 1], n) * offset), rng.uniform(0, 2 * np.pi, n)
+    points = r * np.cos(theta), r * np.sin(theta), 0.05 * a * np.maximum(rng.uniform(-0.5, 1, n), 0) ** 2
+    stress, uncertainty = s.stress_with_uncertainty(*points)
+    excess = np.abs(stress - exact.stress(*points)) > uncertainty + 1e-9 * P_H
+    assert excess.mean() < 1e-3
+    # at the edge the uncertainty of sigma is about the square root of that of the radius
+    assert s.stress_uncertainty(-a, 0.0, 0.0)[0, 0] < 2e-2 * P_H
+
+
+def test_hard_ultra_thin_film_converges():
+    given = {"radius": 8e-3, "load": 28.060850301711923, "substrate": (207e9, 0.455)}
+    given["coatings"] = ((6236910000000.0, 0.4309, 4.411584e-7),)
+    s = solve(**given, quality="fast", estimate_uncertainty=False)
+    exact = integral_equation.solve(**given, estimate_uncertainty=False)
+    assert s.contact_radius == pytest.approx(exact.contact_radius, rel=1e-3)
