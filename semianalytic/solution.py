@@ -274,7 +274,7 @@ class Solution:
         distance = np.hypot(np.hypot(x, y) - self.contact_radius, z)
         d = self.diagnostics.patch_size
         near = distance < NEAR * d + shift
-        change = 4 * np.abs(self._level.rest).max() * d / (d + distance)
+        change = np.array(4 * np.abs(self._level.rest).max() * d / (d + distance))  # of a single point too
         if near.any():
             change[near] += fields.stress_of_uncertain_edge(
                 self._level, self._body, shift, x[near], y[near], z[near], layer

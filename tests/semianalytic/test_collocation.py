@@ -82,3 +82,13 @@ def test_a_stiff_film_on_a_thick_soft_layer_converges():
     )
     assert s.diagnostics.gap_inside < 1e-8
     assert s.diagnostics.load == pytest.approx(19.3, rel=1e-9)
+
+
+def test_a_single_point_at_the_edge_has_an_uncertainty():
+    s = semianalytic.solve(
+        radius=R, load=W, coatings=(), substrate=STEEL, patches=65, estimate_uncertainty=True
+    )
+    sigma, U = s.stress_with_uncertainty(-s.contact_radius, 0.0, 0.0)
+    assert sigma.shape == U.shape == (3, 3)
+    # Johnson (1985) eq. 3.42c: (1 - 2 nu) p0 / 3 in tension at the edge
+    assert abs(sigma[0, 0] - (1 - 2 * NU) / 3 * P_H) <= U[0, 0]

@@ -182,7 +182,8 @@ def mutants(
     """Change one operator, constant, index or term at a time; report the changes that nothing catches.
 
     As many mutants of each room, drawn at random, meet the checks of the default run, then the unit tests of
-    the room, which both have to pass without any change. A source checkout is needed.
+    the room, which both have to pass without any change. It needs a source checkout that nobody edits
+    meanwhile.
 
     Exit codes: 0 enough are caught, every survivor was read; 1 not so; 2 bad input.
 
@@ -203,6 +204,8 @@ def mutants(
             raise CommandError(f"{name}: choose rooms of {', '.join(store.ROOMS)}{near}")
     if count < 1 or seed < 0:
         raise CommandError(f"--count = {count}, --seed = {seed}; only the seed may be zero, none negative")
+    if record and rooms:
+        raise CommandError("--record stores mutants of all rooms; leave the rooms out")
     if not (store.ROOT / "tests").is_dir():
         raise CommandError("this coatcheck has no unit tests beside it; run it in a source checkout")
     require_gmsh()

@@ -197,7 +197,16 @@ def test_survivors_on_record_are_of_this_source():
         assert row["reason"]
 
 
-@pytest.mark.parametrize("words", [{"rooms": ("judgin",)}, {"count": 0}, {"seed": -1}, {"jobs": 0}])
+@pytest.mark.parametrize(
+    "words",
+    [
+        {"rooms": ("judgin",)},
+        {"rooms": ("judging",), "record": True},
+        {"count": 0},
+        {"seed": -1},
+        {"jobs": 0},
+    ],
+)
 def test_a_wrong_question_is_bad_input_and_writes_nothing(words, tmp_path, capsys):
     rooms = words.pop("rooms", ())
     assert command(*rooms, output=tmp_path / "out", records=tmp_path / "records", **words) == 2
