@@ -19,7 +19,7 @@ from .gmsh_session import session
 
 __all__ = ["EDGE_SIZE", "Grading", "MeridianMesh", "meridian_mesh"]
 
-EDGE_SIZE = 1e-6  # smallest triangle, at the contact edge, over the contact radius
+EDGE_SIZE = 1e-7  # smallest triangle, at the contact edge, over the contact radius
 
 
 @dataclass(frozen=True)

@@ -34,7 +34,7 @@ Coatings = tuple[tuple[float, float, float], ...]
 
 # triangle size over its distance from the contact edge
 QUALITY = {"fast": 0.36, "default": 0.16, "fine": 0.12}
-LOAD_TOLERANCE = 2e-7
+LOAD_TOLERANCE = 1e-8
 
 
 def solve(

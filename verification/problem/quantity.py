@@ -43,7 +43,7 @@ class Quantity:
     derived: Callable[[Any, Any], float] | None = None
 
     def divisor(self, value: float, p_h: float, p0: float, a: float) -> float:
-        """Divisor of a difference [SI]: |value| of a scalar, a of a place, the smaller of p_h and p0 else.
+        """Divisor of a difference [SI]: |value| of a scalar, |value| >= a of a place, else min(p_h, p0).
 
         value : of the reference.   p0, a : peak pressure and contact radius of the best source; p_h alone
         counts where p0 is not a positive number.
@@ -51,7 +51,7 @@ class Quantity:
         if self.kind == "scalar":
             return abs(value)
         if self.unit == "m":
-            return a
+            return max(abs(value), a)
         return min(p_h, p0) if p0 > 0 else p_h
 
     def value(self, solution: Any, problem: Any) -> float:

@@ -22,6 +22,7 @@ __all__ = ["Search", "Tension", "around_edge", "edge_uncertainty"]
 CLOSE, STEP, REACH = np.geomspace(0.01, 0.5, 20), 0.09, 4.0
 NODES = 17  # of the Chebyshev interpolant between the neighbours of the largest sample
 CLEAR = 0.1  # of the largest sample: by as much it may lie below the maximum that it brackets
+ELEMENT = 1 / 6  # size of the methods' elements over the distance from the edge
 # Of a: the distance from the edge at which the uncertainty of the stress no longer is that of the radius.
 BESIDE = 1e-2
 
@@ -105,7 +106,7 @@ class Search:
         """The smooth maximum for t between ``first`` and ``last``.
 
         The error of its place is |error of sigma'| / |sigma''|; that of sigma' is estimated by the
-        uncertainty over a length on which the stress varies, half of the distance from the edge.
+        uncertainty over the length on which the error varies, that of an element or a patch.
         """
         a = float(self.solution.contact_radius)
         middle, half = (first + last) / 2, abs(last - first) / 2
@@ -124,7 +125,7 @@ class Search:
         slope = a * (np.sin(t) if t < 0 else np.sinh(t))
         bend = abs(float(chebyshev.chebval(at, chebyshev.chebder(c, 2)))) / (half * slope) ** 2
         wide = float(U[0, 0].max())
-        length = 0.5 * abs(abs(place) - a)
+        length = ELEMENT * abs(abs(place) - a)
         return Tension(value, place, wide, wide / (length * bend) if length * bend else np.inf)
 
 
