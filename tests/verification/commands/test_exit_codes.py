@@ -139,8 +139,8 @@ def test_missing_system_library_names_the_packages_and_writes_nothing(tmp_path):
 
 def test_solver_that_fails_is_a_row_and_the_other_case_still_finishes(tmp_path):
     (tmp_path / "quick.toml").write_text(QUICK)
-    # Pressed in deeper than its radius, which the method refuses once it knows the contact radius.
-    hopeless = QUICK.replace('"integral_equation"', '"semianalytic"').replace("load = 20\n", "load = 1e8\n")
+    # Wider than 0.9 of the sphere, which the method refuses once it knows the contact radius.
+    hopeless = QUICK.replace('"integral_equation"', '"semianalytic"').replace("load = 20\n", "load = 2.5e7\n")
     (tmp_path / "hopeless.toml").write_text(hopeless)
     done = coatcheck("run", "hopeless.toml", "quick.toml", "--json", cwd=tmp_path)
     assert done.returncode == 3, done.stderr
