@@ -9,7 +9,8 @@ and the deflection, with M(k) the compliance of the layers over that of the firs
     u(r) = (2/E1*) [ int_0^min(r, a) phi(x) dx / sqrt(r^2 - x^2) + int_0^inf (M - 1) phat(k) J0(kr) dk ]:
 
 Sneddon, Fourier Transforms (1951), section 52.3, for the first; the second converges like exp(-2 k h).
-Independent of any patches, it gives the error of a grid of constant patches at the contact edge.
+Independent of any patches: `collocation` solves the contact of a sphere with it, `defect_correction` measures
+the error of constant patches on it.
 """
 
 from collections.abc import Callable

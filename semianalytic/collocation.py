@@ -7,7 +7,8 @@ With p = sqrt(t) q(t), t = 1 - (r/a)^2, the exact deflection of `abel` closes th
 linear in the M coefficients and in delta; the contact radius a follows from the load, or from delta, by
 secant steps. The pressure over sqrt(t) is analytic in t with its nearest singularities at 2 h beyond the
 edge, h the depth of what reflects, so that the error falls as exp(-c M sqrt(h/a)): Boyd, Chebyshev
-and Fourier Spectral Methods (2001), section 2.
+and Fourier Spectral Methods (2001), section 2. Inverting Abel's integral for every r < a gives the Fredholm
+equation of the second kind of Lebedev and Ufliand, PMM 22 (1958) 320-326.
 """
 
 from collections.abc import Callable

@@ -18,7 +18,8 @@ class Numerics:
 
     patches : per side of the finest grid.  tolerance : gap and penetration over the approach.
     conversion : "split", with ``hankel_points``; "split-fft" or "plain", with ``enlarge``.
-    fill : half-width of the grid over the contact radius.  edge_correction : by the edge profile.
+    fill : half-width of the grid over the contact radius.
+    edge_correction : False for the patches alone, without the edge profile.
     """
 
     patches: int = 257

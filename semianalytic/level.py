@@ -20,8 +20,8 @@ Array = NDArray[np.floating]
 class Indenter:
     """Undeformed gap on a grid, and either the load [N] or the approach [m].
 
-    round : axisymmetric with a smooth edge, which ``shapes`` correct, the finest first; table : of the
-    layers, for their deflection.
+    round : axisymmetric with a smooth edge.  shapes : edge profiles of the contact, the finest first.
+    table : of the layers, for their deflection.
     """
 
     gap: Callable[[Grid], Array]
@@ -34,7 +34,7 @@ class Indenter:
 
 @dataclass(frozen=True)
 class Level:
-    """A contact on one grid; ``shape`` is the edge profile of its correction.
+    """A contact on one grid; ``shape`` is the edge profile that corrects it, None for the patches alone.
 
     noise : pressure [Pa] that the gap left by the iteration may cause on a patch.
     """

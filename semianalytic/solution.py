@@ -1,8 +1,8 @@
 """Solution of the semi-analytical method.
 
-A ``Solution`` carries its coarser companion, the same problem on fewer patches. The uncertainty of a field is
-estimated from the difference of the two at the points required, widened so that a chance agreement of the
-two does not count as accuracy.
+A ``Solution`` carries its coarser companion, the same problem on fewer patches and, of a sphere, with fewer
+terms of the edge profile. The uncertainty of a field is estimated from the difference of the two at the
+points required, widened so that a chance agreement of the two does not count as accuracy.
 """
 
 import time

@@ -62,7 +62,9 @@ def solve(
     coatings ((E, nu, thickness), ...) from the surface down; substrate (E, nu); friction f in q = f p.
     approach : delta [m] instead of the load, which then is None.
     patches : per side of the finest grid, odd. The other numerics: ``inputs.Numerics``; the conversions:
-    ``influence``. The correction of the edge also removes the error of an inaccurate conversion.
+    ``influence``.
+    edge_correction : by the edge profile, which gives contact radius and stresses; the patches find what it
+    leaves, whatever their conversion, and the approach. False : patches alone, whose edge is a staircase.
 
     Raises ValueError for input without meaning and for a contact as wide as the sphere, NotConverged when the
     iteration stops short.
@@ -129,9 +131,9 @@ def indent(
     half_width : half the side of the square [m]; no contact beyond it.  load [N] or approach [m], the
     other None; the approach counts from the first touch.  The others as in ``solve``.
 
-    An ellipsoid x^2/2A + y^2/2B, a cone, a punch with a round edge, a measured surface are profiles. Unlike
-    the sphere's, the edge of their contact stays a staircase, where the pressure is of first order in the
-    patch size; contact_radius is that of the disc with the contact's area.
+    An ellipsoid x^2/2A + y^2/2B, a cone, a punch with a round edge, a measured surface are profiles. Their
+    contact is solved by the patches alone: its edge is a staircase, where the pressure is of first order in
+    the patch size; contact_radius is that of the disc with the contact's area.
 
     Raises ValueError for input without meaning, NotConverged when the iteration stops short.
     """

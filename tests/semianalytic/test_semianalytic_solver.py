@@ -39,8 +39,8 @@ def sliding():
 @pytest.mark.parametrize("coatings", [(), ((E, NU, 0.3 * A_H),), ((E, NU, 0.1 * A_H), (E, NU, A_H))])
 def test_equal_moduli_give_hertz(coatings):
     s = solve(coatings)
-    # the edge correction represents Hertz exactly; the iteration, 1e-8 of the gap, is left, and the noise of
-    # a fit with the terms a real coating of that thickness would need
+    # the edge profile represents Hertz exactly; the iteration, 1e-8 of the gap, is left, and the noise of
+    # the terms that a real coating of that thickness would need
     assert s.contact_radius == pytest.approx(A_H, rel=1e-6 if len(coatings) < 2 else 2e-5)
     assert s.approach == pytest.approx(A_H**2 / R, rel=5e-7)
     assert s.peak_pressure == pytest.approx(P_H, rel=5e-7)
@@ -289,7 +289,7 @@ def test_other_conversions_are_worse_and_say_so(conversion, worse_than):
 
 def test_the_edge_correction_takes_the_error_of_the_conversion_away():
     best, plain = solve(STIFF), solve(STIFF, conversion="plain")
-    # the deflection of the fitted profile is exact, whatever the coefficients
+    # the deflection of the edge profile is exact, whatever the influence coefficients
     assert plain.approach == pytest.approx(best.approach, rel=1e-6)
 
 

@@ -1,4 +1,7 @@
-"""Imports of methods or references, read from their installed source."""
+"""Imports of methods or references, read from their installed source.
+
+This shows what code they share. Equations that they share are named in ``report.credibility.statement``.
+"""
 
 import ast
 import sys

@@ -10,7 +10,8 @@ from verification.problem.contact import CoatedContact
 
 # A field is a sum of some thousand terms, each good to one unit in the last place.
 ROUNDING = 4096 * float(np.finfo(float).eps)
-# Of p_h, as in comparisons of stresses: with a larger bound an invariant counts as not checked.
+# Largest admissible bound, dimensionless: with a larger one an invariant is INCONCLUSIVE. Five times the cap
+# of a comparison of stresses, since a bound adds the uncertainties of several stresses and of differences.
 CAP = 5e-3
 
 

@@ -150,7 +150,7 @@ def _tensile(found: Located) -> Located:
     """``found``, or 0 for compression, with the part of the uncertainty that exceeds 0."""
     if found.value > 0:
         return found
-    excess = float(np.maximum(0.0, found.uncertainty + found.value))  # NaN where no bound is stated
+    excess = float(np.maximum(0.0, found.uncertainty + found.value))  # NaN where none is stated
     return Located(0.0, excess, float("nan"), float("nan"))
 
 

@@ -94,7 +94,7 @@ def conversion_errors(
 def influence_coefficients(solution: Solution, source: str, problem: CoatedContact) -> Invariant:
     """The default conversion on a grid over the contact, at near and far patches, over the largest.
 
-    Checked by themselves, since the correction at the contact edge hides the error of a poor conversion.
+    Checked by themselves, since the edge profile of a sphere hides the error of a poor conversion.
     """
     found = conversion_errors(problem, PATCHES, ())[0]
     law = f"influence coefficients at {len(found.error)} patches are those of direct quadrature"

@@ -1,10 +1,10 @@
-"""Derivatives of a field by central differences with a bound of their error.
+"""Derivatives of a field by central differences with an estimate of their error.
 
 Romberg's extrapolation of the steps h, 2h, 4h:
 
     D = [64 d(h) - 20 d(2h) + d(4h)] / 45,   d(h) = [f(+h) - f(-h)] / 2h
 
-Its error is below the change by the third step, |D - (4 d(h) - d(2h))/3|.
+Its error is estimated by the change by the third step, |D - (4 d(h) - d(2h))/3|.
 """
 
 from dataclasses import dataclass
@@ -46,7 +46,7 @@ class Stencil:
         return np.concatenate([self.place, around[:, :2, :, -1].reshape(3, -1)], axis=1)
 
     def gradient(self, values: Array) -> tuple[Array, Array]:
-        """d/dx, d/dy, d/dz at the places and the bound of their difference error, (3,) + (..., n)."""
+        """d/dx, d/dy, d/dz at the places and the estimated error of the differences, (3,) + (..., n)."""
         f = self._around(values)
         slope = (f[..., 0, :, :] - f[..., 1, :, :]) / (2 * _STEPS[:, None])
         best, shorter = (

@@ -158,8 +158,8 @@ def _badness(verdict: Verdict) -> tuple[int, float]:
 def dominating_parameter(result: CaseResult, claim: Claim, verdict: Verdict) -> str:
     """The source with the larger uncertainty at the deciding point, with its dominating parameter.
 
-    U of a stress or pressure is that of p0, with its own part due to the first parameter, the size of patches
-    or elements: the excess of U over the other parameters' parts of p0 belongs to the first.
+    U of a stress or pressure is that of p0, with its own part due to the first parameter, the edge terms or
+    the size of patches or elements: the excess of U over the other parts of p0 belongs to the first.
     """
     sides = []
     for source in claim.between:
