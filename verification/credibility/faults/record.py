@@ -118,8 +118,8 @@ class Record:
 
     @property
     def idle(self) -> tuple[Row, ...]:
-        """Faults that changed no number."""
-        return tuple(row for row in self.rows if not row.change > SMALLEST_CHANGE and not row.failure)
+        """Survivors without a reason on record that changed no number: not faults."""
+        return tuple(row for row in self.unexplained if not row.change > SMALLEST_CHANGE and not row.failure)
 
     @property
     def alarms(self) -> tuple[Row, ...]:
