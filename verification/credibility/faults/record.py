@@ -118,8 +118,17 @@ class Record:
 
     @property
     def idle(self) -> tuple[Row, ...]:
-        """Survivors without a reason on record that changed no number: not faults."""
-        return tuple(row for row in self.unexplained if not row.change > SMALLEST_CHANGE and not row.failure)
+        """Faults that changed no number, though neither a result nor the code that they change is missing.
+
+        The change of published comparisons is not measured.
+        """
+        return tuple(
+            row
+            for row in self.rows
+            if not (row.change > SMALLEST_CHANGE or row.failure or row.reason)
+            and row.catch is not Catch.NO_RESULT
+            and "published" not in row.columns
+        )
 
     @property
     def alarms(self) -> tuple[Row, ...]:
