@@ -75,6 +75,12 @@ class Row:
     def caught(self) -> bool:
         return self.catch in CAUGHT
 
+    @property
+    def compared(self) -> bool:
+        """True where a comparison of sources reports the fault."""
+        found = [tally for name, tally in self.columns.items() if name.startswith(("bare", "coated"))]
+        return any(tally.disagree or tally.inconclusive for tally in found)
+
 
 @dataclass(frozen=True)
 class Record:
@@ -118,16 +124,15 @@ class Record:
 
     @property
     def idle(self) -> tuple[Row, ...]:
-        """Faults that changed no number, though neither a result nor the code that they change is missing.
+        """Faults that survive or that a comparison reports though no compared number changed.
 
-        The change of published comparisons is not measured.
+        Invariants and published values have numbers of their own, which a fault may change alone.
         """
         return tuple(
             row
             for row in self.rows
             if not (row.change > SMALLEST_CHANGE or row.failure or row.reason)
-            and row.catch is not Catch.NO_RESULT
-            and "published" not in row.columns
+            and (row.catch is Catch.SURVIVED or row.compared)
         )
 
     @property
