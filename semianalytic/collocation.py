@@ -61,6 +61,8 @@ def contact(
     def Hertz(a: float) -> float:
         """Contact radius on a solid as compliant as the layers at the wavelength of a."""
         M = 1 + float(excess(np.array([2 / a]))[0])
+        if not M > 0:
+            raise NotConverged(f"the layers' compliance is {M:g} of the first one's; check the moduli")
         return (0.75 * load * radius * M / E_star) ** (1 / 3) if load else (radius * (approach or 0)) ** 0.5
 
     a = Hertz(radius)
