@@ -266,12 +266,12 @@ def test_a_record_is_read_as_it_was_written():
 
 
 def test_a_record_passes_only_where_enough_is_caught_and_nothing_is_left_unsaid():
-    assert _record(_trial("kap_sign"), Trial("control_published", change=0.0)).passed
-    assert not _record(_trial("kap_sign"), _trial("kap_x2_dropped", Outcome.AGREES)).passed
-    assert not _record(_trial("kap_sign", change=0.0)).passed
-    assert not _record(_trial("kap_sign"), _trial("control_published")).passed
-    many = [_trial(name) for name in FAULTS if name != "kap_sign"]
-    lost = _record(*many, _trial("kap_sign", Outcome.AGREES))
+    assert _record(_trial("nu_off_substrate"), Trial("control_published", change=0.0)).passed
+    assert not _record(_trial("nu_off_substrate"), _trial("kap_x2_dropped", Outcome.AGREES)).passed
+    assert not _record(_trial("nu_off_substrate", change=0.0)).passed
+    assert not _record(_trial("nu_off_substrate"), _trial("control_published")).passed
+    many = [_trial(name) for name in FAULTS if name != "nu_off_substrate"]
+    lost = _record(*many, _trial("nu_off_substrate", Outcome.AGREES))
     assert lost.share > 0.95
     assert lost.unexplained
     assert not lost.passed
