@@ -97,10 +97,10 @@ def displacement_plane(level: Level, body: Body, z: float) -> Array:
 def displacement(level: Level, body: Body, x: ArrayLike, y: ArrayLike, z: ArrayLike) -> Array:
     """Displacement [m] at points [m], broadcast; shape (3,) + points."""
     x, y, z, where = np.broadcast_arrays(x, y, z, body.layer_of(z, None))
-    patches = level.grid.x
-    u = subsurface.displacement(
-        x, y, z, where, grid_x=patches, grid_y=patches, pressure=_on_patches(level), body=body
-    )
+    patches, p = level.grid.x, _on_patches(level)
+    u = np.zeros((3, *np.shape(z)))
+    if p.any():
+        u = subsurface.displacement(x, y, z, where, grid_x=patches, grid_y=patches, pressure=p, body=body)
     if isinstance(level.shape, Profile):
         points = tuple(np.asarray(v).ravel() for v in (x, y, z, where))
         u += axisymmetric.displacement([level.shape], body, *points)[0].reshape(u.shape)

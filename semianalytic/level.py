@@ -91,7 +91,8 @@ class Level:
         r = self.grid.radius
         rest = self.found.pressure - self.shape.pressure(r)
         rest = np.where(r < self.shape.radius - self.grid.d, rest, 0.0)
-        return rest if np.abs(rest).max() > self.noise else np.zeros_like(rest)
+        # in this order NaN is passed on
+        return np.zeros_like(rest) if np.abs(rest).max() <= self.noise else rest
 
     def _mean_on(self, grid: Grid) -> Array:
         if isinstance(self.shape, edge_profile.Prescribed):

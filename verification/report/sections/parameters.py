@@ -21,20 +21,22 @@ def parameter_section(sweeps: Sequence[Sweep], stated: Sequence[Stated]) -> Sect
     parts = []
     for one in stated:
         mine = [sweep for sweep in sweeps if sweep.method == one.method]
-        parts.append(Part(_summary(one, mine), [_totals(one, mine), _orders(mine)]))
+        parts.append(Part(_summary(one, mine), [_totals(one, mine), *([_orders(mine)] if mine else [])]))
     return Section("parameters", "Uncertainty by numerical parameter", parts)
 
 
 def _summary(one: Stated, sweeps: Sequence[Sweep]) -> str:
     names = list(one.uncertainty)
     held = sum(one.uncertainty[name] >= one.error[name] for name in names)
+    text = (
+        f"{source_label(one.method).capitalize()}, {one.solid} solid: the uncertainty that the solution "
+        f"states covers the true error in {held} of {len(names)} quantities"
+    )
+    if not sweeps:
+        return f"{text}. Its patches alone are refined in the convergence study."
     fitted = [_sum(sweeps, name) for name in names]
     by_fit = sum(U is not None and one.error[name] <= U for name, U in zip(names, fitted, strict=True))
-    return (
-        f"{source_label(one.method).capitalize()}, {one.solid} solid: the uncertainty that the solution "
-        f"states covers the true error in {held} of {len(names)} quantities, the sum of the fitted "
-        f"uncertainties in {by_fit}."
-    )
+    return f"{text}, the sum of the fitted uncertainties in {by_fit}."
 
 
 def _totals(one: Stated, sweeps: Sequence[Sweep]) -> Table:
@@ -43,17 +45,22 @@ def _totals(one: Stated, sweeps: Sequence[Sweep]) -> Table:
         error = one.error[name]
         found = [sweep.estimate(name) for sweep in sweeps]
         fitted = [number(None if fit is None else fit.uncertainty) for fit in found]
-        rows.append(row(name, number(error), _held(U, error), _held(_sum(sweeps, name), error), *fitted))
-    return Table(
-        "True error at the default numerics, the uncertainty stated, and the fitted one: the sum over "
-        "the parameters, then each parameter, by least squares over four levels or more (Eca and Hoekstra "
-        "2014), by the grid convergence index where there are three. All over the scales of the bare "
-        "substrate. The order of the elements is another way to lower the error of their size: it is shown "
-        "and not added.",
-        ["quantity", "true error", "stated U", "fitted U", *(sweep.parameter for sweep in sweeps)],
-        rows,
-        css="overview",
-    )
+        total = [_held(_sum(sweeps, name), error)] if sweeps else []
+        rows.append(row(name, number(error), _held(U, error), *total, *fitted))
+    caption = "True error at the default numerics, the uncertainty stated"
+    if sweeps:
+        caption += (
+            ", and the fitted one: the sum over the parameters, then each parameter, by least squares over "
+            "four levels or more (Eca and Hoekstra 2014), by the grid convergence index where there are three"
+        )
+    caption += ". All over the scales of the bare substrate."
+    if sweeps:
+        caption += (
+            " The order of the elements is another way to lower the error of their size: it is shown and "
+            "not added."
+        )
+    head = ["quantity", "true error", "stated U", *(["fitted U"] if sweeps else [])]
+    return Table(caption, [*head, *(sweep.parameter for sweep in sweeps)], rows, css="overview")
 
 
 def _orders(sweeps: Sequence[Sweep]) -> Table:
