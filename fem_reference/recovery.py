@@ -62,6 +62,14 @@ class HarmonicField:
     factor: float
     root_at_edge: bool
 
+    def __post_init__(self) -> None:
+        """Raises ValueError where the displacement is not finite, wherever its values are asked for."""
+        lost = int(self.fields.size - np.isfinite(self.fields).sum())
+        if lost:
+            raise ValueError(
+                f"the displacement is not finite at {lost} of {self.fields.size} unknowns; check the moduli"
+            )
+
     def __call__(self, at: LocatedPoints) -> tuple[np.ndarray, np.ndarray]:
         """Displacement (3, n) as (u_r, u_theta, u_z) and stress (6, n) as (rr, tt, zz, rz, rt, tz).
 

@@ -103,7 +103,7 @@ PLACES = (
     Place("fem_reference.recovery", "HarmonicField.__call__", 1),
     Place("fem_reference.estimate", "PressureEstimate.__call__"),
     Place("fem_reference.estimate", "StressEstimate.__call__"),
-    Place("fem_reference.solution", "Solution.stress"),
+    Place("fem_reference.solution", "Solution.stress_with_uncertainty", 0),
 )
 
 
