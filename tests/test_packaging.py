@@ -57,7 +57,8 @@ def test_nothing_that_installs_names_a_place_on_the_network_or_on_one_machine():
 def test_every_file_of_the_packages_is_installed():
     patterns = tomllib.loads((ROOT / "pyproject.toml").read_text())["tool"]["setuptools"]["package-data"]
     for package in ("semianalytic", "fem_reference", "verification"):
-        data = {path for path in (ROOT / package).rglob("*") if path.is_file() and path.suffix[:3] != ".py"}
+        files = (path for path in (ROOT / package).rglob("*") if path.is_file() and path.name != ".lock")
+        data = {path for path in files if path.suffix[:3] != ".py"}
         data.add(ROOT / package / "py.typed")
         assert data == {path for pattern in patterns[package] for path in (ROOT / package).glob(pattern)}
 
