@@ -48,7 +48,7 @@ def surface_coefficients(n: int, d: float, body: Body, numerics: Numerics) -> Ar
     n : offsets 0..n-1.  d : side of the patches [m].  Returns shape (n, n), even in both indices.
     """
     if numerics.conversion == "plain":
-        K = np.zeros((n, n))
+        K: Array = np.zeros((n, n))
         for one in body.pair:
             excess = partial(frf.compliance_excess, **one.layers)
             C = plain_coefficients(n, d, excess, enlarge=numerics.enlarge, threads=numerics.threads)

@@ -59,8 +59,8 @@ class Diagnostics:
 class Solution:
     """Contact of an indenter on a coated half-space; SI, tension positive, z into the body in question.
 
-    Stresses and displacements are those of the flat, with ``body="ball"`` those of an elastic ball: x and y as
-    on the flat, on which the traction is in +x, z into the ball.
+    Stresses and displacements are those of the flat, with ``body="ball"`` those of an elastic ball: x and y
+    as on the flat, on which the traction is in +x, z into the ball.
 
     contact_radius [m] : where p vanishes; of a contact that is no disc, the radius of the disc of its area.
     approach [m].  peak_pressure [Pa] : largest pressure, which sits off the axis under stiff thin coatings.

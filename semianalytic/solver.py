@@ -134,8 +134,8 @@ def indent(
     profile : height of the indenter's surface above its lowest point [m], as z(x, y) of arrays x, y [m], or
     as an (n, n) array at the centres of n x n patches that fill the square, in place of ``patches``.
     half_width : half the side of the square [m]; no contact beyond it.  load [N] or approach [m], the
-    other None; the approach counts from the first touch.  ball : of an elastic indenter, which is a half-space
-    near the contact.  The others as in ``solve``.
+    other None; the approach counts from the first touch.  ball : of an elastic indenter, a half-space near
+    the contact.  The others as in ``solve``.
 
     An ellipsoid x^2/2A + y^2/2B, a cone, a punch with a round edge, a measured surface are profiles. Their
     contact is solved by the patches alone: its edge is a staircase, where the pressure is of first order in

@@ -17,7 +17,7 @@ _TENSOR = np.outer(_VECTOR, _VECTOR)
 
 
 def on_body(solution: Solution, body: str) -> Solution:
-    """``solution`` as that of ``problem.seen_from(body)``: with the fields of the ball in place of the flat's.
+    """``solution`` as that of ``problem.seen_from(body)``, of the ball with its fields for the flat's.
 
     The traction on the ball, -q, is along +x in a frame turned by half a turn round z.
     """

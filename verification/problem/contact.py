@@ -193,15 +193,15 @@ def stress_with_uncertainty(
 
     A solution with a method of this name evaluates its stress once for both.
     """
-    of = {"layer": layer} if body == FLAT else {"layer": layer, "body": body}
+    of: dict[str, Any] = {"layer": layer} if body == FLAT else {"layer": layer, "body": body}
     if solution.uncertainty is None:
-        return solution.stress(x, y, z, **of), None  # type: ignore[arg-type]
+        return solution.stress(x, y, z, **of), None
     # Looked up in the type: a wrapper that changes ``stress`` alone must not be passed over.
     both = getattr(type(solution), "stress_with_uncertainty", None)
     if both is not None:
         sigma, U = both(solution, x, y, z, **of)
         return sigma, U
-    return solution.stress(x, y, z, **of), solution.stress_uncertainty(x, y, z, **of)  # type: ignore[arg-type]
+    return solution.stress(x, y, z, **of), solution.stress_uncertainty(x, y, z, **of)
 
 
 def _require_solid(coatings: Coatings, substrate: tuple[float, float], friction: float, of: str = "") -> None:

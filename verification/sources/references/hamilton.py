@@ -1,4 +1,4 @@
-"""Sliding contact of a sphere, rigid or elastic, on a homogeneous elastic half-space, all six stresses in closed form.
+"""Sliding contact of a sphere on a homogeneous elastic half-space, all six stresses in closed form.
 
 Friction q = f p in +x under Hertz's pressure, which it leaves as it is (Goodman's assumption). With lengths
 over a, zeta = z - i, R = sqrt(r^2 + zeta^2), tau = r / (R + zeta) the integrals over wavenumbers

@@ -1,7 +1,7 @@
 """Hertz contact of a sphere, rigid or elastic, on a homogeneous elastic half-space.
 
-Axes: origin at first contact, ``z`` into the body in question. Stress is positive in tension, pressure positive in
-compression, hence sigma_zz = -p at z = 0. SI units.
+Axes: origin at first contact, ``z`` into the body in question. Stress is positive in tension, pressure
+positive in compression, hence sigma_zz = -p at z = 0. SI units.
 
 H. Hertz, J. reine angew. Math. 92 (1882) 156-171; M. T. Huber, Ann. Phys. 319 (1904) 153-163, for the field
 off the axis; K. L. Johnson, Contact Mechanics, Cambridge University Press, 1985.
