@@ -5,11 +5,12 @@ on the kind of its sources.
 """
 
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from verification.problem.arrays import Array
-from verification.problem.contact import CoatedContact
+from verification.problem.contact import BALL, FLAT, CoatedContact
 
+ON_BALL = f"{BALL}, "  # before the name of a line of the ball
 _INTERFACE = re.compile(r"interface ([1-9]\d*), (upper|lower) side")
 
 
@@ -31,11 +32,17 @@ class Profile:
 
 @dataclass(frozen=True)
 class Line:
-    """A line in the plane y = 0: along x at ``depth`` [m] in ``layer``, or the axis (depth None)."""
+    """A line of ``body`` in y = 0: along x at ``depth`` [m] in ``layer``, or the axis (depth None)."""
 
     name: str
     depth: float | None
     layer: int | None
+    body: str = FLAT
+
+    @property
+    def place(self) -> str:
+        """The name without that of the body."""
+        return self.name.removeprefix(ON_BALL)
 
     @property
     def coordinate(self) -> str:
@@ -46,8 +53,12 @@ class Line:
 def line_of(name: str, problem: CoatedContact) -> Line:
     """The line called ``name``: "surface", "axis", or "interface k, upper|lower side" with k from 1.
 
+    Before that "ball, " for a line of an elastic ball. The upper side is the one nearer to the contact.
     Raises ValueError where the problem has no such line.
     """
+    if name.startswith(ON_BALL) and problem.ball is not None:
+        there = line_of(name.removeprefix(ON_BALL), problem.seen_from(BALL))
+        return replace(there, name=name, body=BALL)
     if name == "surface":
         return Line(name, 0.0, 0)
     if name == "axis":
@@ -64,8 +75,11 @@ def line_of(name: str, problem: CoatedContact) -> Line:
 
 
 def lines_of(problem: CoatedContact) -> tuple[Line, ...]:
-    """Surface, axis, then both sides of each interface."""
-    names = ["surface", "axis"]
-    for k in range(1, len(problem.coatings) + 1):
-        names += [f"interface {k}, upper side", f"interface {k}, lower side"]
+    """Surface, axis, then both sides of each interface of the flat; the same of an elastic ball."""
+    names = []
+    for body in problem.bodies:
+        before = ON_BALL if body == BALL else ""
+        names += [f"{before}surface", f"{before}axis"]
+        for k in range(1, len(problem.seen_from(body).coatings) + 1):
+            names += [f"{before}interface {k}, upper side", f"{before}interface {k}, lower side"]
     return tuple(line_of(name, problem) for name in names)

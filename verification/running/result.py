@@ -118,6 +118,7 @@ def describe(problem: CoatedContact | PrescribedLoad | LoadingCurve) -> dict[str
         "a_h": problem.a_h,
         "p_h": problem.p_h,
         "delta_h": problem.delta_h,
+        "dundurs_beta": problem.dundurs_beta,
         "interfaces": problem.interfaces,
     }
 
