@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 
 from verification.judging.verdict import Outcome
-from verification.problem.quantity import PEAKS
+from verification.problem.contact import BALL, FLAT
+from verification.problem.quantity import BALL_PEAKS, PEAKS, SCALARS
 from verification.report.credibility import faults, mutants, self_tests, statement
 from verification.report.figures.fields import pictures
 from verification.report.figures.panels import line_figures
@@ -38,7 +39,7 @@ from verification.report.tables.case import (
 from verification.report.tables.cells import Cell, Section, Table
 from verification.report.tables.csv import embedded, line_csv
 from verification.report.tables.labels import OUTCOMES, OutcomeStyle, source_label
-from verification.report.tables.lookup import lines, scale, slug
+from verification.report.tables.lookup import layers, lines, scale, slug
 from verification.report.tables.matrix import verdict_matrix
 from verification.report.tables.numbers import scientific, seconds
 from verification.running.result import CaseResult
@@ -152,10 +153,17 @@ def _common(material: Material, result: CaseResult) -> dict[str, Any]:
         "command": rerun_command(result.name, material.info.command),
         "facts": facts(result),
         "failures": [(source_label(s.source), s.failure) for s in result.sources if s.failure is not None],
-        "layers": layer_table(result),
+        "layers": [
+            layer_table(result, body) for body in (FLAT, BALL) if body == FLAT or layers(result, body)
+        ],
         "budget": budget_table(result),
         "diagnostics": diagnostics_table(result),
     }
+
+
+def _scalars(result: CaseResult) -> list[tuple[str, ...]]:
+    """The quantities of each table of numbers of the contact."""
+    return [SCALARS, PEAKS, *([BALL_PEAKS] if layers(result, BALL) else [])]
 
 
 def _published(material: Material, result: CaseResult) -> dict[str, Any]:
@@ -168,14 +176,14 @@ def _contact(material: Material, result: CaseResult) -> dict[str, Any]:
     bad = [item for item in result.verdicts if item[1].outcome is not Outcome.AGREES]
     return _common(material, result) | {
         "sketch": sketch(result),
-        "contact": [contact_table(result), contact_table(result, PEAKS)],
+        "contact": [contact_table(result, quantities) for quantities in _scalars(result)],
         "contact_csv": embedded(line_csv(result, "contact")),
         "contact_file": f"{file}-contact.csv",
         "pictures": pictures(result, material.planes.get(result.name)),
         "lines": [
             {
                 "anchor": f"{anchor}-{slug(line)}",
-                "title": f"Along the {line}" if line in ("surface", "axis") else line.capitalize(),
+                "title": f"Along the {line}" if line in ("surface", "axis") else line[0].upper() + line[1:],
                 "figures": line_figures(result, line),
                 "csv": embedded(line_csv(result, line)),
                 "file": f"{file}-{slug(line)}.csv",

@@ -8,10 +8,18 @@ from typing import Any
 import numpy as np
 
 from verification.judging.verdict import Claim, Verdict
+from verification.problem.contact import FLAT
 from verification.problem.quantity import QUANTITIES, SCALARS, unit_of
 from verification.report.tables.cells import Cell, Table, number, row
 from verification.report.tables.labels import OUTCOMES, pair_label, row_css, source_label
-from verification.report.tables.lookup import divisor, layers, reference_source, scalar, scale
+from verification.report.tables.lookup import (
+    coordinate,
+    divisor,
+    layers,
+    reference_source,
+    scalar,
+    scale,
+)
 from verification.report.tables.matrix import outcome_cell
 from verification.report.tables.numbers import engineering, plain, scientific, with_uncertainty
 from verification.running.result import CaseResult
@@ -25,6 +33,7 @@ _FACTS = {
     "a_h": ("a_h, Hertz contact radius", "m"),
     "p_h": ("p_h, Hertz peak pressure", "Pa"),
     "delta_h": ("delta_h, Hertz approach", "m"),
+    "dundurs_beta": ("Dundurs' beta of the surfaces", ""),
 }
 
 
@@ -38,14 +47,14 @@ def facts(result: CaseResult) -> list[tuple[str, str]]:
     ]
 
 
-def layer_table(result: CaseResult) -> Table:
-    """The layers from the surface down, in real units and against the bare substrate.
+def layer_table(result: CaseResult, body: str = FLAT) -> Table:
+    """The layers of a body from its surface inwards, in real units and against its bare substrate.
 
     Thicknesses are over a_h, or over the radius of a prescribed load.
     """
     length = "a" if "load_radius" in result.problem else "a_h"
     a_h = scale(result, "load_radius" if length == "a" else "a_h")
-    found = layers(result)
+    found = layers(result, body)
     rows = []
     for layer, (E, nu, thickness) in enumerate(found, start=1):
         below = layer == len(found)
@@ -59,7 +68,10 @@ def layer_table(result: CaseResult) -> Table:
                 Cell("∞" if below else plain(thickness / a_h, 3) if a_h > 0 else "–", thickness),
             )
         )
-    return Table("Layers from the surface down.", ["layer", "E", "E / E_s", "nu", "h", f"h / {length}"], rows)
+    caption = (
+        "Layers from the surface down." if body == FLAT else "Layers of the ball, from its surface inwards."
+    )
+    return Table(caption, ["layer", "E", "E / E_s", "nu", "h", f"h / {length}"], rows)
 
 
 def contact_table(result: CaseResult, quantities: Sequence[str] = SCALARS) -> Table:
@@ -80,8 +92,8 @@ def contact_table(result: CaseResult, quantities: Sequence[str] = SCALARS) -> Ta
         groups.append((quantity.replace("_", " "), 3))
     return Table(
         "Numbers of the contact with the numerical uncertainty each source states (±), made dimensionless "
-        "with the Hertz scales of the bare substrate, and the difference over the value, of the largest "
-        "tension over the smaller of p_h and p0, of its place over a.",
+        "with the Hertz scales of the bare substrate, of both bodies where the ball is elastic, and the "
+        "difference over the value, of the largest tension over the smaller of p_h and p0, of its place over a.",
         columns,
         rows,
         groups,
@@ -119,7 +131,7 @@ def verdict_table(
     for claim, verdict in sorted(verdicts, key=lambda item: _badness(item[1]))[:most]:
         where = ""
         if verdict.worst is not None and claim.line != "contact" and a_h:
-            where = f"{'z' if claim.line == 'axis' else 'x'} = {plain(verdict.worst / a_h, 3)} a_h"
+            where = f"{coordinate(claim.line)} = {plain(verdict.worst / a_h, 3)} a_h"
         rows.append(
             row(
                 outcome_cell(verdict.outcome),

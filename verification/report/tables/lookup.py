@@ -7,7 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from verification.judging.verdict import Claim
-from verification.problem.profile import Profile
+from verification.problem.contact import BALL, FLAT
+from verification.problem.profile import ON_BALL, Profile
 from verification.problem.quantity import QUANTITIES
 from verification.running.result import CaseResult
 from verification.sources.registry import METHODS, REFERENCES
@@ -19,6 +20,7 @@ def group_of(line: str) -> str:
     """The column of the verdict matrix that a line belongs to."""
     if line == "contact":
         return GROUPS[0]
+    line = line.removeprefix(ON_BALL)
     return GROUPS[3] if line.startswith("interface") else line
 
 
@@ -53,14 +55,17 @@ def scale(result: CaseResult, name: str) -> np.float64:
         return np.float64("nan")
 
 
-def layers(result: CaseResult) -> list[tuple[float, float, float]]:
+def layers(result: CaseResult, body: str = FLAT) -> list[tuple[float, float, float]]:
     """(E [Pa], nu, thickness [m]) from the surface down, the substrate last with thickness infinity.
 
-    [] where the problem states anything else than finite numbers.
+    [] where the problem states anything else than finite numbers, and of a rigid ball.
     """
     try:
-        coatings = [(float(E), float(nu), float(h)) for E, nu, h in result.problem["coatings"]]
-        E, nu = (float(value) for value in result.problem["substrate"])
+        given, substrate = result.problem["coatings"], result.problem["substrate"]
+        if body == BALL:
+            *substrate, given = result.problem.get("ball") or (None, None, ())
+        coatings = [(float(E), float(nu), float(h)) for E, nu, h in given]
+        E, nu = (float(value) for value in substrate)
     except (KeyError, TypeError, ValueError):
         return []
     numbers = [number for layer in coatings for number in layer] + [E, nu]
@@ -89,7 +94,7 @@ def contact_radius(result: CaseResult) -> float | None:
 
 def coordinate(line: str) -> str:
     """The coordinate that runs along ``line``."""
-    return "z" if line == "axis" else "x"
+    return "z" if group_of(line) == "axis" else "x"
 
 
 def claimed_quantities(result: CaseResult, line: str) -> tuple[str, ...]:
