@@ -93,7 +93,8 @@ def contact_table(result: CaseResult, quantities: Sequence[str] = SCALARS) -> Ta
     return Table(
         "Numbers of the contact with the numerical uncertainty each source states (±), made dimensionless "
         "with the Hertz scales of the bare substrate, of both bodies where the ball is elastic, and the "
-        "difference over the value, of the largest tension over the smaller of p_h and p0, of its place over a.",
+        "difference over the value, of the largest tension over the smaller of p_h and p0, of "
+        "its place over a.",
         columns,
         rows,
         groups,
