@@ -58,7 +58,7 @@ class CaseResult:
         for outcome in (Outcome.DISAGREES, Outcome.NO_RESULT, Outcome.INCONCLUSIVE):
             if outcome in found:
                 return outcome
-        return Outcome.AGREES if found else Outcome.NO_RESULT
+        return Outcome.AGREES if Outcome.AGREES in found else Outcome.NO_RESULT
 
     @cached_property
     def profile_of(self) -> dict[tuple[str, str, str], Profile]:
