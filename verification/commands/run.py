@@ -33,8 +33,7 @@ from verification.commands.common.options import (
     RecordsFolder,
     Resume,
 )
-from verification.commands.common.terminal import STYLE, did_you_mean, one_line, print_error, print_json
-from verification.commands.solving import (
+from verification.commands.common.solving import (
     kept_results,
     kept_study,
     require_gmsh,
@@ -42,6 +41,7 @@ from verification.commands.solving import (
     solve,
     worker_count,
 )
+from verification.commands.common.terminal import STYLE, did_you_mean, one_line, print_error, print_json
 from verification.credibility import accuracy as accuracy_study
 from verification.credibility.accuracy import AccuracyStudy
 from verification.credibility.self_tests import SelfTest, self_tests

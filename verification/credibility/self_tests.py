@@ -22,7 +22,7 @@ from verification.cases.table import FOLDER
 from verification.judging.claims import standard_claims
 from verification.judging.verdict import Outcome, Verdict, compare, judge
 from verification.problem.arrays import Array
-from verification.problem.contact import CoatedContact, PrescribedLoad, Uncertainty
+from verification.problem.contact import FLAT, CoatedContact, PrescribedLoad, Uncertainty
 from verification.problem.profile import Profile, lines_of
 from verification.running.contact import judge_case, solve_case
 from verification.running.provenance import fingerprint
@@ -332,7 +332,9 @@ class _Stated(Hertz):
     def pressure_uncertainty(self, x: ArrayLike, y: ArrayLike = 0.0) -> Array:
         return np.full(np.broadcast_shapes(np.shape(x), np.shape(y)), self.share * self.peak_pressure)
 
-    def stress_uncertainty(self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None) -> Array:
+    def stress_uncertainty(
+        self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None, body: str = FLAT
+    ) -> Array:
         shape = np.broadcast_shapes(np.shape(x), np.shape(y), np.shape(z))
         return np.full((3, 3, *shape), self.share * self.peak_pressure)
 
@@ -351,5 +353,7 @@ class _Spoiled(_Stated):
 class _Failing(_Stated):
     """A method that has a contact but no stresses."""
 
-    def stress(self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None) -> Array:
+    def stress(
+        self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None, body: str = FLAT
+    ) -> Array:
         raise ValueError("no stresses today")
