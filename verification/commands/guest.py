@@ -32,7 +32,7 @@ from verification.guests.exam import REFERENCE
 from verification.guests.examination import Examined, examined, outcome_counts, packed_cases
 from verification.judging.outcome import Outcome
 from verification.problem.quantity import unit_of
-from verification.report.junit import junit_xml
+from verification.regression.junit import junit_xml
 from verification.report.tables.numbers import engineering
 from verification.running.pool import Task
 from verification.running.result import CaseResult
