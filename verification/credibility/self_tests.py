@@ -41,12 +41,16 @@ Answers = Iterator[tuple[str, Any, Any]]  # what was asked, what came out, what 
 
 @dataclass(frozen=True)
 class SelfTest:
-    """``name`` of a part of the harness, the ``statement`` that must hold, what was ``found``."""
+    """``name`` of a part of the harness, the ``statement`` that must hold, what was ``found``.
+
+    answers : number of known answers that it gave.
+    """
 
     name: str
     statement: str
     passed: bool
     found: str
+    answers: int = 0
 
 
 def self_tests() -> tuple[SelfTest, ...]:
@@ -63,12 +67,13 @@ def _tried(name: str, statement: str, ask: Callable[[], Answers]) -> SelfTest:
                 np.isclose(found, wanted, rtol=1e-9, atol=0) if isinstance(wanted, float) else found == wanted
             )
             if not same:
-                return SelfTest(name, statement, False, f"{what}: {found}, where it has to be {wanted}")
+                found = f"{what}: {found}, where it has to be {wanted}"
+                return SelfTest(name, statement, False, found, asked)
     except Exception as error:  # whatever a part of the harness fails with is the answer
         return SelfTest(
-            name, statement, False, f"{type(error).__name__}: {' '.join(str(error).split())[:300]}"
+            name, statement, False, f"{type(error).__name__}: {' '.join(str(error).split())[:300]}", asked
         )
-    return SelfTest(name, statement, True, f"{asked} known answers")
+    return SelfTest(name, statement, True, f"{asked} known answers", asked)
 
 
 def _of_case_file() -> Answers:

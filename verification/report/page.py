@@ -10,6 +10,7 @@ import numpy as np
 from verification.judging.verdict import Outcome
 from verification.problem.contact import BALL, FLAT
 from verification.problem.quantity import BALL_PEAKS, PEAKS, SCALARS
+from verification.regression.manifest import manifest_message
 from verification.report.credibility import faults, mutants, self_tests, statement
 from verification.report.figures.fields import pictures
 from verification.report.figures.panels import line_figures
@@ -75,6 +76,7 @@ def render(material: Material) -> str:
             info=material.info,
             summary=_summary(material.results),
             counts=_counts(material.results),
+            failures=_failures(material),
             matrix=_matrix(material) if material.contacts else None,
             published=[_published(material, result) for result in material.published],
             outcomes=OUTCOMES.values(),
@@ -104,6 +106,18 @@ def _matrix(material: Material) -> Table:
 def _counts(results: Sequence[CaseResult]) -> list[tuple[OutcomeStyle, int]]:
     counted = Counter(verdict.outcome for result in results for _, verdict in result.verdicts)
     return [(style, counted[outcome]) for outcome, style in reversed(OUTCOMES.items())]
+
+
+def _failures(material: Material) -> list[str]:
+    """What fails although every verdict may agree: self-tests, the manifest, the baseline."""
+    failed = [test.name for test in material.evidence.self_tests if not test.passed]
+    messages = [f"self-tests of the harness: {', '.join(failed)}"] if failed else []
+    found = material.evidence.baseline
+    if found is not None and found.less:
+        messages.append(manifest_message(found.less))
+    if found is not None and found.unexplained:
+        messages.append(f"numbers differ from the baseline: {baseline.baseline_message(found)}")
+    return messages
 
 
 def _summary(results: Sequence[CaseResult]) -> str:
