@@ -28,7 +28,7 @@ _RULE = (
     f"{scientific(TOLERANCE, 1)} of the scale where the uncertainty is less (the largest change between two "
     f"machines was 5e-12), and where an uncertainty is more than {FACTOR:g} times that of the baseline or "
     "less than a quarter of it. "
-    "Every point of every profile is compared."
+    "Every point of every profile is compared, with values that the baseline rounds to 5e-11 at most."
 )
 
 
