@@ -1,4 +1,4 @@
-"""Uncertainty that each method usually states, by quantity, line and class of problem, beside the cap.
+"""Uncertainty that each method usually states beside the cap: by quantity, line, class of problem.
 
 The rule: of the cases of a class in the baseline the largest U over all judged points, over the scale of the
 comparison. cap / U is what an uncertainty could grow by before its comparison is inconclusive; the baseline
