@@ -120,14 +120,39 @@ class Solution:
 
     def displacement(self, x: Any, y: Any, z: Any) -> np.ndarray:
         """Displacement (u_x, u_y, u_z) [m], u_z into the solid; shape (3,) + that of the points."""
-        points = self._points(x, y, z, None)
+        return self._displacement(self._points(x, y, z, None), None)[0]
+
+    def displacement_with_uncertainty(self, x: Any, y: Any, z: Any) -> tuple[np.ndarray, np.ndarray]:
+        """``displacement`` and the absolute numerical uncertainty of each component [m], same shape.
+
+        Raises ValueError when the solution was solved without an estimate.
+        """
+        return self._displacement(self._points(x, y, z, None), self._estimated())
+
+    def displacement_uncertainty(self, x: Any, y: Any, z: Any) -> np.ndarray:
+        """The second part of ``displacement_with_uncertainty`` alone."""
+        return self.displacement_with_uncertainty(x, y, z)[1]
+
+    def _displacement(
+        self, points: SolidPoints, estimates: Estimates | None
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Displacement, and its uncertainty by ``estimates``, zero without."""
         cos, sin = points.cos, points.sin
-        u, _ = self.state.normal(points.located)
-        if self.state.tangential is not None:
-            sliding, _ = self.state.tangential(points.located)
-            u = u + sliding * np.stack([cos, sin, cos])
-        xyz = np.stack([u[0] * cos - u[1] * sin, u[0] * sin + u[1] * cos, u[2]])
-        return xyz.reshape(3, *points.shape) * self.units.displacement
+        u, error = np.zeros((2, 3, cos.size))
+        harmonics = (np.stack([np.ones_like(cos)] * 3), np.stack([cos, sin, cos]))
+        fields = (self.state.normal, self.state.tangential)
+        found = (None, None) if estimates is None else (estimates.normal, estimates.tangential)
+        for angle, field_, estimate in zip(harmonics, fields, found, strict=True):
+            if field_ is not None:
+                amplitude, _ = field_(points.located)
+                u += angle * amplitude
+                if estimate is not None:
+                    error += np.abs(angle) * estimate.displacement(amplitude)
+        x = np.stack([u[0] * cos - u[1] * sin, u[0] * sin + u[1] * cos, u[2]])
+        cos, sin = np.abs(cos), np.abs(sin)
+        U = np.stack([error[0] * cos + error[1] * sin, error[0] * sin + error[1] * cos, error[2]])
+        unit = self.units.displacement
+        return x.reshape(3, *points.shape) * unit, U.reshape(3, *points.shape) * unit
 
     def _estimated(self) -> Estimates:
         if self.estimates is None:

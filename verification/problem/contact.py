@@ -57,6 +57,11 @@ class CoatedContact:
         return self.a_h**2 / self.radius
 
     @property
+    def S_h(self) -> float:
+        """Hertz stiffness dW/d delta of the bare substrate, 2 E* a_h [N/m]. Johnson (4.23) differentiated."""
+        return 2 * self.E_star * self.a_h
+
+    @property
     def interfaces(self) -> tuple[float, ...]:
         """Depth of each interface [m], from the surface down."""
         return tuple(float(z) for z in np.cumsum([thickness for _, _, thickness in self.coatings]))
@@ -117,7 +122,8 @@ class NotClaimed(ValueError):
 class Solution(Protocol):
     """Solution that both methods and the references return; see each method for its own record.
 
-    ``displacement`` of a reference without displacements raises NotClaimed.
+    ``displacement`` of a reference without displacements raises NotClaimed; ``stiffness`` is dW/d delta, None
+    where a method has none.
     """
 
     @property
@@ -126,6 +132,10 @@ class Solution(Protocol):
     def approach(self) -> float: ...
     @property
     def peak_pressure(self) -> float: ...
+    @property
+    def stiffness(self) -> float | None: ...
+    @property
+    def stiffness_uncertainty(self) -> float | None: ...
     @property
     def uncertainty(self) -> Any: ...
     @property
@@ -139,6 +149,7 @@ class Solution(Protocol):
     def stress_uncertainty(
         self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None
     ) -> Array: ...
+    def displacement_uncertainty(self, x: ArrayLike, y: ArrayLike, z: ArrayLike) -> Array: ...
 
 
 def stress_with_uncertainty(
@@ -156,6 +167,19 @@ def stress_with_uncertainty(
         sigma, U = both(solution, x, y, z, layer=layer)
         return sigma, U
     return solution.stress(x, y, z, layer=layer), solution.stress_uncertainty(x, y, z, layer=layer)
+
+
+def displacement_with_uncertainty(
+    solution: Solution, x: ArrayLike, y: ArrayLike, z: ArrayLike
+) -> tuple[Array, Array | None]:
+    """Displacement and its uncertainty [m] at points, (3,) + points, as ``stress_with_uncertainty``."""
+    if solution.uncertainty is None:
+        return solution.displacement(x, y, z), None
+    both = getattr(type(solution), "displacement_with_uncertainty", None)
+    if both is not None:
+        u, U = both(solution, x, y, z)
+        return u, U
+    return solution.displacement(x, y, z), solution.displacement_uncertainty(x, y, z)
 
 
 def _require_solid(coatings: Coatings, substrate: tuple[float, float], friction: float) -> None:
