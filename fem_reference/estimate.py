@@ -287,11 +287,12 @@ class Estimates:
 
 
 def contact_estimates(
-    levels: ContactLevels, state: ElasticState, units: Units, load: float, size: float
-) -> tuple[Estimates, float]:
-    """Uncertainty of the frictionless contact ``state`` of the final level, and that of its stiffness.
+    levels: ContactLevels, states: tuple[ElasticState, ...], units: Units, load: float, size: float
+) -> tuple[tuple[Estimates, ...], float]:
+    """Uncertainty of each of the frictionless contact ``states`` of the final level, and of its stiffness.
 
-    size : of the final mesh.  load : in scaled ``units``, as ``levels``.
+    states : of the flat, then of an elastic ball.  size : of the final mesh.  load : in scaled ``units``, as
+    ``levels``.
     """
     final, companion = levels.final, levels.companion
     assert companion is not None
@@ -299,14 +300,22 @@ def contact_estimates(
         _at_load(contact, load, levels.slope) for contact in (final, companion)
     )
     load_residual = abs(final.load / load - 1)
-    coarser = ElasticState.of_contact(state.solid, companion)
+    bodies = (None, companion.ball)
+    coarser = [
+        ElasticState.of_contact(state.solid, companion, body)
+        for state, body in zip(states, bodies, strict=False)
+    ]
     edge, other_edge = (_edge_displacement(contact) for contact in (final, companion))
     # what the displaced edges leave of the difference of the radii is due to all other triangles
     changes = abs(a + edge - other_a - other_edge), abs(approach - other_approach)
-    found = estimates(state, coarser, units, changes, load_residual, abs(edge), size)
+    found = tuple(
+        estimates(state, coarse, units, changes, load_residual, abs(edge), size, states)
+        for state, coarse in zip(states, coarser, strict=True)
+    )
+    truncation = sum(state.truncation(0)[0] for state in states) / final.approach
     stiffness = (
-        _factor(state.discretisation.order, size) * abs(final.stiffness - companion.stiffness)
-        + (load_residual + state.truncation(0)[0] / final.approach) * final.stiffness
+        _factor(final.discretisation.order, size) * abs(final.stiffness - companion.stiffness)
+        + (load_residual + truncation) * final.stiffness
     )
     return found, float(stiffness * units.load / units.displacement)
 
@@ -319,22 +328,25 @@ def estimates(
     load_residual: float,
     edge: float,
     size: float,
+    bodies: tuple[ElasticState, ...] = (),
 ) -> Estimates:
     """Uncertainty of a frictionless ``state``.
 
     changes : of contact radius and approach from the mesh of the companion, at one load
     load_residual : relative error of the load
     edge : displacement of the contact edge by the size of the last triangle
-    size : of the mesh
+    size : of the mesh.  bodies : the states of all bodies in contact, by default this one alone
     """
     d = state.discretisation
     at, largest = peak(state.pressure, d.contact_vertices)
     a = d.mesh.contact_radius
     size_radius, size_approach = changes
-    far_approach, far_stress = state.truncation(0)
+    bodies = bodies or (state,)
+    far_approach, far_stress = np.sum([body.truncation(0) for body in bodies], axis=0)
     # a given pressure and its radius are exact
     far_pressure = far_stress if state.normal.root_at_edge else 0.0
     far_radius = far_pressure / largest * a
+    central = sum(body.central_displacement for body in bodies)
     displacement, factor = units.displacement, _factor(d.order, size)
     pointwise = factor * _coarseness(size)
     balance = load_residual / 3 * a
@@ -351,7 +363,7 @@ def estimates(
         ("contact_radius", "load balance", balance * units.length),
         ("approach", "element size", factor * size_approach * displacement),
         ("approach", "outer boundary", far_approach * displacement),
-        ("approach", "load balance", load_residual * state.central_displacement * displacement),
+        ("approach", "load balance", load_residual * central * displacement),
         ("peak_pressure", "element size", size_peak * units.pressure),
         ("peak_pressure", "outer boundary", far_pressure * units.pressure),
         ("peak_pressure", "load balance", load_residual / 3 * largest * units.pressure),
@@ -367,8 +379,8 @@ def estimates(
         SAFETY * _coarseness(size) ** 2,
         radius_error,
         relative,
-        far_stress,
-        far_approach,
+        float(far_stress),
+        float(far_approach),
     )
     return Estimates(Uncertainty(**total, budget=budget), pressure, normal, None, companion)
 

@@ -12,7 +12,6 @@ equation of the second kind of Lebedev and Ufliand, PMM 22 (1958) 320-326.
 """
 
 from collections.abc import Callable
-from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -25,7 +24,7 @@ from semianalytic.contact import NotConverged
 from semianalytic.edge_profile import Profile
 from semianalytic.inputs import Body
 
-__all__ = ["SHARES", "RoundContact", "contact", "reflecting_depth"]
+__all__ = ["SHARES", "RoundContact", "compliance_excess", "contact", "reflecting_depth"]
 
 Array = NDArray[np.floating]
 
@@ -45,7 +44,26 @@ class RoundContact(NamedTuple):
     stiffness_error: float
 
 
+def compliance_excess(body: Body) -> Callable[[Array], Array]:
+    """M(k) - 1 of flat and elastic ball together: M = E* sum M_i/E_i*, 1/E* = sum 1/E_i*."""
+    coated = [one for one in body.pair if one.coatings]
+    shares = [body.contact_modulus / one.moduli[0] for one in coated]
+
+    def excess(k: Array) -> Array:
+        total = np.zeros_like(k)
+        for share, one in zip(shares, coated, strict=True):
+            total += share * frf.compliance_excess(k, **one.layers)
+        return total
+
+    return excess
+
+
 def reflecting_depth(body: Body) -> float:
+    """Depth [m] of the first interface of either body that matters; infinite where both are uncoated."""
+    return min((_reflecting_depth(one) for one in body.pair if one.coatings), default=np.inf)
+
+
+def _reflecting_depth(body: Body) -> float:
     """Depth [m] of the first interface that matters: exp(-2 k h) is rounding where the response ends.
 
     The thickness of the first coating where the next material differs; a coating divided into equal parts
@@ -62,11 +80,7 @@ def contact(radius: float, load: float | None, approach: float | None, body: Bod
     radius [m], and load [N] or approach [m], the other None.
     Raises NotConverged where no contact radius is found.
     """
-    excess: Callable[[Array], Array] = np.zeros_like
-    if body.coatings:
-        excess = partial(frf.compliance_excess, **body.layers)
-    E_star = body.moduli[0]
-    depth = reflecting_depth(body) if body.coatings else np.inf
+    excess, E_star, depth = compliance_excess(body), body.contact_modulus, reflecting_depth(body)
 
     def Hertz(a: float) -> float:
         """Contact radius on a solid as compliant as the layers at the wavelength of a."""

@@ -14,7 +14,8 @@ from verification.commands.common.terminal import print_error
 
 CODES = (
     "Exit codes: 0 all agree, 1 disagreement, 2 bad input, 3 no result, 4 inconclusive, 5 all agree but a "
-    "number is not that of the baseline, 130 stopped by Ctrl-C."
+    "number is not that of the baseline, 6 all agree but less is judged than the manifest records, 130 "
+    "stopped by Ctrl-C."
 )
 
 

@@ -10,7 +10,15 @@ from verification.judging.claims import standard_claims
 from verification.judging.verdict import Outcome, Verdict
 from verification.problem.contact import CoatedContact
 from verification.problem.profile import Line, Profile, lines_of, oblique_lines
-from verification.problem.quantity import DISPLACEMENTS, IN_PLANE, PEAKS, QUANTITIES, SCALARS, SLOPES, STRESSES
+from verification.problem.quantity import (
+    DISPLACEMENTS,
+    IN_PLANE,
+    PEAKS,
+    QUANTITIES,
+    SCALARS,
+    SLOPES,
+    STRESSES,
+)
 from verification.running.contact import decide
 from verification.running.result import CaseResult, RunInfo, SourceResult
 from verification.sources.registry import CLOSED, SOURCES
@@ -69,6 +77,8 @@ def result_of(
             scale = np.abs(profile.value) if profile.line == "contact" else problem.p_h
             if profile.quantity in DISPLACEMENTS:
                 scale = problem.delta_h
+            if profile.quantity in DISPLACEMENTS + SLOPES:  # as their caps
+                scale = 0.01 * scale
             noise = errors[source] * scale * random.uniform(-1, 1, profile.value.shape)
             value = profile.value + noise
             key = (profile.quantity, profile.line, source)
@@ -116,6 +126,7 @@ def described(problem: CoatedContact) -> dict[str, Any]:
         "a_h": problem.a_h,
         "p_h": problem.p_h,
         "delta_h": problem.delta_h,
+        "S_h": problem.S_h,
         "interfaces": list(problem.interfaces),
     }
 

@@ -135,6 +135,8 @@ def parse_case(raw: bytes, path: Path) -> Case:
         if method in _CaseFile.model_fields
     }
     claims = _claims(path, checked, problem)
+    if not claims:
+        raise CaseError(f"{path}: claim: nothing is claimed of this problem, so that nothing would be judged")
     return Case(path.stem, checked.title, problem, claims, checked.source, numerics, text, checked.resolve)
 
 

@@ -74,16 +74,19 @@ def parse_published(raw: bytes, path: Path) -> PublishedCase:
         raise CaseError(str(error)) from None
     except (ValueError, OverflowError, ZeroDivisionError) as error:
         raise CaseError(f"{path}: {error}") from None
+    claims = tuple(
+        _claim(item, source)
+        for item in columns
+        for source in (*METHODS, *EXACT)
+        if SOURCES[source].supports(problem, QUANTITIES[item.profile.quantity].kind)
+    )
+    if not claims:
+        raise CaseError(f"{path}: table: no source supports a column, so that nothing would be judged")
     return PublishedCase(
         name=path.stem,
         title=checked.title,
         problem=problem,
-        claims=tuple(
-            _claim(item, source)
-            for item in columns
-            for source in (*METHODS, *EXACT)
-            if SOURCES[source].supports(problem, QUANTITIES[item.profile.quantity].kind)
-        ),
+        claims=claims,
         columns=tuple(columns),
         citation={
             **checked.model_dump(include={"year", "remark"}),

@@ -22,7 +22,7 @@ from verification.cases.table import FOLDER
 from verification.judging.claims import standard_claims
 from verification.judging.verdict import Outcome, Verdict, compare, judge
 from verification.problem.arrays import Array
-from verification.problem.contact import CoatedContact, PrescribedLoad, Uncertainty
+from verification.problem.contact import FLAT, CoatedContact, PrescribedLoad, Uncertainty
 from verification.problem.profile import Profile, line_of, lines_of
 from verification.running.contact import judge_case, solve_case
 from verification.running.provenance import fingerprint
@@ -41,12 +41,16 @@ Answers = Iterator[tuple[str, Any, Any]]  # what was asked, what came out, what 
 
 @dataclass(frozen=True)
 class SelfTest:
-    """``name`` of a part of the harness, the ``statement`` that must hold, what was ``found``."""
+    """``name`` of a part of the harness, the ``statement`` that must hold, what was ``found``.
+
+    answers : number of known answers that it gave.
+    """
 
     name: str
     statement: str
     passed: bool
     found: str
+    answers: int = 0
 
 
 def self_tests() -> tuple[SelfTest, ...]:
@@ -63,12 +67,13 @@ def _tried(name: str, statement: str, ask: Callable[[], Answers]) -> SelfTest:
                 np.isclose(found, wanted, rtol=1e-9, atol=0) if isinstance(wanted, float) else found == wanted
             )
             if not same:
-                return SelfTest(name, statement, False, f"{what}: {found}, where it has to be {wanted}")
+                found = f"{what}: {found}, where it has to be {wanted}"
+                return SelfTest(name, statement, False, found, asked)
     except Exception as error:  # whatever a part of the harness fails with is the answer
         return SelfTest(
-            name, statement, False, f"{type(error).__name__}: {' '.join(str(error).split())[:300]}"
+            name, statement, False, f"{type(error).__name__}: {' '.join(str(error).split())[:300]}", asked
         )
-    return SelfTest(name, statement, True, f"{asked} known answers")
+    return SelfTest(name, statement, True, f"{asked} known answers", asked)
 
 
 def _of_case_file() -> Answers:
@@ -357,11 +362,13 @@ class _Stated(Hertz):
     def pressure_uncertainty(self, x: ArrayLike, y: ArrayLike = 0.0) -> Array:
         return np.full(np.broadcast_shapes(np.shape(x), np.shape(y)), self.share * self.peak_pressure)
 
-    def stress_uncertainty(self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None) -> Array:
+    def stress_uncertainty(
+        self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None, body: str = FLAT
+    ) -> Array:
         shape = np.broadcast_shapes(np.shape(x), np.shape(y), np.shape(z))
         return np.full((3, 3, *shape), self.share * self.peak_pressure)
 
-    def displacement_uncertainty(self, x: ArrayLike, y: ArrayLike, z: ArrayLike) -> Array:
+    def displacement_uncertainty(self, x: ArrayLike, y: ArrayLike, z: ArrayLike, body: str = FLAT) -> Array:
         shape = np.broadcast_shapes(np.shape(x), np.shape(y), np.shape(z))
         return np.full((3, *shape), self.share * self.approach)
 
@@ -384,5 +391,7 @@ class _Spoiled(_Stated):
 class _Failing(_Stated):
     """A method that has a contact but no stresses."""
 
-    def stress(self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None) -> Array:
+    def stress(
+        self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None, body: str = FLAT
+    ) -> Array:
         raise ValueError("no stresses today")

@@ -13,6 +13,13 @@ from verification.running.result import CaseResult
 from verification.sources.registry import METHODS, REFERENCES
 
 GROUPS = ("contact", "surface", "axis", "interfaces", "off plane")
+TITLES = {
+    "surface": "Along the surface",
+    "axis": "Along the axis",
+    "off plane": "Off the plane y = 0: along x at y = 0.4 a_h, in the first layer",
+    "oblique": "Oblique line from (−0.9, −0.2, 0) a_h through the layers, direction (0.48, 0.36, 0.8)",
+    "oblique surface": "Surface at 30 degrees from x, out to five contact radii",
+}
 _GROUP_OF = {"contact": GROUPS[0], "oblique": GROUPS[4], "oblique surface": GROUPS[4]}
 
 

@@ -1,4 +1,4 @@
-"""Sliding contact of a rigid sphere on a homogeneous elastic half-space, all six stresses in closed form.
+"""Sliding contact of a sphere on a homogeneous elastic half-space, all six stresses in closed form.
 
 Friction q = f p in +x under Hertz's pressure, which it leaves as it is (Goodman's assumption). The integrals
 A_m and B_m of ``hertz`` give every stress, without a division by r. The field is that of Hamilton, Proc.
@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from verification.problem.arrays import Array
+from verification.problem.contact import BALL, FLAT
 from verification.sources.references.hertz import Hertz, HertzContact, integrals
 
 
@@ -29,13 +30,18 @@ class Hamilton(HertzContact):
             raise ValueError(f"friction = {self.friction:g}; Coulomb's coefficient is zero or positive")
         super().__post_init__()
 
-    def stress(self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None) -> Array:
+    def stress(
+        self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None, body: str = FLAT
+    ) -> Array:
         """sigma[i, j, ...] [Pa], shape (3, 3) + points: Hertz and Huber's field and that of the friction.
 
+        The traction on the ball is -q.
         One material: ``layer`` is accepted and has no meaning here. Raises ValueError where z < 0.
         """
-        normal = Hertz(self.radius, self.load, self.E, self.nu)
-        return normal.stress(x, y, z) + self.friction * self.stress_of_traction(x, y, z)
+        contact = self.seen_from(body)
+        normal = Hertz(contact.radius, contact.load, contact.E, contact.nu, ball=contact.ball)
+        f = -self.friction if body == BALL else self.friction
+        return normal.stress(x, y, z) + f * contact.stress_of_traction(x, y, z)
 
     def stress_of_traction(self, x: ArrayLike, y: ArrayLike, z: ArrayLike) -> Array:
         """Stress under q = p in +x alone, without the pressure [Pa], shape (3, 3) + points.
@@ -66,6 +72,7 @@ class Hamilton(HertzContact):
             sigma[i, j] = sigma[j, i]
         return self.peak_pressure * sigma
 
-    def displacement(self, x: ArrayLike, y: ArrayLike, z: ArrayLike) -> Array:
+    def displacement(self, x: ArrayLike, y: ArrayLike, z: ArrayLike, body: str = FLAT) -> Array:
         """u[i, ...] [m] towards points at infinity, shape (3,) + points. Raises ValueError where z < 0."""
-        return self._displaced(x, y, z, self.friction)
+        f = -self.friction if body == BALL else self.friction
+        return self.seen_from(body)._displaced(x, y, z, f)

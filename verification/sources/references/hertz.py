@@ -1,7 +1,7 @@
-"""Hertz contact of a rigid sphere on a homogeneous elastic half-space.
+"""Hertz contact of a sphere, rigid or elastic, on a homogeneous elastic half-space.
 
-Axes: origin at first contact, ``z`` into the solid. Stress is positive in tension, pressure positive in
-compression, hence sigma_zz = -p at z = 0. SI units.
+Axes: origin at first contact, ``z`` into the body in question. Stress is positive in tension, pressure
+positive in compression, hence sigma_zz = -p at z = 0. SI units.
 
 H. Hertz, J. reine angew. Math. 92 (1882) 156-171; M. T. Huber, Ann. Phys. 319 (1904) 153-163, for the field
 off the axis; K. L. Johnson, Contact Mechanics, Cambridge University Press, 1985.
@@ -19,13 +19,14 @@ give, from phat(k) = p0 (sin k - k cos k) / k^3,
     C_m = int phat J_m e^(-kz) dk       = p0 (Im L_m^-3 - Re L_m^-2)
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
+from typing import Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from verification.problem.arrays import Array
-from verification.problem.contact import Uncertainty
+from verification.problem.contact import BALL, FLAT, Uncertainty
 
 Complex = NDArray[np.complex128]
 
@@ -34,6 +35,7 @@ Complex = NDArray[np.complex128]
 class HertzContact:
     """Sphere of ``radius`` [m] under ``load`` [N] on a solid of ``E`` [Pa], ``nu``: its size and pressure.
 
+    ball : (E [Pa], nu) of the sphere, None where it is rigid.
     Raises ValueError naming the quantity that is out of range.
     """
 
@@ -41,6 +43,7 @@ class HertzContact:
     load: float
     E: float
     nu: float
+    ball: tuple[float, float] | None = field(default=None, kw_only=True)
 
     def __post_init__(self) -> None:
         for name in ("radius", "load", "E"):
@@ -48,11 +51,24 @@ class HertzContact:
                 raise ValueError(f"{name} = {getattr(self, name):g}; Hertz needs it positive")
         if not -1 < self.nu <= 0.5:
             raise ValueError(f"nu = {self.nu:g}; an isotropic solid has -1 < nu <= 0.5")
+        if self.ball is not None and not (self.ball[0] > 0 and -1 < self.ball[1] <= 0.5):
+            raise ValueError(f"ball = {self.ball}; Hertz needs E > 0 and -1 < nu <= 0.5")
 
     @property
     def E_star(self) -> float:
-        """Contact modulus E / (1 - nu^2) [Pa]; the sphere is rigid."""
-        return self.E / (1 - self.nu**2)
+        """Contact modulus [Pa], 1/E* = (1 - nu^2)/E of the solid plus that of the ball. Johnson (4.20)."""
+        if self.ball is None:
+            return self.E / (1 - self.nu**2)
+        return 1 / ((1 - self.nu**2) / self.E + (1 - self.ball[1] ** 2) / self.ball[0])
+
+    def seen_from(self, body: str) -> Self:
+        """The same contact with ``body`` as the solid. Raises ValueError where the ball is rigid."""
+        if body == FLAT:
+            return self
+        if body != BALL or self.ball is None:
+            raise ValueError(f"body = {body!r}; this contact has an elastic {FLAT} alone")
+        E, nu = self.ball
+        return replace(self, E=E, nu=nu, ball=(self.E, self.nu))
 
     @property
     def contact_radius(self) -> float:
@@ -103,11 +119,13 @@ class HertzContact:
         """Zero [Pa]: exact."""
         return np.zeros(np.broadcast_shapes(np.shape(x), np.shape(y)))
 
-    def stress_uncertainty(self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None) -> Array:
+    def stress_uncertainty(
+        self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None, body: str = FLAT
+    ) -> Array:
         """Zero [Pa]: exact."""
         return np.zeros((3, 3, *np.broadcast_shapes(np.shape(x), np.shape(y), np.shape(z))))
 
-    def displacement_uncertainty(self, x: ArrayLike, y: ArrayLike, z: ArrayLike) -> Array:
+    def displacement_uncertainty(self, x: ArrayLike, y: ArrayLike, z: ArrayLike, body: str = FLAT) -> Array:
         """Zero [m]: exact."""
         return np.zeros((3, *np.broadcast_shapes(np.shape(x), np.shape(y), np.shape(z))))
 
@@ -149,9 +167,11 @@ class Hertz(HertzContact):
         s = np.minimum(a / np.maximum(rho, a), 1.0)
         inside = np.pi / 4 * (2 * a**2 - rho**2) / a
         outside = ((2 * a**2 - rho**2) * np.arcsin(s) + rho * a * np.sqrt(1 - s**2)) / (2 * a)
-        return p0 / self.E_star * np.where(rho <= a, inside, outside)
+        return p0 * (1 - self.nu**2) / self.E * np.where(rho <= a, inside, outside)
 
-    def stress(self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None) -> Array:
+    def stress(
+        self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None, body: str = FLAT
+    ) -> Array:
         """sigma[i, j, ...] [Pa], shape (3, 3) + points. Huber (1904); on the surface Johnson (3.43).
 
             w^2 = [r^2+z^2-a^2 + sqrt((r^2+z^2-a^2)^2 + 4 a^2 z^2)] / 2,   s = z/w
@@ -160,6 +180,8 @@ class Hertz(HertzContact):
 
         One material: ``layer`` is accepted and has no meaning here. Raises ValueError where z < 0.
         """
+        if body != FLAT:
+            return self.seen_from(body).stress(x, y, z)
         x, y, z = np.broadcast_arrays(*(np.asarray(v, dtype=float) for v in (x, y, z)))
         if np.any(z < 0):
             raise ValueError(f"z = {np.min(z):g} m is above the surface; depth counts down from 0")
@@ -210,9 +232,9 @@ class Hertz(HertzContact):
         sigma[2, 2] = -self.peak_pressure / (1 + s**2)
         return sigma
 
-    def displacement(self, x: ArrayLike, y: ArrayLike, z: ArrayLike) -> Array:
+    def displacement(self, x: ArrayLike, y: ArrayLike, z: ArrayLike, body: str = FLAT) -> Array:
         """u[i, ...] [m] towards points at infinity, shape (3,) + points. Raises ValueError where z < 0."""
-        return self._displaced(x, y, z, 0.0)
+        return self.seen_from(body)._displaced(x, y, z, 0.0)
 
 
 def integrals(r: Array, z: Array) -> tuple[list[Array], list[Array], list[Array]]:
