@@ -52,6 +52,7 @@ app = App(
 groups = {
     "": app,
     "baseline": _group("baseline", "The stored numbers that every run is compared with."),
+    "guest": _group("guest", "Examine a contact code of your own, in any language."),
     "study": _group("study", "Sweep a parameter with both methods behind every number."),
 }
 for key, entry in COMMANDS.items():
@@ -59,6 +60,7 @@ for key, entry in COMMANDS.items():
     place, epilogue = f"verification.commands.{entry['place']}", _epilogue(entry["examples"])
     groups[group].command(place, name=name, help=entry["summary"], help_epilogue=epilogue)
 app.command(groups["baseline"])
+app.command(groups["guest"])
 app.command(groups["study"])
 
 

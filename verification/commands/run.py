@@ -45,7 +45,7 @@ from verification.commands.common.terminal import STYLE, did_you_mean, one_line,
 from verification.credibility import accuracy as accuracy_study
 from verification.credibility.accuracy import AccuracyStudy
 from verification.credibility.self_tests import SelfTest, self_tests
-from verification.judging.verdict import Outcome
+from verification.judging.outcome import DECIDED, Outcome
 from verification.regression.baseline import Regression, State, regression, regression_json
 from verification.regression.manifest import manifest_message
 from verification.regression.record import read_baseline
@@ -217,8 +217,8 @@ def _summary(
             result.name: {
                 "outcome": result.outcome,
                 "baseline": states.get(result.name),
-                "verdicts": {o: sum(v.outcome is o for _, v in result.verdicts) for o in Outcome},
-                "invariants": {o: sum(law.outcome is o for law in result.invariants) for o in Outcome},
+                "verdicts": {o: sum(v.outcome is o for _, v in result.verdicts) for o in DECIDED},
+                "invariants": {o: sum(law.outcome is o for law in result.invariants) for o in DECIDED},
             }
             for result in results
         },
@@ -241,7 +241,7 @@ def _print_table(results: Sequence[CaseResult], page: Path, seconds: float, besi
     for result in results:
         worst = max((v.difference for _, v in result.verdicts if v.difference is not None), default=None)
         count = Counter(verdict.outcome for _, verdict in result.verdicts)
-        counts = [f"[{STYLE[o]}]{count[o]}[/]" if count[o] else "." for o in Outcome]
+        counts = [f"[{STYLE[o]}]{count[o]}[/]" if count[o] else "." for o in DECIDED]
         state = [_state(beside, result.name)] if states else []
         table.add_row(escape(result.name), *counts, "-" if worst is None else f"{worst:.1e}", *state)
     console.print(table)

@@ -22,7 +22,8 @@ def junit_xml(
     """The verdicts as JUnit XML, with the manifest and the baseline ``beside`` them.
 
     DISAGREES is a failure, NO_RESULT an error. INCONCLUSIVE is a failure too, of its own type: only
-    AGREES passes, and a skipped test counts as passed in most readers of this format.
+    AGREES passes, and a skipped test counts as passed in most readers of this format. UNSUPPORTED, what a
+    guest does not give, is skipped.
     tests : what each self-test found wrong, "" where it passed.
     """
     root = Element("testsuites", name="coatcheck", time=f"{info.seconds:.3f}")
@@ -55,7 +56,6 @@ def _suite(root: Element, result: CaseResult, info: RunInfo) -> None:
         name=_text(result.name),
         time=f"{result.seconds:.3f}",
         timestamp=_text(info.started),
-        skipped="0",
     )
     properties = SubElement(suite, "properties")
     SubElement(properties, "property", name="title", value=_text(result.title))
@@ -80,10 +80,14 @@ def _suite(root: Element, result: CaseResult, info: RunInfo) -> None:
     suite.set("tests", str(len(suite.findall("testcase"))))
     suite.set("failures", str(len(suite.findall("testcase/failure"))))
     suite.set("errors", str(len(suite.findall("testcase/error"))))
+    suite.set("skipped", str(len(suite.findall("testcase/skipped"))))
 
 
 def _mark(item: Element, outcome: Outcome, reason: str, text: str) -> None:
     if outcome is Outcome.AGREES:
+        return
+    if outcome is Outcome.UNSUPPORTED:
+        SubElement(item, "skipped", message=_text(reason))
         return
     tag = "error" if outcome is Outcome.NO_RESULT else "failure"
     SubElement(item, tag, type=outcome.value, message=_text(reason)).text = _text(text)

@@ -61,7 +61,8 @@ class CaseResult:
         for outcome in (Outcome.DISAGREES, Outcome.NO_RESULT, Outcome.INCONCLUSIVE):
             if outcome in found:
                 return outcome
-        return Outcome.AGREES if self.verdicts else Outcome.NO_RESULT
+        agreeing = any(verdict.outcome is Outcome.AGREES for _, verdict in self.verdicts)
+        return Outcome.AGREES if agreeing else Outcome.NO_RESULT
 
     @cached_property
     def profile_of(self) -> dict[tuple[str, str, str], Profile]:

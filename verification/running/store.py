@@ -16,7 +16,7 @@ from typing import Any
 MAX_BYTES = 50_000_000
 PART = ".coatcheck-part"  # how the name of a file ends that is still being written
 # Whatever the commands of this program make below a directory of theirs.
-FOLDERS = ("cases", "planes", "fields", "problems", "clean", "trials", "cache", "figures")
+FOLDERS = ("cases", "planes", "fields", "problems", "answers", "clean", "trials", "cache", "figures")
 _HEAD = re.compile(r'\{"sha256": "([0-9a-f]{64})", "payload": ')
 
 
