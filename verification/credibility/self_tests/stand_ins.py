@@ -14,7 +14,7 @@ from verification.sources.references.hamilton import Hamilton
 class Stated(Hamilton):
     """Hamilton with an uncertainty, ``share`` of each number."""
 
-    share: float = 2e-5
+    share: float = 1e-7
 
     @property
     def uncertainty(self) -> Uncertainty:
@@ -29,6 +29,14 @@ class Stated(Hamilton):
     ) -> Array:
         shape = np.broadcast_shapes(np.shape(x), np.shape(y), np.shape(z))
         return np.full((3, 3, *shape), self.share * self.peak_pressure)
+
+    def displacement_uncertainty(self, x: ArrayLike, y: ArrayLike, z: ArrayLike, body: str = FLAT) -> Array:
+        shape = np.broadcast_shapes(np.shape(x), np.shape(y), np.shape(z))
+        return np.full((3, *shape), self.share * self.approach)
+
+    @property
+    def stiffness_uncertainty(self) -> float:
+        return self.share * self.stiffness
 
 
 @dataclass(frozen=True)
@@ -74,10 +82,17 @@ def labelled(i: int, j: int, place: tuple[float, float, float], layer: int | Non
     return float(component + 1e9 * x + 7e9 * y + 3e9 * z + 1e7 * (-1 if layer is None else layer))
 
 
+def moved(i: int, place: tuple[float, float, float]) -> float:
+    """A displacement that tells its component and place."""
+    x, y, z = place
+    return float(1e-7 * (1 + i) + 1e-3 * x + 7e-3 * y + 3e-3 * z)
+
+
 class Labelled:
     """A solution whose every number says what it is and where."""
 
     contact_radius, approach, peak_pressure = 1e-4, 1e-6, 3e9
+    stiffness, stiffness_uncertainty = 6e7, 5e1
     uncertainty = Uncertainty(3e-9, 4e-12, 2e6)
 
     def pressure(self, x: ArrayLike, y: ArrayLike = 0.0) -> Array:
@@ -98,5 +113,8 @@ class Labelled:
         return 1e-3 * self.stress(x, y, z, layer)
 
     def displacement(self, x: ArrayLike, y: ArrayLike, z: ArrayLike) -> Array:
-        x, y, z = (np.asarray(v, dtype=float) for v in (x, y, z))
-        return np.array([1e-6 * (1 + i) + x + 7 * y + 3 * z for i in range(3)])
+        places = np.stack(np.broadcast_arrays(*(np.asarray(v, dtype=float) for v in (x, y, z))), axis=-1)
+        return np.array([[moved(i, tuple(place)) for place in places.tolist()] for i in range(3)])
+
+    def displacement_uncertainty(self, x: ArrayLike, y: ArrayLike, z: ArrayLike) -> Array:
+        return 1e-3 * self.displacement(x, y, z)
