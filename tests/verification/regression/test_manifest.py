@@ -23,6 +23,7 @@ from verification.running.stored import read_run
 DECIDE = "verification.running.contact:decide"
 POSITIONS = "verification.sampling.lines:positions"
 LAWS = "verification.judging.invariants.check:_laws"
+TENFOLD = Edit(DECIDE, "scale = divisor(", "scale = (1 if claim.line == 'contact' else 10) * divisor(")
 ZONE = "np.abs(np.abs(a.position) - edge) < claim.edge * edge"
 
 
@@ -40,7 +41,7 @@ def recorded():
     ("change", "message"),
     [
         (
-            Edit(DECIDE, "p_h, p0, edge)", "p_h, p0, edge) * (10 if claim.line != 'contact' else 1)"),
+            TENFOLD,
             "scale 1.90986e+10 in place of 1.90986e+09",
         ),
         (Edit(DECIDE, "claim.cap)", "max(claim.cap, 0.05))"), "cap 0.05 in place of"),
@@ -101,7 +102,7 @@ def test_less_that_is_judged_is_a_failure_on_any_machine(recorded, change, messa
         (Edit("verification.regression.exits:run_code", "if not passed:", "if False:"), "exit codes"),
         (Edit("verification.regression.exits:exit_code", "in found:", "in ():"), "exit codes"),
         (Edit("verification.regression.exits:run_code", "LESS if beside.less else", ""), "exit codes"),
-        (Edit(DECIDE, "problem.p_h, p0, edge)", "10 * problem.p_h, 10 * p0, edge)"), "coverage"),
+        (TENFOLD, "coverage"),
         (Edit(DECIDE, ZONE, "a.position < 0"), "coverage"),
     ],
 )
