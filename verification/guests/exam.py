@@ -133,18 +133,18 @@ def question_of(
             LineOfPoints(line=name, quantities=quantities, **{k: v.tolist() for k, v in points.items()})
         )
 
-    def layers(coatings: Coatings) -> list[Layer]:
+    def materials(coatings: Coatings) -> list[Layer]:
         return [Layer(E=E / Pa, nu=nu, thickness=h / m) for E, nu, h in coatings]
 
     E, nu = problem.substrate
     ball = problem.ball and ElasticBall(
-        E=problem.ball[0] / Pa, nu=problem.ball[1], coatings=layers(problem.ball[2])
+        E=problem.ball[0] / Pa, nu=problem.ball[1], coatings=materials(problem.ball[2])
     )
     sphere = Sphere(
         radius=problem.radius / m,
         load=problem.load / N,
         friction=problem.friction,
-        coatings=layers(problem.coatings),
+        coatings=materials(problem.coatings),
         substrate=Layer(E=E / Pa, nu=nu),
         ball=ball,
     )

@@ -53,7 +53,7 @@ def problem_of(question: Question) -> CoatedContact:
     """The problem of ``question`` in the units of the guest."""
     p = question.problem
     substrate = (p.substrate.E, p.substrate.nu)
-    ball = p.ball and (p.ball.E, p.ball.nu, _layers(p.ball.coatings))
+    ball = None if p.ball is None else (p.ball.E, p.ball.nu, _layers(p.ball.coatings))
     return CoatedContact(p.radius, p.load, _layers(p.coatings), substrate, p.friction, ball)
 
 
