@@ -13,8 +13,8 @@ from verification.guests.protocol import Answer, ElasticBall, Layer, LineOfPoint
 from verification.judging.verdict import Claim
 from verification.problem.arrays import Coatings
 from verification.problem.geometry import layer_at
-from verification.problem.profile import Profile, line_of
-from verification.problem.quantity import unit_of
+from verification.problem.profile import Profile, line_of, lines_of
+from verification.problem.quantity import SLOPES, unit_of
 from verification.running.contact import failed
 from verification.running.pool import Task
 from verification.running.provenance import fingerprint
@@ -41,9 +41,10 @@ def prepare(name: str, text: str, path: str) -> None:
     """Solve the case file ``text`` exactly, sample it on its lines, store it at ``path``."""
     case = parse_case(text.encode(), Path(f"{name}.toml"))
     solution = solve_exactly(case.problem)
-    places = positions(case.problem, case.lines, {REFERENCE: solution})
+    lines = lines_of(case.problem)
+    places = positions(case.problem, lines, {REFERENCE: solution})
     profiles = list(sample_contact(solution, REFERENCE, case.problem))
-    for line in case.lines:
+    for line in lines:
         profiles += sample(solution, REFERENCE, line, places[line], case.problem)
     result = CaseResult(
         name=case.name,
@@ -90,9 +91,11 @@ def kept_exam(folder: Path, case: Case) -> CaseResult | None:
 def claims_of(case: Case, guest: Guest) -> tuple[Claim, ...]:
     """The claims of ``case`` about the exact reference, as claims about the guest.
 
-    The cap is that of the case, or what the guest claims, where this is more.
+    The cap is that of the case, or what the guest claims, where this is more. A guest is asked for the
+    contact and for the lines of the plane y = 0, not for the stiffness.
     """
-    found = [claim for claim in case.claims if claim.between == PATTERN]
+    known = {"contact", *(line.name for line in lines_of(case.problem))}
+    found = [c for c in case.claims if c.between == PATTERN and c.line in known and c.quantity not in SLOPES]
     return tuple(
         Claim(
             claim.quantity,

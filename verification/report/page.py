@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from verification.judging.verdict import Outcome
-from verification.problem.quantity import PEAKS
+from verification.problem.quantity import PEAKS, SLOPES
 from verification.regression.manifest import manifest_message
 from verification.report.credibility import faults, mutants, self_tests, statement
 from verification.report.figures.fields import pictures
@@ -39,7 +39,7 @@ from verification.report.tables.case import (
 from verification.report.tables.cells import Cell, Section, Table
 from verification.report.tables.csv import embedded, line_csv
 from verification.report.tables.labels import OUTCOMES, OutcomeStyle, source_label
-from verification.report.tables.lookup import lines, scale, slug
+from verification.report.tables.lookup import TITLES, lines, scale, slug
 from verification.report.tables.matrix import verdict_matrix
 from verification.report.tables.numbers import scientific, seconds
 from verification.running.result import CaseResult
@@ -182,14 +182,14 @@ def _contact(material: Material, result: CaseResult) -> dict[str, Any]:
     bad = [item for item in result.verdicts if item[1].outcome is not Outcome.AGREES]
     return _common(material, result) | {
         "sketch": sketch(result),
-        "contact": [contact_table(result), contact_table(result, PEAKS)],
+        "contact": [contact_table(result), contact_table(result, SLOPES + PEAKS)],
         "contact_csv": embedded(line_csv(result, "contact")),
         "contact_file": f"{file}-contact.csv",
         "pictures": pictures(result, material.planes.get(result.name)),
         "lines": [
             {
                 "anchor": f"{anchor}-{slug(line)}",
-                "title": f"Along the {line}" if line in ("surface", "axis") else line.capitalize(),
+                "title": TITLES.get(line, line.capitalize()),
                 "figures": line_figures(result, line),
                 "csv": embedded(line_csv(result, line)),
                 "file": f"{file}-{slug(line)}.csv",

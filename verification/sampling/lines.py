@@ -7,7 +7,8 @@ import numpy as np
 from verification.problem.arrays import Array
 from verification.problem.contact import CoatedContact, Solution, stress_with_uncertainty
 from verification.problem.profile import Line, Profile
-from verification.problem.quantity import IN_PLANE, PEAKS, QUANTITIES, SCALARS
+from verification.problem.quantity import IN_PLANE, PEAKS, QUANTITIES, SCALARS, SLOPES
+from verification.sampling import oblique
 from verification.sampling.tension import Search
 
 __all__ = ["positions", "sample", "sample_contact"]
@@ -17,9 +18,9 @@ NEAR_EDGE = np.array([0.0, 1e-4, 1e-3, 1e-2])
 
 
 def sample_contact(solution: Solution, source: str, problem: CoatedContact) -> tuple[Profile, ...]:
-    """Every scalar of the contact as a profile of one point [SI]."""
+    """Every scalar of the contact as a profile of one point [SI]; no slope where the solution has none."""
     found = []
-    for name in SCALARS:
+    for name in (*SCALARS, *(name for name in SLOPES if getattr(solution, name, None) is not None)):
         value = np.array([QUANTITIES[name].value(solution, problem)])
         stated = QUANTITIES[name].uncertainty(solution, problem)
         U = None if stated is None else np.array([stated])
@@ -49,7 +50,14 @@ def positions(
     z = np.unique(np.concatenate([inside.ravel(), 4 * a * ((np.arange(40) + 0.5) / 40) ** 1.5]))
     edge = list(solutions.values())[-1].contact_radius * np.concatenate([1 + NEAR_EDGE, 1 - NEAR_EDGE])
     surface = np.unique(np.concatenate([x, edge, -edge] if problem.friction else [x, edge]))
-    return {line: z if line.depth is None else surface if line.depth == 0 else x for line in lines}
+    return {
+        line: z
+        if line.coordinate == "z"
+        else oblique.positions(problem, line, a)
+        if line.depth is None
+        else (surface if line.depth == 0 else x)
+        for line in lines
+    }
 
 
 def sample(
@@ -57,12 +65,13 @@ def sample(
 ) -> tuple[Profile, ...]:
     """Every quantity of ``line`` at ``position`` [m]: the four stresses, on the surface the pressure too.
 
+    Off the plane y = 0 see ``oblique``.
+
     problem : on the surface also its largest tension with its place, as ``PEAKS`` of the contact.
     """
-    if line.depth is None:
-        x, z = np.zeros_like(position), position
-    else:
-        x, z = position, np.full_like(position, line.depth)
+    if line.depth is None and line.coordinate != "z":
+        return oblique.sample(solution, source, line, position)
+    x, _, z = line.points(position)
     stated = solution.uncertainty is not None
     profiles = []
     if line.name == "surface":
