@@ -20,7 +20,7 @@ NEAR_EDGE = np.array([0.0, 1e-4, 1e-3, 1e-2])
 def sample_contact(solution: Solution, source: str, problem: CoatedContact) -> tuple[Profile, ...]:
     """Every scalar of the contact as a profile of one point [SI]; no slope where the solution has none."""
     found = []
-    for name in (*SCALARS, *(name for name in SLOPES if getattr(solution, name) is not None)):
+    for name in (*SCALARS, *(name for name in SLOPES if getattr(solution, name, None) is not None)):
         value = np.array([QUANTITIES[name].value(solution, problem)])
         stated = QUANTITIES[name].uncertainty(solution, problem)
         U = None if stated is None else np.array([stated])
