@@ -17,6 +17,9 @@ therefore taken at the given load: W ~ a^slope, d delta = dW / stiffness.
 A contact radius in error by da displaces the whole field, which changes the values at fixed points next to
 the edge by up to the square root of da. The change of the field under that displacement is part of the
 estimate of pressures and stresses.
+
+The error of a displacement is smooth and mostly that of the whole mesh: its estimate is one number for each
+component, the largest difference at the samples of all triangles times the same factor.
 """
 
 from collections.abc import Callable
@@ -162,6 +165,7 @@ class StressEstimate:
     radius_error : uncertainty of the contact radius
     relative : added in proportion to the stress, for errors of the load
     everywhere : added at every point, for the truncation of the half-space
+    far : the same of displacements
     """
 
     field: HarmonicField
@@ -171,15 +175,35 @@ class StressEstimate:
     radius_error: float
     relative: float
     everywhere: float
+    far: float
+
+    def displacement(self, u: np.ndarray) -> np.ndarray:
+        """Estimate (3, n) of the displacement ``u`` (3, n) at any points."""
+        order = self.field.discretisation.order
+        change = self.safety / (COMPANION**order - 1) * self._sampled[1]
+        return change[:, None] + self.far + self.relative * np.abs(u)
+
+    @cached_property
+    def _sampled(self) -> tuple[np.ndarray, np.ndarray]:
+        """``_error`` at the samples of all triangles, with the largest change of each displacement (3,)."""
+        error, change = self._compared(self.points.triangles)
+        return error, change.max(axis=1)
 
     def _error(self, points: _Pair) -> np.ndarray:
         """Estimate (6, n) at points of comparison, before the largest in a neighbourhood is taken."""
-        final, companion = (f(at)[1] for f, at in zip((self.field, self.companion), points, strict=True))
+        return self._compared(points)[0]
+
+    def _compared(self, points: _Pair) -> tuple[np.ndarray, np.ndarray]:
+        """``_error``, and the change of the displacement (3, n) from the companion."""
+        (u, final), (other, companion) = (
+            f(at) for f, at in zip((self.field, self.companion), points, strict=True)
+        )
         d = self.field.discretisation
         # In the triangles at the axis, where u_r / r is a derivative too, one order less is observed.
         on_axis = (d.mesh.points[0, d.triangulation.t] == 0).any(axis=0)[points[0].cells]
         gain = self.points.ratio(points) ** (d.order - on_axis) - 1
-        return self.safety / gain * np.abs(final - companion) + self.relative * np.abs(final)
+        error = self.safety / gain * np.abs(final - companion) + self.relative * np.abs(final)
+        return error, np.abs(u - other)
 
     @cached_property
     def _corners(self) -> np.ndarray:
@@ -187,7 +211,7 @@ class StressEstimate:
         d = self.field.discretisation
         t = d.triangulation.t
         vertices = t + d.mesh.layer * d.mesh.points.shape[1]
-        worst = self._error(self.points.triangles).reshape(6, -1, t.shape[1]).max(axis=1)
+        worst = self._sampled[0].reshape(6, -1, t.shape[1]).max(axis=1)
         estimate = np.zeros((6, (int(d.mesh.layer.max()) + 1) * d.mesh.points.shape[1]))
         by_layer = estimate.reshape(6, -1, d.mesh.points.shape[1])
         for _ in range(REACH):
@@ -251,11 +275,13 @@ class Estimates:
         """The estimates of ``state``, which slides with ``friction``; the companion is solved for it."""
         companion, estimate = self.companion.with_friction(friction), None
         if state.tangential is not None and companion.tangential is not None:
+            far, everywhere = state.truncation(1)
             estimate = replace(
                 self.normal,
                 field=state.tangential,
                 companion=companion.tangential,
-                everywhere=state.truncation(1)[1],
+                everywhere=everywhere,
+                far=far,
             )
         return replace(self, companion=companion, tangential=estimate)
 
@@ -354,6 +380,7 @@ def estimates(
         radius_error,
         relative,
         float(far_stress),
+        float(far_approach),
     )
     return Estimates(Uncertainty(**total, budget=budget), pressure, normal, None, companion)
 

@@ -140,14 +140,43 @@ class Solution:
 
     def displacement(self, x: Any, y: Any, z: Any, body: str = "flat") -> np.ndarray:
         """Displacement (u_x, u_y, u_z) [m], u_z into the body; shape (3,) + that of the points."""
-        points, state = self._points(x, y, z, None, body), self._of(body).state
+        points = self._points(x, y, z, None, body)
+        return self._displacement(self._of(body).state, points, None)[0]
+
+    def displacement_with_uncertainty(
+        self, x: Any, y: Any, z: Any, body: str = "flat"
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """``displacement`` and the absolute numerical uncertainty of each component [m], same shape.
+
+        Raises ValueError when the solution was solved without an estimate.
+        """
+        points = self._points(x, y, z, None, body)
+        return self._displacement(self._of(body).state, points, self._estimated(body))
+
+    def displacement_uncertainty(self, x: Any, y: Any, z: Any, body: str = "flat") -> np.ndarray:
+        """The second part of ``displacement_with_uncertainty`` alone."""
+        return self.displacement_with_uncertainty(x, y, z, body)[1]
+
+    def _displacement(
+        self, state: ElasticState, points: SolidPoints, estimates: Estimates | None
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Displacement, and its uncertainty by ``estimates``, zero without."""
         cos, sin = points.cos, points.sin
-        u, _ = state.normal(points.located)
-        if state.tangential is not None:
-            sliding, _ = state.tangential(points.located)
-            u = u + sliding * np.stack([cos, sin, cos])
-        xyz = np.stack([u[0] * cos - u[1] * sin, u[0] * sin + u[1] * cos, u[2]])
-        return xyz.reshape(3, *points.shape) * self.units.displacement
+        u, error = np.zeros((2, 3, cos.size))
+        harmonics = (np.stack([np.ones_like(cos)] * 3), np.stack([cos, sin, cos]))
+        fields = (state.normal, state.tangential)
+        found = (None, None) if estimates is None else (estimates.normal, estimates.tangential)
+        for angle, field_, estimate in zip(harmonics, fields, found, strict=True):
+            if field_ is not None:
+                amplitude, _ = field_(points.located)
+                u += angle * amplitude
+                if estimate is not None:
+                    error += np.abs(angle) * estimate.displacement(amplitude)
+        x = np.stack([u[0] * cos - u[1] * sin, u[0] * sin + u[1] * cos, u[2]])
+        cos, sin = np.abs(cos), np.abs(sin)
+        U = np.stack([error[0] * cos + error[1] * sin, error[0] * sin + error[1] * cos, error[2]])
+        unit = self.units.displacement
+        return x.reshape(3, *points.shape) * unit, U.reshape(3, *points.shape) * unit
 
     def _of(self, body: str) -> BodyFields:
         known = dict(zip(("flat", "ball"), self.bodies, strict=False))

@@ -65,6 +65,7 @@ class Solution:
     contact_radius [m] : where p vanishes; of a contact that is no disc, the radius of the disc of its area.
     approach [m].  peak_pressure [Pa] : largest pressure, which sits off the axis under stiff thin coatings.
     surface_nodes [m] : x on y = 0 at which no pressure is interpolated, past 2 contact radii.
+    stiffness [N/m] : d load / d approach, from neighbouring contacts; None of patches alone.
     """
 
     contact_radius: float
@@ -78,6 +79,8 @@ class Solution:
     coarser: "Solution | None" = field(repr=False)
     _level: Level = field(repr=False)
     _body: Body = field(repr=False)
+    stiffness: float | None = None
+    stiffness_uncertainty: float | None = None
 
     @classmethod
     def of_levels(
@@ -178,7 +181,31 @@ class Solution:
 
         x, y, z : [m], broadcast, z >= 0.  body : as in ``stress``.
         """
-        return fields.displacement(self._level, self._body.named(body), x, y, z)
+        return fields.displacement([self._level], self._body.named(body), x, y, z)[0]
+
+    def displacement_with_uncertainty(
+        self, x: ArrayLike, y: ArrayLike, z: ArrayLike, body: str = "flat"
+    ) -> tuple[Array, Array]:
+        """Displacement and its uncertainty [m], shape (3,) + points each.
+
+        With an edge profile from its coarser companions, as that of the stress, the largest of the components
+        for each alike; else the uncertainty of the approach everywhere.
+        Raises ValueError where no uncertainty was estimated.
+        """
+        self._companion()
+        assert self.uncertainty is not None
+        if not isinstance(self._level.shape, Profile):
+            u = self.displacement(x, y, z, body)
+            return u, np.full(u.shape, self.uncertainty.approach)
+        levels = [self._level, *(replace(self._level, shape=shape) for shape in self._studied[1:])]
+        u, second, third = fields.displacement(levels, self._body.named(body), x, y, z)
+        last, before = (np.abs(one - other).max(axis=0) for one, other in ((u, second), (second, third)))
+        total = self._convergence * np.maximum(last, self._convergence * before) + EXACT * self.approach
+        return u, np.broadcast_to(total, u.shape).copy()
+
+    def displacement_uncertainty(self, x: ArrayLike, y: ArrayLike, z: ArrayLike, body: str = "flat") -> Array:
+        """The second part of ``displacement_with_uncertainty``."""
+        return self.displacement_with_uncertainty(x, y, z, body)[1]
 
     def pressure_uncertainty(self, x: ArrayLike, y: ArrayLike = 0.0) -> Array:
         """Uncertainty of the pressure [Pa] from the coarser companion.

@@ -90,7 +90,7 @@ def solve(
     )
     sphere = Indenter(lambda grid: grid.radius**2 / (2 * radius), load, approach, round=True)
     found = collocation.contact(radius, load, approach, body)
-    a = found[0][0].radius
+    a = found[0].profile.radius
     if a > LARGEST * radius:
         raise ValueError(
             f"contact radius a = {a:g} m is {a / radius:.2g} of the sphere's radius; the parabolic gap and "
@@ -98,7 +98,7 @@ def solve(
         )
     half_width = fill * a
     if edge_correction:
-        sphere = replace(sphere, shapes=tuple(shape for shape, _ in found))
+        sphere = replace(sphere, shapes=tuple(one.profile for one in found))
         depth, reach = collocation.reflecting_depth(body), 1.01 * 2**0.5 * half_width
         if np.isfinite(depth):
             table = abel.layer_table(collocation.compliance_excess(body), depth, a, reach)
@@ -107,7 +107,11 @@ def solve(
     if touches_rim(levels[-1].found.pressure):
         raise NotConverged(f"the contact reaches the rim of the grid, fill = {fill:g}; enlarge it")
     estimate = uncertainty.of_contact(levels, sphere, body, numerics) if estimate_uncertainty else None
-    return Solution.of_levels(levels, body, estimate, began)
+    solution = Solution.of_levels(levels, body, estimate, began)
+    if not edge_correction:
+        return solution
+    error = uncertainty.of_stiffness(found) if estimate_uncertainty else None
+    return replace(solution, stiffness=found[0].stiffness, stiffness_uncertainty=error)
 
 
 def indent(

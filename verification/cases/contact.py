@@ -20,7 +20,7 @@ from verification.judging.claims import standard_claims
 from verification.judging.verdict import Claim
 from verification.problem.arrays import Coatings
 from verification.problem.contact import BALL, CoatedContact
-from verification.problem.profile import Line, line_of, lines_of
+from verification.problem.profile import Line, line_of, lines_of, oblique_lines
 from verification.sources.registry import METHODS, sources_of
 
 CASES = Path(__file__).parent / "shipped" / "contact"
@@ -45,8 +45,8 @@ class Case:
 
     @property
     def lines(self) -> tuple[Line, ...]:
-        """The lines of the plane y = 0 on which sources are compared."""
-        return lines_of(self.problem)
+        """The lines on which sources are compared: those of the plane y = 0, then the others."""
+        return lines_of(self.problem) + oblique_lines(self.problem)
 
 
 class _Substrate(Strict):

@@ -157,6 +157,7 @@ def _claim(item: PublishedColumn, source: str) -> Claim:
     U = item.profile.uncertainty
     assert U is not None
     # As in every other case; the uncertainty of the published value, which ``columns`` limits, is added.
-    cap = QUANTITIES[item.profile.quantity].cap + float(U.max()) / item.scale
+    quantity = QUANTITIES[item.profile.quantity]
+    cap = max(quantity.cap, quantity.least) + float(U.max()) / item.scale
     why = f"published in column {item.column} of {item.file}"
     return Claim(item.profile.quantity, item.profile.line, (source, PUBLISHED), cap, why)

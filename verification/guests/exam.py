@@ -9,11 +9,12 @@ import numpy as np
 
 from verification.cases.contact import Case, parse_case
 from verification.guests.description import Guest
-from verification.guests.protocol import Answer, Layer, LineOfPoints, Question, Sphere
+from verification.guests.protocol import Answer, ElasticBall, Layer, LineOfPoints, Question, Sphere
 from verification.judging.verdict import Claim
+from verification.problem.arrays import Coatings
 from verification.problem.geometry import layer_at
-from verification.problem.profile import Profile, line_of
-from verification.problem.quantity import unit_of
+from verification.problem.profile import Profile, line_of, lines_of
+from verification.problem.quantity import SLOPES, unit_of
 from verification.running.contact import failed
 from verification.running.pool import Task
 from verification.running.provenance import fingerprint
@@ -40,9 +41,10 @@ def prepare(name: str, text: str, path: str) -> None:
     """Solve the case file ``text`` exactly, sample it on its lines, store it at ``path``."""
     case = parse_case(text.encode(), Path(f"{name}.toml"))
     solution = solve_exactly(case.problem)
-    places = positions(case.problem, case.lines, {REFERENCE: solution})
+    lines = lines_of(case.problem)
+    places = positions(case.problem, lines, {REFERENCE: solution})
     profiles = list(sample_contact(solution, REFERENCE, case.problem))
-    for line in case.lines:
+    for line in lines:
         profiles += sample(solution, REFERENCE, line, places[line], case.problem)
     result = CaseResult(
         name=case.name,
@@ -89,9 +91,11 @@ def kept_exam(folder: Path, case: Case) -> CaseResult | None:
 def claims_of(case: Case, guest: Guest) -> tuple[Claim, ...]:
     """The claims of ``case`` about the exact reference, as claims about the guest.
 
-    The cap is that of the case, or what the guest claims, where this is more.
+    The cap is that of the case, or what the guest claims, where this is more. A guest is asked for the
+    contact and for the lines of the plane y = 0, not for the stiffness.
     """
-    found = [claim for claim in case.claims if claim.between == PATTERN]
+    known = {"contact", *(line.name for line in lines_of(case.problem))}
+    found = [c for c in case.claims if c.between == PATTERN and c.line in known and c.quantity not in SLOPES]
     return tuple(
         Claim(
             claim.quantity,
@@ -131,13 +135,21 @@ def question_of(
         lines.append(
             LineOfPoints(line=name, quantities=quantities, **{k: v.tolist() for k, v in points.items()})
         )
+
+    def materials(coatings: Coatings) -> list[Layer]:
+        return [Layer(E=E / Pa, nu=nu, thickness=h / m) for E, nu, h in coatings]
+
     E, nu = problem.substrate
+    ball = problem.ball and ElasticBall(
+        E=problem.ball[0] / Pa, nu=problem.ball[1], coatings=materials(problem.ball[2])
+    )
     sphere = Sphere(
         radius=problem.radius / m,
         load=problem.load / N,
         friction=problem.friction,
-        coatings=[Layer(E=E1 / Pa, nu=nu1, thickness=h / m) for E1, nu1, h in problem.coatings],
+        coatings=materials(problem.coatings),
         substrate=Layer(E=E / Pa, nu=nu),
+        ball=ball,
     )
     level = "".join(f"@{name}={value:g}" for name, value in parameter.items())
     return Question(

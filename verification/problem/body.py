@@ -52,6 +52,10 @@ class _OnBall:
     def displacement(self, x: ArrayLike, y: ArrayLike, z: ArrayLike) -> Array:
         return _turned(self.solution.displacement(-np.asarray(x), -np.asarray(y), z, body=BALL), _VECTOR)
 
+    def displacement_uncertainty(self, x: ArrayLike, y: ArrayLike, z: ArrayLike) -> Array:
+        U: Array = self.solution.displacement_uncertainty(-np.asarray(x), -np.asarray(y), z, body=BALL)
+        return U
+
 
 def _turned(field: Array, sign: Array) -> Array:
     return field * sign.reshape(sign.shape + (1,) * (field.ndim - sign.ndim))

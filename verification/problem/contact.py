@@ -67,6 +67,11 @@ class CoatedContact:
         return self.a_h**2 / self.radius
 
     @property
+    def S_h(self) -> float:
+        """Hertz stiffness dW/d delta of the bare substrate, 2 E* a_h [N/m]. Johnson (4.23) differentiated."""
+        return 2 * self.E_star * self.a_h
+
+    @property
     def bodies(self) -> tuple[str, ...]:
         """The elastic bodies by name."""
         return (FLAT,) if self.ball is None else (FLAT, BALL)
@@ -162,7 +167,8 @@ class Solution(Protocol):
 
     Of a contact with an elastic ball, stresses and displacements are those of the flat, with ``body="ball"``
     those of the ball: z into it, x and y as on the flat.
-    ``displacement`` of a reference without displacements raises NotClaimed.
+    ``displacement`` of a reference without displacements raises NotClaimed. ``stiffness`` is dW/d
+    delta, None where a method has none.
     """
 
     @property
@@ -171,6 +177,10 @@ class Solution(Protocol):
     def approach(self) -> float: ...
     @property
     def peak_pressure(self) -> float: ...
+    @property
+    def stiffness(self) -> float | None: ...
+    @property
+    def stiffness_uncertainty(self) -> float | None: ...
     @property
     def uncertainty(self) -> Any: ...
     @property
@@ -184,6 +194,7 @@ class Solution(Protocol):
     def stress_uncertainty(
         self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None
     ) -> Array: ...
+    def displacement_uncertainty(self, x: ArrayLike, y: ArrayLike, z: ArrayLike) -> Array: ...
 
 
 def stress_with_uncertainty(
@@ -202,6 +213,20 @@ def stress_with_uncertainty(
         sigma, U = both(solution, x, y, z, **of)
         return sigma, U
     return solution.stress(x, y, z, **of), solution.stress_uncertainty(x, y, z, **of)
+
+
+def displacement_with_uncertainty(
+    solution: Solution, x: ArrayLike, y: ArrayLike, z: ArrayLike, body: str = FLAT
+) -> tuple[Array, Array | None]:
+    """Displacement and its uncertainty [m] at points, (3,) + points, as ``stress_with_uncertainty``."""
+    of: dict[str, Any] = {} if body == FLAT else {"body": body}
+    if solution.uncertainty is None:
+        return solution.displacement(x, y, z, **of), None
+    both = getattr(type(solution), "displacement_with_uncertainty", None)
+    if both is not None:
+        u, U = both(solution, x, y, z, **of)
+        return u, U
+    return solution.displacement(x, y, z, **of), solution.displacement_uncertainty(x, y, z, **of)
 
 
 def _require_solid(coatings: Coatings, substrate: tuple[float, float], friction: float, of: str = "") -> None:

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from verification.judging.verdict import Outcome
-from verification.problem.contact import BALL, FLAT
+from verification.problem.contact import BALL
 from verification.problem.quantity import BALL_PEAKS, PEAKS, SCALARS
 from verification.regression.manifest import manifest_message
 from verification.report.credibility import faults, mutants, self_tests, statement
@@ -40,7 +40,7 @@ from verification.report.tables.case import (
 from verification.report.tables.cells import Cell, Section, Table
 from verification.report.tables.csv import embedded, line_csv
 from verification.report.tables.labels import OUTCOMES, OutcomeStyle, source_label
-from verification.report.tables.lookup import layers, lines, scale, slug
+from verification.report.tables.lookup import layers, lines, scale, slug, title_of
 from verification.report.tables.matrix import verdict_matrix
 from verification.report.tables.numbers import scientific, seconds
 from verification.running.result import CaseResult
@@ -197,7 +197,7 @@ def _contact(material: Material, result: CaseResult) -> dict[str, Any]:
         "lines": [
             {
                 "anchor": f"{anchor}-{slug(line)}",
-                "title": f"Along the {line}" if line in ("surface", "axis") else line[0].upper() + line[1:],
+                "title": title_of(line),
                 "figures": line_figures(result, line),
                 "csv": embedded(line_csv(result, line)),
                 "file": f"{file}-{slug(line)}.csv",

@@ -123,6 +123,7 @@ def describe(problem: CoatedContact | PrescribedLoad | LoadingCurve) -> dict[str
         "p_h": problem.p_h,
         "delta_h": problem.delta_h,
         "dundurs_beta": problem.dundurs_beta,
+        "S_h": problem.S_h,
         "interfaces": problem.interfaces,
     }
 

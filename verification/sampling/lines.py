@@ -8,7 +8,8 @@ from verification.problem.arrays import Array
 from verification.problem.body import on_body
 from verification.problem.contact import BALL, FLAT, CoatedContact, Solution, stress_with_uncertainty
 from verification.problem.profile import Line, Profile
-from verification.problem.quantity import BALL_PEAKS, IN_PLANE, PEAKS, QUANTITIES, SCALARS
+from verification.problem.quantity import BALL_PEAKS, IN_PLANE, PEAKS, QUANTITIES, SCALARS, SLOPES
+from verification.sampling import oblique
 from verification.sampling.tension import Search
 
 __all__ = ["positions", "sample", "sample_contact"]
@@ -18,9 +19,9 @@ NEAR_EDGE = np.array([0.0, 1e-4, 1e-3, 1e-2])
 
 
 def sample_contact(solution: Solution, source: str, problem: CoatedContact) -> tuple[Profile, ...]:
-    """Every scalar of the contact as a profile of one point [SI]."""
+    """Every scalar of the contact as a profile of one point [SI]; no slope where the solution has none."""
     found = []
-    for name in SCALARS:
+    for name in (*SCALARS, *(name for name in SLOPES if getattr(solution, name, None) is not None)):
         value = np.array([QUANTITIES[name].value(solution, problem)])
         stated = QUANTITIES[name].uncertainty(solution, problem)
         U = None if stated is None else np.array([stated])
@@ -47,7 +48,14 @@ def positions(
     z = {body: _depths(problem.seen_from(body), a) for body in problem.bodies}
     edge = list(solutions.values())[-1].contact_radius * np.concatenate([1 + NEAR_EDGE, 1 - NEAR_EDGE])
     surface = np.unique(np.concatenate([x, edge, -edge] if problem.friction else [x, edge]))
-    return {line: z[line.body] if line.depth is None else surface if line.depth == 0 else x for line in lines}
+    return {
+        line: z[line.body]
+        if line.coordinate == "z"
+        else oblique.positions(problem, line, a)
+        if line.depth is None
+        else (surface if line.depth == 0 else x)
+        for line in lines
+    }
 
 
 def _depths(problem: CoatedContact, a: float) -> Array:
@@ -62,14 +70,15 @@ def sample(
 ) -> tuple[Profile, ...]:
     """Every quantity of ``line`` at ``position`` [m]: the four stresses, on the surface the pressure too.
 
-    On a line of the ball x is that of the flat.
+    Off the plane y = 0 see ``oblique``. On a line of the ball x is that of the flat.
+
     problem : on the surface also its largest tension with its place, as ``PEAKS`` of the contact.
     """
+    if line.depth is None and line.coordinate != "z":
+        return oblique.sample(solution, source, line, position)
     solution, turned = on_body(solution, line.body), -1.0 if line.body == BALL else 1.0
-    if line.depth is None:
-        x, z = np.zeros_like(position), position
-    else:
-        x, z = turned * position, np.full_like(position, line.depth)
+    x, _, z = line.points(position)
+    x = turned * x
     stated = solution.uncertainty is not None
     profiles = []
     if line.name == "surface":  # the pressure is that of both bodies

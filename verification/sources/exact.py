@@ -44,14 +44,12 @@ def _bare_ball(problem: CoatedContact) -> tuple[float, float] | None:
 
 
 def _exact_accepts(problem: Problem, kind: str) -> bool:
-    """No sliding disc, whose stress is infinite at the rim; no displacement under a contact."""
-    if isinstance(problem, PrescribedLoad):
-        return not problem.friction
-    return kind != "displacement"
+    """No sliding disc, whose stress is infinite at the rim."""
+    return not (isinstance(problem, PrescribedLoad) and problem.friction)
 
 
 def _closed_accepts(problem: Problem, kind: str, *, sliding: bool) -> bool:
-    if not isinstance(problem, CoatedContact) or kind == "displacement":
+    if not isinstance(problem, CoatedContact):
         return False
     return problem.homogeneous and (problem.friction > 0) is sliding
 

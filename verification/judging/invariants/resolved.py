@@ -36,6 +36,9 @@ Law = Callable[[], Invariant]
 
 # h/a_h, so near to the limit that the remaining effect of the coating is bounded below the caps.
 THICK_AT, THIN_AT = 20.0, 0.03
+LIMITS = ("thick coating", "thin coating")
+BALL_NAMES = ("bodies exchanged", "coating on the ball", "equal bodies", "rigid ball")
+NAMES = ("scaling", "reciprocity", "equal moduli", *LIMITS, *BALL_NAMES)
 # No powers of two, so that scaled numbers share no digits.
 RADIUS, LOAD, MODULUS = 2.7, 0.37, 1.9
 APPROACH_CAP = 1e-3
@@ -78,19 +81,21 @@ def _laws(solve: Solve, finer: Solve, source: str, problem: CoatedContact) -> It
             base.append(finer(given))
         return base[0]
 
-    yield "scaling", partial(_scaling, finer, once, source, problem)
-    yield "reciprocity", partial(_reciprocity, once, solve, source, problem)
-    yield "equal moduli", partial(_equal_moduli, solve, source, problem)
     smooth = replace(problem, friction=0.0)
-    if problem.ball is None:
-        yield "thick coating", partial(_thick, solve, source, smooth)
-        yield "thin coating", partial(_thin, finer, source, smooth)
-        return
-    alone = replace(problem, ball=(*problem.substrate, ()))
-    yield "bodies exchanged", partial(_exchanged, once, finer, source, problem, "bodies exchanged")
-    yield "coating on the ball", partial(_exchanged, finer, finer, source, alone, "coating on the ball")
-    yield "equal bodies", partial(_equal_bodies, solve, source, smooth)
-    yield "rigid ball", partial(_rigid_ball, finer, source, problem)
+    laws = {
+        "scaling": partial(_scaling, finer, once, source, problem),
+        "reciprocity": partial(_reciprocity, once, solve, source, problem),
+        "equal moduli": partial(_equal_moduli, solve, source, problem),
+        "thick coating": partial(_thick, solve, source, smooth),
+        "thin coating": partial(_thin, finer, source, smooth),
+        "bodies exchanged": partial(_exchanged, once, finer, source, problem),
+        "coating on the ball": partial(_coating_on_ball, finer, source, problem),
+        "equal bodies": partial(_equal_bodies, solve, source, smooth),
+        "rigid ball": partial(_rigid_ball, finer, source, problem),
+    }
+    assert tuple(laws) == NAMES
+    left_out = BALL_NAMES if problem.ball is None else LIMITS
+    yield from ((name, law) for name, law in laws.items() if name not in left_out)
 
 
 def _scaling(solve: Solve, base: Solve, source: str, problem: CoatedContact) -> Invariant:
@@ -130,13 +135,21 @@ def _equal_moduli(solve: Solve, source: str, problem: CoatedContact) -> Invarian
     return decide("equal moduli", source, law, found - known, U)
 
 
-def _exchanged(base: Solve, solve: Solve, source: str, problem: CoatedContact, name: str) -> Invariant:
+def _exchanged(
+    base: Solve, solve: Solve, source: str, problem: CoatedContact, name: str = "bodies exchanged"
+) -> Invariant:
     """The ball as the flat, the flat as the ball: the same contact, with the stresses exchanged."""
     one, U_one = _dimensionless(base(problem), problem)
     seen = problem.seen_from(BALL)
     other, U_other = _dimensionless(solve(seen), seen, (BALL, FLAT))
-    law = f"{name} leaves a/a_h, p0/p_h, approach/delta_h unchanged and exchanges sigma/p_h"
+    law = f"{name}: a/a_h, p0/p_h, approach/delta_h are unchanged, sigma/p_h is exchanged"
     return decide(name, source, law, one - other, U_one + U_other)
+
+
+def _coating_on_ball(solve: Solve, source: str, problem: CoatedContact) -> Invariant:
+    """The coatings on a ball of the flat's substrate in place of the flat: the same contact."""
+    on_flat = replace(problem, ball=(*problem.substrate, ()))
+    return _exchanged(solve, solve, source, on_flat, "coating on the ball")
 
 
 def _equal_bodies(solve: Solve, source: str, problem: CoatedContact) -> Invariant:

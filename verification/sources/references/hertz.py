@@ -5,16 +5,30 @@ positive in compression, hence sigma_zz = -p at z = 0. SI units.
 
 H. Hertz, J. reine angew. Math. 92 (1882) 156-171; M. T. Huber, Ann. Phys. 319 (1904) 153-163, for the field
 off the axis; K. L. Johnson, Contact Mechanics, Cambridge University Press, 1985.
+
+With lengths over a, zeta = z - i, R = sqrt(r^2 + zeta^2), tau = r / (R + zeta) the integrals over wavenumbers
+
+    L_m^n = int_0^inf k^n J_m(kr) e^(-k zeta) dk:   L_m^0 = tau^m / R,   L_m^-1 = tau^m / m,
+    L_m^-2 = r (L_(m-1)^-1 + L_(m+1)^-1) / 2m,      L_0^-1 = -ln(zeta + R),   L_0^-2 = zeta ln(zeta + R) - R,
+    L_m^-3 = r (L_(m-1)^-2 + L_(m+1)^-2) / 2m,      L_0^-3 = (r^2 - 2 zeta^2) ln(zeta + R) / 4 + 3 zeta R / 4
+
+give, from phat(k) = p0 (sin k - k cos k) / k^3,
+
+    A_m = int phat J_m e^(-kz) k dk     = p0 (Im L_m^-2 - Re L_m^-1)
+    B_m = int phat J_m e^(-kz) z k^2 dk = p0 z (Im L_m^-1 - Re L_m^0)
+    C_m = int phat J_m e^(-kz) dk       = p0 (Im L_m^-3 - Re L_m^-2)
 """
 
 from dataclasses import dataclass, field, replace
 from typing import Self
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from verification.problem.arrays import Array
-from verification.problem.contact import BALL, FLAT, NotClaimed, Uncertainty
+from verification.problem.contact import BALL, FLAT, Uncertainty
+
+Complex = NDArray[np.complex128]
 
 
 @dataclass(frozen=True)
@@ -67,6 +81,16 @@ class HertzContact:
         return self.contact_radius**2 / self.radius
 
     @property
+    def stiffness(self) -> float:
+        """dW/d delta = 2 E* a [N/m], from W = 4/3 E* sqrt(R) delta^(3/2)."""
+        return 2 * self.E_star * self.contact_radius
+
+    @property
+    def stiffness_uncertainty(self) -> float:
+        """Zero: exact."""
+        return 0.0
+
+    @property
     def peak_pressure(self) -> float:
         """p0 = 3 W / (2 pi a^2) [Pa]. Johnson (4.24)."""
         return 3 * self.load / (2 * np.pi * self.contact_radius**2)
@@ -100,6 +124,37 @@ class HertzContact:
     ) -> Array:
         """Zero [Pa]: exact."""
         return np.zeros((3, 3, *np.broadcast_shapes(np.shape(x), np.shape(y), np.shape(z))))
+
+    def displacement_uncertainty(self, x: ArrayLike, y: ArrayLike, z: ArrayLike, body: str = FLAT) -> Array:
+        """Zero [m]: exact."""
+        return np.zeros((3, *np.broadcast_shapes(np.shape(x), np.shape(y), np.shape(z))))
+
+    def _displaced(self, x: ArrayLike, y: ArrayLike, z: ArrayLike, f: float) -> Array:
+        """Displacement [m] under p with q = f p in +x, (3,) + points. With c = p0 a (1 + nu)/E:
+
+            u_r = -c [(1 - 2 nu) C1 - z A1],    u_z = c [2 (1 - nu) C0 + z A0]
+            friction:  u_x = c f [(2 - nu) C0 - z A0 / 2 + (nu C2 + z A2 / 2) cos 2 theta],
+                u_y = c f (nu C2 + z A2 / 2) sin 2 theta,    u_z = c f [(1 - 2 nu) C1 + z A1] cos theta
+
+        Derived from the response of the half-space to each wave of p and q: Boussinesq and Cerruti, Johnson
+        (3.19), (3.75). Raises ValueError where z < 0.
+        """
+        x, y, z = np.broadcast_arrays(*(np.asarray(v, dtype=float) for v in (x, y, z)))
+        if np.any(z < 0):
+            raise ValueError(f"z = {np.min(z):g} m is above the surface; depth counts down from 0")
+        a, nu, theta = self.contact_radius, self.nu, np.arctan2(y, x)
+        z = z / a
+        (A0, A1, A2, _), _, (C0, C1, C2) = integrals(np.hypot(x, y) / a, z)
+        u_r = -((1 - 2 * nu) * C1 - z * A1)
+        second = nu * C2 + z * A2 / 2
+        u = np.stack(
+            [
+                u_r * np.cos(theta) + f * ((2 - nu) * C0 - z * A0 / 2 + second * np.cos(2 * theta)),
+                u_r * np.sin(theta) + f * second * np.sin(2 * theta),
+                2 * (1 - nu) * C0 + z * A0 + f * ((1 - 2 * nu) * C1 + z * A1) * np.cos(theta),
+            ]
+        )
+        return self.peak_pressure * a * (1 + nu) / self.E * u
 
 
 class Hertz(HertzContact):
@@ -178,5 +233,33 @@ class Hertz(HertzContact):
         return sigma
 
     def displacement(self, x: ArrayLike, y: ArrayLike, z: ArrayLike, body: str = FLAT) -> Array:
-        """No claim is made below the surface; raises NotClaimed."""
-        raise NotClaimed("the closed form claims no displacement field; see surface_displacement")
+        """u[i, ...] [m] towards points at infinity, shape (3,) + points. Raises ValueError where z < 0."""
+        return self.seen_from(body)._displaced(x, y, z, 0.0)
+
+
+def integrals(r: Array, z: Array) -> tuple[list[Array], list[Array], list[Array]]:
+    """A_m / p0 and B_m / p0 for m = 0 .. 3, C_m / p0 for m = 0 .. 2 at ``r``, ``z`` over a."""
+    zeta = z - 1j
+    R = _root(r, z)
+    log = np.log(zeta + R)
+    tau = r / (zeta + R)
+    powers: list[Complex] = [-log] + [tau**m / m for m in range(1, 5)]
+    second = [zeta * log - R] + [r / (2 * m) * (powers[m - 1] + powers[m + 1]) for m in range(1, 4)]
+    # z/R vanishes towards the edge, where z and R are both zero.
+    z_over_R = np.where(R == 0, 0.0, z / np.where(R == 0, 1.0, R))
+    A = [second[m].imag - powers[m].real for m in range(4)]
+    B = [z * powers[m].imag - (tau**m * z_over_R).real for m in range(4)]
+    third = [(r**2 - 2 * zeta**2) / 4 * log + 0.75 * zeta * R]
+    third += [r / (2 * m) * (second[m - 1] + second[m + 1]) for m in (1, 2)]
+    C = [third[m].imag - second[m].real for m in range(3)]
+    return A, B, C
+
+
+def _root(r: Array, z: Array) -> Complex:
+    """R = sqrt(r^2 + (z - i)^2) with Re R >= 0 >= Im R, which on the surface is the limit from below it."""
+    d = (r - 1) * (r + 1) + z**2
+    size = np.hypot(d, 2 * z)
+    # The larger part first, without a difference; the product of both is z.
+    larger = np.sqrt((size + np.abs(d)) / 2)
+    smaller = z / np.where(larger == 0, 1.0, larger)
+    return np.where(d >= 0, larger - 1j * smaller, smaller - 1j * larger)

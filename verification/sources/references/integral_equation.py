@@ -21,7 +21,7 @@ from numpy.typing import ArrayLike
 from scipy.optimize import brentq
 
 from verification.problem.arrays import Array, Ball, Coatings
-from verification.problem.contact import BALL, FLAT, NotClaimed, Uncertainty
+from verification.problem.contact import BALL, FLAT, Uncertainty
 from verification.sources.references.axisymmetric_pressure import AbelPressure
 from verification.sources.references.hankel import HankelField
 from verification.sources.references.layered import LayeredHalfSpace, bending_length, contact_modulus
@@ -39,15 +39,18 @@ class ExactDiagnostics:
 
 @dataclass(frozen=True, eq=False)
 class ExactSolution:
-    """Contact and stresses; the difference from ``coarser`` gives the uncertainty.
+    """Contact, stresses, displacements; the difference from ``coarser`` gives the uncertainty.
 
     fields : of the flat, then of an elastic ball.
+    stiffness : dW/d delta [N/m], that of a flat punch of the contact radius. Pharr, Oliver and Brotzen,
+        J. Mater. Res. 7 (1992) 613-617.
     """
 
     abel: AbelPressure
     approach: float
     fields: tuple[HankelField, ...]
     diagnostics: ExactDiagnostics
+    stiffness: float
     coarser: "ExactSolution | None" = None
 
     @property
@@ -77,6 +80,13 @@ class ExactSolution:
         return Uncertainty(**U, budget=tuple((n, "quadrature", u) for n, u in U.items()))
 
     @property
+    def stiffness_uncertainty(self) -> float | None:
+        """As of the other scalars [N/m]."""
+        if self.coarser is None:
+            return None
+        return 2 * abs(self.stiffness - self.coarser.stiffness) + 1e-12 * self.stiffness
+
+    @property
     def _rounding(self) -> float:
         # A quadrature sums some 4096 terms; differentiating a series of m terms amplifies rounding by m^3.
         return float(np.finfo(float).eps * max(4096.0, (2.0 * self.abel.c.size) ** 3))
@@ -101,8 +111,13 @@ class ExactSolution:
         return of[body]
 
     def displacement(self, x: ArrayLike, y: ArrayLike, z: ArrayLike, body: str = FLAT) -> Array:
-        """No claim is made on displacements; raises NotClaimed."""
-        raise NotClaimed("the integral equation claims no displacement field; ask one of the methods")
+        """u[i, ...] [m] of either body towards its points at infinity, shape (3,) + points."""
+        return self._field(body).displacement(x, y, z)
+
+    def displacement_uncertainty(self, x: ArrayLike, y: ArrayLike, z: ArrayLike, body: str = FLAT) -> Array:
+        """Absolute [m], as that of the stress; raises ValueError where no companion was solved."""
+        change = np.abs(self.displacement(x, y, z, body) - self._companion().displacement(x, y, z, body))
+        return 2 * change + self._rounding * self.approach
 
     def pressure_uncertainty(self, x: ArrayLike, y: ArrayLike = 0.0) -> Array:
         """Absolute [Pa]; raises ValueError where no companion was solved."""
@@ -184,7 +199,7 @@ def _solve(
     k, k_weight = _kernel_wavenumbers(solids, guess, panel, tail)
     kernel = k_weight * _excess(solids, E_star, k)
 
-    def contact(a: float) -> tuple[Array, float]:
+    def contact(a: float) -> tuple[Array, float, float]:
         x = a * s
         cosine = np.cos(k[:, None] * np.append(x, a))
         K = (2 / np.pi) * (cosine.T * kernel) @ cosine
@@ -194,7 +209,8 @@ def _solve(
         # Nystrom's interpolation gives phi at the edge, where it must vanish.
         edge = (E_star / np.pi) * np.array([1.0, a**2 / radius]) - (K[-1, :-1] * a * weight) @ phi
         delta = edge[1] / edge[0]
-        return phi @ np.array([delta, -1.0]), float(delta)
+        stiffness = 2 * np.pi * a * (weight @ phi[:, 0])
+        return phi @ np.array([delta, -1.0]), float(delta), float(stiffness)
 
     def excess(log_a: float) -> float:
         a = float(np.exp(log_a))
@@ -211,7 +227,7 @@ def _solve(
             f"load = {load:g} N is carried by no contact radius near {guess:g} m; check the moduli"
         )
     a = float(np.exp(brentq(excess, low, high, xtol=1e-15, rtol=1e-14)))
-    phi, delta = contact(a)
+    phi, delta, stiffness = contact(a)
     abel = AbelPressure.from_nodes(a, s, weight, phi)
     # the traction on the ball is -q
     fields = tuple(
@@ -219,7 +235,7 @@ def _solve(
         for solid, sign in zip(solids, (1.0, -1.0), strict=False)
     )
     diagnostics = ExactDiagnostics(s.size, k.size, abs(abel.load / load - 1))
-    return ExactSolution(abel, delta, fields, diagnostics)
+    return ExactSolution(abel, delta, fields, diagnostics, stiffness)
 
 
 def _excess(solids: tuple[_Solid, ...], E_star: float, k: Array) -> Array:
