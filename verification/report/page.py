@@ -167,9 +167,7 @@ def _common(material: Material, result: CaseResult) -> dict[str, Any]:
         "command": rerun_command(result.name, material.info.command),
         "facts": facts(result),
         "failures": [(source_label(s.source), s.failure) for s in result.sources if s.failure is not None],
-        "layers": [
-            layer_table(result, body) for body in (FLAT, BALL) if body == FLAT or layers(result, body)
-        ],
+        "layers": [layer_table(result), *([layer_table(result, BALL)] if layers(result, BALL) else [])],
         "budget": budget_table(result),
         "diagnostics": diagnostics_table(result),
     }
@@ -177,7 +175,7 @@ def _common(material: Material, result: CaseResult) -> dict[str, Any]:
 
 def _scalars(result: CaseResult) -> list[tuple[str, ...]]:
     """The quantities of each table of numbers of the contact."""
-    return [SCALARS, PEAKS, *([BALL_PEAKS] if layers(result, BALL) else [])]
+    return [SCALARS, SLOPES + PEAKS, *([BALL_PEAKS] if layers(result, BALL) else [])]
 
 
 def _published(material: Material, result: CaseResult) -> dict[str, Any]:
