@@ -9,7 +9,7 @@ import numpy as np
 
 from verification.judging.verdict import Outcome
 from verification.problem.contact import BALL
-from verification.problem.quantity import BALL_PEAKS, PEAKS, SCALARS
+from verification.problem.quantity import BALL_PEAKS, PEAKS, SCALARS, SLOPES
 from verification.regression.manifest import manifest_message
 from verification.report.credibility import faults, mutants, self_tests, statement
 from verification.report.figures.fields import pictures
