@@ -18,7 +18,7 @@ from verification.cases.toml import (
 )
 from verification.judging.claims import standard_claims
 from verification.judging.verdict import Claim
-from verification.problem.arrays import Coatings
+from verification.problem.arrays import Ball, Coatings
 from verification.problem.contact import BALL, CoatedContact
 from verification.problem.profile import Line, line_of, lines_of, oblique_lines
 from verification.sources.registry import METHODS, sources_of
@@ -68,10 +68,23 @@ class _Coating(_Substrate):
         return self.thickness if self.thickness is not None else a_h * (self.thickness_over_a_h or 0.0)
 
 
-class _Ball(_Substrate):
+class BallEntry(_Substrate):
     """An elastic ball; its coatings from its surface inwards."""
 
     coatings: Annotated[list[_Coating], Field(default_factory=list, max_length=50)]
+
+    @property
+    def bare(self) -> Ball:
+        """The ball without its coatings."""
+        return self.E, self.nu, ()
+
+    def coated(self, a_h: float) -> Ball:
+        """The ball; a thickness over a_h is that over the scale of both bodies uncoated."""
+        return self.E, self.nu, _in_metres(self.coatings, a_h)
+
+
+def _in_metres(coatings: list[_Coating], a_h: float) -> Coatings:
+    return tuple((c.E, c.nu, c.in_metres(a_h)) for c in coatings)
 
 
 class _Problem(Strict):
@@ -80,24 +93,16 @@ class _Problem(Strict):
     friction: Friction = 0.0
     substrate: _Substrate
     coatings: Annotated[list[_Coating], Field(default_factory=list, max_length=50)]
-    ball: _Ball | None = None
+    ball: BallEntry | None = None
 
     def contact(self) -> CoatedContact:
         """The problem; a thickness over a_h is that over the scale of both bodies uncoated."""
+        ball, substrate = self.ball, (self.substrate.E, self.substrate.nu)
         bare = CoatedContact(
-            self.radius,
-            self.load,
-            (),
-            (self.substrate.E, self.substrate.nu),
-            self.friction,
-            None if self.ball is None else (self.ball.E, self.ball.nu, ()),
+            self.radius, self.load, (), substrate, self.friction, ball.bare if ball else None
         )
-
-        def in_metres(coatings: list[_Coating]) -> Coatings:
-            return tuple((c.E, c.nu, c.in_metres(bare.a_h)) for c in coatings)
-
-        ball = None if self.ball is None else (*bare.seen_from(BALL).substrate, in_metres(self.ball.coatings))
-        return replace(bare, coatings=in_metres(self.coatings), ball=ball)
+        given = ball.coated(bare.a_h) if ball else None
+        return replace(bare, coatings=_in_metres(self.coatings, bare.a_h), ball=given)
 
 
 class _Claim(Strict):
