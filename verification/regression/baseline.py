@@ -5,6 +5,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field
 from typing import Any
 
+from verification.regression.ability import Ability, abilities
 from verification.regression.drift import Drift, Numbers, State, drift, measured
 from verification.regression.manifest import Difference, Manifest, differences, differing_tests, manifest_of
 from verification.running.records import plain
@@ -91,7 +92,7 @@ class Regression:
     """Comparison of a run with the baseline in ``folder``; ``update`` is None where there is no baseline.
 
     other_versions : (name, then, now) of the machine and each package that differs.
-    judged : how what the run judged differs from the manifest.
+    judged : how what the run judged differs from the manifest.   abilities : caps beside usual uncertainties.
     """
 
     folder: str
@@ -99,6 +100,7 @@ class Regression:
     cases: tuple[CaseDrift, ...]
     other_versions: tuple[tuple[str, str, str], ...] = ()
     judged: tuple[Difference, ...] = ()
+    abilities: tuple[Ability, ...] = ()
 
     @property
     def less(self) -> tuple[Difference, ...]:
@@ -179,7 +181,8 @@ def regression(
     judged += [Difference(c.name, "the case was not run", 1, True) for c in cases if c.name not in run]
     if self_tests is not None:
         judged += differing_tests(baseline.self_tests, self_tests)
-    return Regression(folder, then, cases, other, tuple(judged))
+    usual = abilities(results, baseline.cases, baseline.manifests)
+    return Regression(folder, then, cases, other, tuple(judged), usual)
 
 
 def differing(then: Mapping[str, str], now: Mapping[str, str]) -> tuple[tuple[str, str, str], ...]:

@@ -113,7 +113,8 @@ def test_what_is_not_finite_has_drifted():
     [
         (10.0, State.DRIFTED, True),
         (3.9, State.DRIFTED, False),
-        (0.1, State.DRIFTED, False),
+        (0.3, State.DRIFTED, False),
+        (0.1, State.DRIFTED, True),
         (1.05, State.SAME, False),
     ],
 )
