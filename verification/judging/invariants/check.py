@@ -45,4 +45,5 @@ def _laws(solution: Solution, source: str, problem: CoatedContact) -> Iterator[t
     yield "symmetry", partial(symmetry.symmetry, *subject)
     if source == "semianalytic":
         yield "influence coefficients", partial(influence.influence_coefficients, *subject)
+    if hasattr(solution, "stress_plane"):
         yield "planes", partial(planes.planes, *subject)
