@@ -51,7 +51,7 @@ class Update:
     """One update of the baseline: its reason, the run it was made from.
 
     changes : by case, how many numbers changed, with the largest change over its scale.
-    judged : how what is judged differs from the manifest before.
+    less : what is judged no longer.
     """
 
     why: str
@@ -61,7 +61,7 @@ class Update:
     versions: dict[str, str]
     numbers: int
     changes: dict[str, tuple[int, float | None]]
-    judged: tuple[Difference, ...] = ()
+    less: tuple[Difference, ...] = ()
 
 
 @dataclass(frozen=True, eq=False)
@@ -233,14 +233,14 @@ def updated(
         if count:
             changes[case.name] = (count, case.change)
     digests = {result.name: digest(result.text) for result in results}
-    judged: tuple[Difference, ...] = ()
+    less: tuple[Difference, ...] = ()
     if old is not None:
-        judged = regression(results, old, "", info, whole=True, self_tests=tests).judged
+        less = regression(results, old, "", info, whole=True, self_tests=tests).less
         for name in (name for name in old.cases if old.published(name) and name not in cases):
             cases[name], digests[name] = old.cases[name], old.digests[name]
             manifests[name] = old.manifests[name]
     numbers = sum(n.count for found in cases.values() for n in found)
-    update = Update(why, when, info.commit, info.machine, dict(info.versions), numbers, changes, judged)
+    update = Update(why, when, info.commit, info.machine, dict(info.versions), numbers, changes, less)
     return Baseline(cases, digests, (*(old.history if old is not None else ()), update), manifests, tests)
 
 

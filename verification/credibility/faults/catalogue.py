@@ -17,6 +17,7 @@ _ORDER = (
     "conjugate_gradients",
     "stress",
     "finite_elements",
+    "fields",
     "references",
     "harness",
 )

@@ -5,7 +5,7 @@ from dataclasses import replace
 from functools import partial
 
 from verification.judging.invariant import Invariant, failed
-from verification.judging.invariants import bond, influence, statics, symmetry
+from verification.judging.invariants import bond, influence, planes, statics, symmetry
 from verification.problem.body import on_body
 from verification.problem.contact import BALL, CoatedContact, NotClaimed, Solution
 from verification.problem.profile import ON_BALL
@@ -40,6 +40,8 @@ def _laws(solution: Solution, source: str, problem: CoatedContact) -> Iterator[t
     yield from _of_body(*subject)
     if source == "semianalytic":
         yield "influence coefficients", partial(influence.influence_coefficients, *subject)
+    if hasattr(solution, "stress_plane"):
+        yield "planes", partial(planes.planes, *subject)
     if problem.ball is not None:
         of_ball = on_body(solution, BALL), source, problem.seen_from(BALL)
         yield from ((f"{ON_BALL}{name}", law) for name, law in _of_body(*of_ball))
