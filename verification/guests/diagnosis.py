@@ -12,11 +12,11 @@ from typing import Any
 import numpy as np
 from scipy.optimize import minimize_scalar
 
-from verification.guests.exam import REFERENCE
+from verification.guests.exam import ALONG_SURFACE, REFERENCE
 from verification.judging.verdict import Outcome
 from verification.problem.arrays import Array
 from verification.problem.profile import Profile
-from verification.problem.quantity import IN_PLANE, unit_of
+from verification.problem.quantity import STRESSES, unit_of
 from verification.running.result import CaseResult
 
 EXPLAINED = 0.1  # of the error may remain
@@ -103,7 +103,7 @@ def _outside_zone(result: CaseResult, zone: float) -> CaseResult:
         keep = np.abs(np.abs(p.position) - a) >= zone * a
         uncertainty = None if p.uncertainty is None else p.uncertainty[keep]
         kept = replace(p, position=p.position[keep], value=p.value[keep], uncertainty=uncertainty)
-        profiles.append(p if p.line in ("contact", "axis") else kept)
+        profiles.append(kept if p.line in ALONG_SURFACE else p)
     return replace(result, profiles=tuple(profiles))
 
 
@@ -211,7 +211,7 @@ def _of_line(mine: Profile, exact: Profile, result: CaseResult) -> str | None:
         return best[1]
     a = float(result.profile_of["contact_radius", "contact", REFERENCE].value[0])
     beside = np.abs(np.abs(x) - a) < EDGE * a
-    if mine.line == "surface" and beside.any() and not beside.all():
+    if mine.line in ALONG_SURFACE and beside.any() and not beside.all():
         inside, outside = np.abs(g - e)[beside].max(), np.abs(g - e)[~beside].max()
         if outside < EXPLAINED * inside or (outside <= SMALL * size < inside):
             return (
@@ -235,12 +235,13 @@ def _candidates(mine: Profile, exact: Profile, result: CaseResult) -> Iterator[C
     g, e, x = mine.value, exact.value, mine.position
     quantity, line = mine.quantity, mine.line
     yield _of_factor(-1.0, quantity), -e, None
-    others = [name for name in IN_PLANE if name != quantity] if quantity in IN_PLANE else []
+    others = [name for name in STRESSES if name != quantity] if quantity in STRESSES else []
     for other in others:
         profile = result.profile_of.get((other, line, REFERENCE))
         if profile is not None and _norm(profile.value - e) > FINE * _norm(e):
             axes = {quantity[-2:], other[-2:]}
-            swapped = " and ".join(sorted({pair[0] for pair in axes})) if "xz" not in axes else ""
+            normal = all(pair[0] == pair[1] for pair in axes)
+            swapped = " and ".join(sorted({pair[0] for pair in axes})) if normal else ""
             cause = f": {swapped} transposed?" if swapped else ""
             yield f"equal to {other}{cause}", profile.value, None
             yield f"equal to -{other}{cause}", -profile.value, None
@@ -249,7 +250,7 @@ def _candidates(mine: Profile, exact: Profile, result: CaseResult) -> Iterator[C
         profile = result.profile_of.get((quantity, flipped, REFERENCE))
         if profile is not None and _norm(profile.value - e) > FINE * _norm(e):
             yield f"equal to the value on the {flipped}: the other layer?", profile.value, None
-    if line != "axis" and x.min() < 0:
+    if line != "axis" and x.min(initial=0.0) < 0:
         mirrored, common = np.interp(-x, x, e), (-x >= x.min()) & (-x <= x.max())
         if _norm(mirrored - e) > FINE * _norm(e):
             yield "mirrored in x: leading and trailing side exchanged?", mirrored, common

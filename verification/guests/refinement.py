@@ -4,7 +4,7 @@
 
 Roache, J. Fluids Eng. 116 (1994) 405-413. F = 1.25 where p is observed within ``ORDERS``; elsewhere changes
 are erratic, as those of a radius counted in patches, and F = 3 with the lower bound or the order 1. A change
-that is small by chance does not count: |f_n - f_{n-1}| is at least that of the level before over r^2, and along
+that is small by chance does not count: |f_n - f_{n-1}| is at least that of the level before over r^2; along
 a line the largest of its neighbours.
 """
 
