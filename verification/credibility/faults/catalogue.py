@@ -11,11 +11,13 @@ from verification.running.records import decode
 LISTS = Path(__file__).parent / "lists"
 _ORDER = (
     "material",
+    "ball",
     "frf",
     "conversion_fft",
     "conjugate_gradients",
     "stress",
     "finite_elements",
+    "fields",
     "references",
     "harness",
 )

@@ -32,6 +32,7 @@ from verification.running import published as published_run
 from verification.running.result import CaseResult, SourceResult, from_json
 from verification.running.store import read_checked
 from verification.sampling.lines import sample, sample_contact
+from verification.sampling.plane import plane_invariants, sample_plane
 from verification.sources.registry import METHODS
 
 Profiles = dict[tuple[str, str, str], Profile]
@@ -124,6 +125,8 @@ def _judged(case: Case, clean: CaseResult, fault: Fault) -> tuple[list[Check], P
             continue
         fresh |= {(p.quantity, p.line, source): p for p in found}
         invariants += invariants_of(solution, source, case.problem)
+    drawn = sample_plane(case.problem.interfaces, solved.solutions)
+    invariants += plane_invariants(drawn, solved.solutions, case.problem)
     profiles |= fresh
     checks += [of_invariant(row, case.name) for row in invariants]
     checks += _drifts(clean, fresh)
