@@ -14,8 +14,9 @@ scale is the largest magnitude of the profile, so that a number near zero needs 
 have; of a profile that vanishes (a shear that symmetry forbids) it is a thousandth of the largest profile of
 the same source and kind. 5e-11 is ten times the largest change of a value seen between two machines. At r = a
 a value of the surface follows the square root of the radius: with another number of threads finite elements
-change there by 2.5e-7, and U alone decides; so it does of the largest tension, which lies there. An uncertainty is the size
-of a remainder, which may differ twofold between processors; below 5e-11 scale it is not compared.
+change there by 2.5e-7, and U alone decides; so it does of the largest tension, which lies there. An
+uncertainty is the size of a remainder, which may differ twofold between processors; below 5e-11 scale it is
+not compared.
 """
 
 from collections import defaultdict
