@@ -5,9 +5,10 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from verification.problem.arrays import Array
-from verification.problem.contact import CoatedContact, Solution, stress_with_uncertainty
+from verification.problem.body import on_body
+from verification.problem.contact import BALL, FLAT, CoatedContact, Solution, stress_with_uncertainty
 from verification.problem.profile import Line, Profile
-from verification.problem.quantity import IN_PLANE, PEAKS, QUANTITIES, SCALARS, SLOPES
+from verification.problem.quantity import BALL_PEAKS, IN_PLANE, PEAKS, QUANTITIES, SCALARS, SLOPES
 from verification.sampling import oblique
 from verification.sampling.tension import Search
 
@@ -44,14 +45,11 @@ def positions(
         wanted = np.concatenate([-wanted[:0:-1], wanted])
     wanted = wanted[np.abs(wanted) <= np.abs(nodes).max()]
     x = nodes[np.unique(np.abs(nodes[None, :] - wanted[:, None]).argmin(axis=1))]
-    bounds = np.array([0.0, *problem.interfaces, max(4 * a, *(2 * z for z in problem.interfaces), 0.0)])
-    # At least six points in each layer, none on an interface; spacing grows with depth.
-    inside = bounds[:-1, None] + np.diff(bounds)[:, None] * (np.arange(6) + 0.5) / 6
-    z = np.unique(np.concatenate([inside.ravel(), 4 * a * ((np.arange(40) + 0.5) / 40) ** 1.5]))
+    z = {body: _depths(problem.seen_from(body), a) for body in problem.bodies}
     edge = list(solutions.values())[-1].contact_radius * np.concatenate([1 + NEAR_EDGE, 1 - NEAR_EDGE])
     surface = np.unique(np.concatenate([x, edge, -edge] if problem.friction else [x, edge]))
     return {
-        line: z
+        line: z[line.body]
         if line.coordinate == "z"
         else oblique.positions(problem, line, a)
         if line.depth is None
@@ -60,21 +58,30 @@ def positions(
     }
 
 
+def _depths(problem: CoatedContact, a: float) -> Array:
+    """Depths on the axis [m]: at least six in each layer, none on an interface; spacing grows with depth."""
+    bounds = np.array([0.0, *problem.interfaces, max(4 * a, *(2 * z for z in problem.interfaces), 0.0)])
+    inside = bounds[:-1, None] + np.diff(bounds)[:, None] * (np.arange(6) + 0.5) / 6
+    return np.unique(np.concatenate([inside.ravel(), 4 * a * ((np.arange(40) + 0.5) / 40) ** 1.5]))
+
+
 def sample(
     solution: Solution, source: str, line: Line, position: Array, problem: CoatedContact | None = None
 ) -> tuple[Profile, ...]:
     """Every quantity of ``line`` at ``position`` [m]: the four stresses, on the surface the pressure too.
 
-    Off the plane y = 0 see ``oblique``.
+    Off the plane y = 0 see ``oblique``. On a line of the ball x is that of the flat.
 
     problem : on the surface also its largest tension with its place, as ``PEAKS`` of the contact.
     """
     if line.depth is None and line.coordinate != "z":
         return oblique.sample(solution, source, line, position)
+    solution, turned = on_body(solution, line.body), -1.0 if line.body == BALL else 1.0
     x, _, z = line.points(position)
+    x = turned * x
     stated = solution.uncertainty is not None
     profiles = []
-    if line.name == "surface":
+    if line.name == "surface":  # the pressure is that of both bodies
         profiles.append(
             Profile(
                 "pressure",
@@ -86,17 +93,21 @@ def sample(
             )
         )
     count = x.size
-    search = Search(solution, problem) if problem is not None and line.name == "surface" else None
+    search = None
+    if problem is not None and line.place == "surface":
+        search = Search(solution, problem.seen_from(line.body))
     if search is not None:  # in one call, whose cost hardly depends on the number of points
         x, z = np.concatenate([x, search.x]), np.zeros(count + search.x.size)
     sigma, U = stress_with_uncertainty(solution, x, 0.0, z, layer=line.layer)
     if search is not None:
         found = search.largest(sigma[0, 0, count:], None if U is None else U[0, 0, count:])
-        numbers = ((found.value, found.uncertainty), (found.place, found.place_uncertainty))
-        for name, (value, uncertain) in zip(PEAKS, numbers, strict=True):
+        numbers = ((found.value, found.uncertainty), (turned * found.place, found.place_uncertainty))
+        names = PEAKS if line.body == FLAT else BALL_PEAKS
+        for name, (value, uncertain) in zip(names, numbers, strict=True):
             spread = None if uncertain is None else np.array([uncertain])
             profiles.append(Profile(name, "contact", np.zeros(1), np.array([value]), source, spread))
         sigma, U = sigma[..., :count], None if U is None else U[..., :count]
+    sigma[0, 2] = sigma[2, 0] = turned * sigma[0, 2]
     for name, component in IN_PLANE.items():
         profiles.append(
             Profile(
