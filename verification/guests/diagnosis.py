@@ -42,6 +42,7 @@ TWICE = {
         0.5: "a^2/(2 R), the depth of the contact edge, in place of a^2/R",
     },
 }
+OF_INPUTS = ("contact_radius", "peak_pressure", "approach", "stiffness")
 THOUSANDS = {10.0**k: "a factor of units" for k in (-9, -6, -3, 3, 6, 9)}
 
 
@@ -85,7 +86,7 @@ def slips(result: CaseResult, guest: str) -> list[Slip]:
         if mine is None or exact is None or not np.isfinite(mine.value).all():
             continue
         if line == "contact":
-            message = inputs or _of_number(mine, exact)
+            message = (inputs if quantity in OF_INPUTS else None) or _of_number(mine, exact)
         else:
             message = _of_line(mine, exact, result)
             message = (message and _explained(message)) or inputs or message
