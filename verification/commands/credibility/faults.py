@@ -48,7 +48,7 @@ def faults(
 
     Args:
         names: Names of faults, see --list; all of them unless given.
-        group: Try one group: material, frf, conversion_fft, conjugate_gradients, stress, finite_elements,
+        group: Try one group: material, ball, frf, conversion_fft, conjugate_gradients, stress, finite_elements,
             references, harness.
         listed: List the faults instead of trying them.
         output: Directory of the matrix, faults.html with faults.json, of the clean runs, of the trials.
