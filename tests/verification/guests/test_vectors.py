@@ -66,10 +66,16 @@ def test_problems_computed_anew_have_the_same_digits(shipped, number):
             assert (np.abs(np.array(new["values"][quantity]) - values) <= allowed).all()
 
 
-def test_the_command_writes_files_whose_checksums_hold(tmp_path, shipped):
-    done = coatcheck("vectors", "digits", cwd=tmp_path)
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    """What the command writes."""
+    place = tmp_path_factory.mktemp("vectors")
+    done = coatcheck("vectors", "digits", cwd=place)
     assert done.returncode == 0, done.stderr
-    folder = tmp_path / "digits"
+    return place / "digits"
+
+
+def test_the_command_writes_files_whose_checksums_hold(folder, shipped):
     for line in (folder / "SHA256SUMS").read_text().splitlines():
         digest, name = line.split()
         assert hashlib.sha256((folder / name).read_bytes()).hexdigest() == digest
@@ -79,12 +85,11 @@ def test_the_command_writes_files_whose_checksums_hold(tmp_path, shipped):
     assert len(rows) == content.value_count(shipped)
 
 
-def test_the_reader_shown_is_at_most_20_lines_that_run(tmp_path, monkeypatch, capsys):
-    coatcheck("vectors", ".", cwd=tmp_path)
-    text = (tmp_path / "README.md").read_text()
+def test_the_reader_shown_is_at_most_20_lines_that_run(folder, monkeypatch, capsys):
+    text = (folder / "README.md").read_text()
     code = re.search(r"```python\n(.*?)```", text, re.DOTALL)[1]
     assert len(code.splitlines()) <= 20
-    monkeypatch.chdir(tmp_path)
+    monkeypatch.chdir(folder)
     exec(compile(code, "README", "exec"), {})
     assert "osullivan_king_013" in capsys.readouterr().out
 
