@@ -16,6 +16,7 @@ from verification.cases.toml import (
     read_bounded,
     read_toml,
 )
+from verification.cases.units import Metres, Newtons, Pascals
 from verification.judging.claims import standard_claims
 from verification.judging.verdict import Claim
 from verification.problem.arrays import Ball, Coatings
@@ -50,12 +51,12 @@ class Case:
 
 
 class _Substrate(Strict):
-    E: Positive
+    E: Pascals
     nu: Poisson
 
 
 class _Coating(_Substrate):
-    thickness: Positive | None = None
+    thickness: Metres | None = None
     thickness_over_a_h: Positive | None = None
 
     @model_validator(mode="after")
@@ -88,8 +89,8 @@ def _in_metres(coatings: list[_Coating], a_h: float) -> Coatings:
 
 
 class _Problem(Strict):
-    radius: Positive
-    load: Positive
+    radius: Metres
+    load: Newtons
     friction: Friction = 0.0
     substrate: _Substrate
     coatings: Annotated[list[_Coating], Field(default_factory=list, max_length=50)]

@@ -16,6 +16,7 @@ from pydantic import Field, model_validator
 from scipy.interpolate import PchipInterpolator
 
 from verification.cases.toml import Strict
+from verification.cases.units import Pascals
 from verification.problem.arrays import Array
 from verification.study.curves import Curve
 from verification.study.quantities import Stress
@@ -40,7 +41,7 @@ class Criteria(Strict):
     minimise : without strengths, the stresses whose maximum is minimised.
     """
 
-    strength: Annotated[dict[Stress, Annotated[float, Field(gt=0)]], Field(min_length=1)] | None = None
+    strength: Annotated[dict[Stress, Pascals], Field(min_length=1)] | None = None
     safety: Annotated[float, Field(ge=1, le=100)] = 1.0
     minimise: Annotated[list[Stress], Field(min_length=1)] | None = None
 

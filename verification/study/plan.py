@@ -20,6 +20,7 @@ from pydantic import Discriminator, Field, Tag, model_validator
 
 from verification.cases.contact import BallEntry, refuse_unfit_scales
 from verification.cases.toml import CaseError, Poisson, Positive, Strict, Text, read_bounded, read_toml
+from verification.cases.units import Metres, Newtons, Pascals
 from verification.problem.arrays import Ball
 from verification.problem.contact import CoatedContact
 from verification.running.records import plain
@@ -113,25 +114,28 @@ Values = Annotated[list[Positive], Field(min_length=1, max_length=100_000)]
 
 
 class _Substrate(Strict):
-    E: Positive
+    E: Pascals
     nu: Poisson
 
 
 class _Coating(Strict):
-    E: Positive | None = None
+    E: Pascals | None = None
     nu: Poisson
 
 
 class _Problem(Strict):
-    radius: Positive
-    load: Positive
+    radius: Metres
+    load: Newtons
     substrate: _Substrate
     coating: _Coating
     ball: BallEntry | None = None
 
 
+Lengths = Annotated[list[Metres], Field(min_length=1, max_length=100_000)]
+
+
 class _Range(Strict):
-    start: Annotated[float, Field(alias="from", gt=0)]
+    start: Annotated[Positive, Field(alias="from")]
     to: Positive
     count: Annotated[int, Field(ge=1, le=100_000)]
 
@@ -142,16 +146,20 @@ class _Range(Strict):
         return self
 
 
+class _Lengths(_Range):
+    start: Annotated[Metres, Field(alias="from")]
+    to: Metres
+
+
 # Discriminated by type, so that an error message concerns one of them only.
-Sweep = Annotated[
-    Annotated[Values, Tag("list")] | Annotated[_Range, Tag("range")],
-    Discriminator(lambda given: "range" if isinstance(given, dict | _Range) else "list"),
-]
+_BY_TYPE = Discriminator(lambda given: "range" if isinstance(given, dict | _Range) else "list")
+Sweep = Annotated[Annotated[Values, Tag("list")] | Annotated[_Range, Tag("range")], _BY_TYPE]
+LengthSweep = Annotated[Annotated[Lengths, Tag("list")] | Annotated[_Lengths, Tag("range")], _BY_TYPE]
 
 
 class _Sweep(Strict):
     modulus_ratio: Values | None = None
-    thickness: Sweep | None = None
+    thickness: LengthSweep | None = None
     thickness_over_a_h: Sweep | None = None
     friction: Annotated[list[Annotated[float, Field(ge=0, le=2)]], Field(min_length=1, max_length=1000)] = (
         Field(default_factory=lambda: [0.0])
@@ -204,7 +212,8 @@ def parse_study(raw: bytes, path: Path) -> Study:
         raise CaseError(f"{path}: needs exactly one of problem.coating.E or sweep.modulus_ratio, E1/E2")
     moduli = [p.coating.E] if p.coating.E else [r * p.substrate.E for r in sweep.modulus_ratio or ()]
     refuse_unfit_scales(path, replace(bare, ball=ball))
-    key, scale, asked = "thickness", 1.0, sweep.thickness
+    asked: list[float] | _Range | None = sweep.thickness
+    key, scale = "thickness", 1.0
     if asked is None:
         key, scale, asked = "thickness_over_a_h", bare.a_h, sweep.thickness_over_a_h
     assert asked is not None

@@ -76,9 +76,8 @@ def _decisions() -> Answers:
     claim = Claim("pressure", "surface", ("one", "two"), 1e-2, "known", 0.1)
     for place, outcome in ((1, Outcome.DISAGREES), (2, Outcome.AGREES), (3, Outcome.DISAGREES)):
         off = 1e7 * (np.arange(4) == place)
-        found = [
-            Profile("pressure", "surface", x, 1e8 + one, s, U) for s, one in (("one", off), ("two", 0 * x))
-        ]
+        pressures = (("one", 1e8 + off), ("two", 1e8 + 0 * x))
+        found = [Profile("pressure", "surface", x, p, s, U) for s, p in pressures]
         for name, values in contact.items():
             for s, value in zip(("one", "two"), values, strict=True):
                 found.append(Profile(name, "contact", np.zeros(1), np.array([value]), s, np.zeros(1)))
