@@ -63,10 +63,11 @@ def of_sampling() -> Answers:
     for line in (*lines_of(COATED_BALL), *oblique_lines(COATED_BALL)):
         if line.body != BALL:
             continue
-        place = tuple(float(v[1]) for v in np.broadcast_arrays(*line.points(along)))
+        there = (float(v[1]) for v in np.broadcast_arrays(*line.points(along)))
+        point = next(there), next(there), next(there)
         for profile in sample(cast(Solution, solution), "known", line, along):
             i, *rest = ("xyz".index(letter) for letter in profile.quantity.partition("_")[2])
-            wanted = ON_BALL * (labelled(i, rest[0], place, line.layer) if rest else moved(i, place))
+            wanted = ON_BALL * (labelled(i, rest[0], point, line.layer) if rest else moved(i, point))
             yield f"{profile.quantity} on the line {line.name}", float(profile.value[1]), wanted
 
 
