@@ -1,8 +1,8 @@
 """Uncertainty estimated from a coarser companion solution.
 
 The difference of two solutions crosses zero along lines where neither is exact, so it is not used point by
-point: the estimate at a vertex is the largest difference within ``REACH`` rings of triangles around it, and
-between vertices it is linear. Triangles grow with the distance from the contact edge and with depth, and so
+point: the estimate at a vertex is the largest difference in the rings of triangles around it, further rings
+counting by the shares of ``REACH``, and between vertices it is linear. Triangles grow with the distance from the contact edge and with depth, and so
 does the neighbourhood. The largest difference is multiplied with Roache's factor of two meshes (P. J. Roache,
 J. Fluids Eng. 116 (1994) 405-413, eq. 9),
 
@@ -41,8 +41,8 @@ SAFETY = 3.0
 # Triangles above this size do not reach the order of the elements. The factor then grows with the size, that
 # of pressures and stresses with its square: on the axis of a fast solution 2.6 times were needed.
 _ASYMPTOTIC_SIZE = 0.2
-# Rings of triangles, or cells of a line, in which the largest difference is taken.
-REACH = 2
+# Shares of the largest difference in rings of triangles, or cells of a line, by their distance from a point.
+REACH = (1.0, 1.0, 1.0, 0.7, 0.5, 0.35, 0.25)
 # The displacement of the field is part of the estimate within this distance of the edge over the radius.
 _STRIP = 0.3
 # Of sizes of triangles, beyond which their local ratio is that of two irregular meshes.
@@ -172,14 +172,23 @@ class StressEstimate:
     relative: float
     everywhere: float
 
-    def _error(self, points: _Pair) -> np.ndarray:
-        """Estimate (6, n) at points of comparison, before the largest in a neighbourhood is taken."""
+    def _error(self, points: _Pair, layer: int | None = None) -> np.ndarray:
+        """Estimate (6, n) at points of comparison, before the largest in a neighbourhood is taken.
+
+        layer : of points on a plane z = const, whose stresses follow from strains and tractions of the plane
+        """
         final, companion = (f(at)[1] for f, at in zip((self.field, self.companion), points, strict=True))
+        difference = final - companion
+        if layer is not None:
+            # in-plane strains and tractions are two results, whose errors may cancel on one mesh
+            nu = self.field.materials[layer][1]
+            shared = nu / (1 - nu) * difference[2]
+            difference[:2] = np.abs(difference[:2] - shared) + np.abs(shared)
         d = self.field.discretisation
         # In the triangles at the axis, where u_r / r is a derivative too, one order less is observed.
         on_axis = (d.mesh.points[0, d.triangulation.t] == 0).any(axis=0)[points[0].cells]
         gain = self.points.ratio(points) ** (d.order - on_axis) - 1
-        return self.safety / gain * np.abs(final - companion) + self.relative * np.abs(final)
+        return self.safety / gain * np.abs(difference) + self.relative * np.abs(final)
 
     @cached_property
     def _corners(self) -> np.ndarray:
@@ -190,10 +199,10 @@ class StressEstimate:
         worst = self._error(self.points.triangles).reshape(6, -1, t.shape[1]).max(axis=1)
         estimate = np.zeros((6, (int(d.mesh.layer.max()) + 1) * d.mesh.points.shape[1]))
         by_layer = estimate.reshape(6, -1, d.mesh.points.shape[1])
-        for _ in range(REACH):
+        for share in np.divide(REACH, (1.0, *REACH[:-1])):
             for corner in vertices:
                 for component in range(6):
-                    np.maximum.at(estimate[component], corner, worst[component])
+                    np.maximum.at(estimate[component], corner, share * worst[component])
             by_layer[_TRACTIONS] = by_layer[_TRACTIONS].max(axis=1, keepdims=True)
             worst = estimate[:, vertices].max(axis=1)
         return estimate[:, vertices]
@@ -202,7 +211,7 @@ class StressEstimate:
     def _planes(self) -> dict[tuple[float, int], tuple[np.ndarray, np.ndarray]]:
         """Vertices and estimates on the surface and on both sides of each interface, by (depth, layer)."""
         found = {
-            key: (vertices, _largest(self._error(points), vertices.size))
+            key: (vertices, _largest(self._error(points, key[1]), vertices.size))
             for key, (vertices, points) in self.points.planes.items()
         }
         for upper, depth in enumerate(self.field.discretisation.mesh.depths):
@@ -390,10 +399,13 @@ def _samples(vertices: np.ndarray) -> np.ndarray:
 
 
 def _largest(values: np.ndarray, vertices: int) -> np.ndarray:
-    """The largest value within ``REACH`` cells of each of the ``vertices``.
+    """The largest value in the cells around each of the ``vertices``, by the shares of ``REACH``.
 
     values : (..., n) at ``_samples``.  Returns shape (..., vertices).
     """
     worst = values.reshape(*values.shape[:-1], -1, _CELL_SAMPLES).max(axis=-1)
-    padded = np.concatenate([worst[..., :1]] * REACH + [worst] + [worst[..., -1:]] * REACH, axis=-1)
-    return np.max([padded[..., k : k + vertices] for k in range(2 * REACH)], axis=0)
+    side = ((0, 0),) * (worst.ndim - 1)
+    padded = np.pad(worst, (*side, (len(REACH), len(REACH))))
+    both = [(len(REACH) - 1 - ring, len(REACH) + ring) for ring in range(len(REACH))]
+    rings = [np.maximum(*(padded[..., k : k + vertices] for k in cells)) for cells in both]
+    return np.max([share * ring for share, ring in zip(REACH, rings, strict=True)], axis=0)

@@ -33,7 +33,7 @@ __all__ = ["QUALITY", "solve", "solve_prescribed"]
 Coatings = tuple[tuple[float, float, float], ...]
 
 # triangle size over its distance from the contact edge
-QUALITY = {"fast": 0.36, "default": 0.16, "fine": 0.12}
+QUALITY = {"fast": 0.36, "default": 0.12, "fine": 0.1}
 LOAD_TOLERANCE = 1e-8
 
 

@@ -1,16 +1,18 @@
 """Profiles of a solution along the lines of a case."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
 
 import numpy as np
 
+from verification.judging.invariants.refinement import followed
 from verification.problem.arrays import Array
 from verification.problem.contact import CoatedContact, Solution, stress_with_uncertainty
 from verification.problem.profile import Line, Profile
 from verification.problem.quantity import IN_PLANE, PEAKS, QUANTITIES, SCALARS
-from verification.sampling.tension import Search
+from verification.sampling.tension import Search, around_edge, edge_uncertainty
 
-__all__ = ["positions", "sample", "sample_contact"]
+__all__ = ["edge_of", "positions", "sample", "sample_contact"]
 
 # Of a: distances from the contact edge of points on the surface line, either side.
 NEAR_EDGE = np.array([0.0, 1e-4, 1e-3, 1e-2])
@@ -37,6 +39,7 @@ def positions(
     and ``NEAR_EDGE``.
     """
     a = max(solution.contact_radius for solution in solutions.values())
+    edge = edge_of(solutions)
     nodes = next(iter(solutions.values())).surface_nodes
     wanted = 2.5 * a * np.linspace(0, 1, 101)
     if problem.friction:
@@ -47,56 +50,78 @@ def positions(
     # At least six points in each layer, none on an interface; spacing grows with depth.
     inside = bounds[:-1, None] + np.diff(bounds)[:, None] * (np.arange(6) + 0.5) / 6
     z = np.unique(np.concatenate([inside.ravel(), 4 * a * ((np.arange(40) + 0.5) / 40) ** 1.5]))
-    edge = list(solutions.values())[-1].contact_radius * np.concatenate([1 + NEAR_EDGE, 1 - NEAR_EDGE])
-    surface = np.unique(np.concatenate([x, edge, -edge] if problem.friction else [x, edge]))
+    near = edge * np.concatenate([1 + NEAR_EDGE, 1 - NEAR_EDGE])
+    clear = x[np.abs(np.abs(x) - edge) > NEAR_EDGE[1] * edge]
+    surface = np.unique(np.concatenate([clear, near, -near] if problem.friction else [clear, near]))
     return {line: z if line.depth is None else surface if line.depth == 0 else x for line in lines}
 
 
+def edge_of(solutions: Mapping[str, Solution]) -> float:
+    """Contact radius [m] of the last solution, the reference: where the surface line has r = a."""
+    return float(list(solutions.values())[-1].contact_radius)
+
+
 def sample(
-    solution: Solution, source: str, line: Line, position: Array, problem: CoatedContact | None = None
+    solution: Solution,
+    source: str,
+    line: Line,
+    position: Array,
+    problem: CoatedContact | None = None,
+    edge: float | None = None,
 ) -> tuple[Profile, ...]:
     """Every quantity of ``line`` at ``position`` [m]: the four stresses, on the surface the pressure too.
 
     problem : on the surface also its largest tension with its place, as ``PEAKS`` of the contact.
+    edge : as of ``edge_of``; points of the surface at this radius [m] are evaluated at the solution's own
+           contact edge, where a value does not depend on the error of the radius.
     """
     if line.depth is None:
         x, z = np.zeros_like(position), position
     else:
-        x, z = position, np.full_like(position, line.depth)
+        x, z = position.copy(), np.full_like(position, line.depth)
     stated = solution.uncertainty is not None
-    profiles = []
-    if line.name == "surface":
-        profiles.append(
-            Profile(
-                "pressure",
-                line.name,
-                position,
-                solution.pressure(x),
-                source,
-                solution.pressure_uncertainty(x) if stated else None,
-            )
+    surface = line.name == "surface"
+    at = np.flatnonzero(np.abs(position) == edge) if surface else np.arange(0)
+    side = np.sign(position[at])
+    x[at] = side * float(solution.contact_radius)
+    around = (side[:, None] * around_edge(solution)).ravel() if at.size and stated else np.zeros(0)
+    search = Search(solution, problem) if problem is not None and surface else None
+    # In one call, whose cost hardly depends on the number of points.
+    parts = (x, around, np.zeros(0) if search is None else search.x)
+    points = np.concatenate(parts)
+    depth = np.concatenate([z, np.zeros(points.size - z.size)])
+    sigma, U = stress_with_uncertainty(solution, points, 0.0, depth, layer=line.layer)
+    ends = np.cumsum([part.size for part in parts])[:-1]
+    values, near, sought = np.split(sigma, ends, axis=-1)
+    wide, near_U, sought_U = (None,) * 3 if U is None else np.split(U, ends, axis=-1)
+    if wide is not None and around.size:
+        wide[..., at] = _at_edge(
+            solution, near, near_U, lambda one: one.stress(side * one.contact_radius, 0.0, 0.0, layer=0)
         )
-    count = x.size
-    search = Search(solution, problem) if problem is not None and line.name == "surface" else None
-    if search is not None:  # in one call, whose cost hardly depends on the number of points
-        x, z = np.concatenate([x, search.x]), np.zeros(count + search.x.size)
-    sigma, U = stress_with_uncertainty(solution, x, 0.0, z, layer=line.layer)
+    found = [(name, values[component], wide, component) for name, component in IN_PLANE.items()]
+    profiles = [
+        Profile(name, line.name, position, value, source, None if U is None else U[component])
+        for name, value, U, component in found
+    ]
+    if surface:
+        spread = solution.pressure_uncertainty(x) if stated else None
+        if spread is not None and around.size:
+            near, near_U = solution.pressure(around), solution.pressure_uncertainty(around)
+            spread[at] = _at_edge(
+                solution, near, near_U, lambda one: one.pressure(side * one.contact_radius)
+            )
+        profiles.append(Profile("pressure", line.name, position, solution.pressure(x), source, spread))
     if search is not None:
-        found = search.largest(sigma[0, 0, count:], None if U is None else U[0, 0, count:])
-        numbers = ((found.value, found.uncertainty), (found.place, found.place_uncertainty))
-        for name, (value, uncertain) in zip(PEAKS, numbers, strict=True):
-            spread = None if uncertain is None else np.array([uncertain])
-            profiles.append(Profile(name, "contact", np.zeros(1), np.array([value]), source, spread))
-        sigma, U = sigma[..., :count], None if U is None else U[..., :count]
-    for name, component in IN_PLANE.items():
-        profiles.append(
-            Profile(
-                name,
-                line.name,
-                position,
-                sigma[component],
-                source,
-                None if U is None else U[component],
-            )
-        )
+        best = search.largest(sought[0, 0], None if sought_U is None else sought_U[0, 0])
+        numbers = ((best.value, best.uncertainty), (best.place, best.place_uncertainty))
+        for name, (number, uncertain) in zip(PEAKS, numbers, strict=True):
+            own = None if uncertain is None else np.array([uncertain])
+            profiles.append(Profile(name, "contact", np.zeros(1), np.array([number]), source, own))
     return tuple(profiles)
+
+
+def _at_edge(solution: Solution, value: Array, U: Array, at_own_edge: Callable[[Any], Array]) -> Array:
+    """Uncertainty at the solution's own edge from values at ``around_edge`` of each side, (..., 5 sides)."""
+    change = followed(solution, at_own_edge)
+    shape = (*value.shape[:-1], -1, 5)
+    return edge_uncertainty(value.reshape(shape), U.reshape(shape), change)
