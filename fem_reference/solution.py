@@ -2,10 +2,12 @@
 
 import time
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 
+from .contact import peak
 from .estimate import Estimates, Uncertainty
 from .points import SolidPoints, solid_points
 from .scaling import Units
@@ -83,6 +85,25 @@ class Solution:
         seconds = self.diagnostics.seconds + time.perf_counter() - started
         diagnostics = replace(self.diagnostics, seconds=seconds)
         return replace(self, state=state, estimates=estimates, diagnostics=diagnostics)
+
+    @cached_property
+    def coarser(self) -> "Solution | None":
+        """The companion by which the errors were estimated, without estimates; None where there is none."""
+        if self.estimates is None:
+            return None
+        state = self.estimates.companion
+        _, largest = peak(state.pressure, state.discretisation.contact_vertices)
+        return replace(
+            self,
+            contact_radius=state.mesh.contact_radius * self.units.length,
+            approach=state.central_displacement * self.units.displacement,
+            peak_pressure=largest * self.units.pressure,
+            uncertainty=None,
+            state=state,
+            estimates=None,
+            stiffness=None,
+            stiffness_uncertainty=None,
+        )
 
     def pressure(self, x: Any, y: Any = 0.0) -> np.ndarray:
         """Contact pressure [Pa] at the surface points (x, y), broadcast; zero outside the contact."""
