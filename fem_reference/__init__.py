@@ -1,4 +1,4 @@
-"""Axisymmetric finite element model of a rigid sphere on a coated elastic half-space.
+"""Axisymmetric finite element model of a sphere, rigid or elastic, on a coated elastic half-space.
 
 >>> from fem_reference import solve
 >>> steel = (210e9, 0.3)

@@ -94,7 +94,8 @@ class Discretisation:
         """The same elements on another ``mesh``; one of the same triangles keeps the order of elimination."""
         d = Discretisation(mesh, self.order)
         if mesh.triangles is self.mesh.triangles:
-            vars(d)["tree"] = self.tree
+            kept = vars(self)
+            vars(d).update({name: kept[name] for name in ("leaf", "tree") if name in kept})
         return d
 
     @cached_property
@@ -141,6 +142,11 @@ class Discretisation:
         return numbers[np.argsort(self.locations[0, numbers])]
 
     @cached_property
+    def contact(self) -> np.ndarray:
+        """Unknowns of one field on the contact, by increasing radius."""
+        return self.surface[self.locations[0, self.surface] <= self.mesh.contact_radius]
+
+    @cached_property
     def axis(self) -> np.ndarray:
         return self.unknowns_on(self.facets(lambda x: x[0] == 0))
 
@@ -150,14 +156,23 @@ class Discretisation:
         return self.unknowns_on(self.facets(lambda x: np.any(x >= far, axis=0)))
 
     @cached_property
+    def leaf(self) -> np.ndarray:
+        """Leaf of each triangle in a tree of bisections, (triangles,)."""
+        xi, zeta = self.mesh.plane(*self.mesh.points[:, self.triangulation.t].mean(axis=1))
+        return bisected(self.triangulation.t, np.stack([xi, zeta, np.hypot(xi, zeta)]))
+
+    @cached_property
     def tree(self) -> DissectionTree:
         """Order of elimination of the unknowns of one field."""
-        xi, zeta = self.mesh.plane(*self.mesh.points[:, self.triangulation.t].mean(axis=1))
-        leaf = bisected(self.triangulation.t, np.stack([xi, zeta, np.hypot(xi, zeta)]))
-        return DissectionTree.of(np.asarray(self.basis.element_dofs).T, leaf)
+        return DissectionTree.of(np.asarray(self.basis.element_dofs).T, self.leaf)
 
     def stiffness(self, materials: tuple[tuple[float, float], ...], harmonic: int) -> "Stiffness":
-        """Stiffness matrix: virtual work over the angular factor common to all terms.
+        """Stiffness matrix with its order of elimination, see ``element_stiffness``."""
+        nodes = np.asarray(self.basis.element_dofs).T
+        return Stiffness(self.element_stiffness(materials, harmonic), nodes, self.tree)
+
+    def element_stiffness(self, materials: tuple[tuple[float, float], ...], harmonic: int) -> np.ndarray:
+        """Stiffness of the triangles: virtual work over the angular factor common to all terms.
 
             v^T K u = int eps(v) : D(layer) eps(u) r dr dz
 
@@ -166,6 +181,8 @@ class Discretisation:
         functions i and j are coupled by
 
             K_if,jg = sum_ab (A_a^T D A_b)_fg int s_ai s_bj r dr dz.
+
+        Returns shape (triangles, size, size), unknowns by node, then field.
         """
         A = np.stack(strain_operator(harmonic), axis=1)
         strains, kinds, fields = A.shape
@@ -188,8 +205,7 @@ class Discretisation:
             integrals = integrals.reshape(-1, kinds, local, kinds, local).transpose(0, 1, 3, 2, 4)
             coupled = coupling[block] @ integrals.reshape(-1, kinds**2, local**2)
             K[block] = coupled.reshape(-1, fields, fields, local, local).transpose(0, 3, 1, 4, 2)
-        elements = K.reshape(triangles, local * fields, local * fields)
-        return Stiffness(elements, np.asarray(self.basis.element_dofs).T, self.tree)
+        return K.reshape(triangles, local * fields, local * fields)
 
     def surface_basis(self, facets: np.ndarray) -> FacetBasis:
         """Shape functions on surface edges, with quadrature exact for products of two and r."""

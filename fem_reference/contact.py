@@ -1,4 +1,4 @@
-"""Frictionless contact of a rigid paraboloid at a given contact radius.
+"""Frictionless contact of a paraboloid, rigid or elastic, at a given contact radius.
 
 The mesh has a vertex at the contact edge. Lengths in a unit L of the caller, moduli in a unit E_0, sphere
 radius 1: displacements are then in L^2/R, pressure in E_0 L/R, load in E_0 L^3/R. For a given contact radius
@@ -13,7 +13,8 @@ paraboloid being a polynomial, and the first gives p from the nodal reactions th
 contact: the saddle system separates into one positive definite solve and one small one. (Dividing
 reactions by nodal weights instead would fail on the axis, where the weight vanishes.) delta and W follow
 from p(a) = 0 and int p = W, so one factorisation with three right-hand sides, flat punch, paraboloid and far
-field, gives everything.
+field, gives everything. Of an elastic ball u_z is the sum of both bodies' (``coupling``), delta the approach
+of points far from the contact in both.
 """
 
 from collections.abc import Callable
@@ -26,9 +27,10 @@ import scipy.sparse.linalg as sla
 from scipy.optimize import minimize_scalar
 
 from .axisymmetric import Discretisation, constrained_solve
+from .coupling import Coupling
 from .scaling import LayeredSolid
 
-__all__ = ["FixedRadiusContact", "Multiplier", "complementarity", "peak", "solve_at_radius"]
+__all__ = ["Ball", "FixedRadiusContact", "Multiplier", "complementarity", "peak", "solve_at_radius"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,6 +68,19 @@ class Multiplier:
 
 
 @dataclass(frozen=True, eq=False)
+class Ball:
+    """An elastic ball in contact: its layers, its displacement with z into it, its coupling to the flat."""
+
+    solid: LayeredSolid
+    coupling: Coupling
+    fields: np.ndarray
+
+    @property
+    def discretisation(self) -> Discretisation:
+        return self.coupling.ball
+
+
+@dataclass(frozen=True, eq=False)
 class FixedRadiusContact:
     """Solution of the contact at one contact radius, in the units of the module.
 
@@ -74,6 +89,7 @@ class FixedRadiusContact:
     approach, load : of the paraboloid with this contact_radius
     stiffness  : d load / d approach at fixed contact radius
     residual   : largest out-of-balance nodal force over the load
+    ball       : None where it is rigid
     """
 
     discretisation: Discretisation
@@ -84,26 +100,28 @@ class FixedRadiusContact:
     contact_radius: float
     stiffness: float
     residual: float
+    ball: Ball | None = None
 
 
-def solve_at_radius(solid: LayeredSolid, discretisation: Discretisation) -> FixedRadiusContact:
-    """Solve the contact whose edge is the mesh's contact radius; E_0 is the modulus of the substrate."""
-    d, N = discretisation, discretisation.N
+def solve_at_radius(
+    solid: LayeredSolid, discretisation: Discretisation, ball: tuple[LayeredSolid, Coupling] | None = None
+) -> FixedRadiusContact:
+    """Solve the contact whose edge is the mesh's contact radius.
+
+    ball : layers of an elastic ball, and its discretisation coupled to that of the flat
+    """
+    d, contact = discretisation, discretisation.contact
     a = d.mesh.contact_radius
     edges = d.facets(lambda x: (x[1] == 0) & (x[0] < a))
-    contact = d.unknowns_on(edges)
-    contact = contact[np.argsort(d.locations[0, contact])]
     nodes = d.locations[0, contact]
-    K = d.stiffness(solid.materials, 0)
+    # flat punch, paraboloid, far field
+    shape = np.stack([np.ones_like(nodes), -(nodes**2) / 2, np.zeros_like(nodes)], axis=1)
+    far = np.array([0.0, 0.0, 1.0])
+    if ball is None:
+        u, reaction, balance = _under_rigid(solid, d, shape, far)
+    else:
+        u, of_ball, reaction, balance = ball[1].solve((solid, ball[0]), shape, far)
 
-    given = np.zeros((2 * N, 3))
-    given[N + contact, 0] = 1.0
-    given[N + contact, 1] = -(nodes**2) / 2
-    given[d.outer, 2], given[N + d.outer, 2] = solid.far_displacement(*d.locations[:, d.outer])
-    given[d.axis] = 0.0
-    u = constrained_solve(K, given, np.concatenate([d.axis, d.outer, N + d.outer, N + contact]))
-
-    reaction = (K @ u)[N + contact]
     mass = d.surface_mass(edges)[contact][:, contact]
     even = _even_at_the_axis(nodes, d.order)
     p = even @ sla.splu((even.T @ mass @ even).tocsc()).solve(even.T @ reaction)
@@ -112,21 +130,42 @@ def solve_at_radius(solid: LayeredSolid, discretisation: Discretisation) -> Fixe
     system = np.array([[p[-1, 0], p[-1, 2]], [loads[0], loads[2] - 1.0]])
     delta, W = np.linalg.solve(system, -np.array([p[-1, 1], loads[1]]))
     combine = np.array([delta, 1.0, W])
-    fields = u @ combine
-    force = K @ fields
-    force[np.concatenate([d.axis, d.outer, N + d.outer, N + contact])] = 0.0
     values = p @ combine
     values[-1] = 0.0
     return FixedRadiusContact(
         discretisation=d,
-        fields=fields,
+        fields=u @ combine,
         pressure=Multiplier(nodes, values, d.order),
         approach=float(delta),
         load=float(W),
         contact_radius=a,
         stiffness=float(loads[0] / (1 - loads[2])),
-        residual=float(2 * np.pi * np.abs(force).max() / abs(W)),
+        residual=float(2 * np.pi * np.abs(balance @ combine).max() / abs(W)),
+        ball=None if ball is None else Ball(*ball, of_ball @ combine),
     )
+
+
+def _under_rigid(
+    solid: LayeredSolid, d: Discretisation, shape: np.ndarray, far: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Displacement with u_z = ``shape`` (nodes, columns) on the contact; ``far`` as in ``Coupling.solve``.
+
+    Returns the field vectors (2 N, columns), the nodal forces on the contact (nodes, columns), the forces out
+    of balance (2 N, columns).
+    """
+    N = d.N
+    K = d.stiffness(solid.materials, 0)
+    given = np.zeros((2 * N, far.size))
+    given[N + d.contact] = shape
+    u_r, u_z = solid.far_displacement(*d.locations[:, d.outer])
+    given[d.outer], given[N + d.outer] = u_r[:, None] * far, u_z[:, None] * far
+    given[d.axis] = 0.0
+    fixed = np.concatenate([d.axis, d.outer, N + d.outer, N + d.contact])
+    u = constrained_solve(K, given, fixed)
+    force = K @ u
+    balance = force.copy()
+    balance[fixed] = 0.0
+    return u, force[N + d.contact], balance
 
 
 def complementarity(contact: FixedRadiusContact) -> tuple[float, float]:
@@ -134,6 +173,9 @@ def complementarity(contact: FixedRadiusContact) -> tuple[float, float]:
     d = contact.discretisation
     r = d.locations[0, d.surface]
     gap = r**2 / 2 + contact.fields[d.N + d.surface] - contact.approach
+    if contact.ball is not None:
+        ball = contact.ball.discretisation
+        gap += contact.ball.fields[ball.N + ball.surface]
     # in this order NaN is passed on: max(0.0, nan) would be 0
     penetration = max(-float(gap[r > contact.contact_radius].min()), 0.0)
     p = contact.pressure.values

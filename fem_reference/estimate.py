@@ -2,9 +2,9 @@
 
 The difference of two solutions crosses zero along lines where neither is exact, so it is not used point by
 point: the estimate at a vertex is the largest difference in the rings of triangles around it, further rings
-counting by the shares of ``REACH``, and between vertices it is linear. Triangles grow with the distance from the contact edge and with depth, and so
-does the neighbourhood. The largest difference is multiplied with Roache's factor of two meshes (P. J. Roache,
-J. Fluids Eng. 116 (1994) 405-413, eq. 9),
+counting by the shares of ``REACH``, and between vertices it is linear. Triangles grow with the distance from
+the contact edge and with depth, and so does the neighbourhood. The largest difference is
+multiplied with Roache's factor of two meshes (P. J. Roache, J. Fluids Eng. 116 (1994) 405-413, eq. 9),
 
     U = SAFETY |difference| / (ratio^order - 1),
 
@@ -17,6 +17,9 @@ therefore taken at the given load: W ~ a^slope, d delta = dW / stiffness.
 A contact radius in error by da displaces the whole field, which changes the values at fixed points next to
 the edge by up to the square root of da. The change of the field under that displacement is part of the
 estimate of pressures and stresses.
+
+The error of a displacement is smooth and mostly that of the whole mesh: its estimate is one number for each
+component, the largest difference at the samples of all triangles times the same factor.
 """
 
 from collections.abc import Callable
@@ -162,6 +165,7 @@ class StressEstimate:
     radius_error : uncertainty of the contact radius
     relative : added in proportion to the stress, for errors of the load
     everywhere : added at every point, for the truncation of the half-space
+    far : the same of displacements
     """
 
     field: HarmonicField
@@ -171,13 +175,32 @@ class StressEstimate:
     radius_error: float
     relative: float
     everywhere: float
+    far: float
+
+    def displacement(self, u: np.ndarray) -> np.ndarray:
+        """Estimate (3, n) of the displacement ``u`` (3, n) at any points."""
+        order = self.field.discretisation.order
+        change = self.safety / (COMPANION**order - 1) * self._sampled[1]
+        return change[:, None] + self.far + self.relative * np.abs(u)
+
+    @cached_property
+    def _sampled(self) -> tuple[np.ndarray, np.ndarray]:
+        """``_error`` at the samples of all triangles, with the largest change of each displacement (3,)."""
+        error, change = self._compared(self.points.triangles)
+        return error, change.max(axis=1)
 
     def _error(self, points: _Pair, layer: int | None = None) -> np.ndarray:
         """Estimate (6, n) at points of comparison, before the largest in a neighbourhood is taken.
 
         layer : of points on a plane z = const, whose stresses follow from strains and tractions of the plane
         """
-        final, companion = (f(at)[1] for f, at in zip((self.field, self.companion), points, strict=True))
+        return self._compared(points, layer)[0]
+
+    def _compared(self, points: _Pair, layer: int | None = None) -> tuple[np.ndarray, np.ndarray]:
+        """``_error``, and the change of the displacement (3, n) from the companion."""
+        (u, final), (other, companion) = (
+            f(at) for f, at in zip((self.field, self.companion), points, strict=True)
+        )
         difference = final - companion
         if layer is not None:
             # in-plane strains and tractions are two results, whose errors may cancel on one mesh
@@ -188,7 +211,8 @@ class StressEstimate:
         # In the triangles at the axis, where u_r / r is a derivative too, one order less is observed.
         on_axis = (d.mesh.points[0, d.triangulation.t] == 0).any(axis=0)[points[0].cells]
         gain = self.points.ratio(points) ** (d.order - on_axis) - 1
-        return self.safety / gain * np.abs(difference) + self.relative * np.abs(final)
+        error = self.safety / gain * np.abs(difference) + self.relative * np.abs(final)
+        return error, np.abs(u - other)
 
     @cached_property
     def _corners(self) -> np.ndarray:
@@ -196,7 +220,7 @@ class StressEstimate:
         d = self.field.discretisation
         t = d.triangulation.t
         vertices = t + d.mesh.layer * d.mesh.points.shape[1]
-        worst = self._error(self.points.triangles).reshape(6, -1, t.shape[1]).max(axis=1)
+        worst = self._sampled[0].reshape(6, -1, t.shape[1]).max(axis=1)
         estimate = np.zeros((6, (int(d.mesh.layer.max()) + 1) * d.mesh.points.shape[1]))
         by_layer = estimate.reshape(6, -1, d.mesh.points.shape[1])
         for share in np.divide(REACH, (1.0, *REACH[:-1])):
@@ -260,21 +284,24 @@ class Estimates:
         """The estimates of ``state``, which slides with ``friction``; the companion is solved for it."""
         companion, estimate = self.companion.with_friction(friction), None
         if state.tangential is not None and companion.tangential is not None:
+            far, everywhere, _ = state.truncation(1)
             estimate = replace(
                 self.normal,
                 field=state.tangential,
                 companion=companion.tangential,
-                everywhere=state.truncation(1)[1],
+                everywhere=everywhere,
+                far=far,
             )
         return replace(self, companion=companion, tangential=estimate)
 
 
 def contact_estimates(
-    levels: ContactLevels, state: ElasticState, units: Units, load: float, size: float
-) -> tuple[Estimates, float]:
-    """Uncertainty of the frictionless contact ``state`` of the final level, and that of its stiffness.
+    levels: ContactLevels, states: tuple[ElasticState, ...], units: Units, load: float, size: float
+) -> tuple[tuple[Estimates, ...], float]:
+    """Uncertainty of each of the frictionless contact ``states`` of the final level, and of its stiffness.
 
-    size : of the final mesh.  load : in scaled ``units``, as ``levels``.
+    states : of the flat, then of an elastic ball.  size : of the final mesh.  load : in scaled ``units``, as
+    ``levels``.
     """
     final, companion = levels.final, levels.companion
     assert companion is not None
@@ -282,14 +309,22 @@ def contact_estimates(
         _at_load(contact, load, levels.slope) for contact in (final, companion)
     )
     load_residual = abs(final.load / load - 1)
-    coarser = ElasticState.of_contact(state.solid, companion)
+    bodies = (None, companion.ball)
+    coarser = [
+        ElasticState.of_contact(state.solid, companion, body)
+        for state, body in zip(states, bodies, strict=False)
+    ]
     edge, other_edge = (_edge_displacement(contact) for contact in (final, companion))
     # what the displaced edges leave of the difference of the radii is due to all other triangles
     changes = abs(a + edge - other_a - other_edge), abs(approach - other_approach)
-    found = estimates(state, coarser, units, changes, load_residual, abs(edge), size)
+    found = tuple(
+        estimates(state, coarse, units, changes, load_residual, abs(edge), size, states)
+        for state, coarse in zip(states, coarser, strict=True)
+    )
+    truncation = sum(state.truncation(0)[0] for state in states) / final.approach
     stiffness = (
-        _functional_factor(state.discretisation.order, size) * abs(final.stiffness - companion.stiffness)
-        + (load_residual + state.truncation(0)[0] / final.approach) * final.stiffness
+        _functional_factor(final.discretisation.order, size) * abs(final.stiffness - companion.stiffness)
+        + (load_residual + truncation) * final.stiffness
     )
     return found, float(stiffness * units.load / units.displacement)
 
@@ -302,22 +337,25 @@ def estimates(
     load_residual: float,
     edge: float,
     size: float,
+    bodies: tuple[ElasticState, ...] = (),
 ) -> Estimates:
     """Uncertainty of a frictionless ``state``.
 
     changes : of contact radius and approach from the mesh of the companion, at one load
     load_residual : relative error of the load
     edge : displacement of the contact edge by the size of the last triangle
-    size : of the mesh
+    size : of the mesh.  bodies : the states of all bodies in contact, by default this one alone
     """
     d = state.discretisation
     at, largest = peak(state.pressure, d.contact_vertices)
     a = d.mesh.contact_radius
     size_radius, size_approach = changes
-    far_approach, far_stress, curvature = state.truncation(0)
+    bodies = bodies or (state,)
+    far_approach, far_stress, curvature = np.sum([body.truncation(0) for body in bodies], axis=0)
     # The sphere has curvature 1; at given load a ~ R^(1/3) and p0 ~ R^(-2/3), on the bare substrate. A given
     # pressure with its radius is exact.
     far_radius, far_pressure = np.array([a, largest]) * (curvature if state.normal.root_at_edge else 0.0)
+    central = sum(body.central_displacement for body in bodies)
     displacement, factor = units.displacement, _factor(d.order, size)
     pointwise, functional = factor * _coarseness(size), _functional_factor(d.order, size)
     balance = load_residual / 3 * a
@@ -334,7 +372,7 @@ def estimates(
         ("contact_radius", "load balance", balance * units.length),
         ("approach", "element size", functional * size_approach * displacement),
         ("approach", "outer boundary", far_approach * displacement),
-        ("approach", "load balance", load_residual * state.central_displacement * displacement),
+        ("approach", "load balance", load_residual * central * displacement),
         ("peak_pressure", "element size", size_peak * units.pressure),
         ("peak_pressure", "outer boundary", far_pressure * units.pressure),
         ("peak_pressure", "load balance", load_residual / 3 * largest * units.pressure),
@@ -350,7 +388,8 @@ def estimates(
         SAFETY * _coarseness(size) ** 2,
         radius_error,
         relative,
-        far_stress,
+        float(far_stress),
+        float(far_approach),
     )
     return Estimates(Uncertainty(**total, budget=budget), pressure, normal, None, companion)
 

@@ -10,7 +10,8 @@ from functools import partial
 
 from .axisymmetric import Discretisation
 from .contact import FixedRadiusContact, solve_at_radius
-from .mesh import EDGE_SIZE, Grading, MeridianMesh, meridian_mesh
+from .coupling import Coupling
+from .mesh import EDGE_SIZE, Grading, MeridianMesh, Meshes, meridian_mesh
 from .radius_search import find_contact_radius
 from .scaling import LayeredSolid, first_radius
 
@@ -46,8 +47,11 @@ class ContactLevels:
     history: tuple[tuple[str, float, float], ...]
 
 
+Solids = tuple[LayeredSolid, ...]
+
+
 def solve_levels(
-    solid: LayeredSolid,
+    solids: Solids,
     load: float,
     *,
     order: int,
@@ -58,6 +62,7 @@ def solve_levels(
 ) -> ContactLevels:
     """Find the contact radius at ``load``, each level starting from the result of the one before.
 
+    solids : the flat, then an elastic ball
     order, size, tolerance : of the final level.  max_iterations : contact solves allowed on each level
     Raises NotConverged when the load is not reached on one of the levels.
     """
@@ -65,7 +70,7 @@ def solve_levels(
     if with_companion:
         levels.append(_Level("companion", companion_grading(size), order, tolerance))
     levels.append(_Level("final", Grading.of(size), order, tolerance))
-    start = first_radius(solid, load), 3.0
+    start = first_radius(solids, load), 3.0
     a, slope = start
     history: list[tuple[str, float, float]] = []
     found: dict[str, FixedRadiusContact] = {}
@@ -76,8 +81,8 @@ def solve_levels(
             slope=slope,
             tolerance=level.tolerance,
             max_iterations=min(max_iterations, _ROUGH_SOLVES) if level.name == "rough" else max_iterations,
-            mesh_at=partial(mesh_at, solid, level.grading),
-            solve_on=partial(_solve_on, solid, level.order),
+            mesh_at=partial(_meshes_at, solids, level.grading),
+            solve_on=partial(_solve_on, solids, level.order),
         )
         history += [(level.name, *entry) for entry in search.history]
         a, W = search.history[-1]
@@ -110,8 +115,30 @@ def mesh_at(solid: LayeredSolid, grading: Grading, contact_radius: float) -> Mer
     )
 
 
+def _meshes_at(solids: Solids, grading: Grading, contact_radius: float) -> Meshes:
+    """Mesh of each of the ``solids``, alike on the surface; layers of equal thicknesses share one."""
+    far = max(solid.far for solid in solids)
+    length = min((h for solid in solids for h in solid.thicknesses[:1]), default=contact_radius)
+    made = {
+        thicknesses: meridian_mesh(
+            contact_radius=contact_radius, thicknesses=thicknesses, far=far, grading=grading, length=length
+        )
+        for thicknesses in dict.fromkeys(solid.thicknesses for solid in solids)
+    }
+    return Meshes(tuple(made[solid.thicknesses] for solid in solids))
+
+
 def _solve_on(
-    solid: LayeredSolid, order: int, mesh: MeridianMesh, previous: FixedRadiusContact | None
+    solids: Solids, order: int, meshes: Meshes, previous: FixedRadiusContact | None
 ) -> FixedRadiusContact:
-    d = Discretisation(mesh, order) if previous is None else previous.discretisation.moved(mesh)
-    return solve_at_radius(solid, d)
+    flat, *others = meshes.of
+    d = Discretisation(flat, order) if previous is None else previous.discretisation.moved(flat)
+    if not others:
+        return solve_at_radius(solids[0], d)
+    known = None if previous is None or previous.ball is None else previous.ball.coupling
+    if others[0] is flat:
+        ball = d
+    else:
+        ball = Discretisation(others[0], order) if known is None else known.ball.moved(others[0])
+    coupling = Coupling(d, ball) if known is None else known.moved(d, ball)
+    return solve_at_radius(solids[0], d, (solids[1], coupling))

@@ -17,13 +17,14 @@ import numpy as np
 
 from .gmsh_session import session
 
-__all__ = ["EDGE_SIZE", "Grading", "MeridianMesh", "meridian_mesh"]
+__all__ = ["EDGE_SIZE", "Grading", "MeridianMesh", "Meshes", "meridian_mesh"]
 
 EDGE_SIZE = 1e-7  # smallest triangle, at the contact edge, over the contact radius
 # Size of a triangle in the fan over edge_rate: this power of its distance from the edge. What the innermost
 # triangles miss counts as the root of the distance.
 _FAN = 0.94
-# Sizes are uniform to this depth over the contact radius, then grow by this share a unit of the stretched plane.
+# Sizes are uniform to this depth over the contact radius, then grow by this share a unit of the stretched
+# plane.
 _NEAR, _GROWTH = 3.0, 0.4
 
 
@@ -84,11 +85,34 @@ class MeridianMesh:
         return np.stack([np.arcsinh(offset), np.arcsinh(z / self.length)])
 
 
+@dataclass(frozen=True, eq=False)
+class Meshes:
+    """Meridian meshes of the bodies in contact, the flat first, with the same vertices on the surface."""
+
+    of: tuple[MeridianMesh, ...]
+
+    @property
+    def contact_radius(self) -> float:
+        return self.of[0].contact_radius
+
+    def stretched(self, factor: float) -> "Meshes":
+        """The meshes with all radii multiplied by ``factor``; bodies of one mesh keep one."""
+        new = {id(mesh): mesh.stretched(factor) for mesh in self.of}
+        return Meshes(tuple(new[id(mesh)] for mesh in self.of))
+
+
 def meridian_mesh(
-    *, contact_radius: float, thicknesses: tuple[float, ...], far: float, grading: Grading
+    *,
+    contact_radius: float,
+    thicknesses: tuple[float, ...],
+    far: float,
+    grading: Grading,
+    length: float | None = None,
 ) -> MeridianMesh:
     """Triangulate 0 <= r, z <= ``far`` with a vertex at r = ``contact_radius`` on the surface.
 
+    length : l of the module, None for that of this solid. The vertices of the surface depend on the contact
+    radius, ``far``, ``grading`` and it alone.
     One physical group per layer ("coating 1", ..., "substrate"). Raises ValueError when the contact or the
     coatings do not fit into the half-space.
     """
@@ -103,7 +127,7 @@ def meridian_mesh(
         raise ValueError(
             f"contact radius {a:g} in a half-space cut off at {far:g}; choose a larger far boundary"
         )
-    length = min(a, *thicknesses[:1]) if thicknesses else a
+    length = min(a, *thicknesses[:1], *(() if length is None else (length,)), a)
     xi = np.array([-np.arcsinh(a / length), 0.0, np.arcsinh((far - a) / length)])
     zeta = np.concatenate([[0.0], np.arcsinh(depths / length), [np.arcsinh(far / length)]])
 

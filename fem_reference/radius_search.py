@@ -10,7 +10,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from .contact import FixedRadiusContact
-from .mesh import MeridianMesh
+from .mesh import Meshes
 
 __all__ = ["RadiusSearch", "find_contact_radius"]
 
@@ -34,8 +34,8 @@ def find_contact_radius(
     slope: float,
     tolerance: float,
     max_iterations: int,
-    mesh_at: Callable[[float], MeridianMesh],
-    solve_on: Callable[[MeridianMesh, FixedRadiusContact | None], FixedRadiusContact],
+    mesh_at: Callable[[float], Meshes],
+    solve_on: Callable[[Meshes, FixedRadiusContact | None], FixedRadiusContact],
 ) -> RadiusSearch:
     """Find a with |W(a)/load - 1| <= ``tolerance``, from ``start`` and an initial ``slope``.
 
@@ -45,7 +45,7 @@ def find_contact_radius(
     a = start
     mesh = mesh_at(a)
     history: list[tuple[float, float]] = []
-    last: tuple[MeridianMesh, float, float] | None = None
+    last: tuple[Meshes, float, float] | None = None
     contact: FixedRadiusContact | None = None
     while True:
         contact = solve_on(mesh.stretched(a / mesh.contact_radius), contact)

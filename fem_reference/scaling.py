@@ -31,7 +31,7 @@ class Units:
 
 @dataclass(frozen=True)
 class LayeredSolid:
-    """(E, nu) per layer with E of the substrate 1, thickness per coating, extent of the mesh in r and z."""
+    """(E, nu) per layer over a common modulus, thickness per coating, extent of the mesh in r and z."""
 
     materials: tuple[tuple[float, float], ...]
     thicknesses: tuple[float, ...]
@@ -39,9 +39,9 @@ class LayeredSolid:
 
     @classmethod
     def scaled(
-        cls, coatings: Coatings, substrate: tuple[float, float], length: float, far: float
+        cls, coatings: Coatings, substrate: tuple[float, float], length: float, far: float, modulus: float
     ) -> "LayeredSolid":
-        """The solid in units of ``length`` and E of the substrate, meshed to ``far`` times its own size.
+        """The solid in units of ``length`` and ``modulus``, meshed to ``far`` times its own size.
 
         A stiff coating distributes the load over a length that grows with its modulus, so it contributes
         h sqrt(E_k/E) to that size.
@@ -50,8 +50,8 @@ class LayeredSolid:
         thicknesses = tuple(h / length for _, _, h in coatings)
         moduli = [E_k / E for E_k, _, _ in coatings]
         extent = sum(h * max(1.0, m) ** 0.5 for h, m in zip(thicknesses, moduli, strict=True))
-        poisson = [nu_k for _, nu_k, _ in coatings]
-        return cls((*zip(moduli, poisson, strict=True), (1.0, nu)), thicknesses, far * (1 + extent))
+        materials = tuple((E_k / modulus, nu_k) for E_k, nu_k in (*((c[0], c[1]) for c in coatings), (E, nu)))
+        return cls(materials, thicknesses, far * (1 + extent))
 
     def far_displacement(self, r: np.ndarray, z: np.ndarray) -> np.ndarray:
         """(u_r, u_z) far from a unit normal force: that of the substrate alone."""
@@ -62,15 +62,17 @@ class LayeredSolid:
         return cerruti(r, z, *self.materials[-1])
 
 
-def first_radius(solid: LayeredSolid, load: float) -> float:
-    """Contact radius if the layers above z gave the share (2/pi) atan(z/a) of the compliance.
+def first_radius(solids: tuple[LayeredSolid, ...], load: float) -> float:
+    """Contact radius if the layers above z gave the share (2/pi) atan(z/a) of the compliance of a body.
 
     Initial guess; ``load`` in units with sphere radius 1.
     """
-    depths = np.cumsum([0.0, *solid.thicknesses])
     a = 1.0
     for _ in range(30):
-        share = np.diff(2 / np.pi * np.arctan(depths / a), append=1.0)
-        compliance = sum(s * (1 - nu**2) / E for s, (E, nu) in zip(share, solid.materials, strict=True))
+        compliance = 0.0
+        for solid in solids:
+            depths = np.cumsum([0.0, *solid.thicknesses])
+            share = np.diff(2 / np.pi * np.arctan(depths / a), append=1.0)
+            compliance += sum(s * (1 - nu**2) / E for s, (E, nu) in zip(share, solid.materials, strict=True))
         a = (0.75 * load * compliance) ** (1 / 3)
     return float(a)

@@ -14,7 +14,7 @@ from .scaling import Units
 from .state import ElasticState
 from .validation import check_friction
 
-__all__ = ["Diagnostics", "Solution"]
+__all__ = ["BodyFields", "Diagnostics", "Solution"]
 
 
 @dataclass(frozen=True)
@@ -44,15 +44,29 @@ class Diagnostics:
 
 
 @dataclass(frozen=True, eq=False)
-class Solution:
-    """Contact of a rigid sphere (or a prescribed pressure) on a coated half-space.
+class BodyFields:
+    """Fields of one body, and their estimated errors or None, in scaled units."""
 
-    Origin at first contact, x along sliding, z into the solid; tension positive; SI units. A solution can be
-    pickled; under a prescribed pressure given as a callable, if that can be.
+    state: ElasticState
+    estimates: Estimates | None
+
+    def with_friction(self, friction: float) -> "BodyFields":
+        """The same body under the traction ``friction`` times the pressure in +x."""
+        state, estimates = self.state.with_friction(friction), self.estimates
+        return BodyFields(state, None if estimates is None else estimates.with_friction(state, friction))
+
+
+@dataclass(frozen=True, eq=False)
+class Solution:
+    """Contact of a sphere (or a prescribed pressure) on a coated half-space.
+
+    Origin at first contact, x along sliding, z into the body in question; tension positive; SI units.
+    Stresses and displacements are those of the flat, with ``body="ball"`` those of an elastic ball. A
+    solution can be pickled; under a prescribed pressure given as a callable, if that can be.
 
     surface_nodes : increasing x on y = 0, z = 0 at which pressure is a nodal value
     uncertainty   : of the three scalars, None when not estimated
-    state, units, estimates : fields and their estimated errors in scaled units, and these units
+    bodies, units : fields with their estimated errors of the flat, then of an elastic ball; scaled units
     stiffness     : d load / d approach [N/m] of the sphere, as of a flat punch of its contact radius
         (Pharr, Oliver and Brotzen, J. Mater. Res. 7 (1992) 613-617); None under a prescribed pressure
     stiffness_uncertainty : absolute, None when not estimated
@@ -64,9 +78,8 @@ class Solution:
     surface_nodes: np.ndarray
     uncertainty: Uncertainty | None
     diagnostics: Diagnostics
-    state: ElasticState = field(repr=False)
+    bodies: tuple[BodyFields, ...] = field(repr=False)
     units: Units = field(repr=False)
-    estimates: Estimates | None = field(repr=False)
     stiffness: float | None = None
     stiffness_uncertainty: float | None = None
 
@@ -79,28 +92,36 @@ class Solution:
         """
         started = time.perf_counter()
         check_friction(friction)
-        state, estimates = self.state.with_friction(friction), self.estimates
-        if estimates is not None:
-            estimates = estimates.with_friction(state, friction)
+        signed = zip(self.bodies, (friction, -friction), strict=False)  # the traction on the ball is opposite
+        bodies = tuple(body.with_friction(f) for body, f in signed)
         seconds = self.diagnostics.seconds + time.perf_counter() - started
         diagnostics = replace(self.diagnostics, seconds=seconds)
-        return replace(self, state=state, estimates=estimates, diagnostics=diagnostics)
+        return replace(self, bodies=bodies, diagnostics=diagnostics)
+
+    @property
+    def state(self) -> ElasticState:
+        """Fields of the flat in scaled units."""
+        return self.bodies[0].state
 
     @cached_property
     def coarser(self) -> "Solution | None":
         """The companion by which the errors were estimated, without estimates; None where there is none."""
-        if self.estimates is None:
+        estimated = [body.estimates for body in self.bodies if body.estimates is not None]
+        if not estimated:
             return None
-        state = self.estimates.companion
-        _, largest = peak(state.pressure, state.discretisation.contact_vertices)
+        states = [estimates.companion for estimates in estimated]
+        _, largest = peak(states[0].pressure, states[0].discretisation.contact_vertices)
+        approach = sum(state.central_displacement for state in states)
         return replace(
             self,
-            contact_radius=state.mesh.contact_radius * self.units.length,
-            approach=state.central_displacement * self.units.displacement,
+            contact_radius=states[0].mesh.contact_radius * self.units.length,
+            approach=approach * self.units.displacement,
             peak_pressure=largest * self.units.pressure,
             uncertainty=None,
-            state=state,
-            estimates=None,
+            bodies=tuple(
+                replace(body, state=state, estimates=None)
+                for body, state in zip(self.bodies, states, strict=True)
+            ),
             stiffness=None,
             stiffness_uncertainty=None,
         )
@@ -114,58 +135,98 @@ class Solution:
 
         Raises ValueError when the solution was solved without an estimate.
         """
-        return self._estimated().pressure(self._radius(x, y)) * self.units.pressure
+        return self._estimated("flat").pressure(self._radius(x, y)) * self.units.pressure
 
-    def stress(self, x: Any, y: Any, z: Any, layer: int | None = None) -> np.ndarray:
+    def stress(self, x: Any, y: Any, z: Any, layer: int | None = None, body: str = "flat") -> np.ndarray:
         """Stress tensor sigma[i, j, ...] [Pa] in x, y, z; shape (3, 3) + broadcast shape of the points.
 
         layer : 0 at the surface to the number of coatings in the substrate; selects the side of an interface,
             None the upper one
-        Raises ValueError for a point outside the solid or outside its ``layer``.
+        body : "flat" or "ball"
+        Raises ValueError for a point outside the solid or outside its ``layer``, and for a rigid ball.
         """
-        return self._stress(self._points(x, y, z, layer))
+        return self._stress(self._of(body).state, self._points(x, y, z, layer, body))
 
     def stress_with_uncertainty(
-        self, x: Any, y: Any, z: Any, layer: int | None = None
+        self, x: Any, y: Any, z: Any, layer: int | None = None, body: str = "flat"
     ) -> tuple[np.ndarray, np.ndarray]:
         """``stress`` and the absolute numerical uncertainty of each of its components [Pa], same shape.
 
         Raises ValueError like ``stress``, and when the solution was solved without an estimate.
         """
-        estimates, points = self._estimated(), self._points(x, y, z, layer)
-        return self._stress(points), self._stress_uncertainty(estimates, points)
+        estimates, points = self._estimated(body), self._points(x, y, z, layer, body)
+        return self._stress(self._of(body).state, points), self._stress_uncertainty(estimates, points)
 
-    def stress_uncertainty(self, x: Any, y: Any, z: Any, layer: int | None = None) -> np.ndarray:
+    def stress_uncertainty(
+        self, x: Any, y: Any, z: Any, layer: int | None = None, body: str = "flat"
+    ) -> np.ndarray:
         """The second part of ``stress_with_uncertainty`` alone."""
-        return self._stress_uncertainty(self._estimated(), self._points(x, y, z, layer))
+        return self._stress_uncertainty(self._estimated(body), self._points(x, y, z, layer, body))
 
-    def displacement(self, x: Any, y: Any, z: Any) -> np.ndarray:
-        """Displacement (u_x, u_y, u_z) [m], u_z into the solid; shape (3,) + that of the points."""
-        points = self._points(x, y, z, None)
+    def displacement(self, x: Any, y: Any, z: Any, body: str = "flat") -> np.ndarray:
+        """Displacement (u_x, u_y, u_z) [m], u_z into the body; shape (3,) + that of the points."""
+        points = self._points(x, y, z, None, body)
+        return self._displacement(self._of(body).state, points, None)[0]
+
+    def displacement_with_uncertainty(
+        self, x: Any, y: Any, z: Any, body: str = "flat"
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """``displacement`` and the absolute numerical uncertainty of each component [m], same shape.
+
+        Raises ValueError when the solution was solved without an estimate.
+        """
+        points = self._points(x, y, z, None, body)
+        return self._displacement(self._of(body).state, points, self._estimated(body))
+
+    def displacement_uncertainty(self, x: Any, y: Any, z: Any, body: str = "flat") -> np.ndarray:
+        """The second part of ``displacement_with_uncertainty`` alone."""
+        return self.displacement_with_uncertainty(x, y, z, body)[1]
+
+    def _displacement(
+        self, state: ElasticState, points: SolidPoints, estimates: Estimates | None
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Displacement, and its uncertainty by ``estimates``, zero without."""
         cos, sin = points.cos, points.sin
-        u, _ = self.state.normal(points.located)
-        if self.state.tangential is not None:
-            sliding, _ = self.state.tangential(points.located)
-            u = u + sliding * np.stack([cos, sin, cos])
-        xyz = np.stack([u[0] * cos - u[1] * sin, u[0] * sin + u[1] * cos, u[2]])
-        return xyz.reshape(3, *points.shape) * self.units.displacement
+        u, error = np.zeros((2, 3, cos.size))
+        harmonics = (np.stack([np.ones_like(cos)] * 3), np.stack([cos, sin, cos]))
+        fields = (state.normal, state.tangential)
+        found = (None, None) if estimates is None else (estimates.normal, estimates.tangential)
+        for angle, field_, estimate in zip(harmonics, fields, found, strict=True):
+            if field_ is not None:
+                amplitude, _ = field_(points.located)
+                u += angle * amplitude
+                if estimate is not None:
+                    error += np.abs(angle) * estimate.displacement(amplitude)
+        x = np.stack([u[0] * cos - u[1] * sin, u[0] * sin + u[1] * cos, u[2]])
+        cos, sin = np.abs(cos), np.abs(sin)
+        U = np.stack([error[0] * cos + error[1] * sin, error[0] * sin + error[1] * cos, error[2]])
+        unit = self.units.displacement
+        return x.reshape(3, *points.shape) * unit, U.reshape(3, *points.shape) * unit
 
-    def _estimated(self) -> Estimates:
-        if self.estimates is None:
+    def _of(self, body: str) -> BodyFields:
+        known = dict(zip(("flat", "ball"), self.bodies, strict=False))
+        if body not in known:
+            raise ValueError(f"body = {body!r}; this contact has {' and '.join(known)}")
+        return known[body]
+
+    def _estimated(self, body: str) -> Estimates:
+        estimates = self._of(body).estimates
+        if estimates is None:
             raise ValueError("this solution has no uncertainty; solve with estimate_uncertainty=True")
-        return self.estimates
+        return estimates
 
     def _radius(self, x: Any, y: Any) -> np.ndarray:
         return np.hypot(np.asarray(x, dtype=float), np.asarray(y, dtype=float)) / self.units.length
 
-    def _points(self, x: Any, y: Any, z: Any, layer: int | None) -> SolidPoints:
-        return solid_points(self.state.discretisation.locator, self.units.length, x, y, z, layer)
+    def _points(self, x: Any, y: Any, z: Any, layer: int | None, body: str) -> SolidPoints:
+        locator = self._of(body).state.discretisation.locator
+        return solid_points(locator, self.units.length, x, y, z, layer)
 
-    def _stress(self, points: SolidPoints) -> np.ndarray:
+    def _stress(self, state: ElasticState, points: SolidPoints) -> np.ndarray:
         cos, sin = points.cos, points.sin
-        _, sigma = self.state.normal(points.located)
-        if self.state.tangential is not None:
-            _, sliding = self.state.tangential(points.located)
+        _, sigma = state.normal(points.located)
+        if state.tangential is not None:
+            _, sliding = state.tangential(points.located)
             sigma = sigma + sliding * np.stack([cos] * 4 + [sin] * 2)
         return _tensor(sigma * self.units.pressure, cos, sin).reshape(3, 3, *points.shape)
 

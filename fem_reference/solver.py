@@ -1,8 +1,8 @@
 """Public entry of the finite element method: a physical problem in, a ``Solution`` out.
 
-Inside, every problem has one length, one pressure and the modulus of the substrate as units (``scaling``).
-For the sphere they are a_h = (3 W R / 4 E*)^(1/3) of the bare substrate and E a_h/R, as required by
-``contact``. Sliding friction is solved last, on the final mesh and its companion (``levels``).
+Inside, every problem has one length, one pressure and the modulus of the flat's substrate as units
+(``scaling``). For the sphere they are a_h = (3 W R / 4 E*)^(1/3) of the bare substrates and E a_h/R, as
+required by ``contact``. Sliding friction is solved last, on the final mesh and its companion (``levels``).
 """
 
 import time
@@ -12,14 +12,15 @@ import numpy as np
 
 from .axisymmetric import Discretisation
 from .contact import FixedRadiusContact, complementarity, peak
-from .estimate import contact_estimates, estimates
+from .estimate import Estimates, contact_estimates, estimates
 from .levels import NotConverged, companion_grading, mesh_at, solve_levels
 from .loading import resultant
 from .mesh import Grading, MeridianMesh
 from .scaling import LayeredSolid, Units
-from .solution import Diagnostics, Solution
+from .solution import BodyFields, Diagnostics, Solution
 from .state import ElasticState
 from .validation import (
+    check_ball,
     check_choice,
     check_materials,
     check_positive,
@@ -31,6 +32,7 @@ from .validation import (
 __all__ = ["QUALITY", "solve", "solve_prescribed"]
 
 Coatings = tuple[tuple[float, float, float], ...]
+Ball = tuple[float, float, Coatings]
 
 # triangle size over its distance from the contact edge
 QUALITY = {"fast": 0.36, "default": 0.12, "fine": 0.1}
@@ -44,6 +46,7 @@ def solve(
     coatings: Coatings,
     substrate: tuple[float, float],
     friction: float = 0.0,
+    ball: Ball | None = None,
     order: int = 4,
     quality: str = "default",
     size: float | None = None,
@@ -52,18 +55,20 @@ def solve(
     load_tolerance: float = LOAD_TOLERANCE,
     estimate_uncertainty: bool = True,
 ) -> Solution:
-    """Rigid sphere pressed on, and with friction slid over, a coated half-space.
+    """Sphere pressed on, and with friction slid over, a coated half-space.
 
     radius [m], load [N], coatings ((E, nu, thickness), ...) [Pa, -, m] from the surface down, () for none,
-    substrate (E, nu), friction f in q = f p, the traction on the solid in +x, assumed not to change p
-    (Goodman).
+    substrate (E, nu), friction f in q = f p, the traction on the flat in +x, on the ball in -x, assumed not
+    to change p (Goodman).
+    ball    : None is rigid; (E, nu, coatings) of an elastic one, its coatings from its surface inwards. Near
+        the contact it is a layered half-space.
     order   : polynomial order of the displacement, 2 to 4
     quality : "fast" (about 1e-3), "default" (about 1e-5) or "fine"
     size    : triangle size over its distance from the contact edge, 0.08 to 0.5; None for that of ``quality``
     far     : distance of the outer boundary over (a_h + thickness of all coatings)
     max_iterations : contact solves allowed on each mesh level
     load_tolerance : relative error of the load allowed on the last two levels
-    The approach is that of the sphere towards points at infinity.
+    The approach is that of distant points of both bodies.
     Poisson ratios up to 0.49 do not lock at order 4; above, digits are lost as 1/(1 - 2 nu), and 0.5 is
     refused. Raises ValueError for bad input, NotConverged when no contact radius has the load.
     """
@@ -75,14 +80,21 @@ def solve(
     check_choice("order", order, (2, 3, 4))
     size = _size(quality, size)
     E, nu = substrate
-    a_h = (3 * load * radius * (1 - nu**2) / (4 * E)) ** (1 / 3)
+    compliance = (1 - nu**2) / E
+    if ball is not None:
+        check_ball(ball)
+        compliance += (1 - ball[1] ** 2) / ball[0]
+    a_h = (3 * load * radius * compliance / 4) ** (1 / 3)
     unit = Units(length=a_h, pressure=E * a_h / radius, modulus=E)
-    solid = LayeredSolid.scaled(coatings, substrate, a_h, far)
-    check_proportions(solid.thicknesses, "a_h")
+    solids: tuple[LayeredSolid, ...] = (LayeredSolid.scaled(coatings, substrate, a_h, far, E),)
+    check_proportions(solids[0].thicknesses, "a_h")
+    if ball is not None:
+        solids += (LayeredSolid.scaled(ball[2], ball[:2], a_h, far, E),)
+        check_proportions(solids[1].thicknesses, "a_h", "the ball's ")
     target = load / unit.load
 
     levels = solve_levels(
-        solid,
+        solids,
         target,
         order=order,
         size=size,
@@ -93,20 +105,24 @@ def solve(
     final, d = levels.final, levels.final.discretisation
     check_radius(final.contact_radius * a_h, radius)
     penetration, tension = _checked_complementarity(levels.final)
-    state = ElasticState.of_contact(solid, final)
-    found, stiffness_error = None, None
+    states = tuple(
+        ElasticState.of_contact(solid, final, body)
+        for solid, body in zip(solids, (None, final.ball), strict=False)
+    )
+    found: tuple[Estimates | None, ...] = (None,) * len(states)
+    stiffness_error = None
     if estimate_uncertainty:
-        found, stiffness_error = contact_estimates(levels, state, unit, target, size)
+        found, stiffness_error = contact_estimates(levels, states, unit, target, size)
     frictionless = Solution(
         contact_radius=final.contact_radius * unit.length,
         approach=final.approach * unit.displacement,
         peak_pressure=peak(final.pressure, final.pressure.vertices)[1] * unit.pressure,
         surface_nodes=_surface_nodes(d) * unit.length,
-        uncertainty=None if found is None else found.scalars,
+        uncertainty=None if found[0] is None else found[0].scalars,
         diagnostics=Diagnostics(
             iterations=len(levels.history),
-            dofs=2 * d.N,
-            triangles=int(d.mesh.layer.size),
+            dofs=sum(2 * state.discretisation.N for state in states),
+            triangles=sum(int(state.mesh.layer.size) for state in states),
             order=order,
             residual_gap=penetration,
             residual_pressure=tension,
@@ -115,9 +131,8 @@ def solve(
             seconds=time.perf_counter() - started,
             history=tuple((name, a * a_h, W * unit.load) for name, a, W in levels.history),
         ),
-        state=state,
+        bodies=tuple(BodyFields(*each) for each in zip(states, found, strict=True)),
         units=unit,
-        estimates=found,
         stiffness=final.stiffness * unit.load / unit.displacement,
         stiffness_uncertainty=stiffness_error,
     )
@@ -150,7 +165,7 @@ def solve_prescribed(
     size = _size(quality, size)
     p = prescribed_pressure(pressure, load_radius)
     unit = Units(length=load_radius, pressure=p.scale, modulus=substrate[0])
-    solid = LayeredSolid.scaled(coatings, substrate, load_radius, far)
+    solid = LayeredSolid.scaled(coatings, substrate, load_radius, far, substrate[0])
     check_proportions(solid.thicknesses, "load_radius")
 
     def state_on(mesh: MeridianMesh) -> ElasticState:
@@ -181,9 +196,8 @@ def solve_prescribed(
             seconds=time.perf_counter() - started,
             history=(("final", load_radius, resultant(d, p) * unit.load),),
         ),
-        state=state,
+        bodies=(BodyFields(state, found),),
         units=unit,
-        estimates=found,
     )
     return frictionless.with_friction(friction)
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from .axisymmetric import Discretisation
-from .contact import FixedRadiusContact
+from .contact import Ball, FixedRadiusContact
 from .loading import resultant, solve_traction
 from .mesh import MeridianMesh
 from .recovery import HarmonicField
@@ -24,10 +24,13 @@ class ElasticState:
     tangential: HarmonicField | None
 
     @classmethod
-    def of_contact(cls, solid: LayeredSolid, contact: FixedRadiusContact) -> "ElasticState":
-        """The state of the frictionless ``contact``."""
-        d, pressure = contact.discretisation, contact.pressure
-        return cls(solid, HarmonicField(d, contact.fields, solid.materials, 0, pressure, -1.0, True), None)
+    def of_contact(
+        cls, solid: LayeredSolid, contact: FixedRadiusContact, body: Ball | None = None
+    ) -> "ElasticState":
+        """The state of the flat in the frictionless ``contact``, or of the elastic ``body`` pressed on it."""
+        side, pressure = body or contact, contact.pressure
+        field = HarmonicField(side.discretisation, side.fields, solid.materials, 0, pressure, -1.0, True)
+        return cls(solid, field, None)
 
     @classmethod
     def under_pressure(
@@ -64,7 +67,8 @@ class ElasticState:
 
         What the far field leaves out falls with a power of the distance, at least the first, and is set to
         zero on the boundary: so at half the distance at least as much is found as was left out there. Inside
-        it is smooth: its strain is that over the distance, the curvature of u_z that over the distance squared.
+        it is smooth: its strain is that over the distance, the curvature of u_z twice that over the distance
+        squared.
         """
         d, field = self.discretisation, self.tangential if harmonic else self.normal
         assert field is not None

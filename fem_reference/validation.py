@@ -7,6 +7,7 @@ import numpy as np
 
 __all__ = [
     "GivenPressure",
+    "check_ball",
     "check_choice",
     "check_friction",
     "check_materials",
@@ -72,18 +73,28 @@ def check_materials(
     _check_material("of the substrate", *substrate)
 
 
-def check_proportions(thicknesses: Sequence[float], unit: str) -> None:
+def check_ball(ball: tuple[float, float, Sequence[tuple[float, float, float]]]) -> None:
+    """Raise ValueError unless ``ball`` is (E, nu, coatings) of an elastic solid."""
+    if not isinstance(ball, Sequence) or len(ball) != 3:
+        raise ValueError(f"ball = {ball!r}; give (E, nu, coatings), or None for a rigid one")
+    try:
+        check_materials(ball[2], ball[:2], 0.0)
+    except ValueError as error:
+        raise ValueError(f"ball: {error}") from None
+
+
+def check_proportions(thicknesses: Sequence[float], unit: str, of: str = "") -> None:
     """Raise ValueError for coatings too thin or too thick to mesh beside a contact of radius 1 ``unit``."""
     for k, h in enumerate(thicknesses, start=1):
         if h < MIN_THICKNESS:
             raise ValueError(
-                f"thickness of coating {k} is {h:.3g} {unit}, too thin to change any stress; leave it out, "
-                f"or keep it above {MIN_THICKNESS:g} {unit}"
+                f"thickness of {of}coating {k} is {h:.3g} {unit}, too thin to change any stress; leave it "
+                f"out, or keep it above {MIN_THICKNESS:g} {unit}"
             )
         if h > MAX_THICKNESS:
             raise ValueError(
-                f"thickness of coating {k} is {h:.3g} {unit}; use its material for the substrate instead, "
-                f"or keep it below {MAX_THICKNESS:g} {unit}"
+                f"thickness of {of}coating {k} is {h:.3g} {unit}; use its material for the substrate "
+                f"instead, or keep it below {MAX_THICKNESS:g} {unit}"
             )
 
 

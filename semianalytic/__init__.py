@@ -1,4 +1,4 @@
-"""Semi-analytical contact of a rigid indenter on a coated elastic half-space.
+"""Semi-analytical contact of a rigid or elastic indenter on a coated elastic half-space.
 
 For a sphere, an edge profile of the pressure is found by collocation of the exact deflection under it
 (``collocation``). The patches (influence coefficients, DC-FFT, conjugate gradients) then solve the contact on

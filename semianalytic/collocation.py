@@ -12,7 +12,7 @@ equation of the second kind of Lebedev and Ufliand, PMM 22 (1958) 320-326.
 """
 
 from collections.abc import Callable
-from functools import partial
+from typing import NamedTuple
 
 import numpy as np
 from numpy.polynomial import legendre
@@ -24,16 +24,46 @@ from semianalytic.contact import NotConverged
 from semianalytic.edge_profile import Profile
 from semianalytic.inputs import Body
 
-__all__ = ["SHARES", "contact", "reflecting_depth"]
+__all__ = ["SHARES", "RoundContact", "compliance_excess", "contact", "reflecting_depth"]
 
 Array = NDArray[np.floating]
 
 SHARES = (1.0, 0.8, 0.64)  # of the terms, on a refinement study of them
 MOST = 96  # terms
 NEGLIGIBLE = 1e-12  # of the compliance, below which the layers no longer reflect
+# Step in log a and weights of the central differences of sixth and of fourth order.
+STEP, SIXTH, FOURTH = 0.02, np.array([45.0, -9.0, 1.0]) / 60, np.array([8.0, -1.0, 0.0]) / 12
+
+
+class RoundContact(NamedTuple):
+    """Edge profile, approach [m], d load / d approach [N/m] with the error of its differences."""
+
+    profile: Profile
+    approach: float
+    stiffness: float
+    stiffness_error: float
+
+
+def compliance_excess(body: Body) -> Callable[[Array], Array]:
+    """M(k) - 1 of flat and elastic ball together: M = E* sum M_i/E_i*, 1/E* = sum 1/E_i*."""
+    coated = [one for one in body.pair if one.coatings]
+    shares = [body.contact_modulus / one.moduli[0] for one in coated]
+
+    def excess(k: Array) -> Array:
+        total = np.zeros_like(k)
+        for share, one in zip(shares, coated, strict=True):
+            total += share * frf.compliance_excess(k, **one.layers)
+        return total
+
+    return excess
 
 
 def reflecting_depth(body: Body) -> float:
+    """Depth [m] of the first interface of either body that matters; infinite where both are uncoated."""
+    return min((_reflecting_depth(one) for one in body.pair if one.coatings), default=np.inf)
+
+
+def _reflecting_depth(body: Body) -> float:
     """Depth [m] of the first interface that matters: exp(-2 k h) is rounding where the response ends.
 
     The thickness of the first coating where the next material differs; a coating divided into equal parts
@@ -44,19 +74,13 @@ def reflecting_depth(body: Body) -> float:
     return 14.0 / float(k[felt[-1] if felt.size else 0])
 
 
-def contact(
-    radius: float, load: float | None, approach: float | None, body: Body
-) -> list[tuple[Profile, float]]:
-    """Edge profile and approach [m] of a sphere, with every share of the terms in ``SHARES``.
+def contact(radius: float, load: float | None, approach: float | None, body: Body) -> list[RoundContact]:
+    """Contact of a sphere, with every share of the terms in ``SHARES``.
 
     radius [m], and load [N] or approach [m], the other None.
     Raises NotConverged where no contact radius is found.
     """
-    excess: Callable[[Array], Array] = np.zeros_like
-    if body.coatings:
-        excess = partial(frf.compliance_excess, **body.layers)
-    E_star = body.moduli[0]
-    depth = reflecting_depth(body) if body.coatings else np.inf
+    excess, E_star, depth = compliance_excess(body), body.contact_modulus, reflecting_depth(body)
 
     def Hertz(a: float) -> float:
         """Contact radius on a solid as compliant as the layers at the wavelength of a."""
@@ -69,14 +93,14 @@ def contact(
     for _ in range(40):
         a = 0.5 * (a + Hertz(a))
 
-    def solved(a: float, share: float) -> tuple[Profile, float]:
+    def solved(a: float, share: float) -> RoundContact:
         terms = share * min(MOST, 6 + 6 * np.sqrt(a / depth))
         problem = _Collocation(excess, depth, a, max(4, int(terms)))
         return problem.solve(a, radius, load, approach, E_star)
 
     # a film that bends makes the contact far wider than Hertz's, and the terms go by its width
     for _ in range(4):
-        rough, a = a, solved(a, SHARES[-1])[0].radius
+        rough, a = a, solved(a, SHARES[-1]).profile.radius
         if 0.9 < a / rough < 1.1:
             break
     return [solved(a, share) for share in SHARES]
@@ -100,8 +124,8 @@ class _Collocation:
 
     def solve(
         self, guess: float, radius: float, load: float | None, approach: float | None, E_star: float
-    ) -> tuple[Profile, float]:
-        """Profile and approach [m]."""
+    ) -> RoundContact:
+        """The contact; its stiffness from contacts of radii beside it, d log W / d log a over d log delta."""
 
         def at(a: float) -> tuple[Profile, float]:
             u = 2 / E_star * a * (self.inner + (self.bessel * self.excess(self.k / a)) @ self.outer.T)
@@ -129,4 +153,9 @@ class _Collocation:
             f = f_y
         else:
             raise NotConverged(f"no contact radius near {guess:g} m carries the load; check the moduli")
-        return at(float(np.exp(y)))
+        profile, delta = at(float(np.exp(y)))
+        beside = [[at(float(np.exp(y + side * n * STEP))) for n in (1, 2, 3)] for side in (1, -1)]
+        logs = np.log([[(one.load, depth) for one, depth in side] for side in beside])
+        slopes = (weights @ (logs[0] - logs[1]) for weights in (SIXTH, FOURTH))
+        stiffness, rougher = (float(W / d) * profile.load / delta for W, d in slopes)
+        return RoundContact(profile, delta, stiffness, abs(stiffness - rougher))

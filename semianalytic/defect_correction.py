@@ -39,6 +39,7 @@ def corrected(
         return problem.solve(0.0, 0.0)
     on_patches = shape.pressure(grid.radius)
     missing = shape.load - float(on_patches.sum() * grid.d**2)
-    exact = abel.deflection(shape.radius, shape.coefficients, body.moduli[0], indenter.table, grid.radius)
+    E_star = body.contact_modulus
+    exact = abel.deflection(shape.radius, shape.coefficients, E_star, indenter.table, grid.radius)
     level = problem.solve(exact - problem.deflection(on_patches), missing)
     return replace(level, shape=shape, convolutions=level.convolutions + 1)

@@ -94,16 +94,20 @@ def displacement_plane(level: Level, body: Body, z: float) -> Array:
     return components
 
 
-def displacement(level: Level, body: Body, x: ArrayLike, y: ArrayLike, z: ArrayLike) -> Array:
-    """Displacement [m] at points [m], broadcast; shape (3,) + points."""
+def displacement(levels: Sequence[Level], body: Body, x: ArrayLike, y: ArrayLike, z: ArrayLike) -> Array:
+    """Displacement [m] of each level at points [m], broadcast; shape (len(levels), 3) + points.
+
+    Companions of a level with an edge profile have the same rest on the patches.
+    """
     x, y, z, where = np.broadcast_arrays(x, y, z, body.layer_of(z, None))
-    patches, p = level.grid.x, _on_patches(level)
-    u = np.zeros((3, *np.shape(z)))
+    patches, p = levels[0].grid.x, _on_patches(levels[0])
+    u = np.zeros((len(levels), 3, *np.shape(z)))
     if p.any():
-        u = subsurface.displacement(x, y, z, where, grid_x=patches, grid_y=patches, pressure=p, body=body)
-    if isinstance(level.shape, Profile):
+        u[:] = subsurface.displacement(x, y, z, where, grid_x=patches, grid_y=patches, pressure=p, body=body)
+    profiles = [level.shape for level in levels if isinstance(level.shape, Profile)]
+    if profiles:
         points = tuple(np.asarray(v).ravel() for v in (x, y, z, where))
-        u += axisymmetric.displacement([level.shape], body, *points)[0].reshape(u.shape)
+        u += axisymmetric.displacement(profiles, body, *points).reshape(u.shape)
     return u
 
 

@@ -43,28 +43,40 @@ SMOOTH = 12.0  # patches from the nearest singularity, beyond which finite diffe
 def surface_coefficients(n: int, d: float, body: Body, numerics: Numerics) -> Array:
     """Influence coefficients K [m/Pa] of the surface displacement by the conversion of ``numerics``.
 
+    The approach of the surfaces is u_z of the flat plus that of an elastic ball: their coefficients add up.
+
     n : offsets 0..n-1.  d : side of the patches [m].  Returns shape (n, n), even in both indices.
     """
-    scale = 1 / (np.pi * body.moduli[0])
-    excess = partial(frf.compliance_excess, **body.layers)
     if numerics.conversion == "plain":
-        C = plain_coefficients(n, d, excess, enlarge=numerics.enlarge, threads=numerics.threads)
-        return scale * C
-    C = halfspace.surface_deflection(n, n, d, d)
-    if body.coatings:
-        image = split_image(excess, body.thickness)
-        C += image[0] * halfspace.surface_deflection(n, n, d, d, image[1])
-        C += remainder_coefficients(
-            n,
-            d,
-            excess,
-            body.thickness,
-            image,
-            points=numerics.hankel_points,
-            enlarge=numerics.enlarge if numerics.conversion == "split-fft" else 0,
-            threads=numerics.threads,
-        )
-    return scale * C
+        K: Array = np.zeros((n, n))
+        for one in body.pair:
+            excess = partial(frf.compliance_excess, **one.layers)
+            C = plain_coefficients(n, d, excess, enlarge=numerics.enlarge, threads=numerics.threads)
+            K += 1 / (np.pi * one.moduli[0]) * C
+        return K
+    K = 1 / (np.pi * body.contact_modulus) * halfspace.surface_deflection(n, n, d, d)
+    for one in body.pair:
+        if one.coatings:
+            K += 1 / (np.pi * one.moduli[0]) * _layer_coefficients(n, d, one, numerics)
+    return K
+
+
+def _layer_coefficients(n: int, d: float, body: Body, numerics: Numerics) -> Array:
+    """C_ij [m] less Love's rectangle on the first material, shape (n, n)."""
+    excess = partial(frf.compliance_excess, **body.layers)
+    image = split_image(excess, body.thickness)
+    C = image[0] * halfspace.surface_deflection(n, n, d, d, image[1])
+    C += remainder_coefficients(
+        n,
+        d,
+        excess,
+        body.thickness,
+        image,
+        points=numerics.hankel_points,
+        enlarge=numerics.enlarge if numerics.conversion == "split-fft" else 0,
+        threads=numerics.threads,
+    )
+    return C
 
 
 def split_image(excess: Response, thickness: Sequence[float]) -> tuple[float, float]:

@@ -1,7 +1,7 @@
 """Checked input of the semi-analytical method."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -59,11 +59,15 @@ class Numerics:
 
 @dataclass(frozen=True)
 class Body:
-    """The coated half-space and the friction on it, as given to the public functions."""
+    """The coated half-space and the friction on it, as given to the public functions.
+
+    friction : f of the traction f p in +x.  ball : the elastic body pressed on it, None if that is rigid.
+    """
 
     coatings: tuple[tuple[float, float, float], ...]
     substrate: tuple[float, float]
     friction: float
+    ball: "Body | None" = None
 
     def __post_init__(self) -> None:
         check_finite(friction=self.friction)
@@ -77,6 +81,44 @@ class Body:
         if not isinstance(self.substrate, Sequence) or len(self.substrate) != 2:
             raise ValueError(f"substrate = {self.substrate!r}; give (E, nu)")
         _check_material("of the substrate", *self.substrate)
+
+    @classmethod
+    def of_ball(cls, ball: Any, friction: float) -> "Body":
+        """The elastic ball (E, nu, coatings), on which the traction is -f p.
+
+        Raises ValueError where it is none.
+        """
+        if not isinstance(ball, Sequence) or len(ball) != 3:
+            raise ValueError(f"ball = {ball!r}; give (E, nu, coatings), or None for a rigid one")
+        E, nu, coatings = ball
+        try:
+            return cls(coatings, (E, nu), -friction)
+        except ValueError as error:
+            raise ValueError(f"ball: {error}") from None
+
+    def with_friction(self, friction: float) -> "Body":
+        """The body under the traction f p of another ``friction`` f, the ball under -f p."""
+        ball = None if self.ball is None else self.ball.with_friction(-friction)
+        return replace(self, friction=friction, ball=ball)
+
+    def named(self, body: str) -> "Body":
+        """The flat or the ball by name. Raises ValueError for the ball where it is rigid."""
+        if body == "flat":
+            return self
+        if body == "ball" and self.ball is not None:
+            return self.ball
+        names = "'flat', the ball is rigid" if self.ball is None else "'flat' or 'ball'"
+        raise ValueError(f"body = {body!r}; choose {names}")
+
+    @property
+    def pair(self) -> "tuple[Body, ...]":
+        """The elastic bodies in contact."""
+        return (self,) if self.ball is None else (self, self.ball)
+
+    @property
+    def contact_modulus(self) -> float:
+        """E* [Pa] of the materials in contact, 1/E* = sum (1 - nu^2)/E of flat and elastic ball."""
+        return self.moduli[0] if self.ball is None else 1 / sum(1 / body.moduli[0] for body in self.pair)
 
     @property
     def materials(self) -> tuple[tuple[float, ...], ...]:

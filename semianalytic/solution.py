@@ -57,11 +57,15 @@ class Diagnostics:
 
 @dataclass(frozen=True, eq=False)
 class Solution:
-    """Contact of a rigid indenter on a coated half-space; SI, tension positive, z into the solid.
+    """Contact of an indenter on a coated half-space; SI, tension positive, z into the body in question.
+
+    Stresses and displacements are those of the flat, with ``body="ball"`` those of an elastic ball: x and y
+    as on the flat, on which the traction is in +x, z into the ball.
 
     contact_radius [m] : where p vanishes; of a contact that is no disc, the radius of the disc of its area.
     approach [m].  peak_pressure [Pa] : largest pressure, which sits off the axis under stiff thin coatings.
     surface_nodes [m] : x on y = 0 at which no pressure is interpolated, past 2 contact radii.
+    stiffness [N/m] : d load / d approach, from neighbouring contacts; None of patches alone.
     """
 
     contact_radius: float
@@ -75,6 +79,8 @@ class Solution:
     coarser: "Solution | None" = field(repr=False)
     _level: Level = field(repr=False)
     _body: Body = field(repr=False)
+    stiffness: float | None = None
+    stiffness_uncertainty: float | None = None
 
     @classmethod
     def of_levels(
@@ -126,7 +132,7 @@ class Solution:
         """
         check_finite(friction=friction)
         coarser = None if self.coarser is None else self.coarser.with_friction(friction)
-        return replace(self, coarser=coarser, _body=replace(self._body, friction=float(friction)))
+        return replace(self, coarser=coarser, _body=self._body.with_friction(float(friction)))
 
     def pressure(self, x: ArrayLike, y: ArrayLike = 0.0) -> Array:
         """Contact pressure [Pa], 0 outside; between nodes by interpolation of a quantity smooth at the edge.
@@ -145,35 +151,61 @@ class Solution:
         rest = self.patch_pressure - shape.pressure(np.hypot(self.nodes[:, None], self.nodes[None, :]))
         return np.maximum(value + _at(self.nodes, rest, x, y, order=1), 0)
 
-    def stress(self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None) -> Array:
+    def stress(
+        self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None, body: str = "flat"
+    ) -> Array:
         """Stress tensor [Pa], shape (3, 3) + points.
 
         x, y, z : [m], broadcast, z >= 0.  layer : 0 is the first coating, len(coatings) the substrate; it
-        picks the side of an interface, None the upper one.
-        Raises ValueError for z < 0, and for a layer that z does not lie in.
+        picks the side of an interface, None the upper one.  body : "flat" or "ball".
+        Raises ValueError for z < 0, for a layer that z does not lie in, and for a rigid ball.
         """
-        return fields.stress([self._level], self._body, x, y, z, layer)[0]
+        return fields.stress([self._level], self._body.named(body), x, y, z, layer)[0]
 
-    def stress_plane(self, z: float, layer: int | None = None) -> Array:
+    def stress_plane(self, z: float, layer: int | None = None, body: str = "flat") -> Array:
         """Stress tensor [Pa] below every patch centre at one depth, shape (3, 3, n, n), by seven FFTs.
 
-        z : [m].  layer : as in ``stress``.  Points are (nodes[i], nodes[j]), z.
+        z : [m].  layer, body : as in ``stress``.  Points are (nodes[i], nodes[j]), z.
         """
-        return fields.stress_plane(self._level, self._body, z, layer)
+        return fields.stress_plane(self._level, self._body.named(body), z, layer)
 
-    def displacement_plane(self, z: float) -> Array:
+    def displacement_plane(self, z: float, body: str = "flat") -> Array:
         """Displacement [m] below every patch centre at one depth, shape (3, n, n), by four FFTs.
 
-        z : [m].  Points are (nodes[i], nodes[j]), z.
+        z : [m].  body : as in ``stress``.  Points are (nodes[i], nodes[j]), z.
         """
-        return fields.displacement_plane(self._level, self._body, z)
+        return fields.displacement_plane(self._level, self._body.named(body), z)
 
-    def displacement(self, x: ArrayLike, y: ArrayLike, z: ArrayLike) -> Array:
-        """Displacement [m], shape (3,) + points, u_z into the solid.
+    def displacement(self, x: ArrayLike, y: ArrayLike, z: ArrayLike, body: str = "flat") -> Array:
+        """Displacement [m], shape (3,) + points, u_z into the body.
 
-        x, y, z : [m], broadcast, z >= 0.
+        x, y, z : [m], broadcast, z >= 0.  body : as in ``stress``.
         """
-        return fields.displacement(self._level, self._body, x, y, z)
+        return fields.displacement([self._level], self._body.named(body), x, y, z)[0]
+
+    def displacement_with_uncertainty(
+        self, x: ArrayLike, y: ArrayLike, z: ArrayLike, body: str = "flat"
+    ) -> tuple[Array, Array]:
+        """Displacement and its uncertainty [m], shape (3,) + points each.
+
+        With an edge profile from its coarser companions, as that of the stress, the largest of the components
+        for each alike; else the uncertainty of the approach everywhere.
+        Raises ValueError where no uncertainty was estimated.
+        """
+        self._companion()
+        assert self.uncertainty is not None
+        if not isinstance(self._level.shape, Profile):
+            u = self.displacement(x, y, z, body)
+            return u, np.full(u.shape, self.uncertainty.approach)
+        levels = [self._level, *(replace(self._level, shape=shape) for shape in self._studied[1:])]
+        u, second, third = fields.displacement(levels, self._body.named(body), x, y, z)
+        last, before = (np.abs(one - other).max(axis=0) for one, other in ((u, second), (second, third)))
+        total = self._convergence * np.maximum(last, self._convergence * before) + EXACT * self.approach
+        return u, np.broadcast_to(total, u.shape).copy()
+
+    def displacement_uncertainty(self, x: ArrayLike, y: ArrayLike, z: ArrayLike, body: str = "flat") -> Array:
+        """The second part of ``displacement_with_uncertainty``."""
+        return self.displacement_with_uncertainty(x, y, z, body)[1]
 
     def pressure_uncertainty(self, x: ArrayLike, y: ArrayLike = 0.0) -> Array:
         """Uncertainty of the pressure [Pa] from the coarser companion.
@@ -224,15 +256,17 @@ class Solution:
         shapes = [one._level.shape for one in (self, coarser, coarser.coarser)]
         return [shape for shape in shapes if isinstance(shape, Profile)]
 
-    def stress_uncertainty(self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None) -> Array:
+    def stress_uncertainty(
+        self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None, body: str = "flat"
+    ) -> Array:
         """Uncertainty of the stress [Pa], shape (3, 3) + points; see ``stress_with_uncertainty``.
 
         Raises ValueError where no uncertainty was estimated.
         """
-        return self.stress_with_uncertainty(x, y, z, layer)[1]
+        return self.stress_with_uncertainty(x, y, z, layer, body)[1]
 
     def stress_with_uncertainty(
-        self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None
+        self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None, body: str = "flat"
     ) -> tuple[Array, Array]:
         """Stress and its uncertainty [Pa], shape (3, 3) + points each, the latter from coarser companions.
 
@@ -247,14 +281,15 @@ class Solution:
         levels = [self._level, coarser._level]
         if coarser.coarser is not None:
             levels.append(coarser.coarser._level)
-        sigma, second, *third = fields.stress(levels, self._body, x, y, z, layer)
+        solid = self._body.named(body)
+        sigma, second, *third = fields.stress(levels, solid, x, y, z, layer)
         change = np.abs(sigma - second).max(axis=(0, 1))
         before = np.abs(second - third[0]).max(axis=(0, 1)) if third else np.zeros_like(change)
         if isinstance(self._level.shape, Profile):
             rate = self._convergence
             floor = EXACT * (self.peak_pressure + np.abs(sigma).max(axis=(0, 1)))
             total = rate * np.maximum(change, rate * before)
-            total = np.maximum(total, self._uncertain_edge(x, y, z, layer)) + floor
+            total = np.maximum(total, self._uncertain_edge(solid, x, y, z, layer)) + floor
         else:
             change = np.maximum(safety(len(self.nodes) / len(coarser.nodes)) * change, before / 3)
             total = change + floor * self.peak_pressure
@@ -262,7 +297,9 @@ class Solution:
             total += np.where(shallow, *EVALUATION) * self.peak_pressure
         return sigma, np.broadcast_to(total, (3, 3, *change.shape)).copy()
 
-    def _uncertain_edge(self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None) -> Array:
+    def _uncertain_edge(
+        self, solid: Body, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None
+    ) -> Array:
         """Change of the stress [Pa] by the uncertain radius, within ``NEAR`` patches of the edge.
 
         Plus what the rest of the pressure may reach in the patch next to the edge, where it is left out: a
@@ -277,7 +314,7 @@ class Solution:
         change = np.array(4 * np.abs(self._level.rest).max() * d / (d + distance))  # of a single point too
         if near.any():
             change[near] += fields.stress_of_uncertain_edge(
-                self._level, self._body, shift, x[near], y[near], z[near], layer
+                self._level, solid, shift, x[near], y[near], z[near], layer
             )
         return change
 

@@ -1,6 +1,7 @@
 """Public entry of the semi-analytical method: physical keywords in, ``Solution`` out.
 
-Assumed: small strains, perfect bond, the sphere's parabola, Coulomb friction q = f p that leaves p unchanged.
+Assumed: small strains, perfect bond, the sphere's parabola, both bodies half-spaces near the contact, Coulomb
+friction q = f p that leaves p unchanged.
 """
 
 import time
@@ -17,7 +18,6 @@ from semianalytic import (
     contact,
     convolution,
     edge_profile,
-    frf,
     influence,
     nested,
     uncertainty,
@@ -34,6 +34,7 @@ __all__ = ["indent", "solve", "solve_prescribed"]
 Array = NDArray[np.floating]
 Coatings = tuple[tuple[float, float, float], ...]
 Substrate = tuple[float, float]
+Ball = tuple[float, float, Coatings]
 
 LARGEST = 0.9  # contact radius over that of the sphere
 
@@ -45,6 +46,7 @@ def solve(
     coatings: Coatings,
     substrate: Substrate,
     friction: float = 0.0,
+    ball: Ball | None = None,
     approach: float | None = None,
     patches: int = 257,
     tolerance: float = 1e-8,
@@ -57,10 +59,12 @@ def solve(
     estimate_uncertainty: bool = True,
     threads: int = 1,
 ) -> Solution:
-    """Press a rigid sphere of ``radius`` [m] with ``load`` [N] on a coated half-space.
+    """Press a sphere of ``radius`` [m] with ``load`` [N] on a coated half-space.
 
-    coatings ((E, nu, thickness), ...) from the surface down; substrate (E, nu); friction f in q = f p.
-    approach : delta [m] instead of the load, which then is None.
+    coatings ((E, nu, thickness), ...) from the surface down; substrate (E, nu); friction f in q = f p, the
+    traction on the flat in +x and on the ball in -x.
+    ball : None is rigid; (E, nu, coatings) of an elastic one, its coatings from its surface inwards.
+    approach : delta [m], of distant points of both bodies, instead of the load, which then is None.
     patches : per side of the finest grid, odd. The other numerics: ``inputs.Numerics``; the conversions:
     ``influence``.
     edge_correction : by the edge profile, which gives contact radius and stresses; the patches find what it
@@ -72,7 +76,7 @@ def solve(
     began = time.perf_counter()
     check_control(load, approach)
     check_positive(radius=radius)
-    body = _body(coatings, substrate, friction)
+    body = _body(coatings, substrate, friction, ball)
     numerics = Numerics(
         patches=patches,
         tolerance=tolerance,
@@ -86,7 +90,7 @@ def solve(
     )
     sphere = Indenter(lambda grid: grid.radius**2 / (2 * radius), load, approach, round=True)
     found = collocation.contact(radius, load, approach, body)
-    a = found[0][0].radius
+    a = found[0].profile.radius
     if a > LARGEST * radius:
         raise ValueError(
             f"contact radius a = {a:g} m is {a / radius:.2g} of the sphere's radius; the parabolic gap and "
@@ -94,16 +98,20 @@ def solve(
         )
     half_width = fill * a
     if edge_correction:
-        sphere = replace(sphere, shapes=tuple(shape for shape, _ in found))
-        if coatings:
-            excess = partial(frf.compliance_excess, **body.layers)
-            depth, reach = collocation.reflecting_depth(body), 1.01 * 2**0.5 * half_width
-            sphere = replace(sphere, table=abel.layer_table(excess, depth, a, reach))
+        sphere = replace(sphere, shapes=tuple(one.profile for one in found))
+        depth, reach = collocation.reflecting_depth(body), 1.01 * 2**0.5 * half_width
+        if np.isfinite(depth):
+            table = abel.layer_table(collocation.compliance_excess(body), depth, a, reach)
+            sphere = replace(sphere, table=table)
     levels = nested.levels(half_width, sphere, body, numerics, estimate_uncertainty)
     if touches_rim(levels[-1].found.pressure):
         raise NotConverged(f"the contact reaches the rim of the grid, fill = {fill:g}; enlarge it")
     estimate = uncertainty.of_contact(levels, sphere, body, numerics) if estimate_uncertainty else None
-    return Solution.of_levels(levels, body, estimate, began)
+    solution = Solution.of_levels(levels, body, estimate, began)
+    if not edge_correction:
+        return solution
+    error = uncertainty.of_stiffness(found) if estimate_uncertainty else None
+    return replace(solution, stiffness=found[0].stiffness, stiffness_uncertainty=error)
 
 
 def indent(
@@ -114,6 +122,7 @@ def indent(
     coatings: Coatings,
     substrate: Substrate,
     friction: float = 0.0,
+    ball: Ball | None = None,
     approach: float | None = None,
     patches: int = 257,
     tolerance: float = 1e-8,
@@ -124,12 +133,13 @@ def indent(
     estimate_uncertainty: bool = True,
     threads: int = 1,
 ) -> Solution:
-    """Press a rigid indenter of any shape into a coated half-space, over a fixed square.
+    """Press an indenter of any shape into a coated half-space, over a fixed square.
 
     profile : height of the indenter's surface above its lowest point [m], as z(x, y) of arrays x, y [m], or
     as an (n, n) array at the centres of n x n patches that fill the square, in place of ``patches``.
     half_width : half the side of the square [m]; no contact beyond it.  load [N] or approach [m], the
-    other None; the approach counts from the first touch.  The others as in ``solve``.
+    other None; the approach counts from the first touch.  ball : of an elastic indenter, a half-space near
+    the contact.  The others as in ``solve``.
 
     An ellipsoid x^2/2A + y^2/2B, a cone, a punch with a round edge, a measured surface are profiles. Their
     contact is solved by the patches alone: its edge is a staircase, where the pressure is of first order in
@@ -140,7 +150,7 @@ def indent(
     began = time.perf_counter()
     check_control(load, approach)
     check_positive(half_width=half_width)
-    body = _body(coatings, substrate, friction)
+    body = _body(coatings, substrate, friction, ball)
     heights = None if callable(profile) else np.asarray(profile, dtype=float)
     if heights is not None:
         patches = heights.shape[0]
@@ -242,7 +252,11 @@ def _loaded(grid: Grid, shape: edge_profile.Prescribed, body: Body, numerics: Nu
     return replace(level, found=replace(found, gap=u - centre, approach=centre))
 
 
-def _body(coatings: Coatings, substrate: Substrate, friction: float) -> Body:
+def _body(coatings: Coatings, substrate: Substrate, friction: float, ball: Ball | None = None) -> Body:
     Body(coatings, substrate, friction)  # refuses what is no number before it is made one
+    opposite = None
+    if ball is not None:
+        given = Body.of_ball(ball, float(friction))
+        opposite = _body(given.coatings, given.substrate, given.friction)
     layers = tuple(tuple(float(v) for v in coating) for coating in coatings)
-    return Body(layers, tuple(float(v) for v in substrate), float(friction))  # type: ignore[arg-type]
+    return Body(layers, tuple(float(v) for v in substrate), float(friction), opposite)  # type: ignore[arg-type]

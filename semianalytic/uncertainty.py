@@ -4,13 +4,14 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from semianalytic.collocation import RoundContact
 from semianalytic.edge_profile import Profile, convergence
 from semianalytic.grid import Grid, odd
 from semianalytic.inputs import Body, Numerics
 from semianalytic.level import Indenter, Level
 from semianalytic.nested import solve_on
 
-__all__ = ["WIDER", "Uncertainty", "of_contact", "other_conversion", "safety"]
+__all__ = ["WIDER", "Uncertainty", "of_contact", "of_stiffness", "other_conversion", "safety"]
 
 QUADRATURE = 1e-9  # of the layers' response by Gauss panels
 WIDER = 1.25  # the box that tests the domain over the box in use
@@ -99,6 +100,14 @@ def _of_profiles(levels: list[Level], numerics: Numerics) -> Uncertainty:
         rows.append((name, "edge terms", rate * max(last, rate * before)))
         rows.append((name, "quadrature", QUADRATURE * value))
     return Uncertainty._of(rows)
+
+
+def of_stiffness(found: list[RoundContact]) -> float:
+    """Uncertainty of the stiffness [N/m] of the first contact, as of its scalars, and of its differences."""
+    fine, middle, coarse = found
+    rate = convergence(fine.profile, middle.profile, coarse.profile)
+    last, before = abs(fine.stiffness - middle.stiffness), abs(middle.stiffness - coarse.stiffness)
+    return rate * max(last, rate * before) + fine.stiffness_error + QUADRATURE * fine.stiffness
 
 
 def other_conversion(numerics: Numerics) -> Numerics:

@@ -14,7 +14,8 @@ from verification.commands.common.terminal import print_error
 
 CODES = (
     "Exit codes: 0 all agree, 1 disagreement, 2 bad input, 3 no result, 4 inconclusive, 5 all agree but a "
-    "number is not that of the baseline, 130 stopped by Ctrl-C."
+    "number is not that of the baseline, 6 all agree but less is judged than the manifest records, 130 "
+    "stopped by Ctrl-C."
 )
 
 
@@ -51,6 +52,7 @@ app = App(
 groups = {
     "": app,
     "baseline": _group("baseline", "The stored numbers that every run is compared with."),
+    "guest": _group("guest", "Examine a contact code of your own, in any language."),
     "study": _group("study", "Sweep a parameter with both methods behind every number."),
 }
 for key, entry in COMMANDS.items():
@@ -58,6 +60,7 @@ for key, entry in COMMANDS.items():
     place, epilogue = f"verification.commands.{entry['place']}", _epilogue(entry["examples"])
     groups[group].command(place, name=name, help=entry["summary"], help_epilogue=epilogue)
 app.command(groups["baseline"])
+app.command(groups["guest"])
 app.command(groups["study"])
 
 

@@ -16,7 +16,7 @@ from quick_case import COMMAND, QUICK, coatcheck, coatcheck_process
 
 from verification.cases.contact import parse_case
 from verification.cases.published import published_cases, read_published
-from verification.commands.solving import kept_results
+from verification.commands.common.solving import kept_results
 from verification.running.contact import judge_case, solve_case
 from verification.running.fields import plane_path, write_plane
 from verification.running.pool import run_tasks

@@ -22,16 +22,18 @@ def contact(*coatings):
 
 @pytest.mark.parametrize("coatings", [(), ((1.0, NU, 0.3),), ((1.0, NU, 0.1), (1.0, NU, 1.0))])
 def test_equal_moduli_give_hertz(coatings):
-    profile, approach = contact(*coatings)[0]
+    profile, approach, stiffness, error = contact(*coatings)[0]
     assert profile.radius == pytest.approx(A_H, rel=1e-13)
     assert profile.peak == pytest.approx(P_H, rel=1e-12)
     assert approach == pytest.approx(A_H**2 / R, rel=1e-12)
+    assert stiffness == pytest.approx(2 * E_STAR * A_H, rel=1e-10)
+    assert error < 1e-9 * stiffness
 
 
 @pytest.mark.parametrize("ratio", [1e-4, 0.25, 4.0, 1e4])
 @pytest.mark.parametrize("h", [0.02, 0.5])
 def test_terms_converge(ratio, h):
-    fine, middle, coarse = (profile for profile, _ in contact((ratio, 0.25, h)))
+    fine, middle, coarse = (found.profile for found in contact((ratio, 0.25, h)))
     last, before = abs(fine.radius - middle.radius), abs(middle.radius - coarse.radius)
     # geometrically, down to the rounding of the response
     assert last < max(0.3 * before, 1e-10 * fine.radius)

@@ -11,7 +11,7 @@ from unittest import mock
 import pytest
 
 from verification.cli import main
-from verification.commands import solving
+from verification.commands.common import solving
 from verification.running.store import read_checked
 
 QUICK = """

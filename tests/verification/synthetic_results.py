@@ -9,8 +9,16 @@ import numpy as np
 from verification.judging.claims import standard_claims
 from verification.judging.verdict import Outcome, Verdict
 from verification.problem.contact import CoatedContact
-from verification.problem.profile import Line, Profile, lines_of
-from verification.problem.quantity import IN_PLANE, PEAKS, QUANTITIES, SCALARS
+from verification.problem.profile import Line, Profile, lines_of, oblique_lines
+from verification.problem.quantity import (
+    DISPLACEMENTS,
+    IN_PLANE,
+    PEAKS,
+    QUANTITIES,
+    SCALARS,
+    SLOPES,
+    STRESSES,
+)
 from verification.running.contact import decide
 from verification.running.result import CaseResult, RunInfo, SourceResult
 from verification.sources.registry import CLOSED, SOURCES
@@ -67,6 +75,10 @@ def result_of(
         random = np.random.default_rng([ord(letter) for letter in source])
         for profile in _exact(problem, source, points):
             scale = np.abs(profile.value) if profile.line == "contact" else problem.p_h
+            if profile.quantity in DISPLACEMENTS:
+                scale = problem.delta_h
+            if profile.quantity in DISPLACEMENTS + SLOPES:  # as their caps
+                scale = 0.01 * scale
             noise = errors[source] * scale * random.uniform(-1, 1, profile.value.shape)
             value = profile.value + noise
             key = (profile.quantity, profile.line, source)
@@ -114,6 +126,7 @@ def described(problem: CoatedContact) -> dict[str, Any]:
         "a_h": problem.a_h,
         "p_h": problem.p_h,
         "delta_h": problem.delta_h,
+        "S_h": problem.S_h,
         "interfaces": list(problem.interfaces),
     }
 
@@ -137,10 +150,12 @@ def _knobs(problem: CoatedContact, quantity: str) -> list[tuple[str, float]]:
 def _exact(problem: CoatedContact, source: str, points: int) -> list[Profile]:
     a, p0, nu = problem.a_h, problem.p_h, problem.substrate[1]
     origin = np.zeros(1)
-    hertz = SimpleNamespace(contact_radius=a, peak_pressure=p0, approach=problem.delta_h)
+    hertz = SimpleNamespace(
+        contact_radius=a, peak_pressure=p0, approach=problem.delta_h, stiffness=problem.S_h
+    )
     found = [
         Profile(name, "contact", origin, np.array([QUANTITIES[name].value(hertz, problem)]), source)
-        for name in SCALARS
+        for name in SCALARS + SLOPES
     ]
     tension = ((1 - 2 * nu) / 3 + problem.friction * np.pi * (4 + nu) / 8) * p0
     for name, value in zip(PEAKS, (tension, -a), strict=True):
@@ -154,6 +169,13 @@ def _exact(problem: CoatedContact, source: str, points: int) -> list[Profile]:
             pressure = p0 * np.sqrt(np.maximum(1 - (position / a) ** 2, 0))
             found.append(Profile("pressure", line.name, position, pressure, source))
         found += [Profile(n, line.name, position, p0 * fields[n], source) for n in IN_PLANE]
+    for line in oblique_lines(problem):
+        position = np.linspace(0, 2 * a, points)
+        bell = 1 / (1 + (position / a) ** 2)
+        quantities = dict.fromkeys(STRESSES, -p0) if line.name != "oblique surface" else {}
+        if line.name != "off plane":
+            quantities |= dict.fromkeys(DISPLACEMENTS, problem.delta_h)
+        found += [Profile(n, line.name, position, size * bell, source) for n, size in quantities.items()]
     return found
 
 

@@ -19,7 +19,7 @@ from verification.problem.contact import PrescribedLoad
 from verification.problem.loading import CONTROLS, LoadingCurve, Problem
 from verification.problem.points import Points
 from verification.problem.profile import Profile
-from verification.problem.quantity import CURVES, EXTREMES, PEAKS, QUANTITIES, SCALARS
+from verification.problem.quantity import CURVES, EXTREMES, PEAKS, QUANTITIES, SCALARS, SLOPES
 from verification.sources.registry import PUBLISHED
 
 CEILING = 0.01  # largest uncertainty of a cell as a fraction of the scale, unless the case file states why
@@ -86,7 +86,7 @@ def columns_of(
     for i, column in enumerate(table.column):
         here = f"{table.file}, column {column.name}"
         named = f"{here}: quantity {column.quantity!r}"
-        known = [name for name in QUANTITIES if name not in PEAKS]
+        known = [name for name in QUANTITIES if name not in PEAKS + SLOPES]
         if column.quantity not in known:
             raise PublishedError(f"{named} is unknown; known are {', '.join(known)}")
         fits = (column.quantity in CURVES) == isinstance(problem, LoadingCurve)

@@ -19,7 +19,7 @@ from verification.cases.toml import (
 from verification.judging.claims import standard_claims
 from verification.judging.verdict import Claim
 from verification.problem.contact import CoatedContact
-from verification.problem.profile import Line, line_of, lines_of
+from verification.problem.profile import Line, line_of, lines_of, oblique_lines
 from verification.sources.registry import METHODS, sources_of
 
 CASES = Path(__file__).parent / "shipped" / "contact"
@@ -44,8 +44,8 @@ class Case:
 
     @property
     def lines(self) -> tuple[Line, ...]:
-        """The lines of the plane y = 0 on which sources are compared."""
-        return lines_of(self.problem)
+        """The lines on which sources are compared: those of the plane y = 0, then the others."""
+        return lines_of(self.problem) + oblique_lines(self.problem)
 
 
 class _Substrate(Strict):
@@ -135,6 +135,8 @@ def parse_case(raw: bytes, path: Path) -> Case:
         if method in _CaseFile.model_fields
     }
     claims = _claims(path, checked, problem)
+    if not claims:
+        raise CaseError(f"{path}: claim: nothing is claimed of this problem, so that nothing would be judged")
     return Case(path.stem, checked.title, problem, claims, checked.source, numerics, text, checked.resolve)
 
 

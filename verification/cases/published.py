@@ -74,16 +74,19 @@ def parse_published(raw: bytes, path: Path) -> PublishedCase:
         raise CaseError(str(error)) from None
     except (ValueError, OverflowError, ZeroDivisionError) as error:
         raise CaseError(f"{path}: {error}") from None
+    claims = tuple(
+        _claim(item, source)
+        for item in columns
+        for source in (*METHODS, *EXACT)
+        if SOURCES[source].supports(problem, QUANTITIES[item.profile.quantity].kind)
+    )
+    if not claims:
+        raise CaseError(f"{path}: table: no source supports a column, so that nothing would be judged")
     return PublishedCase(
         name=path.stem,
         title=checked.title,
         problem=problem,
-        claims=tuple(
-            _claim(item, source)
-            for item in columns
-            for source in (*METHODS, *EXACT)
-            if SOURCES[source].supports(problem, QUANTITIES[item.profile.quantity].kind)
-        ),
+        claims=claims,
         columns=tuple(columns),
         citation={
             **checked.model_dump(include={"year", "remark"}),
@@ -154,6 +157,7 @@ def _claim(item: PublishedColumn, source: str) -> Claim:
     U = item.profile.uncertainty
     assert U is not None
     # As in every other case; the uncertainty of the published value, which ``columns`` limits, is added.
-    cap = QUANTITIES[item.profile.quantity].cap + float(U.max()) / item.scale
+    quantity = QUANTITIES[item.profile.quantity]
+    cap = max(quantity.cap, quantity.least) + float(U.max()) / item.scale
     why = f"published in column {item.column} of {item.file}"
     return Claim(item.profile.quantity, item.profile.line, (source, PUBLISHED), cap, why)

@@ -57,7 +57,7 @@ def report(
             if baseline is not None or not whole:
                 place = BASELINE if baseline is None else baseline
                 known, name = read_baseline(place), within_package(place)
-                compared = regression(material.results, known, name, material.info, whole=False)
+                compared = regression(material.results, known, name, material.info)
                 evidence = replace(evidence, baseline=compared)
             files = [write_report(replace(material, evidence=evidence), folder)]
             if pdf:

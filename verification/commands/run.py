@@ -21,7 +21,7 @@ from rich.table import Column, Table
 from verification.cases.contact import Case, read_case, shipped_cases
 from verification.cases.published import PublishedCase, is_published, published_cases, read_published
 from verification.cases.toml import CaseError
-from verification.commands.common.exits import DRIFTED, EXIT, STOPPED, exit_code, with_exit_code
+from verification.commands.common.exits import STOPPED, run_code, with_exit_code
 from verification.commands.common.folders import BASELINE, RECORDS, within_package
 from verification.commands.common.options import (
     AsJson,
@@ -33,8 +33,7 @@ from verification.commands.common.options import (
     RecordsFolder,
     Resume,
 )
-from verification.commands.common.terminal import STYLE, did_you_mean, one_line, print_error, print_json
-from verification.commands.solving import (
+from verification.commands.common.solving import (
     kept_results,
     kept_study,
     require_gmsh,
@@ -42,11 +41,13 @@ from verification.commands.solving import (
     solve,
     worker_count,
 )
+from verification.commands.common.terminal import STYLE, did_you_mean, one_line, print_error, print_json
 from verification.credibility import accuracy as accuracy_study
 from verification.credibility.accuracy import AccuracyStudy
 from verification.credibility.self_tests import SelfTest, self_tests
-from verification.judging.verdict import Outcome
+from verification.judging.outcome import DECIDED, Outcome
 from verification.regression.baseline import Regression, State, regression, regression_json
+from verification.regression.manifest import manifest_message
 from verification.regression.record import read_baseline
 from verification.running.pool import Task
 from verification.running.result import CaseResult, RunInfo
@@ -78,8 +79,9 @@ def run(
     """Solve cases by every method and reference, judge every claim, write the report.
 
     Without arguments all shipped cases are run, and the convergence of both methods is measured. The exit
-    code is 5 only where a number differs from the baseline on its machine with its versions; elsewhere the
-    report shows it.
+    code is 5 where a number differs from the baseline on its machine with its versions, and on any machine
+    where it differs by more than its uncertainty or an uncertainty is more than four times that of the
+    baseline; it is 6 where less is judged than the manifest of the baseline records.
 
     Args:
         cases: Names of shipped cases, see coatcheck list; .toml files; "published" for all published results.
@@ -115,8 +117,16 @@ def run(
             new = {found.name: found for found in solved if isinstance(found, CaseResult)}
             results = [kept.get(case.name) or new[case.name] for case in chosen]
             info = run_info(shlex.join(["coatcheck", "run", *cases]), started, jobs)
-            beside = regression(results, known, within_package(baseline), info, whole=not cases)
             tests, evidence = prepared()
+            beside = regression(
+                results,
+                known,
+                within_package(baseline),
+                info,
+                whole=not cases,
+                published="published" in cases,
+                self_tests={test.name: test.answers for test in tests},
+            )
             evidence = replace(
                 evidence, accuracy=accuracy, baseline=beside, self_tests=tests, formulas=formulas
             )
@@ -148,11 +158,7 @@ def _self_tested() -> tuple[SelfTest, ...]:
 
 
 def _code(results: Sequence[CaseResult], beside: Regression, tests: Sequence[SelfTest]) -> int:
-    """Exit code of the worst verdict; of a failed self-test or of the baseline where all verdicts agree."""
-    code = exit_code(results)
-    if not all(test.passed for test in tests):
-        return code or EXIT[Outcome.DISAGREES]
-    return DRIFTED if code == EXIT[Outcome.AGREES] and beside.unexplained else code
+    return run_code(results, beside, passed=all(test.passed for test in tests))
 
 
 def _choose(names: Sequence[str]) -> list[Case | PublishedCase]:
@@ -211,8 +217,8 @@ def _summary(
             result.name: {
                 "outcome": result.outcome,
                 "baseline": states.get(result.name),
-                "verdicts": {o: sum(v.outcome is o for _, v in result.verdicts) for o in Outcome},
-                "invariants": {o: sum(law.outcome is o for law in result.invariants) for o in Outcome},
+                "verdicts": {o: sum(v.outcome is o for _, v in result.verdicts) for o in DECIDED},
+                "invariants": {o: sum(law.outcome is o for law in result.invariants) for o in DECIDED},
             }
             for result in results
         },
@@ -235,7 +241,7 @@ def _print_table(results: Sequence[CaseResult], page: Path, seconds: float, besi
     for result in results:
         worst = max((v.difference for _, v in result.verdicts if v.difference is not None), default=None)
         count = Counter(verdict.outcome for _, verdict in result.verdicts)
-        counts = [f"[{STYLE[o]}]{count[o]}[/]" if count[o] else "." for o in Outcome]
+        counts = [f"[{STYLE[o]}]{count[o]}[/]" if count[o] else "." for o in DECIDED]
         state = [_state(beside, result.name)] if states else []
         table.add_row(escape(result.name), *counts, "-" if worst is None else f"{worst:.1e}", *state)
     console.print(table)
@@ -260,6 +266,10 @@ def _print_table(results: Sequence[CaseResult], page: Path, seconds: float, besi
         say(published_message(published))
     known = f"baseline of {beside.update.when[:10]} in {beside.folder}: " if beside.update is not None else ""
     say(escape(f"{known}{baseline_message(beside)}"))
+    for rows, style in ((beside.less, "bold red"), (beside.judged, "yellow")):
+        if message := manifest_message(rows):
+            say(f"[{style}]manifest:[/] {escape(message)}")
+            break
     number = "1 case" if len(results) == 1 else f"{len(results)} cases"
     say(f"{number} in {seconds:.0f} s; report: {escape(str(page))}")
 

@@ -16,8 +16,8 @@ from rich.text import Text
 from verification.cases.toml import CaseError
 from verification.commands.common.exits import EXIT, STOPPED, CommandError, with_exit_code
 from verification.commands.common.options import AsJson, Jobs, Output, Quiet
+from verification.commands.common.solving import progress_bar, require_gmsh
 from verification.commands.common.terminal import did_you_mean, print_error, print_json, print_out
-from verification.commands.solving import progress_bar, require_gmsh
 from verification.judging.verdict import Outcome
 from verification.running.pool import cores
 from verification.running.provenance import commit, machine

@@ -22,8 +22,8 @@ from verification.cases.table import FOLDER
 from verification.judging.claims import standard_claims
 from verification.judging.verdict import Outcome, Verdict, compare, judge
 from verification.problem.arrays import Array
-from verification.problem.contact import CoatedContact, PrescribedLoad, Uncertainty
-from verification.problem.profile import Profile, lines_of
+from verification.problem.contact import FLAT, CoatedContact, PrescribedLoad, Uncertainty
+from verification.problem.profile import Profile, line_of, lines_of
 from verification.running.contact import judge_case, solve_case
 from verification.running.provenance import fingerprint
 from verification.running.records import plain
@@ -41,12 +41,16 @@ Answers = Iterator[tuple[str, Any, Any]]  # what was asked, what came out, what 
 
 @dataclass(frozen=True)
 class SelfTest:
-    """``name`` of a part of the harness, the ``statement`` that must hold, what was ``found``."""
+    """``name`` of a part of the harness, the ``statement`` that must hold, what was ``found``.
+
+    answers : number of known answers that it gave.
+    """
 
     name: str
     statement: str
     passed: bool
     found: str
+    answers: int = 0
 
 
 def self_tests() -> tuple[SelfTest, ...]:
@@ -63,12 +67,13 @@ def _tried(name: str, statement: str, ask: Callable[[], Answers]) -> SelfTest:
                 np.isclose(found, wanted, rtol=1e-9, atol=0) if isinstance(wanted, float) else found == wanted
             )
             if not same:
-                return SelfTest(name, statement, False, f"{what}: {found}, where it has to be {wanted}")
+                found = f"{what}: {found}, where it has to be {wanted}"
+                return SelfTest(name, statement, False, found, asked)
     except Exception as error:  # whatever a part of the harness fails with is the answer
         return SelfTest(
-            name, statement, False, f"{type(error).__name__}: {' '.join(str(error).split())[:300]}"
+            name, statement, False, f"{type(error).__name__}: {' '.join(str(error).split())[:300]}", asked
         )
-    return SelfTest(name, statement, True, f"{asked} known answers")
+    return SelfTest(name, statement, True, f"{asked} known answers", asked)
 
 
 def _of_case_file() -> Answers:
@@ -121,6 +126,7 @@ def _of_sampling() -> Answers:
         ("peak_pressure", 3e9, 2e6),
         ("contact_radius", 1e-4, 3e-9),
         ("approach", 1e-6, 4e-12),
+        ("stiffness", 6e7, 5e1),
     ):
         yield name, float(scalars[name].value[0]), value
         yield f"uncertainty of the {name}", float(scalars[name].uncertainty[0]), U  # type: ignore[index]
@@ -137,6 +143,21 @@ def _of_sampling() -> Answers:
             x, z = (0.0, place[1]) if line.name == "axis" else (place[1], depths[line.name])
             wanted = _labelled(i, j, x, z, layers[line.name])
             yield f"{profile.quantity} on the {line.name}", float(profile.value[1]), wanted
+            spread = profile.uncertainty
+            yield "its uncertainty", None if spread is None else float(spread[1]), 1e-3 * wanted
+    # by hand: a_h = 1e-4 m; the line, its layer, the second point
+    for name, layer, point in (
+        ("off plane", 0, (3e-5, 4e-5, 2.5e-5)),
+        ("oblique", None, (-9e-5 + 1.44e-5, -2e-5 + 1.08e-5, 2.4e-5)),
+        ("oblique surface", 0, (3e-5 * 0.75**0.5, 1.5e-5, 0.0)),
+    ):
+        for profile in sample(solution, "known", line_of(name, problem), along):  # type: ignore[arg-type]
+            if profile.quantity.startswith("u_"):
+                wanted = _moved("xyz".index(profile.quantity[-1]), *point)
+            else:
+                i, j = ("xyz".index(letter) for letter in profile.quantity[-2:])
+                wanted = _labelled(i, j, point[0], point[2], layer, point[1])
+            yield f"{profile.quantity} on the line {name}", float(profile.value[1]), wanted
             spread = profile.uncertainty
             yield "its uncertainty", None if spread is None else float(spread[1]), 1e-3 * wanted
 
@@ -283,16 +304,23 @@ def _known(value: float, U: float | None, source: str = "known") -> Profile:
     return Profile("q", "l", np.array([0.0, 1.0]), np.array([1e9, value]), source, spread)
 
 
-def _labelled(i: int, j: int, x: float, z: float, layer: int | None) -> float:
+def _labelled(i: int, j: int, x: float, z: float, layer: int | None, y: float = 0.0) -> float:
     """A stress that tells its component, place and layer."""
     low, high = sorted((i, j))
-    return float(1e6 * (1 + 3 * low + high) + 1e9 * x + 3e9 * z + 1e7 * (-1 if layer is None else layer))
+    place = 1e9 * x + 3e9 * z + 7e9 * y
+    return float(1e6 * (1 + 3 * low + high) + place + 1e7 * (-1 if layer is None else layer))
+
+
+def _moved(i: int, x: float, y: float, z: float) -> float:
+    """A displacement that tells its component and place."""
+    return float(1e-7 * (1 + i) + 1e-3 * x + 3e-3 * z + 7e-3 * y)
 
 
 class _Labelled:
     """A solution whose every number says what it is."""
 
     contact_radius, approach, peak_pressure = 1e-4, 1e-6, 3e9
+    stiffness, stiffness_uncertainty = 6e7, 5e1
     uncertainty = Uncertainty(3e-9, 4e-12, 2e6)
 
     def pressure(self, x: ArrayLike, y: ArrayLike = 0.0) -> Array:
@@ -302,15 +330,22 @@ class _Labelled:
         return 1e-3 * self.pressure(x)
 
     def stress(self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None) -> Array:
-        x, z = np.broadcast_arrays(np.asarray(x, dtype=float), np.asarray(z, dtype=float))
+        x, y, z = np.broadcast_arrays(*(np.asarray(v, dtype=float) for v in (x, y, z)))
         at = [
-            [[_labelled(i, j, a, b, layer) for a, b in zip(x, z, strict=True)] for j in range(3)]
+            [[_labelled(i, j, a, c, layer, b) for a, b, c in zip(x, y, z, strict=True)] for j in range(3)]
             for i in range(3)
         ]
         return np.array(at)
 
     def stress_uncertainty(self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None) -> Array:
         return 1e-3 * self.stress(x, y, z, layer)
+
+    def displacement(self, x: ArrayLike, y: ArrayLike, z: ArrayLike) -> Array:
+        points = zip(*np.broadcast_arrays(x, y, z), strict=True)
+        return np.array([[_moved(i, *map(float, point)) for i in range(3)] for point in points]).T
+
+    def displacement_uncertainty(self, x: ArrayLike, y: ArrayLike, z: ArrayLike) -> Array:
+        return 1e-3 * self.displacement(x, y, z)
 
 
 @dataclass(frozen=True)
@@ -327,9 +362,19 @@ class _Stated(Hertz):
     def pressure_uncertainty(self, x: ArrayLike, y: ArrayLike = 0.0) -> Array:
         return np.full(np.broadcast_shapes(np.shape(x), np.shape(y)), self.share * self.peak_pressure)
 
-    def stress_uncertainty(self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None) -> Array:
+    def stress_uncertainty(
+        self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None, body: str = FLAT
+    ) -> Array:
         shape = np.broadcast_shapes(np.shape(x), np.shape(y), np.shape(z))
         return np.full((3, 3, *shape), self.share * self.peak_pressure)
+
+    def displacement_uncertainty(self, x: ArrayLike, y: ArrayLike, z: ArrayLike, body: str = FLAT) -> Array:
+        shape = np.broadcast_shapes(np.shape(x), np.shape(y), np.shape(z))
+        return np.full((3, *shape), self.share * self.approach)
+
+    @property
+    def stiffness_uncertainty(self) -> float:
+        return self.share * self.stiffness
 
 
 @dataclass(frozen=True)
@@ -346,5 +391,7 @@ class _Spoiled(_Stated):
 class _Failing(_Stated):
     """A method that has a contact but no stresses."""
 
-    def stress(self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None) -> Array:
+    def stress(
+        self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None, body: str = FLAT
+    ) -> Array:
         raise ValueError("no stresses today")

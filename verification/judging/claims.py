@@ -2,8 +2,16 @@
 
 from verification.judging.verdict import Claim
 from verification.problem.contact import CoatedContact
-from verification.problem.profile import Line, lines_of
-from verification.problem.quantity import IN_PLANE, PEAKS, QUANTITIES, SCALARS
+from verification.problem.profile import Line, lines_of, oblique_lines
+from verification.problem.quantity import (
+    DISPLACEMENTS,
+    IN_PLANE,
+    PEAKS,
+    QUANTITIES,
+    SCALARS,
+    SLOPES,
+    STRESSES,
+)
 from verification.sources.registry import pairs_of, sources_of
 
 
@@ -11,13 +19,24 @@ def standard_claims(problem: CoatedContact) -> tuple[Claim, ...]:
     """Every quantity on every line, no zone left out, for every pair of the sources of ``problem``."""
     pairs = pairs_of(sources_of(problem))
     why = "numbers of the contact as a whole"
-    claims = [Claim(name, "contact", pair, QUANTITIES[name].cap, why) for pair in pairs for name in SCALARS]
+    claims = [
+        Claim(name, "contact", pair, QUANTITIES[name].cap, why) for pair in pairs for name in SCALARS + SLOPES
+    ]
     why = "the tension a coating cracks by, where each source has it"
     claims += [Claim(name, "contact", pair, QUANTITIES[name].cap, why) for pair in pairs for name in PEAKS]
     why = "the stress a coating cracks or peels by"
     for line in lines_of(problem):
         for name in _quantities(line, problem):
             claims += [Claim(name, line.name, pair, QUANTITIES[name].cap, why) for pair in pairs]
+    why = "all components, where none vanishes by symmetry"
+    displaced = pairs_of(sources_of(problem, "displacement"))
+    for line in oblique_lines(problem):
+        if line.name != "oblique surface":
+            claims += [Claim(n, line.name, pair, QUANTITIES[n].cap, why) for n in STRESSES for pair in pairs]
+        if line.name != "off plane":
+            claims += [
+                Claim(n, line.name, pair, QUANTITIES[n].cap, why) for n in DISPLACEMENTS for pair in displaced
+            ]
     return tuple(claims)
 
 

@@ -21,6 +21,7 @@ class Invariant:
 
     value, bound : at the deciding point; None where there is no such number.
     message : the law, the residual, the bound.
+    cap : largest admissible bound.   points : number of residuals; 0 where there is no result.
     """
 
     name: str
@@ -29,6 +30,8 @@ class Invariant:
     bound: float | None
     outcome: Outcome
     message: str
+    cap: float = CAP
+    points: int = 0
 
     @property
     def share(self) -> float | None:
@@ -56,7 +59,7 @@ def decide(
     if bound is None:
         worst = float(r.max())
         message = f"{law}: residual {worst:.1e}; no uncertainty is stated to bound it"
-        return Invariant(name, source, worst, None, Outcome.INCONCLUSIVE, message)
+        return Invariant(name, source, worst, None, Outcome.INCONCLUSIVE, message, cap, r.size)
     U = np.broadcast_to(np.asarray(bound, dtype=float), np.shape(residual)).ravel() + ROUNDING
     if not np.isfinite(U).all() or U.min() < 0:
         return absent(name, source, f"{law}: the bound is not finite everywhere")
@@ -64,11 +67,12 @@ def decide(
     value, allowed = float(r[at]), float(U[at])
     message = f"{law}: residual {value:.1e}, bound {allowed:.1e}"
     if value > allowed:
-        return Invariant(name, source, value, allowed, Outcome.DISAGREES, message)
+        return Invariant(name, source, value, allowed, Outcome.DISAGREES, message, cap, r.size)
     if U.max() > cap:
         message = f"{law}: bound {U.max():.1e} exceeds the cap {cap:.1e}"
-        return Invariant(name, source, float(r[U.argmax()]), float(U.max()), Outcome.INCONCLUSIVE, message)
-    return Invariant(name, source, value, allowed, Outcome.AGREES, message)
+        value, allowed = float(r[U.argmax()]), float(U.max())
+        return Invariant(name, source, value, allowed, Outcome.INCONCLUSIVE, message, cap, r.size)
+    return Invariant(name, source, value, allowed, Outcome.AGREES, message, cap, r.size)
 
 
 def absent(name: str, source: str, reason: str) -> Invariant:

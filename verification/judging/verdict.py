@@ -54,12 +54,27 @@ class Comparison:
 
 
 @dataclass(frozen=True)
+class Judged:
+    """What a verdict was decided on.
+
+    cap : in force, a fraction of ``scale`` [SI].   points : number of judged points.
+    extent : first and last of them [m].   gap : widest distance between neighbours [m].
+    """
+
+    cap: float
+    scale: float
+    points: int
+    extent: tuple[float, float]
+    gap: float
+
+
+@dataclass(frozen=True)
 class Verdict:
     """The outcome of a claim with the figures behind it, as fractions of the comparison's scale.
 
     difference, uncertainty : largest over the judged points; None where there is no such number.
     margin : smallest of U - |A - B| over the judged points; negative means disagreement.
-    worst : position [m] of the point that decides.
+    worst : position [m] of the point that decides.   judged : None where nothing was compared.
     """
 
     outcome: Outcome
@@ -68,6 +83,7 @@ class Verdict:
     uncertainty: float | None = None
     margin: float | None = None
     worst: float | None = None
+    judged: Judged | None = None
 
 
 def compare(a: Profile, b: Profile, *, scale: float, excluded: NDArray[np.bool_] | None = None) -> Comparison:
@@ -104,6 +120,9 @@ def judge(comparison: Comparison, cap: float) -> Verdict:
     if not (np.isfinite(comparison.scale) and comparison.scale > 0):
         return Verdict(Outcome.NO_RESULT, f"the scale of the comparison is {comparison.scale:g}")
 
+    along = np.sort(position)
+    extent, gap = (float(along[0]), float(along[-1])), float(np.diff(along).max(initial=0.0))
+    decided_on = Judged(cap, float(comparison.scale), along.size, extent, gap)
     difference = np.abs(comparison.difference[judged])
     largest = float(difference.max())
     uncertainty = comparison.uncertainty
@@ -113,17 +132,17 @@ def judge(comparison: Comparison, cap: float) -> Verdict:
         outcome = Outcome.DISAGREES if largest > cap else Outcome.INCONCLUSIVE
         reason = f"difference {largest:.2e} {'exceeds' if largest > cap else 'is below'} the cap {cap:.1e}"
         reason += f"; {' and '.join(silent)} states no uncertainty"
-        return Verdict(outcome, reason, largest, None, None, float(position[worst]))
+        return Verdict(outcome, reason, largest, None, None, float(position[worst]), decided_on)
 
     U = uncertainty[judged]
     margin = U - difference
     worst = int(np.argmin(margin))
-    figures = (largest, float(U.max()), float(margin[worst]), float(position[worst]))
+    figures = (largest, float(U.max()), float(margin[worst]))
     if margin[worst] < 0:
         reason = f"difference {difference[worst]:.2e} exceeds the uncertainty {U[worst]:.2e}"
-        return Verdict(Outcome.DISAGREES, reason, *figures)
+        return Verdict(Outcome.DISAGREES, reason, *figures, float(position[worst]), decided_on)
     if U.max() > cap:
         reason = f"uncertainty {U.max():.2e} exceeds the cap {cap:.1e}; refine the method that dominates it"
-        return Verdict(Outcome.INCONCLUSIVE, reason, *figures[:3], float(position[np.argmax(U)]))
+        return Verdict(Outcome.INCONCLUSIVE, reason, *figures, float(position[np.argmax(U)]), decided_on)
     reason = f"difference {largest:.2e} within the uncertainty, at most {U.max():.2e}"
-    return Verdict(Outcome.AGREES, reason, *figures)
+    return Verdict(Outcome.AGREES, reason, *figures, float(position[worst]), decided_on)

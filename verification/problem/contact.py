@@ -1,17 +1,19 @@
-"""The physical problem: a rigid sphere in contact with a coated elastic half-space.
+"""The physical problem: a sphere, rigid or elastic, in contact with a coated elastic half-space.
 
-Origin at first contact, ``x`` along sliding, ``z`` into the solid, surface at z = 0. Tension positive,
-pressure and load positive in compression. SI units.
+Origin at first contact, ``x`` along sliding, ``z`` into the body in question, surface at z = 0. Tension
+positive, pressure and load positive in compression. SI units.
 """
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from math import isfinite, pi
 from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from verification.problem.arrays import Array, Coatings
+from verification.problem.arrays import Array, Ball, Coatings
+
+FLAT, BALL = "flat", "ball"  # the two bodies of a contact
 
 
 @dataclass(frozen=True)
@@ -19,8 +21,11 @@ class CoatedContact:
     """Sphere of ``radius`` [m] under ``load`` [N] on ``coatings`` bonded to ``substrate``.
 
     coatings : ((E [Pa], nu, thickness [m]), ...) from the surface down; () is the uncoated solid.
-    substrate : (E [Pa], nu).   friction : f in q = f p, traction on the solid in +x.
+    substrate : (E [Pa], nu).   friction : f in q = f p, traction on the flat in +x and on the ball in -x.
+    ball : None is rigid; (E, nu, coatings) of an elastic ball, its coatings from its surface inwards.
 
+    Near the contact both bodies are layered half-spaces, with the gap r^2/2R before they deform. The scales
+    a_h, p_h, delta_h are those of both bodies without coatings.
     Raises ValueError with a message naming the quantity and its value.
     """
 
@@ -29,32 +34,73 @@ class CoatedContact:
     coatings: Coatings
     substrate: tuple[float, float]
     friction: float = 0.0
+    ball: Ball | None = None
 
     def __post_init__(self) -> None:
         _require_positive("radius", self.radius)
         _require_positive("load", self.load)
         _require_solid(self.coatings, self.substrate, self.friction)
+        if self.ball is not None:
+            _require_solid(self.ball[2], self.ball[:2], 0.0, "ball.")
 
     @property
     def E_star(self) -> float:
-        """Contact modulus of the bare substrate under a rigid sphere, E/(1 - nu^2) [Pa]."""
+        """Contact modulus of both substrates [Pa], 1/E* = sum (1 - nu^2)/E. Johnson (4.20)."""
         E, nu = self.substrate
-        return E / (1 - nu**2)
+        if self.ball is None:
+            return E / (1 - nu**2)
+        return 1 / ((1 - nu**2) / E + (1 - self.ball[1] ** 2) / self.ball[0])
 
     @property
     def a_h(self) -> float:
-        """Hertz contact radius of the bare substrate, (3 W R / 4 E*)^(1/3) [m]. Johnson (4.22)."""
+        """Hertz contact radius of the bare substrates, (3 W R / 4 E*)^(1/3) [m]. Johnson (4.22)."""
         return (3 * self.load * self.radius / (4 * self.E_star)) ** (1 / 3)
 
     @property
     def p_h(self) -> float:
-        """Hertz peak pressure of the bare substrate, 3 W / (2 pi a_h^2) [Pa]. Johnson (4.24)."""
+        """Hertz peak pressure of the bare substrates, 3 W / (2 pi a_h^2) [Pa]. Johnson (4.24)."""
         return 3 * self.load / (2 * pi * self.a_h**2)
 
     @property
     def delta_h(self) -> float:
-        """Hertz approach of the bare substrate, a_h^2 / R [m]. Johnson (4.23)."""
+        """Hertz approach of the bare substrates, a_h^2 / R [m]. Johnson (4.23)."""
         return self.a_h**2 / self.radius
+
+    @property
+    def S_h(self) -> float:
+        """Hertz stiffness dW/d delta of the bare substrate, 2 E* a_h [N/m]. Johnson (4.23) differentiated."""
+        return 2 * self.E_star * self.a_h
+
+    @property
+    def bodies(self) -> tuple[str, ...]:
+        """The elastic bodies by name."""
+        return (FLAT,) if self.ball is None else (FLAT, BALL)
+
+    def seen_from(self, body: str) -> "CoatedContact":
+        """The same contact with ``body`` as the flat: of the ball the two bodies are exchanged.
+
+        Raises ValueError where the ball is rigid.
+        """
+        if body == FLAT:
+            return self
+        if body != BALL or self.ball is None:
+            raise ValueError(f"body = {body!r}; this contact has {' and '.join(self.bodies)}")
+        E, nu, coatings = self.ball
+        return replace(self, coatings=coatings, substrate=(E, nu), ball=(*self.substrate, self.coatings))
+
+    @property
+    def dundurs_beta(self) -> float:
+        """Dundurs' beta of the two materials in contact, which couples pressure and friction. Johnson (5.3).
+
+        beta = [(1 - 2 nu_f)/G_f - (1 - 2 nu_b)/G_b] / 2 / [(1 - nu_f)/G_f + (1 - nu_b)/G_b]
+        """
+        surfaces = [(*self.coatings, self.substrate)[0][:2]]
+        if self.ball is not None:
+            surfaces.append((*self.ball[2], self.ball[:2])[0][:2])
+        # 1/G with its sign: the ball opposes the flat
+        one, two = [(2 * (1 + nu) / E, nu) for E, nu in surfaces] + [(0.0, 0.0)] * (2 - len(surfaces))
+        coupled = one[0] * (1 - 2 * one[1]) - two[0] * (1 - 2 * two[1])
+        return coupled / 2 / (one[0] * (1 - one[1]) + two[0] * (1 - two[1]))
 
     @property
     def interfaces(self) -> tuple[float, ...]:
@@ -63,8 +109,10 @@ class CoatedContact:
 
     @property
     def homogeneous(self) -> bool:
-        """True where every layer has the substrate's moduli, so that Hertz holds."""
-        return all((E, nu) == self.substrate for E, nu, _ in self.coatings)
+        """True where every layer of either body has the moduli of its substrate, so that Hertz holds."""
+        ball = () if self.ball is None else self.ball[2]
+        same = [(E, nu) == self.substrate for E, nu, _ in self.coatings]
+        return all([*same, *((E, nu) == self.ball[:2] for E, nu, _ in ball if self.ball)])
 
     def under_disc(self, pressure: float, load_radius: float) -> "PrescribedLoad":
         """The same solid, friction included, under ``pressure`` [Pa] on a disc of ``load_radius`` [m]."""
@@ -117,7 +165,10 @@ class NotClaimed(ValueError):
 class Solution(Protocol):
     """Solution that both methods and the references return; see each method for its own record.
 
-    ``displacement`` of a reference without displacements raises NotClaimed.
+    Of a contact with an elastic ball, stresses and displacements are those of the flat, with ``body="ball"``
+    those of the ball: z into it, x and y as on the flat.
+    ``displacement`` of a reference without displacements raises NotClaimed. ``stiffness`` is dW/d
+    delta, None where a method has none.
     """
 
     @property
@@ -126,6 +177,10 @@ class Solution(Protocol):
     def approach(self) -> float: ...
     @property
     def peak_pressure(self) -> float: ...
+    @property
+    def stiffness(self) -> float | None: ...
+    @property
+    def stiffness_uncertainty(self) -> float | None: ...
     @property
     def uncertainty(self) -> Any: ...
     @property
@@ -139,32 +194,49 @@ class Solution(Protocol):
     def stress_uncertainty(
         self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None
     ) -> Array: ...
+    def displacement_uncertainty(self, x: ArrayLike, y: ArrayLike, z: ArrayLike) -> Array: ...
 
 
 def stress_with_uncertainty(
-    solution: Solution, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None
+    solution: Solution, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None, body: str = FLAT
 ) -> tuple[Array, Array | None]:
     """Stress and its uncertainty [Pa] at points, (3, 3) + points; None where the solution states none.
 
     A solution with a method of this name evaluates its stress once for both.
     """
+    of: dict[str, Any] = {"layer": layer} if body == FLAT else {"layer": layer, "body": body}
     if solution.uncertainty is None:
-        return solution.stress(x, y, z, layer=layer), None
+        return solution.stress(x, y, z, **of), None
     # Looked up in the type: a wrapper that changes ``stress`` alone must not be passed over.
     both = getattr(type(solution), "stress_with_uncertainty", None)
     if both is not None:
-        sigma, U = both(solution, x, y, z, layer=layer)
+        sigma, U = both(solution, x, y, z, **of)
         return sigma, U
-    return solution.stress(x, y, z, layer=layer), solution.stress_uncertainty(x, y, z, layer=layer)
+    return solution.stress(x, y, z, **of), solution.stress_uncertainty(x, y, z, **of)
 
 
-def _require_solid(coatings: Coatings, substrate: tuple[float, float], friction: float) -> None:
+def displacement_with_uncertainty(
+    solution: Solution, x: ArrayLike, y: ArrayLike, z: ArrayLike, body: str = FLAT
+) -> tuple[Array, Array | None]:
+    """Displacement and its uncertainty [m] at points, (3,) + points, as ``stress_with_uncertainty``."""
+    of: dict[str, Any] = {} if body == FLAT else {"body": body}
+    if solution.uncertainty is None:
+        return solution.displacement(x, y, z, **of), None
+    both = getattr(type(solution), "displacement_with_uncertainty", None)
+    if both is not None:
+        u, U = both(solution, x, y, z, **of)
+        return u, U
+    return solution.displacement(x, y, z, **of), solution.displacement_uncertainty(x, y, z, **of)
+
+
+def _require_solid(coatings: Coatings, substrate: tuple[float, float], friction: float, of: str = "") -> None:
     for i, (E, nu, thickness) in enumerate(coatings):
-        _require_positive(f"coatings[{i}].E", E)
-        _require_poisson(f"coatings[{i}].nu", nu)
-        _require_positive(f"coatings[{i}].thickness", thickness)
-    _require_positive("substrate.E", substrate[0])
-    _require_poisson("substrate.nu", substrate[1])
+        _require_positive(f"{of}coatings[{i}].E", E)
+        _require_poisson(f"{of}coatings[{i}].nu", nu)
+        _require_positive(f"{of}coatings[{i}].thickness", thickness)
+    of = of or "substrate."
+    _require_positive(f"{of}E", substrate[0])
+    _require_poisson(f"{of}nu", substrate[1])
     if not (isfinite(friction) and friction >= 0):
         raise ValueError(f"friction = {friction:g}; Coulomb's coefficient is zero or positive")
 

@@ -1,4 +1,4 @@
-"""A profile: one quantity along one line of the plane y = 0.
+"""A profile: one quantity along one line.
 
 Methods, closed forms and published tables are all compared as profiles, so that a comparison does not depend
 on the kind of its sources.
@@ -31,41 +31,79 @@ class Profile:
 
 @dataclass(frozen=True)
 class Line:
-    """A line in the plane y = 0: along x at ``depth`` [m] in ``layer``, or the axis (depth None)."""
+    """A straight line through ``origin`` [m] along ``direction``, a unit vector: a position is the distance.
+
+    layer : of all its points; None by the depth of each, on an interface the upper one.
+    depth [m] : of a line along x in the plane y = 0, None of any other.
+    """
 
     name: str
     depth: float | None
     layer: int | None
+    origin: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    direction: tuple[float, float, float] = (1.0, 0.0, 0.0)
 
     @property
     def coordinate(self) -> str:
-        """The coordinate that runs along the line."""
-        return "z" if self.depth is None else "x"
+        """The coordinate that runs along the line, s where none does."""
+        return coordinate_of(self.name)
+
+    def points(self, position: Array) -> tuple[Array, Array, Array]:
+        """x, y, z [m] at ``position`` [m]."""
+        x, y, z = (o + d * position for o, d in zip(self.origin, self.direction, strict=True))
+        return x, y, z
+
+
+def coordinate_of(line: str) -> str:
+    """The coordinate that runs along the line of this name, s where none does."""
+    return {"axis": "z", "oblique": "s", "oblique surface": "s"}.get(line, "x")
 
 
 def line_of(name: str, problem: CoatedContact) -> Line:
     """The line called ``name``: "surface", "axis", or "interface k, upper|lower side" with k from 1.
 
+    Besides the plane y = 0 "off plane", "oblique", "oblique surface", see ``oblique_lines``.
     Raises ValueError where the problem has no such line.
     """
     if name == "surface":
         return Line(name, 0.0, 0)
     if name == "axis":
-        return Line(name, None, None)
+        return Line(name, None, None, direction=(0.0, 0.0, 1.0))
+    for line in oblique_lines(problem):
+        if line.name == name:
+            return line
     match = _INTERFACE.fullmatch(name)
     count = len(problem.coatings)
     if match is None or int(match[1]) > count:
         raise ValueError(
             f"line = {name!r}; this problem has surface, axis"
             + "".join(f", interface {k}, upper side | lower side" for k in range(1, count + 1))
+            + "".join(f", {line.name}" for line in oblique_lines(problem))
         )
     k = int(match[1])
-    return Line(name, problem.interfaces[k - 1], k - 1 if match[2] == "upper" else k)
+    depth = problem.interfaces[k - 1]
+    return Line(name, depth, k - 1 if match[2] == "upper" else k, (0.0, 0.0, depth))
 
 
 def lines_of(problem: CoatedContact) -> tuple[Line, ...]:
-    """Surface, axis, then both sides of each interface."""
+    """Lines of the plane y = 0: surface, axis, then both sides of each interface."""
     names = ["surface", "axis"]
     for k in range(1, len(problem.coatings) + 1):
         names += [f"interface {k}, upper side", f"interface {k}, lower side"]
     return tuple(line_of(name, problem) for name in names)
+
+
+def oblique_lines(problem: CoatedContact) -> tuple[Line, ...]:
+    """Lines off the plane y = 0, which have all six stresses and all three displacements.
+
+    off plane : along x at y = 0.4 a_h, at depth 0.3 a_h or in the middle of a thinner first coating.
+    oblique : from (-0.9, -0.2, 0) a_h down below the contact, through the layers.
+    oblique surface : on the surface through the origin, at 30 degrees from x.
+    """
+    a = problem.a_h
+    depth = min([0.3 * a, *(h / 2 for _, _, h in problem.coatings[:1])])
+    return (
+        Line("off plane", None, 0, (0.0, 0.4 * a, depth)),
+        Line("oblique", None, None, (-0.9 * a, -0.2 * a, 0.0), (0.48, 0.36, 0.8)),
+        Line("oblique surface", None, 0, direction=(0.75**0.5, 0.5, 0.0)),
+    )

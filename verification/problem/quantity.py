@@ -20,12 +20,13 @@ from verification.problem.arrays import Array
 class Quantity:
     """One quantity that cases, tables and figures name.
 
-    kind : scalar, peak, curve, pressure, stress, strain or displacement.
+    kind : scalar, slope, peak, curve, pressure, stress, strain or displacement.
     sampled : "contact" (one number of a contact), "axis" (the largest on the axis), "surface" (the largest
     there), "curve" (of a loading curve), "points" (any points of the solid).
     symbol, tex : in text and in formulas.   meaning : in words, where the symbol does not say it.
     unit : SI, "1" for none.   scale : property of CoatedContact that values are divided by.
     cap : largest admissible uncertainty, over the same divisor as differences, see ``divisor``.
+    least : smallest cap against published values.
     component : of a stress or strain tensor.
     derived : (solution, problem) -> value [SI], of a scalar that follows from the others of the contact.
     """
@@ -38,18 +39,22 @@ class Quantity:
     unit: str
     scale: str = "p_h"
     cap: float = 1e-3
+    least: float = 0.0
     component: tuple[int, int] | None = None
     meaning: str = ""
     derived: Callable[[Any, Any], float] | None = None
 
-    def divisor(self, value: float, p_h: float, p0: float, a: float) -> float:
-        """Divisor of a difference [SI]: |value| of a scalar, |value| >= a of a place, else min(p_h, p0).
+    def divisor(self, value: float, p_h: float, p0: float, a: float, delta_h: float, delta: float) -> float:
+        """Divisor of a difference [SI]: |value| of a scalar or slope, |value| >= a of a place.
 
-        value : of the reference.   p0, a : peak pressure and contact radius of the best source; p_h alone
-        counts where p0 is not a positive number.
+        Of a displacement min(delta_h, delta), of any other min(p_h, p0).
+        value : of the reference.   p0, a, delta : peak pressure, contact radius and approach of the best
+        source; Hertz's alone counts where p0 or delta is not a positive number.
         """
-        if self.kind == "scalar":
+        if self.kind in ("scalar", "slope"):
             return abs(value)
+        if self.kind == "displacement":
+            return min(delta_h, delta) if delta > 0 else delta_h
         if self.unit == "m":
             return max(abs(value), a)
         return min(p_h, p0) if p0 > 0 else p_h
@@ -63,6 +68,8 @@ class Quantity:
         stated = solution.uncertainty
         if stated is None:
             return None
+        if self.kind == "slope":
+            return float(getattr(solution, f"{self.name}_uncertainty"))
         if self.derived is None:
             return float(getattr(stated, self.name))
         known = {name: float(getattr(solution, name)) for name in SCALARS if not QUANTITIES[name].derived}
@@ -75,7 +82,9 @@ def _tensor(
     kind: str, name: str, tex: str, unit: str, components: Sequence[str], cap: float = 1e-3
 ) -> list[Quantity]:
     return [
-        Quantity(f"{name}_{c}", kind, ("points",), f"{name}_{c}", f"{tex}_{{{c}}}", unit, "p_h", cap, place)
+        Quantity(
+            f"{name}_{c}", kind, _POINTS, f"{name}_{c}", f"{tex}_{{{c}}}", unit, "p_h", cap, component=place
+        )
         for c in components
         for place in [("xyz".index(c[0]), "xyz".index(c[1]))]
     ]
@@ -86,6 +95,7 @@ _BOTH = (*_CONTACT, *_CURVE)
 _SHEAR, _MISES = "largest shear on the axis", "largest von Mises stress on the axis"
 _TENSION, _PLACE = "largest sigma_xx of the surface on y = 0", "x of the largest sigma_xx of the surface"
 _LOOSE = 5e-3  # of quantities that only published tables hold
+_SLOPE = "stiffness of the contact, the derivative of the load by the approach"
 _PUNCH = "stiffness of the flat punch over 2 a E1*"
 _LOADS, _STIFFNESSES = "load by the formula over W", "stiffness by the formula over that of the flat punch"
 
@@ -96,6 +106,9 @@ QUANTITIES: dict[str, Quantity] = {
         Quantity("peak_pressure", "scalar", _CONTACT, "p0", "p_0", "Pa", "p_h", 1e-4),
         Quantity("contact_radius", "scalar", _BOTH, "a", "a", "m", "a_h", 2e-4),
         Quantity("approach", "scalar", _BOTH, "approach", r"\delta", "m", "delta_h", 1e-4),
+        Quantity(
+            "stiffness", "slope", _CONTACT, "dW/d delta", r"dW/d\delta", "N/m", "S_h", 1e-5, meaning=_SLOPE
+        ),
         Quantity("tau_max", "scalar", _AXIS, "tau_max", r"\tau_{max}", "Pa", meaning=_SHEAR),
         Quantity("von_mises_max", "scalar", _AXIS, "von_mises_max", r"\sigma_{vM}", "Pa", meaning=_MISES),
         Quantity(
@@ -123,7 +136,10 @@ QUANTITIES: dict[str, Quantity] = {
         Quantity("sigma_kk", "stress", _POINTS, "sigma_kk", r"\sigma_{kk}", "Pa"),
         Quantity("sigma_zz - sigma_xx", "stress", _POINTS, "sigma_zz - sigma_xx", "", "Pa"),
         *_tensor("strain", "eps", r"\varepsilon", "1", ("xx", "yy", "zz"), _LOOSE),
-        *(Quantity(f"u_{c}", "displacement", _POINTS, f"u_{c}", f"u_{c}", "m", cap=_LOOSE) for c in "xyz"),
+        *(
+            Quantity(f"u_{c}", "displacement", _POINTS, f"u_{c}", f"u_{c}", "m", "delta_h", 2e-5, _LOOSE)
+            for c in "xyz"
+        ),
     )
 }
 
@@ -135,10 +151,12 @@ def _names(kind: str = "", sampled: str = "") -> tuple[str, ...]:
 
 
 SCALARS = _names("scalar", "contact")
+SLOPES = _names("slope")
 PEAKS = _names("peak")
 EXTREMES = _names("scalar", "axis")
 CURVES = _names(sampled="curve")
 STRESSES = {q.name: q.component for q in QUANTITIES.values() if q.kind == "stress" and q.component}
+DISPLACEMENTS = _names("displacement")
 IN_PLANE = {name: component for name, component in STRESSES.items() if name not in ("sigma_xy", "sigma_yz")}
 POINTWISE = ("stress", "strain")  # kinds made of the stress at each point; the pressure aside
 

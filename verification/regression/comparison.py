@@ -9,8 +9,6 @@ from verification.regression.drift import State, measured
 from verification.running.result import CaseResult
 from verification.running.stored import StoredRun
 
-EVERY = 1_000_000  # more points than a profile has
-
 
 @dataclass(frozen=True)
 class VerdictChange:
@@ -60,7 +58,7 @@ class RunComparison:
 def compare_runs(a: StoredRun, b: StoredRun) -> RunComparison:
     """Differences of run ``b`` from run ``a``, at every point of every profile."""
     update = Update("", a.info.started, a.info.commit, a.info.machine, a.info.versions, 0, {})
-    numbers = {result.name: measured(result, EVERY) for result in a.results}
+    numbers = {result.name: measured(result) for result in a.results}
     first = Baseline(numbers, {result.name: digest(result.text) for result in a.results}, (update,))
     names = dict.fromkeys(result.name for result in (*a.results, *b.results))
     found = {name: (a.result(name), b.result(name)) for name in names}
@@ -68,7 +66,7 @@ def compare_runs(a: StoredRun, b: StoredRun) -> RunComparison:
     return RunComparison(
         (str(a.path), str(b.path)),
         (a.info.started, b.info.started),
-        against(b.results, first, whole=True, points=EVERY),
+        against(b.results, first, whole=True, published=True),
         tuple(chain.from_iterable(changes)),
         differing(_provenance(a), _provenance(b)),
         tuple(

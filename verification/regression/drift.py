@@ -1,12 +1,19 @@
 """Change of one profile since the baseline, number by number.
 
+On the machine and with the versions of the baseline a value is the same where
+
     |now - then| <= 1e-8 scale
 
+and a stated uncertainty within ``SAME``. On any machine a value has left its baseline where
+
+    |now - then| > max(U, 5e-11 scale)
+
+and an uncertainty where it is more than four times that of the baseline, U its own stated uncertainty then.
 scale is the largest magnitude of the profile, so that a number near zero needs no digits that it does not
 have; of a profile that vanishes (a shear that symmetry forbids) it is a thousandth of the largest profile of
-the same source and kind. A profile is represented by 17 points over its whole length, its root mean square,
-which depends on every point, and its largest stated uncertainty. An uncertainty is the size of a remainder
-and differs twofold between processors: it has drifted where it changed more than fourfold.
+the same source and kind. 5e-11 is ten times the largest change of a value seen between two machines; at
+r = a, where a value follows the square root of the radius, U is larger than that. An uncertainty is the size
+of a remainder, which may differ twofold between processors; below 5e-11 scale it is not compared.
 """
 
 from collections import defaultdict
@@ -21,9 +28,10 @@ from verification.problem.quantity import QUANTITIES
 from verification.running.result import CaseResult
 
 RELATIVE = 1e-8
-POINTS = 17
+TOLERANCE = 5e-11
 FAINT = 1e-3
 FACTOR = 4.0
+SAME = 1.1
 # Where points moved further, over the length of the line, their values are not compared.
 SHIFT = 1e-6
 
@@ -39,10 +47,9 @@ class State(StrEnum):
 
 @dataclass(frozen=True, eq=False)
 class Numbers:
-    """The stored numbers of one profile, in SI units.
+    """The numbers of one profile, in SI units.
 
-    scale : divisor of a change of ``value``.   rms : root mean square over all ``size`` points, compared
-    where not all of them are stored.   uncertainty : the largest stated one, None where there is none.
+    scale : divisor of a change of ``value``.   uncertainty : at each point; None where none is stated.
     """
 
     source: str
@@ -51,9 +58,7 @@ class Numbers:
     position: Array
     value: Array
     scale: float
-    rms: float
-    size: int
-    uncertainty: float | None
+    uncertainty: Array | None
 
     @property
     def key(self) -> tuple[str, str, str]:
@@ -62,13 +67,8 @@ class Numbers:
 
     @property
     def count(self) -> int:
-        """Number of values, with root mean square and uncertainty."""
-        return self.value.size + self.thinned + (self.uncertainty is not None)
-
-    @property
-    def thinned(self) -> bool:
-        """True where the profile has more points than are stored."""
-        return self.size > self.value.size
+        """Number of values and uncertainties."""
+        return self.value.size * (1 if self.uncertainty is None else 2)
 
 
 @dataclass(frozen=True)
@@ -76,7 +76,7 @@ class Drift:
     """Change of one profile: of its ``count`` numbers ``moved`` have changed.
 
     change : the largest change of a value over its scale, None where there are not two values.
-    message : what changed, empty where nothing did.
+    message : what changed, empty where nothing did.   beyond : changed by more than any machine explains.
     """
 
     source: str
@@ -87,16 +87,17 @@ class Drift:
     moved: int = 0
     change: float | None = None
     message: str = ""
+    beyond: bool = False
 
 
-def measured(result: CaseResult, points: int = POINTS) -> tuple[Numbers, ...]:
-    """The numbers of a result that a baseline stores: of each profile at most ``points`` values."""
+def measured(result: CaseResult) -> tuple[Numbers, ...]:
+    """The numbers of a result that a baseline stores."""
     largest: dict[tuple[str, str], float] = defaultdict(float)
     for profile in result.profiles:
         kind = (profile.source, _kind(profile))
         largest[kind] = max(largest[kind], _size(profile.value))
     return tuple(
-        _numbers(profile, FAINT * largest[profile.source, _kind(profile)], points)
+        _numbers(profile, FAINT * largest[profile.source, _kind(profile)])
         for profile in result.profiles
         if profile.value.size
     )
@@ -104,47 +105,63 @@ def measured(result: CaseResult, points: int = POINTS) -> tuple[Numbers, ...]:
 
 def drift(then: Numbers, now: Numbers) -> Drift:
     """The change of one profile."""
-    if now.size != then.size or now.value.shape != then.value.shape:
-        message = f"sampled at {now.size} points instead of {then.size}"
-        return Drift(*then.key, State.DRIFTED, then.count, then.count, None, message)
+    if now.value.shape != then.value.shape:
+        message = f"sampled at {now.value.size} points instead of {then.value.size}"
+        return Drift(*then.key, State.DRIFTED, then.count, then.count, None, message, beyond=True)
     scale = max(then.scale, np.finfo(float).tiny)
-    before, after = then.value, now.value
-    if then.thinned:
-        before, after = np.append(before, then.rms), np.append(after, now.rms)
-    change = np.where(np.isnan(before) & np.isnan(after), 0.0, np.abs(after - before) / scale)
-    moved = ~(change <= RELATIVE)  # a number that became NaN has changed
-    messages = []
     reach = max(_size(then.position), np.finfo(float).tiny)
     shift = float(np.abs(now.position - then.position).max()) / reach
+    change = np.abs(now.value - then.value) / scale
+    change = np.where(np.isnan(then.value) & np.isnan(now.value), 0.0, change)
+    stated = RELATIVE * scale if then.uncertainty is None else then.uncertainty
+    left = ~(change <= np.fmax(stated / scale, TOLERANCE))  # a number that became NaN has left
+    moved = left | ~(change <= RELATIVE) | (not shift <= RELATIVE)
+    ratio = _ratio(then, now, TOLERANCE * scale)
+    grown, other = ~(ratio <= FACTOR), ~((ratio >= 1 / SAME) & (ratio <= SAME))
+    messages = []
     if not shift <= RELATIVE:
         messages.append(f"its points moved by {shift:.1e} of the line")
-        moved[:] = True
-    if moved.any() and shift <= RELATIVE:
+    elif moved.any():
         messages.append(f"{int(moved.sum())} of {moved.size} values changed")
-    uncertainty = _uncertainty_change(then, now, scale)
-    if uncertainty:
-        messages.append(uncertainty)
-    count = int(moved.sum()) + bool(uncertainty)
+    if left.any() and shift <= SHIFT:
+        messages.append(f"{int(left.sum())} by more than their uncertainty")
+    if other.any():
+        worst = ratio[np.argmax(np.abs(np.log(ratio)))]
+        messages.append(
+            f"{int(other.sum())} uncertainties changed, to {worst:.2g} times that of the baseline"
+        )
+    count = int(moved.sum() + other.sum())
+    beyond = bool(not shift <= SHIFT or left.any() or grown.any())
     largest = float(change.max()) if np.isfinite(change).all() else float("inf")
     state = State.DRIFTED if count else State.SAME
     comparable = largest if shift <= SHIFT else None
-    return Drift(*then.key, state, then.count, count, comparable, "; ".join(messages))
+    return Drift(
+        *then.key, state, then.count, min(count, then.count), comparable, "; ".join(messages), beyond
+    )
 
 
-def _numbers(profile: Profile, faint: float, points: int) -> Numbers:
-    size = profile.value.size
-    kept = np.unique(np.linspace(0, size - 1, min(size, points)).round().astype(int))
-    scale = _size(profile.value) if _kind(profile) == "scalar" else max(_size(profile.value), faint)
+def _ratio(then: Numbers, now: Numbers, least: float) -> Array:
+    """Uncertainty over that of the baseline, both at least ``least``; infinite where only one states one."""
+    if then.uncertainty is None or now.uncertainty is None:
+        same = then.uncertainty is now.uncertainty
+        return np.full(then.value.shape, 1.0 if same else np.inf)
+    old, new = (np.abs(one) for one in (then.uncertainty, now.uncertainty))
+    ratio = np.maximum(new, least) / np.fmax(old, least)
+    return np.where(np.isnan(old) == np.isnan(new), np.where(np.isnan(new), 1.0, ratio), np.inf)
+
+
+def _numbers(profile: Profile, faint: float) -> Numbers:
+    scale = _size(profile.value)
+    if _kind(profile) not in ("scalar", "peak"):
+        scale = max(scale, faint)
     return Numbers(
         profile.source,
         profile.quantity,
         profile.line,
-        profile.position[kept],
-        profile.value[kept],
+        profile.position,
+        profile.value,
         scale,
-        float(np.sqrt(np.mean(profile.value**2))),
-        size,
-        None if profile.uncertainty is None else float(np.abs(profile.uncertainty).max()),
+        profile.uncertainty,
     )
 
 
@@ -156,13 +173,3 @@ def _kind(profile: Profile) -> str:
 def _size(values: Array) -> float:
     """Largest finite magnitude."""
     return float(np.abs(values[np.isfinite(values)]).max(initial=0.0))
-
-
-def _uncertainty_change(then: Numbers, now: Numbers, scale: float) -> str:
-    """Message on the change of the stated uncertainty; empty where it is below what counts."""
-    if then.uncertainty is None or now.uncertainty is None:
-        same = then.uncertainty is now.uncertainty
-        return "" if same else "only one of the two states an uncertainty"
-    ratio = max(now.uncertainty, RELATIVE * scale) / max(then.uncertainty, RELATIVE * scale)
-    same = 1 / FACTOR <= ratio <= FACTOR
-    return "" if same else f"its stated uncertainty is {ratio:.2g} times that of the baseline"

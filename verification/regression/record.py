@@ -1,36 +1,41 @@
-"""The baseline as one checked file, its numbers to twelve digits."""
+"""The baseline as one compressed file, its numbers to a hundredth of what counts as a change."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
 
 from verification.problem.arrays import Array
 from verification.regression.baseline import Baseline, Update
-from verification.regression.drift import Numbers
+from verification.regression.drift import RELATIVE, TOLERANCE, Numbers
+from verification.regression.manifest import Manifest
 from verification.running.records import decode, encode
 from verification.running.store import StoreError, read_checked, write_checked
 
-SCHEMA = "coatcheck-baseline/1"
+SCHEMA = "coatcheck-baseline/2"
+DIGITS = 0.01  # of the least change that counts
 
 
 @dataclass(frozen=True, eq=False)
 class _Profile:
-    """``Numbers`` without its points, which all profiles of a line share; U is the uncertainty."""
+    """``Numbers`` without its points, which all profiles of a line share.
+
+    value : whole multiples of ``step`` [SI].   U : uncertainty to three digits.
+    """
 
     source: str
     quantity: str
     line: str
-    size: int
     scale: float
-    rms: float
-    U: float | None
+    step: float
     value: Array
+    U: Array | None
 
 
 @dataclass(frozen=True, eq=False)
 class _Case:
     digest: str
+    manifest: Manifest
     lines: dict[str, Array]
     profiles: tuple[_Profile, ...]
 
@@ -40,25 +45,27 @@ class _File:
     schema: str
     cases: dict[str, _Case]
     history: tuple[Update, ...]
+    self_tests: dict[str, int] = field(default_factory=dict)
 
 
 def path_in(folder: Path) -> Path:
     """Path of the baseline in ``folder``."""
-    return folder / "baseline.json"
+    return folder / "baseline.json.xz"
 
 
 def write_baseline(folder: Path, baseline: Baseline) -> Path:
-    """Store the baseline in ``folder``, whole or not at all, to twelve digits. Raises StoreError."""
+    """Store the baseline in ``folder``, whole or not at all. Raises StoreError."""
     path = path_in(folder)
     cases = {
         name: _Case(
             baseline.digests[name],
-            {n.line: _rounded(n.position, float(np.abs(n.position).max())) for n in found},
+            baseline.manifests[name],
+            {n.line: _digits(n.position, 12) for n in found},
             tuple(_stored(n) for n in found),
         )
         for name, found in baseline.cases.items()
     }
-    write_checked(path, encode(_File(SCHEMA, cases, baseline.history)))
+    write_checked(path, encode(_File(SCHEMA, cases, baseline.history, dict(baseline.self_tests))))
     return path
 
 
@@ -75,29 +82,24 @@ def read_baseline(folder: Path) -> Baseline | None:
         numbers = {name: tuple(_numbers(p, c) for p in c.profiles) for name, c in file.cases.items()}
     except (KeyError, ValueError) as error:
         raise StoreError(f"{path}: not a baseline ({error}); restore it or update it") from None
-    return Baseline(numbers, {name: case.digest for name, case in file.cases.items()}, file.history)
+    digests = {name: case.digest for name, case in file.cases.items()}
+    manifests = {name: case.manifest for name, case in file.cases.items()}
+    return Baseline(numbers, digests, file.history, manifests, file.self_tests)
 
 
 def _stored(n: Numbers) -> _Profile:
-    uncertainty = None if n.uncertainty is None else float(f"{n.uncertainty:.3g}")
-    scale, rms = _rounded(np.array([n.scale, n.rms]), n.scale).tolist()
-    return _Profile(n.source, n.quantity, n.line, n.size, scale, rms, uncertainty, _rounded(n.value, n.scale))
+    U = None if n.uncertainty is None else _digits(n.uncertainty, 3)
+    least = RELATIVE * n.scale if n.uncertainty is None else float(np.min(n.uncertainty))
+    step = DIGITS * min(max(least, TOLERANCE * n.scale), RELATIVE * n.scale)
+    # No step of a scale that is 0, NaN or infinite.
+    step = float(f"{step:.3g}") if 0 < step < np.inf else 1.0
+    return _Profile(n.source, n.quantity, n.line, n.scale, step, np.round(n.value / step), U)
 
 
 def _numbers(p: _Profile, case: _Case) -> Numbers:
-    position = case.lines[p.line]
-    return Numbers(p.source, p.quantity, p.line, position, p.value, p.scale, p.rms, p.size, p.U)
+    value = p.value * p.step
+    return Numbers(p.source, p.quantity, p.line, case.lines[p.line], value, p.scale, p.U)
 
 
-def _rounded(values: Array, scale: float) -> Array:
-    """``values`` to twelve digits of ``scale``, smaller ones as zero."""
-    return np.array([_to_twelve_digits(value, scale) for value in values.tolist()])
-
-
-def _to_twelve_digits(value: float, scale: float) -> float:
-    if abs(value) <= 1e-12 * scale:
-        return 0.0
-    if not np.isfinite(value):
-        return value
-    digits = 13 + min(0, int(np.floor(np.log10(abs(value) / scale)))) if scale else 13
-    return float(f"{value:.{max(digits, 1)}g}")
+def _digits(values: Array, digits: int) -> Array:
+    return np.array([float(f"{value:.{digits}g}") for value in values.tolist()])

@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 
 from verification.judging.verdict import Outcome
-from verification.problem.quantity import PEAKS
+from verification.problem.quantity import PEAKS, SLOPES
+from verification.regression.manifest import manifest_message
 from verification.report.credibility import faults, mutants, self_tests, statement
 from verification.report.figures.fields import pictures
 from verification.report.figures.panels import line_figures
@@ -38,7 +39,7 @@ from verification.report.tables.case import (
 from verification.report.tables.cells import Cell, Section, Table
 from verification.report.tables.csv import embedded, line_csv
 from verification.report.tables.labels import OUTCOMES, OutcomeStyle, source_label
-from verification.report.tables.lookup import lines, scale, slug
+from verification.report.tables.lookup import TITLES, lines, scale, slug
 from verification.report.tables.matrix import verdict_matrix
 from verification.report.tables.numbers import scientific, seconds
 from verification.running.result import CaseResult
@@ -74,6 +75,7 @@ def render(material: Material) -> str:
             info=material.info,
             summary=_summary(material.results),
             counts=_counts(material.results),
+            failures=_failures(material),
             matrix=_matrix(material) if material.contacts else None,
             published=[_published(material, result) for result in material.published],
             outcomes=OUTCOMES.values(),
@@ -103,6 +105,18 @@ def _matrix(material: Material) -> Table:
 def _counts(results: Sequence[CaseResult]) -> list[tuple[OutcomeStyle, int]]:
     counted = Counter(verdict.outcome for result in results for _, verdict in result.verdicts)
     return [(style, counted[outcome]) for outcome, style in reversed(OUTCOMES.items())]
+
+
+def _failures(material: Material) -> list[str]:
+    """What fails although every verdict may agree: self-tests, the manifest, the baseline."""
+    failed = [test.name for test in material.evidence.self_tests if not test.passed]
+    messages = [f"self-tests of the harness: {', '.join(failed)}"] if failed else []
+    found = material.evidence.baseline
+    if found is not None and found.less:
+        messages.append(manifest_message(found.less))
+    if found is not None and found.unexplained:
+        messages.append(f"numbers differ from the baseline: {baseline.baseline_message(found)}")
+    return messages
 
 
 def _summary(results: Sequence[CaseResult]) -> str:
@@ -168,14 +182,14 @@ def _contact(material: Material, result: CaseResult) -> dict[str, Any]:
     bad = [item for item in result.verdicts if item[1].outcome is not Outcome.AGREES]
     return _common(material, result) | {
         "sketch": sketch(result),
-        "contact": [contact_table(result), contact_table(result, PEAKS)],
+        "contact": [contact_table(result), contact_table(result, SLOPES + PEAKS)],
         "contact_csv": embedded(line_csv(result, "contact")),
         "contact_file": f"{file}-contact.csv",
         "pictures": pictures(result, material.planes.get(result.name)),
         "lines": [
             {
                 "anchor": f"{anchor}-{slug(line)}",
-                "title": f"Along the {line}" if line in ("surface", "axis") else line.capitalize(),
+                "title": TITLES.get(line, line.capitalize()),
                 "figures": line_figures(result, line),
                 "csv": embedded(line_csv(result, line)),
                 "file": f"{file}-{slug(line)}.csv",

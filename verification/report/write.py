@@ -7,7 +7,7 @@ from pathlib import Path
 
 from verification.credibility import accuracy
 from verification.regression.baseline import regression_json
-from verification.report.junit import junit_xml
+from verification.regression.junit import junit_xml
 from verification.report.material import Material
 from verification.report.page import render
 from verification.running.records import encode
@@ -21,8 +21,9 @@ def write_report(material: Material, folder: Path) -> Path:
     All three are made before the first is written, and each replaces its predecessor in one step, so
     that an error leaves the earlier report as it was. Raises StoreError where the folder cannot be written.
     """
+    tests = {test.name: "" if test.passed else test.found for test in material.evidence.self_tests}
     texts = {
-        "junit.xml": junit_xml(material.results, material.info),
+        "junit.xml": junit_xml(material.results, material.info, material.evidence.baseline, tests),
         "report.html": render(material),
         "report.json": report_json(material),
     }

@@ -137,10 +137,14 @@ def decide(
         if outcome is None or outcome.failure is not None:
             reason = "was not solved" if outcome is None else outcome.failure
             return Verdict(Outcome.NO_RESULT, f"{source}: {reason}")
-        sides.append(profiles[claim.quantity, claim.line, source])
+        side = profiles.get((claim.quantity, claim.line, source))
+        if side is None:
+            return Verdict(Outcome.NO_RESULT, f"{source} gives no {claim.quantity} on {claim.line}")
+        sides.append(side)
     a, b = sides
-    p0, edge = (_of_best(name, profiles, outcomes) for name in ("peak_pressure", "contact_radius"))
-    scale = QUANTITIES[claim.quantity].divisor(float(b.value[0]), problem.p_h, p0, edge)
+    p0, edge, delta = (_of_best(name, profiles, outcomes) for name in SCALARS)
+    divisor = QUANTITIES[claim.quantity].divisor
+    scale = divisor(float(b.value[0]), problem.p_h, p0, edge, problem.delta_h, delta)
     excluded = np.abs(np.abs(a.position) - edge) < claim.edge * edge
     return judge(compare(a, b, scale=scale, excluded=excluded), claim.cap)
 

@@ -52,13 +52,17 @@ class CaseResult:
 
     @property
     def outcome(self) -> Outcome:
-        """The worst verdict or invariant: DISAGREES, then NO_RESULT, then INCONCLUSIVE, then AGREES."""
+        """The worst verdict or invariant: DISAGREES, then NO_RESULT, then INCONCLUSIVE, then AGREES.
+
+        Without any verdict no better than NO_RESULT, whatever the invariants are.
+        """
         found = {verdict.outcome for _, verdict in self.verdicts}
         found |= {invariant.outcome for invariant in self.invariants}
         for outcome in (Outcome.DISAGREES, Outcome.NO_RESULT, Outcome.INCONCLUSIVE):
             if outcome in found:
                 return outcome
-        return Outcome.AGREES if found else Outcome.NO_RESULT
+        agreeing = any(verdict.outcome is Outcome.AGREES for _, verdict in self.verdicts)
+        return Outcome.AGREES if agreeing else Outcome.NO_RESULT
 
     @cached_property
     def profile_of(self) -> dict[tuple[str, str, str], Profile]:
@@ -118,6 +122,7 @@ def describe(problem: CoatedContact | PrescribedLoad | LoadingCurve) -> dict[str
         "a_h": problem.a_h,
         "p_h": problem.p_h,
         "delta_h": problem.delta_h,
+        "S_h": problem.S_h,
         "interfaces": problem.interfaces,
     }
 

@@ -2,6 +2,7 @@
 
 import hashlib
 import json
+import lzma
 import os
 import re
 import stat
@@ -15,7 +16,7 @@ from typing import Any
 MAX_BYTES = 50_000_000
 PART = ".coatcheck-part"  # how the name of a file ends that is still being written
 # Whatever the commands of this program make below a directory of theirs.
-FOLDERS = ("cases", "planes", "fields", "problems", "clean", "trials", "cache", "figures")
+FOLDERS = ("cases", "planes", "fields", "problems", "answers", "clean", "trials", "cache", "figures")
 _HEAD = re.compile(r'\{"sha256": "([0-9a-f]{64})", "payload": ')
 
 
@@ -51,15 +52,19 @@ def write_atomically(path: Path, content: str | bytes) -> None:
 
 
 def write_checked(path: Path, payload: dict[str, Any]) -> None:
-    """Store ``payload`` as JSON beside its SHA-256."""
+    """Store ``payload`` as JSON beside its SHA-256; compressed where the name ends in .xz."""
     body = json.dumps(payload, sort_keys=True, allow_nan=False)
-    write_atomically(path, f'{{"sha256": "{_digest(body)}", "payload": {body}}}\n')
+    content = f'{{"sha256": "{_digest(body)}", "payload": {body}}}\n'
+    write_atomically(path, lzma.compress(content.encode()) if path.suffix == ".xz" else content)
 
 
 def read_checked(path: Path) -> dict[str, Any]:
     """The payload of ``path``. Raises StoreError where it is missing, damaged or cut short."""
     try:
-        text = read_bounded(path, MAX_BYTES).decode("utf-8")
+        raw = read_bounded(path, MAX_BYTES)
+        if path.suffix == ".xz":
+            raw = lzma.LZMADecompressor().decompress(raw, MAX_BYTES)
+        text = raw.decode("utf-8")
         head = _HEAD.match(text)
         # The checksum comes first: nothing is parsed that this program did not write.
         if head is None or not text.endswith("}\n"):
@@ -70,7 +75,7 @@ def read_checked(path: Path) -> dict[str, Any]:
         payload = json.loads(body)
         if not isinstance(payload, dict):
             raise ValueError
-    except (ValueError, RecursionError):
+    except (ValueError, RecursionError, lzma.LZMAError, EOFError):
         raise StoreError(f"{path}: not a whole result file; it is damaged, run the case again") from None
     return payload
 

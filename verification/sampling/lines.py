@@ -9,7 +9,8 @@ from verification.judging.invariants.refinement import followed
 from verification.problem.arrays import Array
 from verification.problem.contact import CoatedContact, Solution, stress_with_uncertainty
 from verification.problem.profile import Line, Profile
-from verification.problem.quantity import IN_PLANE, PEAKS, QUANTITIES, SCALARS
+from verification.problem.quantity import IN_PLANE, PEAKS, QUANTITIES, SCALARS, SLOPES
+from verification.sampling import oblique
 from verification.sampling.tension import Search, around_edge, edge_uncertainty
 
 __all__ = ["edge_of", "positions", "sample", "sample_contact"]
@@ -19,9 +20,9 @@ NEAR_EDGE = np.array([0.0, 1e-4, 1e-3, 1e-2])
 
 
 def sample_contact(solution: Solution, source: str, problem: CoatedContact) -> tuple[Profile, ...]:
-    """Every scalar of the contact as a profile of one point [SI]."""
+    """Every scalar of the contact as a profile of one point [SI]; no slope where the solution has none."""
     found = []
-    for name in SCALARS:
+    for name in (*SCALARS, *(name for name in SLOPES if getattr(solution, name, None) is not None)):
         value = np.array([QUANTITIES[name].value(solution, problem)])
         stated = QUANTITIES[name].uncertainty(solution, problem)
         U = None if stated is None else np.array([stated])
@@ -53,7 +54,14 @@ def positions(
     near = edge * np.concatenate([1 + NEAR_EDGE, 1 - NEAR_EDGE])
     clear = x[np.abs(np.abs(x) - edge) > NEAR_EDGE[1] * edge]
     surface = np.unique(np.concatenate([clear, near, -near] if problem.friction else [clear, near]))
-    return {line: z if line.depth is None else surface if line.depth == 0 else x for line in lines}
+    return {
+        line: z
+        if line.coordinate == "z"
+        else oblique.positions(problem, line, a)
+        if line.depth is None
+        else (surface if line.depth == 0 else x)
+        for line in lines
+    }
 
 
 def edge_of(solutions: Mapping[str, Solution]) -> float:
@@ -71,14 +79,15 @@ def sample(
 ) -> tuple[Profile, ...]:
     """Every quantity of ``line`` at ``position`` [m]: the four stresses, on the surface the pressure too.
 
+    Off the plane y = 0 see ``oblique``.
+
     problem : on the surface also its largest tension with its place, as ``PEAKS`` of the contact.
     edge : as of ``edge_of``; points of the surface at this radius [m] are evaluated at the solution's own
            contact edge, where a value does not depend on the error of the radius.
     """
-    if line.depth is None:
-        x, z = np.zeros_like(position), position
-    else:
-        x, z = position.copy(), np.full_like(position, line.depth)
+    if line.depth is None and line.coordinate != "z":
+        return oblique.sample(solution, source, line, position)
+    x, _, z = (np.array(along) for along in line.points(position))
     stated = solution.uncertainty is not None
     surface = line.name == "surface"
     at = np.flatnonzero(np.abs(position) == edge) if surface else np.arange(0)
@@ -94,7 +103,7 @@ def sample(
     ends = np.cumsum([part.size for part in parts])[:-1]
     values, near, sought = np.split(sigma, ends, axis=-1)
     wide, near_U, sought_U = (None,) * 3 if U is None else np.split(U, ends, axis=-1)
-    if wide is not None and around.size:
+    if wide is not None and near_U is not None and around.size:
         wide[..., at] = _at_edge(
             solution, near, near_U, lambda one: one.stress(side * one.contact_radius, 0.0, 0.0, layer=0)
         )
@@ -107,9 +116,7 @@ def sample(
         spread = solution.pressure_uncertainty(x) if stated else None
         if spread is not None and around.size:
             near, near_U = solution.pressure(around), solution.pressure_uncertainty(around)
-            spread[at] = _at_edge(
-                solution, near, near_U, lambda one: one.pressure(side * one.contact_radius)
-            )
+            spread[at] = _at_edge(solution, near, near_U, lambda one: one.pressure(side * one.contact_radius))
         profiles.append(Profile("pressure", line.name, position, solution.pressure(x), source, spread))
     if search is not None:
         best = search.largest(sought[0, 0], None if sought_U is None else sought_U[0, 0])

@@ -25,28 +25,31 @@ def solve_exactly(problem: Problem, numerics: Mapping[str, Any] | None = None) -
 
 
 def hertz(problem: CoatedContact, numerics: Mapping[str, Any] | None = None) -> Any:
-    """Hertz's contact of the substrate."""
+    """Hertz's contact of the substrates."""
     from verification.sources.references.hertz import Hertz
 
-    return Hertz(problem.radius, problem.load, *problem.substrate)
+    return Hertz(problem.radius, problem.load, *problem.substrate, ball=_bare_ball(problem))
 
 
 def hamilton(problem: CoatedContact, numerics: Mapping[str, Any] | None = None) -> Any:
-    """Hamilton's sliding contact of the substrate."""
+    """Hamilton's sliding contact of the substrates."""
     from verification.sources.references.hamilton import Hamilton
 
-    return Hamilton(problem.radius, problem.load, *problem.substrate, problem.friction)
+    ball = _bare_ball(problem)
+    return Hamilton(problem.radius, problem.load, *problem.substrate, problem.friction, ball=ball)
+
+
+def _bare_ball(problem: CoatedContact) -> tuple[float, float] | None:
+    return None if problem.ball is None else problem.ball[:2]
 
 
 def _exact_accepts(problem: Problem, kind: str) -> bool:
-    """No sliding disc, whose stress is infinite at the rim; no displacement under a contact."""
-    if isinstance(problem, PrescribedLoad):
-        return not problem.friction
-    return kind != "displacement"
+    """No sliding disc, whose stress is infinite at the rim."""
+    return not (isinstance(problem, PrescribedLoad) and problem.friction)
 
 
 def _closed_accepts(problem: Problem, kind: str, *, sliding: bool) -> bool:
-    if not isinstance(problem, CoatedContact) or kind == "displacement":
+    if not isinstance(problem, CoatedContact):
         return False
     return problem.homogeneous and (problem.friction > 0) is sliding
 

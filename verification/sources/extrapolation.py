@@ -11,7 +11,7 @@ import numpy as np
 
 from verification.problem.arrays import Array
 from verification.problem.contact import CoatedContact, PrescribedLoad, Solution
-from verification.problem.quantity import QUANTITIES, SCALARS
+from verification.problem.quantity import QUANTITIES, SCALARS, SLOPES
 
 Problem = TypeVar("Problem", bound=CoatedContact | PrescribedLoad)
 Solver = Callable[[CoatedContact | PrescribedLoad], Solution]
@@ -55,7 +55,7 @@ class _Extrapolated:
     third: Solution
 
     def __getattr__(self, name: str) -> Any:
-        if name in SCALARS:
+        if name in SCALARS + SLOPES:
             return 2 * getattr(self.near, name) - getattr(self.further, name)
         if name in ("diagnostics", "surface_nodes"):
             return getattr(self.near, name)
@@ -90,6 +90,17 @@ class _Extrapolated:
     def stress_uncertainty(self, x: Any, y: Any, z: Any, layer: int | None = None) -> Array:
         U, V = (one.stress_uncertainty(x, y, z, layer) for one in (self.near, self.further))
         return 2 * U + V + np.abs(self._bend(lambda s: s.stress(x, y, z, layer)))
+
+    @property
+    def stiffness_uncertainty(self) -> float | None:
+        if self.uncertainty is None:
+            return None
+        near, further = (one.stiffness_uncertainty or 0.0 for one in (self.near, self.further))
+        return float(2 * near + further + abs(self._bend(attrgetter("stiffness"))))
+
+    def displacement_uncertainty(self, x: Any, y: Any, z: Any) -> Array:
+        U, V = (one.displacement_uncertainty(x, y, z) for one in (self.near, self.further))
+        return 2 * U + V + np.abs(self._bend(lambda s: s.displacement(x, y, z)))
 
     def _bend(self, of: Callable[[Solution], Any]) -> Any:
         return of(self.near) - 2 * of(self.further) + of(self.third)

@@ -42,6 +42,12 @@ COMMANDS = (
     "baseline",
     "baseline update",
     "baseline show",
+    "guest",
+    "guest init",
+    "guest check",
+    "guest run",
+    "guest pack",
+    "guest judge",
     "study",
     "study thickness",
 )

@@ -10,7 +10,7 @@ from quick_case import solved_here
 from synthetic_study import study
 
 from verification.commands import run as command
-from verification.commands import solving
+from verification.commands.common import solving
 from verification.credibility import accuracy as accuracy_study
 from verification.credibility.accuracy import BARE, COATED, STEEL, AccuracyStudy, from_json, to_json
 from verification.credibility.refinement import QUANTITIES, order_of, refined_grid, refined_mesh, settled

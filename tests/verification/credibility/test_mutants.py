@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from synthetic_results import INFO
 
-from verification.commands.faults import mutants as command
+from verification.commands.credibility.faults import mutants as command
 from verification.credibility.mutation import record as records
 from verification.credibility.mutation.record import ROOMS, ROOT, Catch, MutantRecord, Trial, annotated, drawn
 from verification.credibility.mutation.sites import mutants, mutated

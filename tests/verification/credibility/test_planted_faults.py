@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from verification.cases.contact import read_case, shipped_cases
-from verification.commands.faults import faults
+from verification.commands.credibility.faults import faults
 from verification.credibility.faults import campaign
 from verification.credibility.faults.catalogue import CONTROLS, FAULTS, GROUPS, chosen
 from verification.credibility.faults.checks import Check

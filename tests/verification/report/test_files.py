@@ -9,8 +9,8 @@ import pytest
 from synthetic_results import INFO, STEEL, contact, result_of, showcase
 
 from verification.judging.verdict import Outcome
+from verification.regression.junit import junit_xml
 from verification.report import write
-from verification.report.junit import junit_xml
 from verification.report.material import Material
 from verification.report.write import write_report
 from verification.running.result import SCHEMA, CaseResult, SourceResult, from_json

@@ -14,7 +14,7 @@ from verification.credibility.accuracy import to_json as study_to_json
 from verification.credibility.parameters import Stated, Sweep
 from verification.judging.invariants import Invariant
 from verification.judging.verdict import Outcome
-from verification.report.junit import junit_xml
+from verification.regression.junit import junit_xml
 from verification.report.material import Material
 from verification.report.page import render
 from verification.report.sections.accuracy import coverage_table

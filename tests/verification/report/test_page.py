@@ -142,11 +142,11 @@ def test_nan_never_looks_like_agreement():
         if "verdict" in a.get("class", "")
     ]
     assert cells[0][0]["class"].startswith("verdict no-result")
-    matrix = [a["class"] for a, _ in cells[1:13]]
-    # Both methods and each against the reference: p0, a, approach | surface | axis | interfaces.
-    worst = ["no-result", "no-result", "agrees", "agrees"]
-    worst += ["agrees", "no-result", "agrees", "agrees"]
-    worst += ["no-result", "agrees", "agrees", "agrees"]
+    matrix = [a["class"] for a, _ in cells[1:16]]
+    # Both methods and each against the reference: p0, a, approach | surface | axis | interfaces | off plane.
+    worst = ["no-result", "no-result", "agrees", "agrees", "agrees"]
+    worst += ["agrees", "no-result", "agrees", "agrees", "agrees"]
+    worst += ["no-result", "agrees", "agrees", "agrees", "agrees"]
     assert [name.split()[1] for name in matrix] == worst
     assert "not finite" in document.text("td")
 
@@ -228,5 +228,5 @@ def test_no_number_whatever_keeps_a_report_from_being_written(results):
 @pytest.mark.parametrize("coatings", [(), ((420e9, 0.3, 1.0),), ((420e9, 0.3, 0.01), (100e9, 0.2, 8.0))])
 def test_any_problem_gets_a_page(coatings, friction):
     document = rendered(result_of(contact(*coatings, friction=friction), points=31))
-    lines = 2 + 2 * len(coatings)
+    lines = 2 + 2 * len(coatings) + 3
     assert len([a for a in document.all("section") if a.get("class") == "line"]) == lines

@@ -10,7 +10,7 @@ import pytest
 from quick_case import coatcheck
 
 from verification.cases.published import published_cases, read_published
-from verification.report.junit import junit_xml
+from verification.regression.junit import junit_xml
 from verification.report.material import Material
 from verification.report.page import render
 from verification.report.sections.published import counts, published_message

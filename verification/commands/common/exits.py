@@ -1,21 +1,30 @@
 """Exit codes of the commands with the conditions that end one."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from functools import wraps
-from typing import TYPE_CHECKING, ParamSpec
+from typing import ParamSpec
 
 from verification.commands.common.terminal import print_error
 from verification.judging.outcome import Outcome
+from verification.regression.exits import DRIFTED, EXIT, LESS, exit_code, run_code
 
-if TYPE_CHECKING:
-    from verification.running.result import CaseResult
+__all__ = [
+    "BAD_INPUT",
+    "DRIFTED",
+    "EXIT",
+    "LESS",
+    "STOPPED",
+    "CommandError",
+    "exit_code",
+    "no_result",
+    "run_code",
+    "with_exit_code",
+]
 
 P = ParamSpec("P")
 
 BAD_INPUT = 2
 STOPPED = 130  # as a shell has it of SIGINT
-DRIFTED = 5  # all agree, but not with the digits of the baseline
-EXIT = {Outcome.DISAGREES: 1, Outcome.NO_RESULT: 3, Outcome.INCONCLUSIVE: 4, Outcome.AGREES: 0}
 
 
 class CommandError(Exception):
@@ -46,12 +55,3 @@ def with_exit_code(command: Callable[P, int]) -> Callable[P, int]:
             return error.code if isinstance(error, CommandError) else BAD_INPUT
 
     return wrapped
-
-
-def exit_code(results: Sequence["CaseResult"]) -> int:
-    """The code of the worst outcome: disagreement before a missing result before inconclusive."""
-    found = {result.outcome for result in results}
-    for outcome in (Outcome.DISAGREES, Outcome.NO_RESULT, Outcome.INCONCLUSIVE):
-        if outcome in found:
-            return EXIT[outcome]
-    return EXIT[Outcome.AGREES] if found else EXIT[Outcome.NO_RESULT]

@@ -20,6 +20,7 @@ STYLE = {
     Outcome.DISAGREES: "bold red",
     Outcome.NO_RESULT: "bold red",
     Outcome.INCONCLUSIVE: "yellow",
+    Outcome.UNSUPPORTED: "dim",
 }
 
 

@@ -15,6 +15,7 @@ from verification.credibility.self_tests import self_tests
 from verification.judging.invariants import check as invariants_of
 from verification.problem.contact import Solution
 from verification.problem.profile import Profile
+from verification.problem.quantity import DISPLACEMENTS
 from verification.regression.baseline import State, drift, measured
 from verification.running import contact as run
 from verification.running import published as published_run
@@ -142,13 +143,15 @@ def _drifts(clean: CaseResult, fresh: Profiles) -> list[Check]:
 
 def _changes(clean: CaseResult, fresh: Profiles) -> list[tuple[float, str]]:
     """Change of each profile by the fault; where none changed, that of its uncertainty."""
-    p_h = float(clean.problem["p_h"])
+    p_h, delta_h = (float(clean.problem[name]) for name in ("p_h", "delta_h"))
     values, uncertainties = [], []
     for (quantity, line, source), profile in fresh.items():
         old = clean.profile_of.get((quantity, line, source))
         if old is None:
             continue
-        scale = p_h if line != "contact" else float(abs(old.value[0]))
+        scale = delta_h if quantity in DISPLACEMENTS else p_h
+        if line == "contact":
+            scale = float(abs(old.value[0]))
         where = f"{quantity} on {line} in {clean.name}"
         values.append((_largest(profile.value - old.value) / scale, where))
         if profile.uncertainty is not None and old.uncertainty is not None:

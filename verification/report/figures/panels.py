@@ -6,7 +6,7 @@ import numpy as np
 from markupsafe import Markup
 
 from verification.judging.verdict import Claim, Outcome
-from verification.problem.quantity import QUANTITIES
+from verification.problem.quantity import DISPLACEMENTS, QUANTITIES
 from verification.report.figures.curves import FLOOR, Curve, Difference, draw
 from verification.report.tables.cells import Panel
 from verification.report.tables.labels import pair_label, pair_style, source_label, source_style
@@ -74,9 +74,9 @@ def _pairs(result: CaseResult, line: str, quantity: str) -> list[tuple[str, str]
 
 
 def _panel(result: CaseResult, line: str, quantity: str) -> Panel:
-    a_h, p_h = scale(result, "a_h"), scale(result, "p_h")
+    a_h, unit = scale(result, "a_h"), _scale_of(quantity)
     curves = [
-        Curve(profile.position / a_h, profile.value / p_h, source_style(profile.source))
+        Curve(profile.position / a_h, profile.value / scale(result, unit), source_style(profile.source))
         for profile in _on(result, line)
         if profile.quantity == quantity
     ]
@@ -108,8 +108,12 @@ def _panel(result: CaseResult, line: str, quantity: str) -> Panel:
     note = f"largest judged difference {scientific(largest)}"
     if bad:
         note = f"{len(bad)} of {len(claims)} do not agree, difference {scientific(largest)}"
-    title = f"{QUANTITIES[quantity].symbol if quantity in QUANTITIES else quantity} / p_h"
+    title = f"{QUANTITIES[quantity].symbol if quantity in QUANTITIES else quantity} / {unit}"
     return Panel(title, figure, note if claims else "not compared", "fails" if bad else "")
+
+
+def _scale_of(quantity: str) -> str:
+    return QUANTITIES[quantity].scale if quantity in QUANTITIES else "p_h"
 
 
 def _unjudged(result: CaseResult, claims: list[Claim], curves: list[Curve]) -> list[tuple[float, float]]:
@@ -124,11 +128,14 @@ def _unjudged(result: CaseResult, claims: list[Claim], curves: list[Curve]) -> l
 
 
 def _caption(result: CaseResult, line: str) -> str:
+    displaced = any(profile.quantity in DISPLACEMENTS for profile in _on(result, line))
+    also = (", displacements in units of delta_h", ", of delta_h and approach for displacements")
+    above, below = also if displaced else ("", "")
     text = (
-        f"Above: the quantity in units of p_h over {coordinate(line)} / a_h, tension positive. Below: "
-        f"|A − B| over the smaller of p_h and p0, logarithmic, from {scientific(FLOOR, 1)}; the thin line "
-        "that bounds a tint is U_A + U_B, and a difference below its own line agrees; red dashes: the cap "
-        "on U."
+        f"Above: the quantity in units of p_h{above} over {coordinate(line)} / a_h, tension positive. Below: "
+        f"|A − B| over the smaller of p_h and p0{below}, logarithmic, from {scientific(FLOOR, 1)}; the thin "
+        "line that bounds a tint is U_A + U_B, and a difference below its own line agrees; red dashes: the "
+        "cap on U."
     )
     edges = [claim.edge for claim, _ in result.verdicts if claim.line == line and claim.edge]
     if edges:

@@ -7,7 +7,7 @@ from functools import lru_cache, partial
 import numpy as np
 
 from verification.judging.verdict import Claim
-from verification.problem.quantity import PEAKS, QUANTITIES, SCALARS
+from verification.problem.quantity import PEAKS, QUANTITIES, SCALARS, SLOPES
 from verification.report.material import Material
 from verification.report.tables.cells import Cell, Part, Section, Table, number, row, tally
 from verification.report.tables.labels import source_label
@@ -139,7 +139,7 @@ def _three_cells(item: Accuracy) -> list[Cell]:
 
 def accuracy_overview(results: Sequence[CaseResult], anchors: Mapping[CaseResult, str], source: str) -> Table:
     """The errors of one method over all cases, the worst quantity of each group; None where there is none."""
-    columns = [*SCALARS, *PEAKS, *GROUPS[1:]]
+    columns = [*SCALARS, *SLOPES, *PEAKS, *GROUPS[1:]]
     rows = []
     for result in results:
         found = [item for item in accuracies(result) if item.source == source]
@@ -174,14 +174,14 @@ def _overview_cell(found: Sequence[Accuracy]) -> Cell:
 def coverage_table(results: Sequence[CaseResult]) -> Table:
     """How often the uncertainty that a method states covers its true error, scalars and lines apart."""
     rows, columns = [], ["method", "quantities", "covered", "share", "largest error / U"]
-    scalar_names = ", ".join(QUANTITIES[name].symbol for name in SCALARS)
+    scalar_names = ", ".join(QUANTITIES[name].symbol for name in SCALARS + SLOPES)
     for source in METHODS:
-        for name, scalars in ((scalar_names, True), ("stresses, pressure", False)):
+        for name, scalars in ((scalar_names, True), ("stresses, pressure, displacements", False)):
             found = [
                 (result, item)
                 for result in results
                 for item in accuracies(result)
-                if item.source == source and (item.quantity in SCALARS) is scalars
+                if item.source == source and (item.quantity in SCALARS + SLOPES) is scalars
             ]
             if not found:
                 continue

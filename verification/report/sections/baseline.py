@@ -4,9 +4,10 @@ from collections.abc import Mapping, Sequence
 from math import isfinite
 
 from verification.regression.baseline import CaseDrift, Regression
-from verification.regression.drift import FACTOR, RELATIVE, Drift, State
+from verification.regression.drift import FACTOR, RELATIVE, TOLERANCE, Drift, State
+from verification.regression.manifest import manifest_message
 from verification.report.material import Material
-from verification.report.tables.cells import Cell, Part, Section, Table, number, row
+from verification.report.tables.cells import Cell, Part, Section, Table, number, row, words
 from verification.report.tables.labels import source_label
 from verification.report.tables.numbers import scientific
 
@@ -22,8 +23,11 @@ _STATES = {
 _COUNTED = (State.SAME, State.DRIFTED, State.GONE, State.NEW)
 _RULE = (
     f"A number is the same where it differs by at most {scientific(RELATIVE, 1)} of the largest magnitude of "
-    "its profile. Compared of each profile: points over its whole length, its root mean square, and its "
-    f"largest stated uncertainty, which may change {FACTOR:g}-fold before it counts as drifted."
+    "its profile, an uncertainty where it differs by at most 10 %. On another machine or with other versions "
+    "a run fails where a value left its baseline by more than its uncertainty, or by more than "
+    f"{scientific(TOLERANCE, 1)} of the scale where the uncertainty is less (the largest change between two "
+    f"machines was 5e-12), and where an uncertainty is more than {FACTOR:g} times that of the baseline. "
+    "Every point of every profile is compared."
 )
 
 
@@ -67,13 +71,41 @@ def section(material: Material) -> Section | None:
         differences = "; ".join(
             f"{name} {then} in the baseline, {now} in this run" for name, then, now in found.other_versions
         )
-        parts.append(Part(f"The digits may differ because the provenance differs: {differences}."))
+        more = " Some changed by more than that explains." if found.beyond else ""
+        parts.append(Part(f"The digits may differ because the provenance differs: {differences}.{more}"))
     # A case that is gone as a whole has its row above.
     here = [c for c in found.cases if any(d.state is not State.GONE for d in c.drifts)]
     moved = [(c, d) for c in here for d in c.drifts if d.state in (State.DRIFTED, State.GONE)]
     table = case_table(found.cases, anchors, "Numbers of each case compared with the baseline.")
     parts.append(Part("", [table, drift_table(moved)]))
+    parts.append(Part(_judged(found), [_difference_table(found)], title="Manifest"))
     return Section(ANCHOR, "Baseline", parts)
+
+
+def _judged(found: Regression) -> str:
+    """What was judged compared with the manifest, in two sentences."""
+    rule = (
+        "The manifest records of each case what was judged: cap and scale in force, number, extent, widest "
+        "gap of the points of each comparison, invariants, self-tests, sources, counted published values."
+    )
+    message = manifest_message(found.less) or manifest_message(found.judged)
+    return f"{rule} {f'{message[0].upper()}{message[1:]}.' if message else 'This run judged all of it.'}"
+
+
+def _difference_table(found: Regression) -> Table:
+    rows = [
+        row(
+            item.case or "harness",
+            "less" if item.less else "more",
+            words(item.message),
+            number(item.count, str),
+        )
+        for item in found.judged[:MOST]
+    ]
+    more = f" The first {MOST} of {len(found.judged)}." if len(found.judged) > MOST else ""
+    return Table(
+        f"What was judged otherwise than recorded.{more}", ["case", "judged", "change", "checks"], rows
+    )
 
 
 def drift_table(moved: Sequence[tuple[CaseDrift, Drift]]) -> Table:

@@ -11,7 +11,7 @@ from verification.judging.verdict import Claim, Verdict
 from verification.problem.quantity import QUANTITIES, SCALARS, unit_of
 from verification.report.tables.cells import Cell, Table, number, row
 from verification.report.tables.labels import OUTCOMES, pair_label, row_css, source_label
-from verification.report.tables.lookup import divisor, layers, reference_source, scalar, scale
+from verification.report.tables.lookup import coordinate, divisor, layers, reference_source, scalar, scale
 from verification.report.tables.matrix import outcome_cell
 from verification.report.tables.numbers import engineering, plain, scientific, with_uncertainty
 from verification.running.result import CaseResult
@@ -25,6 +25,7 @@ _FACTS = {
     "a_h": ("a_h, Hertz contact radius", "m"),
     "p_h": ("p_h, Hertz peak pressure", "Pa"),
     "delta_h": ("delta_h, Hertz approach", "m"),
+    "S_h": ("S_h, Hertz stiffness dW/d delta", "N/m"),
 }
 
 
@@ -119,7 +120,7 @@ def verdict_table(
     for claim, verdict in sorted(verdicts, key=lambda item: _badness(item[1]))[:most]:
         where = ""
         if verdict.worst is not None and claim.line != "contact" and a_h:
-            where = f"{'z' if claim.line == 'axis' else 'x'} = {plain(verdict.worst / a_h, 3)} a_h"
+            where = f"{coordinate(claim.line)} = {plain(verdict.worst / a_h, 3)} a_h"
         rows.append(
             row(
                 outcome_cell(verdict.outcome),
@@ -141,8 +142,8 @@ def verdict_table(
     part = "the source and the numerical parameter with the largest part of U; " if parameter else ""
     return Table(
         "Largest difference and largest uncertainty U = U_A + U_B over the judged points, the cap on U, the "
-        "smallest margin U − |A − B|, all as fractions of the value (p0, a, approach), of a (places) "
-        "or of the smaller of p_h and p0; "
+        "smallest margin U − |A − B|, all as fractions of the value (p0, a, approach, dW/d delta), of a "
+        "(places), of the smaller of delta_h and approach (displacements) or of the smaller of p_h and p0; "
         f"{part}the deciding point.",
         [*columns, "at", "reason"],
         rows,
@@ -158,8 +159,9 @@ def _badness(verdict: Verdict) -> tuple[int, float]:
 def dominating_parameter(result: CaseResult, claim: Claim, verdict: Verdict) -> str:
     """The source with the larger uncertainty at the deciding point, with its dominating parameter.
 
-    U of a stress or pressure is that of p0, with its own part due to the first parameter, the edge terms or
-    the size of patches or elements: the excess of U over the other parts of p0 belongs to the first.
+    U of a stress or pressure is that of p0, of a displacement or the stiffness that of the approach, with its
+    own part due to the first parameter, the edge terms or the size of patches or elements: the excess of U
+    over the other parts belongs to the first.
     """
     sides = []
     for source in claim.between:
@@ -172,7 +174,8 @@ def dominating_parameter(result: CaseResult, claim: Claim, verdict: Verdict) -> 
     U, source = max(sides)
     budget = next((s.budget for s in result.sources if s.source == source), ())
     scalar_claim = any(q == claim.quantity for q, _, _ in budget)
-    quantity = claim.quantity if scalar_claim else "peak_pressure"
+    like = "approach" if QUANTITIES[claim.quantity].kind in ("slope", "displacement") else "peak_pressure"
+    quantity = claim.quantity if scalar_claim else like
     parts = [(name, value) for q, name, value in budget if q == quantity]
     if not parts:
         return source_label(source)

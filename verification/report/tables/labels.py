@@ -27,12 +27,13 @@ OUTCOMES = {
     Outcome.NO_RESULT: OutcomeStyle("N", "∅", "no result", "no-result", 1),
     Outcome.INCONCLUSIVE: OutcomeStyle("I", "?", "inconclusive", "inconclusive", 2),
     Outcome.AGREES: OutcomeStyle("A", "✓", "agrees", "agrees", 3),
+    Outcome.UNSUPPORTED: OutcomeStyle("U", "–", "unsupported", "unsupported", 4),
 }
 
 
 def row_css(outcome: Outcome) -> str:
     """Class of the row of a verdict: none where it agrees."""
-    return "" if outcome is Outcome.AGREES else OUTCOMES[outcome].css
+    return "" if outcome in (Outcome.AGREES, Outcome.UNSUPPORTED) else OUTCOMES[outcome].css
 
 
 def source_label(source: str) -> str:

@@ -7,19 +7,25 @@ import numpy as np
 from numpy.typing import NDArray
 
 from verification.judging.verdict import Claim
-from verification.problem.profile import Profile
+from verification.problem.profile import Profile, coordinate_of
 from verification.problem.quantity import QUANTITIES
 from verification.running.result import CaseResult
 from verification.sources.registry import METHODS, REFERENCES
 
-GROUPS = ("contact", "surface", "axis", "interfaces")
+GROUPS = ("contact", "surface", "axis", "interfaces", "off plane")
+TITLES = {
+    "surface": "Along the surface",
+    "axis": "Along the axis",
+    "off plane": "Off the plane y = 0: along x at y = 0.4 a_h, in the first layer",
+    "oblique": "Oblique line from (−0.9, −0.2, 0) a_h through the layers, direction (0.48, 0.36, 0.8)",
+    "oblique surface": "Surface at 30 degrees from x, out to five contact radii",
+}
+_GROUP_OF = {"contact": GROUPS[0], "oblique": GROUPS[4], "oblique surface": GROUPS[4]}
 
 
 def group_of(line: str) -> str:
     """The column of the verdict matrix that a line belongs to."""
-    if line == "contact":
-        return GROUPS[0]
-    return GROUPS[3] if line.startswith("interface") else line
+    return GROUPS[3] if line.startswith("interface") else _GROUP_OF.get(line, line)
 
 
 def lines(result: CaseResult) -> tuple[str, ...]:
@@ -89,7 +95,7 @@ def contact_radius(result: CaseResult) -> float | None:
 
 def coordinate(line: str) -> str:
     """The coordinate that runs along ``line``."""
-    return "z" if line == "axis" else "x"
+    return coordinate_of(line)
 
 
 def claimed_quantities(result: CaseResult, line: str) -> tuple[str, ...]:
@@ -126,11 +132,13 @@ def difference(
 def divisor(result: CaseResult, quantity: str, value: Any) -> np.float64:
     """Divisor of a difference of ``quantity``, with ``value`` of the reference [SI], as in the verdicts."""
     best = reference_source(result)
-    found = scalar(result, "peak_pressure", best) if best else None
-    p_h, p0 = scale(result, "p_h"), np.float64(0.0 if found is None else found[0])
+    found = [scalar(result, name, best) if best else None for name in ("peak_pressure", "approach")]
+    p0, delta = (np.float64(0.0 if one is None else one[0]) for one in found)
+    p_h, delta_h = scale(result, "p_h"), scale(result, "delta_h")
     if quantity not in QUANTITIES:
         return p_h
-    return np.float64(QUANTITIES[quantity].divisor(value, p_h, p0, contact_radius(result) or np.nan))
+    a = contact_radius(result) or np.nan
+    return np.float64(QUANTITIES[quantity].divisor(value, p_h, p0, a, delta_h, delta))
 
 
 def slug(text: str) -> str:

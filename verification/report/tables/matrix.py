@@ -37,8 +37,9 @@ def verdict_matrix(
         rows.append(Row(case_cell(result, link), cells))
     spans = [(title, sum(b == (rank, title) for b, _ in columns)) for rank, title in blocks]
     return Table(
-        "Largest difference of each pair of sources, as a fraction of the value for p0, a and approach, "
-        "of the smaller of p_h and p0 for stresses, of a for the place of the largest tension. A cell links "
+        "Largest difference of each pair of sources, as a fraction of the value for p0, a, approach and dW/d "
+        "delta, of the smaller of p_h and p0 for stresses, of the smaller of delta_h and approach for "
+        "displacements, of a for the place of the largest tension. A cell links "
         "to the figures behind it. Numbers since the baseline, where they "
         "were compared: = same, ≠ drifted, − gone, + new.",
         ["case", "verdict", *(name for name, _ in more), *(_HEADS.get(group, group) for _, group in columns)],

@@ -78,8 +78,21 @@ class AbelPressure:
         return self.a * (signed @ _even_spherical_bessel(self.c.size, k * self.a))
 
     def sink(self, r: Array) -> Array:
-        """No claim is made on the displacement under a contact; raises ValueError."""
-        raise ValueError("the integral equation claims no displacement field; ask one of the methods")
+        """E* u_z [N/m] on the surface of the homogeneous solid, 2 int phat(k) J0(kr) dk; shape of ``r``."""
+        return 2 * self.over_circle(0, r)
+
+    def over_circle(self, order: int, r: Array) -> Array:
+        """int_0^inf phat(k) J_order(kr) dk [N/m] for even ``order``; shape of ``r``.
+
+        = int_0^min(r,a) phi(t) cos(order asin(t/r)) / sqrt(r^2 - t^2) dt, with t = r sin(psi).
+        """
+        psi_max = np.arcsin(np.minimum(self.a / np.maximum(r, 1e-300), 1.0))
+        x, weight = gauss_legendre(max(64, 2 * self.c.size))
+        psi = 0.5 * psi_max[..., None] * (1 + x)
+        coefficients = np.zeros(2 * self.c.size - 1)
+        coefficients[::2] = self.c
+        phi = legendre.legval(np.minimum(r[..., None] * np.sin(psi) / self.a, 1.0), coefficients)
+        return 0.5 * psi_max * (phi * np.cos(order * psi) @ weight)
 
     def bessel_integral(self, order: int, r: Array) -> Array:
         """int_0^inf phat(k) J_order(kr) k dk [Pa] for odd ``order``; shape of ``r``.

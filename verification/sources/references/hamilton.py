@@ -1,30 +1,19 @@
-"""Sliding contact of a rigid sphere on a homogeneous elastic half-space, all six stresses in closed form.
+"""Sliding contact of a sphere on a homogeneous elastic half-space, all six stresses in closed form.
 
-Friction q = f p in +x under Hertz's pressure, which it leaves as it is (Goodman's assumption). With lengths
-over a, zeta = z - i, R = sqrt(r^2 + zeta^2), tau = r / (R + zeta) the integrals over wavenumbers
-
-    L_m^n = int_0^inf k^n J_m(kr) e^(-k zeta) dk:   L_m^0 = tau^m / R,   L_m^-1 = tau^m / m,
-    L_m^-2 = r (L_(m-1)^-1 + L_(m+1)^-1) / 2m,      L_0^-1 = -ln(zeta + R),   L_0^-2 = zeta ln(zeta + R) - R
-
-give, from phat(k) = p0 (sin k - k cos k) / k^3,
-
-    A_m = int phat J_m e^(-kz) k dk   = p0 (Im L_m^-2 - Re L_m^-1)
-    B_m = int phat J_m e^(-kz) z k^2 dk = p0 z (Im L_m^-1 - Re L_m^0)
-
-and from these every stress, without a division by r. The field is that of Hamilton, Proc. Inst. Mech. Engrs
-197C (1983) 53-59, and Sackfield and Hills, J. Strain Anal. 18 (1983) 107-110, who write it in real terms.
+Friction q = f p in +x under Hertz's pressure, which it leaves as it is (Goodman's assumption). The integrals
+A_m and B_m of ``hertz`` give every stress, without a division by r. The field is that of Hamilton, Proc.
+Inst. Mech. Engrs 197C (1983) 53-59, and Sackfield and Hills, J. Strain Anal. 18 (1983) 107-110, who write it
+in real terms.
 """
 
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from verification.problem.arrays import Array
-from verification.problem.contact import NotClaimed
-from verification.sources.references.hertz import Hertz, HertzContact
-
-Complex = NDArray[np.complex128]
+from verification.problem.contact import BALL, FLAT
+from verification.sources.references.hertz import Hertz, HertzContact, integrals
 
 
 @dataclass(frozen=True)
@@ -41,13 +30,18 @@ class Hamilton(HertzContact):
             raise ValueError(f"friction = {self.friction:g}; Coulomb's coefficient is zero or positive")
         super().__post_init__()
 
-    def stress(self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None) -> Array:
+    def stress(
+        self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None, body: str = FLAT
+    ) -> Array:
         """sigma[i, j, ...] [Pa], shape (3, 3) + points: Hertz and Huber's field and that of the friction.
 
+        The traction on the ball is -q.
         One material: ``layer`` is accepted and has no meaning here. Raises ValueError where z < 0.
         """
-        normal = Hertz(self.radius, self.load, self.E, self.nu)
-        return normal.stress(x, y, z) + self.friction * self.stress_of_traction(x, y, z)
+        contact = self.seen_from(body)
+        normal = Hertz(contact.radius, contact.load, contact.E, contact.nu, ball=contact.ball)
+        f = -self.friction if body == BALL else self.friction
+        return normal.stress(x, y, z) + f * contact.stress_of_traction(x, y, z)
 
     def stress_of_traction(self, x: ArrayLike, y: ArrayLike, z: ArrayLike) -> Array:
         """Stress under q = p in +x alone, without the pressure [Pa], shape (3, 3) + points.
@@ -65,7 +59,7 @@ class Hamilton(HertzContact):
             raise ValueError(f"z = {np.min(z):g} m is above the surface; depth counts down from 0")
         a, nu = self.contact_radius, self.nu
         theta = np.arctan2(y, x)
-        (A0, A1, _, A3), (B0, B1, B2, B3) = _integrals(np.hypot(x, y) / a, z / a)
+        (A0, A1, _, A3), (B0, B1, B2, B3), _ = integrals(np.hypot(x, y) / a, z / a)
         third = nu / 2 * A3 + B3 / 4
         sigma = np.zeros((3, 3, *x.shape))
         sigma[0, 0] = -((2 + nu / 2) * A1 - 0.75 * B1) * np.cos(theta) - third * np.cos(3 * theta)
@@ -78,31 +72,7 @@ class Hamilton(HertzContact):
             sigma[i, j] = sigma[j, i]
         return self.peak_pressure * sigma
 
-    def displacement(self, x: ArrayLike, y: ArrayLike, z: ArrayLike) -> Array:
-        """No claim is made on displacements; raises NotClaimed."""
-        raise NotClaimed("the closed form claims no displacement field; ask one of the methods")
-
-
-def _integrals(r: Array, z: Array) -> tuple[list[Array], list[Array]]:
-    """A_m / p0 and B_m / p0 for m = 0 .. 3 at ``r``, ``z`` over a."""
-    zeta = z - 1j
-    R = _root(r, z)
-    log = np.log(zeta + R)
-    tau = r / (zeta + R)
-    powers: list[Complex] = [-log] + [tau**m / m for m in range(1, 5)]
-    second = [zeta * log - R] + [r / (2 * m) * (powers[m - 1] + powers[m + 1]) for m in range(1, 4)]
-    # z/R vanishes towards the edge, where z and R are both zero.
-    z_over_R = np.where(R == 0, 0.0, z / np.where(R == 0, 1.0, R))
-    A = [second[m].imag - powers[m].real for m in range(4)]
-    B = [z * powers[m].imag - (tau**m * z_over_R).real for m in range(4)]
-    return A, B
-
-
-def _root(r: Array, z: Array) -> Complex:
-    """R = sqrt(r^2 + (z - i)^2) with Re R >= 0 >= Im R, which on the surface is the limit from below it."""
-    d = (r - 1) * (r + 1) + z**2
-    size = np.hypot(d, 2 * z)
-    # The larger part first, without a difference; the product of both is z.
-    larger = np.sqrt((size + np.abs(d)) / 2)
-    smaller = z / np.where(larger == 0, 1.0, larger)
-    return np.where(d >= 0, larger - 1j * smaller, smaller - 1j * larger)
+    def displacement(self, x: ArrayLike, y: ArrayLike, z: ArrayLike, body: str = FLAT) -> Array:
+        """u[i, ...] [m] towards points at infinity, shape (3,) + points. Raises ValueError where z < 0."""
+        f = -self.friction if body == BALL else self.friction
+        return self.seen_from(body)._displaced(x, y, z, f)

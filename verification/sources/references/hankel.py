@@ -5,6 +5,8 @@ Normal load, then friction q = f p in +x (the first, second and third harmonics 
     sigma_rz = -int T phat J1 k dk,   sigma_zz = int S phat J0 k dk
     sigma_xx, sigma_yy = int (ll+tt)/2 phat J0 k dk -+ cos 2theta int (ll-tt)/2 phat J2 k dk
     u_r = -int U phat J1 k dk,         u_z = int w phat J0 k dk
+    friction: u_x = f int [-(U+V)/2 J0 + (U-V)/2 cos 2theta J2] phat k dk,
+              u_y = f int (U-V)/2 sin 2theta J2 phat k dk,   u_z = -f cos theta int w phat J1 k dk
 
 Amplitudes per wavenumber come from ``layered``; on the surface the homogeneous part, which decays too
 slowly for quadrature, is taken in closed form from the Abel potential of the pressure.
@@ -12,7 +14,7 @@ Sneddon, Fourier Transforms (1951); sliding derived by rotation of the wave vect
 """
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Protocol
 
 import numpy as np
@@ -25,6 +27,7 @@ from verification.sources.references.layered import Amplitudes, LayeredHalfSpace
 from verification.sources.references.quadrature import wavenumber_panels
 
 CHUNK = 2_000_000  # products of wavenumbers with radii held in memory at once
+KEPT = 16  # depths of which the amplitudes are kept, for the other fields at the same points
 
 
 class AxisymmetricPressure(Protocol):
@@ -37,6 +40,7 @@ class AxisymmetricPressure(Protocol):
     def transform(self, k: Array) -> Array: ...
     def bessel_integral(self, order: int, r: Array) -> Array: ...
     def sink(self, r: Array) -> Array: ...
+    def over_circle(self, order: int, r: Array) -> Array: ...
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,6 +56,9 @@ class HankelField:
     friction: float = 0.0
     nodes: int = 16
     tail: float = 36.0
+    _kept: dict[tuple[float, int, float], tuple[Array, Array, list[Amplitudes]]] = field(
+        default_factory=dict, init=False, repr=False
+    )
 
     def stress(self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None) -> Array:
         """sigma[i, j, ...] [Pa], shape (3, 3) + points; ``layer`` as in ``layer_at``."""
@@ -64,30 +71,52 @@ class HankelField:
         return sigma
 
     def displacement(self, x: ArrayLike, y: ArrayLike, z: ArrayLike) -> Array:
-        """u[i, ...] [m] towards infinity, shape (3,) + points. Raises ValueError where there is friction."""
-        if self.friction:
-            raise ValueError(f"friction = {self.friction:g}; displacements are claimed without friction only")
+        """u[i, ...] [m] towards infinity, shape (3,) + points."""
         x, y, z = np.broadcast_arrays(*(np.asarray(v, dtype=float) for v in (x, y, z)))
         layers = layer_at(z, self.coatings, None)
-        u_r, u_z = np.zeros(x.shape), np.zeros(x.shape)
-        r = np.hypot(x, y)
+        u = np.zeros((3, *x.shape))
+        r, theta = np.hypot(x, y), np.arctan2(y, x)
         for here, depth, number in _planes(z, layers):
-            u_r[here], u_z[here] = self._displaced(r[here], depth, number)
-        theta = np.arctan2(y, x)
-        return np.stack([u_r * np.cos(theta), u_r * np.sin(theta), u_z])
+            u[:, here] = self._displaced(r[here], theta[here], depth, number)
+        return u
 
-    def _displaced(self, r: Array, z: float, layer: int) -> tuple[Array, Array]:
-        u_r, u_z = np.zeros(r.size), np.zeros(r.size)
+    def _displaced(self, r: Array, theta: Array, z: float, layer: int) -> Array:
+        u = np.zeros((3, r.size))
         if z == 0:
-            E, nu = self.coatings[0][:2] if self.coatings else self.substrate
-            # Johnson (3.20a, b): the load inside r moves the surface towards the axis.
-            inside = np.where(r > 0, self.pressure.resultant(r) / np.where(r > 0, r, 1.0), 0.0)
-            u_r, u_z = -(1 - 2 * nu) * (1 + nu) / E * inside, (1 - nu**2) / E * self.pressure.sink(r)
+            u += self._homogeneous_displacement(r, theta)
             if not self.coatings:
-                return u_r, u_z
-        k, weighted, (A,) = self._waves(r, z, layer, "normal")
-        J = _bessel(k, r, highest=1)
-        return u_r - (weighted * A.U) @ J[1], u_z + (weighted * A.w) @ J[0]
+                return u
+        k, weighted, (normal, *tangential) = self._waves(r, z, layer)
+        J = _bessel(k, r, highest=2 if self.friction else 1)
+        u_r = -(weighted * normal.U) @ J[1]
+        u += np.stack([u_r * np.cos(theta), u_r * np.sin(theta), (weighted * normal.w) @ J[0]])
+        if self.friction:
+            A, B = tangential
+            difference = (weighted * (A.U - B.V)) @ J[2] / 2
+            u[0] += self.friction * (np.cos(2 * theta) * difference - (weighted * (A.U + B.V)) @ J[0] / 2)
+            u[1] += self.friction * np.sin(2 * theta) * difference
+            u[2] -= self.friction * np.cos(theta) * ((weighted * A.w) @ J[1])
+        return u
+
+    def _homogeneous_displacement(self, r: Array, theta: Array) -> Array:
+        """Surface displacement of the solid of the top material: Johnson (3.18) and (3.75), integrated.
+
+        u_r = -(1 - 2 nu)/(2 G) I1,   u_z = (1 - nu)/G I0,   I_m = int phat(k) J_m(kr) dk
+        friction:  u_x = f [(1 - nu/2) I0 + nu/2 cos(2 theta) I2]/G,   u_y = f nu/2 sin(2 theta) I2 / G,
+                   u_z = f (1 - 2 nu)/(2 G) cos(theta) I1
+        """
+        E, nu = self.coatings[0][:2] if self.coatings else self.substrate
+        G, f = E / (2 * (1 + nu)), self.friction
+        # the load inside r moves the surface towards the axis
+        I1 = np.where(r > 0, self.pressure.resultant(r) / np.where(r > 0, r, 1.0), 0.0)
+        u_r = -(1 - 2 * nu) / (2 * G) * I1
+        u_z = (1 - nu**2) / E * self.pressure.sink(r) - f * u_r * np.cos(theta)
+        u = np.stack([u_r * np.cos(theta), u_r * np.sin(theta), u_z])
+        if f:
+            I0, I2 = (self.pressure.over_circle(order, r) for order in (0, 2))
+            u[0] += f / G * ((1 - nu / 2) * I0 + nu / 2 * np.cos(2 * theta) * I2)
+            u[1] += f / G * nu / 2 * np.sin(2 * theta) * I2
+        return u
 
     def _plane(self, r: Array, theta: Array, z: float, layer: int) -> Array:
         total = np.zeros((3, 3, r.size))
@@ -95,8 +124,7 @@ class HankelField:
             total += self._homogeneous_surface(r, theta)
             if not self.coatings:
                 return total
-        loads = ("normal", "shear", "antiplane") if self.friction else ("normal",)
-        k, weighted, (normal, *tangential) = self._waves(r, z, layer, *loads)
+        k, weighted, (normal, *tangential) = self._waves(r, z, layer)
         step = max(1, CHUNK // k.size)
         for start in range(0, r.size, step):
             part = slice(start, start + step)
@@ -107,13 +135,22 @@ class HankelField:
                 total[:, :, part] += self.friction * _sliding(plane, anti, weighted, J, theta[part])
         return total
 
-    def _waves(self, r: Array, z: float, layer: int, *loads: str) -> tuple[Array, Array, list[Amplitudes]]:
+    def _waves(self, r: Array, z: float, layer: int) -> tuple[Array, Array, list[Amplitudes]]:
         """Wavenumbers, weights of the integrals with k phat(k), amplitudes of each load at depth ``z``.
 
         On the surface the amplitudes are those in excess of the homogeneous solid of the top material.
         """
-        k, weight = self._wavenumbers(z or 2 * self.coatings[0][2], float(r.max(initial=0.0)))
+        key = (z, layer, float(r.max(initial=0.0)))
+        if key not in self._kept:
+            if len(self._kept) >= KEPT:
+                self._kept.clear()
+            self._kept[key] = self._amplitudes(*key)
+        return self._kept[key]
+
+    def _amplitudes(self, z: float, layer: int, r: float) -> tuple[Array, Array, list[Amplitudes]]:
+        k, weight = self._wavenumbers(z or 2 * self.coatings[0][2], r)
         solid = LayeredHalfSpace(self.coatings, self.substrate, k)
+        loads = ("normal", "shear", "antiplane") if self.friction else ("normal",)
         found = [solid.amplitudes(z, layer, load) for load in loads]
         if z == 0:
             bare = LayeredHalfSpace((), (float(solid.E[0]), float(solid.nu[0])), k)

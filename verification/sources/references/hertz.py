@@ -1,25 +1,41 @@
-"""Hertz contact of a rigid sphere on a homogeneous elastic half-space.
+"""Hertz contact of a sphere, rigid or elastic, on a homogeneous elastic half-space.
 
-Axes: origin at first contact, ``z`` into the solid. Stress is positive in tension, pressure positive in
-compression, hence sigma_zz = -p at z = 0. SI units.
+Axes: origin at first contact, ``z`` into the body in question. Stress is positive in tension, pressure
+positive in compression, hence sigma_zz = -p at z = 0. SI units.
 
 H. Hertz, J. reine angew. Math. 92 (1882) 156-171; M. T. Huber, Ann. Phys. 319 (1904) 153-163, for the field
 off the axis; K. L. Johnson, Contact Mechanics, Cambridge University Press, 1985.
+
+With lengths over a, zeta = z - i, R = sqrt(r^2 + zeta^2), tau = r / (R + zeta) the integrals over wavenumbers
+
+    L_m^n = int_0^inf k^n J_m(kr) e^(-k zeta) dk:   L_m^0 = tau^m / R,   L_m^-1 = tau^m / m,
+    L_m^-2 = r (L_(m-1)^-1 + L_(m+1)^-1) / 2m,      L_0^-1 = -ln(zeta + R),   L_0^-2 = zeta ln(zeta + R) - R,
+    L_m^-3 = r (L_(m-1)^-2 + L_(m+1)^-2) / 2m,      L_0^-3 = (r^2 - 2 zeta^2) ln(zeta + R) / 4 + 3 zeta R / 4
+
+give, from phat(k) = p0 (sin k - k cos k) / k^3,
+
+    A_m = int phat J_m e^(-kz) k dk     = p0 (Im L_m^-2 - Re L_m^-1)
+    B_m = int phat J_m e^(-kz) z k^2 dk = p0 z (Im L_m^-1 - Re L_m^0)
+    C_m = int phat J_m e^(-kz) dk       = p0 (Im L_m^-3 - Re L_m^-2)
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
+from typing import Self
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from verification.problem.arrays import Array
-from verification.problem.contact import NotClaimed, Uncertainty
+from verification.problem.contact import BALL, FLAT, Uncertainty
+
+Complex = NDArray[np.complex128]
 
 
 @dataclass(frozen=True)
 class HertzContact:
     """Sphere of ``radius`` [m] under ``load`` [N] on a solid of ``E`` [Pa], ``nu``: its size and pressure.
 
+    ball : (E [Pa], nu) of the sphere, None where it is rigid.
     Raises ValueError naming the quantity that is out of range.
     """
 
@@ -27,6 +43,7 @@ class HertzContact:
     load: float
     E: float
     nu: float
+    ball: tuple[float, float] | None = field(default=None, kw_only=True)
 
     def __post_init__(self) -> None:
         for name in ("radius", "load", "E"):
@@ -34,11 +51,24 @@ class HertzContact:
                 raise ValueError(f"{name} = {getattr(self, name):g}; Hertz needs it positive")
         if not -1 < self.nu <= 0.5:
             raise ValueError(f"nu = {self.nu:g}; an isotropic solid has -1 < nu <= 0.5")
+        if self.ball is not None and not (self.ball[0] > 0 and -1 < self.ball[1] <= 0.5):
+            raise ValueError(f"ball = {self.ball}; Hertz needs E > 0 and -1 < nu <= 0.5")
 
     @property
     def E_star(self) -> float:
-        """Contact modulus E / (1 - nu^2) [Pa]; the sphere is rigid."""
-        return self.E / (1 - self.nu**2)
+        """Contact modulus [Pa], 1/E* = (1 - nu^2)/E of the solid plus that of the ball. Johnson (4.20)."""
+        if self.ball is None:
+            return self.E / (1 - self.nu**2)
+        return 1 / ((1 - self.nu**2) / self.E + (1 - self.ball[1] ** 2) / self.ball[0])
+
+    def seen_from(self, body: str) -> Self:
+        """The same contact with ``body`` as the solid. Raises ValueError where the ball is rigid."""
+        if body == FLAT:
+            return self
+        if body != BALL or self.ball is None:
+            raise ValueError(f"body = {body!r}; this contact has an elastic {FLAT} alone")
+        E, nu = self.ball
+        return replace(self, E=E, nu=nu, ball=(self.E, self.nu))
 
     @property
     def contact_radius(self) -> float:
@@ -49,6 +79,16 @@ class HertzContact:
     def approach(self) -> float:
         """delta = a^2 / R [m]. Johnson (4.23)."""
         return self.contact_radius**2 / self.radius
+
+    @property
+    def stiffness(self) -> float:
+        """dW/d delta = 2 E* a [N/m], from W = 4/3 E* sqrt(R) delta^(3/2)."""
+        return 2 * self.E_star * self.contact_radius
+
+    @property
+    def stiffness_uncertainty(self) -> float:
+        """Zero: exact."""
+        return 0.0
 
     @property
     def peak_pressure(self) -> float:
@@ -79,9 +119,42 @@ class HertzContact:
         """Zero [Pa]: exact."""
         return np.zeros(np.broadcast_shapes(np.shape(x), np.shape(y)))
 
-    def stress_uncertainty(self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None) -> Array:
+    def stress_uncertainty(
+        self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None, body: str = FLAT
+    ) -> Array:
         """Zero [Pa]: exact."""
         return np.zeros((3, 3, *np.broadcast_shapes(np.shape(x), np.shape(y), np.shape(z))))
+
+    def displacement_uncertainty(self, x: ArrayLike, y: ArrayLike, z: ArrayLike, body: str = FLAT) -> Array:
+        """Zero [m]: exact."""
+        return np.zeros((3, *np.broadcast_shapes(np.shape(x), np.shape(y), np.shape(z))))
+
+    def _displaced(self, x: ArrayLike, y: ArrayLike, z: ArrayLike, f: float) -> Array:
+        """Displacement [m] under p with q = f p in +x, (3,) + points. With c = p0 a (1 + nu)/E:
+
+            u_r = -c [(1 - 2 nu) C1 - z A1],    u_z = c [2 (1 - nu) C0 + z A0]
+            friction:  u_x = c f [(2 - nu) C0 - z A0 / 2 + (nu C2 + z A2 / 2) cos 2 theta],
+                u_y = c f (nu C2 + z A2 / 2) sin 2 theta,    u_z = c f [(1 - 2 nu) C1 + z A1] cos theta
+
+        Derived from the response of the half-space to each wave of p and q: Boussinesq and Cerruti, Johnson
+        (3.19), (3.75). Raises ValueError where z < 0.
+        """
+        x, y, z = np.broadcast_arrays(*(np.asarray(v, dtype=float) for v in (x, y, z)))
+        if np.any(z < 0):
+            raise ValueError(f"z = {np.min(z):g} m is above the surface; depth counts down from 0")
+        a, nu, theta = self.contact_radius, self.nu, np.arctan2(y, x)
+        z = z / a
+        (A0, A1, A2, _), _, (C0, C1, C2) = integrals(np.hypot(x, y) / a, z)
+        u_r = -((1 - 2 * nu) * C1 - z * A1)
+        second = nu * C2 + z * A2 / 2
+        u = np.stack(
+            [
+                u_r * np.cos(theta) + f * ((2 - nu) * C0 - z * A0 / 2 + second * np.cos(2 * theta)),
+                u_r * np.sin(theta) + f * second * np.sin(2 * theta),
+                2 * (1 - nu) * C0 + z * A0 + f * ((1 - 2 * nu) * C1 + z * A1) * np.cos(theta),
+            ]
+        )
+        return self.peak_pressure * a * (1 + nu) / self.E * u
 
 
 class Hertz(HertzContact):
@@ -94,9 +167,11 @@ class Hertz(HertzContact):
         s = np.minimum(a / np.maximum(rho, a), 1.0)
         inside = np.pi / 4 * (2 * a**2 - rho**2) / a
         outside = ((2 * a**2 - rho**2) * np.arcsin(s) + rho * a * np.sqrt(1 - s**2)) / (2 * a)
-        return p0 / self.E_star * np.where(rho <= a, inside, outside)
+        return p0 * (1 - self.nu**2) / self.E * np.where(rho <= a, inside, outside)
 
-    def stress(self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None) -> Array:
+    def stress(
+        self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None, body: str = FLAT
+    ) -> Array:
         """sigma[i, j, ...] [Pa], shape (3, 3) + points. Huber (1904); on the surface Johnson (3.43).
 
             w^2 = [r^2+z^2-a^2 + sqrt((r^2+z^2-a^2)^2 + 4 a^2 z^2)] / 2,   s = z/w
@@ -105,6 +180,8 @@ class Hertz(HertzContact):
 
         One material: ``layer`` is accepted and has no meaning here. Raises ValueError where z < 0.
         """
+        if body != FLAT:
+            return self.seen_from(body).stress(x, y, z)
         x, y, z = np.broadcast_arrays(*(np.asarray(v, dtype=float) for v in (x, y, z)))
         if np.any(z < 0):
             raise ValueError(f"z = {np.min(z):g} m is above the surface; depth counts down from 0")
@@ -155,6 +232,34 @@ class Hertz(HertzContact):
         sigma[2, 2] = -self.peak_pressure / (1 + s**2)
         return sigma
 
-    def displacement(self, x: ArrayLike, y: ArrayLike, z: ArrayLike) -> Array:
-        """No claim is made below the surface; raises NotClaimed."""
-        raise NotClaimed("the closed form claims no displacement field; see surface_displacement")
+    def displacement(self, x: ArrayLike, y: ArrayLike, z: ArrayLike, body: str = FLAT) -> Array:
+        """u[i, ...] [m] towards points at infinity, shape (3,) + points. Raises ValueError where z < 0."""
+        return self.seen_from(body)._displaced(x, y, z, 0.0)
+
+
+def integrals(r: Array, z: Array) -> tuple[list[Array], list[Array], list[Array]]:
+    """A_m / p0 and B_m / p0 for m = 0 .. 3, C_m / p0 for m = 0 .. 2 at ``r``, ``z`` over a."""
+    zeta = z - 1j
+    R = _root(r, z)
+    log = np.log(zeta + R)
+    tau = r / (zeta + R)
+    powers: list[Complex] = [-log] + [tau**m / m for m in range(1, 5)]
+    second = [zeta * log - R] + [r / (2 * m) * (powers[m - 1] + powers[m + 1]) for m in range(1, 4)]
+    # z/R vanishes towards the edge, where z and R are both zero.
+    z_over_R = np.where(R == 0, 0.0, z / np.where(R == 0, 1.0, R))
+    A = [second[m].imag - powers[m].real for m in range(4)]
+    B = [z * powers[m].imag - (tau**m * z_over_R).real for m in range(4)]
+    third = [(r**2 - 2 * zeta**2) / 4 * log + 0.75 * zeta * R]
+    third += [r / (2 * m) * (second[m - 1] + second[m + 1]) for m in (1, 2)]
+    C = [third[m].imag - second[m].real for m in range(3)]
+    return A, B, C
+
+
+def _root(r: Array, z: Array) -> Complex:
+    """R = sqrt(r^2 + (z - i)^2) with Re R >= 0 >= Im R, which on the surface is the limit from below it."""
+    d = (r - 1) * (r + 1) + z**2
+    size = np.hypot(d, 2 * z)
+    # The larger part first, without a difference; the product of both is z.
+    larger = np.sqrt((size + np.abs(d)) / 2)
+    smaller = z / np.where(larger == 0, 1.0, larger)
+    return np.where(d >= 0, larger - 1j * smaller, smaller - 1j * larger)

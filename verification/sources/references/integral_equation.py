@@ -1,7 +1,11 @@
-"""Rigid sphere on a coated half-space, frictionless contact: the Fredholm equation of the second kind.
+"""Sphere on a coated half-space, frictionless contact: the Fredholm equation of the second kind.
 
-    phi(x) + (2/pi) int_0^a K(x,t) phi(t) dt = (E1*/pi) (delta - x^2/R),   phi(a) = 0
+    phi(x) + (2/pi) int_0^a K(x,t) phi(t) dt = (E*/pi) (delta - x^2/R),   phi(a) = 0
     W = 2 pi int_0^a phi dt,   K(x,t) = int_0^inf (M(k) - 1) cos(kx) cos(kt) dk
+
+The compliances of flat and ball add up, with E1* and M1 of the layers of each:
+
+    1/E* = sum 1/E1*,   M = E* sum M1/E1*;   of a rigid ball E* = E1* and M = M1 of the flat.
 
 K is smooth, so Gauss-Legendre converges geometrically: no grid in the plane, no elements. Any number of
 coatings. With friction q = f p the pressure is unchanged (Goodman's assumption).
@@ -16,8 +20,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.optimize import brentq
 
-from verification.problem.arrays import Array, Coatings
-from verification.problem.contact import NotClaimed, Uncertainty
+from verification.problem.arrays import Array, Ball, Coatings
+from verification.problem.contact import BALL, FLAT, Uncertainty
 from verification.sources.references.axisymmetric_pressure import AbelPressure
 from verification.sources.references.hankel import HankelField
 from verification.sources.references.layered import LayeredHalfSpace, bending_length, contact_modulus
@@ -35,12 +39,18 @@ class ExactDiagnostics:
 
 @dataclass(frozen=True, eq=False)
 class ExactSolution:
-    """Contact and stresses; the difference from ``coarser`` gives the uncertainty."""
+    """Contact, stresses, displacements; the difference from ``coarser`` gives the uncertainty.
+
+    fields : of the flat, then of an elastic ball.
+    stiffness : dW/d delta [N/m], that of a flat punch of the contact radius. Pharr, Oliver and Brotzen,
+        J. Mater. Res. 7 (1992) 613-617.
+    """
 
     abel: AbelPressure
     approach: float
-    field: HankelField
+    fields: tuple[HankelField, ...]
     diagnostics: ExactDiagnostics
+    stiffness: float
     coarser: "ExactSolution | None" = None
 
     @property
@@ -70,6 +80,13 @@ class ExactSolution:
         return Uncertainty(**U, budget=tuple((n, "quadrature", u) for n, u in U.items()))
 
     @property
+    def stiffness_uncertainty(self) -> float | None:
+        """As of the other scalars [N/m]."""
+        if self.coarser is None:
+            return None
+        return 2 * abs(self.stiffness - self.coarser.stiffness) + 1e-12 * self.stiffness
+
+    @property
     def _rounding(self) -> float:
         # A quadrature sums some 4096 terms; differentiating a series of m terms amplifies rounding by m^3.
         return float(np.finfo(float).eps * max(4096.0, (2.0 * self.abel.c.size) ** 3))
@@ -78,13 +95,29 @@ class ExactSolution:
         """p [Pa], 0 outside the contact."""
         return self.abel.pressure(np.hypot(x, y))
 
-    def stress(self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None) -> Array:
-        """sigma[i, j, ...] [Pa]; ``layer`` picks the side of an interface, the upper one unless given."""
-        return self.field.stress(x, y, z, layer)
+    def stress(
+        self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None, body: str = FLAT
+    ) -> Array:
+        """sigma[i, j, ...] [Pa] of either body; ``layer`` picks the side of an interface, None the upper one.
 
-    def displacement(self, x: ArrayLike, y: ArrayLike, z: ArrayLike) -> Array:
-        """No claim is made on displacements; raises NotClaimed."""
-        raise NotClaimed("the integral equation claims no displacement field; ask one of the methods")
+        Raises ValueError for the ball where it is rigid.
+        """
+        return self._field(body).stress(x, y, z, layer)
+
+    def _field(self, body: str) -> HankelField:
+        of = dict(zip((FLAT, BALL), self.fields, strict=False))
+        if body not in of:
+            raise ValueError(f"body = {body!r}; this contact has {' and '.join(of)}")
+        return of[body]
+
+    def displacement(self, x: ArrayLike, y: ArrayLike, z: ArrayLike, body: str = FLAT) -> Array:
+        """u[i, ...] [m] of either body towards its points at infinity, shape (3,) + points."""
+        return self._field(body).displacement(x, y, z)
+
+    def displacement_uncertainty(self, x: ArrayLike, y: ArrayLike, z: ArrayLike, body: str = FLAT) -> Array:
+        """Absolute [m], as that of the stress; raises ValueError where no companion was solved."""
+        change = np.abs(self.displacement(x, y, z, body) - self._companion().displacement(x, y, z, body))
+        return 2 * change + self._rounding * self.approach
 
     def pressure_uncertainty(self, x: ArrayLike, y: ArrayLike = 0.0) -> Array:
         """Absolute [Pa]; raises ValueError where no companion was solved."""
@@ -92,18 +125,20 @@ class ExactSolution:
         return U + self._rounding * self.peak_pressure + self._by_radius(x, y)
 
     def stress_with_uncertainty(
-        self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None
+        self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None, body: str = FLAT
     ) -> tuple[Array, Array]:
         """Stress and its uncertainty [Pa], (3, 3) + points; ValueError where no companion was solved."""
-        sigma, coarser = self.stress(x, y, z, layer), self._companion().stress(x, y, z, layer)
+        sigma, coarser = self.stress(x, y, z, layer, body), self._companion().stress(x, y, z, layer, body)
         U = 2 * np.abs(sigma - coarser) + self._rounding * self.peak_pressure
         # sigma_rr has the root of p inside; under q = f p, 2 f times that outside.
-        root = np.where(np.asarray(z) == 0, (1 + 2 * self.field.friction) * self._by_radius(x, y), 0.0)
+        root = np.where(np.asarray(z) == 0, (1 + 2 * self.fields[0].friction) * self._by_radius(x, y), 0.0)
         return sigma, U + root
 
-    def stress_uncertainty(self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None) -> Array:
+    def stress_uncertainty(
+        self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None, body: str = FLAT
+    ) -> Array:
         """The second part of ``stress_with_uncertainty``."""
-        return self.stress_with_uncertainty(x, y, z, layer)[1]
+        return self.stress_with_uncertainty(x, y, z, layer, body)[1]
 
     def _by_radius(self, x: ArrayLike, y: ArrayLike) -> Array:
         """Change [Pa] of the root of the pressure at the edge by the uncertain radius."""
@@ -125,40 +160,46 @@ def solve(
     coatings: Coatings,
     substrate: tuple[float, float],
     friction: float = 0.0,
+    ball: Ball | None = None,
     nodes: int = 80,
     estimate_uncertainty: bool = True,
 ) -> ExactSolution:
-    """Contact of a rigid sphere of ``radius`` [m] under ``load`` [N]; arguments as in CoatedContact.
+    """Contact of a sphere of ``radius`` [m] under ``load`` [N]; arguments as in CoatedContact.
 
     nodes : Gauss-Legendre points in the contact; more where a coating is thin.
     Raises ValueError when no contact radius between 1e-3 and 1e3 of the Hertz radius carries the load.
     """
-    fine = _solve(radius, load, coatings, substrate, friction, nodes, 16, 36.0)
+    solids: tuple[_Solid, ...] = ((coatings, substrate),)
+    if ball is not None:
+        solids += ((ball[2], ball[:2]),)
+    fine = _solve(radius, load, solids, friction, nodes, 16, 36.0)
     if not estimate_uncertainty:
         return fine
-    coarse = _solve(radius, load, coatings, substrate, friction, 3 * nodes // 4, 12, 27.0)
+    coarse = _solve(radius, load, solids, friction, 3 * nodes // 4, 12, 27.0)
     return replace(fine, coarser=coarse)
+
+
+_Solid = tuple[Coatings, tuple[float, float]]
 
 
 def _solve(
     radius: float,
     load: float,
-    coatings: Coatings,
-    substrate: tuple[float, float],
+    solids: tuple[_Solid, ...],
     friction: float,
     nodes: int,
     panel: int,
     tail: float,
 ) -> ExactSolution:
-    E_star = contact_modulus(coatings, substrate)
-    guess = _radius_guess(radius, load, E_star, coatings, substrate)
-    x_i, w_i = gauss_legendre(_contact_nodes(nodes, guess, coatings))
+    """Contact of the flat with a rigid ball, or of the two ``solids``, flat and ball."""
+    E_star = 1 / sum(1 / contact_modulus(*solid) for solid in solids)
+    guess = _radius_guess(radius, load, E_star, solids)
+    x_i, w_i = gauss_legendre(_contact_nodes(nodes, guess, solids))
     s, weight = 0.5 * (1 + x_i), 0.5 * w_i
-    k, k_weight = _kernel_wavenumbers(coatings, substrate, guess, panel, tail)
-    M = LayeredHalfSpace(coatings, substrate, k).compliance if coatings else np.ones_like(k)
-    kernel = k_weight * (M - 1)
+    k, k_weight = _kernel_wavenumbers(solids, guess, panel, tail)
+    kernel = k_weight * _excess(solids, E_star, k)
 
-    def contact(a: float) -> tuple[Array, float]:
+    def contact(a: float) -> tuple[Array, float, float]:
         x = a * s
         cosine = np.cos(k[:, None] * np.append(x, a))
         K = (2 / np.pi) * (cosine.T * kernel) @ cosine
@@ -168,7 +209,8 @@ def _solve(
         # Nystrom's interpolation gives phi at the edge, where it must vanish.
         edge = (E_star / np.pi) * np.array([1.0, a**2 / radius]) - (K[-1, :-1] * a * weight) @ phi
         delta = edge[1] / edge[0]
-        return phi @ np.array([delta, -1.0]), float(delta)
+        stiffness = 2 * np.pi * a * (weight @ phi[:, 0])
+        return phi @ np.array([delta, -1.0]), float(delta), float(stiffness)
 
     def excess(log_a: float) -> float:
         a = float(np.exp(log_a))
@@ -185,35 +227,47 @@ def _solve(
             f"load = {load:g} N is carried by no contact radius near {guess:g} m; check the moduli"
         )
     a = float(np.exp(brentq(excess, low, high, xtol=1e-15, rtol=1e-14)))
-    phi, delta = contact(a)
+    phi, delta, stiffness = contact(a)
     abel = AbelPressure.from_nodes(a, s, weight, phi)
-    field = HankelField(abel, coatings, substrate, friction, panel, tail)
-    return ExactSolution(abel, delta, field, ExactDiagnostics(s.size, k.size, abs(abel.load / load - 1)))
+    # the traction on the ball is -q
+    fields = tuple(
+        HankelField(abel, *solid, sign * friction, panel, tail)
+        for solid, sign in zip(solids, (1.0, -1.0), strict=False)
+    )
+    diagnostics = ExactDiagnostics(s.size, k.size, abs(abel.load / load - 1))
+    return ExactSolution(abel, delta, fields, diagnostics, stiffness)
 
 
-def _radius_guess(
-    radius: float, load: float, E_star: float, coatings: Coatings, substrate: tuple[float, float]
-) -> float:
+def _excess(solids: tuple[_Solid, ...], E_star: float, k: Array) -> Array:
+    """M(k) - 1 of the ``solids`` together."""
+    total = np.zeros_like(k)
+    for coatings, substrate in solids:
+        if coatings:
+            M = LayeredHalfSpace(coatings, substrate, k).compliance
+            total += E_star / contact_modulus(coatings, substrate) * (M - 1)
+    return total
+
+
+def _radius_guess(radius: float, load: float, E_star: float, solids: tuple[_Solid, ...]) -> float:
     """Hertz radius with the contact modulus seen by waves of that very length."""
     a = float((3 * load * radius / (4 * E_star)) ** (1 / 3))
     for _ in range(40):
-        k = np.array([2.0 / a])
-        M = float(LayeredHalfSpace(coatings, substrate, k).compliance[0]) if coatings else 1.0
+        M = 1 + float(_excess(solids, E_star, np.array([2.0 / a]))[0])
         a = 0.5 * (a + float((3 * load * radius * M / (4 * E_star)) ** (1 / 3)))
     return a
 
 
-def _contact_nodes(nodes: int, a: float, coatings: Coatings) -> int:
+def _contact_nodes(nodes: int, a: float, solids: tuple[_Solid, ...]) -> int:
     """The kernel varies over the first coating's thickness, so thin ones need nodes in proportion to a/h."""
-    thinnest = min((h for _, _, h in coatings), default=a)
+    thinnest = min((h for coatings, _ in solids for _, _, h in coatings), default=a)
     return int(nodes + 3 * a / thinnest * nodes / 80)
 
 
-def _kernel_wavenumbers(
-    coatings: Coatings, substrate: tuple[float, float], a: float, panel: int, tail: float
-) -> tuple[Array, Array]:
+def _kernel_wavenumbers(solids: tuple[_Solid, ...], a: float, panel: int, tail: float) -> tuple[Array, Array]:
     """Gauss panels up to where M - 1 ~ (k h)^2 exp(-2 k h) is negligible; finer near 0."""
-    if not coatings:
+    coated = [solid for solid in solids if solid[0]]
+    if not coated:
         return np.ones(1), np.zeros(1)
-    end = (tail + 2 * np.log(tail)) / (2 * coatings[0][2])
-    return wavenumber_panels(end, 0.5 / bending_length(coatings, substrate), 3.0 / a, panel)
+    end = (tail + 2 * np.log(tail)) / (2 * min(coatings[0][2] for coatings, _ in coated))
+    bent = max(bending_length(*solid) for solid in coated)
+    return wavenumber_panels(end, 0.5 / bent, 3.0 / a, panel)

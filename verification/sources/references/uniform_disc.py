@@ -46,6 +46,10 @@ class UniformDisc:
         outer = (ellipe(t) - np.where(t < 1, (1 - t) * ellipkm1(np.where(t < 1, 1 - t, 1.0)), 0.0)) * s
         return 4 * self.q * self.a / np.pi * np.where(s <= 1, inner, outer)
 
+    def over_circle(self, order: int, r: Array) -> Array:
+        """No claim is made on sliding discs; raises ValueError."""
+        raise ValueError("a sliding disc has infinite stress at its rim; no claim is made on it")
+
     def bessel_integral(self, order: int, r: Array) -> Array:
         """No claim is made on sliding discs; raises ValueError."""
         raise ValueError("a sliding disc has infinite stress at its rim; no claim is made on it")

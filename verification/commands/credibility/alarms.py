@@ -11,8 +11,8 @@ from verification.cases.random_problems import draw
 from verification.commands.common.exits import CommandError, exit_code, with_exit_code
 from verification.commands.common.folders import RECORDS, require_checkout
 from verification.commands.common.options import AsJson, Flag, Jobs, Output, Quiet, RecordsFolder, Resume
+from verification.commands.common.solving import kept_results, require_gmsh, run_info, solve, worker_count
 from verification.commands.common.terminal import STYLE, named_table, one_line, print_json, print_out
-from verification.commands.solving import kept_results, require_gmsh, run_info, solve, worker_count
 from verification.credibility.alarms import AlarmRecord, counted, write_record
 from verification.running.records import plain
 from verification.running.store import locked, write_atomically

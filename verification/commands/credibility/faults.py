@@ -12,8 +12,8 @@ from rich.markup import escape
 from verification.commands.common.exits import CommandError, no_result, with_exit_code
 from verification.commands.common.folders import RECORDS, require_checkout
 from verification.commands.common.options import AsJson, Flag, Jobs, Output, Quiet, RecordsFolder, Resume
+from verification.commands.common.solving import kept_results, require_gmsh, run_info, solve, worker_count
 from verification.commands.common.terminal import did_you_mean, named_table, print_json, print_out
-from verification.commands.solving import kept_results, require_gmsh, run_info, solve, worker_count
 from verification.running.store import locked, write_atomically
 from verification.running.tasks import case_task
 

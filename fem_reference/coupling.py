@@ -1,0 +1,109 @@
+"""Two bodies coupled at the surface on which they touch.
+
+The ball is reflected in the surface: with v_z = -u_z of the ball, z into it, both bodies have one axial
+displacement w on the contact but for the jump that closes the gap,
+
+    u_z (flat) = w,   v_z (ball) = w - jump,   u_z (flat) + u_z (ball) = jump,
+
+while their radial displacements are independent, since the contact transmits no shear. The matrix of both is
+positive definite. Each body is eliminated as by itself; the unknowns w come last.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from .axisymmetric import Discretisation, Stiffness, constrained_solve
+from .dissection import DissectionTree, unknowns
+from .scaling import LayeredSolid
+
+__all__ = ["Coupling"]
+
+Solids = tuple[LayeredSolid, LayeredSolid]
+
+
+@dataclass(frozen=True, eq=False)
+class Coupling:
+    """Discretisations of ``flat`` and ``ball`` with the same nodes on the surface.
+
+    Raises ValueError where their surfaces differ.
+    """
+
+    flat: Discretisation
+    ball: Discretisation
+
+    def __post_init__(self) -> None:
+        one, two = (d.locations[0, d.surface] for d in (self.flat, self.ball))
+        if one.shape != two.shape or not np.allclose(one, two, rtol=1e-12, atol=0):
+            raise ValueError("the meshes of flat and ball have different nodes on the surface")
+
+    def moved(self, flat: Discretisation, ball: Discretisation) -> "Coupling":
+        """The same coupling on other meshes; those of the same triangles keep the order of elimination."""
+        new = Coupling(flat, ball)
+        if "_tree" in vars(self) and all(
+            one.mesh.triangles is two.mesh.triangles for one, two in ((flat, self.flat), (ball, self.ball))
+        ):
+            vars(new).update(_tree=self._tree)
+        return new
+
+    @cached_property
+    def _numbers(self) -> np.ndarray:
+        """Unknown of the pair for each unknown of the ball, (2 N,): on the contact that of the flat."""
+        flat, ball = self.flat, self.ball
+        numbers = 2 * flat.N + np.arange(2 * ball.N)
+        numbers[ball.N + ball.contact] = flat.N + flat.contact
+        return numbers
+
+    @cached_property
+    def _nodes(self) -> np.ndarray:
+        """Unknowns of each triangle of the flat, then of the ball, by node, then field."""
+        one, two = (unknowns(np.asarray(d.basis.element_dofs).T, 2, d.N) for d in (self.flat, self.ball))
+        return np.concatenate([one, self._numbers[two]])
+
+    @cached_property
+    def _tree(self) -> DissectionTree:
+        one, two = self.flat.leaf, self.ball.leaf
+        top = max(int(leaf.max()).bit_length() for leaf in (one, two))
+        return DissectionTree.of(self._nodes, np.concatenate([one, two + 2**top]))
+
+    def solve(
+        self, solids: Solids, jump: np.ndarray, far: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+        """Displacements of flat and ball, several cases in columns.
+
+        jump : of u_z at the contact nodes (nodes, columns).  far : load whose far field is prescribed,
+        (columns,).
+        Returns the field vectors (2 N, columns) of flat and ball, the nodal forces (nodes, columns) on the
+        flat, and the forces out of balance (n, columns).
+        """
+        sign = np.tile([1.0, -1.0], self.flat.basis.Nbfun)
+        elements = [
+            self.flat.element_stiffness(solids[0].materials, 0),
+            self.ball.element_stiffness(solids[1].materials, 0) * (sign[:, None] * sign),
+        ]
+        K = Stiffness(np.concatenate(elements), self._nodes, self._tree)
+        sides = ((self.flat, np.arange(2 * self.flat.N), 1.0), (self.ball, self._numbers, -1.0))
+        given = np.zeros((2 * (self.flat.N + self.ball.N), far.size))
+        fixed = []
+        for (d, number, axial), solid in zip(sides, solids, strict=True):
+            u_r, u_z = solid.far_displacement(*d.locations[:, d.outer])
+            given[number[d.outer]] = u_r[:, None] * far
+            given[number[d.N + d.outer]] = axial * u_z[:, None] * far
+            given[number[d.axis]] = 0.0
+            fixed += [number[d.outer], number[d.N + d.outer], number[d.axis]]
+
+        apart = np.zeros((2 * self.ball.N, far.size))
+        apart[self.ball.N + self.ball.contact] = -jump
+        load = np.zeros(given.shape)
+        of_ball = Stiffness(elements[1], np.asarray(self.ball.basis.element_dofs).T, self._tree)
+        np.subtract.at(load, self._numbers, of_ball @ apart)
+        u = constrained_solve(K, given, np.concatenate(fixed), load)
+
+        balance = K @ u - load
+        balance[np.concatenate(fixed)] = 0.0
+        flat, ball = u[: 2 * self.flat.N], u[self._numbers] + apart
+        ball[self.ball.N :] *= -1
+        of_flat = Stiffness(elements[0], np.asarray(self.flat.basis.element_dofs).T, self._tree)
+        reaction = (of_flat @ flat)[self.flat.N + self.flat.contact]
+        return flat, ball, reaction, balance

@@ -1,0 +1,185 @@
+"""Slips that people make, planted in exact answers: each is named in one message."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from verification.cases.contact import read_case, shipped_cases
+from verification.guests.description import Guest, Supports
+from verification.guests.diagnosis import slips
+from verification.guests.doors.program import Solved
+from verification.guests.exam import REFERENCE, claims_of, prepare, question_of
+from verification.guests.protocol import VERSION, Answer
+from verification.guests.verdicts import judged
+from verification.problem.contact import CoatedContact
+from verification.running.result import from_json
+from verification.running.store import read_checked
+from verification.sources.exact import solve_exactly
+
+GUEST = Guest(
+    folder=None, text="", name="g", claim=0.01, supports=Supports(coatings=9, friction=True, stress=True)
+)
+HERTZ, COATED, SLIDING = "01_uncoated_steel", "05_ratio_4", "14_ratio_4_sliding"
+SIGMA = ("sigma_xx", "sigma_yy", "sigma_zz", "sigma_xz")
+
+
+@pytest.fixture(scope="module")
+def exams(tmp_path_factory):
+    """Each case with its exact reference."""
+    found = {}
+    for name in (HERTZ, COATED, SLIDING):
+        case = read_case(shipped_cases()[name])
+        path = tmp_path_factory.mktemp("exam") / "exam.json"
+        prepare(case.name, case.text, str(path))
+        found[name] = case, from_json(read_checked(path))
+    return found
+
+
+def exact_values(exam):
+    values = {}
+    for p in exam.profiles:
+        one = p.line == "contact"
+        values.setdefault(p.line, {})[p.quantity] = float(p.value[0]) if one else p.value
+    return values
+
+
+def messages(exams, name, change):
+    """The messages about exact answers that ``change`` has edited in place, or replaced."""
+    case, exam = exams[name]
+    values = exact_values(exam)
+    places = {p.line: p.position for p in exam.profiles}
+    values = change(values, places) or values
+    asked = {q.line: q.quantities for q in question_of(case, exam, GUEST, claims_of(case, GUEST), {}).lines}
+    asked["contact"] = list(values["contact"])
+    plain = {
+        line: {q: np.asarray(v).tolist() for q, v in numbers.items() if q in asked[line]}
+        for line, numbers in values.items()
+    }
+    result = judged(GUEST, case, exam, [Solved(Answer(protocol=VERSION, id="x", values=plain), 0.0)])
+    return [str(slip) for slip in slips(result, "g")]
+
+
+def of_problem(case, exam, problem):
+    """Exact values of another ``problem`` at the points of ``exam``."""
+    solution = solve_exactly(problem)
+    values = {"contact": {n: getattr(solution, n) for n in ("peak_pressure", "contact_radius", "approach")}}
+    surface = next(p.position for p in exam.profiles if p.line == "surface")
+    return values | {"surface": {"pressure": solution.pressure(surface)}}
+
+
+def scaled(line, quantity, factor):
+    def change(values, places):
+        values[line][quantity] = factor * values[line][quantity]
+
+    return change
+
+
+def every(quantities, function):
+    def change(values, places):
+        for line, numbers in values.items():
+            for quantity in quantities:
+                if quantity in numbers and line != "contact":
+                    numbers[quantity] = function(numbers[quantity], places[line])
+
+    return change
+
+
+def swapped(first, second):
+    def change(values, places):
+        for numbers in values.values():
+            if first in numbers and second in numbers:
+                numbers[first], numbers[second] = numbers[second], numbers[first]
+
+    return change
+
+
+def halved_cell(values, places):
+    x = places["surface"]
+    values["surface"]["pressure"] = np.interp(
+        x - 0.5 * np.median(np.diff(x)), x, values["surface"]["pressure"]
+    )
+
+
+def edge_only(values, places):
+    x, a = places["surface"], values["contact"]["contact_radius"]
+    near = np.abs(np.abs(x) - a) < 0.05 * a
+    values["surface"]["pressure"] = np.where(near, 0.5, 1.0) * values["surface"]["pressure"]
+
+
+def doubled_positions(values, places):
+    x = places["surface"]
+    values["surface"]["pressure"] = np.interp(x / 2, x, values["surface"]["pressure"])
+
+
+@pytest.mark.parametrize("case", [HERTZ, COATED, SLIDING])
+def test_right_answers_have_no_slips(exams, case):
+    assert messages(exams, case, lambda values, places: None) == []
+
+
+@pytest.mark.parametrize("case", [HERTZ, COATED, SLIDING])
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        (scaled("contact", "peak_pressure", 1e6), ["peak_pressure", "1e+06 times", "MPa taken for Pa"]),
+        (scaled("contact", "peak_pressure", 1e-6), ["MPa in place of Pa"]),
+        (scaled("contact", "contact_radius", 1e3), ["contact_radius", "mm in place of m"]),
+        (scaled("contact", "contact_radius", 2.0), ["diameter 2 a in place of a"]),
+        (scaled("contact", "peak_pressure", 2 / 3), ["mean pressure"]),
+        (scaled("contact", "approach", -1.0), ["approach", "opposite sign"]),
+        (every(["pressure"], lambda v, x: 1e-6 * v), ["pressure on surface", "MPa in place of Pa"]),
+        (every(["pressure"], lambda v, x: -v), ["opposite sign", "positive in compression"]),
+        (every(SIGMA, lambda v, x: -v), ["sigma_xx", "opposite sign", "compression positive"]),
+        (every(SIGMA, lambda v, x: 1e-6 * v), ["MPa in place of Pa"]),
+        (every(["sigma_xx"], lambda v, x: 0 * v), ["zero everywhere"]),
+        (swapped("sigma_xx", "sigma_zz"), ["equal to sigma_zz: x and z transposed"]),
+        (swapped("sigma_xx", "sigma_yy"), ["equal to sigma_yy: x and y transposed"]),
+        (halved_cell, ["pressure on surface", "shifted by", "half a cell"]),
+        (edge_only, ["pressure on surface", "contact edge alone"]),
+        (doubled_positions, ["pressure on surface", "halved: the diameter"]),
+        (every(["sigma_xx"], lambda v, x: v + 3e8), ["off by the same 3e+08 Pa"]),
+        (every(["sigma_xx"], lambda v, x: 1.1 * v), ["1.1 times the exact value"]),
+    ],
+)
+def test_a_slip_of_the_output_is_named(exams, case, change, words):
+    found = messages(exams, case, change)
+    assert found
+    assert all(word in found[0] for word in words), found
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        (lambda p: replace(p, substrate=(p.substrate[0] * (1 - 0.09) ** 1, 0.3)), "E in place of E*"),
+        (lambda p: replace(p, radius=2 * p.radius), "the diameter in place of the radius"),
+        (lambda p: replace(p, load=p.load / 2), "half of the load"),
+        (lambda p: replace(p, substrate=(p.substrate[0] / 2, 0.3)), "same elastic material"),
+    ],
+)
+def test_a_slip_of_the_input_of_hertz_is_one_message(exams, change, words):
+    case, exam = exams[HERTZ]
+    wrong: CoatedContact = change(case.problem)
+    found = messages(exams, HERTZ, lambda values, places: of_problem(case, exam, wrong))
+    assert len(found) == 1
+    assert words in found[0]
+
+
+def test_sliding_in_the_other_direction_is_mirrored(exams):
+    def change(values, places):
+        x = places["surface"]
+        for quantity in ("sigma_xx", "sigma_yy"):
+            values["surface"][quantity] = np.interp(-x, x, values["surface"][quantity])
+
+    assert "leading and trailing side exchanged" in messages(exams, SLIDING, change)[0]
+
+
+def test_the_other_side_of_an_interface_is_named(exams):
+    def change(values, places):
+        upper, lower = (values[f"interface 1, {side} side"] for side in ("upper", "lower"))
+        upper["sigma_xx"], lower["sigma_xx"] = lower["sigma_xx"], upper["sigma_xx"]
+
+    assert "the other layer?" in messages(exams, COATED, change)[0]
+
+
+def test_the_reference_is_exact():
+    assert REFERENCE == "integral_equation"

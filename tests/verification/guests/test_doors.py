@@ -1,0 +1,185 @@
+"""Three ways in, one face: functions, programs, files give the same verdicts."""
+
+import json
+import shutil
+import sys
+from pathlib import Path
+
+import pytest
+from quick_case import coatcheck
+
+import verification
+from verification.cases.contact import read_case, shipped_cases
+from verification.guests.description import read_guest
+from verification.guests.doors.asking import answered
+from verification.guests.doors.files import fill, pack, read_answer
+from verification.guests.exam import claims_of, prepare, question_of
+from verification.guests.protocol import ProtocolError, schema
+from verification.guests.verdicts import judged
+from verification.judging.verdict import Outcome
+from verification.running.contact import run
+from verification.running.result import from_json
+from verification.running.store import read_checked
+from verification.sources.registry import solvers
+
+PACKAGE = Path(verification.__file__).parent
+EXAMPLES = PACKAGE / "guests" / "examples"
+SUPPORTS = "supports = { coatings = 50, friction = true, stress = true }\n"
+SERVED = ["-m", "verification.guests.doors.serve"]
+
+
+def guest_in(folder, text):
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / "guest.toml").write_text(text)
+    return read_guest(folder)
+
+
+def through_all_doors(method, case, folder):
+    """Results of a method of this package as function, as program and as files, at one case."""
+    path = folder / "exam.json"
+    prepare(case.name, case.text, str(path))
+    exam = from_json(read_checked(path))
+    name = f'name = "own"\n{SUPPORTS}'
+    command = json.dumps([sys.executable, *SERVED, f"{method}:solve"])
+    by_function = guest_in(folder / "function", f'{name}callable = "{method}:solve"')
+    by_program = guest_in(folder / "program", f"{name}command = {command}")
+    by_files = guest_in(folder / "files", f'{name}results = "answers"')
+    results = []
+    for guest in (by_function, by_program):
+        questions = [question_of(case, exam, guest, claims_of(case, guest), {})]
+        replies = answered(guest, case, questions)
+        results.append(judged(guest, case, exam, replies))
+    pack(by_files, case, questions[0])
+    fill(by_files, case, questions[0], replies[-1].answer)
+    results.append(judged(by_files, case, exam, answered(by_files, case, questions)))
+    return results
+
+
+def inside_verdicts(case, method):
+    pair = (method, "integral_equation")
+    available = {name: solve for name, solve in solvers().items() if name in pair}
+    return {(c.quantity, c.line): v.outcome for c, v in run(case, available).verdicts if c.between == pair}
+
+
+def outcomes(result):
+    return {(c.quantity, c.line): v.outcome for c, v in result.verdicts}
+
+
+def test_the_semi_analytical_method_gets_the_verdicts_it_has_inside(tmp_path):
+    case = read_case(shipped_cases()["01_uncoated_steel"])
+    function, program, files = through_all_doors("semianalytic", case, tmp_path)
+    assert [v for _, v in function.verdicts] == [v for _, v in program.verdicts]
+    assert [v for _, v in function.verdicts] == [v for _, v in files.verdicts]
+    inside = inside_verdicts(case, "semianalytic")
+    assert outcomes(function) == inside
+    assert set(inside.values()) == {Outcome.AGREES}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", shipped_cases())
+@pytest.mark.parametrize("method", ["semianalytic", "fem_reference"])
+def test_own_methods_get_the_verdicts_they_have_inside(tmp_path, method, name):
+    case = read_case(shipped_cases()[name])
+    function, program, files = through_all_doors(method, case, tmp_path)
+    assert [v for _, v in function.verdicts] == [v for _, v in program.verdicts]
+    assert [v for _, v in function.verdicts] == [v for _, v in files.verdicts]
+    assert outcomes(function) == inside_verdicts(case, method)
+
+
+def test_init_writes_a_guest_that_runs_as_it_is(tmp_path):
+    for words in (["mine"], ["mine_too", "--program"]):
+        assert coatcheck("guest", "init", *words, cwd=tmp_path).returncode == 0
+        done = coatcheck("guest", "check", words[0], cwd=tmp_path)
+        assert done.returncode == 0, done.stdout + done.stderr
+        assert "4 of 4 comparisons agree" in done.stdout
+    assert coatcheck("guest", "init", "mine", cwd=tmp_path).returncode == 2
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("", "name is missing"),
+        ('name = "x"', "needs exactly one of callable, command, results"),
+        ('name = "x"\ncallable = "a"', "module:function"),
+        ('name = "x"\ncallable = "a:b"\ncommand = ["c"]', "exactly one"),
+        ('name = "hertz"\ncallable = "a:b"', "name of a source of coatcheck"),
+        ('name = "x"\ncallable = "a:b"\nclaim = 2', "claim"),
+        ('name = "x"\ncallable = "a:b"\n[refine]\nn = [1, 2]', "refine.n"),
+        ('name = "x"\ncallable = "a:b"\n[refine]\nn = [1, 4, 2]', "coarse to fine"),
+        ('name = "x"\ncallable = "a:b"\n[known]\n"p" = "why"', "case/quantity"),
+        ('name = "x"\ncallable = "a:b"\n[units]\nlength = "inch"', "units.length"),
+        ('name = "x"\ncallable = "a:b"\nfrobnicate = 1', "frobnicate"),
+    ],
+)
+def test_a_guest_file_that_cannot_be_used_is_code_2_with_one_message(tmp_path, text, words):
+    (tmp_path / "g").mkdir()
+    (tmp_path / "g" / "guest.toml").write_text(text)
+    done = coatcheck("guest", "run", "g", cwd=tmp_path)
+    assert done.returncode == 2
+    assert words in done.stderr
+    assert len(done.stderr.strip().splitlines()) == 1
+
+
+def test_exit_codes_of_a_guest(tmp_path):
+    shutil.copytree(EXAMPLES / "start", tmp_path / "g")
+    adapter = tmp_path / "g" / "adapter.py"
+    right = adapter.read_text()
+    run_it = ("guest", "run", "g", "01_uncoated_steel", "05_ratio_4", "--json")
+    done = coatcheck(*run_it, cwd=tmp_path)
+    found = json.loads(done.stdout)
+    assert (done.returncode, found["cases"]["01_uncoated_steel"]["AGREES"]) == (0, 4)
+    assert set(found["cases"]["05_ratio_4"]) == {"UNSUPPORTED"}
+    assert (tmp_path / "g" / "report" / "junit.xml").read_text().count("<skipped") == 24
+    adapter.write_text(right.replace('"contact_radius": a', '"contact_radius": 2 * a'))
+    assert coatcheck(*run_it, cwd=tmp_path).returncode == 1
+    known = '\n[known]\n"01_*/contact_radius" = "reported"\n'
+    (tmp_path / "g" / "guest.toml").write_text((EXAMPLES / "start" / "guest.toml").read_text() + known)
+    assert coatcheck(*run_it, cwd=tmp_path).returncode == 0
+    adapter.write_text(right)
+    done = coatcheck(*run_it, cwd=tmp_path)  # a known failure that agrees
+    assert (done.returncode, json.loads(done.stdout)["unexpected"]) != (0, [])
+    adapter.write_text(right.replace("return {", 'raise RuntimeError("no licence")\n    return {'))
+    assert coatcheck(*run_it, cwd=tmp_path).returncode == 3
+    adapter.write_text(right)
+    text = (EXAMPLES / "start" / "guest.toml").read_text()
+    (tmp_path / "g" / "guest.toml").write_text(text.replace("claim = ", "# claim = "))
+    assert coatcheck(*run_it, cwd=tmp_path).returncode == 4
+
+
+def test_units_of_a_guest_are_converted_both_ways(tmp_path):
+    shutil.copytree(EXAMPLES / "start", tmp_path / "g")
+    units = '\n[units]\nlength = "mm"\nstress = "MPa"\n'
+    (tmp_path / "g" / "guest.toml").write_text((EXAMPLES / "start" / "guest.toml").read_text() + units)
+    done = coatcheck("guest", "check", "g", cwd=tmp_path)
+    assert done.returncode == 0, done.stdout  # N, mm, MPa are consistent
+
+
+def test_files_that_are_filled_in_wrongly_are_named(tmp_path):
+    case = read_case(shipped_cases()["01_uncoated_steel"])
+    prepare(case.name, case.text, str(tmp_path / "exam.json"))
+    exam = from_json(read_checked(tmp_path / "exam.json"))
+    guest = guest_in(tmp_path / "files", f'name = "f"\nresults = "answers"\nclaim = 0.01\n{SUPPORTS}')
+    question = question_of(case, exam, guest, claims_of(case, guest), {})
+    folder = pack(guest, case, question)
+    assert read_answer(guest, case, question).unsupported is not None
+    contact, points = folder / "contact.csv", folder / "points.csv"
+    empty = contact.read_text(), points.read_text()
+    contact.write_text(empty[0].replace("contact_radius,m,", "contact_radius,m,8.66e-5"))
+    assert read_answer(guest, case, question).values == {"contact": {"contact_radius": 8.66e-5}}
+    contact.write_text(empty[0].replace("contact_radius,m,", "contact_radius,m,wide"))
+    with pytest.raises(ProtocolError, match=r"contact.csv: row 3: 'wide' is not a number"):
+        read_answer(guest, case, question)
+    contact.write_text(empty[0])
+    points.write_text("\n".join(empty[1].splitlines()[:-1]))
+    with pytest.raises(ProtocolError, match="each once"):
+        read_answer(guest, case, question)
+    lines = empty[1].splitlines()
+    lines[1] = lines[1].replace("0,,,,-", "0,1e9,,,-")
+    points.write_text("\n".join(lines))
+    with pytest.raises(ProtocolError, match=r"row 3, pressure is empty"):
+        read_answer(guest, case, question)
+
+
+def test_the_schema_of_the_package_is_that_of_the_code():
+    stored = json.loads((PACKAGE / "guests" / "protocol.schema.json").read_text())
+    assert stored == schema()

@@ -1,0 +1,291 @@
+"""coatcheck guest: contact codes of others, examined."""
+
+import datetime
+import shlex
+import time
+from collections import Counter
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Annotated, Any
+
+import numpy as np
+from cyclopts import Parameter
+from rich.markup import escape
+
+from verification.cases.contact import Case, read_case, shipped_cases
+from verification.cases.toml import CaseError
+from verification.commands.common.exits import EXIT, CommandError, with_exit_code
+from verification.commands.common.folders import PACKAGE
+from verification.commands.common.options import AsJson, Flag, Jobs, Quiet
+from verification.commands.common.solving import run_info, solve, worker_count
+from verification.commands.common.terminal import (
+    STYLE,
+    did_you_mean,
+    named_table,
+    one_line,
+    print_json,
+    print_out,
+)
+from verification.guests.description import FILE, Guest, parse_guest, read_guest
+from verification.guests.diagnosis import slips
+from verification.guests.exam import REFERENCE
+from verification.guests.examination import Examined, examined, outcome_counts, packed_cases
+from verification.judging.outcome import Outcome
+from verification.problem.quantity import unit_of
+from verification.regression.junit import junit_xml
+from verification.report.tables.numbers import engineering
+from verification.running.pool import Task
+from verification.running.result import CaseResult
+from verification.running.store import locked, write_atomically
+
+Folder = Annotated[Path | None, Parameter(name=["--output", "-o"])]
+UNCOATED, COATED = ("01_uncoated_steel", "13_uncoated_sliding"), ("05_ratio_4", "14_ratio_4_sliding")
+SHOWN = (Outcome.AGREES, Outcome.DISAGREES, Outcome.INCONCLUSIVE, Outcome.NO_RESULT, Outcome.UNSUPPORTED)
+MOST_SHOWN = 12
+EXAMPLES = PACKAGE / "guests" / "examples"
+PACKED = """name = "my results"
+results = "answers"               # directory of the files to fill in
+claim = 0.01                      # relative; needed where no uncertainty is given
+edge = 0.05                       # of a: half-width of a zone around the contact edge that is left out
+supports = { coatings = 50, friction = true, stress = true }
+# [units]                         # if not SI, before coatcheck guest pack
+# length = "mm"
+# stress = "MPa"
+"""
+
+
+@with_exit_code
+def init(folder: Path, /, *, program: Flag = False) -> int:
+    """Write a guest file with an adapter that runs as it is: Hertz, to be replaced by a call of the code.
+
+    Args:
+        folder: Directory to make; files that are there stay as they are.
+        program: Write an adapter that is a program of its own, with questions and answers as lines of JSON.
+    """
+    source = EXAMPLES / ("program" if program else "start")
+    for name in (FILE, "adapter.py"):
+        if (folder / name).exists():
+            raise CommandError(f"{folder / name}: is there already; choose another directory")
+    name = "".join(c for c in folder.resolve().name if c.isprintable() and c not in '"\\')[:60] or "my code"
+    text = (source / FILE).read_text(encoding="utf-8")
+    text = f'name = "{name}"\n{text.partition(chr(10))[2]}'
+    parse_guest(text.encode(), folder / FILE)
+    write_atomically(folder / FILE, text)
+    write_atomically(folder / "adapter.py", (source / "adapter.py").read_bytes())
+    print_out(escape(f"{folder / FILE}, {folder / 'adapter.py'}; next: coatcheck guest check {folder}"))
+    return 0
+
+
+@with_exit_code
+def pack(folder: Path, /, *cases: str, jobs: Jobs = None, quiet: Quiet = False) -> int:
+    """Write every problem as JSON with its points as CSV, for codes that cannot be called.
+
+    Fill in contact.csv and points.csv of each problem, leave empty what the code does not give, then run
+    coatcheck guest judge. A guest.toml in the directory is used; otherwise one is written.
+
+    Args:
+        folder: Directory to make; files that are there stay as they are.
+        cases: Names of shipped cases, see coatcheck list, or .toml files; all shipped ones unless given.
+    """
+    jobs = worker_count(jobs, 1.0)
+    chosen = _chosen(cases)
+    if not (folder / FILE).exists():
+        write_atomically(folder / FILE, PACKED)
+    guest = read_guest(folder)
+    if guest.results is None:
+        raise CommandError(f'{folder / FILE}: results is missing; results = "answers" names the directory')
+    with locked(folder / "report"):
+        packed = packed_cases(guest, chosen, folder / "report", lambda t, limit: solve(t, jobs, limit, quiet))
+    line = f"{packed} problems in {folder / guest.results}; next: fill in their CSV files, then "
+    print_out(escape(f"{line}coatcheck guest judge {folder}"))
+    return 0
+
+
+@with_exit_code
+def run(
+    guest: str,
+    /,
+    *cases: str,
+    output: Folder = None,
+    jobs: Jobs = None,
+    quiet: Quiet = False,
+    as_json: AsJson = False,
+) -> int:
+    """Examine a guest on the shipped cases that it supports, at points that the suite chooses.
+
+    The exact reference is the judge. The uncertainty is what the guest states, or that of its refinement
+    study; without either its differences are compared with what it claims.
+
+    Exit codes: 0 what it answered agrees; 1 a disagreement, or a known failure that agrees; 2 a guest file
+    that cannot be used; 3 no result; 4 inconclusive.
+
+    Args:
+        guest: Directory with a guest.toml, that file, or the entry point of an installed guest.
+        cases: Names of shipped cases, see coatcheck list, or .toml files; all shipped ones unless given.
+        output: Directory of report.html, report.json, junit.xml, badge.svg; GUEST/report unless given.
+    """
+    jobs = worker_count(jobs, 1.0)
+    host = read_guest(guest)
+    chosen = _chosen(cases)
+    folder = output or host.folder / "report"
+    begin, started = time.perf_counter(), datetime.datetime.now(datetime.UTC)
+
+    def run_tasks(tasks: Sequence[Task[Any]], limit: float) -> list[Any]:
+        return solve(tasks, jobs, limit, quiet or as_json)
+
+    with locked(folder):
+        found = examined(host, chosen, folder, run_tasks, jobs)
+        info = run_info(shlex.join(["coatcheck", "guest", "run", guest, *cases]), started, jobs)
+        page = folder / "report.html"
+        write_atomically(folder / "junit.xml", junit_xml(found.results, info))
+    code = exit_code(found)
+    if as_json:
+        print_json(
+            {
+                "guest": host.name,
+                "exit_code": code,
+                "cases": {r.name: {o: n for o, n in outcome_counts([r]).items()} for r in found.results},
+                "known": list(found.known),
+                "unexpected": list(found.unexpected),
+            }
+        )
+    elif not quiet:
+        _print(found, time.perf_counter() - begin, page)
+    return code
+
+
+@with_exit_code
+def check(guest: str, /, *, output: Folder = None, jobs: Jobs = None, as_json: AsJson = False) -> int:
+    """Ask a guest an uncoated, a coated and a sliding problem; show its answers beside the exact ones.
+
+    What is wrong is compared with what common slips would give: units, signs, axes, a for 2a, a shift by half
+    a cell, the contact edge. The first problem that is wrong should be corrected first. Exit codes as of run.
+
+    Args:
+        guest: Directory with a guest.toml, that file, or the entry point of an installed guest.
+        output: Directory of the answers; GUEST/check unless given.
+    """
+    jobs = worker_count(jobs, 1.0)
+    host = read_guest(guest)
+    folder = output or host.folder / "check"
+    names = (UNCOATED[0], *COATED) if host.supports.coatings else UNCOATED
+    chosen = [case for case in _chosen(names) if host.refusal(case.problem) is None]
+    with locked(folder):
+        found = examined(host, chosen, folder, lambda tasks, limit: solve(tasks, jobs, limit, as_json), jobs)
+    code = exit_code(found)
+    if as_json:
+        named = {r.name: [str(slip) for slip in slips(r, host.name)] for r in found.results}
+        print_json({"guest": host.name, "exit_code": code, "slips": named})
+        return code
+    for result in found.results:
+        _show(host, result)
+    total = outcome_counts(found.results)
+    answered = sum(total[o] for o in SHOWN[:-1])
+    line = f"{host.name}: {total[Outcome.AGREES]} of {answered} comparisons agree"
+    print_out(escape(line + ("; next: coatcheck guest run " + shlex.quote(guest) if not code else "")))
+    return code
+
+
+def _show(guest: Guest, result: CaseResult) -> None:
+    """The answers of a guest about one case beside the exact ones, then the slips."""
+    print_out(f"\n[bold]{escape(result.title)}[/] ({escape(result.name)})")
+    table = named_table("quantity", "line", "at", "guest", "exact", "difference", "verdict")
+    for claim, verdict in result.verdicts:
+        mine = result.profile_of.get((claim.quantity, claim.line, guest.name))
+        exact = result.profile_of.get((claim.quantity, claim.line, REFERENCE))
+        if verdict.outcome is Outcome.UNSUPPORTED or mine is None or exact is None:
+            continue
+        # The point that decides, or where the exact value is largest.
+        worst = verdict.worst if verdict.worst is not None else exact.position[np.abs(exact.value).argmax()]
+        i = int(np.abs(exact.position - worst).argmin())
+        at = "" if claim.line == "contact" else f"{'z' if claim.line == 'axis' else 'x'} = {worst:.3g} m"
+        shown = [engineering(p.value[i], unit_of(claim.quantity), 6) for p in (mine, exact)]
+        gap = "-" if verdict.difference is None else f"{verdict.difference:.1e}"
+        line = "" if claim.line == "contact" else claim.line
+        word = f"[{STYLE[verdict.outcome]}]{verdict.outcome}[/]"
+        table.add_row(claim.quantity, line, at, *shown, gap, word)
+    if table.rows:
+        print_out(table)
+    failures = {s.failure for s in result.sources if s.failure}
+    for failure in sorted(failures):
+        print_out(f"[bold red]no result:[/] {escape(one_line(failure))}")
+    missing = Counter(v.reason for _, v in result.verdicts if v.outcome is Outcome.UNSUPPORTED)
+    for reason, count in missing.items():
+        print_out(f"[dim]{count} comparisons unsupported: {escape(one_line(reason))}[/]")
+    for slip in slips(result, guest.name):
+        print_out(f"[bold]->[/] {escape(one_line(str(slip)))}")
+
+
+def exit_code(found: Examined) -> int:
+    """The code of the worst verdict that is not a known failure."""
+    outcomes = {verdict.outcome for _, _, verdict in found.counted}
+    if found.unexpected:
+        outcomes.add(Outcome.DISAGREES)
+    for outcome in (Outcome.DISAGREES, Outcome.NO_RESULT, Outcome.INCONCLUSIVE, Outcome.AGREES):
+        if outcome in outcomes:
+            return EXIT[outcome]
+    return EXIT[Outcome.AGREES] if found.known else EXIT[Outcome.NO_RESULT]
+
+
+def _chosen(names: Sequence[str]) -> list[Case]:
+    shipped = shipped_cases()
+    cases = []
+    for name in names or shipped:
+        if name in shipped:
+            cases.append(read_case(shipped[name]))
+        elif name.endswith(".toml"):
+            cases.append(read_case(Path(name)))
+        else:
+            near = did_you_mean(name, shipped)
+            raise CaseError(f"{name}: neither a shipped case (see coatcheck list) nor a .toml file{near}")
+    twice = [name for name, count in Counter(case.name for case in cases).items() if count > 1]
+    if twice:
+        raise CaseError(f"{twice[0]}: named twice; give each case file a name of its own")
+    return cases
+
+
+def _print(found: Examined, seconds: float, page: Path) -> None:
+    table = named_table(
+        "case", "agrees", "disagrees", "inconclusive", "no result", "unsupported", "largest", "s"
+    )
+    for result in found.results:
+        counts = outcome_counts([result])
+        worst = max((v.difference for _, v in result.verdicts if v.difference is not None), default=None)
+        cells = [f"[{STYLE[o]}]{counts[o]}[/]" if counts[o] else "." for o in SHOWN]
+        taken = f"{result.seconds:.1f}" if result.seconds else "-"
+        table.add_row(escape(result.name), *cells, "-" if worst is None else f"{worst:.1e}", taken)
+    print_out(table)
+    for line in _messages(found):
+        print_out(line)
+    total = outcome_counts(found.results)
+    answered = sum(total[o] for o in SHOWN[:-1])
+    print_out(
+        escape(
+            f"{found.guest.name}: {total[Outcome.AGREES]} of {answered} comparisons agree, "
+            f"{total[Outcome.UNSUPPORTED]} unsupported; {len(found.results)} cases in {seconds:.0f} s"
+        )
+    )
+
+
+def _messages(found: Examined) -> list[str]:
+    """A line for each different message about what does not agree, the first of each case."""
+    lines = []
+    for name, reason in found.unexpected:
+        lines.append(f"[bold red]{escape(name)}:[/] listed as a known failure ({escape(reason)}), but agrees")
+    for result in found.results:
+        seen: Counter[str] = Counter()
+        for claim, verdict in result.verdicts:
+            if verdict.outcome in (Outcome.AGREES, Outcome.UNSUPPORTED):
+                continue
+            where = "" if claim.line == "contact" else f" on {claim.line}"
+            key = (
+                verdict.reason if verdict.difference is None else f"{claim.quantity}{where}: {verdict.reason}"
+            )
+            seen[key] += 1
+        for text, count in list(seen.items())[:MOST_SHOWN]:
+            more = f" ({count} comparisons)" if count > 1 else ""
+            lines.append(f"[bold red]{escape(result.name)}:[/] {escape(one_line(text))}{more}")
+        if len(seen) > MOST_SHOWN:
+            lines.append(f"{escape(result.name)}: {len(seen) - MOST_SHOWN} more, see the report")
+        lines += [f"[bold]->[/] {escape(one_line(str(slip)))}" for slip in slips(result, found.guest.name)]
+    return lines

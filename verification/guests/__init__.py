@@ -1,0 +1,1 @@
+"""Guests: contact codes of others, examined on the shipped cases like the two methods."""

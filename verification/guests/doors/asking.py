@@ -1,0 +1,105 @@
+"""A guest asked about one case at every level, as a task of the pool."""
+
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+from verification.cases.contact import Case, parse_case
+from verification.guests.description import Guest, parse_guest
+from verification.guests.doors.files import read_answer
+from verification.guests.doors.program import Program, Solved, command_of
+from verification.guests.exam import claims_of, exam_path, question_of
+from verification.guests.protocol import VERSION, Answer, ProtocolError, Question
+from verification.running.pool import Task
+from verification.running.records import plain
+from verification.running.result import from_json
+from verification.running.store import StoreError, read_checked, write_checked
+
+Replies = list[Solved]
+
+
+def ask(guest_file: str, guest_text: str, name: str, text: str, exam: str, path: str) -> None:
+    """Put the case file ``text`` to the guest at every level; store its answers at ``path``."""
+    guest = parse_guest(guest_text.encode(), Path(guest_file))
+    case = parse_case(text.encode(), Path(f"{name}.toml"))
+    result = from_json(read_checked(Path(exam)))
+    claims = claims_of(case, guest)
+    questions = [question_of(case, result, guest, claims, parameter) for parameter in guest.questions]
+    replies = answered(guest, case, questions, _at_work)
+    content = [
+        {"answer": solved.answer.model_dump(), "seconds": solved.seconds, "memory": solved.memory}
+        for solved in replies
+    ]
+    write_checked(Path(path), {"schema": VERSION, "replies": plain(content)})
+
+
+# The program of the last case, which answers the next one too where both share a process.
+_at_work: dict[str, Program] = {}
+
+
+def answered(
+    guest: Guest, case: Case, questions: list[Question], at_work: dict[str, Program] | None = None
+) -> Replies:
+    """The guest's answer to each question; what it does instead becomes an error, and ends the questions.
+
+    at_work : programs by guest file that are left to go on; one started here ends here without.
+    """
+    replies: Replies = []
+    programs = {} if at_work is None else at_work
+    key = guest.text
+    try:
+        for question in questions:
+            if guest.results is not None:
+                replies.append(Solved(read_answer(guest, case, question), 0.0))
+            else:
+                if key not in programs:
+                    programs[key] = Program(command_of(guest), guest.folder)
+                replies.append(programs[key].ask(question, guest.time_limit))
+    except ProtocolError as error:
+        replies.append(Solved(_failed(questions[len(replies)], str(error)), 0.0))
+    if key in programs and (at_work is None or replies[-1].answer.error is not None):
+        programs.pop(key).end()
+    return replies
+
+
+def end_programs() -> None:
+    """End the programs at work in this process; those of the pool end with theirs."""
+    while _at_work:
+        _at_work.popitem()[1].end()
+
+
+def ask_task(guest: Guest, case: Case, folder: Path, process: int = 0) -> Task[Replies]:
+    """Asking ``guest`` about ``case``, whose exact reference lies in ``folder``.
+
+    process : tasks of one number share a process, and so the program of the guest.
+    """
+    path = folder / "answers" / f"{case.name}.json"
+    words = (
+        "verification.guests.doors.asking:ask",
+        str(guest.folder / "guest.toml"),
+        guest.text,
+        case.name,
+        case.text,
+        str(exam_path(folder, case)),
+        str(path),
+    )
+    cost = 1.0 + len(case.problem.coatings)
+    return Task(case.name, words, path, _read, partial(_none, case), cost=cost, together=process)
+
+
+def _read(data: dict[str, Any]) -> Replies:
+    if data.get("schema") != VERSION:
+        raise StoreError("not answers of this version")
+    return [
+        Solved(Answer.model_validate(reply["answer"]), reply["seconds"], reply["memory"])
+        for reply in data["replies"]
+    ]
+
+
+def _none(case: Case, reason: str, seconds: float) -> Replies:
+    answer = Answer(protocol=VERSION, id=case.name, error=reason)
+    return [Solved(answer, seconds)]
+
+
+def _failed(question: Question, reason: str) -> Answer:
+    return Answer(protocol=VERSION, id=question.id, error=reason[:2000])

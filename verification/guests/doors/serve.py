@@ -1,0 +1,74 @@
+"""The door of Python functions: python -m verification.guests.doors.serve MODULE:FUNCTION.
+
+Answers the questions on standard input by calls of the function. What the function prints goes to standard
+error, so that it is not taken for an answer.
+"""
+
+import inspect
+import os
+import sys
+import traceback
+from collections.abc import Callable
+from importlib import import_module
+from typing import Any
+
+from verification.guests.doors.face import NotGiven, values_of
+from verification.guests.protocol import TOKEN, VERSION, Answer, Question
+from verification.problem.contact import CoatedContact, NotClaimed, keywords
+from verification.running.records import plain
+
+
+def main(place: str) -> None:
+    """Answer every line of standard input."""
+    replies = os.fdopen(os.dup(1), "w", encoding="utf-8")
+    os.dup2(2, 1)
+    sys.path.insert(0, os.getcwd())
+    for line in sys.stdin:
+        question = Question.model_validate_json(line)
+        replies.write(f"{TOKEN} {answer(place, question).model_dump_json()}\n")
+        replies.flush()
+
+
+def answer(place: str, question: Question) -> Answer:
+    """The answer of the function at ``place``; an exception becomes an answer too."""
+    given: dict[str, Any] = {"protocol": VERSION, "id": question.id}
+    try:
+        module, _, name = place.partition(":")
+        function: Any = import_module(module)
+        for part in name.split("."):
+            function = getattr(function, part)
+        problem = problem_of(question)
+        values, uncertainty = values_of(called(function, problem, question.parameter), problem, question)
+        return Answer(**given, values=plain(values), uncertainty=plain(uncertainty))
+    except (NotImplementedError, NotClaimed, NotGiven) as error:
+        return Answer(**given, unsupported=_message(error) or "not implemented")
+    except Exception as error:
+        frames = traceback.extract_tb(error.__traceback__)
+        where = f" ({os.path.basename(frames[-1].filename)}, line {frames[-1].lineno})" if frames else ""
+        return Answer(**given, error=f"{type(error).__name__}: {_message(error)}{where}")
+
+
+def problem_of(question: Question) -> CoatedContact:
+    """The problem of ``question`` in the units of the guest."""
+    p = question.problem
+    coatings = tuple((c.E, c.nu, c.thickness or 0.0) for c in p.coatings)
+    return CoatedContact(p.radius, p.load, coatings, (p.substrate.E, p.substrate.nu), p.friction)
+
+
+def called(function: Callable[..., Any], problem: CoatedContact, parameter: dict[str, float]) -> Any:
+    """``function`` called with the problem by keywords; friction or coatings it lacks must be none."""
+    given = keywords(problem)
+    accepted = inspect.signature(function).parameters
+    if not any(p.kind is inspect.Parameter.VAR_KEYWORD for p in accepted.values()):
+        for name, nothing in (("friction", 0.0), ("coatings", ())):
+            if name not in accepted and given[name] == nothing:
+                del given[name]
+    return function(**given, **parameter)
+
+
+def _message(error: BaseException) -> str:
+    return " ".join(str(error).split())[:500]
+
+
+if __name__ == "__main__":
+    main(sys.argv[1])

@@ -1,0 +1,127 @@
+"""Examination of a guest on several cases: exact references, questions, answers, verdicts."""
+
+from collections import Counter
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+from verification.cases.contact import Case
+from verification.guests.description import Guest
+from verification.guests.doors.asking import ask_task, end_programs
+from verification.guests.doors.files import pack
+from verification.guests.doors.program import Solved
+from verification.guests.exam import claims_of, exam_task, kept_exam, question_of
+from verification.guests.verdicts import judged, refused
+from verification.judging.verdict import Claim, Outcome, Verdict
+from verification.running.result import CaseResult
+from verification.running.store import StoreError
+
+Solve = Callable[[Sequence[Any], float], list[Any]]  # tasks and their time limit [s]
+EXACT_LIMIT = 300.0  # s of the exact reference of a case
+MARGIN = 30.0  # s beyond the limits of the guest's own answers, to end it
+
+
+@dataclass(frozen=True, eq=False)
+class Examined:
+    """The results of a guest, a case each, and its answers at each level by case."""
+
+    guest: Guest
+    results: tuple[CaseResult, ...]
+    replies: dict[str, list[Solved]]
+
+    @cached_property
+    def _known(self) -> dict[tuple[str, Claim], str]:
+        found = {}
+        for result in self.results:
+            for claim, verdict in result.verdicts:
+                reason = self.guest.known_failure(result.name, claim.quantity, claim.line)
+                if reason is not None and verdict.outcome is not Outcome.UNSUPPORTED:
+                    found[result.name, claim] = reason
+        return found
+
+    @property
+    def counted(self) -> list[tuple[str, Claim, Verdict]]:
+        """Case, claim and verdict of every comparison but known failures."""
+        return [
+            (result.name, claim, verdict)
+            for result in self.results
+            for claim, verdict in result.verdicts
+            if (result.name, claim) not in self._known
+        ]
+
+    @property
+    def known(self) -> list[tuple[str, str]]:
+        """Name and reason of each known failure that does fail."""
+        return self._of_known(agrees=False)
+
+    @property
+    def unexpected(self) -> list[tuple[str, str]]:
+        """Name and reason of each entry of known failures of which nothing fails."""
+        failing = {reason for _, reason in self.known}
+        return [item for item in self._of_known(agrees=True) if item[1] not in failing]
+
+    def _of_known(self, *, agrees: bool) -> list[tuple[str, str]]:
+        return [
+            (f"{result.name}/{claim.quantity}/{claim.line}", self._known[result.name, claim])
+            for result in self.results
+            for claim, verdict in result.verdicts
+            if (result.name, claim) in self._known and (verdict.outcome is Outcome.AGREES) is agrees
+        ]
+
+
+def examined(guest: Guest, cases: Sequence[Case], folder: Path, solve: Solve, jobs: int = 1) -> Examined:
+    """``guest`` examined on ``cases``, exact references and answers stored under ``folder``.
+
+    solve : runs tasks with a time limit each, as ``run_tasks`` does.   jobs : programs side by side.
+    """
+    chosen = [case for case in cases if guest.refusal(case.problem) is None]
+    exams = dict(zip((case.name for case in chosen), _exams(chosen, folder, solve), strict=True))
+    able = [case for case in chosen if exams[case.name].profiles]
+    limit = guest.time_limit * len(guest.questions) + MARGIN
+    tasks = [ask_task(guest, case, folder, number % jobs) for number, case in enumerate(able)]
+    try:
+        answers = solve(tasks, limit)
+    finally:
+        end_programs()
+    replies = {case.name: answer for case, answer in zip(able, answers, strict=True)}
+    results = []
+    for case in cases:
+        reason = guest.refusal(case.problem)
+        if reason is not None:
+            results.append(refused(guest, case, reason))
+        elif case.name in replies:
+            results.append(judged(guest, case, exams[case.name], replies[case.name]))
+        else:
+            results.append(exams[case.name])
+    return Examined(guest, tuple(results), replies)
+
+
+def packed_cases(guest: Guest, cases: Sequence[Case], folder: Path, solve: Solve) -> int:
+    """Write the files to fill in of each case that ``guest`` supports; returns how many.
+
+    Raises StoreError where one cannot be solved or written.
+    """
+    chosen = [case for case in cases if guest.refusal(case.problem) is None]
+    for case, exam in zip(chosen, _exams(chosen, folder, solve), strict=True):
+        if not exam.profiles:
+            raise StoreError(f"{case.name}: {exam.sources[0].failure}")
+        claims = claims_of(case, guest)
+        for parameter in guest.questions:
+            pack(guest, case, question_of(case, exam, guest, claims, parameter))
+    return len(chosen)
+
+
+def _exams(cases: Sequence[Case], folder: Path, solve: Solve) -> list[CaseResult]:
+    """The exact reference of each case, those of an earlier run kept."""
+    found = {case.name: exam for case in cases if (exam := kept_exam(folder, case)) is not None}
+    new = [case for case in cases if case.name not in found]
+    solved = solve([exam_task(case, folder) for case in new], EXACT_LIMIT)
+    found |= {case.name: exam.result for case, exam in zip(new, solved, strict=True)}
+    return [found[case.name] for case in cases]
+
+
+def outcome_counts(results: Sequence[CaseResult]) -> Counter[Outcome]:
+    """How many comparisons have each outcome."""
+    return Counter(verdict.outcome for result in results for _, verdict in result.verdicts)
