@@ -23,7 +23,7 @@ component, the largest difference at the samples of all triangles times the same
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from functools import cached_property
 
 import numpy as np
@@ -176,6 +176,10 @@ class StressEstimate:
     relative: float
     everywhere: float
     far: float
+
+    def __getstate__(self) -> dict[str, object]:
+        # pickled without the cached properties
+        return {f.name: getattr(self, f.name) for f in fields(self)}
 
     def displacement(self, u: np.ndarray) -> np.ndarray:
         """Estimate (3, n) of the displacement ``u`` (3, n) at any points."""

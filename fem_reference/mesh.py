@@ -50,7 +50,7 @@ class Grading:
     def of(cls, size: float, edge_size: float = EDGE_SIZE) -> "Grading":
         """All sizes from one; the fan at the edge and the far field need less fine triangles."""
         edge_rate = min(1.4 * size, 0.6)
-        return cls(size, edge_rate, edge_size, axis_size=0.65 * size, far_size=2.7 * size)
+        return cls(size, edge_rate, edge_size, axis_size=0.65 * size, far_size=min(2.7 * size, 0.7))
 
 
 @dataclass(frozen=True, eq=False)

@@ -2,7 +2,6 @@
 
 import time
 from dataclasses import dataclass, field, replace
-from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -103,7 +102,7 @@ class Solution:
         """Fields of the flat in scaled units."""
         return self.bodies[0].state
 
-    @cached_property
+    @property
     def coarser(self) -> "Solution | None":
         """The companion by which the errors were estimated, without estimates; None where there is none."""
         estimated = [body.estimates for body in self.bodies if body.estimates is not None]

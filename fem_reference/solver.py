@@ -35,7 +35,7 @@ Coatings = tuple[tuple[float, float, float], ...]
 Ball = tuple[float, float, Coatings]
 
 # triangle size over its distance from the contact edge
-QUALITY = {"fast": 0.36, "default": 0.12, "fine": 0.1}
+QUALITY = {"fast": 0.27, "default": 0.12, "fine": 0.1}
 LOAD_TOLERANCE = 1e-8
 
 
