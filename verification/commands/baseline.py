@@ -53,11 +53,8 @@ def update(*runs: Path, why: str = "", baseline: BaselineFolder = BASELINE, quie
         for name, (count, change) in changed.items():
             by = "" if change is None else f", by up to {change:.1e} of their scale"
             print_out(escape(f"{name}: {count} numbers changed{by}"))
-        for row in made.last.judged:
-            sign = "less" if row.less else "more"
-            print_out(
-                escape(f"{sign} is judged: {', '.join(filter(None, (row.case, row.message)))} ({row.count})")
-            )
+        for row in made.last.less:
+            print_out(escape(f"no longer judged: {row.case or 'harness'}, {row.message} ({row.count})"))
         if not changed and len(made.history) > 1:
             print_out("no number changed")
     return 0

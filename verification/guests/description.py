@@ -33,9 +33,10 @@ LEAST_LEVELS, MOST_LEVELS = 3, 12
 
 
 class Supports(Strict):
-    """What a code can solve: the largest number of coatings, friction, stresses below the surface."""
+    """What a code can solve: the largest number of coatings, friction, stresses, an elastic ball."""
 
     coatings: Annotated[int, Field(ge=0, le=50)] = 0
+    ball: bool = False
     friction: bool = False
     stress: bool = False
 
@@ -122,6 +123,8 @@ class Guest:
             return f"the guest supports {self.supports.coatings} coatings, this problem has {count}"
         if problem.friction and not self.supports.friction:
             return "the guest does not support friction"
+        if problem.ball is not None and not self.supports.ball:
+            return "the guest does not support an elastic ball"
         return None
 
     def gives(self, quantity: str) -> bool:

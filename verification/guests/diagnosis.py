@@ -98,7 +98,7 @@ def _of_inputs(result: CaseResult, guest: str) -> str | None:
 
     gives the factors of R, W and E* that explain the three ratios to the exact values.
     """
-    if result.problem["coatings"]:
+    if result.problem["coatings"] or result.problem.get("ball"):
         return None
     ratios = {}
     for name in ("contact_radius", "peak_pressure", "approach"):

@@ -9,8 +9,9 @@ import numpy as np
 
 from verification.cases.contact import Case, parse_case
 from verification.guests.description import Guest
-from verification.guests.protocol import Answer, Layer, LineOfPoints, Question, Sphere
+from verification.guests.protocol import Answer, ElasticBall, Layer, LineOfPoints, Question, Sphere
 from verification.judging.verdict import Claim
+from verification.problem.arrays import Coatings
 from verification.problem.geometry import layer_at
 from verification.problem.profile import Profile, line_of, lines_of
 from verification.problem.quantity import SLOPES, unit_of
@@ -134,13 +135,21 @@ def question_of(
         lines.append(
             LineOfPoints(line=name, quantities=quantities, **{k: v.tolist() for k, v in points.items()})
         )
+
+    def materials(coatings: Coatings) -> list[Layer]:
+        return [Layer(E=E / Pa, nu=nu, thickness=h / m) for E, nu, h in coatings]
+
     E, nu = problem.substrate
+    ball = problem.ball and ElasticBall(
+        E=problem.ball[0] / Pa, nu=problem.ball[1], coatings=materials(problem.ball[2])
+    )
     sphere = Sphere(
         radius=problem.radius / m,
         load=problem.load / N,
         friction=problem.friction,
-        coatings=[Layer(E=E1 / Pa, nu=nu1, thickness=h / m) for E1, nu1, h in problem.coatings],
+        coatings=materials(problem.coatings),
         substrate=Layer(E=E / Pa, nu=nu),
+        ball=ball,
     )
     level = "".join(f"@{name}={value:g}" for name, value in parameter.items())
     return Question(

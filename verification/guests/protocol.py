@@ -35,14 +35,23 @@ class Layer(_Strict):
     thickness: float | None = None
 
 
+class ElasticBall(_Strict):
+    """The material of an elastic ball, its coatings from its surface inwards."""
+
+    E: float
+    nu: float
+    coatings: list[Layer]
+
+
 class Sphere(_Strict):
-    """A rigid, parabolic sphere on a coated half-space; coatings from the surface down."""
+    """A parabolic sphere on a coated half-space, rigid without ``ball``; coatings from the surface down."""
 
     radius: float
     load: float
     friction: float
     coatings: list[Layer]
     substrate: Layer
+    ball: ElasticBall | None = None
 
 
 class LineOfPoints(_Strict):

@@ -21,7 +21,7 @@ def judged(guest: Guest, case: Case, exam: CaseResult, replies: Sequence[Solved]
     """The verdicts on ``replies``, one for each level, with the profiles behind them."""
     levels = [profiles_of(reply.answer, exam, guest) for reply in replies]
     last = replies[-1].answer
-    found = {(p.quantity, p.line): p for p in levels[-1]} if last.values else {}
+    found = {(p.quantity, p.line): p for p in levels[-1]} if last.values is not None else {}
     if last.values and guest.levels:
         found = {key: _with_uncertainty(guest, key, profile, levels) for key, profile in found.items()}
     profiles = {(q, line, guest.name): profile for (q, line), profile in found.items()}
@@ -33,7 +33,7 @@ def judged(guest: Guest, case: Case, exam: CaseResult, replies: Sequence[Solved]
     outcomes = {guest.name: mine, REFERENCE: exact}
     verdicts = []
     for claim in claims_of(case, guest):
-        verdict = _refused(guest, claim, last.unsupported, found if last.values else None)
+        verdict = _refused(guest, claim, last.unsupported, found if last.values is not None else None)
         if verdict is None:
             verdict = decided(guest, claim, decide(claim, profiles, outcomes, case.problem))
         verdicts.append((claim, verdict))

@@ -22,6 +22,7 @@ class Invariant:
     value, bound : at the deciding point; None where there is no such number.
     message : the law, the residual, the bound.
     cap : largest admissible bound.   points : number of residuals; 0 where there is no result.
+    widest : the largest bound at any point, None where there is none.
     """
 
     name: str
@@ -32,6 +33,7 @@ class Invariant:
     message: str
     cap: float = CAP
     points: int = 0
+    widest: float | None = None
 
     @property
     def share(self) -> float | None:
@@ -64,15 +66,15 @@ def decide(
     if not np.isfinite(U).all() or U.min() < 0:
         return absent(name, source, f"{law}: the bound is not finite everywhere")
     at = int(np.argmax(r / U))
-    value, allowed = float(r[at]), float(U[at])
+    value, allowed, widest = float(r[at]), float(U[at]), float(U.max())
     message = f"{law}: residual {value:.1e}, bound {allowed:.1e}"
     if value > allowed:
-        return Invariant(name, source, value, allowed, Outcome.DISAGREES, message, cap, r.size)
-    if U.max() > cap:
-        message = f"{law}: bound {U.max():.1e} exceeds the cap {cap:.1e}"
-        value, allowed = float(r[U.argmax()]), float(U.max())
-        return Invariant(name, source, value, allowed, Outcome.INCONCLUSIVE, message, cap, r.size)
-    return Invariant(name, source, value, allowed, Outcome.AGREES, message, cap, r.size)
+        return Invariant(name, source, value, allowed, Outcome.DISAGREES, message, cap, r.size, widest)
+    if widest > cap:
+        message = f"{law}: bound {widest:.1e} exceeds the cap {cap:.1e}"
+        value = float(r[U.argmax()])
+        return Invariant(name, source, value, widest, Outcome.INCONCLUSIVE, message, cap, r.size, widest)
+    return Invariant(name, source, value, allowed, Outcome.AGREES, message, cap, r.size, widest)
 
 
 def absent(name: str, source: str, reason: str) -> Invariant:

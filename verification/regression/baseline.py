@@ -5,6 +5,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field
 from typing import Any
 
+from verification.regression.ability import Ability, abilities
 from verification.regression.drift import Drift, Numbers, State, drift, measured
 from verification.regression.manifest import Difference, Manifest, differences, differing_tests, manifest_of
 from verification.running.records import plain
@@ -50,7 +51,7 @@ class Update:
     """One update of the baseline: its reason, the run it was made from.
 
     changes : by case, how many numbers changed, with the largest change over its scale.
-    judged : how what is judged differs from the manifest before.
+    less : what is judged no longer.
     """
 
     why: str
@@ -60,7 +61,7 @@ class Update:
     versions: dict[str, str]
     numbers: int
     changes: dict[str, tuple[int, float | None]]
-    judged: tuple[Difference, ...] = ()
+    less: tuple[Difference, ...] = ()
 
 
 @dataclass(frozen=True, eq=False)
@@ -91,7 +92,7 @@ class Regression:
     """Comparison of a run with the baseline in ``folder``; ``update`` is None where there is no baseline.
 
     other_versions : (name, then, now) of the machine and each package that differs.
-    judged : how what the run judged differs from the manifest.
+    judged : how what the run judged differs from the manifest.   abilities : caps beside usual uncertainties.
     """
 
     folder: str
@@ -99,6 +100,7 @@ class Regression:
     cases: tuple[CaseDrift, ...]
     other_versions: tuple[tuple[str, str, str], ...] = ()
     judged: tuple[Difference, ...] = ()
+    abilities: tuple[Ability, ...] = ()
 
     @property
     def less(self) -> tuple[Difference, ...]:
@@ -179,7 +181,8 @@ def regression(
     judged += [Difference(c.name, "the case was not run", 1, True) for c in cases if c.name not in run]
     if self_tests is not None:
         judged += differing_tests(baseline.self_tests, self_tests)
-    return Regression(folder, then, cases, other, tuple(judged))
+    usual = abilities(results, baseline.cases, baseline.manifests)
+    return Regression(folder, then, cases, other, tuple(judged), usual)
 
 
 def differing(then: Mapping[str, str], now: Mapping[str, str]) -> tuple[tuple[str, str, str], ...]:
@@ -230,14 +233,14 @@ def updated(
         if count:
             changes[case.name] = (count, case.change)
     digests = {result.name: digest(result.text) for result in results}
-    judged: tuple[Difference, ...] = ()
+    less: tuple[Difference, ...] = ()
     if old is not None:
-        judged = regression(results, old, "", info, whole=True, self_tests=tests).judged
+        less = regression(results, old, "", info, whole=True, self_tests=tests).less
         for name in (name for name in old.cases if old.published(name) and name not in cases):
             cases[name], digests[name] = old.cases[name], old.digests[name]
             manifests[name] = old.manifests[name]
     numbers = sum(n.count for found in cases.values() for n in found)
-    update = Update(why, when, info.commit, info.machine, dict(info.versions), numbers, changes, judged)
+    update = Update(why, when, info.commit, info.machine, dict(info.versions), numbers, changes, less)
     return Baseline(cases, digests, (*(old.history if old is not None else ()), update), manifests, tests)
 
 

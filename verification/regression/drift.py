@@ -8,7 +8,8 @@ and a stated uncertainty within ``SAME``. On any machine a value has left its ba
 
     |now - then| > max(U, 5e-11 scale)
 
-and an uncertainty where it is more than four times that of the baseline, U its own stated uncertainty then.
+and an uncertainty where it is more than four times that of the baseline or less than a quarter, U the stated
+uncertainty then.
 scale is the largest magnitude of the profile, so that a number near zero needs no digits that it does not
 have; of a profile that vanishes (a shear that symmetry forbids) it is a thousandth of the largest profile of
 the same source and kind. 5e-11 is ten times the largest change of a value seen between two machines; at
@@ -117,7 +118,7 @@ def drift(then: Numbers, now: Numbers) -> Drift:
     left = ~(change <= np.fmax(stated / scale, TOLERANCE))  # a number that became NaN has left
     moved = left | ~(change <= RELATIVE) | (not shift <= RELATIVE)
     ratio = _ratio(then, now, TOLERANCE * scale)
-    grown, other = ~(ratio <= FACTOR), ~((ratio >= 1 / SAME) & (ratio <= SAME))
+    other, far = (~((ratio >= 1 / factor) & (ratio <= factor)) for factor in (SAME, FACTOR))
     messages = []
     if not shift <= RELATIVE:
         messages.append(f"its points moved by {shift:.1e} of the line")
@@ -131,7 +132,7 @@ def drift(then: Numbers, now: Numbers) -> Drift:
             f"{int(other.sum())} uncertainties changed, to {worst:.2g} times that of the baseline"
         )
     count = int(moved.sum() + other.sum())
-    beyond = bool(not shift <= SHIFT or left.any() or grown.any())
+    beyond = bool(not shift <= SHIFT or left.any() or far.any())
     largest = float(change.max()) if np.isfinite(change).all() else float("inf")
     state = State.DRIFTED if count else State.SAME
     comparable = largest if shift <= SHIFT else None

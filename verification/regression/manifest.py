@@ -10,6 +10,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from verification.judging.verdict import Judged, Outcome
+from verification.regression.drift import FACTOR
 from verification.running.result import CaseResult
 
 # A scale follows the solved p0, a position the solved a: what changes them by less changes no coverage.
@@ -29,12 +30,12 @@ class Comparisons:
 class Manifest:
     """What was judged of one case.
 
-    invariants : name, source, cap, number of residuals.   sources : those with a result.
+    invariants : name, source, cap, number of residuals, largest bound.   sources : those with a result.
     cells : of a published case, by kind: values that count, changes of their digits that a verdict notices.
     """
 
     comparisons: tuple[Comparisons, ...]
-    invariants: tuple[tuple[str, str, float, int], ...]
+    invariants: tuple[tuple[str, str, float, int, float], ...]
     sources: tuple[str, ...]
     cells: dict[str, int]
 
@@ -56,7 +57,9 @@ def manifest_of(result: CaseResult) -> Manifest:
         if verdict.judged is not None:
             alike[claim.line, verdict.judged].append((claim.quantity, *claim.between))
     comparisons = tuple(Comparisons(*key, tuple(pairs)) for key, pairs in alike.items())
-    invariants = tuple((one.name, one.source, one.cap, one.points) for one in result.invariants)
+    invariants = tuple(
+        (one.name, one.source, one.cap, one.points, one.widest or 0.0) for one in result.invariants
+    )
     sources = tuple(source.source for source in result.sources if source.failure is None)
     cells = {}
     if result.published:
@@ -123,8 +126,8 @@ def _entries(manifest: Manifest) -> _Entries:
             "widest gap": judged.gap,
         }
         found |= {(group.line, *pair): properties for pair in group.pairs}
-    for name, source, cap, points in manifest.invariants:
-        found[name, source] = {"cap": cap, "points": points}
+    for name, source, cap, points, bound in manifest.invariants:
+        found[name, source] = {"cap": cap, "points": points, "largest bound": bound}
     found |= {("source", source): {} for source in manifest.sources}
     found |= {("published", name): {"number": count} for name, count in manifest.cells.items()}
     return found
@@ -143,7 +146,8 @@ def _differences(then: _Entries, now: _Entries, lost: set[tuple[str, ...]]) -> I
             # In the direction of less: a smaller number of points, a larger cap.
             growth = old - new if name in (*_COUNTS, "last point") else new - old
             room = TOLERANCE * (length if name in ("first point", "last point") else abs(old))
-            if not abs(growth) <= (0 if name in _COUNTS else room):
+            room = 0 if name in _COUNTS else (FACTOR - 1) * old if name == "largest bound" else room
+            if not abs(growth) <= room:
                 what = key[0] if len(key) > 2 else ", ".join(key)
                 yield f"{what}: {name} {new:.6g} in place of {old:.6g}", not growth < 0
     for key in now.keys() - then.keys():

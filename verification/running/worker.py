@@ -3,6 +3,7 @@
 Cases of one process share the normal contact where they differ in friction alone.
 """
 
+from dataclasses import replace
 from functools import cache
 from importlib import import_module
 from pathlib import Path
@@ -15,7 +16,7 @@ from verification.running.fields import write_fields, write_plane
 from verification.running.provenance import fingerprint
 from verification.running.result import to_json
 from verification.running.store import write_checked
-from verification.sampling.plane import sample_plane
+from verification.sampling.plane import plane_invariants, sample_plane
 from verification.sources.methods import sharing_pressure
 from verification.sources.record import Solver
 from verification.sources.registry import METHODS, SOURCES, solvers
@@ -32,8 +33,11 @@ def contact(name: str, text: str, path: str, plane: str, directory: str | None =
     case = parse_case(text.encode(), Path(f"{name}.toml"))
     solved = solve_case(case, _solvers())
     result = judge_case(case, solved)
+    drawn = sample_plane(case.problem.interfaces, solved.solutions)
+    checked = plane_invariants(drawn, solved.solutions, case.problem)
+    result = replace(result, invariants=(*result.invariants, *checked))
     # The result comes last: where it lies, all that belongs to it does.
-    write_plane(Path(plane), sample_plane(case.problem.interfaces, solved.solutions), case.text)
+    write_plane(Path(plane), drawn, case.text)
     if directory is not None:
         write_fields(case, solved.solutions, Path(directory))
     write_checked(Path(path), to_json(result) | {"made_by": fingerprint()})

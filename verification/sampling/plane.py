@@ -9,12 +9,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from verification.judging.invariant import Invariant, decide
 from verification.problem.arrays import Array
-from verification.problem.contact import Solution
+from verification.problem.contact import CoatedContact, Solution, stress_with_uncertainty
 from verification.problem.quantity import IN_PLANE
 from verification.sources.registry import METHODS
 
-__all__ = ["Plane", "depths_of", "sample_plane"]
+__all__ = ["Plane", "depths_of", "plane_invariants", "sample_plane"]
 
 
 WIDTH = 2.0  # half width over the contact radius, where the grid of the semi-analytical method goes as far
@@ -23,6 +24,7 @@ DEEPEST = 3.0
 COLUMNS = 65
 LEVELS = 12  # over the depth of an uncoated solid
 FEWEST = 4  # in a layer, both its sides included
+CHECKED = np.array([-1.1, 0.45])  # over the contact radius: columns whose values are taken at points too
 CROWDING = 0.6  # levels are even in z ** CROWDING: close below the surface, wide apart below
 
 
@@ -60,6 +62,26 @@ def sample_plane(interfaces: tuple[float, ...], solutions: Mapping[str, Solution
         except Exception as error:  # a result does not depend on its pictures
             failures[name] = f"{type(error).__name__}: {' '.join(str(error).split())[:300]}"
     return Plane(x, depths, float(first.contact_radius), stress, failures)
+
+
+def plane_invariants(
+    plane: Plane, solutions: Mapping[str, Solution], problem: CoatedContact
+) -> tuple[Invariant, ...]:
+    """The stresses of ``plane`` are those at its points: two of each layer, beside and below the contact."""
+    columns = np.abs(plane.x[:, None] - plane.radius * CHECKED).argmin(axis=0) if plane.x.size else []
+    found = []
+    for name, layers in plane.stress.items():
+        gap, bound = [], []
+        for k, (z, drawn) in enumerate(zip(plane.depths, layers, strict=True)):
+            level = z.size // 2
+            at = plane.x[columns], 0.0, np.full(len(columns), z[level])
+            sigma, U = stress_with_uncertainty(solutions[name], *at, layer=k)
+            for n, c in enumerate(IN_PLANE.values()):
+                gap.append((drawn[n, level, columns] - sigma[c]) / problem.p_h)
+                bound.append(np.full(len(columns), np.inf) if U is None else U[c] / problem.p_h)
+        law = "stresses drawn are those at their points, over p_h"
+        found.append(decide("sampled plane", name, law, np.array(gap), np.array(bound)))
+    return tuple(found)
 
 
 def _columns(solution: Solution) -> Array:

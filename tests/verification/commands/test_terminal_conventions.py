@@ -48,6 +48,7 @@ COMMANDS = (
     "guest run",
     "guest pack",
     "guest judge",
+    "vectors",
     "study",
     "study thickness",
 )

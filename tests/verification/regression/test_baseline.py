@@ -113,7 +113,8 @@ def test_what_is_not_finite_has_drifted():
     [
         (10.0, State.DRIFTED, True),
         (3.9, State.DRIFTED, False),
-        (0.1, State.DRIFTED, False),
+        (0.3, State.DRIFTED, False),
+        (0.1, State.DRIFTED, True),
         (1.05, State.SAME, False),
     ],
 )
@@ -313,5 +314,5 @@ def test_the_shipped_baseline_is_whole_small_and_has_its_reasons():
     assert sorted(contacts) == sorted(shipped_cases())
     assert set(stored.cases) <= {*shipped_cases(), *published_cases()}
     assert set(stored.manifests) == set(stored.cases)
-    assert path_in(BASELINE).stat().st_size < 500_000
+    assert path_in(BASELINE).stat().st_size < 1_000_000  # 200,000 numbers take half of it
     assert all(update.why and update.when and update.versions for update in stored.history)

@@ -16,6 +16,7 @@ _ORDER = (
     "conjugate_gradients",
     "stress",
     "finite_elements",
+    "fields",
     "references",
     "harness",
 )

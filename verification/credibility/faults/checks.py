@@ -1,11 +1,13 @@
 """One check of the default run with its outcome."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from verification.credibility.self_tests import SelfTest
 from verification.judging.invariants import Invariant
 from verification.judging.verdict import Claim, Outcome, Verdict
 from verification.regression.baseline import Drift
+from verification.regression.manifest import Difference, manifest_message
 from verification.sources.registry import CLOSED, EXACT
 
 # The columns of the matrix of faults: title and what is compared.
@@ -18,6 +20,7 @@ COLUMNS = {
     "invariants": "invariants that one solution must satisfy by itself",
     "published": "tables published by others (coatcheck run published)",
     "self-tests": "known answers of the harness itself",
+    "manifest": "less that is judged: points, lines, invariants, or a wider cap or scale",
     "baseline": "numbers that changed; counted only where no other check can detect the fault",
 }
 
@@ -72,6 +75,13 @@ def of_baseline(row: Drift, case: str, same: bool) -> Check:
     outcome = Outcome.AGREES if same else Outcome.DISAGREES
     detail = f"{row.quantity} on {row.line}, {row.source}"
     return Check("baseline", "baseline", case, detail, outcome, row.message)
+
+
+def of_manifest(found: Sequence[Difference], case: str) -> Check:
+    """What is judged of a case compared with the clean run."""
+    message = manifest_message([row for row in found if row.less])
+    outcome = Outcome.DISAGREES if message else Outcome.AGREES
+    return Check("manifest", "manifest", case, "what is judged", outcome, message)
 
 
 def of_self_test(test: SelfTest) -> Check:

@@ -9,19 +9,30 @@ import numpy as np
 from verification.cases.columns import PublishedColumn
 from verification.cases.contact import Case, read_case, shipped_cases
 from verification.cases.published import PublishedCase, published_cases, read_published
-from verification.credibility.faults.checks import Check, of_baseline, of_claim, of_invariant, of_self_test
+from verification.credibility.faults.checks import (
+    Check,
+    of_baseline,
+    of_claim,
+    of_invariant,
+    of_manifest,
+    of_self_test,
+)
 from verification.credibility.faults.planting import Fault, planted
 from verification.credibility.self_tests import self_tests
+from verification.judging.invariant import Invariant
 from verification.judging.invariants import check as invariants_of
+from verification.judging.invariants.resolved import NAMES
 from verification.problem.contact import Solution
 from verification.problem.profile import Profile
 from verification.problem.quantity import DISPLACEMENTS
 from verification.regression.baseline import State, drift, measured
+from verification.regression.manifest import differences, manifest_of
 from verification.running import contact as run
 from verification.running import published as published_run
 from verification.running.result import CaseResult, SourceResult, from_json
 from verification.running.store import read_checked
 from verification.sampling.lines import sample, sample_contact
+from verification.sampling.plane import plane_invariants, sample_plane
 from verification.sources.registry import METHODS
 
 Profiles = dict[tuple[str, str, str], Profile]
@@ -105,6 +116,7 @@ def _judged(case: Case, clean: CaseResult, fault: Fault) -> tuple[list[Check], P
     outcomes |= solved.outcomes
     fresh: Profiles = {}
     checks: list[Check] = []
+    invariants: list[Invariant] = []
     for source, solution in solved.solutions.items():
         try:
             found = _sampled(case, clean, source, solution)
@@ -112,14 +124,33 @@ def _judged(case: Case, clean: CaseResult, fault: Fault) -> tuple[list[Check], P
             outcomes[source] = SourceResult(source, 0.0, run.message_of(error))
             continue
         fresh |= {(p.quantity, p.line, source): p for p in found}
-        checks += [of_invariant(row, case.name) for row in invariants_of(solution, source, case.problem)]
+        invariants += invariants_of(solution, source, case.problem)
+    drawn = sample_plane(case.problem.interfaces, solved.solutions)
+    invariants += plane_invariants(drawn, solved.solutions, case.problem)
     profiles |= fresh
+    checks += [of_invariant(row, case.name) for row in invariants]
     checks += _drifts(clean, fresh)
-    for claim in case.claims:
-        if not available or set(claim.between) & set(solve):
-            verdict = run.decide(claim, profiles, outcomes, case.problem)
-            checks.append(of_claim(claim, verdict, case.name, bool(case.problem.coatings)))
+    verdicts = [
+        (claim, run.decide(claim, profiles, outcomes, case.problem))
+        for claim in case.claims
+        if not available or set(claim.between) & set(solve)
+    ]
+    coated = bool(case.problem.coatings)
+    checks += [of_claim(claim, verdict, case.name, coated) for claim, verdict in verdicts]
+    now = replace(clean, verdicts=tuple(verdicts), invariants=tuple(invariants))
+    checks.append(_coverage(clean, now, set(solved.solutions)))
     return checks, fresh
+
+
+def _coverage(clean: CaseResult, now: CaseResult, sources: set[str]) -> Check:
+    """What the trial judged, compared with the clean run: its claims, the invariants of its ``sources``."""
+    claims = {(claim.quantity, claim.line, claim.between) for claim, _ in now.verdicts}
+    before = replace(
+        clean,
+        verdicts=tuple((c, v) for c, v in clean.verdicts if (c.quantity, c.line, c.between) in claims),
+        invariants=tuple(row for row in clean.invariants if row.source in sources and row.name not in NAMES),
+    )
+    return of_manifest(differences(now, manifest_of(before)), clean.name)
 
 
 def _sampled(case: Case, clean: CaseResult, source: str, solution: Solution) -> list[Profile]:

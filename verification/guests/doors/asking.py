@@ -7,7 +7,7 @@ from typing import Any
 from verification.cases.contact import Case, parse_case
 from verification.guests.description import Guest, parse_guest
 from verification.guests.doors.files import read_answer
-from verification.guests.doors.program import Program, Solved, command_of
+from verification.guests.doors.program import GRACE, Program, Solved, command_of
 from verification.guests.exam import claims_of, exam_path, question_of
 from verification.guests.protocol import VERSION, Answer, ProtocolError, Question
 from verification.running.pool import Task
@@ -58,7 +58,7 @@ def answered(
     except ProtocolError as error:
         replies.append(Solved(_failed(questions[len(replies)], str(error)), 0.0))
     if key in programs and (at_work is None or replies[-1].answer.error is not None):
-        programs.pop(key).end()
+        programs.pop(key).end(GRACE if replies[-1].answer.error is None else 0.0)
     return replies
 
 

@@ -48,25 +48,24 @@ class Program:
         except OSError as error:
             reason = f"{command[0]}: cannot be started ({error.strerror or error})"
             raise ProtocolError(f"{reason}; see command in guest.toml") from None
-        self.unread = b""
+        self.unread, self._seen = bytearray(), 0  # bytes of a line begun, how many hold no end of it
         self.last: deque[bytes] = deque(maxlen=2)
         self._drain = threading.Thread(target=self._keep_last_words, daemon=True)
         self._drain.start()
 
-    def end(self) -> None:
-        """Close its input, then end it where it does not end by itself."""
+    def end(self, patience: float = GRACE) -> None:
+        """Close its input, then end it where it does not end by itself within ``patience`` [s]."""
         assert self.process.stdin is not None
         with suppress(OSError):
             self.process.stdin.close()
         with suppress(subprocess.TimeoutExpired):
-            self.process.wait(GRACE)
+            self.process.wait(patience)
         self.process.kill()
         self.process.wait()
-        # A process that the program left behind may hold the pipes open, and the thread up.
+        assert self.process.stdout is not None
+        self.process.stdout.close()
+        # A process that the program left behind may hold its standard error open, and the thread up.
         self._drain.join(0.2)
-        for pipe in (self.process.stdout, self.process.stderr):
-            if pipe is not None and not self._drain.is_alive():
-                pipe.close()
 
     def ask(self, question: Question, time_limit: float) -> Solved:
         """The answer to ``question``. Raises ProtocolError with what the program did instead."""
@@ -91,14 +90,14 @@ class Program:
         with selectors.DefaultSelector() as ready:
             ready.register(self.process.stdout, selectors.EVENT_READ)
             while True:
-                *lines, self.unread = self.unread.split(b"\n")
-                for number, line in enumerate(lines):
+                while (end := self.unread.find(b"\n", self._seen)) >= 0:
+                    line, self.unread, self._seen = bytes(self.unread[:end]), self.unread[end + 1 :], 0
                     if line.startswith(token):
-                        self.unread = b"\n".join([*lines[number + 1 :], self.unread])
                         return line[len(token) :]
                 # Chatter of any length needs no memory: only a line that may be an answer is kept.
                 if not (self.unread.startswith(token) or token.startswith(self.unread)):
-                    self.unread = b"."
+                    self.unread = bytearray(b".")
+                self._seen = len(self.unread)
                 left = until - time.monotonic()
                 if left <= 0 or not ready.select(left):
                     raise ProtocolError(f"no answer after {time_limit:.3g} s; see time_limit in guest.toml")
@@ -113,7 +112,7 @@ class Program:
     def _end(self) -> str:
         """How a program that closed its output ended."""
         try:
-            code = self.process.wait(GRACE)
+            code = self.process.wait(GRACE / 4)
         except subprocess.TimeoutExpired:
             return "it closed its output without an answer"
         how = f"crashed with signal {-code}" if code < 0 else f"ended with code {code}"
@@ -124,8 +123,8 @@ class Program:
 
     def _keep_last_words(self) -> None:
         assert self.process.stderr is not None
-        with suppress(OSError, ValueError):
-            while more := os.read(self.process.stderr.fileno(), CHUNK):
+        with self.process.stderr as pipe, suppress(OSError):
+            while more := os.read(pipe.fileno(), CHUNK):
                 self.last.append(more)
 
     def _memory(self) -> int | None:

@@ -13,7 +13,8 @@ from importlib import import_module
 from typing import Any
 
 from verification.guests.doors.face import NotGiven, values_of
-from verification.guests.protocol import TOKEN, VERSION, Answer, Question
+from verification.guests.protocol import TOKEN, VERSION, Answer, Layer, Question
+from verification.problem.arrays import Coatings
 from verification.problem.contact import CoatedContact, NotClaimed, keywords
 from verification.running.records import plain
 
@@ -51,16 +52,21 @@ def answer(place: str, question: Question) -> Answer:
 def problem_of(question: Question) -> CoatedContact:
     """The problem of ``question`` in the units of the guest."""
     p = question.problem
-    coatings = tuple((c.E, c.nu, c.thickness or 0.0) for c in p.coatings)
-    return CoatedContact(p.radius, p.load, coatings, (p.substrate.E, p.substrate.nu), p.friction)
+    substrate = (p.substrate.E, p.substrate.nu)
+    ball = None if p.ball is None else (p.ball.E, p.ball.nu, _layers(p.ball.coatings))
+    return CoatedContact(p.radius, p.load, _layers(p.coatings), substrate, p.friction, ball)
+
+
+def _layers(coatings: list[Layer]) -> Coatings:
+    return tuple((c.E, c.nu, c.thickness or 0.0) for c in coatings)
 
 
 def called(function: Callable[..., Any], problem: CoatedContact, parameter: dict[str, float]) -> Any:
-    """``function`` called with the problem by keywords; friction or coatings it lacks must be none."""
+    """``function`` called with the problem by keywords; one that it lacks must be nothing."""
     given = keywords(problem)
     accepted = inspect.signature(function).parameters
     if not any(p.kind is inspect.Parameter.VAR_KEYWORD for p in accepted.values()):
-        for name, nothing in (("friction", 0.0), ("coatings", ())):
+        for name, nothing in (("friction", 0.0), ("coatings", ()), ("ball", None)):
             if name not in accepted and given[name] == nothing:
                 del given[name]
     return function(**given, **parameter)

@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterator
 from functools import partial
 
 from verification.judging.invariant import Invariant, failed
-from verification.judging.invariants import bond, influence, statics, symmetry
+from verification.judging.invariants import bond, influence, planes, statics, symmetry
 from verification.problem.contact import CoatedContact, NotClaimed, Solution
 
 Law = Callable[[], Invariant | tuple[Invariant, ...]]
@@ -45,3 +45,5 @@ def _laws(solution: Solution, source: str, problem: CoatedContact) -> Iterator[t
     yield "symmetry", partial(symmetry.symmetry, *subject)
     if source == "semianalytic":
         yield "influence coefficients", partial(influence.influence_coefficients, *subject)
+    if hasattr(solution, "stress_plane"):
+        yield "planes", partial(planes.planes, *subject)

@@ -26,6 +26,7 @@ Law = Callable[[], Invariant]
 
 # h/a_h, so near to the limit that the remaining effect of the coating is bounded below the caps.
 THICK_AT, THIN_AT = 20.0, 0.03
+NAMES = ("scaling", "reciprocity", "equal moduli", "thick coating", "thin coating")
 # No powers of two, so that scaled numbers share no digits.
 RADIUS, LOAD, MODULUS = 2.7, 0.37, 1.9
 APPROACH_CAP = 1e-3
@@ -67,12 +68,15 @@ def _laws(solve: Solve, finer: Solve, source: str, problem: CoatedContact) -> It
             base.append(finer(given))
         return base[0]
 
-    yield "scaling", partial(_scaling, finer, once, source, problem)
-    yield "reciprocity", partial(_reciprocity, once, solve, source, problem)
-    yield "equal moduli", partial(_equal_moduli, solve, source, problem)
     smooth = replace(problem, friction=0.0)
-    yield "thick coating", partial(_thick, solve, source, smooth)
-    yield "thin coating", partial(_thin, finer, source, smooth)
+    laws = (
+        partial(_scaling, finer, once, source, problem),
+        partial(_reciprocity, once, solve, source, problem),
+        partial(_equal_moduli, solve, source, problem),
+        partial(_thick, solve, source, smooth),
+        partial(_thin, finer, source, smooth),
+    )
+    yield from zip(NAMES, laws, strict=True)
 
 
 def _scaling(solve: Solve, base: Solve, source: str, problem: CoatedContact) -> Invariant:

@@ -12,6 +12,7 @@ from verification.credibility.faults.record import Record
 from verification.credibility.independence import shared
 from verification.credibility.mutation.record import MutantRecord
 from verification.judging.verdict import Outcome
+from verification.report.credibility.manifest import manifest_parts, short_message
 from verification.report.credibility.mutants import mutants_message
 from verification.report.credibility.tables import (
     alarm_table,
@@ -108,6 +109,7 @@ def section(material: Material) -> Section | None:
             [pair_table(results)],
             title="4. Comparison with references and between methods",
         ),
+        *manifest_parts(material),
         Part(
             _independent(evidence), [import_table(evidence.parts)], title="5. Independence of the two methods"
         ),
@@ -144,6 +146,7 @@ def _overview(material: Material) -> Table:
         ("Solution verification", _bracketed(material.contacts), here),
         ("Invariants of each solution", held, here),
         ("Comparison", f"{agreeing} of {total} comparisons agree", here),
+        ("What was judged", short_message(material), here),
         ("Independence", _short_independence(evidence), here),
         ("Regression", regression, here),
         ("Fault detection", _faults(evidence, short=True), _when(evidence.faults)),

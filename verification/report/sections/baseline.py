@@ -26,8 +26,9 @@ _RULE = (
     "its profile, an uncertainty where it differs by at most 10 %. On another machine or with other versions "
     "a run fails where a value left its baseline by more than its uncertainty, or by more than "
     f"{scientific(TOLERANCE, 1)} of the scale where the uncertainty is less (the largest change between two "
-    f"machines was 5e-12), and where an uncertainty is more than {FACTOR:g} times that of the baseline. "
-    "Every point of every profile is compared."
+    f"machines was 5e-12), and where an uncertainty is more than {FACTOR:g} times that of the baseline or "
+    "less than a quarter of it. "
+    "Every point of every profile is compared, with values that the baseline rounds to 5e-11 at most."
 )
 
 

@@ -1,0 +1,316 @@
+"""Hostile guests: whatever a program, a function or a file does, it is one message, and the others go on."""
+
+import json
+import os
+import sys
+import time
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
+
+import pytest
+
+from verification.cases.contact import read_case, shipped_cases
+from verification.guests.description import Guest, Supports
+from verification.guests.doors.asking import answered, ask_task
+from verification.guests.doors.files import pack
+from verification.guests.doors.program import Program
+from verification.guests.exam import claims_of, exam_path, prepare, question_of
+from verification.guests.protocol import ProtocolError
+from verification.guests.verdicts import judged
+from verification.judging.verdict import Outcome
+from verification.running.pool import run_tasks
+from verification.running.result import from_json
+from verification.running.store import read_checked
+
+LIMIT = 0.4  # s for an answer of a guest that hangs
+# Every program begins so: the question is read, `good` is what Hertz would answer.
+HEAD = """
+import json, math, os, signal, sys, time
+def say(text): sys.stdout.write(text); sys.stdout.flush()
+line = sys.stdin.readline()
+q = json.loads(line)
+p = q["problem"]; s = p["substrate"]
+a = (3 * p["load"] * p["radius"] * (1 - s["nu"]**2) / (4 * s["E"]))**(1/3)
+p0 = 3 * p["load"] / (2 * math.pi * a * a)
+x = q["lines"][0]["x"]
+values = {"contact": {"contact_radius": a, "approach": a * a / p["radius"], "peak_pressure": p0},
+          "surface": {"pressure": [p0 * math.sqrt(max(0, 1 - (r / a)**2)) for r in x]}}
+good = {"protocol": "coatcheck-guest/1", "id": q["id"], "values": values}
+c, f = values["contact"], values["surface"]
+def answer(): say("COATCHECK " + json.dumps(good) + "\\n")
+"""
+NO, AGREE, OFF, NONE = Outcome.NO_RESULT, Outcome.AGREES, Outcome.DISAGREES, Outcome.UNSUPPORTED
+# name: what it does, outcome of the contact radius, words of the message
+PROGRAMS = {
+    "good": ("answer()", AGREE, "within the claimed"),
+    "hangs": ("time.sleep(1000)", NO, "no answer after 0.4 s"),
+    "hangs_in_half_a_line": ("say('COATCHECK {'); time.sleep(1000)", NO, "no answer after"),
+    "spins": ("while True: pass", NO, "no answer after"),
+    "ignores_sigterm_and_hangs": (
+        "signal.signal(signal.SIGTERM, signal.SIG_IGN); time.sleep(1000)",
+        NO,
+        "no answer after",
+    ),
+    "drips_chatter_for_ever": ("while True: say('x\\n'); time.sleep(0.01)", NO, "no answer after"),
+    "crashes": ("os.kill(os.getpid(), signal.SIGSEGV)", NO, "crashed with signal 11"),
+    "aborts": ("os.abort()", NO, "crashed with signal 6"),
+    "kills_itself": ("os.kill(os.getpid(), signal.SIGKILL)", NO, "crashed with signal 9"),
+    "raises": ("raise RuntimeError('no licence')", NO, "no licence"),
+    "exits_0_without_answer": ("sys.exit(0)", NO, "ended with code 0 without an answer"),
+    "exits_7_without_answer": ("sys.exit(7)", NO, "ended with code 7"),
+    "exits_0_before_reading": ("pass", NO, "ended with code 0"),
+    "exits_9_after_its_answer": ("answer(); sys.exit(9)", AGREE, ""),
+    "hangs_after_its_answer": ("answer(); time.sleep(1000)", AGREE, ""),
+    "closes_its_output": ("os.close(1); time.sleep(3)", NO, "closed its output"),
+    "half_a_line": ('say(\'COATCHECK {"protocol": "coatch\'); sys.exit(0)', NO, "in the middle of an answer"),
+    "no_newline": ("say('COATCHECK ' + json.dumps(good)); sys.exit(0)", NO, "in the middle of an answer"),
+    "no_token": ("say(json.dumps(good) + '\\n')", NO, "without an answer"),
+    "other_token": ("say('COATCHECKED ' + json.dumps(good) + '\\n')", NO, "without an answer"),
+    "chatter_before": ("say('Iteration 1\\n\\x00\\xff\\n'); answer()", AGREE, ""),
+    "chatter_of_a_megabyte": ("say('x' * 10**6 + '\\n'); answer()", AGREE, ""),
+    "chatter_without_newline": ("say('x' * 10**6); answer()", NO, "without an answer"),
+    "chatter_on_stderr": ("sys.stderr.write('x' * 10**7); answer()", AGREE, ""),
+    "not_json": ("say('COATCHECK 42 apples\\n')", NO, "not JSON"),
+    "empty": ("say('COATCHECK \\n')", NO, "not JSON"),
+    "a_list": ("say('COATCHECK []\\n')", NO, "not of the protocol"),
+    "a_number": ("say('COATCHECK 3\\n')", NO, "not of the protocol"),
+    "null": ("say('COATCHECK null\\n')", NO, "not of the protocol"),
+    "deeply_nested": ("say('COATCHECK ' + '[' * 100000 + '\\n')", NO, "not JSON"),
+    "invalid_utf8": ("sys.stdout.buffer.write(b'COATCHECK \\xff\\xfe\\n')", NO, "not JSON"),
+    "wrong_id": ("good['id'] = 'another'; answer()", NO, "answers the question 'another'"),
+    "no_id": ("del good['id']; answer()", NO, "id"),
+    "wrong_protocol": ("good['protocol'] = 'coatcheck-guest/99'; answer()", NO, "coatcheck-guest/99"),
+    "no_protocol": ("del good['protocol']; answer()", NO, "protocol"),
+    "no_values": ("del good['values']; answer()", NO, "exactly one of"),
+    "values_and_error": ("good['error'] = 'oh'; answer()", NO, "exactly one of"),
+    "unknown_key": ("good['extra'] = 1; answer()", NO, "extra"),
+    "unsupported": ("good.pop('values'); good['unsupported'] = 'not today'; answer()", NONE, "not today"),
+    "error": ("good.pop('values'); good['error'] = 'did not converge'; answer()", NO, "did not converge"),
+    "error_of_a_megabyte": ("good.pop('values'); good['error'] = 'x' * 10**6; answer()", NO, "error"),
+    "nan": ("c['contact_radius'] = float('nan'); answer()", NO, "no finite contact_radius"),
+    "infinity": ("c['contact_radius'] = float('inf'); answer()", NO, "no finite contact_radius"),
+    "minus_infinity": ("c['contact_radius'] = -float('inf'); answer()", NO, "no finite contact_radius"),
+    "beyond_floating_point": (
+        "say('COATCHECK ' + json.dumps(good).replace(repr(a), '1e999', 1) + '\\n')",
+        NO,
+        "no finite contact_radius",
+    ),
+    "zero": ("c['contact_radius'] = 0; answer()", OFF, "exceeds the claimed"),
+    "negative": ("c['contact_radius'] *= -1; answer()", OFF, "exceeds the claimed"),
+    "text_for_a_number": ("c['contact_radius'] = 'wide'; answer()", NO, "contact_radius"),
+    "null_for_a_number": ("c['contact_radius'] = None; answer()", NO, "contact_radius"),
+    "true_for_a_number": ("c['contact_radius'] = True; answer()", NO, "contact_radius"),
+    "list_for_a_number": ("c['contact_radius'] = [a]; answer()", NO, "one number is needed"),
+    "number_for_a_list": ("f['pressure'] = p0; answer()", NO, "values are needed"),
+    "nested_list": ("f['pressure'] = [f['pressure']]; answer()", NO, "pressure"),
+    "too_short": ("f['pressure'].pop(); answer()", NO, "values are needed"),
+    "too_long": ("f['pressure'].append(0.0); answer()", NO, "values are needed"),
+    "no_points": ("f['pressure'] = []; answer()", NO, "values are needed"),
+    "a_million_points": ("f['pressure'] = [0.0] * 10**6; answer()", NO, "values are needed"),
+    "unknown_quantity": ("c['colour'] = 3.0; answer()", NO, "'colour' was not asked"),
+    "unknown_line": ("values['equator'] = {}; answer()", NO, "no line 'equator'"),
+    "empty_values": ("values.clear(); answer()", NONE, "not answered"),
+    "uncertainty_of_nothing": (
+        "good['uncertainty'] = {'surface': {'sigma_xx': [0.0] * len(x)}}; answer()",
+        NO,
+        "sigma_xx",
+    ),
+    "nan_uncertainty": (
+        "good['uncertainty'] = {'contact': {'contact_radius': float('nan')}}; answer()",
+        NO,
+        "no finite contact_radius",
+    ),
+    "negative_uncertainty": (
+        "good['uncertainty'] = {'contact': {'contact_radius': -1.0}}; answer()",
+        NO,
+        "no finite contact_radius",
+    ),
+    "boastful_uncertainty": (
+        "c['contact_radius'] *= 1.001\n"
+        "good['uncertainty'] = {'contact': {'contact_radius': 1e-20}}; answer()",
+        OFF,
+        "exceeds the uncertainty",
+    ),
+    "vague_uncertainty": (
+        "good['uncertainty'] = {'contact': {'contact_radius': 1.0}}; answer()",
+        Outcome.INCONCLUSIVE,
+        "exceeds the cap",
+    ),
+    "leaves_a_child_behind": (
+        "import subprocess; subprocess.Popen(['sleep', '3']); answer(); sys.exit(0)",
+        AGREE,
+        "",
+    ),
+}
+SLOW = {
+    "a_gigabyte_of_output": ("while True: say('x' * 10**6 + '\\n')", NO, "more than 64 MB without an answer"),
+    "a_gigabyte_in_one_answer": (
+        "say('COATCHECK ')\nwhile True: say('1' * 10**6)",
+        NO,
+        "more than 64 MB without an answer",
+    ),
+    "a_gigabyte_of_stderr": (
+        "for _ in range(1000): sys.stderr.write('x' * 10**6)\nanswer()",
+        AGREE,
+        "",
+    ),
+}
+
+
+@pytest.fixture(scope="module")
+def hertz(tmp_path_factory):
+    """The uncoated case with its exact reference and where that is stored."""
+    case = read_case(shipped_cases()["01_uncoated_steel"])
+    folder = tmp_path_factory.mktemp("hostile")
+    path = exam_path(folder, case)
+    prepare(case.name, case.text, str(path))
+    return case, from_json(read_checked(path)), folder
+
+
+def guest(folder, **way_in):
+    return Guest(
+        folder=folder, text=repr(way_in), name="g", claim=0.01, supports=Supports(friction=True), **way_in
+    )
+
+
+def verdict_on(hertz, program, folder, limit=LIMIT):
+    """The verdict on the contact radius of a program in Python."""
+    case, exam, _ = hertz
+    (folder / "hostile.py").write_text(HEAD + program + "\n")
+    host = guest(folder, command=(sys.executable, "-S", "-E", "hostile.py"), time_limit=limit)
+    question = question_of(case, exam, host, claims_of(case, host), {})
+    result = judged(host, case, exam, answered(host, case, [question]))
+    return next(v for c, v in result.verdicts if c.quantity == "contact_radius")
+
+
+def is_patient(name):
+    """Whether a program must end by itself: start and reading take their time on a machine at work."""
+    return "hang" not in name and "spins" not in name and "drips" not in name
+
+
+@pytest.fixture(scope="module")
+def verdicts(hertz, tmp_path_factory):
+    """The verdict on each program; several at a time, since most of them do nothing but wait."""
+
+    def verdict_of(name):
+        program, outcome, _ = PROGRAMS[name]
+        limit = LIMIT if outcome is NO and not is_patient(name) else 20.0
+        return verdict_on(hertz, program, tmp_path_factory.mktemp(name), limit)
+
+    with ThreadPoolExecutor(8) as pool:
+        return dict(zip(PROGRAMS, pool.map(verdict_of, PROGRAMS), strict=True))
+
+
+@pytest.mark.parametrize("name", PROGRAMS)
+def test_a_hostile_program_is_one_message(verdicts, name):
+    _, outcome, words = PROGRAMS[name]
+    verdict = verdicts[name]
+    assert verdict.outcome is outcome, verdict.reason
+    assert words in verdict.reason
+    assert "\n" not in verdict.reason
+    assert len(verdict.reason) < 2500
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", SLOW)
+def test_a_hostile_program_with_much_to_say_is_one_message(hertz, tmp_path, name):
+    program, outcome, words = SLOW[name]
+    verdict = verdict_on(hertz, program, tmp_path, 60.0)
+    assert verdict.outcome is outcome, verdict.reason
+    assert words in verdict.reason
+
+
+def test_sixty_hostile_guests_are_tried():
+    assert len(PROGRAMS) + len(SLOW) + len(FUNCTIONS) >= 60
+
+
+# What a function does: body, words of the message. All end without a result.
+FUNCTIONS = {
+    "hangs": ("import time; time.sleep(1000)", "no answer after"),
+    "exits": ("import os; os._exit(0)", "ended with code 0"),
+    "calls_sys_exit": ("import sys; sys.exit(3)", "ended with code 3"),
+    "crashes": ("import ctypes; ctypes.string_at(0)", "crashed with signal 11"),
+    "returns_none": ("return None", "none of contact_radius"),
+    "wrong_shape": ("return {'pressure': lambda x, y: [1.0]}", "shape (1,)"),
+    "raises_with_a_novel": ("raise ValueError('x' * 10**6)", "ValueError: xxx"),
+}
+
+
+@pytest.mark.parametrize("name", ["wrong_shape", pytest.param("hangs", marks=pytest.mark.slow)])
+def test_a_hostile_function_is_one_message(hertz, tmp_path, name):
+    _function(hertz, tmp_path, name)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", [n for n in FUNCTIONS if n not in ("wrong_shape", "hangs")])
+def test_other_hostile_functions_are_one_message(hertz, tmp_path, name):
+    _function(hertz, tmp_path, name)
+
+
+def _function(hertz, folder, name):
+    case, exam, _ = hertz
+    body, words = FUNCTIONS[name]
+    (folder / "adapter.py").write_text(f"def solve(radius, load, substrate):\n    {body}\n")
+    host = guest(folder, callable="adapter:solve", time_limit=10.0)
+    question = question_of(case, exam, host, claims_of(case, host), {})
+    result = judged(host, case, exam, answered(host, case, [question]))
+    verdict = next(v for c, v in result.verdicts if c.quantity == "contact_radius")
+    assert verdict.outcome in (Outcome.NO_RESULT, Outcome.UNSUPPORTED)
+    assert words in verdict.reason
+
+
+def test_answers_out_of_order_are_refused(hertz, tmp_path):
+    case, exam, _ = hertz
+    program = HEAD + "second = sys.stdin.readline()\n"  # waits for a second question before it answers
+    (tmp_path / "hostile.py").write_text(program)
+    host = guest(tmp_path, command=(sys.executable, "-S", "-E", "hostile.py"), time_limit=LIMIT)
+    host = replace(host, parameter="n", levels=(1, 2, 4))
+    claims = claims_of(case, host)
+    questions = [question_of(case, exam, host, claims, parameter) for parameter in host.questions]
+    replies = answered(host, case, questions)
+    assert len(replies) == 1
+    assert "no answer" in replies[0].answer.error
+    (tmp_path / "hostile.py").write_text(HEAD + "good['id'] = q['id'].replace('=1', '=2'); answer()\n")
+    replies = answered(host, case, questions)
+    assert "answers the question" in replies[0].answer.error
+
+
+def test_a_program_that_is_not_there_is_one_message(tmp_path):
+    with pytest.raises(ProtocolError, match=r"no_such_program: cannot be started .*; see command"):
+        Program(("no_such_program",), tmp_path)
+
+
+def test_hostile_files_are_one_message(hertz, tmp_path):
+    case, exam, _ = hertz
+    host = guest(tmp_path, results="answers")
+    question = question_of(case, exam, host, claims_of(case, host), {})
+    folder = pack(host, case, question)
+    for content in (
+        b"\xff\xfe\x00",
+        b"",
+        b"quantity,value\n" + b"contact_radius,1e9999\n" * 10,
+        b'"' * 10**5,
+    ):
+        (folder / "contact.csv").write_bytes(content)
+        answer = answered(host, case, [question])[0].answer
+        assert answer.values is None or "contact" in answer.values
+    (folder / "contact.csv").unlink()
+    os.mkfifo(folder / "contact.csv")
+    answer = answered(host, case, [question])[0].answer
+    assert "not a regular file" in answer.error
+
+
+def test_a_hostile_guest_does_not_hold_up_the_others(hertz, tmp_path):
+    case, exam, folder = hertz
+    (tmp_path / "hostile.py").write_text(HEAD + "time.sleep(1000)\n")
+    command = json.dumps([sys.executable, "-S", "-E", "hostile.py"])
+    text = f'name = "g"\ncommand = {command}\nclaim = 0.01\ntime_limit = {LIMIT}\n'
+    host = replace(guest(tmp_path), text=text)
+    begin = time.monotonic()
+    second = replace(case, name="second")
+    prepare(second.name, second.text, str(exam_path(folder, second)))
+    tasks = [ask_task(host, one, folder) for one in (case, second)]
+    found = run_tasks(tasks, jobs=1, time_limit=60.0)
+    assert ["no answer" in replies[0].answer.error for replies in found] == [True, True]
+    assert time.monotonic() - begin < 60
+    assert exam.profiles

@@ -1,0 +1,159 @@
+"""What is judged is pinned: each way to judge less that a planted mistake may take is noticed."""
+
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from quick_case import QUICK, coatcheck
+
+from verification.cases.contact import parse_case
+from verification.cases.toml import CaseError
+from verification.credibility.faults.planting import Edit, planted
+from verification.credibility.self_tests import self_tests
+from verification.credibility.self_tests.outputs import ELSEWHERE, HERE
+from verification.credibility.self_tests.stand_ins import Stated
+from verification.credibility.self_tests.whole_runs import MATERIAL, ran
+from verification.regression.baseline import regression, updated
+from verification.regression.manifest import manifest_message
+from verification.regression.record import read_baseline, write_baseline
+from verification.running.result import CaseResult, to_json
+from verification.running.stored import read_run
+
+DECIDE = "verification.running.contact:decide"
+POSITIONS = "verification.sampling.lines:positions"
+LAWS = "verification.judging.invariants.check:_laws"
+TENFOLD = Edit(DECIDE, "scale = divisor(", "scale = (1 if claim.line == 'contact' else 10) * divisor(")
+ZONE = "np.abs(np.abs(a.position) - edge) < claim.edge * edge"
+
+
+def run() -> CaseResult:
+    true = Stated(*MATERIAL)
+    return ran(None, True, semianalytic=true, fem_reference=true)
+
+
+@pytest.fixture(scope="module")
+def recorded():
+    return updated(None, [run()], HERE, "known", "2026-11-22")
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        (
+            TENFOLD,
+            "scale 1.90986e+10 in place of 1.90986e+09",
+        ),
+        (Edit(DECIDE, "claim.cap)", "max(claim.cap, 0.05))"), "cap 0.05 in place of"),
+        (Edit(DECIDE, ZONE, "a.position < 0"), "first point"),
+        (
+            Edit(DECIDE, ZONE, "(a.position > 1.5 * edge) & (claim.line == 'axis')"),
+            "axis: last point",
+        ),
+        (Edit(DECIDE, "claim.edge * edge", "0.12 * edge"), "points"),
+        (
+            Edit(
+                "verification.sampling.lines:positions",
+                "bounds = np.array([0.0, *",
+                "a *= 0.4; bounds = np.array([0.0, *",
+            ),
+            "axis: last point",
+        ),
+        (
+            Edit(
+                "verification.judging.invariants.check:_laws",
+                'yield "symmetry"',
+                'yield from () ; "symmetry"',
+            ),
+            "mirror in y, semianalytic: not judged",
+        ),
+        (
+            Edit(
+                "verification.running.contact:judge_case",
+                "held += check(solution, source, case.problem)",
+                "held += check(solution, source, case.problem) if source == 'semianalytic' else ()",
+            ),
+            "load balance, fem_reference: not judged",
+        ),
+    ],
+)
+def test_less_that_is_judged_is_a_failure_on_any_machine(recorded, change, message):
+    assert regression([run()], recorded, "b", ELSEWHERE).judged == ()
+    with planted((change,)):
+        result = run()
+    assert result.outcome == "AGREES"
+    found = regression([result], recorded, "b", ELSEWHERE)
+    assert any(message in row.message for row in found.less), found.less
+    assert manifest_message(found.less).startswith("less is judged than the manifest records")
+
+
+@pytest.mark.parametrize(
+    ("change", "failing"),
+    [
+        (
+            Edit(
+                "verification.sampling.lines:sample",
+                "stress_with_uncertainty(solution, x, 0.0, z",
+                "stress_with_uncertainty(solution, x, 0.3 * solution.contact_radius, z",
+            ),
+            "sampling",
+        ),
+        (Edit("verification.regression.junit:_mark", "if outcome is Outcome.AGREES:", "if True:"), "JUnit"),
+        (Edit("verification.regression.exits:run_code", "if not passed:", "if False:"), "exit codes"),
+        (Edit("verification.regression.exits:exit_code", "in found:", "in ():"), "exit codes"),
+        (Edit("verification.regression.exits:run_code", "LESS if beside.less else", ""), "exit codes"),
+        (TENFOLD, "coverage"),
+        (Edit(DECIDE, ZONE, "a.position < 0"), "coverage"),
+    ],
+)
+def test_a_self_test_notices_what_no_number_shows(change, failing):
+    with planted((change,)):
+        assert failing in {test.name for test in self_tests() if not test.passed}
+
+
+def test_a_case_that_claims_nothing_is_refused(tmp_path):
+    with (
+        planted((Edit("verification.judging.claims:standard_claims", "return tuple(claims)", "return ()"),)),
+        pytest.raises(CaseError, match="nothing would be judged"),
+    ):
+        parse_case(QUICK.partition("[[claim]]")[0].encode(), Path("quick.toml"))
+
+
+def test_a_run_that_judges_less_ends_with_code_6_and_says_so_first(tmp_path):
+    (tmp_path / "quick.toml").write_text(QUICK)
+    assert coatcheck("run", "quick.toml", "-b", "base", cwd=tmp_path).returncode == 0
+    stored = read_run(tmp_path / "reports")
+    answers = {test.name: test.answers for test in self_tests()}
+    known = updated(None, stored.results, stored.info, "first", "2026-11-22", answers)
+    write_baseline(tmp_path / "base", known)
+    words = ("run", "quick.toml", "--resume", "-b", "base")
+    done = coatcheck(*words, cwd=tmp_path)
+    assert (done.returncode, "manifest:" in done.stdout) == (0, False)
+
+    (group,) = known.manifests["quick"].comparisons
+    narrower = replace(group, judged=replace(group.judged, cap=group.judged.cap / 2))
+    manifests = {"quick": replace(known.manifests["quick"], comparisons=(narrower,))}
+    write_baseline(tmp_path / "base", replace(known, manifests=manifests))
+    done = coatcheck(*words, cwd=tmp_path)
+    assert done.returncode == 6
+    message = "less is judged than the manifest records; 1 differences, first quick, contact: cap"
+    assert f"manifest: {message}" in " ".join(done.stdout.split())
+    page = (tmp_path / "reports" / "report.html").read_text()
+    assert message in page.partition("<nav")[0]
+    assert '<testcase classname="run" name="manifest"' in (tmp_path / "reports" / "junit.xml").read_text()
+    assert json.loads((tmp_path / "reports" / "report.json").read_text())["baseline"]["manifest"][0]["less"]
+
+    more = replace(group, judged=replace(group.judged, cap=group.judged.cap * 2))
+    manifests = {"quick": replace(known.manifests["quick"], comparisons=(more,))}
+    write_baseline(tmp_path / "base", replace(known, manifests=manifests))
+    done = coatcheck(*words, cwd=tmp_path)
+    assert done.returncode == 0
+    assert "more is judged than recorded: coatcheck baseline update" in " ".join(done.stdout.split())
+
+
+def test_a_manifest_comes_back_from_its_file(tmp_path, recorded):
+    write_baseline(tmp_path, recorded)
+    stored = read_baseline(tmp_path)
+    assert stored is not None
+    assert stored.manifests == recorded.manifests
+    assert to_json(run())["verdicts"][0]["verdict"]["judged"]["points"] == 1

@@ -1,0 +1,61 @@
+"""coatcheck vectors: exact values of many problems, for everybody."""
+
+from pathlib import Path
+
+from rich.markup import escape
+
+from verification.commands.common.exits import with_exit_code
+from verification.commands.common.options import AsJson, Flag
+from verification.commands.common.terminal import print_json, print_out
+from verification.running.store import write_atomically
+
+
+@with_exit_code
+def vectors(
+    folder: Path = Path("vectors"),
+    /,
+    *,
+    compute: Flag = False,
+    semianalytic: int = 250,
+    elements: int = 60,
+    as_json: AsJson = False,
+) -> int:
+    """Write the open digits: exact values of 500 problems as JSON with a schema and as CSV, licence CC0.
+
+    Args:
+        folder: Directory to write to.
+        compute: Solve every problem anew, which takes minutes, instead of writing what the package holds.
+        semianalytic: With --compute, how many problems the semi-analytical method checks.
+        elements: With --compute, how many problems the finite elements check.
+    """
+    from verification.guests.vectors import content, making
+
+    if compute:
+        samples = {"semianalytic": semianalytic, "fem_reference": elements}
+        found = making.make(folder / "work", samples, lambda line: print_out(escape(line)))
+        write_atomically(folder / content.FILE.name, content.packed(found))
+    else:
+        found = content.shipped()
+    for name, text in content.texts(found).items():
+        write_atomically(folder / name, text)
+    wide = sorted(content.uncertain(found))
+    summary = {
+        "folder": str(folder),
+        "problems": len(found["problems"]),
+        "values": content.value_count(found),
+        "ten_digits": sum(U <= 1e-10 for U in wide) / len(wide),
+        "largest_uncertainty": wide[-1],
+        "checked": found["checked"],
+    }
+    if as_json:
+        print_json(summary)
+        return 0
+    most = f"{summary['largest_uncertainty']:.1e}"
+    print_out(
+        f"{summary['problems']} problems, {summary['values']} values in {escape(str(folder))}; "
+        f"uncertainty at most 1e-10 of the scale for {summary['ten_digits']:.1%}, {most} at most"
+    )
+    for one in found["checked"]:
+        counts = f"{one['within']} of {one['values']} values of {one['problems']} problems"
+        print_out(f"{one['method']}: {counts} within U")
+    return 0

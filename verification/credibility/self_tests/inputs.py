@@ -1,0 +1,53 @@
+"""Inputs of which every number is worked out by hand: a case file, a published table."""
+
+from pathlib import Path
+
+import numpy as np
+
+from verification.cases.contact import parse_case
+from verification.cases.published import read_published
+from verification.cases.table import FOLDER
+from verification.credibility.self_tests.answers import Answers
+from verification.judging.claims import standard_claims
+
+
+def of_case_file() -> Answers:
+    text = (
+        b'title = "known"\n[problem]\nradius = 10e-3\nload = 40.0\nfriction = 0.25\n'
+        b"substrate = { E = 300e9, nu = 0.0 }\n"
+        b"[[problem.coatings]]\nE = 600e9\nnu = 0.25\nthickness_over_a_h = 0.5\n"
+        b"[[problem.coatings]]\nE = 150e9\nnu = 0.4\nthickness = 20e-6\n"
+    )
+    problem = parse_case(text, Path("known.toml")).problem
+    # nu = 0: a_h^3 = 3 W R / 4 E = 1e-12 m^3
+    yield "a_h", problem.a_h, 1e-4
+    yield "p_h", problem.p_h, 6e9 / np.pi
+    yield "delta_h", problem.delta_h, 1e-6
+    yield "coatings", problem.coatings[1], (150e9, 0.4, 20e-6)
+    yield "first coating", problem.coatings[0][:2], (600e9, 0.25)
+    yield "thickness of half an a_h", problem.coatings[0][2], 5e-5
+    yield "lower interface", problem.interfaces[1], 7e-5
+    yield "friction", problem.friction, 0.25
+    pairs = [claim.between for claim in standard_claims(problem) if claim.line == "interface 2, lower side"]
+    yield "pairs of sources on the lowest line", len(set(pairs)), 3
+
+
+def of_published_table() -> Answers:
+    case = read_published(FOLDER / "kenpave_three_layer_axis.toml")
+    inch, psi = 0.0254, 4.4482216152605 / 0.0254**2
+    column = {(p.profile.quantity, p.column): p for p in case.columns}
+    stress = column["sigma_zz", "Vertical_Stress"]
+    assert stress.profile.uncertainty is not None
+    yield "a compression of 84.247 psi", float(stress.profile.value[2]), -84.247 * psi
+    yield "at 2 in", float(stress.profile.position[2]), 2 * inch
+    yield "half of its last digit", float(stress.profile.uncertainty[2]), 0.0005 * psi
+    yield "corrected by its departure", float(stress.reference.value[2]), -(84.247 - 0.01184) * psi
+    yield "values that count beside 8 departures", int(stress.counted.sum()), 22
+    radial = column["sigma_xx", "Radial_stress"].profile
+    yield "radial compression of 88.377 psi", float(radial.value[2]), -88.377 * psi
+    yield "sinking by 0.02246 in", float(column["u_z", "Displacement"].profile.value[2]), 0.02246 * inch
+    strain = column["eps_xx", "Radial_strain"].profile
+    assert strain.uncertainty is not None
+    yield "radial strain", float(strain.value[2]), -5.592e-5
+    yield "half of its fourth digit", float(strain.uncertainty[2]), 0.5e-8
+    yield "coatings", case.problem.coatings[0][2], 6 * inch

@@ -1,0 +1,120 @@
+"""Closed forms that stand in for a method: right, off, vague, incomplete, or labelled."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from verification.problem.arrays import Array
+from verification.problem.contact import FLAT, Uncertainty
+from verification.sources.references.hamilton import Hamilton
+
+
+@dataclass(frozen=True)
+class Stated(Hamilton):
+    """Hamilton with an uncertainty, ``share`` of each number."""
+
+    share: float = 1e-7
+
+    @property
+    def uncertainty(self) -> Uncertainty:
+        share = self.share
+        return Uncertainty(share * self.contact_radius, share * self.approach, share * self.peak_pressure)
+
+    def pressure_uncertainty(self, x: ArrayLike, y: ArrayLike = 0.0) -> Array:
+        return np.full(np.broadcast_shapes(np.shape(x), np.shape(y)), self.share * self.peak_pressure)
+
+    def stress_uncertainty(
+        self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None, body: str = FLAT
+    ) -> Array:
+        shape = np.broadcast_shapes(np.shape(x), np.shape(y), np.shape(z))
+        return np.full((3, 3, *shape), self.share * self.peak_pressure)
+
+    def displacement_uncertainty(self, x: ArrayLike, y: ArrayLike, z: ArrayLike, body: str = FLAT) -> Array:
+        shape = np.broadcast_shapes(np.shape(x), np.shape(y), np.shape(z))
+        return np.full((3, *shape), self.share * self.approach)
+
+    @property
+    def stiffness_uncertainty(self) -> float:
+        return self.share * self.stiffness
+
+
+@dataclass(frozen=True)
+class Spoiled(Stated):
+    """A pressure that is 1 % of its peak too large around the radius ``at`` [a]."""
+
+    at: float = 0.0
+
+    def pressure(self, x: ArrayLike, y: ArrayLike = 0.0) -> Array:
+        near = np.abs(np.hypot(x, y) / self.contact_radius - self.at) < 0.03
+        return super().pressure(x, y) + np.where(near, 0.01 * self.peak_pressure, 0.0)
+
+
+@dataclass(frozen=True)
+class Misplaced(Stated):
+    """Stresses that are 1 % of p0 too large in a box ``low`` to ``high``, x, y, z over a."""
+
+    low: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    high: tuple[float, float, float] = (0.0, 0.0, 0.0)
+
+    def stress(
+        self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None, body: str = FLAT
+    ) -> Array:
+        at = np.broadcast_arrays(*(np.asarray(v, dtype=float) / self.contact_radius for v in (x, y, z)))
+        inside = [(b <= v) & (v <= t) for b, v, t in zip(self.low, at, self.high, strict=True)]
+        return super().stress(x, y, z, layer) + 0.01 * self.peak_pressure * np.all(inside, axis=0)
+
+
+class Failing(Stated):
+    """A method that has a contact but no stresses."""
+
+    def stress(
+        self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None, body: str = FLAT
+    ) -> Array:
+        raise ValueError("no stresses today")
+
+
+def labelled(i: int, j: int, place: tuple[float, float, float], layer: int | None) -> float:
+    """A stress that tells its component, place and layer."""
+    low, high = sorted((i, j))
+    x, y, z = place
+    component = 1e6 * (1 + 3 * low + high)
+    return float(component + 1e9 * x + 7e9 * y + 3e9 * z + 1e7 * (-1 if layer is None else layer))
+
+
+def moved(i: int, place: tuple[float, float, float]) -> float:
+    """A displacement that tells its component and place."""
+    x, y, z = place
+    return float(1e-7 * (1 + i) + 1e-3 * x + 7e-3 * y + 3e-3 * z)
+
+
+class Labelled:
+    """A solution whose every number says what it is and where."""
+
+    contact_radius, approach, peak_pressure = 1e-4, 1e-6, 3e9
+    stiffness, stiffness_uncertainty = 6e7, 5e1
+    uncertainty = Uncertainty(3e-9, 4e-12, 2e6)
+
+    def pressure(self, x: ArrayLike, y: ArrayLike = 0.0) -> Array:
+        return 1e9 + 1e12 * np.asarray(x, dtype=float) + 3e12 * np.asarray(y, dtype=float)
+
+    def pressure_uncertainty(self, x: ArrayLike, y: ArrayLike = 0.0) -> Array:
+        return 1e-3 * self.pressure(x, y)
+
+    def stress(self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None) -> Array:
+        places = np.stack(np.broadcast_arrays(*(np.asarray(v, dtype=float) for v in (x, y, z))), axis=-1)
+        at = [
+            [[labelled(i, j, tuple(place), layer) for place in places.tolist()] for j in range(3)]
+            for i in range(3)
+        ]
+        return np.array(at)
+
+    def stress_uncertainty(self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None) -> Array:
+        return 1e-3 * self.stress(x, y, z, layer)
+
+    def displacement(self, x: ArrayLike, y: ArrayLike, z: ArrayLike) -> Array:
+        places = np.stack(np.broadcast_arrays(*(np.asarray(v, dtype=float) for v in (x, y, z))), axis=-1)
+        return np.array([[moved(i, tuple(place)) for place in places.tolist()] for i in range(3)])
+
+    def displacement_uncertainty(self, x: ArrayLike, y: ArrayLike, z: ArrayLike) -> Array:
+        return 1e-3 * self.displacement(x, y, z)

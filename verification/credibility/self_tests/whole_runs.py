@@ -1,0 +1,142 @@
+"""Whole runs of an uncoated case, sliding, with closed forms in place of every source.
+
+Claims, caps and scales are those of a case file without any.
+"""
+
+from dataclasses import replace
+from itertools import combinations
+from math import comb, pi
+from typing import Any
+
+import numpy as np
+
+from verification.cases.contact import Case
+from verification.credibility.self_tests.answers import Answers
+from verification.credibility.self_tests.stand_ins import Failing, Misplaced, Spoiled, Stated
+from verification.judging.claims import standard_claims
+from verification.judging.verdict import Outcome
+from verification.problem.contact import CoatedContact
+from verification.problem.quantity import QUANTITIES, SCALARS
+from verification.running.contact import judge_case, solve_case
+from verification.running.result import CaseResult
+from verification.sources.references.hamilton import Hamilton
+from verification.sources.registry import REFERENCES, sources_of
+
+# nu = 0: a = 1e-4 m, p0 = 6e9/pi Pa, approach = 1e-6 m
+MATERIAL = (1e-2, 40.0, 3e11, 0.0, 0.25)
+PROBLEM = CoatedContact(1e-2, 40.0, (), (3e11, 0.0), 0.25)
+SURROUNDING = {"influence coefficients"}  # of the code of a method, not of a solution
+
+
+def ran(others: Any = None, invariants: bool = False, **methods: Any) -> CaseResult:
+    """The result with ``methods`` as given, the references by ``others`` or Hamilton."""
+    case = Case("known", "known", PROBLEM, standard_claims(PROBLEM))
+    named = {name: others or Hamilton(*MATERIAL) for name in sources_of(PROBLEM) if name in REFERENCES}
+    available = {name: (lambda p, _, s=s: s) for name, s in (methods | named).items()}
+    return judge_case(case, solve_case(case, available), invariants=invariants)
+
+
+def of_runs() -> Answers:
+    true, loaded = Stated(*MATERIAL), Stated(1e-2, 40.2, 3e11, 0.0, 0.25)
+    references = [name for name in sources_of(PROBLEM) if name in REFERENCES]
+    result = honest = ran(None, True, semianalytic=true, fem_reference=true)
+    yield "two honest methods", result.outcome, Outcome.AGREES
+    pairs = {claim.between for claim, _ in result.verdicts}
+    yield "pairs compared", len(pairs), comb(len(references) + 2, 2)
+    compared = {(claim.quantity, claim.line) for claim, _ in result.verdicts}
+    yield "comparisons of each pair", len(result.verdicts), len(pairs) * len(compared)
+    off = ran(semianalytic=loaded, fem_reference=true).outcome
+    yield "a load off by half a per cent", off, Outcome.DISAGREES
+    off = ran(semianalytic=true, fem_reference=loaded).outcome
+    yield "the same in the other", off, Outcome.DISAGREES
+    result = ran(None, True, semianalytic=loaded, fem_reference=loaded)
+    yield "the same in both", result.outcome, Outcome.DISAGREES
+    scalars = [(c, v) for c, v in result.verdicts if c.quantity in SCALARS]
+    agreeing = {c.between for c, v in scalars if v.outcome is Outcome.AGREES}
+    still = {("semianalytic", "fem_reference"), *combinations(references, 2)}
+    yield "pairs that still agree", agreeing, still
+    nowhere = ran(semianalytic=true, fem_reference=Failing(*MATERIAL)).outcome
+    yield "a method without stresses", nowhere, Outcome.NO_RESULT
+    yield "a method that was not asked", ran(semianalytic=true).outcome, Outcome.NO_RESULT
+    vague = ran(semianalytic=true, fem_reference=replace(true, share=0.02)).outcome
+    yield "a method with a vague U", vague, Outcome.INCONCLUSIVE
+    nothing = replace(honest, verdicts=()).outcome
+    yield "a case that judges nothing", nothing, Outcome.NO_RESULT
+    for at in (0.5, 0.9, 1.0, 1.1):
+        spoiled = ran(semianalytic=true, fem_reference=Spoiled(*MATERIAL, at=at)).outcome
+        yield f"a pressure that is off at {at} a", spoiled, Outcome.DISAGREES
+
+
+def of_coverage() -> Answers:
+    """Cap, scale, points, extent of each comparison; stresses that are off on part of a line alone."""
+    true = Stated(*MATERIAL)
+    result = ran(semianalytic=true, fem_reference=true)
+    extents = {  # first, last, gap over a
+        "surface": (-2.0, 2.0, 0.06),
+        "axis": (0.0, 4.0, 0.2),
+        "contact": (0.0, 0.0, 0.0),
+        "off plane": (-2.5, 2.5, 0.13),
+        "oblique": (0.0, 2.4, 0.26),
+        "oblique surface": (-5.0, 5.0, 0.8),
+    }
+    for claim, verdict in result.verdicts:
+        what, judged = f"{claim.quantity} on {claim.line}", verdict.judged
+        if claim.line not in extents:
+            continue
+        assert judged is not None
+        profile = result.profile_of[claim.quantity, claim.line, claim.between[0]]
+        yield f"cap of {what}", (judged.cap, claim.edge), (QUANTITIES[claim.quantity].cap, 0.0)
+        yield f"points of {what}", judged.points, profile.position.size
+        first, last, gap = extents[claim.line]
+        bounds = (judged.extent[0] <= (first + 0.1) * 1e-4, judged.extent[1] >= (last - 0.1) * 1e-4)
+        yield f"extent of {what}", (*bounds, judged.gap <= gap * 1e-4), (True, True, True)
+        if QUANTITIES[claim.quantity].kind in ("pressure", "stress"):
+            yield f"scale of {what}", judged.scale, 6e9 / pi
+        elif claim.quantity in SCALARS:
+            yield f"scale of {what}", judged.scale, float(abs(profile.value[0]))
+    x = result.profile_of["pressure", "surface", "semianalytic"].position / 1e-4
+    yield "points at both edges", [int(np.sum(np.abs(x - edge) < 1e-9)) for edge in (-1, 1)], [1, 1]
+    everywhere = 9.0
+    low: tuple[float, float, float]
+    high: tuple[float, float, float]
+    for where, low, high in (
+        ("on the trailing side", (-everywhere, 0, 0), (-0.7, 0, 0)),
+        ("on the leading side", (0.7, 0, 0), (everywhere, 0, 0)),
+        ("at the trailing edge", (-1.005, 0, 0), (-0.995, 0, 0)),
+        ("at the leading edge", (0.995, 0, 0), (1.005, 0, 0)),
+        ("deep on the axis", (0, 0, 1.6), (0, 0, everywhere)),
+        ("shallow on the axis", (0, 0, 1e-3), (0, 0, 0.2)),
+    ):
+        off = ran(semianalytic=true, fem_reference=Misplaced(*MATERIAL, low=low, high=high))
+        verdicts = {verdict.outcome for _, verdict in off.verdicts}
+        yield f"stresses that are off {where}", Outcome.DISAGREES in verdicts, True
+
+
+def of_invariants() -> Answers:
+    """A stress that is off beside the plane y = 0 alone, where no line lies."""
+    true = Stated(*MATERIAL)
+    crooked = Misplaced(*MATERIAL, low=(-9.0, 0.001, 0.0), high=(9.0, 9.0, 9.0))
+    exact = replace(crooked, share=0.0)
+    honest = ran(None, True, semianalytic=true, fem_reference=true)
+    names: dict[str, set[str]] = {}
+    for one in honest.invariants:
+        names.setdefault(one.source, set()).add(one.name)
+    yield "sources with invariants", set(names), set(sources_of(PROBLEM))
+    yield (
+        "the same of each",
+        {frozenset(found - SURROUNDING) for found in names.values()},
+        {frozenset(names["fem_reference"])},
+    )
+    for what, result, sources in (
+        ("one method", ran(None, True, semianalytic=crooked, fem_reference=true), {"semianalytic"}),
+        ("the other", ran(None, True, semianalytic=true, fem_reference=crooked), {"fem_reference"}),
+        (
+            "all sources",
+            ran(exact, True, semianalytic=crooked, fem_reference=crooked),
+            set(sources_of(PROBLEM)),
+        ),
+    ):
+        lines = {v.outcome for c, v in result.verdicts if c.line in ("contact", "surface", "axis")}
+        yield f"lines of {what}, off beside them", lines, {Outcome.AGREES}
+        broken = {one.source for one in result.invariants if one.outcome is Outcome.DISAGREES}
+        yield f"invariants of {what}", (broken, result.outcome), (sources, Outcome.DISAGREES)

@@ -1,0 +1,1 @@
+"""Open digits: problems with exact values that anyone can use without installing anything."""

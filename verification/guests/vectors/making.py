@@ -1,0 +1,75 @@
+"""The open digits computed, then checked by both methods on random samples; may be stopped to go on later."""
+
+import json
+from collections.abc import Callable
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from verification.guests.vectors.content import data_set, vector
+from verification.guests.vectors.problems import SEED, VectorProblem, problems
+from verification.guests.vectors.values import compared, exact_rows
+from verification.running.provenance import machine, versions
+from verification.running.store import write_atomically
+from verification.sources.registry import METHODS, SOURCES
+
+
+def make(
+    folder: Path, samples: dict[str, int], progress: Callable[[str], None] = lambda line: None
+) -> dict[str, Any]:
+    """The whole data set; each problem is kept in ``folder`` as soon as it is solved.
+
+    samples : how many problems, drawn at random, each method checks.
+    """
+    chosen = problems()
+    vectors = [_kept(folder / f"{p.name}.json", partial(_solved, p)) for p in chosen]
+    progress(f"{len(vectors)} problems solved")
+    checked = [_checked(method, chosen, samples.get(method, 0), folder, progress) for method in METHODS]
+    made_by = {"exact": "integral equation; Hankel transforms of a disc", "machine": machine()}
+    return data_set(vectors, checked, made_by | {"numpy": versions()["numpy"], "scipy": versions()["scipy"]})
+
+
+def _solved(one: VectorProblem) -> dict[str, Any]:
+    return vector(one, exact_rows(one.problem))
+
+
+def _checked(
+    method: str, chosen: list[VectorProblem], count: int, folder: Path, progress: Callable[[str], None]
+) -> dict[str, Any]:
+    random = np.random.default_rng([SEED, METHODS.index(method)])
+    numbers = sorted(random.permutation(len(chosen))[:count].tolist())
+    total = {"problems": 0, "values": 0, "within": 0}
+    largest, refused = 0.0, []
+    for number in numbers:
+        one = chosen[number]
+        found = _kept(folder / method / f"{one.name}.json", partial(_compared, method, one))
+        if "refused" in found:
+            refused.append(f"{one.name}: {found['refused']}")
+            continue
+        for name, more in zip(total, (1, found["values"], found["within"]), strict=True):
+            total[name] += more
+        largest = max(largest, found["largest"])
+        progress(f"{method} {one.name}: {found['within']} of {found['values']}, {found['largest']:.3g} of U")
+    return {"method": method, **total, "largest_share_of_U": largest, "refused": refused}
+
+
+def _compared(method: str, one: VectorProblem) -> dict[str, Any]:
+    solve = SOURCES[method].solve
+    assert solve is not None
+    try:
+        values, within, largest = compared(exact_rows(one.problem), one.problem, solve)
+    except Exception as error:  # a problem that the method refuses is counted as such
+        return {"refused": " ".join(str(error).split())[:200]}
+    return {"values": values, "within": within, "largest": largest}
+
+
+def _kept(path: Path, compute: Callable[[], dict[str, Any]]) -> dict[str, Any]:
+    """The content of ``path``, computed where it is not there."""
+    if path.exists():
+        found: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
+        return found
+    content = compute()
+    write_atomically(path, json.dumps(content))
+    return content
