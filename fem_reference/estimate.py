@@ -181,27 +181,19 @@ class StressEstimate:
         # pickled without the cached properties
         return {f.name: getattr(self, f.name) for f in fields(self)}
 
-    def displacement(self, u: np.ndarray) -> np.ndarray:
-        """Estimate (3, n) of the displacement ``u`` (3, n) at any points."""
-        order = self.field.discretisation.order
-        change = self.safety / (COMPANION**order - 1) * self._sampled[1]
-        return change[:, None] + self.far + self.relative * np.abs(u)
-
-    @cached_property
-    def _sampled(self) -> tuple[np.ndarray, np.ndarray]:
-        """``_error`` at the samples of all triangles, with the largest change of each displacement (3,)."""
-        error, change = self._compared(self.points.triangles)
-        return error, change.max(axis=1)
+    def displacement(self, u: np.ndarray, at: LocatedPoints) -> np.ndarray:
+        """Estimate (3, n) of the displacement ``u`` (3, n) at points."""
+        return self._between(self._corners[6:], at) + self.far + self.relative * np.abs(u)
 
     def _error(self, points: _Pair, layer: int | None = None) -> np.ndarray:
         """Estimate (6, n) at points of comparison, before the largest in a neighbourhood is taken.
 
         layer : of points on a plane z = const, whose stresses follow from strains and tractions of the plane
         """
-        return self._compared(points, layer)[0]
+        return self._compared(points, layer)[:6]
 
-    def _compared(self, points: _Pair, layer: int | None = None) -> tuple[np.ndarray, np.ndarray]:
-        """``_error``, and the change of the displacement (3, n) from the companion."""
+    def _compared(self, points: _Pair, layer: int | None = None) -> np.ndarray:
+        """``_error``, then that of the displacement, whose order is higher by one; (9, n)."""
         (u, final), (other, companion) = (
             f(at) for f, at in zip((self.field, self.companion), points, strict=True)
         )
@@ -214,24 +206,24 @@ class StressEstimate:
         d = self.field.discretisation
         # In the triangles at the axis, where u_r / r is a derivative too, one order less is observed.
         on_axis = (d.mesh.points[0, d.triangulation.t] == 0).any(axis=0)[points[0].cells]
-        gain = self.points.ratio(points) ** (d.order - on_axis) - 1
-        error = self.safety / gain * np.abs(difference) + self.relative * np.abs(final)
-        return error, np.abs(u - other)
+        ratio, order = self.points.ratio(points), d.order - on_axis
+        error = self.safety / (ratio**order - 1) * np.abs(difference) + self.relative * np.abs(final)
+        # that of all triangles moves a point, not that of those next to it
+        moved = self.safety / (COMPANION ** (d.order + 1) - 1) * np.abs(u - other)
+        return np.concatenate([error, moved])
 
     @cached_property
     def _corners(self) -> np.ndarray:
-        """Estimate at the corners of each triangle, (6, 3, triangles); a vertex has one value per layer."""
+        """Estimate at the corners of each triangle, (9, 3, triangles); a vertex has one value per layer."""
         d = self.field.discretisation
         t = d.triangulation.t
         vertices = t + d.mesh.layer * d.mesh.points.shape[1]
-        worst = self._sampled[0].reshape(6, -1, t.shape[1]).max(axis=1)
-        estimate = np.zeros((6, (int(d.mesh.layer.max()) + 1) * d.mesh.points.shape[1]))
-        by_layer = estimate.reshape(6, -1, d.mesh.points.shape[1])
+        worst = self._compared(self.points.triangles).reshape(9, -1, t.shape[1]).max(axis=1)
+        estimate = np.zeros((9, (int(d.mesh.layer.max()) + 1) * d.mesh.points.shape[1]))
         for share in np.divide(REACH, (1.0, *REACH[:-1])):
             for corner in vertices:
-                for component in range(6):
-                    np.maximum.at(estimate[component], corner, share * worst[component])
-            by_layer[_TRACTIONS] = by_layer[_TRACTIONS].max(axis=1, keepdims=True)
+                for component, row in zip(worst, estimate, strict=True):
+                    np.maximum.at(row, corner, share * component)
             worst = estimate[:, vertices].max(axis=1)
         return estimate[:, vertices]
 
@@ -250,14 +242,18 @@ class StressEstimate:
 
     def __call__(self, at: LocatedPoints) -> np.ndarray:
         """Estimate (6, n)."""
-        cells, X = at.triangles_as_given()
-        X = np.clip(X, 0, 1)
-        shape = np.stack([np.clip(1 - X[0] - X[1], 0, 1), X[0], X[1]])
-        estimate = np.einsum("sct,ct->st", self._corners[:, :, cells], shape)
+        estimate = self._between(self._corners[:6], at)
         for (depth, side), (vertices, values) in self._planes.items():
             here = (at.z == depth) & (at.layer == side)
             estimate[:, here] = [np.interp(at.r_given[here], vertices, row) for row in values]
         return estimate + self._displaced(at) + self.everywhere
+
+    def _between(self, corners: np.ndarray, at: LocatedPoints) -> np.ndarray:
+        """Values (c, n) at points from those at the corners (c, 3, triangles), linear in each triangle."""
+        cells, X = at.triangles_as_given()
+        X = np.clip(X, 0, 1)
+        shape = np.stack([np.clip(1 - X[0] - X[1], 0, 1), X[0], X[1]])
+        return np.einsum("sct,ct->st", corners[:, :, cells], shape)
 
     def _displaced(self, at: LocatedPoints) -> np.ndarray:
         """Largest change (6, n) of the stress near the edge when the edge moves by ``radius_error``."""
@@ -407,9 +403,9 @@ def _functional_factor(order: int, size: float) -> float:
     """The same for contact radius, approach and stiffness.
 
     Functionals of the solution converge with up to twice the order (G. Strang and G. J. Fix, An Analysis of
-    the Finite Element Method, 1973, section 3.4); half of the gain is relied on.
+    the Finite Element Method, 1973, section 3.4); all but one is relied on.
     """
-    return _factor(order + order // 2, size)
+    return _factor(2 * order - 1, size)
 
 
 def _coarseness(size: float) -> float:

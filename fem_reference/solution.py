@@ -195,7 +195,7 @@ class Solution:
                 amplitude, _ = field_(points.located)
                 u += angle * amplitude
                 if estimate is not None:
-                    error += np.abs(angle) * estimate.displacement(amplitude)
+                    error += np.abs(angle) * estimate.displacement(amplitude, points.located)
         x = np.stack([u[0] * cos - u[1] * sin, u[0] * sin + u[1] * cos, u[2]])
         cos, sin = np.abs(cos), np.abs(sin)
         U = np.stack([error[0] * cos + error[1] * sin, error[0] * sin + error[1] * cos, error[2]])

@@ -34,8 +34,10 @@ __all__ = ["QUALITY", "solve", "solve_prescribed"]
 Coatings = tuple[tuple[float, float, float], ...]
 Ball = tuple[float, float, Coatings]
 
-# triangle size over its distance from the contact edge
+# Triangle size over its distance from the contact edge; the default is that of "fine" where neighbouring layers
+# differ more than this in their moduli.
 QUALITY = {"fast": 0.27, "default": 0.12, "fine": 0.1}
+CONTRAST = 10.0
 LOAD_TOLERANCE = 1e-8
 
 

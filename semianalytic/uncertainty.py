@@ -30,7 +30,8 @@ class Uncertainty:
     """Numerical uncertainty in SI units; budget : rows (quantity, numerical parameter, value).
 
     Parameters: patch size, conversion, domain, iteration, the staircase that patches make of the edge; of a
-    contact with an edge profile its terms, the quadrature, the iteration. The three scalars are the sums of their rows.
+    contact with an edge profile its terms, the quadrature, the iteration. The three scalars are the sums of
+    their rows.
     """
 
     contact_radius: float
