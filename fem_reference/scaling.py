@@ -48,9 +48,12 @@ class LayeredSolid:
         """
         E, nu = substrate
         thicknesses = tuple(h / length for _, _, h in coatings)
-        moduli = [E_k / E for E_k, _, _ in coatings]
-        extent = sum(h * max(1.0, m) ** 0.5 for h, m in zip(thicknesses, moduli, strict=True))
-        materials = tuple((E_k / modulus, nu_k) for E_k, nu_k in (*((c[0], c[1]) for c in coatings), (E, nu)))
+        extent = sum(
+            h * max(1.0, E_k / E) ** 0.5 for h, (E_k, _, _) in zip(thicknesses, coatings, strict=True)
+        )
+        moduli = [E_k / modulus for E_k, _, _ in coatings]
+        poisson = [nu_k for _, nu_k, _ in coatings]
+        materials = (*zip(moduli, poisson, strict=True), (E / modulus, nu))
         return cls(materials, thicknesses, far * (1 + extent))
 
     def far_displacement(self, r: np.ndarray, z: np.ndarray) -> np.ndarray:

@@ -254,9 +254,11 @@ def _loaded(grid: Grid, shape: edge_profile.Prescribed, body: Body, numerics: Nu
 
 def _body(coatings: Coatings, substrate: Substrate, friction: float, ball: Ball | None = None) -> Body:
     Body(coatings, substrate, friction)  # refuses what is no number before it is made one
-    opposite = None
-    if ball is not None:
-        given = Body.of_ball(ball, float(friction))
-        opposite = _body(given.coatings, given.substrate, given.friction)
+    opposite = None if ball is None else _ball(ball, friction)
     layers = tuple(tuple(float(v) for v in coating) for coating in coatings)
     return Body(layers, tuple(float(v) for v in substrate), float(friction), opposite)  # type: ignore[arg-type]
+
+
+def _ball(ball: Ball, friction: float) -> Body:
+    given = Body.of_ball(ball, friction)
+    return _body(given.coatings, given.substrate, given.friction)

@@ -18,7 +18,8 @@ from verification.cases.toml import (
 )
 from verification.judging.claims import standard_claims
 from verification.judging.verdict import Claim
-from verification.problem.contact import CoatedContact
+from verification.problem.arrays import Ball, Coatings
+from verification.problem.contact import BALL, CoatedContact
 from verification.problem.profile import Line, line_of, lines_of, oblique_lines
 from verification.sources.registry import METHODS, sources_of
 
@@ -67,12 +68,41 @@ class _Coating(_Substrate):
         return self.thickness if self.thickness is not None else a_h * (self.thickness_over_a_h or 0.0)
 
 
+class BallEntry(_Substrate):
+    """An elastic ball; its coatings from its surface inwards."""
+
+    coatings: Annotated[list[_Coating], Field(default_factory=list, max_length=50)]
+
+    @property
+    def bare(self) -> Ball:
+        """The ball without its coatings."""
+        return self.E, self.nu, ()
+
+    def coated(self, a_h: float) -> Ball:
+        """The ball; a thickness over a_h is that over the scale of both bodies uncoated."""
+        return self.E, self.nu, _in_metres(self.coatings, a_h)
+
+
+def _in_metres(coatings: list[_Coating], a_h: float) -> Coatings:
+    return tuple((c.E, c.nu, c.in_metres(a_h)) for c in coatings)
+
+
 class _Problem(Strict):
     radius: Positive
     load: Positive
     friction: Friction = 0.0
     substrate: _Substrate
     coatings: Annotated[list[_Coating], Field(default_factory=list, max_length=50)]
+    ball: BallEntry | None = None
+
+    def contact(self) -> CoatedContact:
+        """The problem; a thickness over a_h is that over the scale of both bodies uncoated."""
+        ball, substrate = self.ball, (self.substrate.E, self.substrate.nu)
+        bare = CoatedContact(
+            self.radius, self.load, (), substrate, self.friction, ball.bare if ball else None
+        )
+        given = ball.coated(bare.a_h) if ball else None
+        return replace(bare, coatings=_in_metres(self.coatings, bare.a_h), ball=given)
 
 
 class _Claim(Strict):
@@ -120,10 +150,7 @@ def parse_case(raw: bytes, path: Path) -> Case:
     """Check the content of a case file; ``path`` names it in messages. Raises CaseError."""
     text, checked = read_toml(raw, path, _CaseFile)
     try:
-        p = checked.problem
-        given = dict(p) | {"substrate": (p.substrate.E, p.substrate.nu), "coatings": ()}
-        bare = CoatedContact(**given)
-        problem = replace(bare, coatings=tuple((c.E, c.nu, c.in_metres(bare.a_h)) for c in p.coatings))
+        problem = checked.problem.contact()
     except (ValueError, OverflowError, ZeroDivisionError) as error:
         raise CaseError(f"{path}: problem: {error}") from None
     refuse_unfit_scales(path, problem)
@@ -143,19 +170,23 @@ def parse_case(raw: bytes, path: Path) -> Case:
 def refuse_unfit_scales(path: Path, problem: CoatedContact) -> None:
     """Raise CaseError beyond the range of the parabolic sphere, of a method or of floating point."""
     a_h, R = problem.a_h, problem.radius
-    moduli = [*(E for E, _, _ in problem.coatings), problem.substrate[0]]
-    contrast = max(moduli) / min(moduli)
     if a_h > R:
         reason = f".load: gives a contact radius of {a_h:.3g} m on a sphere of {R:.3g} m; lower the load"
         raise CaseError(f"{path}: problem{reason}")
     if not 1e-12 < a_h < 1e3:
         raise CaseError(f"{path}: problem: contact radius a_h = {a_h:.3g} m; check units of radius, load, E")
-    for i, (_, _, h) in enumerate(problem.coatings):
-        if not 1e-3 <= h / a_h <= 1e3:
-            reason = f"{h / a_h:.3g} times the contact radius {a_h:.3g} m; both methods support 1e-3 to 1e3"
-            raise CaseError(f"{path}: problem.coatings.{i}.thickness: {reason}")
-    if contrast > 1e4:
-        raise CaseError(f"{path}: problem: moduli differ {contrast:.3g} times; at most 1e4 is supported")
+    for body in problem.bodies:
+        seen, key = problem.seen_from(body), f"{path}: problem{'.ball' if body == BALL else ''}"
+        for i, (_, _, h) in enumerate(seen.coatings):
+            if not 1e-3 <= h / a_h <= 1e3:
+                reason = (
+                    f"{h / a_h:.3g} times the contact radius {a_h:.3g} m; both methods support 1e-3 to 1e3"
+                )
+                raise CaseError(f"{key}.coatings.{i}.thickness: {reason}")
+        moduli = [*(E for E, _, _ in seen.coatings), seen.substrate[0]]
+        contrast = max(moduli) / min(moduli)
+        if contrast > 1e4:
+            raise CaseError(f"{key}: moduli differ {contrast:.3g} times; at most 1e4 is supported")
 
 
 def _claims(path: Path, checked: _CaseFile, problem: CoatedContact) -> tuple[Claim, ...]:

@@ -13,7 +13,7 @@ from verification.cases.schema import LayerEntry, ProblemEntry, PublishedFile
 from verification.cases.table import FOLDER, UNITS, PublishedError, read_table
 from verification.cases.toml import CaseError, load_toml, read_bounded, read_toml
 from verification.judging.verdict import Claim
-from verification.problem.arrays import Coatings
+from verification.problem.arrays import Ball, Coatings
 from verification.problem.contact import CoatedContact, PrescribedLoad
 from verification.problem.loading import CONTROLS, PUNCH, LoadingCurve, Problem
 from verification.problem.quantity import QUANTITIES
@@ -118,13 +118,18 @@ def _problem(p: ProblemEntry) -> Problem:
     )
     substrate = (p.substrate.E * stress, p.substrate.nu)
 
-    def layers(a_h: float | None) -> Coatings:
-        return tuple((c.E * stress, c.nu, _thickness(c, length, a_h)) for c in p.coatings)
+    def layers(coatings: list[LayerEntry], a_h: float | None) -> Coatings:
+        return tuple((c.E * stress, c.nu, _thickness(c, length, a_h)) for c in coatings)
+
+    def ball(a_h: float | None) -> Ball | None:
+        if p.ball is None:
+            return None
+        return p.ball.E * stress, p.ball.nu, layers(p.ball.coatings, a_h) if a_h else ()
 
     if p.radius is not None and p.load is not None:
-        bare = CoatedContact(p.radius * length, p.load * force, (), substrate, p.friction)
-        return replace(bare, coatings=layers(bare.a_h))
-    coatings = layers(None)
+        bare = CoatedContact(p.radius * length, p.load * force, (), substrate, p.friction, ball(None))
+        return replace(bare, coatings=layers(p.coatings, bare.a_h), ball=ball(bare.a_h))
+    coatings = layers(p.coatings, None)
     if p.radius is not None:
         return LoadingCurve(p.radius * length, CONTROLS[0], (1.0,), coatings, substrate)
     assert p.pressure is not None

@@ -18,6 +18,7 @@ THINNEST = 0.02  # h / a_h of a coating where THICKNESS is that of all together
 POISSON = (0.0, 0.49)  # of every layer
 FRICTION = (0.0, 0.8)
 MOST_COATINGS = 5
+ELASTIC = 0.5  # share of the problems with an elastic ball, of no coating to three
 FRICTIONLESS = 1 / 3  # share of the problems with f = 0, the only ones with a symmetric stress
 # Linear elasticity has no length scale: these ranges only exclude an effect of the units.
 RADIUS = (1e-4, 1e-1)  # m
@@ -40,26 +41,34 @@ def draw(seed: int, number: int) -> Draw:
     Moduli, thicknesses, radius are uniform in their logarithm, Poisson's ratios as well as friction
     uniform; one to five coatings. In half of the problems THICKNESS is that of each coating, in the
     other half that of the whole stack, divided at random, so that more films are thin, down to THINNEST.
+    The ball is drawn last, from the same ranges.
     """
     random = np.random.default_rng([seed, number])
     coatings = int(random.integers(1, MOST_COATINGS + 1))
     E = _log_uniform(random, MODULUS)
     ratios = [_log_uniform(random, RATIO) for _ in range(coatings)]
     poisson = [_rounded(random.uniform(*POISSON)) for _ in range(coatings + 1)]
-    if random.uniform() < 0.5:
-        thicknesses = [_log_uniform(random, THICKNESS) for _ in range(coatings)]
-    else:
-        shares = random.dirichlet(np.ones(coatings))
-        total = _log_uniform(random, THICKNESS)
-        thicknesses = [max(_rounded(total * share), THINNEST) for share in shares]
+    thicknesses = _thicknesses(random, coatings)
     sliding = random.uniform() >= FRICTIONLESS
     friction = _rounded(random.uniform(*FRICTION)) if sliding else 0.0
     radius = _log_uniform(random, RADIUS)
     a_h = radius * _log_uniform(random, FLATNESS)
-    load = _rounded(4 * a_h**3 * E / (1 - poisson[-1] ** 2) / (3 * radius))
+    compliance, ball, on_ball = (1 - poisson[-1] ** 2) / E, "", []
+    if random.uniform() < ELASTIC:
+        E_ball, count = _log_uniform(random, RATIO) * E, int(random.integers(0, MOST_COATINGS + 1))
+        E_ball, nu = _rounded(E_ball), _rounded(random.uniform(*POISSON))
+        on_ball = [
+            f"{{ E = {_rounded(_log_uniform(random, RATIO) * E_ball)!r}, "
+            f"nu = {_rounded(random.uniform(*POISSON))!r}, thickness_over_a_h = {h!r} }}"
+            for h in _thicknesses(random, count)
+        ]
+        ball = f"ball = {{ E = {E_ball!r}, nu = {nu!r}, coatings = [{', '.join(on_ball)}] }}"
+        compliance += (1 - nu**2) / E_ball
+    load = _rounded(4 * a_h**3 / (3 * radius * compliance))
 
     layers = ", ".join(f"E1/E2 = {r:.3g}, h = {h:.3g} a_h" for r, h in zip(ratios, thicknesses, strict=True))
     title = f"Draw {number} of seed {seed}: {layers}" + (f", f = {friction:.3g}" if friction else "")
+    title += f", elastic ball, coatings on it: {len(on_ball)}" if ball else ""
     lines = [
         f'title = "{title}"',
         'source = "drawn at random"',
@@ -68,6 +77,7 @@ def draw(seed: int, number: int) -> Draw:
         f"load = {load!r}",
         f"friction = {friction!r}",
         f"substrate = {{ E = {E!r}, nu = {poisson[-1]!r} }}",
+        *([ball] if ball else []),
     ]
     for ratio, nu, h in zip(ratios, poisson, thicknesses, strict=False):
         lines += [
@@ -77,6 +87,15 @@ def draw(seed: int, number: int) -> Draw:
             f"thickness_over_a_h = {h!r}",
         ]
     return Draw(f"draw_{seed}_{number:03d}", title, "\n".join(lines) + "\n")
+
+
+def _thicknesses(random: np.random.Generator, coatings: int) -> list[float]:
+    """h / a_h of each coating."""
+    if coatings == 0 or random.uniform() < 0.5:
+        return [_log_uniform(random, THICKNESS) for _ in range(coatings)]
+    shares = random.dirichlet(np.ones(coatings))
+    total = _log_uniform(random, THICKNESS)
+    return [max(_rounded(total * share), THINNEST) for share in shares]
 
 
 def _log_uniform(random: np.random.Generator, bounds: tuple[float, float]) -> float:

@@ -20,6 +20,14 @@ class LayerEntry(Strict):
     thickness_over_a_h: Positive | None = None
 
 
+class BallEntry(Strict):
+    """An elastic ball; its coatings from its surface inwards."""
+
+    E: Positive
+    nu: Poisson
+    coatings: Annotated[list[LayerEntry], Field(default_factory=list, max_length=50)]
+
+
 class ProblemEntry(Strict):
     """A uniform disc or a sphere on a layered solid, in the units of the source.
 
@@ -31,6 +39,7 @@ class ProblemEntry(Strict):
     load_unit: Text = "N"
     substrate: LayerEntry
     coatings: Annotated[list[LayerEntry], Field(default_factory=list, max_length=50)]
+    ball: BallEntry | None = None
     friction: Friction = 0.0
     pressure: Positive | None = None
     load_radius: Positive | None = None
@@ -46,6 +55,8 @@ class ProblemEntry(Strict):
             raise ValueError(f"needs {fit}, or radius alone (a loading curve)")
         if self.load is None and self.friction and disc == 0:
             raise ValueError("friction belongs to a disc, or to a sphere under a load")
+        if self.load is None and self.ball is not None:
+            raise ValueError("an elastic ball needs a radius and a load")
         return self
 
 

@@ -1,6 +1,7 @@
 """coatcheck guest: contact codes of others, examined."""
 
 import datetime
+import json
 import shlex
 import time
 from collections import Counter
@@ -33,15 +34,18 @@ from verification.guests.examination import Examined, examined, outcome_counts, 
 from verification.judging.outcome import Outcome
 from verification.problem.quantity import unit_of
 from verification.regression.junit import junit_xml
+from verification.report.guest import badge
+from verification.report.guest import page as render
 from verification.report.tables.numbers import engineering
 from verification.running.pool import Task
-from verification.running.result import CaseResult
+from verification.running.result import CaseResult, RunInfo, to_json
 from verification.running.store import locked, write_atomically
 
 Folder = Annotated[Path | None, Parameter(name=["--output", "-o"])]
 UNCOATED, COATED = ("01_uncoated_steel", "13_uncoated_sliding"), ("05_ratio_4", "14_ratio_4_sliding")
 SHOWN = (Outcome.AGREES, Outcome.DISAGREES, Outcome.INCONCLUSIVE, Outcome.NO_RESULT, Outcome.UNSUPPORTED)
 MOST_SHOWN = 12
+REPORT = "coatcheck-guest-report/1"
 EXAMPLES = PACKAGE / "guests" / "examples"
 PACKED = """name = "my results"
 results = "answers"               # directory of the files to fill in
@@ -137,7 +141,14 @@ def run(
         found = examined(host, chosen, folder, run_tasks, jobs)
         info = run_info(shlex.join(["coatcheck", "guest", "run", guest, *cases]), started, jobs)
         page = folder / "report.html"
-        write_atomically(folder / "junit.xml", junit_xml(found.results, info))
+        texts = {
+            "junit.xml": junit_xml(found.results, info),
+            "report.json": report_json(found, info),
+            "badge.svg": badge(found),
+            "report.html": render(found, info),
+        }
+        for name, text in texts.items():
+            write_atomically(folder / name, text)
     code = exit_code(found)
     if as_json:
         print_json(
@@ -216,6 +227,13 @@ def _show(guest: Guest, result: CaseResult) -> None:
         print_out(f"[bold]->[/] {escape(one_line(str(slip)))}")
 
 
+def report_json(found: Examined, info: RunInfo) -> str:
+    """The results as JSON, for other programs."""
+    content = {"schema": REPORT, "guest": found.guest.name, "run": vars(info)}
+    cases = [to_json(result) for result in found.results]
+    return json.dumps(content | {"cases": cases}, allow_nan=False, separators=(",", ":")) + "\n"
+
+
 def exit_code(found: Examined) -> int:
     """The code of the worst verdict that is not a known failure."""
     outcomes = {verdict.outcome for _, _, verdict in found.counted}
@@ -262,7 +280,8 @@ def _print(found: Examined, seconds: float, page: Path) -> None:
     print_out(
         escape(
             f"{found.guest.name}: {total[Outcome.AGREES]} of {answered} comparisons agree, "
-            f"{total[Outcome.UNSUPPORTED]} unsupported; {len(found.results)} cases in {seconds:.0f} s"
+            f"{total[Outcome.UNSUPPORTED]} unsupported; {len(found.results)} cases in {seconds:.0f} s; "
+            f"report: {page}"
         )
     )
 

@@ -142,8 +142,8 @@ class Guest:
 
     def factor(self, unit: str) -> float:
         """SI value of the code's unit for quantities of the SI ``unit``."""
-        scales = {"m": LENGTHS[self.units.length], "Pa": STRESSES[self.units.stress]}
-        return scales.get(unit, FORCES[self.units.force] if unit == "N" else 1.0)
+        m, N = LENGTHS[self.units.length], FORCES[self.units.force]
+        return {"m": m, "N": N, "N/m": N / m, "Pa": STRESSES[self.units.stress]}.get(unit, 1.0)
 
     @property
     def questions(self) -> tuple[dict[str, float], ...]:

@@ -13,8 +13,8 @@ from verification.guests.protocol import Answer, ElasticBall, Layer, LineOfPoint
 from verification.judging.verdict import Claim
 from verification.problem.arrays import Coatings
 from verification.problem.geometry import layer_at
-from verification.problem.profile import Profile, line_of, lines_of
-from verification.problem.quantity import SLOPES, unit_of
+from verification.problem.profile import Profile, line_of
+from verification.problem.quantity import unit_of
 from verification.running.contact import failed
 from verification.running.pool import Task
 from verification.running.provenance import fingerprint
@@ -27,6 +27,7 @@ from verification.sources.registry import EXACT
 
 REFERENCE = EXACT[0]
 # Claims of a case are about pairs of sources; those of the first method are the ones that a guest meets.
+ALONG_SURFACE = ("surface", "oblique surface")  # lines that cross the contact edge
 PATTERN = ("semianalytic", REFERENCE)
 
 
@@ -41,10 +42,9 @@ def prepare(name: str, text: str, path: str) -> None:
     """Solve the case file ``text`` exactly, sample it on its lines, store it at ``path``."""
     case = parse_case(text.encode(), Path(f"{name}.toml"))
     solution = solve_exactly(case.problem)
-    lines = lines_of(case.problem)
-    places = positions(case.problem, lines, {REFERENCE: solution})
+    places = positions(case.problem, case.lines, {REFERENCE: solution})
     profiles = list(sample_contact(solution, REFERENCE, case.problem))
-    for line in lines:
+    for line in case.lines:
         profiles += sample(solution, REFERENCE, line, places[line], case.problem)
     result = CaseResult(
         name=case.name,
@@ -91,11 +91,9 @@ def kept_exam(folder: Path, case: Case) -> CaseResult | None:
 def claims_of(case: Case, guest: Guest) -> tuple[Claim, ...]:
     """The claims of ``case`` about the exact reference, as claims about the guest.
 
-    The cap is that of the case, or what the guest claims, where this is more. A guest is asked for the
-    contact and for the lines of the plane y = 0, not for the stiffness.
+    The cap is that of the case, or what the guest claims, where this is more.
     """
-    known = {"contact", *(line.name for line in lines_of(case.problem))}
-    found = [c for c in case.claims if c.between == PATTERN and c.line in known and c.quantity not in SLOPES]
+    found = [claim for claim in case.claims if claim.between == PATTERN]
     return tuple(
         Claim(
             claim.quantity,
@@ -103,7 +101,7 @@ def claims_of(case: Case, guest: Guest) -> tuple[Claim, ...]:
             (guest.name, REFERENCE),
             max(claim.cap, guest.claim or 0.0),
             claim.why,
-            0.0 if claim.line == "contact" else max(claim.edge, guest.edge),
+            max(claim.edge, guest.edge) if claim.line in ALONG_SURFACE else claim.edge,
         )
         for claim in found
     )
@@ -128,10 +126,9 @@ def question_of(
             continue
         line = line_of(name, problem)
         along = next(p.position for p in exam.profiles if p.line == name)
-        zero = np.zeros_like(along)
-        x, z = (zero, along) if line.depth is None else (along, np.full_like(along, line.depth))
+        x, y, z = line.points(along)
         layers = layer_at(z, problem.coatings, line.layer)
-        points: dict[str, Any] = {"x": x / m, "y": zero, "z": z / m, "layer": layers}
+        points: dict[str, Any] = {"x": x / m, "y": y / m, "z": z / m, "layer": layers}
         lines.append(
             LineOfPoints(line=name, quantities=quantities, **{k: v.tolist() for k, v in points.items()})
         )

@@ -2,9 +2,10 @@
 
     U = F |f_n - f_{n-1}| / (r^p - 1),   p = ln(|f_{n-1} - f_{n-2}| / |f_n - f_{n-1}|) / ln r
 
-Roache, J. Fluids Eng. 116 (1994) 405-413. F = 1.25 where p is observed within ``ORDERS``, 3 with the
-nearest of both elsewhere. A change that is small by chance does not count: |f_n - f_{n-1}| is at least that
-of the level before over r^2, and along a line the largest of its neighbours.
+Roache, J. Fluids Eng. 116 (1994) 405-413. F = 1.25 where p is observed within ``ORDERS``; elsewhere changes
+are erratic, as those of a radius counted in patches, and F = 3 with the lower bound or the order 1. A change
+that is small by chance does not count: |f_n - f_{n-1}| is at least that of the level before over r^2; along
+a line the largest of its neighbours.
 """
 
 from collections.abc import Sequence
@@ -24,19 +25,20 @@ LEAST = 3  # levels
 def estimated(levels: Sequence[float], profiles: Sequence[Profile]) -> Array:
     """Uncertainty of the last of ``profiles``, of one quantity at ``levels``, coarse to fine; its shape.
 
-    The order is that of the largest changes along the line.
+    The order is that of the mean changes along the line.
     """
     coarse, middle, fine = (profile.value for profile in profiles[-3:])
     ratios = [max(b / a, a / b) for a, b in pairwise(levels)][-2:]
     early, late = np.abs(middle - coarse), np.abs(fine - middle)
     r = ratios[1]
-    p = observed_order(float(np.max(early)), float(np.max(late)), ratios)
+    p = observed_order(float(np.mean(early)), float(np.mean(late)), ratios)
     change = np.maximum(late, early / r**2)
     if change.size > 1:
         change = maximum_filter1d(change, NEIGHBOURS, mode="nearest")
     low, high = ORDERS
-    safety = 1.25 if low <= p <= high else 3.0
-    found: Array = safety * change / (r ** float(np.clip(p, low, high)) - 1)
+    regular = low <= p <= high
+    order = p if regular else float(np.nan_to_num(np.clip(p, low, 1.0), nan=low))
+    found: Array = (1.25 if regular else 3.0) * change / (r**order - 1)
     return found
 
 

@@ -50,8 +50,17 @@ def refused(guest: Guest, case: Case, reason: str) -> CaseResult:
 
 def decided(guest: Guest, claim: Claim, verdict: Verdict) -> Verdict:
     """``verdict``; of an answer without uncertainty by what the guest claims, as the reason says."""
-    if verdict.uncertainty is not None or verdict.difference is None:
+    if verdict.difference is None:
         return verdict
+    if verdict.uncertainty is not None:
+        unseen = verdict.outcome is Outcome.DISAGREES and guest.claim and verdict.difference <= guest.claim
+        if not unseen:
+            return verdict
+        study = (
+            f"the levels of {guest.parameter} do not show it" if guest.levels else "not within what it states"
+        )
+        reason = f"{verdict.reason}; within the claimed {guest.claim:g}, but {study}"
+        return replace(verdict, reason=reason)
     if guest.claim is None:
         reason = f"difference {verdict.difference:.2e}; the guest states no uncertainty: give refine or claim"
         return replace(verdict, outcome=Outcome.INCONCLUSIVE, reason=reason)

@@ -1,9 +1,10 @@
 """Claims a case makes when its file names none: every quantity on every line, source against source."""
 
 from verification.judging.verdict import Claim
-from verification.problem.contact import CoatedContact
+from verification.problem.contact import FLAT, CoatedContact
 from verification.problem.profile import Line, lines_of, oblique_lines
 from verification.problem.quantity import (
+    BALL_PEAKS,
     DISPLACEMENTS,
     IN_PLANE,
     PEAKS,
@@ -23,7 +24,8 @@ def standard_claims(problem: CoatedContact) -> tuple[Claim, ...]:
         Claim(name, "contact", pair, QUANTITIES[name].cap, why) for pair in pairs for name in SCALARS + SLOPES
     ]
     why = "the tension a coating cracks by, where each source has it"
-    claims += [Claim(name, "contact", pair, QUANTITIES[name].cap, why) for pair in pairs for name in PEAKS]
+    peaks = PEAKS if problem.ball is None else (*PEAKS, *BALL_PEAKS)
+    claims += [Claim(name, "contact", pair, QUANTITIES[name].cap, why) for pair in pairs for name in peaks]
     why = "the stress a coating cracks or peels by"
     for line in lines_of(problem):
         for name in _quantities(line, problem):
@@ -31,9 +33,9 @@ def standard_claims(problem: CoatedContact) -> tuple[Claim, ...]:
     why = "all components, where none vanishes by symmetry"
     displaced = pairs_of(sources_of(problem, "displacement"))
     for line in oblique_lines(problem):
-        if line.name != "oblique surface":
+        if line.place != "oblique surface":
             claims += [Claim(n, line.name, pair, QUANTITIES[n].cap, why) for n in STRESSES for pair in pairs]
-        if line.name != "off plane":
+        if line.place != "off plane":
             claims += [
                 Claim(n, line.name, pair, QUANTITIES[n].cap, why) for n in DISPLACEMENTS for pair in displaced
             ]
@@ -41,9 +43,9 @@ def standard_claims(problem: CoatedContact) -> tuple[Claim, ...]:
 
 
 def _quantities(line: Line, problem: CoatedContact) -> tuple[str, ...]:
-    if line.name == "surface":
+    if line.place == "surface":
         # sigma_zz = -p and sigma_xz = -f p hold by construction there; the pressure says it all.
-        return ("pressure", "sigma_xx", "sigma_yy")
-    if line.name == "axis":
+        return (*(("pressure",) if line.body == FLAT else ()), "sigma_xx", "sigma_yy")
+    if line.place == "axis":
         return ("sigma_xx", "sigma_zz", *(("sigma_xz",) if problem.friction else ()))
     return tuple(IN_PLANE)

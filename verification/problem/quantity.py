@@ -117,6 +117,26 @@ QUANTITIES: dict[str, Quantity] = {
         Quantity(
             "tension_place", "peak", _SURFACE, "x of max sigma_xx", "x", "m", "a_h", 2e-4, meaning=_PLACE
         ),
+        Quantity(
+            "largest_tension_ball",
+            "ball peak",
+            _SURFACE,
+            "max sigma_xx of the ball",
+            r"\max\sigma_{xx}^b",
+            "Pa",
+            meaning=f"{_TENSION}, of the ball",
+        ),
+        Quantity(
+            "tension_place_ball",
+            "ball peak",
+            _SURFACE,
+            "x of max sigma_xx of the ball",
+            "x^b",
+            "m",
+            "a_h",
+            2e-4,
+            meaning=f"{_PLACE} of the ball",
+        ),
         Quantity("load", "curve", _CURVE, "W", "W", "N", cap=_LOOSE),
         Quantity("kappa", "curve", _CURVE, "kappa", r"\kappa", "1", "p_h", _LOOSE, meaning=_PUNCH),
         Quantity("series_over_load", "curve", _CURVE, "series / W", "", "1", "p_h", _LOOSE, meaning=_LOADS),
@@ -153,6 +173,7 @@ def _names(kind: str = "", sampled: str = "") -> tuple[str, ...]:
 SCALARS = _names("scalar", "contact")
 SLOPES = _names("slope")
 PEAKS = _names("peak")
+BALL_PEAKS = _names("ball peak")
 EXTREMES = _names("scalar", "axis")
 CURVES = _names(sampled="curve")
 STRESSES = {q.name: q.component for q in QUANTITIES.values() if q.kind == "stress" and q.component}

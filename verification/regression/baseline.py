@@ -6,7 +6,7 @@ from dataclasses import asdict, dataclass, field
 from typing import Any
 
 from verification.regression.ability import Ability, abilities
-from verification.regression.drift import Drift, Numbers, State, drift, measured
+from verification.regression.drift import Drift, Numbers, State, drift, edges_of, measured
 from verification.regression.manifest import Difference, Manifest, differences, differing_tests, manifest_of
 from verification.running.records import plain
 from verification.running.result import CaseResult, RunInfo
@@ -144,7 +144,10 @@ def case_drift(result: CaseResult, baseline: Baseline) -> CaseDrift:
     """The changes of one case since ``baseline``."""
     now = {numbers.key: numbers for numbers in measured(result)}
     then = {numbers.key: numbers for numbers in baseline.cases.get(result.name, ())}
-    drifts = [drift(old, now[key]) if key in now else _unpaired(old, State.GONE) for key, old in then.items()]
+    edges = edges_of(baseline.cases.get(result.name, ()))
+    drifts = [
+        drift(old, now[key], edges) if key in now else _unpaired(old, State.GONE) for key, old in then.items()
+    ]
     drifts += [_unpaired(numbers, State.NEW) for key, numbers in now.items() if key not in then]
     message = "" if baseline.digests.get(result.name) == digest(result.text) else "its case file was changed"
     if result.name not in baseline.cases:

@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 
 from verification.judging.verdict import Outcome
-from verification.problem.quantity import PEAKS, SLOPES
+from verification.problem.contact import BALL
+from verification.problem.quantity import BALL_PEAKS, PEAKS, SCALARS, SLOPES
 from verification.regression.manifest import manifest_message
 from verification.report.credibility import faults, mutants, self_tests, statement
 from verification.report.figures.fields import pictures
@@ -39,7 +40,7 @@ from verification.report.tables.case import (
 from verification.report.tables.cells import Cell, Section, Table
 from verification.report.tables.csv import embedded, line_csv
 from verification.report.tables.labels import OUTCOMES, OutcomeStyle, source_label
-from verification.report.tables.lookup import TITLES, lines, scale, slug
+from verification.report.tables.lookup import layers, lines, scale, slug, title_of
 from verification.report.tables.matrix import verdict_matrix
 from verification.report.tables.numbers import scientific, seconds
 from verification.running.result import CaseResult
@@ -166,10 +167,15 @@ def _common(material: Material, result: CaseResult) -> dict[str, Any]:
         "command": rerun_command(result.name, material.info.command),
         "facts": facts(result),
         "failures": [(source_label(s.source), s.failure) for s in result.sources if s.failure is not None],
-        "layers": layer_table(result),
+        "layers": [layer_table(result), *([layer_table(result, BALL)] if layers(result, BALL) else [])],
         "budget": budget_table(result),
         "diagnostics": diagnostics_table(result),
     }
+
+
+def _scalars(result: CaseResult) -> list[tuple[str, ...]]:
+    """The quantities of each table of numbers of the contact."""
+    return [SCALARS, SLOPES + PEAKS, *([BALL_PEAKS] if layers(result, BALL) else [])]
 
 
 def _published(material: Material, result: CaseResult) -> dict[str, Any]:
@@ -182,14 +188,14 @@ def _contact(material: Material, result: CaseResult) -> dict[str, Any]:
     bad = [item for item in result.verdicts if item[1].outcome is not Outcome.AGREES]
     return _common(material, result) | {
         "sketch": sketch(result),
-        "contact": [contact_table(result), contact_table(result, SLOPES + PEAKS)],
+        "contact": [contact_table(result, quantities) for quantities in _scalars(result)],
         "contact_csv": embedded(line_csv(result, "contact")),
         "contact_file": f"{file}-contact.csv",
         "pictures": pictures(result, material.planes.get(result.name)),
         "lines": [
             {
                 "anchor": f"{anchor}-{slug(line)}",
-                "title": TITLES.get(line, line.capitalize()),
+                "title": title_of(line),
                 "figures": line_figures(result, line),
                 "csv": embedded(line_csv(result, line)),
                 "file": f"{file}-{slug(line)}.csv",

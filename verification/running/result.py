@@ -122,6 +122,7 @@ def describe(problem: CoatedContact | PrescribedLoad | LoadingCurve) -> dict[str
         "a_h": problem.a_h,
         "p_h": problem.p_h,
         "delta_h": problem.delta_h,
+        "dundurs_beta": problem.dundurs_beta,
         "S_h": problem.S_h,
         "interfaces": problem.interfaces,
     }

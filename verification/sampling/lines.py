@@ -7,9 +7,10 @@ import numpy as np
 
 from verification.judging.invariants.refinement import followed
 from verification.problem.arrays import Array
-from verification.problem.contact import CoatedContact, Solution, stress_with_uncertainty
+from verification.problem.body import on_body
+from verification.problem.contact import BALL, FLAT, CoatedContact, Solution, stress_with_uncertainty
 from verification.problem.profile import Line, Profile
-from verification.problem.quantity import IN_PLANE, PEAKS, QUANTITIES, SCALARS, SLOPES
+from verification.problem.quantity import BALL_PEAKS, IN_PLANE, PEAKS, QUANTITIES, SCALARS, SLOPES
 from verification.sampling import oblique
 from verification.sampling.tension import Search, around_edge, edge_uncertainty
 
@@ -47,15 +48,12 @@ def positions(
         wanted = np.concatenate([-wanted[:0:-1], wanted])
     wanted = wanted[np.abs(wanted) <= np.abs(nodes).max()]
     x = nodes[np.unique(np.abs(nodes[None, :] - wanted[:, None]).argmin(axis=1))]
-    bounds = np.array([0.0, *problem.interfaces, max(4 * a, *(2 * z for z in problem.interfaces), 0.0)])
-    # At least six points in each layer, none on an interface; spacing grows with depth.
-    inside = bounds[:-1, None] + np.diff(bounds)[:, None] * (np.arange(6) + 0.5) / 6
-    z = np.unique(np.concatenate([inside.ravel(), 4 * a * ((np.arange(40) + 0.5) / 40) ** 1.5]))
+    z = {body: _depths(problem.seen_from(body), a) for body in problem.bodies}
     near = edge * np.concatenate([1 + NEAR_EDGE, 1 - NEAR_EDGE])
     clear = x[np.abs(np.abs(x) - edge) > NEAR_EDGE[1] * edge]
     surface = np.unique(np.concatenate([clear, near, -near] if problem.friction else [clear, near]))
     return {
-        line: z
+        line: z[line.body]
         if line.coordinate == "z"
         else oblique.positions(problem, line, a)
         if line.depth is None
@@ -69,6 +67,13 @@ def edge_of(solutions: Mapping[str, Solution]) -> float:
     return float(list(solutions.values())[-1].contact_radius)
 
 
+def _depths(problem: CoatedContact, a: float) -> Array:
+    """Depths on the axis [m]: at least six in each layer, none on an interface; spacing grows with depth."""
+    bounds = np.array([0.0, *problem.interfaces, max(4 * a, *(2 * z for z in problem.interfaces), 0.0)])
+    inside = bounds[:-1, None] + np.diff(bounds)[:, None] * (np.arange(6) + 0.5) / 6
+    return np.unique(np.concatenate([inside.ravel(), 4 * a * ((np.arange(40) + 0.5) / 40) ** 1.5]))
+
+
 def sample(
     solution: Solution,
     source: str,
@@ -79,7 +84,7 @@ def sample(
 ) -> tuple[Profile, ...]:
     """Every quantity of ``line`` at ``position`` [m]: the four stresses, on the surface the pressure too.
 
-    Off the plane y = 0 see ``oblique``.
+    Off the plane y = 0 see ``oblique``. On a line of the ball x is that of the flat.
 
     problem : on the surface also its largest tension with its place, as ``PEAKS`` of the contact.
     edge : as of ``edge_of``; points of the surface at this radius [m] are evaluated at the solution's own
@@ -87,14 +92,16 @@ def sample(
     """
     if line.depth is None and line.coordinate != "z":
         return oblique.sample(solution, source, line, position)
+    solution, turned = on_body(solution, line.body), -1.0 if line.body == BALL else 1.0
     x, _, z = (np.array(along) for along in line.points(position))
+    x = turned * x
     stated = solution.uncertainty is not None
-    surface = line.name == "surface"
+    surface = line.place == "surface"
     at = np.flatnonzero(np.abs(position) == edge) if surface else np.arange(0)
-    side = np.sign(position[at])
+    side = np.sign(x[at])
     x[at] = side * float(solution.contact_radius)
     around = (side[:, None] * around_edge(solution)).ravel() if at.size and stated else np.zeros(0)
-    search = Search(solution, problem) if problem is not None and surface else None
+    search = Search(solution, problem.seen_from(line.body)) if problem is not None and surface else None
     # In one call, whose cost hardly depends on the number of points.
     parts = (x, around, np.zeros(0) if search is None else search.x)
     points = np.concatenate(parts)
@@ -107,12 +114,13 @@ def sample(
         wide[..., at] = _at_edge(
             solution, near, near_U, lambda one: one.stress(side * one.contact_radius, 0.0, 0.0, layer=0)
         )
+    values[0, 2] = values[2, 0] = turned * values[0, 2]
     found = [(name, values[component], wide, component) for name, component in IN_PLANE.items()]
     profiles = [
         Profile(name, line.name, position, value, source, None if U is None else U[component])
         for name, value, U, component in found
     ]
-    if surface:
+    if line.name == "surface":  # the pressure is that of both bodies
         spread = solution.pressure_uncertainty(x) if stated else None
         if spread is not None and around.size:
             near, near_U = solution.pressure(around), solution.pressure_uncertainty(around)
@@ -120,8 +128,9 @@ def sample(
         profiles.append(Profile("pressure", line.name, position, solution.pressure(x), source, spread))
     if search is not None:
         best = search.largest(sought[0, 0], None if sought_U is None else sought_U[0, 0])
-        numbers = ((best.value, best.uncertainty), (best.place, best.place_uncertainty))
-        for name, (number, uncertain) in zip(PEAKS, numbers, strict=True):
+        numbers = ((best.value, best.uncertainty), (turned * best.place, best.place_uncertainty))
+        names = PEAKS if line.body == FLAT else BALL_PEAKS
+        for name, (number, uncertain) in zip(names, numbers, strict=True):
             own = None if uncertain is None else np.array([uncertain])
             profiles.append(Profile(name, "contact", np.zeros(1), np.array([number]), source, own))
     return tuple(profiles)

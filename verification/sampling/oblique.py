@@ -28,14 +28,15 @@ def positions(problem: CoatedContact, line: Line, a: float) -> Array:
 
     a : contact radius [m].
     """
-    if line.name == "oblique":
+    problem = problem.seen_from(line.body)
+    if line.place == "oblique":
         bounds = np.array([0.0, *problem.interfaces])
         inside = bounds[:-1, None] + np.diff(bounds)[:, None] * INSIDE
         z = np.unique(np.concatenate([inside.ravel(), max(a, 0.75 * bounds[-1]) * DOWN]))
         clear = CLEAR * min([a, *(h for _, _, h in problem.coatings)])
         z = z[np.abs(z[:, None] - bounds).min(axis=1) > clear]
         return z / line.direction[2]
-    s = a * (ACROSS if line.name == "off plane" else SURFACE)
+    s = a * (ACROSS if line.place == "off plane" else SURFACE)
     return np.concatenate([-s[:0:-1], s]) if problem.friction else s
 
 
@@ -43,12 +44,12 @@ def sample(solution: Solution, source: str, line: Line, position: Array) -> tupl
     """Every quantity of ``line`` at ``position`` [m]; no displacement where the source claims none."""
     x, y, z = line.points(position)
     found: list[tuple[str, Array, Array | None]] = []
-    if line.name != "oblique surface":
-        sigma, U = stress_with_uncertainty(solution, x, y, z, layer=line.layer)
+    if line.place != "oblique surface":
+        sigma, U = stress_with_uncertainty(solution, x, y, z, layer=line.layer, body=line.body)
         found += [(n, sigma[c], None if U is None else U[c]) for n, c in STRESSES.items()]
-    if line.name != "off plane":
+    if line.place != "off plane":
         try:
-            u, U = displacement_with_uncertainty(solution, x, y, z)
+            u, U = displacement_with_uncertainty(solution, x, y, z, line.body)
         except NotClaimed:
             u, U = np.zeros((0, position.size)), None
         found += [(n, u[i], None if U is None else U[i]) for i, n in enumerate(DISPLACEMENTS[: len(u)])]

@@ -9,7 +9,7 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from verification.problem.arrays import Array
+from verification.problem.arrays import Array, Coatings
 from verification.problem.contact import CoatedContact, PrescribedLoad, Solution
 from verification.problem.quantity import QUANTITIES, SCALARS, SLOPES
 
@@ -42,8 +42,15 @@ def short_of_limit(problem: Problem, t: int) -> Problem:
     softest = min((E1 for E1, _, _ in problem.coatings), default=E)
     if STIFFEST * softest < E:
         E = 1 / (1 / E + t / (STIFFEST * softest))
-    coatings = tuple((E1, compressible(nu1), h) for E1, nu1, h in problem.coatings)
-    return replace(problem, coatings=coatings, substrate=(E, compressible(nu)))
+
+    def layers(coatings: Coatings) -> Coatings:
+        return tuple((E1, compressible(nu1), h) for E1, nu1, h in coatings)
+
+    short: dict[str, Any] = {"coatings": layers(problem.coatings), "substrate": (E, compressible(nu))}
+    if isinstance(problem, CoatedContact) and problem.ball is not None:
+        E_ball, nu_ball, on_ball = problem.ball
+        short["ball"] = E_ball, compressible(nu_ball), layers(on_ball)
+    return replace(problem, **short)
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,19 +84,19 @@ class _Extrapolated:
     def pressure(self, x: Any, y: Any = 0.0) -> Array:
         return 2 * self.near.pressure(x, y) - self.further.pressure(x, y)
 
-    def stress(self, x: Any, y: Any, z: Any, layer: int | None = None) -> Array:
-        return 2 * self.near.stress(x, y, z, layer) - self.further.stress(x, y, z, layer)
+    def stress(self, x: Any, y: Any, z: Any, layer: int | None = None, **of: Any) -> Array:
+        return 2 * self.near.stress(x, y, z, layer, **of) - self.further.stress(x, y, z, layer, **of)
 
-    def displacement(self, x: Any, y: Any, z: Any) -> Array:
-        return 2 * self.near.displacement(x, y, z) - self.further.displacement(x, y, z)
+    def displacement(self, x: Any, y: Any, z: Any, **of: Any) -> Array:
+        return 2 * self.near.displacement(x, y, z, **of) - self.further.displacement(x, y, z, **of)
 
     def pressure_uncertainty(self, x: Any, y: Any = 0.0) -> Array:
         own = 2 * self.near.pressure_uncertainty(x, y) + self.further.pressure_uncertainty(x, y)
         return own + np.abs(self._bend(lambda s: s.pressure(x, y)))
 
-    def stress_uncertainty(self, x: Any, y: Any, z: Any, layer: int | None = None) -> Array:
-        U, V = (one.stress_uncertainty(x, y, z, layer) for one in (self.near, self.further))
-        return 2 * U + V + np.abs(self._bend(lambda s: s.stress(x, y, z, layer)))
+    def stress_uncertainty(self, x: Any, y: Any, z: Any, layer: int | None = None, **of: Any) -> Array:
+        U, V = (one.stress_uncertainty(x, y, z, layer, **of) for one in (self.near, self.further))
+        return 2 * U + V + np.abs(self._bend(lambda s: s.stress(x, y, z, layer, **of)))
 
     @property
     def stiffness_uncertainty(self) -> float | None:
@@ -98,9 +105,9 @@ class _Extrapolated:
         near, further = (one.stiffness_uncertainty or 0.0 for one in (self.near, self.further))
         return float(2 * near + further + abs(self._bend(attrgetter("stiffness"))))
 
-    def displacement_uncertainty(self, x: Any, y: Any, z: Any) -> Array:
-        U, V = (one.displacement_uncertainty(x, y, z) for one in (self.near, self.further))
-        return 2 * U + V + np.abs(self._bend(lambda s: s.displacement(x, y, z)))
+    def displacement_uncertainty(self, x: Any, y: Any, z: Any, **of: Any) -> Array:
+        U, V = (one.displacement_uncertainty(x, y, z, **of) for one in (self.near, self.further))
+        return 2 * U + V + np.abs(self._bend(lambda s: s.displacement(x, y, z, **of)))
 
     def _bend(self, of: Callable[[Solution], Any]) -> Any:
         return of(self.near) - 2 * of(self.further) + of(self.third)

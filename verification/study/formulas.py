@@ -1,4 +1,4 @@
-"""Error of formulas against the exact solution: effective moduli, limits of thickness, a family of moduli."""
+"""Error of formulas against the exact solution: effective moduli, limits, families of moduli."""
 
 import time
 from collections.abc import Sequence
@@ -29,10 +29,11 @@ from verification.sources.references.effective_modulus import (
 from verification.sources.references.flat_punch import pressed
 from verification.sources.references.layer_limits import spring_bed, squeezed_film, thick
 from verification.sources.registry import EXACT
+from verification.study.usual_correction import BallCurve, curves
 
 Rows = tuple[tuple[float, ...], ...]
 
-SCHEMA = "coatcheck-effective/2"
+SCHEMA = "coatcheck-effective/3"
 NU = 0.3  # of film and substrate on the map
 RIGID = (1e9, 0.3)  # under a layer of 1 Pa
 # Fewer nodes than usual: 1e-8 of kappa on the map.
@@ -61,6 +62,7 @@ class EffectiveStudy:
     weights : largest error of Gao's I0 and I1 against the exact first derivatives.
     refitted : E1/E2, x0 of Perriot and Barthel, x0 and n fitted to the exact solution, a row for each ratio.
     family : contacts of O'Sullivan and King's configuration by the exact reference.
+    balls : contacts with an elastic ball against the usual correction.
     """
 
     ratio: tuple[float, ...] = ()
@@ -71,6 +73,7 @@ class EffectiveStudy:
     weights: tuple[float, ...] = ()
     refitted: tuple[tuple[float, ...], ...] = ()
     family: tuple[CaseResult, ...] = ()
+    balls: tuple[BallCurve, ...] = ()
     seconds: float = 0.0
     failure: str = ""
 
@@ -96,6 +99,7 @@ def measure(points: int = 21) -> EffectiveStudy:
         weights=_weights(),
         refitted=refitted,
         family=tuple(_member(r, f) for f in FRICTION for r in OSULLIVAN_KING),
+        balls=curves(),
         seconds=time.perf_counter() - started,
     )
 

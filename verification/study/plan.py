@@ -9,7 +9,7 @@ so that neighbours differ by 0.6 of an equal ratio's step (in log h) in the midd
 """
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import product
 from pathlib import Path
@@ -18,9 +18,11 @@ from typing import Annotated, Any
 import numpy as np
 from pydantic import Discriminator, Field, Tag, model_validator
 
-from verification.cases.contact import refuse_unfit_scales
+from verification.cases.contact import BallEntry, refuse_unfit_scales
 from verification.cases.toml import CaseError, Poisson, Positive, Strict, Text, read_bounded, read_toml
+from verification.problem.arrays import Ball
 from verification.problem.contact import CoatedContact
+from verification.running.records import plain
 from verification.study.cache import solve_key
 from verification.study.criteria import Criteria
 from verification.study.table import SOURCES
@@ -54,6 +56,7 @@ class Study:
     """A sphere on coatings of every modulus [Pa] and thickness [m], at every friction; SI.
 
     cross_check : every point whose number is a multiple is also solved by the other sources; 0 none.
+    ball : None is rigid, or as of CoatedContact.
     numerics : each source's own keywords.  criteria : of the preferable thickness.  text : the file.
     """
 
@@ -66,6 +69,7 @@ class Study:
     moduli: tuple[float, ...]
     thicknesses: tuple[float, ...]
     frictions: tuple[float, ...]
+    ball: Ball | None = None
     cross_check: int = 10
     numerics: dict[str, dict[str, Any]] = field(default_factory=dict)
     criteria: Criteria = field(default_factory=Criteria)
@@ -90,6 +94,7 @@ class Study:
                     "load": self.load,
                     "coating": [E, self.coating_nu, thickness],
                     "substrate": list(self.substrate),
+                    "ball": plain(self.ball),
                     "frictions": list(self.frictions),
                 }
                 yield Solve(first, request)
@@ -122,6 +127,7 @@ class _Problem(Strict):
     load: Positive
     substrate: _Substrate
     coating: _Coating
+    ball: BallEntry | None = None
 
 
 class _Range(Strict):
@@ -189,13 +195,15 @@ def parse_study(raw: bytes, path: Path) -> Study:
     text, checked = read_toml(raw, path, _StudyFile)
     p, sweep = checked.problem, checked.sweep
     try:
-        bare = CoatedContact(p.radius, p.load, (), (p.substrate.E, p.substrate.nu))
+        substrate = (p.substrate.E, p.substrate.nu)
+        bare = CoatedContact(p.radius, p.load, (), substrate, ball=p.ball.bare if p.ball else None)
+        ball = p.ball.coated(bare.a_h) if p.ball else None
     except ValueError as error:
         raise CaseError(f"{path}: problem: {error}") from None
     if (p.coating.E is None) == (sweep.modulus_ratio is None):
         raise CaseError(f"{path}: needs exactly one of problem.coating.E or sweep.modulus_ratio, E1/E2")
     moduli = [p.coating.E] if p.coating.E else [r * p.substrate.E for r in sweep.modulus_ratio or ()]
-    refuse_unfit_scales(path, bare)
+    refuse_unfit_scales(path, replace(bare, ball=ball))
     key, scale, asked = "thickness", 1.0, sweep.thickness
     if asked is None:
         key, scale, asked = "thickness_over_a_h", bare.a_h, sweep.thickness_over_a_h
@@ -221,6 +229,7 @@ def parse_study(raw: bytes, path: Path) -> Study:
         moduli=tuple(moduli),
         thicknesses=thicknesses,
         frictions=tuple(sweep.friction),
+        ball=ball,
         cross_check=sweep.cross_check,
         numerics={
             source: getattr(checked, source).model_dump(exclude_none=True)

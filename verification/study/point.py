@@ -26,7 +26,8 @@ def answer(request: Mapping[str, Any]) -> dict[str, Any]:
     """Solve ``request`` and find every quantity at each of its frictions.
 
     request : source, numerics (its own keywords), frictions, radius, load, coating (E, nu, thickness),
-    substrate (E, nu).  Returns {"rows": [one dictionary a friction], "seconds", "versions", "code",
+    substrate (E, nu), ball (E, nu, coatings) unless it is rigid.
+    Returns {"rows": [one dictionary a friction], "seconds", "versions", "code",
     "memory" [bytes]}; a solve that fails leaves its message in every row.
     """
     begin = time.perf_counter()
@@ -67,8 +68,11 @@ def peak_memory() -> int:
 
 def problem_of(request: Mapping[str, Any], friction: float) -> CoatedContact:
     """The contact of ``request`` at ``friction``."""
-    coating, substrate = tuple(request["coating"]), tuple(request["substrate"])
-    return CoatedContact(request["radius"], request["load"], (coating,), substrate, friction)
+    coating, substrate, ball = tuple(request["coating"]), tuple(request["substrate"]), request.get("ball")
+    if ball is not None:
+        E, nu, coatings = ball
+        ball = E, nu, tuple(tuple(layer) for layer in coatings)
+    return CoatedContact(request["radius"], request["load"], (coating,), substrate, friction, ball)
 
 
 def table_rows(
@@ -92,6 +96,7 @@ def table_rows(
         "a_h": bare.a_h,
         "p_h": bare.p_h,
         "delta_h": bare.delta_h,
+        "ball": json.dumps(request.get("ball")),
         "numerics": json.dumps(request["numerics"], sort_keys=True),
         "versions": json.dumps(found["versions"], sort_keys=True),
         "key": key,

@@ -4,7 +4,8 @@ Columns, in SI units unless they say "over":
 
     point, source, status ("solved" or "failed"), failure (the message, null where there is none)
     radius, load, coating_E, coating_nu, thickness, substrate_E, substrate_nu, friction       the input
-    modulus_ratio (E1/E2), thickness_over_a_h; a_h, p_h, delta_h of the bare substrate
+    ball (JSON): E, nu, coatings of an elastic ball, null of a rigid one
+    modulus_ratio (E1/E2), thickness_over_a_h; a_h, p_h, delta_h of the bare substrate and ball
     peak_pressure, contact_radius, approach: X, X_over_p_h | a_h | delta_h, X_uncertainty
     each stress of QUANTITIES: X, X_over_p_h, X_uncertainty, X_x, X_x_over_a_h, X_z, X_z_over_a_h
     numerics, versions (JSON), key (of the stored solve), seconds (of that solve, which its frictions share)
@@ -56,7 +57,7 @@ COLUMNS = pa.schema(
         ),
         *(pa.field(name, pa.float64(), nullable=False) for name in _INPUT),
         *(pa.field(name, pa.float64()) for name in _RESULT),
-        *(pa.field(name, pa.string(), nullable=False) for name in ("numerics", "versions", "key")),
+        *(pa.field(name, pa.string(), nullable=False) for name in ("ball", "numerics", "versions", "key")),
         pa.field("seconds", pa.float64(), nullable=False),
     ]
 )

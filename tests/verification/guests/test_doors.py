@@ -121,29 +121,33 @@ def test_a_guest_file_that_cannot_be_used_is_code_2_with_one_message(tmp_path, t
 
 
 def test_exit_codes_of_a_guest(tmp_path):
-    shutil.copytree(EXAMPLES / "start", tmp_path / "g")
-    adapter = tmp_path / "g" / "adapter.py"
-    right = adapter.read_text()
-    run_it = ("guest", "run", "g", "01_uncoated_steel", "05_ratio_4", "--json")
-    done = coatcheck(*run_it, cwd=tmp_path)
-    found = json.loads(done.stdout)
-    assert (done.returncode, found["cases"]["01_uncoated_steel"]["AGREES"]) == (0, 4)
-    assert set(found["cases"]["05_ratio_4"]) == {"UNSUPPORTED"}
-    assert (tmp_path / "g" / "report" / "junit.xml").read_text().count("<skipped") == 24
-    adapter.write_text(right.replace('"contact_radius": a', '"contact_radius": 2 * a'))
-    assert coatcheck(*run_it, cwd=tmp_path).returncode == 1
-    known = '\n[known]\n"01_*/contact_radius" = "reported"\n'
-    (tmp_path / "g" / "guest.toml").write_text((EXAMPLES / "start" / "guest.toml").read_text() + known)
-    assert coatcheck(*run_it, cwd=tmp_path).returncode == 0
-    adapter.write_text(right)
-    done = coatcheck(*run_it, cwd=tmp_path)  # a known failure that agrees
-    assert (done.returncode, json.loads(done.stdout)["unexpected"]) != (0, [])
-    adapter.write_text(right.replace("return {", 'raise RuntimeError("no licence")\n    return {'))
-    assert coatcheck(*run_it, cwd=tmp_path).returncode == 3
-    adapter.write_text(right)
-    text = (EXAMPLES / "start" / "guest.toml").read_text()
-    (tmp_path / "g" / "guest.toml").write_text(text.replace("claim = ", "# claim = "))
-    assert coatcheck(*run_it, cwd=tmp_path).returncode == 4
+    shutil.copytree(EXAMPLES / "program", tmp_path / "g")
+    adapter, description = tmp_path / "g" / "adapter.py", tmp_path / "g" / "guest.toml"
+    command = json.dumps([sys.executable, "-S", "-E", "adapter.py"])
+    right, text = adapter.read_text(), f'name = "g"\ncommand = {command}\nclaim = 1e-6\n'
+
+    def code(program=right, guest=text):
+        adapter.write_text(program)
+        description.write_text(guest)
+        done = coatcheck("guest", "run", "g", "01_uncoated_steel", "05_ratio_4", "--json", cwd=tmp_path)
+        found.update(json.loads(done.stdout))
+        return done.returncode
+
+    found = {}
+    assert code() == 0
+    first, second = (found["cases"][name] for name in ("01_uncoated_steel", "05_ratio_4"))
+    assert first["AGREES"] == 4
+    assert set(second) == {"UNSUPPORTED"}
+    skipped = (tmp_path / "g" / "report" / "junit.xml").read_text().count("<skipped")
+    assert skipped == first["UNSUPPORTED"] + second["UNSUPPORTED"]
+    wrong = right.replace('"contact_radius": a', '"contact_radius": 2 * a')
+    assert code(wrong) == 1
+    known = f'{text}[known]\n"01_*/contact_radius" = "reported"\n'
+    assert code(wrong, known) == 0
+    assert code(right, known) == 1  # a known failure that agrees
+    assert found["unexpected"] == [["01_uncoated_steel/contact_radius/contact", "reported"]]
+    assert code("raise RuntimeError('no licence')") == 3
+    assert code(right, text.replace("claim = ", "# claim = ")) == 4
 
 
 def test_units_of_a_guest_are_converted_both_ways(tmp_path):

@@ -53,7 +53,7 @@ def recorded():
         (Edit(DECIDE, "claim.edge * edge", "0.12 * edge"), "points"),
         (
             Edit(
-                "verification.sampling.lines:positions",
+                "verification.sampling.lines:_depths",
                 "bounds = np.array([0.0, *",
                 "a *= 0.4; bounds = np.array([0.0, *",
             ),
@@ -61,7 +61,7 @@ def recorded():
         ),
         (
             Edit(
-                "verification.judging.invariants.check:_laws",
+                "verification.judging.invariants.check:_of_body",
                 'yield "symmetry"',
                 'yield from () ; "symmetry"',
             ),

@@ -20,6 +20,7 @@ from verification.sources.references.flat_punch import pressed
 from verification.sources.references.layer_limits import spring_bed, squeezed_film, thick
 from verification.study import formulas as effective_study
 from verification.study.formulas import EffectiveStudy, from_json, measure, to_json
+from verification.study.usual_correction import curves
 
 INFO = RunInfo("coatcheck run published", "2026-01-01T00:00:00+00:00", 1.0, 1, None, "a machine", {})
 
@@ -131,3 +132,10 @@ def test_page_shows_maps_limits_and_moduli_side_by_side(study):
     assert page.count("Numbers as CSV") >= 4
     failed = replace(EffectiveStudy(), failure="its process <died>")
     assert "its process &lt;died&gt;" in render(Material([], INFO, Evidence(formulas=failed)))
+
+
+def test_the_usual_correction_is_exact_for_a_rigid_ball_alone():
+    for curve in curves(points=3):
+        errors = [abs(curve.usual / value - 1) for value in curve.value]
+        assert errors == sorted(errors, reverse=True)
+        assert errors[-1] < 0.025 < errors[0] + 0.01

@@ -11,6 +11,7 @@ from verification.running.records import decode
 LISTS = Path(__file__).parent / "lists"
 _ORDER = (
     "material",
+    "ball",
     "frf",
     "conversion_fft",
     "conjugate_gradients",

@@ -6,19 +6,22 @@ pressure(x, y), stress(x, y, z, layer), displacement(x, y, z); for each an uncer
 """
 
 import inspect
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import suppress
 from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 
-from verification.guests.protocol import Question
+from verification.guests.protocol import LineOfPoints, Question
 from verification.problem.arrays import Array
-from verification.problem.contact import CoatedContact
-from verification.problem.profile import line_of
-from verification.problem.quantity import PEAKS, QUANTITIES, SCALARS
-from verification.sampling.lines import sample
+from verification.problem.contact import (
+    CoatedContact,
+    displacement_with_uncertainty,
+    stress_with_uncertainty,
+)
+from verification.problem.quantity import DISPLACEMENTS, PEAKS, QUANTITIES, STRESSES
+from verification.sampling.tension import Search
 
 Numbers = dict[str, dict[str, Any]]
 
@@ -45,17 +48,17 @@ class Face:
         value = self._get(name)
         if value is None:
             raise AttributeError(name)
-        return value
+        return {"pressure": self._pressure, "stress": self._stress}.get(name, value)
 
     def number(self, name: str) -> float:
         return float(np.asarray(self._get(name), dtype=float).reshape(()))
 
-    def pressure(self, x: Any, y: Any = 0.0) -> Array:
+    def _pressure(self, x: Any, y: Any = 0.0) -> Array:
         """p [Pa] at points of the surface, (n,)."""
         x, y = np.broadcast_arrays(np.asarray(x, dtype=float), np.asarray(y, dtype=float))
         return _shaped("pressure", self._get("pressure")(x, y), x.shape)
 
-    def stress(self, x: Any, y: Any, z: Any, layer: int | None = None) -> Array:
+    def _stress(self, x: Any, y: Any, z: Any, layer: int | None = None) -> Array:
         """sigma[i, j, ...] [Pa] at points, (3, 3) + points."""
         x, y, z = np.broadcast_arrays(*(np.asarray(v, dtype=float) for v in (x, y, z)))
         function = self._get("stress")
@@ -86,42 +89,69 @@ def values_of(result: Any, problem: CoatedContact, question: Question) -> tuple[
     uncertainty: Numbers = {"contact": {}}
     for name in question.contact:
         record = QUANTITIES[name]
-        if name in SCALARS and record.derived is not None:
+        if record.derived is not None or (whole and record.kind == "slope"):
             with suppress(AttributeError):  # a number of which it follows is not given
-                values["contact"][name] = record.value(face, problem)
-                if whole and (U := record.uncertainty(result, problem)) is not None:
-                    uncertainty["contact"][name] = U
+                values["contact"][name] = record.value(result if whole else face, problem)
+                if whole and (own := record.uncertainty(result, problem)) is not None:
+                    uncertainty["contact"][name] = own
         elif Face(result).has(name):
             values["contact"][name] = Face(result).number(name)
             if getattr(stated, name, None) is not None:
                 uncertainty["contact"][name] = float(getattr(stated, name))
+    if set(PEAKS) & set(question.contact) - set(values["contact"]) and _able(
+        face, "stress", "contact_radius"
+    ):
+        found = _largest_tension(face, problem)
+        for name, number, wide in zip(PEAKS, found[0], found[1], strict=True):
+            values["contact"][name] = number
+            if wide is not None:
+                uncertainty["contact"][name] = wide
     for asked in question.lines:
-        line = line_of(asked.line, problem)
-        along = np.array(asked.z if line.depth is None else asked.x)
-        found = []
-        if whole or Face(result).has("stress"):
-            search = asked.line == "surface" and not set(PEAKS).isdisjoint(question.contact)
-            search = search and (whole or Face(result).has("contact_radius"))
-            if not whole and not Face(result).has("pressure"):
-                face.pressure = lambda x, y=0.0: np.zeros(np.shape(x))
-            found = list(sample(face, "guest", line, along, problem if search else None))
-        elif asked.line == "surface" and Face(result).has("pressure"):
-            values["surface"] = {"pressure": face.pressure(along).tolist()}
-        for p in found:
-            wanted = question.contact if p.line == "contact" else asked.quantities
-            missing = p.quantity == "pressure" and not Face(result).has("pressure")
-            if p.quantity not in wanted or missing or p.quantity in values.get(p.line, {}):
-                continue
-            one = p.line == "contact"
-            values.setdefault(p.line, {})[p.quantity] = float(p.value[0]) if one else p.value.tolist()
-            if p.uncertainty is not None:
-                U = float(p.uncertainty[0]) if one else p.uncertainty.tolist()
-                uncertainty.setdefault(p.line, {})[p.quantity] = U
+        for name, value, U in _on_line(face, asked, whole):
+            if name in asked.quantities:
+                values.setdefault(asked.line, {})[name] = value.tolist()
+                if U is not None:
+                    uncertainty.setdefault(asked.line, {})[name] = U.tolist()
     values = {line: numbers for line, numbers in values.items() if numbers}
     if not values:
         names = "contact_radius, approach, peak_pressure, pressure, stress"
         raise NotGiven(f"its result, {type(result).__name__}, has none of {names}")
     return values, {line: numbers for line, numbers in uncertainty.items() if numbers}
+
+
+def _able(face: Any, *names: str) -> bool:
+    return all(getattr(face, name, None) is not None for name in names)
+
+
+def _largest_tension(face: Any, problem: CoatedContact) -> tuple[list[float], list[float | None]]:
+    """Value and place of the largest tension of the surface, then their uncertainties."""
+    search = Search(face, problem)
+    sigma, U = stress_with_uncertainty(face, search.x, 0.0, 0.0, layer=0)
+    found = search.largest(sigma[0, 0], None if U is None else U[0, 0])
+    return [found.value, found.place], [found.uncertainty, found.place_uncertainty]
+
+
+def _on_line(face: Any, asked: LineOfPoints, whole: bool) -> Iterator[tuple[str, Array, Array | None]]:
+    """Every quantity that ``face`` gives at points, with its uncertainty where it is ``whole``."""
+    x, y, z = (np.array(v) for v in (asked.x, asked.y, asked.z))
+    if "pressure" in asked.quantities and _able(face, "pressure"):
+        yield "pressure", face.pressure(x, y), face.pressure_uncertainty(x, y) if whole else None
+    if set(STRESSES) & set(asked.quantities) and _able(face, "stress"):
+        sigma = np.empty((3, 3, x.size))
+        U = np.empty((3, 3, x.size)) if whole else None
+        layers = np.array(asked.layer)
+        for layer in sorted(set(asked.layer)):
+            here = layers == layer
+            sigma[..., here], stated = stress_with_uncertainty(face, x[here], y[here], z[here], layer=layer)
+            if U is not None and stated is not None:
+                U[..., here] = stated
+        yield from ((n, sigma[c], None if U is None else U[c]) for n, c in STRESSES.items())
+    if set(DISPLACEMENTS) & set(asked.quantities) and _able(face, "displacement"):
+        if whole:
+            u, stated = displacement_with_uncertainty(face, x, y, z)
+        else:
+            u, stated = _shaped("displacement", face.displacement(x, y, z), (3, x.size)), None
+        yield from ((n, u[i], None if stated is None else stated[i]) for i, n in enumerate(DISPLACEMENTS))
 
 
 def _shaped(name: str, value: Any, shape: tuple[int, ...]) -> Array:

@@ -169,4 +169,5 @@ def _written(rows: list[list[Any]]) -> str:
 
 
 def _unit(unit: str, units: Any) -> str:
-    return {"m": units.length, "Pa": units.stress, "N": units.force}.get(unit, unit)
+    names = {"m": units.length, "Pa": units.stress, "N": units.force}
+    return names.get(unit, f"{units.force}/{units.length}" if unit == "N/m" else unit)

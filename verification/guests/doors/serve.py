@@ -45,7 +45,9 @@ def answer(place: str, question: Question) -> Answer:
         return Answer(**given, unsupported=_message(error) or "not implemented")
     except Exception as error:
         frames = traceback.extract_tb(error.__traceback__)
-        where = f" ({os.path.basename(frames[-1].filename)}, line {frames[-1].lineno})" if frames else ""
+        # The last line of the guest's own, where there is one.
+        own = [frame for frame in frames if frame.filename.startswith(os.getcwd())] or frames[-1:]
+        where = f" ({os.path.basename(own[-1].filename)}, line {own[-1].lineno})" if own else ""
         return Answer(**given, error=f"{type(error).__name__}: {_message(error)}{where}")
 
 

@@ -8,6 +8,7 @@ from verification.judging.invariant import Invariant, decide, layer_name
 from verification.judging.invariants.refinement import INNER, followed
 from verification.judging.invariants.stencil import Stencil
 from verification.problem.arrays import Array
+from verification.problem.body import on_body
 from verification.problem.contact import CoatedContact, PrescribedLoad, Solution, stress_with_uncertainty
 
 RADII = np.array([0.0, 0.5, 0.9, 1.4])
@@ -79,18 +80,20 @@ def hooke(solution: Solution, source: str, problem: CoatedContact, layer: int, s
 def sphere(solution: Solution, source: str, problem: CoatedContact) -> Invariant:
     """The surface follows the sphere: u_z + r^2/2R = delta in the contact, more outside.
 
-    At right angles to sliding, where friction lifts nothing. Bounded by the uncertainties of the approach and
-    of displacements.
+    u_z is the sum of both bodies' where the ball is elastic. At right angles to sliding, where friction lifts
+    nothing. Bounded by the uncertainties of the approach and of displacements.
     """
     inside, outside = np.array([0.0, 0.25, 0.5, 0.75, 0.95]), np.array([1.05, 1.2, 1.6])
     y = solution.contact_radius * np.concatenate([inside, outside])
     zero = np.zeros_like(y)
-    u = solution.displacement(zero, y, zero)[2]
+    bodies = [(on_body(solution, body), problem.seen_from(body)) for body in problem.bodies]
+    u = sum(one.displacement(zero, y, zero)[2] for one, _ in bodies)
     gap = (u + y**2 / (2 * problem.radius) - solution.approach) / solution.approach
     residual = np.where(y <= solution.contact_radius, gap, np.minimum(gap, 0.0))
     stated, bound = solution.uncertainty, None
     if stated is not None:
-        bound = (stated.approach + displacement_bound(solution, problem, zero, y, zero)) / solution.approach
+        U = sum(displacement_bound(one, seen, zero, y, zero) for one, seen in bodies)
+        bound = (stated.approach + U) / solution.approach
     law = "u_z + r^2/2R = approach in the contact, no less outside, over the approach"
     return decide("sphere", source, law, residual, bound)
 

@@ -1,11 +1,14 @@
 """Every invariant that one solution has to satisfy by itself."""
 
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from functools import partial
 
 from verification.judging.invariant import Invariant, failed
 from verification.judging.invariants import bond, influence, planes, statics, symmetry
-from verification.problem.contact import CoatedContact, NotClaimed, Solution
+from verification.problem.body import on_body
+from verification.problem.contact import BALL, CoatedContact, NotClaimed, Solution
+from verification.problem.profile import ON_BALL
 
 Law = Callable[[], Invariant | tuple[Invariant, ...]]
 
@@ -13,8 +16,8 @@ Law = Callable[[], Invariant | tuple[Invariant, ...]]
 def check(solution: Solution, source: str, problem: CoatedContact) -> tuple[Invariant, ...]:
     """Balance, tractions, equilibrium, bonds, Hooke's law and symmetry of ``solution`` by ``source``.
 
-    One that raises an exception is NO_RESULT with its message; one of a field that the source does not claim
-    is left out.
+    The names of those of an elastic ball begin with "ball, ". One that raises an exception is NO_RESULT with
+    its message; one of a field that the source does not claim is left out.
     """
     found: list[Invariant] = []
     for name, law in _laws(solution, source, problem):
@@ -24,15 +27,30 @@ def check(solution: Solution, source: str, problem: CoatedContact) -> tuple[Inva
             continue
         except Exception as error:  # any failure of a solution is a row of the report
             row = failed(name, source, error)
-        found += row if isinstance(row, tuple) else (row,)
+        rows = row if isinstance(row, tuple) else (row,)
+        before = ON_BALL if name.startswith(ON_BALL) else ""
+        found += [replace(one, name=before + one.name.removeprefix(before)) for one in rows]
     return tuple(found)
 
 
 def _laws(solution: Solution, source: str, problem: CoatedContact) -> Iterator[tuple[str, Law]]:
     subject = (solution, source, problem)
     yield "load balance", partial(statics.load_balance, *subject)
-    yield "surface tractions", partial(statics.surface, *subject)
     yield "sphere", partial(bond.sphere, *subject)
+    yield from _of_body(*subject)
+    if source == "semianalytic":
+        yield "influence coefficients", partial(influence.influence_coefficients, *subject)
+    if hasattr(solution, "stress_plane"):
+        yield "planes", partial(planes.planes, *subject)
+    if problem.ball is not None:
+        of_ball = on_body(solution, BALL), source, problem.seen_from(BALL)
+        yield from ((f"{ON_BALL}{name}", law) for name, law in _of_body(*of_ball))
+
+
+def _of_body(solution: Solution, source: str, problem: CoatedContact) -> Iterator[tuple[str, Law]]:
+    """Invariants of the fields of one body, which is the flat of ``problem``."""
+    subject = (solution, source, problem)
+    yield "surface tractions", partial(statics.surface, *subject)
     for k in range(1, len(problem.coatings) + 1):
         yield f"bonded tractions, interface {k}", partial(bond.bonded_traction, *subject, k)
         yield f"bonded displacements, interface {k}", partial(bond.bonded_displacement, *subject, k)
@@ -43,7 +61,3 @@ def _laws(solution: Solution, source: str, problem: CoatedContact) -> Iterator[t
     if problem.friction:
         yield "reciprocity of load and sliding", partial(bond.reciprocity, *subject)
     yield "symmetry", partial(symmetry.symmetry, *subject)
-    if source == "semianalytic":
-        yield "influence coefficients", partial(influence.influence_coefficients, *subject)
-    if hasattr(solution, "stress_plane"):
-        yield "planes", partial(planes.planes, *subject)

@@ -1,5 +1,7 @@
 """Invariants between solutions: one problem also solved scaled, with equal moduli, thick, thin, under a disc.
 
+Of an elastic ball also with the bodies exchanged, equal, the ball nearly rigid, in place of thick and thin.
+
 They need further solves, so a case has to enable them (``resolve = true``), and both methods solve on coarse
 grids and meshes, whose uncertainty bounds each invariant and is capped like any other.
 """
@@ -15,8 +17,16 @@ from numpy.polynomial import legendre
 from verification.judging.invariant import Invariant, decide, failed
 from verification.judging.invariants.bond import displacement_bound
 from verification.judging.invariants.limits import thick_shift, thin_shift
-from verification.problem.arrays import Array
-from verification.problem.contact import CoatedContact, PrescribedLoad, Solution, stress_with_uncertainty
+from verification.problem.arrays import Array, Ball, Coatings
+from verification.problem.body import on_body
+from verification.problem.contact import (
+    BALL,
+    FLAT,
+    CoatedContact,
+    PrescribedLoad,
+    Solution,
+    stress_with_uncertainty,
+)
 from verification.problem.quantity import QUANTITIES, SCALARS
 from verification.sources.references.hamilton import Hamilton
 from verification.sources.registry import METHODS, SOURCES
@@ -26,17 +36,20 @@ Law = Callable[[], Invariant]
 
 # h/a_h, so near to the limit that the remaining effect of the coating is bounded below the caps.
 THICK_AT, THIN_AT = 20.0, 0.03
-NAMES = ("scaling", "reciprocity", "equal moduli", "thick coating", "thin coating")
+LIMITS = ("thick coating", "thin coating")
+BALL_NAMES = ("bodies exchanged", "coating on the ball", "equal bodies", "rigid ball")
+NAMES = ("scaling", "reciprocity", "equal moduli", *LIMITS, *BALL_NAMES)
 # No powers of two, so that scaled numbers share no digits.
 RADIUS, LOAD, MODULUS = 2.7, 0.37, 1.9
 APPROACH_CAP = 1e-3
+RIGID = 1e8  # E of a ball over that of the flat, beyond which it is rigid to as many digits
 PLACES = ((0.0, 0.45), (0.6, 0.3), (-0.6, 1.7), (1.3, 0.3))  # x, z over a_h
 
 
 def resolved(
     problem: CoatedContact, available: Mapping[str, Callable[..., Solution]]
 ) -> tuple[Invariant, ...]:
-    """Scaling, equal moduli, thick and thin limit, reciprocity of each method that is available.
+    """Scaling, equal moduli, reciprocity, the limits of the coating or of the ball, of each available method.
 
     problem : with one coating at least.   available : solvers by name, as in ``run.solvers``.
     One that raises an exception is NO_RESULT with its message.
@@ -69,24 +82,38 @@ def _laws(solve: Solve, finer: Solve, source: str, problem: CoatedContact) -> It
         return base[0]
 
     smooth = replace(problem, friction=0.0)
-    laws = (
-        partial(_scaling, finer, once, source, problem),
-        partial(_reciprocity, once, solve, source, problem),
-        partial(_equal_moduli, solve, source, problem),
-        partial(_thick, solve, source, smooth),
-        partial(_thin, finer, source, smooth),
-    )
-    yield from zip(NAMES, laws, strict=True)
+    laws = {
+        "scaling": partial(_scaling, finer, once, source, problem),
+        "reciprocity": partial(_reciprocity, once, solve, source, problem),
+        "equal moduli": partial(_equal_moduli, solve, source, problem),
+        "thick coating": partial(_thick, solve, source, smooth),
+        "thin coating": partial(_thin, finer, source, smooth),
+        "bodies exchanged": partial(_exchanged, once, finer, source, problem),
+        "coating on the ball": partial(_coating_on_ball, finer, source, problem),
+        "equal bodies": partial(_equal_bodies, solve, source, smooth),
+        "rigid ball": partial(_rigid_ball, finer, source, problem),
+    }
+    assert tuple(laws) == NAMES
+    left_out = BALL_NAMES if problem.ball is None else LIMITS
+    yield from ((name, law) for name, law in laws.items() if name not in left_out)
 
 
 def _scaling(solve: Solve, base: Solve, source: str, problem: CoatedContact) -> Invariant:
     """Another radius, load and modulus at the same h/a_h and E1/E2: the same dimensionless answer."""
-    E, nu = problem.substrate
-    scaled = CoatedContact(
-        RADIUS * problem.radius, LOAD * problem.load, (), (MODULUS * E, nu), problem.friction
+    ratio = (RADIUS * LOAD / MODULUS) ** (1 / 3)  # of the contact radii
+
+    def of(E: float, nu: float, coatings: Coatings) -> Ball:
+        return MODULUS * E, nu, tuple((MODULUS * E1, nu1, ratio * h) for E1, nu1, h in coatings)
+
+    E, nu, coatings = of(*problem.substrate, problem.coatings)
+    scaled = replace(
+        problem,
+        radius=RADIUS * problem.radius,
+        load=LOAD * problem.load,
+        coatings=coatings,
+        substrate=(E, nu),
+        ball=None if problem.ball is None else of(*problem.ball),
     )
-    ratio = scaled.a_h / problem.a_h
-    scaled = replace(scaled, coatings=tuple((MODULUS * E, nu, ratio * h) for E, nu, h in problem.coatings))
     one, U_one = _dimensionless(base(problem), problem)
     other, U_other = _dimensionless(solve(scaled), scaled)
     factors = f"R x {RADIUS}, W x {LOAD}, E x {MODULUS}"
@@ -97,12 +124,58 @@ def _scaling(solve: Solve, base: Solve, source: str, problem: CoatedContact) -> 
 def _equal_moduli(solve: Solve, source: str, problem: CoatedContact) -> Invariant:
     """Coatings of the substrate's material: Hertz's contact, with friction Hamilton's."""
     coatings = tuple((*problem.substrate, h) for _, _, h in problem.coatings)
-    same = replace(problem, coatings=coatings)
-    exact = Hamilton(problem.radius, problem.load, *problem.substrate, problem.friction)
+    same, ball = replace(problem, coatings=coatings), None
+    if problem.ball is not None:
+        ball = problem.ball[:2]
+        same = replace(same, ball=(*ball, tuple((*ball, h) for _, _, h in problem.ball[2])))
+    exact = Hamilton(problem.radius, problem.load, *problem.substrate, problem.friction, ball=ball)
     found, U = _dimensionless(solve(same), same)
     known, _ = _dimensionless(exact, same)
     law = "coatings of the substrate's moduli give the closed form of the uncoated solid, over its scales"
     return decide("equal moduli", source, law, found - known, U)
+
+
+def _exchanged(
+    base: Solve, solve: Solve, source: str, problem: CoatedContact, name: str = "bodies exchanged"
+) -> Invariant:
+    """The ball as the flat, the flat as the ball: the same contact, with the stresses exchanged."""
+    one, U_one = _dimensionless(base(problem), problem)
+    seen = problem.seen_from(BALL)
+    other, U_other = _dimensionless(solve(seen), seen, (BALL, FLAT))
+    law = f"{name}: a/a_h, p0/p_h, approach/delta_h are unchanged, sigma/p_h is exchanged"
+    return decide(name, source, law, one - other, U_one + U_other)
+
+
+def _coating_on_ball(solve: Solve, source: str, problem: CoatedContact) -> Invariant:
+    """The coatings on a ball of the flat's substrate in place of the flat: the same contact."""
+    on_flat = replace(problem, ball=(*problem.substrate, ()))
+    return _exchanged(solve, solve, source, on_flat, "coating on the ball")
+
+
+def _equal_bodies(solve: Solve, source: str, problem: CoatedContact) -> Invariant:
+    """A ball of the layers of the flat: each body gives half of u_z."""
+    equal = replace(problem, ball=(*problem.substrate, problem.coatings))
+    found = solve(equal)
+    y = found.contact_radius * np.array([0.0, 0.25, 0.5, 0.75, 0.95, 1.2, 1.6])
+    zero = np.zeros_like(y)
+    flat, ball = (_surface_displacement(on_body(found, body), y) for body in equal.bodies)
+    half = np.where(y < found.contact_radius, (found.approach - y**2 / (2 * equal.radius)) / 2, flat)
+    U = found.uncertainty.approach + 2 * displacement_bound(found, equal, zero, y, zero)
+    law = "a ball of the flat's layers gives half of u_z, over the approach"
+    gap = np.concatenate([flat - ball, flat - half]) / found.approach
+    return decide("equal bodies", source, law, gap, np.tile(U / found.approach, 2))
+
+
+def _rigid_ball(solve: Solve, source: str, problem: CoatedContact) -> Invariant:
+    """A very stiff ball: the contact of the rigid one, but for a compliance of its modulus."""
+    stiff = replace(problem, ball=(RIGID * problem.substrate[0], problem.substrate[1], ()))
+    rigid = replace(problem, ball=None)
+    one, U_one = _dimensionless(solve(stiff), stiff, (FLAT,))
+    other, U_other = _dimensionless(solve(rigid), rigid)
+    softest = min(E for E, _, _ in (*problem.coatings, (*problem.substrate, 0.0)))
+    bound = U_one + U_other + 4 * problem.substrate[0] / softest / RIGID
+    law = f"a ball {RIGID:.0e} times stiffer than the flat gives the numbers of the rigid one"
+    return decide("rigid ball", source, law, one - other, bound)
 
 
 def _thick(solve: Solve, source: str, problem: CoatedContact) -> Invariant:
@@ -171,15 +244,23 @@ def _surface_displacement(solution: Solution, y: Array) -> Array:
     return solution.displacement(np.zeros_like(y), y, np.zeros_like(y))[2]
 
 
-def _dimensionless(solution: Solution, problem: CoatedContact) -> tuple[Array, Array]:
-    """a/a_h, p0/p_h, approach/delta_h and the stresses over p_h at ``PLACES``, with their uncertainties."""
+def _dimensionless(
+    solution: Solution, problem: CoatedContact, bodies: tuple[str, ...] = ()
+) -> tuple[Array, Array]:
+    """a/a_h, p0/p_h, approach/delta_h, the stresses over p_h at ``PLACES`` of ``bodies``, the uncertainties.
+
+    bodies : all in their order, unless given.
+    """
     scalars = [(QUANTITIES[name], getattr(problem, QUANTITIES[name].scale)) for name in SCALARS]
     x, z = problem.a_h * np.array(PLACES).T
     y = 0.2 * np.abs(x)
     values = [quantity.value(solution, problem) / scale for quantity, scale in scalars]
     U = [(quantity.uncertainty(solution, problem) or 0.0) / scale for quantity, scale in scalars]
-    sigma, U_sigma = stress_with_uncertainty(solution, x, y, z)
-    if U_sigma is None:
-        raise ValueError("states no uncertainty that would bound the invariant")
-    over = [(field / problem.p_h).ravel() for field in (sigma, U_sigma)]
-    return np.concatenate([values, over[0]]), np.concatenate([U, over[1]])
+    fields, bounds = [np.array(values)], [np.array(U)]
+    for body in bodies or problem.bodies:
+        sigma, U_sigma = stress_with_uncertainty(on_body(solution, body), x, y, z)
+        if U_sigma is None:
+            raise ValueError("states no uncertainty that would bound the invariant")
+        fields.append((sigma / problem.p_h).ravel())
+        bounds.append((U_sigma / problem.p_h).ravel())
+    return np.concatenate(fields), np.concatenate(bounds)

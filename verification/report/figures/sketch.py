@@ -4,6 +4,7 @@ from math import isfinite, log, sqrt
 
 from markupsafe import Markup, escape
 
+from verification.problem.contact import BALL
 from verification.report.tables.lookup import contact_radius, layers, scale
 from verification.report.tables.numbers import engineering, plain
 from verification.running.result import CaseResult
@@ -18,7 +19,7 @@ SHALLOWEST, DEEPEST = 1.6, 4.0
 def sketch(result: CaseResult) -> Markup:
     """The layers with depth and contact width on one scale; a layer too thin to see is drawn 4 units thick.
 
-    The darker a layer, the stiffer. The sphere's radius is not to scale.
+    The darker a layer, the stiffer. The sphere's radius is not to scale; its own layers are not drawn.
     """
     a_h = scale(result, "a_h")
     found = [(E, nu, thickness / a_h) for E, nu, thickness in layers(result)]
@@ -27,7 +28,7 @@ def sketch(result: CaseResult) -> Markup:
         return Markup("")
     depth = min(max(1.35 * total + 0.6, SHALLOWEST), DEEPEST)
     unit = (HEIGHT - 12 - SURFACE) / depth
-    parts = [_sphere(unit)]
+    parts = [_sphere(unit, _ball(result))]
     labels = []
     top = float(SURFACE)
     stretched = False
@@ -66,7 +67,17 @@ def _layer(top: float, height: float, shade: float) -> str:
     )
 
 
-def _sphere(unit: float) -> str:
+def _ball(result: CaseResult) -> tuple[str, str]:
+    """What the sphere is, in two lines."""
+    found = layers(result, BALL)
+    if not found:
+        return "rigid sphere, its", "radius not to scale"
+    coats, (E, nu, _) = len(found) - 1, found[-1]
+    coated = f", {coats} coating{'s' if coats > 1 else ''}" if coats else ""
+    return f"elastic ball{coated},", f"E {engineering(E, 'Pa', 3)}, nu {plain(nu, 3)}"
+
+
+def _sphere(unit: float, ball: tuple[str, str]) -> str:
     # A radius of a few contact radii keeps the arc readable at any real ratio a_h/R.
     radius = 3.2 * unit
     half = min(sqrt(max(radius**2 - (radius - SURFACE + 4) ** 2, 0.0)), BLOCK / 2)
@@ -77,8 +88,8 @@ def _sphere(unit: float) -> str:
         f'<path d="M{left:.1f} 4V{at:.1f}A{radius:.1f} {radius:.1f} 0 0 0 {right:.1f} {at:.1f}V4" '
         f'class="sphere"/><path d="M{middle:.1f} 10v36m-5-9l5 9 5-9" class="s-ink arrow"/>'
         f'<text x="{middle + 10:.1f}" y="30" class="f-ink">W</text>'
-        f'<text x="{BLOCK + 26}" y="22" class="f-muted small">rigid sphere, its</text>'
-        f'<text x="{BLOCK + 26}" y="35" class="f-muted small">radius not to scale</text>'
+        f'<text x="{BLOCK + 26}" y="22" class="f-muted small">{ball[0]}</text>'
+        f'<text x="{BLOCK + 26}" y="35" class="f-muted small">{ball[1]}</text>'
     )
 
 

@@ -19,6 +19,7 @@ from verification.report.tables.numbers import plain, scientific
 from verification.sources.record import Style
 from verification.sources.references.effective_modulus import PERRIOT_BARTHEL_N
 from verification.study.formulas import EffectiveStudy, Limit
+from verification.study.usual_correction import FRICTION, BallCurve
 
 WIDTH, HEIGHT = 320, 250
 BOX = (48.0, 5.0, 266.0, 207.5)  # left, top, width, height
@@ -48,6 +49,7 @@ def section(material: Material) -> Section | None:
     if study.failure:
         return Section("effective-modulus", "Effective-modulus formulas", [], [study.failure])
     parts = [_map_part(study), _confirmation(study), *_limit_parts(study.limits)]
+    parts += [_ball_part(study.balls)] if study.balls else []
     return Section("effective-modulus", "Effective-modulus formulas and simple limits", parts)
 
 
@@ -151,6 +153,76 @@ def _limit_part(limits: Sequence[Limit], text: str) -> Part:
     table = Table("Exact over limit, less 1, at three contact radii.", ["limit", *heads], rows)
     caption = "Over a/h, both logarithmic: a straight line is a power of the thickness left out."
     return Part(text, [table], Gallery(legend, drawn, caption, _limit_csv(limits)))
+
+
+def _ball_part(balls: Sequence[BallCurve]) -> Part:
+    coatings, quantities, thicknesses = (
+        list(dict.fromkeys(getattr(one, name) for one in balls))
+        for name in ("coating", "quantity", "thickness")
+    )
+    styles = dict(zip(thicknesses, _CURVES, strict=False))
+    drawn = []
+    for coating in coatings:
+        for quantity in quantities:
+            shown = [one for one in balls if (one.coating, one.quantity) == (coating, quantity)]
+            name = f"{quantity}, E1/E2 = {coating:g}"
+            drawn.append(Panel(name, _draw_ball(shown, styles, name), "over E_ball/E_flat", ""))
+    failing = [(_first_beyond(one, 0.01), one) for one in balls]
+    reach = max((ratio for ratio, _ in failing if ratio), default=0.0)
+    worst = max(balls, key=lambda one: abs(one.value[0] / one.usual - 1))
+    text = (
+        "An elastic, uncoated ball on a coated flat by the integral equation, "
+        f"f = {FRICTION:g}, nu = 0.3, over the scales of both bodies uncoated. The usual correction, dashed, "
+        "puts E* of the substrates into the scales and keeps the numbers of the rigid ball: it is exact where "
+        "a body is rigid or no coating is present. It takes the coating for as important as under a rigid "
+        "ball, though the ball's own compliance lessens its part. At E_ball = E_flat/10 its largest error is "
+        f"{_percent(worst.usual / worst.value[0] - 1)}, of {worst.quantity} with E1/E2 = "
+        f"{worst.coating:g}, h = {worst.thickness:g} a_h; beyond 1 % it is up to E_ball = {plain(reach, 2)} E_flat."
+    )
+    at = [min(range(len(balls[0].ratio)), key=lambda i: abs(balls[0].ratio[i] - r)) for r in (0.1, 1.0, 10.0)]
+    rows = []
+    for beyond, one in failing:
+        errors = (number(one.usual / one.value[i] - 1, _percent) for i in at)
+        label = f"{one.quantity}, E1/E2 = {one.coating:g}, h = {one.thickness:g} a_h"
+        rows.append(row(label, *errors, number(beyond, partial(plain, digits=2))))
+    heads = [f"E_ball/E_flat = {plain(balls[0].ratio[i], 2)}" for i in at]
+    table = Table(
+        "Usual correction over exact, less 1; the largest E_ball/E_flat at which it is off by more than 1 %.",
+        ["quantity", *heads, "off by 1 % up to"],
+        rows,
+    )
+    legend = [(swatch(styles[h]), f"h = {h:g} a_h") for h in thicknesses]
+    legend.append((swatch(Style("ink", (2.0, 2.0), 0.9)), "usual correction"))
+    caption = "Full: both bodies elastic. Dashed: rigid ball, scales with E* of the substrates."
+    return Part(text, [table], Gallery(legend, drawn, caption, _ball_csv(balls)))
+
+
+def _first_beyond(curve: BallCurve, share: float) -> float | None:
+    """The largest E_ball/E_flat at which the usual correction is off by more than ``share``."""
+    off = [r for r, v in zip(curve.ratio, curve.value, strict=True) if abs(curve.usual / v - 1) > share]
+    return max(off) if off else None
+
+
+def _draw_ball(balls: Sequence[BallCurve], styles: dict[float, Style], label: str) -> Markup:
+    x = np.log10(balls[0].ratio)
+    low, high = _widened(np.array([v for one in balls for v in (*one.value, one.usual)]), 0.06)
+    axes = Axes(BOX, (x[0], x[-1]), (low, high))
+    steps = np.linspace(low, high, 6)[1:-1]
+    axes.ticks(_decades(x[0], x[-1]), [(float(v), plain(float(v), 2)) for v in steps], "E_ball / E_flat")
+    for one in balls:
+        style = styles[one.thickness]
+        axes.level(one.usual, Style(style.colour, (2.0, 2.0), 0.9))
+        axes.line(x, np.array(one.value), Style(style.colour, width=style.width))
+    return drawing(WIDTH, HEIGHT, f"{label} over E_ball/E_flat, with the usual correction", axes)
+
+
+def _ball_csv(balls: Sequence[BallCurve]) -> str:
+    rows = [["quantity", "E1/E2", "h/a_h", "E_ball/E_flat", "both elastic", "usual correction"]]
+    for one in balls:
+        for r, v in zip(one.ratio, one.value, strict=True):
+            numbers = (one.coating, one.thickness, r, v, one.usual)
+            rows.append([one.quantity, *(f"{value:.9g}" for value in numbers)])
+    return written(rows)
 
 
 def _draw_map(study: EffectiveStudy, error: Array, name: str) -> Markup:

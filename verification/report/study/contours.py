@@ -86,7 +86,7 @@ def contour_figure(study: Study, curve: Curve, thicknesses: Sequence[float]) -> 
 def _solved(study: Study, curve: Curve, h: float) -> Any:
     E, nu = study.substrate
     coating = (curve.ratio * E, study.coating_nu, h * curve.a_h)
-    problem = CoatedContact(study.radius, study.load, (coating,), (E, nu), curve.friction)
+    problem = CoatedContact(study.radius, study.load, (coating,), (E, nu), curve.friction, study.ball)
     numerics = study.numerics.get(METHODS[0], {}) | {"estimate_uncertainty": False}
     return solvers()[METHODS[0]](problem, numerics)
 

@@ -72,7 +72,7 @@ def write_study_report(
     p_h, a_h = (found[0].p_h, found[0].a_h) if found else (float("nan"), float("nan"))
     head = [
         ("study", study.title),
-        ("sphere", f"R = {study.radius * 1e3:g} mm, W = {study.load:g} N"),
+        ("sphere", f"R = {study.radius * 1e3:g} mm, W = {study.load:g} N, {_ball(study)}"),
         ("substrate", f"E = {study.substrate[0] / 1e9:g} GPa, nu = {study.substrate[1]:g}"),
         ("coating", f"nu = {study.coating_nu:g}"),
         ("scales", f"a_h = {a_h * 1e6:.4g} µm, p_h = {p_h / 1e6:.4g} MPa"),
@@ -270,3 +270,10 @@ def _failed(every: Sequence[Curve], more: Sequence[str]) -> list[Section]:
     failures = [f"{c.label}, h = {h:.4g} a_h: {message}" for c in every for h, message in c.failures]
     failures += more
     return [Section("failed", "What could not be solved", [], failures[:200])] if failures else []
+
+
+def _ball(study: Study) -> str:
+    if study.ball is None:
+        return "rigid"
+    E, nu, coatings = study.ball
+    return f"E = {E / 1e9:g} GPa, nu = {nu:g}, {len(coatings) or 'no'} coatings"

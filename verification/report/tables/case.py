@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from verification.judging.verdict import Claim, Verdict
+from verification.problem.contact import FLAT
 from verification.problem.quantity import QUANTITIES, SCALARS, unit_of
 from verification.report.tables.cells import Cell, Table, number, row
 from verification.report.tables.labels import OUTCOMES, pair_label, row_css, source_label
@@ -25,6 +26,7 @@ _FACTS = {
     "a_h": ("a_h, Hertz contact radius", "m"),
     "p_h": ("p_h, Hertz peak pressure", "Pa"),
     "delta_h": ("delta_h, Hertz approach", "m"),
+    "dundurs_beta": ("Dundurs' beta of the surfaces", ""),
     "S_h": ("S_h, Hertz stiffness dW/d delta", "N/m"),
 }
 
@@ -39,14 +41,14 @@ def facts(result: CaseResult) -> list[tuple[str, str]]:
     ]
 
 
-def layer_table(result: CaseResult) -> Table:
-    """The layers from the surface down, in real units and against the bare substrate.
+def layer_table(result: CaseResult, body: str = FLAT) -> Table:
+    """The layers of a body from its surface inwards, in real units and against its bare substrate.
 
     Thicknesses are over a_h, or over the radius of a prescribed load.
     """
     length = "a" if "load_radius" in result.problem else "a_h"
     a_h = scale(result, "load_radius" if length == "a" else "a_h")
-    found = layers(result)
+    found = layers(result, body)
     rows = []
     for layer, (E, nu, thickness) in enumerate(found, start=1):
         below = layer == len(found)
@@ -60,7 +62,10 @@ def layer_table(result: CaseResult) -> Table:
                 Cell("∞" if below else plain(thickness / a_h, 3) if a_h > 0 else "–", thickness),
             )
         )
-    return Table("Layers from the surface down.", ["layer", "E", "E / E_s", "nu", "h", f"h / {length}"], rows)
+    caption = (
+        "Layers from the surface down." if body == FLAT else "Layers of the ball, from its surface inwards."
+    )
+    return Table(caption, ["layer", "E", "E / E_s", "nu", "h", f"h / {length}"], rows)
 
 
 def contact_table(result: CaseResult, quantities: Sequence[str] = SCALARS) -> Table:
@@ -81,8 +86,9 @@ def contact_table(result: CaseResult, quantities: Sequence[str] = SCALARS) -> Ta
         groups.append((quantity.replace("_", " "), 3))
     return Table(
         "Numbers of the contact with the numerical uncertainty each source states (±), made dimensionless "
-        "with the Hertz scales of the bare substrate, and the difference over the value, of the largest "
-        "tension over the smaller of p_h and p0, of its place over a.",
+        "with the Hertz scales of the bare substrate, of both bodies where the ball is elastic, and the "
+        "difference over the value, of the largest tension over the smaller of p_h and p0, of "
+        "its place over a.",
         columns,
         rows,
         groups,

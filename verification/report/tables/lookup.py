@@ -7,7 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from verification.judging.verdict import Claim
-from verification.problem.profile import Profile, coordinate_of
+from verification.problem.contact import BALL, FLAT
+from verification.problem.profile import ON_BALL, Profile, coordinate_of
 from verification.problem.quantity import QUANTITIES
 from verification.running.result import CaseResult
 from verification.sources.registry import METHODS, REFERENCES
@@ -25,7 +26,15 @@ _GROUP_OF = {"contact": GROUPS[0], "oblique": GROUPS[4], "oblique surface": GROU
 
 def group_of(line: str) -> str:
     """The column of the verdict matrix that a line belongs to."""
+    line = line.removeprefix(ON_BALL)
     return GROUPS[3] if line.startswith("interface") else _GROUP_OF.get(line, line)
+
+
+def title_of(line: str) -> str:
+    """The title of the figures along a line."""
+    there = line.removeprefix(ON_BALL)
+    title = TITLES.get(there, there.capitalize())
+    return title if there == line else f"Ball: {title[0].lower()}{title[1:]}"
 
 
 def lines(result: CaseResult) -> tuple[str, ...]:
@@ -59,14 +68,17 @@ def scale(result: CaseResult, name: str) -> np.float64:
         return np.float64("nan")
 
 
-def layers(result: CaseResult) -> list[tuple[float, float, float]]:
+def layers(result: CaseResult, body: str = FLAT) -> list[tuple[float, float, float]]:
     """(E [Pa], nu, thickness [m]) from the surface down, the substrate last with thickness infinity.
 
-    [] where the problem states anything else than finite numbers.
+    [] where the problem states anything else than finite numbers, and of a rigid ball.
     """
     try:
-        coatings = [(float(E), float(nu), float(h)) for E, nu, h in result.problem["coatings"]]
-        E, nu = (float(value) for value in result.problem["substrate"])
+        given, substrate = result.problem["coatings"], result.problem["substrate"]
+        if body == BALL:
+            *substrate, given = result.problem.get("ball") or (None, None, ())
+        coatings = [(float(E), float(nu), float(h)) for E, nu, h in given]
+        E, nu = (float(value) for value in substrate)
     except (KeyError, TypeError, ValueError):
         return []
     numbers = [number for layer in coatings for number in layer] + [E, nu]

@@ -1,0 +1,63 @@
+"""The report of a guest: what is wrong and why, in one page; one test a comparison for its own CI."""
+
+import shutil
+import subprocess
+import sys
+import xml.etree.ElementTree as ET
+from pathlib import Path
+
+from html_document import Document
+from quick_case import coatcheck
+
+import verification
+
+EXAMPLES = Path(verification.__file__).parent / "guests" / "examples"
+
+
+def test_the_page_names_the_slips_of_the_wrong_example(tmp_path):
+    words = ("guest", "run", str(EXAMPLES / "wrong"), "01_uncoated_steel", "-o", "out")
+    done = coatcheck(*words, cwd=tmp_path)
+    assert done.returncode == 1
+    for text in (
+        "E in place of E* = E/(1 - nu^2)",
+        "MPa in place of Pa",
+        "compression positive?",
+        "x and y transposed",
+    ):
+        assert text in done.stdout
+    page = (tmp_path / "out" / "report.html").read_text()
+    Document(page)
+    for text in ("Which quantity is wrong?", "What does not agree", "MPa in place of Pa", "<svg"):
+        assert text in page
+    ET.parse(tmp_path / "out" / "badge.svg")
+    assert "of" in (tmp_path / "out" / "badge.svg").read_text()
+
+
+def test_convergence_against_the_exact_solution_is_shown(tmp_path):
+    shutil.copytree(EXAMPLES / "start", tmp_path / "g")
+    adapter = tmp_path / "g" / "adapter.py"
+    text = adapter.read_text().replace("friction=0.0):", "friction=0.0, patches=1):")
+    # An error of second order in the parameter.
+    adapter.write_text(text.replace('"contact_radius": a,', '"contact_radius": a * (1 + patches**-2.0),'))
+    description = tmp_path / "g" / "guest.toml"
+    description.write_text(description.read_text() + "\n[refine]\npatches = [32, 64, 128]\n")
+    done = coatcheck("guest", "run", "g", "01_uncoated_steel", cwd=tmp_path)
+    assert done.returncode == 0, done.stdout
+    page = (tmp_path / "g" / "report" / "report.html").read_text()
+    assert "Convergence against the exact solution" in page
+    assert "from its refinement study, patches = 32, 64, 128" in page
+
+
+def test_the_pytest_plugin_has_one_test_for_each_comparison(tmp_path):
+    shutil.copytree(EXAMPLES / "program", tmp_path / "g")
+    description = tmp_path / "g" / "guest.toml"
+    command = f'command = ["{sys.executable}", "-S", "-E", "adapter.py"]'
+    description.write_text(f'name = "g"\n{command}\nclaim = 1e-6\n')
+    words = ["-p", "verification.guests.plugin", "-p", "no:cacheprovider", "g/guest.toml", "-q"]
+    words += ["--coatcheck-cases", "01_uncoated_steel"]
+    done = subprocess.run(
+        [sys.executable, "-m", "pytest", *words], cwd=tmp_path, capture_output=True, text=True, timeout=120
+    )
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert "4 passed" in done.stdout
+    assert "skipped" in done.stdout

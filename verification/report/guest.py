@@ -1,0 +1,361 @@
+"""The report of a guest: which quantity is wrong, why, how it converges, what it did not answer."""
+
+from collections import Counter
+from collections.abc import Sequence
+from math import log10
+
+import numpy as np
+from markupsafe import Markup
+
+from verification.guests.diagnosis import slips
+from verification.guests.exam import REFERENCE, profiles_of
+from verification.guests.examination import Examined, outcome_counts
+from verification.judging.verdict import Claim, Outcome, Verdict
+from verification.problem.quantity import QUANTITIES
+from verification.report.figures.curves import Curve, Difference, draw
+from verification.report.figures.loglog import DASHES, DOTS, MIXED, Plot, Trail, panels
+from verification.report.html.templates import render_sections
+from verification.report.tables.cells import (
+    Cell,
+    Gallery,
+    Panel,
+    Part,
+    Row,
+    Section,
+    Table,
+    number,
+    row,
+    words,
+)
+from verification.report.tables.labels import OUTCOMES, row_css
+from verification.report.tables.matrix import outcome_cell
+from verification.report.tables.numbers import plain, seconds
+from verification.running.result import CaseResult, RunInfo
+from verification.sources.record import Style
+
+WORST_FIRST = (
+    Outcome.DISAGREES,
+    Outcome.NO_RESULT,
+    Outcome.INCONCLUSIVE,
+    Outcome.AGREES,
+    Outcome.UNSUPPORTED,
+)
+MOST_FIGURES, MOST_DIGITS = 12, 15
+GUEST, EXACT = Style("semi"), Style("exact", (), 5.0, 0.35)
+DASHED = ((), DASHES, DOTS, MIXED)
+OWN = ("semi", "fem")
+
+
+def page(found: Examined, info: RunInfo) -> str:
+    """The whole page as HTML."""
+    total = outcome_counts(found.results)
+    answered = sum(total.values()) - total[Outcome.UNSUPPORTED]
+    guest = found.guest
+    facts = [
+        ("guest", guest.name),
+        ("way in", guest.callable or " ".join(guest.command) or f"files in {guest.results}"),
+        ("uncertainty", _uncertainty(found)),
+        ("left out", f"|r - a| < {guest.edge:g} a" if guest.edge else "nothing"),
+        ("command", info.command),
+        ("machine", info.machine),
+    ]
+    sections = [_quantities(found), _cases(found), _failures(found), _convergence(found), _missing(found)]
+    return render_sections(
+        "coatcheck guest",
+        f"{guest.name}: {total[Outcome.AGREES]} of {answered} comparisons agree, "
+        f"{total[Outcome.UNSUPPORTED]} are not supported.",
+        facts,
+        [section for section in sections if section is not None],
+    )
+
+
+def badge(found: Examined) -> str:
+    """A badge with the count of comparisons that agree, as SVG."""
+    total = outcome_counts(found.results)
+    answered = sum(total.values()) - total[Outcome.UNSUPPORTED]
+    text = f"{total[Outcome.AGREES]} of {answered} agree"
+    colour = "#2e7d4f" if answered and total[Outcome.AGREES] == answered else "#b3261e"
+    left, right = 74, 12 + 7 * len(text)
+    return Markup(
+        '<svg xmlns="http://www.w3.org/2000/svg" width="{width}" height="20" role="img" '
+        'aria-label="coatcheck: {text}"><rect width="{left}" height="20" fill="#444"/>'
+        '<rect x="{left}" width="{right}" height="20" fill="{colour}"/>'
+        '<g fill="#fff" font-family="Verdana,sans-serif" font-size="11"><text x="6" y="14">'
+        'coatcheck</text><text x="{at}" y="14">{text}</text></g></svg>\n'
+    ).format(width=left + right, left=left, right=right, colour=colour, at=left + 6, text=text)
+
+
+def _uncertainty(found: Examined) -> str:
+    guest = found.guest
+    if guest.levels:
+        return f"from its refinement study, {guest.parameter} = {', '.join(f'{v:g}' for v in guest.levels)}"
+    own = [p for result in found.results for p in result.profiles if p.source == guest.name]
+    if any(p.uncertainty is not None for p in own):
+        return "as the guest states it"
+    return f"none; differences are compared with the claimed {guest.claim:g}" if guest.claim else "none"
+
+
+def digits(difference: float | None) -> str:
+    """Correct decimal digits of the largest difference; a dash for None."""
+    if difference is None:
+        return "–"
+    return f"{min(-log10(max(difference, 10.0**-MOST_DIGITS)), MOST_DIGITS):.1f}"
+
+
+def _quantities(found: Examined) -> Section:
+    """A row for each quantity, the worst first: what to look at."""
+    rows: list[tuple[tuple[int, float], Row]] = []
+    for quantity in dict.fromkeys(c.quantity for r in found.results for c, _ in r.verdicts):
+        verdicts = [(r, c, v) for r in found.results for c, v in r.verdicts if c.quantity == quantity]
+        count = Counter(v.outcome for _, _, v in verdicts)
+        if set(count) == {Outcome.UNSUPPORTED}:
+            continue
+        worst = next(outcome for outcome in WORST_FIRST if count[outcome])
+        gaps = [(v.difference, r, c) for r, c, v in verdicts if v.difference is not None]
+        gap, where = None, ""
+        if gaps:
+            gap, result, claim = max(gaps, key=lambda item: item[0])
+            where = result.title + ("" if claim.line == "contact" else f", {claim.line}")
+        cells = [number(float(count[o]), lambda n: f"{n:.0f}" if n else "·") for o in WORST_FIRST]
+        rows.append(
+            (
+                (WORST_FIRST.index(worst), -(gap or 0.0)),
+                row(
+                    Cell(quantity, note=QUANTITIES[quantity].meaning),
+                    outcome_cell(worst),
+                    *cells,
+                    number(gap),
+                    Cell(digits(gap), gap),
+                    words(where),
+                    css=row_css(worst),
+                ),
+            )
+        )
+    heads = ["quantity", "worst", *(OUTCOMES[o].word for o in WORST_FIRST)]
+    table = Table(
+        "Comparisons of each quantity over all cases and lines, with the largest difference and the digits "
+        "it leaves; relative to the value (p0, a, approach), else to the smaller of p_h and p0.",
+        [*heads, "largest difference", "digits", "where"],
+        [line for _, line in sorted(rows, key=lambda item: item[0])],
+    )
+    named = [(r, slip) for r in found.results for slip in slips(r, found.guest.name)]
+    parts = [Part("", [table])]
+    if named:
+        reasons = [row(r.title, words(str(slip))) for r, slip in named]
+        parts.append(
+            Part("Likely reasons.", [Table("What common slips would give.", ["case", "slip"], reasons)])
+        )
+    return Section("quantities", "Which quantity is wrong?", parts)
+
+
+def _cases(found: Examined) -> Section:
+    """A row for each case: digits by quantity, time, memory."""
+    names = dict.fromkeys(
+        c.quantity for r in found.results for c, v in r.verdicts if v.difference is not None
+    )
+    rows = []
+    for result in found.results:
+        mine = next((s for s in result.sources if s.source == found.guest.name), None)
+        cells = [_digits_cell([v for c, v in result.verdicts if c.quantity == name]) for name in names]
+        memory = None if mine is None else mine.diagnostics.get("memory")
+        taken = None if mine is None or not mine.seconds else mine.seconds
+        rows.append(
+            row(
+                result.title,
+                *cells,
+                Cell("–" if taken is None else seconds(taken), taken),
+                Cell("–" if memory is None else f"{memory / 1e6:.0f} MB", memory),
+                *_own(result.name),
+            )
+        )
+    table = Table(
+        "Digits that agree with the exact reference, by case, with the worst verdict; time and peak memory "
+        "at the finest level beside those of the two methods of coatcheck, as recorded with the package.",
+        ["case", *names, "time", "memory", "semi-analytical", "finite elements"],
+        rows,
+    )
+    return Section("cases", "Cases", [Part("", [table])])
+
+
+def _digits_cell(verdicts: Sequence[Verdict]) -> Cell:
+    outcomes = {v.outcome for v in verdicts}
+    worst = next((outcome for outcome in WORST_FIRST if outcome in outcomes), None)
+    if worst is None or worst is Outcome.UNSUPPORTED:
+        return Cell("–")
+    gap = max((v.difference for v in verdicts if v.difference is not None), default=None)
+    style = OUTCOMES[worst]
+    return Cell(f"{style.letter} {digits(gap)}", gap, f"verdict {style.css}", style.word)
+
+
+def _own(case: str) -> list[Cell]:
+    from verification.guests.own import times
+
+    known = times().get(case, {})
+    return [
+        Cell("–" if method not in known else f"{known[method][0]:.1f} s, {known[method][1] / 1e6:.0f} MB")
+        for method in ("semianalytic", "fem_reference")
+    ]
+
+
+def _failures(found: Examined) -> Section | None:
+    """Figures of the error along the line, of the comparisons that are furthest off."""
+    bad = [
+        (result, claim, verdict)
+        for result in found.results
+        for claim, verdict in result.verdicts
+        if verdict.outcome in (Outcome.DISAGREES, Outcome.INCONCLUSIVE)
+    ]
+    failures = sorted({f"{r.title}: {s.failure}" for r in found.results for s in r.sources if s.failure})
+    if not bad and not failures:
+        return None
+    along = [item for item in bad if item[1].line != "contact"]
+    along.sort(key=lambda item: -(item[2].difference or 0.0))
+    figures = [_figure(found.guest.name, *item) for item in along[:MOST_FIGURES]]
+    parts = []
+    if figures:
+        legend = [(Markup('<span class="s-semi">—</span>'), "guest"), (Markup("<span>━</span>"), "exact")]
+        caption = (
+            "Above the values of guest and exact reference over the scale, below their difference with its "
+            "uncertainty on a logarithmic scale; a ring marks the point that decides, a dashed line the cap."
+        )
+        parts.append(
+            Part(
+                "Values along the line, the largest differences first.",
+                gallery=Gallery(legend, figures, caption),
+            )
+        )
+    rows = [
+        row(
+            result.title,
+            outcome_cell(verdict.outcome),
+            claim.quantity,
+            claim.line,
+            Cell(_ratio(found.guest.name, result, claim)),
+            number(verdict.difference),
+            number(verdict.uncertainty),
+            number(claim.cap),
+            words(verdict.reason),
+            css=row_css(verdict.outcome),
+        )
+        for result, claim, verdict in sorted(bad, key=lambda item: -(item[2].difference or 0.0))
+    ]
+    heads = ["case", "verdict", "quantity", "line", "guest / exact", "difference", "U", "cap", "reason"]
+    parts.append(Part("", [Table("Every comparison that does not agree.", heads, rows)]))
+    return Section("failures", "What does not agree", parts, failures)
+
+
+def _ratio(guest: str, result: CaseResult, claim: Claim) -> str:
+    """Least-squares factor between the guest and the exact values; 1 where only the pattern differs."""
+    mine, exact = (result.profile_of.get((claim.quantity, claim.line, s)) for s in (guest, REFERENCE))
+    if mine is None or exact is None or not np.isfinite(mine.value).all() or not exact.value.any():
+        return "–"
+    return plain(float(mine.value @ exact.value / (exact.value @ exact.value)), 6)
+
+
+def _figure(guest: str, result: CaseResult, claim: Claim, verdict: Verdict) -> Panel:
+    mine, exact = (result.profile_of[claim.quantity, claim.line, s] for s in (guest, REFERENCE))
+    a = float(result.profile_of["contact_radius", "contact", REFERENCE].value[0])
+    top = float(np.abs(exact.value).max()) or 1.0
+    x = exact.position / a
+    difference = np.abs(mine.value - exact.value) / top
+    uncertainty = None if mine.uncertainty is None else mine.uncertainty / top
+    coordinate = "z" if claim.line == "axis" else "s" if claim.line.startswith("oblique") else "x"
+    figure = draw(
+        [Curve(x, exact.value / top, EXACT), Curve(x, mine.value / top, GUEST)],
+        [
+            Difference(
+                x,
+                difference,
+                uncertainty,
+                GUEST,
+                None if verdict.worst is None else verdict.worst / a,
+                verdict.outcome is Outcome.INCONCLUSIVE,
+            )
+        ],
+        label=f"{claim.quantity} on {claim.line} of {result.title}",
+        coordinate=f"{coordinate} / a",
+        cap=claim.cap,
+        unjudged=[(1 - claim.edge, 1 + claim.edge)] if claim.edge else (),
+    )
+    return Panel(f"{claim.quantity}, {claim.line}", figure, result.title, row_css(verdict.outcome))
+
+
+def _convergence(found: Examined) -> Section | None:
+    """Error against the exact reference over the levels of the refinement study."""
+    guest = found.guest
+    if not guest.levels:
+        return None
+    plots, rows = [], []
+    errors = {result.name: _errors(found, result) for result in found.results if result.name in found.replies}
+    quantities = dict.fromkeys(name for by in errors.values() for name in by)
+    for quantity in quantities:
+        trails = []
+        for n, (name, by) in enumerate(errors.items()):
+            if quantity not in by:
+                continue
+            style = Style(OWN[n % 2], DASHED[n // 2 % 4])
+            order = _order(guest.levels, by[quantity])
+            trails.append(Trail(guest.levels, by[quantity], style, "" if order is None else f"{order:.1f}"))
+            title = next(r.title for r in found.results if r.name == name)
+            rows.append(row(title, quantity, *(number(e) for e in by[quantity]), number(order, plain)))
+        label = f"error of {quantity} over {guest.parameter}"
+        plots.append(Plot(quantity, label, "error, order at the end", guest.parameter, guest.levels, trails))
+    heads = ["case", "quantity", *(f"{guest.parameter} = {v:g}" for v in guest.levels), "order"]
+    table = Table(
+        "Largest error against the exact reference, order observed over the last two levels.", heads, rows
+    )
+    gallery = Gallery([], panels(plots), "A curve for each case; the observed order is written at its end.")
+    return Section("convergence", "Convergence against the exact solution", [Part("", [table], gallery)])
+
+
+def _errors(found: Examined, result: CaseResult) -> dict[str, tuple[float, ...]]:
+    """Largest error of each quantity at each level over its scale; of a line outside the zone left out."""
+    guest, exact = found.guest, result.profile_of
+    if ("contact_radius", "contact", REFERENCE) not in exact:
+        return {}
+    a = float(exact["contact_radius", "contact", REFERENCE].value[0])
+    levels = [profiles_of(reply.answer, result, guest) for reply in found.replies[result.name]]
+    errors: dict[str, list[float]] = {}
+    for profiles in levels:
+        largest: dict[str, float] = {}
+        for p in profiles:
+            true = exact[p.quantity, p.line, REFERENCE]
+            judged = np.abs(np.abs(true.position) - a) >= guest.edge * a
+            scale = float(np.abs(true.value).max())
+            if scale and (p.line == "contact" or judged.any()):
+                gap = (
+                    np.abs(p.value - true.value)
+                    if p.line == "contact"
+                    else np.abs(p.value - true.value)[judged]
+                )
+                largest[p.quantity] = max(largest.get(p.quantity, 0.0), float(gap.max()) / scale)
+        for quantity, value in largest.items():
+            errors.setdefault(quantity, []).append(value)
+    return {q: tuple(values) for q, values in errors.items() if len(values) == len(guest.levels)}
+
+
+def _order(levels: Sequence[float], errors: Sequence[float]) -> float | None:
+    first, last = errors[-2:]
+    ratio = max(levels[-1] / levels[-2], levels[-2] / levels[-1])
+    return float(np.log(first / last) / np.log(ratio)) if first > 0 and last > 0 else None
+
+
+def _missing(found: Examined) -> Section | None:
+    """What the guest did not answer, with the reason."""
+    reasons: Counter[tuple[str, str]] = Counter()
+    for result in found.results:
+        for claim, verdict in result.verdicts:
+            if verdict.outcome is Outcome.UNSUPPORTED:
+                reasons[verdict.reason, claim.quantity] += 1
+    if not reasons:
+        return None
+    by: dict[str, list[str]] = {}
+    for (reason, quantity), count in reasons.items():
+        by.setdefault(reason, []).append(f"{quantity} ({count})")
+    rows = [row(words(reason), words(", ".join(names))) for reason, names in by.items()]
+    table = Table("Quantities with the number of comparisons.", ["reason", "not answered"], rows)
+    known = [row(name, words(reason)) for name, reason in found.known]
+    parts = [Part("", [table])]
+    if known:
+        parts.append(Part("", [Table("Known failures.", ["comparison", "reason"], known)]))
+    return Section("missing", "What it did not answer", parts)
