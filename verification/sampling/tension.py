@@ -107,7 +107,7 @@ class Search:
         """The smooth maximum for t between ``first`` and ``last``.
 
         The error of its place is |error of sigma'| / |sigma''|; that of sigma' is estimated by the
-        uncertainty over half the window, to which the polynomial is fitted.
+        uncertainty over the distance of two samples, about the size of an element.
         """
         a = float(self.solution.contact_radius)
         middle, half = (first + last) / 2, abs(last - first) / 2
@@ -130,7 +130,7 @@ class Search:
         wide = float(U[0, 0, np.abs(s - at) <= 1 / WINDOW].max())
         slope = a * abs(np.sin(t) if t < 0 else np.sinh(t))
         bend = abs(float(chebyshev.chebval(at, chebyshev.chebder(c, 2)))) / (half * slope) ** 2
-        length = half * slope
+        length = half * slope / WINDOW
         return Tension(value, place, wide, wide / (length * bend) if length * bend else np.inf)
 
 
