@@ -173,7 +173,7 @@ def _ball_part(balls: Sequence[BallCurve]) -> Part:
     text = (
         "An elastic, uncoated ball on a coated flat by the integral equation, "
         f"f = {FRICTION:g}, nu = 0.3, over the scales of both bodies uncoated. The usual correction, dashed, "
-        "puts E* of the substrates into the scales and keeps the numbers of the rigid ball: it is exact where "
+        "uses E* of the substrates in the scales, keeps the numbers of the rigid ball: it is exact where "
         "a body is rigid or no coating is present. It takes the coating for as important as under a rigid "
         "ball, though the ball's own compliance lessens its part. At E_ball = E_flat/10 its largest "
         f"error is {_percent(worst.usual / worst.value[0] - 1)}, of {worst.quantity} with E1/E2 = "
