@@ -252,7 +252,7 @@ BAD = [
     (changed("load = 20", "load = -20"), "problem.load"),
     (changed("load = 20", "load = 0"), "problem.load"),
     (changed("load = 20", "load = true"), "problem.load must be a number"),
-    (changed("load = 20", 'load = "20 N"'), "problem.load must be a number"),
+    (changed("load = 20", 'load = "20 kg"'), "problem.load must be a number or a force"),
     (changed("load = 20", "load = [20]"), "problem.load must be a number"),
     (changed("load = 20", "load = { N = 20 }"), "problem.load must be a number"),
     (changed("load = 20", "load = 1979-05-27"), "problem.load must be a number"),

@@ -12,6 +12,7 @@ from verification.cases.columns import PublishedColumn, columns_of, si_of
 from verification.cases.schema import LayerEntry, ProblemEntry, PublishedFile
 from verification.cases.table import FOLDER, UNITS, PublishedError, read_table
 from verification.cases.toml import CaseError, load_toml, read_bounded, read_toml
+from verification.cases.units import of_file
 from verification.judging.verdict import Claim
 from verification.problem.arrays import Ball, Coatings
 from verification.problem.contact import CoatedContact, PrescribedLoad
@@ -116,30 +117,32 @@ def _problem(p: ProblemEntry) -> Problem:
     length, stress, force = (
         si_of(getattr(p, key), UNITS, f"problem.{key}") for key in ("length_unit", "stress_unit", "load_unit")
     )
-    substrate = (p.substrate.E * stress, p.substrate.nu)
+    substrate = (of_file(p.substrate.E, stress), p.substrate.nu)
 
     def layers(coatings: list[LayerEntry], a_h: float | None) -> Coatings:
-        return tuple((c.E * stress, c.nu, _thickness(c, length, a_h)) for c in coatings)
+        return tuple((of_file(c.E, stress), c.nu, _thickness(c, length, a_h)) for c in coatings)
 
     def ball(a_h: float | None) -> Ball | None:
         if p.ball is None:
             return None
-        return p.ball.E * stress, p.ball.nu, layers(p.ball.coatings, a_h) if a_h else ()
+        return of_file(p.ball.E, stress), p.ball.nu, layers(p.ball.coatings, a_h) if a_h else ()
 
     if p.radius is not None and p.load is not None:
-        bare = CoatedContact(p.radius * length, p.load * force, (), substrate, p.friction, ball(None))
+        radius, load = of_file(p.radius, length), of_file(p.load, force)
+        bare = CoatedContact(radius, load, (), substrate, p.friction, ball(None))
         return replace(bare, coatings=layers(p.coatings, bare.a_h), ball=ball(bare.a_h))
     coatings = layers(p.coatings, None)
     if p.radius is not None:
-        return LoadingCurve(p.radius * length, CONTROLS[0], (1.0,), coatings, substrate)
+        return LoadingCurve(of_file(p.radius, length), CONTROLS[0], (1.0,), coatings, substrate)
     assert p.pressure is not None
     assert p.load_radius is not None
-    return PrescribedLoad(p.pressure * stress, p.load_radius * length, coatings, substrate, p.friction)
+    pressure, load_radius = of_file(p.pressure, stress), of_file(p.load_radius, length)
+    return PrescribedLoad(pressure, load_radius, coatings, substrate, p.friction)
 
 
 def _thickness(c: LayerEntry, length: float, a_h: float | None) -> float:
     if c.thickness is not None:
-        return c.thickness * length
+        return of_file(c.thickness, length)
     if c.thickness_over_a_h is None or a_h is None:
         raise ValueError("problem.coatings: every coating needs its thickness")
     return c.thickness_over_a_h * a_h

@@ -5,6 +5,7 @@ from typing import Annotated, Literal
 from pydantic import Field, model_validator
 
 from verification.cases.toml import Friction, Positive, Strict, Text
+from verification.cases.units import Metres, Newtons, Pascals
 
 # 1/2 is allowed: the finite element method extrapolates to the incompressible limit.
 Poisson = Annotated[float, Field(gt=-1, le=0.5)]
@@ -14,22 +15,24 @@ Cells = Annotated[dict[str, str | float], Field(max_length=20)]
 class LayerEntry(Strict):
     """A material; a coating with its thickness too."""
 
-    E: Positive
+    E: Pascals
     nu: Poisson
-    thickness: Positive | None = None
+    thickness: Metres | None = None
     thickness_over_a_h: Positive | None = None
 
 
 class BallEntry(Strict):
     """An elastic ball; its coatings from its surface inwards."""
 
-    E: Positive
+    E: Pascals
     nu: Poisson
     coatings: Annotated[list[LayerEntry], Field(default_factory=list, max_length=50)]
 
 
 class ProblemEntry(Strict):
     """A uniform disc or a sphere on a layered solid, in the units of the source.
+
+    A text with a unit of its own, "210 GPa", is in that.
 
     A sphere without a load follows a loading curve, to the positions of the tables.
     """
@@ -41,10 +44,10 @@ class ProblemEntry(Strict):
     coatings: Annotated[list[LayerEntry], Field(default_factory=list, max_length=50)]
     ball: BallEntry | None = None
     friction: Friction = 0.0
-    pressure: Positive | None = None
-    load_radius: Positive | None = None
-    radius: Positive | None = None
-    load: Positive | None = None
+    pressure: Pascals | None = None
+    load_radius: Metres | None = None
+    radius: Metres | None = None
+    load: Newtons | None = None
 
     @model_validator(mode="after")
     def _disc_or_sphere(self) -> "ProblemEntry":

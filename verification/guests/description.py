@@ -15,7 +15,8 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field, model_validator
 
-from verification.cases.toml import CaseError, Positive, Strict, Text, read_bounded, read_toml
+from verification.cases.toml import CaseError, Strict, Text, read_bounded, read_toml
+from verification.cases.units import Seconds
 from verification.problem.contact import CoatedContact
 from verification.problem.quantity import QUANTITIES
 from verification.sources.registry import SOURCES
@@ -56,7 +57,7 @@ class _GuestFile(Strict):
     results: Word | None = None
     claim: Annotated[float, Field(gt=0, le=1)] | None = None
     edge: Annotated[float, Field(ge=0, lt=1)] = 0.0
-    time_limit: Positive = 120.0
+    time_limit: Seconds = 120.0
     homepage: Text | None = None
     supports: Supports = Supports()
     units: Units = Units()

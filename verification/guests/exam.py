@@ -127,11 +127,10 @@ def question_of(
         line = line_of(name, problem)
         along = next(p.position for p in exam.profiles if p.line == name)
         x, y, z = line.points(along)
-        layers = layer_at(z, problem.coatings, line.layer)
+        layers = layer_at(z, problem.seen_from(line.body).coatings, line.layer)
         points: dict[str, Any] = {"x": x / m, "y": y / m, "z": z / m, "layer": layers}
-        lines.append(
-            LineOfPoints(line=name, quantities=quantities, **{k: v.tolist() for k, v in points.items()})
-        )
+        at = {name: v.tolist() for name, v in points.items()}
+        lines.append(LineOfPoints(line=name, body=line.body, quantities=quantities, **at))
 
     def materials(coatings: Coatings) -> list[Layer]:
         return [Layer(E=E / Pa, nu=nu, thickness=h / m) for E, nu, h in coatings]

@@ -55,9 +55,13 @@ class Sphere(_Strict):
 
 
 class LineOfPoints(_Strict):
-    """Points x, y, z with the layer of each, counted from 0 at the surface; the quantities wanted there."""
+    """Points x, y, z with the layer of each, counted from 0 at the surface; the quantities wanted there.
+
+    body : "flat" or "ball", in which z counts into the ball.
+    """
 
     line: str
+    body: str = "flat"
     quantities: list[str]
     x: list[float]
     y: list[float]

@@ -17,7 +17,7 @@ from scipy.ndimage import maximum_filter1d
 from verification.problem.arrays import Array
 from verification.problem.profile import Profile
 
-ORDERS = (0.5, 3.0)
+ORDERS = (0.5, 2.1)  # Eca and Hoekstra, J. Comput. Phys. 262 (2014) 104-130
 NEIGHBOURS = 5
 LEAST = 3  # levels
 

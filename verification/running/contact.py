@@ -106,6 +106,7 @@ def judge_case(case: Case, solved: Solved, *, invariants: bool = True) -> CaseRe
         seconds=sum(s.seconds for s in solved.outcomes.values()) + time.perf_counter() - started,
         text=case.text,
         invariants=tuple(held),
+        warnings=case.warnings,
     )
 
 
@@ -121,6 +122,7 @@ def failed(case: Case, reason: str, seconds: float) -> CaseResult:
         verdicts=tuple((claim, Verdict(Outcome.NO_RESULT, reason)) for claim in case.claims),
         seconds=seconds,
         text=case.text,
+        warnings=case.warnings,
     )
 
 

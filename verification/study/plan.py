@@ -18,8 +18,10 @@ from typing import Annotated, Any
 import numpy as np
 from pydantic import Discriminator, Field, Tag, model_validator
 
-from verification.cases.contact import BallEntry, refuse_unfit_scales
+from verification.cases.contact import BallEntry, Limited, Material, refuse_unfit_scales
+from verification.cases.plausibility import likely_slips, warnings_of
 from verification.cases.toml import CaseError, Poisson, Positive, Strict, Text, read_bounded, read_toml
+from verification.cases.units import Metres, Newtons, Pascals
 from verification.problem.arrays import Ball
 from verification.problem.contact import CoatedContact
 from verification.running.records import plain
@@ -58,6 +60,7 @@ class Study:
     cross_check : every point whose number is a multiple is also solved by the other sources; 0 none.
     ball : None is rigid, or as of CoatedContact.
     numerics : each source's own keywords.  criteria : of the preferable thickness.  text : the file.
+    warnings : of implausible numbers, a line each.
     """
 
     name: str
@@ -74,6 +77,7 @@ class Study:
     numerics: dict[str, dict[str, Any]] = field(default_factory=dict)
     criteria: Criteria = field(default_factory=Criteria)
     text: str = ""
+    warnings: tuple[str, ...] = ()
 
     @property
     def points(self) -> int:
@@ -112,26 +116,24 @@ def thicknesses_between(low: float, high: float, count: int) -> tuple[float, ...
 Values = Annotated[list[Positive], Field(min_length=1, max_length=100_000)]
 
 
-class _Substrate(Strict):
-    E: Positive
-    nu: Poisson
-
-
-class _Coating(Strict):
-    E: Positive | None = None
+class _Coating(Limited):
+    E: Pascals | None = None
     nu: Poisson
 
 
 class _Problem(Strict):
-    radius: Positive
-    load: Positive
-    substrate: _Substrate
+    radius: Metres
+    load: Newtons
+    substrate: Material
     coating: _Coating
     ball: BallEntry | None = None
 
 
+Lengths = Annotated[list[Metres], Field(min_length=1, max_length=100_000)]
+
+
 class _Range(Strict):
-    start: Annotated[float, Field(alias="from", gt=0)]
+    start: Annotated[Positive, Field(alias="from")]
     to: Positive
     count: Annotated[int, Field(ge=1, le=100_000)]
 
@@ -142,16 +144,20 @@ class _Range(Strict):
         return self
 
 
+class _Lengths(_Range):
+    start: Annotated[Metres, Field(alias="from")]
+    to: Metres
+
+
 # Discriminated by type, so that an error message concerns one of them only.
-Sweep = Annotated[
-    Annotated[Values, Tag("list")] | Annotated[_Range, Tag("range")],
-    Discriminator(lambda given: "range" if isinstance(given, dict | _Range) else "list"),
-]
+_BY_TYPE = Discriminator(lambda given: "range" if isinstance(given, dict | _Range) else "list")
+Sweep = Annotated[Annotated[Values, Tag("list")] | Annotated[_Range, Tag("range")], _BY_TYPE]
+LengthSweep = Annotated[Annotated[Lengths, Tag("list")] | Annotated[_Lengths, Tag("range")], _BY_TYPE]
 
 
 class _Sweep(Strict):
     modulus_ratio: Values | None = None
-    thickness: Sweep | None = None
+    thickness: LengthSweep | None = None
     thickness_over_a_h: Sweep | None = None
     friction: Annotated[list[Annotated[float, Field(ge=0, le=2)]], Field(min_length=1, max_length=1000)] = (
         Field(default_factory=lambda: [0.0])
@@ -204,21 +210,27 @@ def parse_study(raw: bytes, path: Path) -> Study:
         raise CaseError(f"{path}: needs exactly one of problem.coating.E or sweep.modulus_ratio, E1/E2")
     moduli = [p.coating.E] if p.coating.E else [r * p.substrate.E for r in sweep.modulus_ratio or ()]
     refuse_unfit_scales(path, replace(bare, ball=ball))
-    key, scale, asked = "thickness", 1.0, sweep.thickness
+    asked: list[float] | _Range | None = sweep.thickness
+    key, scale = "thickness", 1.0
     if asked is None:
         key, scale, asked = "thickness_over_a_h", bare.a_h, sweep.thickness_over_a_h
     assert asked is not None
     values = thicknesses_between(asked.start, asked.to, asked.count) if isinstance(asked, _Range) else asked
     thicknesses = tuple(value * scale for value in values)
+
+    def slips(*given: float) -> str:
+        coatings = tuple((moduli[0], p.coating.nu, h) for h in given)
+        return likely_slips(replace(bare, coatings=coatings, ball=ball)).replace("coatings.0", "coating")
+
     for i, h in enumerate(thicknesses):
         if not 1e-2 <= h / bare.a_h <= 1e2:
             raise CaseError(
                 f"{path}: sweep.{key}: value {i + 1} is {h / bare.a_h:.3g} a_h, with a_h = {bare.a_h:.3g} m; "
-                "a study supports 0.01 to 100"
+                f"a study supports 0.01 to 100{slips(h)}"
             )
     for E in moduli:
         if not 1e-3 <= E / p.substrate.E <= 1e3:
-            raise CaseError(f"{path}: E1/E2 = {E / p.substrate.E:.3g}; a study supports 1e-3 to 1e3")
+            raise CaseError(f"{path}: E1/E2 = {E / p.substrate.E:.3g}; a study supports 1e-3 to 1e3{slips()}")
     study = Study(
         name=path.stem,
         title=checked.title,
@@ -238,10 +250,31 @@ def parse_study(raw: bytes, path: Path) -> Study:
         },
         criteria=checked.criteria,
         text=text,
+        warnings=_warnings(bare, ball, thicknesses, checked),
     )
     if study.points > MOST_POINTS:
         raise CaseError(f"{path}: sweep: {study.points} points; a study has at most {MOST_POINTS}")
     return study
+
+
+def _warnings(
+    bare: CoatedContact,
+    ball: Ball | None,
+    thicknesses: tuple[float, ...],
+    checked: _StudyFile,
+) -> tuple[str, ...]:
+    """Those of the thinnest coating and the thickest, each line once."""
+    p = checked.problem
+    limits = p.substrate.limits("substrate") | p.coating.limits("coating")
+    limits |= p.ball.all_limits() if p.ball else {}
+    found = [
+        line.replace("coatings.0.", "coating.")
+        # A ratio has no unit.
+        for E in ([p.coating.E] if p.coating.E else [p.substrate.E])
+        for h in (min(thicknesses), max(thicknesses))
+        for line in warnings_of(replace(bare, coatings=((E, p.coating.nu, h),), ball=ball), limits)
+    ]
+    return (*dict.fromkeys(found), *checked.criteria.warnings())
 
 
 def shipped_studies() -> dict[str, Path]:

@@ -15,12 +15,10 @@ import numpy as np
 
 from verification.guests.protocol import LineOfPoints, Question
 from verification.problem.arrays import Array
-from verification.problem.contact import (
-    CoatedContact,
-    displacement_with_uncertainty,
-    stress_with_uncertainty,
-)
+from verification.problem.contact import FLAT, CoatedContact
+from verification.problem.profile import Profile, line_of
 from verification.problem.quantity import DISPLACEMENTS, PEAKS, QUANTITIES, STRESSES
+from verification.sampling.lines import sample
 from verification.sampling.tension import Search
 
 Numbers = dict[str, dict[str, Any]]
@@ -98,20 +96,17 @@ def values_of(result: Any, problem: CoatedContact, question: Question) -> tuple[
             values["contact"][name] = Face(result).number(name)
             if getattr(stated, name, None) is not None:
                 uncertainty["contact"][name] = float(getattr(stated, name))
-    if set(PEAKS) & set(question.contact) - set(values["contact"]) and _able(
-        face, "stress", "contact_radius"
-    ):
-        found = _largest_tension(face, problem)
-        for name, number, wide in zip(PEAKS, found[0], found[1], strict=True):
-            values["contact"][name] = number
-            if wide is not None:
-                uncertainty["contact"][name] = wide
+    missing = set(question.contact) - set(values["contact"])
+    if not whole and missing & set(PEAKS) and _able(face, "stress", "contact_radius"):
+        values["contact"] |= dict(zip(PEAKS, _largest_tension(face, problem), strict=True))
     for asked in question.lines:
-        for name, value, U in _on_line(face, asked, whole):
-            if name in asked.quantities:
-                values.setdefault(asked.line, {})[name] = value.tolist()
-                if U is not None:
-                    uncertainty.setdefault(asked.line, {})[name] = U.tolist()
+        for p in _sampled(result, problem, asked) if whole else _on_line(face, asked):
+            one = p.line == "contact"
+            if p.quantity in (missing if one else asked.quantities):
+                values.setdefault(p.line, {})[p.quantity] = p.value[0] if one else p.value
+                if p.uncertainty is not None:
+                    wide = p.uncertainty[0] if one else p.uncertainty
+                    uncertainty.setdefault(p.line, {})[p.quantity] = wide
     values = {line: numbers for line, numbers in values.items() if numbers}
     if not values:
         names = "contact_radius, approach, peak_pressure, pressure, stress"
@@ -123,35 +118,39 @@ def _able(face: Any, *names: str) -> bool:
     return all(getattr(face, name, None) is not None for name in names)
 
 
-def _largest_tension(face: Any, problem: CoatedContact) -> tuple[list[float], list[float | None]]:
-    """Value and place of the largest tension of the surface, then their uncertainties."""
+def _largest_tension(face: Any, problem: CoatedContact) -> tuple[float, float]:
+    """Value and place of the largest tension of the surface."""
     search = Search(face, problem)
-    sigma, U = stress_with_uncertainty(face, search.x, 0.0, 0.0, layer=0)
-    found = search.largest(sigma[0, 0], None if U is None else U[0, 0])
-    return [found.value, found.place], [found.uncertainty, found.place_uncertainty]
+    found = search.largest(face.stress(search.x, 0.0, 0.0, layer=0)[0, 0], None)
+    return found.value, found.place
 
 
-def _on_line(face: Any, asked: LineOfPoints, whole: bool) -> Iterator[tuple[str, Array, Array | None]]:
-    """Every quantity that ``face`` gives at points, with its uncertainty where it is ``whole``."""
+def _sampled(solution: Any, problem: CoatedContact, asked: LineOfPoints) -> tuple[Profile, ...]:
+    """Every quantity of a whole solution on a line, with the uncertainties, as the methods are sampled."""
+    line = line_of(asked.line, problem)
+    points = (np.array(v) for v in (asked.x, asked.y, asked.z))
+    along = sum((v - o) * d for v, o, d in zip(points, line.origin, line.direction, strict=True))
+    return sample(solution, "guest", line, np.asarray(along), problem if line.depth == 0 else None)
+
+
+def _on_line(face: Any, asked: LineOfPoints) -> Iterator[Profile]:
+    """Every quantity that ``face`` gives at points of the flat; nothing of a ball."""
     x, y, z = (np.array(v) for v in (asked.x, asked.y, asked.z))
-    if "pressure" in asked.quantities and _able(face, "pressure"):
-        yield "pressure", face.pressure(x, y), face.pressure_uncertainty(x, y) if whole else None
-    if set(STRESSES) & set(asked.quantities) and _able(face, "stress"):
-        sigma = np.empty((3, 3, x.size))
-        U = np.empty((3, 3, x.size)) if whole else None
-        layers = np.array(asked.layer)
+    found: dict[str, Array] = {}
+    flat = asked.body == FLAT
+    if flat and "pressure" in asked.quantities and _able(face, "pressure"):
+        found["pressure"] = face.pressure(x, y)
+    if flat and set(STRESSES) & set(asked.quantities) and _able(face, "stress"):
+        sigma, layers = np.empty((3, 3, x.size)), np.array(asked.layer)
         for layer in sorted(set(asked.layer)):
             here = layers == layer
-            sigma[..., here], stated = stress_with_uncertainty(face, x[here], y[here], z[here], layer=layer)
-            if U is not None and stated is not None:
-                U[..., here] = stated
-        yield from ((n, sigma[c], None if U is None else U[c]) for n, c in STRESSES.items())
-    if set(DISPLACEMENTS) & set(asked.quantities) and _able(face, "displacement"):
-        if whole:
-            u, stated = displacement_with_uncertainty(face, x, y, z)
-        else:
-            u, stated = _shaped("displacement", face.displacement(x, y, z), (3, x.size)), None
-        yield from ((n, u[i], None if stated is None else stated[i]) for i, n in enumerate(DISPLACEMENTS))
+            sigma[..., here] = face.stress(x[here], y[here], z[here], layer=layer)
+        found |= {name: sigma[component] for name, component in STRESSES.items()}
+    if flat and set(DISPLACEMENTS) & set(asked.quantities) and _able(face, "displacement"):
+        u = _shaped("displacement", face.displacement(x, y, z), (3, x.size))
+        found |= {name: u[i] for i, name in enumerate(DISPLACEMENTS)}
+    for quantity, value in found.items():
+        yield Profile(quantity, asked.line, x, value, "guest")
 
 
 def _shaped(name: str, value: Any, shape: tuple[int, ...]) -> Array:

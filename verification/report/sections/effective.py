@@ -169,16 +169,15 @@ def _ball_part(balls: Sequence[BallCurve]) -> Part:
             drawn.append(Panel(name, _draw_ball(shown, styles, name), "over E_ball/E_flat", ""))
     failing = [(_first_beyond(one, 0.01), one) for one in balls]
     reach = max((ratio for ratio, _ in failing if ratio), default=0.0)
-    worst = max(balls, key=lambda one: abs(one.value[0] / one.usual - 1))
+    worst = max(balls, key=lambda one: abs(one.usual / one.value[0] - 1))
     text = (
         "An elastic, uncoated ball on a coated flat by the integral equation, "
         f"f = {FRICTION:g}, nu = 0.3, over the scales of both bodies uncoated. The usual correction, dashed, "
-        "uses E* of the substrates in the scales, keeps the numbers of the rigid ball: it is exact where "
+        "puts E* of the substrates into the scales, keeping the numbers of the rigid ball: it is exact where "
         "a body is rigid or no coating is present. It takes the coating for as important as under a rigid "
-        "ball, though the ball's own compliance lessens its part. At E_ball = E_flat/10 its largest "
-        f"error is {_percent(worst.usual / worst.value[0] - 1)}, of {worst.quantity} with E1/E2 = "
-        f"{worst.coating:g}, h = {worst.thickness:g} a_h; beyond 1 % it is up to "
-        f"E_ball = {plain(reach, 2)} E_flat."
+        "ball, though the ball's own compliance lessens its part. At E_ball = E_flat/10 its largest error is "
+        f"{_percent(worst.usual / worst.value[0] - 1)}, of {worst.quantity} with E1/E2 = {worst.coating:g}, "
+        f"h = {worst.thickness:g} a_h; more than 1 % remains up to E_ball = {plain(reach, 2)} E_flat."
     )
     at = [min(range(len(balls[0].ratio)), key=lambda i: abs(balls[0].ratio[i] - r)) for r in (0.1, 1.0, 10.0)]
     rows = []

@@ -17,9 +17,9 @@ def compliance(k, E1, nu1, h, E2, nu2):
 
 
 def solve(radius, load, substrate, coatings=(), patches=256):
-    """Period of 16 Hertz radii; ``patches`` a side."""
+    """``patches`` a side of a period of (patches / 3)^(1/2) Hertz radii: one parameter refines both."""
     n, (E, nu), (E1, nu1, h) = int(patches), substrate, (*coatings, (*substrate, 1.0))[0]
-    side = 16 * (3 * load * radius * (1 - nu**2) / (4 * E)) ** (1 / 3)
+    side = (n / 3) ** 0.5 * (3 * load * radius * (1 - nu**2) / (4 * E)) ** (1 / 3)
     x = (np.arange(n) - n // 2) * side / n
     k = 2 * np.pi * np.hypot(np.fft.fftfreq(n, side / n)[:, None], np.fft.rfftfreq(n, side / n))
     k[0, 0] = 1e100 / side  # no response of the mean pressure

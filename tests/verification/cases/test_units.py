@@ -1,0 +1,233 @@
+"""Numbers with a unit: exact in their digits, refused with key and unit otherwise."""
+
+import re
+import subprocess
+import sys
+from decimal import Decimal
+from pathlib import Path
+
+import pytest
+from hypothesis import Phase, given, settings
+from hypothesis import strategies as st
+
+from verification.cases.contact import parse_case
+from verification.cases.published import parse_published
+from verification.cases.toml import CaseError
+from verification.guests.description import parse_guest
+from verification.study.plan import parse_study
+
+BARE = """
+title = "Stiff coating"
+[problem]
+radius = 10e-3
+load = 20
+substrate = { E = 210e9, nu = 0.3 }
+[[problem.coatings]]
+E = 450e9
+nu = 0.22
+thickness = 3e-6
+"""
+PREFIXES = {"": 0, "n": -9, "u": -6, "µ": -6, "μ": -6, "m": -3, "k": 3, "M": 6, "G": 9}
+# SI value of 1, written out here: pint is not asked.
+OTHERS = {
+    "load": {"kgf": "9.80665", "lbf": "4.4482216152605", "kg*m/s^2": "1", "newton": "1", "dyn": "1e-5"},
+    "thickness": {"inch": "0.0254", "in": "0.0254", "micron": "1e-6", "angstrom": "1e-10", "mm^2/m": "1e-6"},
+    "E": {"N/mm^2": "1e6", "N/mm²": "1e6", "N/mm**2": "1e6", "bar": "1e5", "kgf / mm^2": "9806650"},
+}
+BASE = {"load": "N", "thickness": "m", "E": "Pa"}
+KEYS = {"load": "problem.load", "thickness": "problem.coatings.0.thickness", "E": "problem.substrate.E"}
+MODEST = {"load": 20.0, "thickness": 3e-6, "E": 210e9}
+BAD = ("furlongish", "Gpa", "GPA", "kg", "K", "mm^2", "Pa s", "N/m", "m^99", "Pa**Pa", "1/Pa", "", "(N)", "%")
+NUMBERS = st.decimals("1e-3", "1e3", allow_nan=False, places=4).filter(bool).map(str) | st.sampled_from(
+    ["20", "+2.5", "3.", ".5", "2.5e3", "7E-2", "1e+1"]
+)
+SPACE = st.sampled_from([" ", "", "  "])
+
+
+def parse(text):
+    return parse_case(text.encode(), Path("mine.toml"))
+
+
+def with_text(key, text):
+    new = {
+        "load": ("load = 20", f'load = "{text}"'),
+        "thickness": ("thickness = 3e-6", f'thickness = "{text}"'),
+        "E": ("substrate = { E = 210e9", f'substrate = {{ E = "{text}"'),
+    }
+    return BARE.replace(*new[key])
+
+
+@st.composite
+def unit_texts(draw):
+    """A key with a text for it and its exact value in SI, None where the text is bad."""
+    key = draw(st.sampled_from(sorted(BASE)))
+    number, space = draw(NUMBERS), draw(SPACE)
+    if draw(st.booleans()):
+        others = {k: unit for k in sorted(BASE) if k != key for unit in (BASE[k],)}
+        unit = draw(st.sampled_from([*BAD, *others.values()]))
+        text = draw(
+            st.sampled_from(
+                [f"{number}{space}{unit}", unit, f"{number},5 {BASE[key]}", f"{number} {number} {BASE[key]}"]
+            )
+        )
+        return key, text, None
+    prefix = draw(st.sampled_from(sorted(PREFIXES)))
+    unit, factor = prefix + BASE[key], Decimal(10) ** PREFIXES[prefix]
+    if draw(st.booleans()):
+        unit, exact = draw(st.sampled_from(sorted(OTHERS[key].items())))
+        factor = Decimal(exact)
+    return key, f"{number}{space}{unit}", Decimal(number) * factor
+
+
+def given_by(problem, key):
+    return {"load": problem.load, "thickness": problem.coatings[0][2], "E": problem.substrate[0]}[key]
+
+
+@settings(max_examples=300, derandomize=True, database=None, deadline=None, phases=[Phase.generate])
+@given(unit_texts())
+def test_generated_texts_are_exact_or_refused_with_key_and_unit(drawn):
+    key, text, value = drawn
+    if value is None:
+        with pytest.raises(CaseError) as error:
+            parse(with_text(key, text))
+        message = str(error.value)
+        assert message.startswith(f"mine.toml: {KEYS[key]} must be a number or a ")
+        assert message.endswith(f", not {text!r}")
+        assert "\n" not in message
+        return
+    try:
+        found = given_by(parse(with_text(key, text)).problem, key)
+    except CaseError as error:
+        # A number that no contact has is refused as the same bare number is.
+        bare = with_text(key, text).replace(f'"{text}"', repr(float(value)))
+        with pytest.raises(CaseError, match=re.escape(str(error))):
+            parse(bare)
+        return
+    assert found == float(value)
+
+
+def test_texts_are_the_same_numbers_as_bare_ones():
+    text = (
+        BARE.replace("10e-3", '"10 mm"')
+        .replace("load = 20", 'load = "20 N"')
+        .replace("210e9", '"210 GPa"')
+        .replace("450e9", '"450 GPa"')
+        .replace("3e-6", '"3 um"')
+    )
+    assert parse(text).problem == parse(BARE).problem
+
+
+@pytest.mark.parametrize(
+    ("key", "text", "message"),
+    [
+        (
+            "load",
+            "20 kg",
+            "; 'kg' is no unit of force, not '20 kg'",
+        ),
+        ("E", "210 Gpa", "the unit 'Gpa' is unknown, did you mean GPa?, not '210 Gpa'"),
+        ("E", "2,1 GPa", "with a decimal point, not '2,1 GPa'"),
+        ("load", "20", "without a unit leave out the quotation marks, not '20'"),
+        ("load", "-3 N", "input should be greater than 0, not '-3 N'"),
+        ("load", "1e999 N", "input should be a finite number, not '1e999 N'"),
+        ("load", "9" * 70 + " N", "must be a number or a force"),
+        ("load", "2**9**9**9**9 N", "must be a number or a force"),
+        ("load", "20 N^(9**9**9**9)", "unknown"),
+        ("load", "1e9999 kN", "input should be a finite number"),
+        ("thickness", "1e-9999 nm", "input should be greater than 0"),
+    ],
+)
+def test_messages_name_key_and_unit(key, text, message):
+    with pytest.raises(CaseError) as error:
+        parse(with_text(key, text))
+    assert str(error.value).startswith(f"mine.toml: {KEYS[key]} ")
+    assert message in str(error.value)
+
+
+STUDY = """
+title = "DLC"
+[problem]
+radius = "10 mm"
+load = "20 N"
+substrate = { E = "210 GPa", nu = 0.3 }
+coating = { E = "180 GPa", nu = 0.2 }
+[sweep]
+thickness = { from = "1 um", to = "0.01 mm", count = 3 }
+[criteria.strength]
+sigma_xx_surface = "2.5 GPa"
+"""
+
+
+def test_study_files_have_units():
+    study = parse_study(STUDY.encode(), Path("dlc.toml"))
+    assert (study.radius, study.load, study.substrate, study.moduli) == (0.01, 20.0, (210e9, 0.3), (180e9,))
+    assert (study.thicknesses[0], study.thicknesses[-1]) == (1e-6, 1e-5)
+    assert study.criteria.strengths(1.0) == {"sigma_xx_surface": 2.5e9}
+    listed = STUDY.replace('{ from = "1 um", to = "0.01 mm", count = 3 }', '["1 um", 2e-6]')
+    assert parse_study(listed.encode(), Path("dlc.toml")).thicknesses == (1e-6, 2e-6)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "key"),
+    [
+        ('"1 um"', '"1 N"', "sweep.thickness.range.from"),
+        ('{ from = "1 um", to = "0.01 mm", count = 3 }', '["1 N"]', "sweep.thickness.list.0"),
+        ('"2.5 GPa"', '"2.5 um"', "criteria.strength.sigma_xx_surface"),
+        ('thickness = { from = "1 um"', 'thickness_over_a_h = { from = "1 um"', "sweep.thickness_over_a_h"),
+    ],
+)
+def test_study_files_name_the_key_of_a_wrong_unit(old, new, key):
+    assert old in STUDY
+    with pytest.raises(CaseError, match=re.escape(f"dlc.toml: {key}")):
+        parse_study(STUDY.replace(old, new).encode(), Path("dlc.toml"))
+
+
+PUBLISHED = """
+title = "Disc"
+source = "somebody (1990)"
+year = 1990
+problem = { length_unit = "mm", stress_unit = "MPa", PROBLEM }
+[[table]]
+file = "t.csv"
+seen = "primary"
+read = "the table"
+at = { z = "depth", unit = "mm" }
+column = [ { name = "s", quantity = "sigma_zz", unit = "MPa", factor = -1.0 } ]
+"""
+BARE_DISC = """pressure = 0.7, load_radius = 150.0, substrate = { E = 50.0, nu = 0.4 },
+ coatings = [ { E = 500.0, nu = 0.3, thickness = 200.0 } ]""".replace("\n", "")
+UNITS_DISC = """pressure = "700 kPa", load_radius = "15 cm", substrate = { E = "0.05 GPa", nu = 0.4 },
+ coatings = [ { E = 500.0, nu = 0.3, thickness = "0.2 m" } ]""".replace("\n", "")
+
+
+def test_published_files_have_units_beside_numbers_in_those_of_the_source(tmp_path):
+    (tmp_path / "t.csv").write_text("depth,s\n0,0.700\n100,0.500\n")
+    bare, units = (
+        parse_published(PUBLISHED.replace("PROBLEM", disc).encode(), tmp_path / "disc.toml").problem
+        for disc in (BARE_DISC, UNITS_DISC)
+    )
+    assert units.coatings[0] == pytest.approx(bare.coatings[0], rel=1e-15)
+    for name in ("pressure", "load_radius", "substrate"):
+        assert getattr(units, name) == pytest.approx(getattr(bare, name), rel=1e-15)
+
+
+def test_published_sphere_has_units(tmp_path):
+    (tmp_path / "t.csv").write_text("depth,s\n0,700.\n")
+    sphere = 'radius = "1 cm", load = "2 kgf", substrate = { E = "210 GPa", nu = 0.3 }'
+    text = PUBLISHED.replace("PROBLEM", sphere)
+    problem = parse_published(text.encode(), tmp_path / "ball.toml").problem
+    assert (problem.radius, problem.load, problem.substrate) == (0.01, 19.6133, (210e9, 0.3))
+
+
+def test_guest_files_have_a_unit_of_time(tmp_path):
+    text = 'name = "mine"\ncallable = "adapter:solve"\ntime_limit = "2 min"\n'
+    (tmp_path / "adapter.py").write_text("")
+    assert parse_guest(text.encode(), tmp_path / "guest.toml").time_limit == 120.0
+    with pytest.raises(CaseError, match=r"guest\.toml: time_limit must be a number or a duration"):
+        parse_guest(text.replace("2 min", "2 m").encode(), tmp_path / "guest.toml")
+
+
+def test_bare_numbers_do_not_import_pint():
+    code = "import sys; from verification.commands.list_cases import list_cases; list_cases(); "
+    code += "assert 'pint' not in sys.modules"
+    subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, timeout=60)

@@ -1,0 +1,104 @@
+"""Open digits: counted, checked against schema and checksums, computed again."""
+
+import csv
+import hashlib
+import io
+import json
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+from quick_case import coatcheck
+
+from verification.guests.vectors import content
+from verification.guests.vectors.making import make
+from verification.guests.vectors.problems import problems
+from verification.guests.vectors.values import exact_rows
+
+
+@pytest.fixture(scope="module")
+def shipped():
+    return content.shipped()
+
+
+def test_at_least_500_problems_with_50_000_values(shipped):
+    assert len(shipped["problems"]) >= 500
+    assert content.value_count(shipped) >= 50_000
+    assert len({one["name"] for one in shipped["problems"]}) == len(shipped["problems"])
+    assert {len(one["problem"]["coatings"]) for one in shipped["problems"]} == set(range(6))
+    groups = {one["group"] for one in shipped["problems"]}
+    assert {"uncoated", "osullivan_king", "thin", "nearly_incompressible", "disc"} <= groups
+
+
+def test_the_schema_holds_and_every_value_has_its_uncertainty(shipped):
+    content.VectorSet.model_validate_json(json.dumps(shipped))
+    for one in shipped["problems"]:
+        for points in one["points"]:
+            assert points["values"].keys() == points["uncertainty"].keys()
+            sizes = {len(v) for part in ("values", "uncertainty") for v in points[part].values()}
+            assert sizes == {len(points["x"])} == {len(points["z"])}
+    wide = np.array(list(content.uncertain(shipped)))
+    assert np.isfinite(wide).all()
+    assert (wide >= 0).all()
+    assert (wide <= 1e-10).mean() > 0.8  # ten digits
+    assert wide.max() < 1e-5
+
+
+def test_both_methods_agree_within_their_uncertainty(shipped):
+    by = {one["method"]: one for one in shipped["checked"]}
+    assert by["semianalytic"]["problems"] >= 200
+    assert by["semianalytic"]["within"] == by["semianalytic"]["values"]
+    assert by["fem_reference"]["problems"] >= 30
+    # An uncertainty of the finite elements covers 999 of 1000 values.
+    assert by["fem_reference"]["within"] >= 0.999 * by["fem_reference"]["values"]
+
+
+@pytest.mark.parametrize("number", [0, 30, 300, 500])
+def test_problems_computed_anew_have_the_same_digits(shipped, number):
+    one = problems()[number]
+    stored = shipped["problems"][number]
+    found = content.vector(one, exact_rows(one.problem))
+    assert found["problem"] == stored["problem"]
+    for new, old in zip(found["points"], stored["points"], strict=True):
+        for quantity, values in old["values"].items():
+            allowed = 2 * np.array(old["uncertainty"][quantity]) + 1e-300
+            assert (np.abs(np.array(new["values"][quantity]) - values) <= allowed).all()
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    """What the command writes."""
+    place = tmp_path_factory.mktemp("vectors")
+    done = coatcheck("vectors", "digits", cwd=place)
+    assert done.returncode == 0, done.stderr
+    return place / "digits"
+
+
+def test_the_command_writes_files_whose_checksums_hold(folder, shipped):
+    for line in (folder / "SHA256SUMS").read_text().splitlines():
+        digest, name = line.split()
+        assert hashlib.sha256((folder / name).read_bytes()).hexdigest() == digest
+    for name, digest in shipped["sha256"].items():
+        assert hashlib.sha256((folder / name).read_bytes()).hexdigest() == digest
+    rows = list(csv.DictReader(io.StringIO((folder / "values.csv").read_text())))
+    assert len(rows) == content.value_count(shipped)
+
+
+def test_the_reader_shown_is_at_most_20_lines_that_run(folder, monkeypatch, capsys):
+    text = (folder / "README.md").read_text()
+    code = re.search(r"```python\n(.*?)```", text, re.DOTALL)[1]
+    assert len(code.splitlines()) <= 20
+    monkeypatch.chdir(folder)
+    exec(compile(code, "README", "exec"), {})
+    assert "osullivan_king_013" in capsys.readouterr().out
+
+
+def test_making_goes_on_where_it_was_stopped(tmp_path, monkeypatch):
+    few = problems()[:2]
+    monkeypatch.setattr("verification.guests.vectors.making.problems", lambda: few)
+    first = make(tmp_path, {"semianalytic": 1})
+    stamp = {path: path.stat().st_mtime_ns for path in Path(tmp_path).rglob("*.json")}
+    assert make(tmp_path, {"semianalytic": 1}) == first
+    assert {path: path.stat().st_mtime_ns for path in Path(tmp_path).rglob("*.json")} == stamp
+    assert first["checked"][0]["problems"] == 1
