@@ -157,8 +157,10 @@ def _judged(case: Case, clean: CaseResult, fault: Fault) -> tuple[list[Check], P
 def _sampled(case: Case, clean: CaseResult, source: str, solution: Solution) -> list[Profile]:
     places = {profile.line: profile.position for profile in clean.profiles}
     found = list(sample_contact(solution, source, case.problem))
+    radii = [p for p in clean.profiles if (p.quantity, p.line) == ("contact_radius", "contact")]
+    edge = float(radii[-1].value[0])
     for line in case.lines:
-        found += sample(solution, source, line, places[line.name], case.problem)
+        found += sample(solution, source, line, places[line.name], case.problem, edge)
     return found
 
 
