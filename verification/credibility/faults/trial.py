@@ -21,7 +21,6 @@ from verification.credibility.faults.planting import Fault, planted
 from verification.credibility.self_tests import self_tests
 from verification.judging.invariant import Invariant
 from verification.judging.invariants import check as invariants_of
-from verification.judging.invariants.resolved import NAMES
 from verification.judging.verdict import Claim
 from verification.problem.contact import Solution
 from verification.problem.profile import Profile
@@ -126,6 +125,7 @@ def _judged(case: Case, clean: CaseResult, fault: Fault) -> tuple[list[Check], P
             continue
         fresh |= {(p.quantity, p.line, source): p for p in found}
         invariants += invariants_of(solution, source, case.problem)
+    invariants += solved.resolved
     drawn = sample_plane(case.problem.interfaces, solved.solutions)
     invariants += plane_invariants(drawn, solved.solutions, case.problem)
     profiles |= fresh
@@ -146,9 +146,7 @@ def _judged(case: Case, clean: CaseResult, fault: Fault) -> tuple[list[Check], P
     before = replace(
         clean,
         verdicts=tuple((claim, verdict) for claim, verdict in clean.verdicts if concerned(claim)),
-        invariants=tuple(
-            row for row in clean.invariants if row.source in solved.solutions and row.name not in NAMES
-        ),
+        invariants=tuple(row for row in clean.invariants if row.source in solved.solutions),
     )
     checks.append(of_manifest(differences(now, manifest_of(before)), clean.name))
     return checks, fresh

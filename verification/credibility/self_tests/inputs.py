@@ -9,6 +9,7 @@ from verification.cases.contact import parse_case
 from verification.cases.digits import digit_changes
 from verification.cases.published import read_published
 from verification.cases.table import FOLDER
+from verification.cases.units import InSI, of_file
 from verification.credibility.self_tests.answers import Answers
 from verification.judging.claims import standard_claims
 
@@ -34,6 +35,8 @@ def of_case_file() -> Answers:
     yield "thickness of half an a_h", problem.coatings[0][2], 5e-5
     yield "lower interface", problem.interfaces[1], 7e-5
     yield "friction", problem.friction, 0.25
+    yield "3 with the unit of its file", of_file(3.0, 1e-6), 3e-6
+    yield "3 um in a file of inches", of_file(InSI(3e-6), 0.0254), 3e-6
     pairs = [claim.between for claim in standard_claims(problem) if claim.line == "interface 2, lower side"]
     yield "pairs of sources on the lowest line", len(set(pairs)), 3
 
