@@ -1,10 +1,10 @@
 """Uncertainty estimated from a coarser companion solution.
 
 The difference of two solutions crosses zero along lines where neither is exact, so it is not used point by
-point: the estimate at a vertex is the largest difference within ``REACH`` rings of triangles around it, and
-between vertices it is linear. Triangles grow with the distance from the contact edge and with depth, and so
-does the neighbourhood. The largest difference is multiplied with Roache's factor of two meshes (P. J. Roache,
-J. Fluids Eng. 116 (1994) 405-413, eq. 9),
+point: the estimate at a vertex is the largest difference in the rings of triangles around it, further rings
+counting by the shares of ``REACH``, and between vertices it is linear. Triangles grow with the distance from
+the contact edge and with depth, and so does the neighbourhood. The largest difference is
+multiplied with Roache's factor of two meshes (P. J. Roache, J. Fluids Eng. 116 (1994) 405-413, eq. 9),
 
     U = SAFETY |difference| / (ratio^order - 1),
 
@@ -23,7 +23,7 @@ component, the largest difference at the samples of all triangles times the same
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from functools import cached_property
 
 import numpy as np
@@ -44,8 +44,8 @@ SAFETY = 3.0
 # Triangles above this size do not reach the order of the elements. The factor then grows with the size, that
 # of pressures and stresses with its square: on the axis of a fast solution 2.6 times were needed.
 _ASYMPTOTIC_SIZE = 0.2
-# Rings of triangles, or cells of a line, in which the largest difference is taken.
-REACH = 2
+# Shares of the largest difference in rings of triangles, or cells of a line, by their distance from a point.
+REACH = (1.0, 1.0, 1.0, 0.7, 0.5, 0.35, 0.25)
 # The displacement of the field is part of the estimate within this distance of the edge over the radius.
 _STRIP = 0.3
 # Of sizes of triangles, beyond which their local ratio is that of two irregular meshes.
@@ -177,48 +177,53 @@ class StressEstimate:
     everywhere: float
     far: float
 
-    def displacement(self, u: np.ndarray) -> np.ndarray:
-        """Estimate (3, n) of the displacement ``u`` (3, n) at any points."""
-        order = self.field.discretisation.order
-        change = self.safety / (COMPANION**order - 1) * self._sampled[1]
-        return change[:, None] + self.far + self.relative * np.abs(u)
+    def __getstate__(self) -> dict[str, object]:
+        # pickled without the cached properties
+        return {f.name: getattr(self, f.name) for f in fields(self)}
 
-    @cached_property
-    def _sampled(self) -> tuple[np.ndarray, np.ndarray]:
-        """``_error`` at the samples of all triangles, with the largest change of each displacement (3,)."""
-        error, change = self._compared(self.points.triangles)
-        return error, change.max(axis=1)
+    def displacement(self, u: np.ndarray, at: LocatedPoints) -> np.ndarray:
+        """Estimate (3, n) of the displacement ``u`` (3, n) at points."""
+        return self._between(self._corners[6:], at) + self.far + self.relative * np.abs(u)
 
-    def _error(self, points: _Pair) -> np.ndarray:
-        """Estimate (6, n) at points of comparison, before the largest in a neighbourhood is taken."""
-        return self._compared(points)[0]
+    def _error(self, points: _Pair, layer: int | None = None) -> np.ndarray:
+        """Estimate (6, n) at points of comparison, before the largest in a neighbourhood is taken.
 
-    def _compared(self, points: _Pair) -> tuple[np.ndarray, np.ndarray]:
-        """``_error``, and the change of the displacement (3, n) from the companion."""
+        layer : of points on a plane z = const, whose stresses follow from strains and tractions of the plane
+        """
+        return self._compared(points, layer)[:6]
+
+    def _compared(self, points: _Pair, layer: int | None = None) -> np.ndarray:
+        """``_error``, then that of the displacement, whose order is higher by one; (9, n)."""
         (u, final), (other, companion) = (
             f(at) for f, at in zip((self.field, self.companion), points, strict=True)
         )
+        difference = final - companion
+        if layer is not None:
+            # in-plane strains and tractions are two results, whose errors may cancel on one mesh
+            nu = self.field.materials[layer][1]
+            shared = nu / (1 - nu) * difference[2]
+            difference[:2] = np.abs(difference[:2] - shared) + np.abs(shared)
         d = self.field.discretisation
         # In the triangles at the axis, where u_r / r is a derivative too, one order less is observed.
         on_axis = (d.mesh.points[0, d.triangulation.t] == 0).any(axis=0)[points[0].cells]
-        gain = self.points.ratio(points) ** (d.order - on_axis) - 1
-        error = self.safety / gain * np.abs(final - companion) + self.relative * np.abs(final)
-        return error, np.abs(u - other)
+        ratio, order = self.points.ratio(points), d.order - on_axis
+        error = self.safety / (ratio**order - 1) * np.abs(difference) + self.relative * np.abs(final)
+        # that of all triangles moves a point, not that of those next to it
+        moved = self.safety / (COMPANION ** (d.order + 1) - 1) * np.abs(u - other)
+        return np.concatenate([error, moved])
 
     @cached_property
     def _corners(self) -> np.ndarray:
-        """Estimate at the corners of each triangle, (6, 3, triangles); a vertex has one value per layer."""
+        """Estimate at the corners of each triangle, (9, 3, triangles); a vertex has one value per layer."""
         d = self.field.discretisation
         t = d.triangulation.t
         vertices = t + d.mesh.layer * d.mesh.points.shape[1]
-        worst = self._sampled[0].reshape(6, -1, t.shape[1]).max(axis=1)
-        estimate = np.zeros((6, (int(d.mesh.layer.max()) + 1) * d.mesh.points.shape[1]))
-        by_layer = estimate.reshape(6, -1, d.mesh.points.shape[1])
-        for _ in range(REACH):
+        worst = self._compared(self.points.triangles).reshape(9, -1, t.shape[1]).max(axis=1)
+        estimate = np.zeros((9, (int(d.mesh.layer.max()) + 1) * d.mesh.points.shape[1]))
+        for share in np.divide(REACH, (1.0, *REACH[:-1])):
             for corner in vertices:
-                for component in range(6):
-                    np.maximum.at(estimate[component], corner, worst[component])
-            by_layer[_TRACTIONS] = by_layer[_TRACTIONS].max(axis=1, keepdims=True)
+                for component, row in zip(worst, estimate, strict=True):
+                    np.maximum.at(row, corner, share * component)
             worst = estimate[:, vertices].max(axis=1)
         return estimate[:, vertices]
 
@@ -226,7 +231,7 @@ class StressEstimate:
     def _planes(self) -> dict[tuple[float, int], tuple[np.ndarray, np.ndarray]]:
         """Vertices and estimates on the surface and on both sides of each interface, by (depth, layer)."""
         found = {
-            key: (vertices, _largest(self._error(points), vertices.size))
+            key: (vertices, _largest(self._error(points, key[1]), vertices.size))
             for key, (vertices, points) in self.points.planes.items()
         }
         for upper, depth in enumerate(self.field.discretisation.mesh.depths):
@@ -237,14 +242,18 @@ class StressEstimate:
 
     def __call__(self, at: LocatedPoints) -> np.ndarray:
         """Estimate (6, n)."""
-        cells, X = at.triangles_as_given()
-        X = np.clip(X, 0, 1)
-        shape = np.stack([np.clip(1 - X[0] - X[1], 0, 1), X[0], X[1]])
-        estimate = np.einsum("sct,ct->st", self._corners[:, :, cells], shape)
+        estimate = self._between(self._corners[:6], at)
         for (depth, side), (vertices, values) in self._planes.items():
             here = (at.z == depth) & (at.layer == side)
             estimate[:, here] = [np.interp(at.r_given[here], vertices, row) for row in values]
         return estimate + self._displaced(at) + self.everywhere
+
+    def _between(self, corners: np.ndarray, at: LocatedPoints) -> np.ndarray:
+        """Values (c, n) at points from those at the corners (c, 3, triangles), linear in each triangle."""
+        cells, X = at.triangles_as_given()
+        X = np.clip(X, 0, 1)
+        shape = np.stack([np.clip(1 - X[0] - X[1], 0, 1), X[0], X[1]])
+        return np.einsum("sct,ct->st", corners[:, :, cells], shape)
 
     def _displaced(self, at: LocatedPoints) -> np.ndarray:
         """Largest change (6, n) of the stress near the edge when the edge moves by ``radius_error``."""
@@ -275,7 +284,7 @@ class Estimates:
         """The estimates of ``state``, which slides with ``friction``; the companion is solved for it."""
         companion, estimate = self.companion.with_friction(friction), None
         if state.tangential is not None and companion.tangential is not None:
-            far, everywhere = state.truncation(1)
+            far, everywhere, _ = state.truncation(1)
             estimate = replace(
                 self.normal,
                 field=state.tangential,
@@ -314,7 +323,7 @@ def contact_estimates(
     )
     truncation = sum(state.truncation(0)[0] for state in states) / final.approach
     stiffness = (
-        _factor(final.discretisation.order, size) * abs(final.stiffness - companion.stiffness)
+        _functional_factor(final.discretisation.order, size) * abs(final.stiffness - companion.stiffness)
         + (load_residual + truncation) * final.stiffness
     )
     return found, float(stiffness * units.load / units.displacement)
@@ -342,26 +351,26 @@ def estimates(
     a = d.mesh.contact_radius
     size_radius, size_approach = changes
     bodies = bodies or (state,)
-    far_approach, far_stress = np.sum([body.truncation(0) for body in bodies], axis=0)
-    # a given pressure and its radius are exact
-    far_pressure = far_stress if state.normal.root_at_edge else 0.0
-    far_radius = far_pressure / largest * a
+    far_approach, far_stress, curvature = np.sum([body.truncation(0) for body in bodies], axis=0)
+    # The sphere has curvature 1; at given load a ~ R^(1/3) and p0 ~ R^(-2/3), on the bare substrate. A given
+    # pressure with its radius is exact.
+    far_radius, far_pressure = np.array([a, largest]) * (curvature if state.normal.root_at_edge else 0.0)
     central = sum(body.central_displacement for body in bodies)
     displacement, factor = units.displacement, _factor(d.order, size)
-    pointwise = factor * _coarseness(size)
+    pointwise, functional = factor * _coarseness(size), _functional_factor(d.order, size)
     balance = load_residual / 3 * a
-    radius_error = factor * size_radius + SAFETY * edge + far_radius + balance
+    radius_error = functional * size_radius + SAFETY * edge + far_radius + balance
     everywhere = far_pressure + load_residual / 3 * largest
     pressure = PressureEstimate(
         state.pressure, companion.pressure, d.contact_vertices, pointwise, radius_error, everywhere
     )
     size_peak = float(pressure(np.array([at]))[0]) - everywhere
     rows: tuple[tuple[str, str, float], ...] = (
-        ("contact_radius", "element size", factor * size_radius * units.length),
+        ("contact_radius", "element size", functional * size_radius * units.length),
         ("contact_radius", "edge size", SAFETY * edge * units.length),
         ("contact_radius", "outer boundary", far_radius * units.length),
         ("contact_radius", "load balance", balance * units.length),
-        ("approach", "element size", factor * size_approach * displacement),
+        ("approach", "element size", functional * size_approach * displacement),
         ("approach", "outer boundary", far_approach * displacement),
         ("approach", "load balance", load_residual * central * displacement),
         ("peak_pressure", "element size", size_peak * units.pressure),
@@ -386,8 +395,17 @@ def estimates(
 
 
 def _factor(order: int, size: float) -> float:
-    """Uncertainty of contact radius, approach and stiffness over the difference from the companion."""
+    """Uncertainty of a pressure over the difference from the companion."""
     return SAFETY / (COMPANION**order - 1) * _coarseness(size)
+
+
+def _functional_factor(order: int, size: float) -> float:
+    """The same for contact radius, approach and stiffness.
+
+    Functionals of the solution converge with up to twice the order (G. Strang and G. J. Fix, An Analysis of
+    the Finite Element Method, 1973, section 3.4); all but one is relied on.
+    """
+    return _factor(2 * order - 1, size)
 
 
 def _coarseness(size: float) -> float:
@@ -429,10 +447,13 @@ def _samples(vertices: np.ndarray) -> np.ndarray:
 
 
 def _largest(values: np.ndarray, vertices: int) -> np.ndarray:
-    """The largest value within ``REACH`` cells of each of the ``vertices``.
+    """The largest value in the cells around each of the ``vertices``, by the shares of ``REACH``.
 
     values : (..., n) at ``_samples``.  Returns shape (..., vertices).
     """
     worst = values.reshape(*values.shape[:-1], -1, _CELL_SAMPLES).max(axis=-1)
-    padded = np.concatenate([worst[..., :1]] * REACH + [worst] + [worst[..., -1:]] * REACH, axis=-1)
-    return np.max([padded[..., k : k + vertices] for k in range(2 * REACH)], axis=0)
+    side = ((0, 0),) * (worst.ndim - 1)
+    padded = np.pad(worst, (*side, (len(REACH), len(REACH))))
+    both = [(len(REACH) - 1 - ring, len(REACH) + ring) for ring in range(len(REACH))]
+    rings = [np.maximum(*(padded[..., k : k + vertices] for k in cells)) for cells in both]
+    return np.max([share * ring for share, ring in zip(REACH, rings, strict=True)], axis=0)

@@ -20,6 +20,12 @@ from .gmsh_session import session
 __all__ = ["EDGE_SIZE", "Grading", "MeridianMesh", "Meshes", "meridian_mesh"]
 
 EDGE_SIZE = 1e-7  # smallest triangle, at the contact edge, over the contact radius
+# Size of a triangle in the fan over edge_rate: this power of its distance from the edge. What the innermost
+# triangles miss counts as the root of the distance.
+_FAN = 0.94
+# Sizes are uniform to this depth over the contact radius, then grow by this share a unit of the stretched
+# plane.
+_NEAR, _GROWTH = 3.0, 0.4
 
 
 @dataclass(frozen=True)
@@ -27,10 +33,11 @@ class Grading:
     """Sizes of the triangles.
 
     size      : size of a triangle over its distance from the edge, in the contact and the coatings
-    edge_rate : the same ratio in the fan of triangles around the contact edge
+    edge_rate : the same ratio in the fan of triangles around the contact edge, at the distance of one unit
+        of the stretched plane; it grows towards the edge, see ``_FAN``
     edge_size : smallest triangle, at the edge, over the contact radius
     axis_size : size at the point of first contact, in units of the stretched plane
-    far_size  : size at the outer boundary, where one unit is a factor e of distance
+    far_size  : largest size towards the outer boundary, where one unit is a factor e of distance
     """
 
     size: float = 0.4
@@ -43,7 +50,7 @@ class Grading:
     def of(cls, size: float, edge_size: float = EDGE_SIZE) -> "Grading":
         """All sizes from one; the fan at the edge and the far field need less fine triangles."""
         edge_rate = min(1.4 * size, 0.6)
-        return cls(size, edge_rate, edge_size, axis_size=0.65 * size, far_size=2 * size)
+        return cls(size, edge_rate, edge_size, axis_size=0.65 * size, far_size=min(2.7 * size, 0.7))
 
 
 @dataclass(frozen=True, eq=False)
@@ -176,13 +183,12 @@ def _triangulate(
         field = gmsh.model.mesh.field
         rho = "Sqrt(x*x+y*y)"
         field.add("MathEval", 1)
-        field.setString(1, "F", f"{_literal(grading.edge_rate)}*{rho}+{_literal(grading.edge_size * scale)}")
+        fan = f"{_literal(grading.edge_rate)}*{rho}^{_literal(_FAN)}"
+        field.setString(1, "F", f"{fan}+{_literal(grading.edge_size * scale)}")
         field.add("MathEval", 2)
-        # uniform over the near field, growing with the logarithm of the distance beyond
-        growth = (
-            f"{_literal(grading.size)}+{_literal(grading.far_size - grading.size)}*{rho}/{_literal(xi[2])}"
-        )
-        field.setString(2, "F", growth)
+        beyond = f"Max(0,{rho}-{_literal(np.arcsinh(_NEAR * scale))})"
+        growth = f"{_literal(grading.size)}*(1+{_literal(_GROWTH)}*{beyond})"
+        field.setString(2, "F", f"Min({_literal(grading.far_size)},{growth})")
         # p(0) has no neighbours on its other side: finer triangles at the point of first contact
         field.add("MathEval", 3)
         origin = f"Sqrt((x-({_literal(xi[0])}))^2+y*y)"

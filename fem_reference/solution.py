@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from .contact import peak
 from .estimate import Estimates, Uncertainty
 from .points import SolidPoints, solid_points
 from .scaling import Units
@@ -101,6 +102,29 @@ class Solution:
         """Fields of the flat in scaled units."""
         return self.bodies[0].state
 
+    @property
+    def coarser(self) -> "Solution | None":
+        """The companion by which the errors were estimated, without estimates; None where there is none."""
+        estimated = [body.estimates for body in self.bodies if body.estimates is not None]
+        if not estimated:
+            return None
+        states = [estimates.companion for estimates in estimated]
+        _, largest = peak(states[0].pressure, states[0].discretisation.contact_vertices)
+        approach = sum(state.central_displacement for state in states)
+        return replace(
+            self,
+            contact_radius=states[0].mesh.contact_radius * self.units.length,
+            approach=approach * self.units.displacement,
+            peak_pressure=largest * self.units.pressure,
+            uncertainty=None,
+            bodies=tuple(
+                replace(body, state=state, estimates=None)
+                for body, state in zip(self.bodies, states, strict=True)
+            ),
+            stiffness=None,
+            stiffness_uncertainty=None,
+        )
+
     def pressure(self, x: Any, y: Any = 0.0) -> np.ndarray:
         """Contact pressure [Pa] at the surface points (x, y), broadcast; zero outside the contact."""
         return self.state.pressure(self._radius(x, y)) * self.units.pressure
@@ -171,7 +195,7 @@ class Solution:
                 amplitude, _ = field_(points.located)
                 u += angle * amplitude
                 if estimate is not None:
-                    error += np.abs(angle) * estimate.displacement(amplitude)
+                    error += np.abs(angle) * estimate.displacement(amplitude, points.located)
         x = np.stack([u[0] * cos - u[1] * sin, u[0] * sin + u[1] * cos, u[2]])
         cos, sin = np.abs(cos), np.abs(sin)
         U = np.stack([error[0] * cos + error[1] * sin, error[0] * sin + error[1] * cos, error[2]])

@@ -6,7 +6,8 @@ required by ``contact``. Sliding friction is solved last, on the final mesh and 
 """
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from itertools import pairwise
 
 import numpy as np
 
@@ -34,8 +35,10 @@ __all__ = ["QUALITY", "solve", "solve_prescribed"]
 Coatings = tuple[tuple[float, float, float], ...]
 Ball = tuple[float, float, Coatings]
 
-# triangle size over its distance from the contact edge
-QUALITY = {"fast": 0.36, "default": 0.16, "fine": 0.12}
+# Triangle size over its distance from the contact edge; the default is that of "fine" where neighbouring
+# layers differ by more than CONTRAST in their moduli.
+QUALITY = {"fast": 0.27, "default": 0.12, "fine": 0.1}
+CONTRAST = 10.0
 LOAD_TOLERANCE = 1e-8
 
 
@@ -63,7 +66,7 @@ def solve(
     ball    : None is rigid; (E, nu, coatings) of an elastic one, its coatings from its surface inwards. Near
         the contact it is a layered half-space.
     order   : polynomial order of the displacement, 2 to 4
-    quality : "fast" (about 1e-3), "default" (about 1e-5) or "fine"
+    quality : "fast" (about 1e-3), "default" (about 1e-5, finer next to a large step of moduli) or "fine"
     size    : triangle size over its distance from the contact edge, 0.08 to 0.5; None for that of ``quality``
     far     : distance of the outer boundary over (a_h + thickness of all coatings)
     max_iterations : contact solves allowed on each mesh level
@@ -78,12 +81,12 @@ def solve(
     )
     check_materials(coatings, substrate, friction)
     check_choice("order", order, (2, 3, 4))
-    size = _size(quality, size)
     E, nu = substrate
     compliance = (1 - nu**2) / E
     if ball is not None:
         check_ball(ball)
         compliance += (1 - ball[1] ** 2) / ball[0]
+    size = _size(quality, size, [(*coatings, substrate), (*ball[2], ball[:2]) if ball else ()])
     a_h = (3 * load * radius * compliance / 4) ** (1 / 3)
     unit = Units(length=a_h, pressure=E * a_h / radius, modulus=E)
     solids: tuple[LayeredSolid, ...] = (LayeredSolid.scaled(coatings, substrate, a_h, far, E),)
@@ -162,7 +165,7 @@ def solve_prescribed(
     check_positive(load_radius=load_radius, far=far)
     check_materials(coatings, substrate, friction)
     check_choice("order", order, (2, 3, 4))
-    size = _size(quality, size)
+    size = _size(quality, size, [(*coatings, substrate)])
     p = prescribed_pressure(pressure, load_radius)
     unit = Units(length=load_radius, pressure=p.scale, modulus=substrate[0])
     solid = LayeredSolid.scaled(coatings, substrate, load_radius, far, substrate[0])
@@ -202,10 +205,13 @@ def solve_prescribed(
     return frictionless.with_friction(friction)
 
 
-def _size(quality: str, size: float | None) -> float:
+def _size(quality: str, size: float | None, bodies: Sequence[Sequence[tuple[float, ...]]]) -> float:
+    """The size asked for; ``bodies`` : the layers of each, (E, ...) from the surface down."""
     check_choice("quality", quality, tuple(QUALITY))
     if size is None:
-        return QUALITY[quality]
+        steps = [upper[0] / lower[0] for layers in bodies for upper, lower in pairwise(layers)]
+        hard = any(not 1 / CONTRAST <= step <= CONTRAST for step in steps)
+        return QUALITY["fine" if hard and quality == "default" else quality]
     check_positive(size=size)
     if not 0.08 <= size <= 0.5:
         raise ValueError(f"size = {size:g}; choose it between 0.08 (a minute, gigabytes) and 0.5 (coarse)")

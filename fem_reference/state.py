@@ -62,12 +62,13 @@ class ElasticState:
     def pressure(self) -> Callable[[np.ndarray], np.ndarray]:
         return self.normal.pressure
 
-    def truncation(self, harmonic: int) -> tuple[float, float]:
-        """Changes of displacement and stress due to the far field prescribed on the outer boundary.
+    def truncation(self, harmonic: int) -> tuple[float, float, float]:
+        """Changes of displacement, stress, curvature due to the far field prescribed on the outer boundary.
 
         What the far field leaves out falls with a power of the distance, at least the first, and is set to
-        zero on the boundary: so at half the distance at least as much is found as was left out there. Its
-        strain is that over the distance.
+        zero on the boundary: so at half the distance at least as much is found as was left out there. Inside
+        it is smooth: its strain is that over the distance, the curvature of u_z twice that over the distance
+        squared.
         """
         d, field = self.discretisation, self.tangential if harmonic else self.normal
         assert field is not None
@@ -81,7 +82,7 @@ class ElasticState:
             far = np.stack([U + V, V, Z])
         missing = float(np.abs(field.fields.reshape(-1, d.N)[:, halfway] - far).max())
         stiffest = max(E / (1 - 2 * nu) for E, nu in self.solid.materials)
-        return missing, stiffest * missing / self.mesh.far
+        return missing, stiffest * missing / self.mesh.far, 2 * missing / self.mesh.far**2
 
     @property
     def central_displacement(self) -> float:

@@ -53,6 +53,18 @@ class Level:
         return float(np.sqrt(np.count_nonzero(self.found.pressure) / np.pi) * self.grid.d)
 
     @property
+    def staircase(self) -> float:
+        """A quarter of a patch all along the edge, as an error of the radius [m]; 0 with an edge profile.
+
+        The perimeter is that of the staircase times pi/4, its mean over all directions (Cauchy-Crofton).
+        """
+        if self.shape is not None:
+            return 0.0
+        touching = np.pad(self.found.pressure > 0, 1)
+        edges = sum(np.count_nonzero(np.diff(touching, axis=axis)) for axis in (0, 1))
+        return float(np.pi / 4 * edges * self.grid.d / 4 * self.grid.d / (2 * np.pi * self.radius))
+
+    @property
     def scalars(self) -> dict[str, float]:
         return {
             "contact_radius": self.radius,

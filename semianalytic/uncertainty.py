@@ -29,8 +29,9 @@ def safety(ratio: float) -> float:
 class Uncertainty:
     """Numerical uncertainty in SI units; budget : rows (quantity, numerical parameter, value).
 
-    Parameters: patch size, conversion, domain, iteration; of a contact with an edge profile its terms, the
-    quadrature, the iteration. The three scalars are the sums of their rows.
+    Parameters: patch size, conversion, domain, iteration, the staircase that patches make of the edge; of a
+    contact with an edge profile its terms, the quadrature, the iteration. The three scalars are the sums of
+    their rows.
     """
 
     contact_radius: float
@@ -48,16 +49,22 @@ class Uncertainty:
         *,
         base: dict[str, float],
         ratio: float,
+        staircase: float = 0.0,
     ) -> "Uncertainty":
         """From the results on three grids, and on that of ``base`` with one other parameter less accurate.
 
         Patch size: the change to the finest grid, of ``ratio`` times the patches a side, times ``safety``; or
-        a sixth of the change before where the last is small by chance.
+        a sixth of the change before where the last is small by chance, a half of it where the edge is a
+        ``staircase`` [m].
         """
         rows = []
+        if staircase:  # of the second order in the approach, which is stationary in the contact's area
+            second = fine["approach"] * (staircase / fine["contact_radius"]) ** 2
+            rows = [("contact_radius", "staircase", staircase), ("approach", "staircase", second)]
+        share = 1 / 2 if staircase else 1 / 6
         for name, value in fine.items():
             last, before = abs(value - middle[name]), abs(middle[name] - coarse[name])
-            rows.append((name, "patch size", float(np.maximum(safety(ratio) * last, before / 6))))
+            rows.append((name, "patch size", float(np.maximum(safety(ratio) * last, share * before))))
             rows += [(name, varied, abs(result[name] - base[name])) for varied, result in variations.items()]
         return cls._of(rows)
 
@@ -82,7 +89,9 @@ def of_contact(levels: list[Level], indenter: Indenter, body: Body, numerics: Nu
         "iteration": solve_on(grid, start, indenter, body, looser).scalars,
     }
     ratio = numerics.patches / levels[-2].grid.n
-    return Uncertainty.from_levels(fine, middle, coarse, variations, base=coarse, ratio=ratio)
+    return Uncertainty.from_levels(
+        fine, middle, coarse, variations, base=coarse, ratio=ratio, staircase=levels[-1].staircase
+    )
 
 
 def _of_profiles(levels: list[Level], numerics: Numerics) -> Uncertainty:

@@ -249,7 +249,8 @@ def test_uncertainty_brackets_the_error_and_not_by_orders():
         error = abs(getattr(s, name) - exact)
         assert error <= getattr(u, name) <= 100 * error
         assert getattr(u, name) == pytest.approx(sum(v for quantity, _, v in u.budget if quantity == name))
-    assert {parameter for _, parameter, _ in u.budget} == {"patch size", "conversion", "domain", "iteration"}
+    parameters = {"patch size", "conversion", "domain", "iteration", "staircase"}
+    assert {parameter for _, parameter, _ in u.budget} == parameters
     x = s.surface_nodes
     error = np.abs(s.pressure(x) - P_H * np.sqrt(np.maximum(1 - (x / A_H) ** 2, 0)))
     assert np.all(error <= s.pressure_uncertainty(x))

@@ -6,6 +6,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import AfterValidator, Field, model_validator
 
+from verification.cases.plausibility import likely_slips, warnings_of
 from verification.cases.toml import (
     CaseError,
     Friction,
@@ -32,6 +33,7 @@ class Case:
     """``problem`` with the ``claims`` about it; ``numerics`` holds each method's own keywords.
 
     text : the file it was read from, kept with the results so that they carry their full input.
+    warnings : of implausible numbers, a line each.   limits : hardness, yield strength [Pa] by their keys.
     resolve : whether it is also solved scaled, with equal moduli, thick and thin (``invariants.resolved``).
     """
 
@@ -43,6 +45,8 @@ class Case:
     numerics: dict[str, dict[str, Any]] = field(default_factory=dict)
     text: str = ""
     resolve: bool = False
+    warnings: tuple[str, ...] = ()
+    limits: dict[str, float] = field(default_factory=dict)
 
     @property
     def lines(self) -> tuple[Line, ...]:
@@ -50,12 +54,26 @@ class Case:
         return lines_of(self.problem) + oblique_lines(self.problem)
 
 
-class _Substrate(Strict):
+class Limited(Strict):
+    """Stresses of a material beyond which the contact is not elastic."""
+
+    hardness: Pascals | None = None
+    yield_strength: Pascals | None = None
+
+    def limits(self, key: str) -> dict[str, float]:
+        """Those given [Pa], by their keys after ``key``."""
+        given = {"hardness": self.hardness, "yield_strength": self.yield_strength}
+        return {f"{key}.{name}": value for name, value in given.items() if value is not None}
+
+
+class Material(Limited):
+    """An elastic material."""
+
     E: Pascals
     nu: Poisson
 
 
-class _Coating(_Substrate):
+class _Coating(Material):
     thickness: Metres | None = None
     thickness_over_a_h: Positive | None = None
 
@@ -69,10 +87,14 @@ class _Coating(_Substrate):
         return self.thickness if self.thickness is not None else a_h * (self.thickness_over_a_h or 0.0)
 
 
-class BallEntry(_Substrate):
+class BallEntry(Material):
     """An elastic ball; its coatings from its surface inwards."""
 
     coatings: Annotated[list[_Coating], Field(default_factory=list, max_length=50)]
+
+    def all_limits(self) -> dict[str, float]:
+        """Hardness and yield strength [Pa] of the ball with its coatings, by their keys."""
+        return self.limits(BALL) | _limits(self.coatings, f"{BALL}.coatings")
 
     @property
     def bare(self) -> Ball:
@@ -84,6 +106,10 @@ class BallEntry(_Substrate):
         return self.E, self.nu, _in_metres(self.coatings, a_h)
 
 
+def _limits(coatings: list[_Coating], key: str) -> dict[str, float]:
+    return {k: v for i, c in enumerate(coatings) for k, v in c.limits(f"{key}.{i}").items()}
+
+
 def _in_metres(coatings: list[_Coating], a_h: float) -> Coatings:
     return tuple((c.E, c.nu, c.in_metres(a_h)) for c in coatings)
 
@@ -92,7 +118,7 @@ class _Problem(Strict):
     radius: Metres
     load: Newtons
     friction: Friction = 0.0
-    substrate: _Substrate
+    substrate: Material
     coatings: Annotated[list[_Coating], Field(default_factory=list, max_length=50)]
     ball: BallEntry | None = None
 
@@ -104,6 +130,11 @@ class _Problem(Strict):
         )
         given = ball.coated(bare.a_h) if ball else None
         return replace(bare, coatings=_in_metres(self.coatings, bare.a_h), ball=given)
+
+    def limits(self) -> dict[str, float]:
+        """Hardness and yield strength [Pa] of every material that has one, by their keys."""
+        ball = self.ball.all_limits() if self.ball else {}
+        return self.substrate.limits("substrate") | _limits(self.coatings, "coatings") | ball
 
 
 class _Claim(Strict):
@@ -165,17 +196,30 @@ def parse_case(raw: bytes, path: Path) -> Case:
     claims = _claims(path, checked, problem)
     if not claims:
         raise CaseError(f"{path}: claim: nothing is claimed of this problem, so that nothing would be judged")
-    return Case(path.stem, checked.title, problem, claims, checked.source, numerics, text, checked.resolve)
+    limits = checked.problem.limits()
+    return Case(
+        path.stem,
+        checked.title,
+        problem,
+        claims,
+        checked.source,
+        numerics,
+        text,
+        checked.resolve,
+        warnings_of(problem, limits),
+        limits,
+    )
 
 
 def refuse_unfit_scales(path: Path, problem: CoatedContact) -> None:
     """Raise CaseError beyond the range of the parabolic sphere, of a method or of floating point."""
-    a_h, R = problem.a_h, problem.radius
+    a_h, R, slips = problem.a_h, problem.radius, likely_slips(problem)
     if a_h > R:
         reason = f".load: gives a contact radius of {a_h:.3g} m on a sphere of {R:.3g} m; lower the load"
-        raise CaseError(f"{path}: problem{reason}")
+        raise CaseError(f"{path}: problem{reason}{slips}")
     if not 1e-12 < a_h < 1e3:
-        raise CaseError(f"{path}: problem: contact radius a_h = {a_h:.3g} m; check units of radius, load, E")
+        reason = f"contact radius a_h = {a_h:.3g} m; check units of radius, load, E{slips}"
+        raise CaseError(f"{path}: problem: {reason}")
     for body in problem.bodies:
         seen, key = problem.seen_from(body), f"{path}: problem{'.ball' if body == BALL else ''}"
         for i, (_, _, h) in enumerate(seen.coatings):
@@ -183,11 +227,11 @@ def refuse_unfit_scales(path: Path, problem: CoatedContact) -> None:
                 reason = (
                     f"{h / a_h:.3g} times the contact radius {a_h:.3g} m; both methods support 1e-3 to 1e3"
                 )
-                raise CaseError(f"{key}.coatings.{i}.thickness: {reason}")
+                raise CaseError(f"{key}.coatings.{i}.thickness: {reason}{slips}")
         moduli = [*(E for E, _, _ in seen.coatings), seen.substrate[0]]
         contrast = max(moduli) / min(moduli)
         if contrast > 1e4:
-            raise CaseError(f"{key}: moduli differ {contrast:.3g} times; at most 1e4 is supported")
+            raise CaseError(f"{key}: moduli differ {contrast:.3g} times; at most 1e4 is supported{slips}")
 
 
 def _claims(path: Path, checked: _CaseFile, problem: CoatedContact) -> tuple[Claim, ...]:

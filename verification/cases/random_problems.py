@@ -12,12 +12,12 @@ from math import log
 import numpy as np
 
 # Ranges of the problems.
-RATIO = (0.1, 10.0)  # E_i / E of the substrate, of every coating
-THICKNESS = (0.1, 5.0)  # h / a_h, of each coating or of all together
-THINNEST = 0.05  # h / a_h of a coating where THICKNESS is that of all together
+RATIO = (0.02, 50.0)  # E_i / E of the substrate, of every coating
+THICKNESS = (0.02, 10.0)  # h / a_h, of each coating or of all together
+THINNEST = 0.02  # h / a_h of a coating where THICKNESS is that of all together
 POISSON = (0.0, 0.49)  # of every layer
-FRICTION = (0.0, 0.5)
-MOST_COATINGS = 3
+FRICTION = (0.0, 0.8)
+MOST_COATINGS = 5
 ELASTIC = 0.5  # share of the problems with an elastic ball, of no coating to three
 FRICTIONLESS = 1 / 3  # share of the problems with f = 0, the only ones with a symmetric stress
 # Linear elasticity has no length scale: these ranges only exclude an effect of the units.
@@ -39,9 +39,9 @@ def draw(seed: int, number: int) -> Draw:
     """Problem ``number`` of the sequence ``seed``.
 
     Moduli, thicknesses, radius are uniform in their logarithm, Poisson's ratios as well as friction
-    uniform; one to three coatings. In half of the problems THICKNESS is that of each coating, in the
-    other half that of the whole stack, divided at random, so that thinner films occur, down to THINNEST, the
-    smallest for which the accuracy of both methods is stated. The ball is drawn last, from the same ranges.
+    uniform; one to five coatings. In half of the problems THICKNESS is that of each coating, in the
+    other half that of the whole stack, divided at random, so that more films are thin, down to THINNEST.
+    The ball is drawn last, from the same ranges.
     """
     random = np.random.default_rng([seed, number])
     coatings = int(random.integers(1, MOST_COATINGS + 1))

@@ -32,6 +32,7 @@ from verification.commands.common.options import (
     Quiet,
     RecordsFolder,
     Resume,
+    Strict,
 )
 from verification.commands.common.solving import (
     kept_results,
@@ -41,7 +42,14 @@ from verification.commands.common.solving import (
     solve,
     worker_count,
 )
-from verification.commands.common.terminal import STYLE, did_you_mean, one_line, print_error, print_json
+from verification.commands.common.terminal import (
+    STYLE,
+    did_you_mean,
+    one_line,
+    print_error,
+    print_json,
+    print_warnings,
+)
 from verification.credibility import accuracy as accuracy_study
 from verification.credibility.accuracy import AccuracyStudy
 from verification.credibility.self_tests import SelfTest, self_tests
@@ -72,6 +80,7 @@ def run(
     records: RecordsFolder = RECORDS,
     resume: Resume = False,
     fields: Flag = False,
+    strict: Strict = False,
     verbose: Annotated[bool, Parameter(name=["--verbose", "-v"], negative="")] = False,
     quiet: Quiet = False,
     as_json: AsJson = False,
@@ -92,6 +101,9 @@ def run(
     """
     jobs = worker_count(jobs, time_limit)
     chosen = _choose(cases)
+    for case in chosen:
+        if isinstance(case, Case):
+            print_warnings(case.warnings, case.name, strict=strict, silent=quiet or as_json)
     require_gmsh()
 
     @cache
@@ -217,6 +229,7 @@ def _summary(
             result.name: {
                 "outcome": result.outcome,
                 "baseline": states.get(result.name),
+                "warnings": result.warnings,
                 "verdicts": {o: sum(v.outcome is o for _, v in result.verdicts) for o in DECIDED},
                 "invariants": {o: sum(law.outcome is o for law in result.invariants) for o in DECIDED},
             }

@@ -15,9 +15,15 @@ from rich.text import Text
 
 from verification.cases.toml import CaseError
 from verification.commands.common.exits import EXIT, STOPPED, CommandError, with_exit_code
-from verification.commands.common.options import AsJson, Jobs, Output, Quiet
+from verification.commands.common.options import AsJson, Jobs, Output, Quiet, Strict
 from verification.commands.common.solving import progress_bar, require_gmsh
-from verification.commands.common.terminal import did_you_mean, print_error, print_json, print_out
+from verification.commands.common.terminal import (
+    did_you_mean,
+    print_error,
+    print_json,
+    print_out,
+    print_warnings,
+)
 from verification.judging.verdict import Outcome
 from verification.running.pool import cores
 from verification.running.provenance import commit, machine
@@ -37,6 +43,7 @@ def thickness(
     limit: int | None = None,
     cross_check: bool = True,
     figures: bool = True,
+    strict: Strict = False,
     quiet: Quiet = False,
     as_json: AsJson = False,
 ) -> int:
@@ -55,6 +62,7 @@ def thickness(
     if (jobs is not None and jobs < 1) or (limit is not None and limit < 1):
         raise CommandError(f"--jobs = {jobs}, --limit = {limit}; both must be positive")
     chosen = _choose(plan)
+    print_warnings(chosen.warnings, chosen.name, strict=strict, silent=quiet or as_json)
     if not cross_check:
         chosen = replace(chosen, cross_check=0)
     if chosen.cross_check:
@@ -80,6 +88,7 @@ def thickness(
         print_error(f"{message.split(';')[0]}; solved again")
     if as_json:
         content = asdict(came) | {"table": str(came.table), "lost": len(came.lost)}
+        content["warnings"] = chosen.warnings
         content["page"] = None if page is None else str(page)
         print_json(content)
     elif not quiet:

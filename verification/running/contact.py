@@ -13,7 +13,7 @@ from verification.problem.contact import CoatedContact, Solution
 from verification.problem.profile import Profile
 from verification.problem.quantity import QUANTITIES, SCALARS
 from verification.running.result import CaseResult, SourceResult, describe, diagnostics_of, message_of
-from verification.sampling.lines import positions, sample, sample_contact
+from verification.sampling.lines import edge_of, positions, sample, sample_contact
 from verification.sources.record import Solver
 from verification.sources.registry import solvers
 
@@ -74,12 +74,13 @@ def judge_case(case: Case, solved: Solved, *, invariants: bool = True) -> CaseRe
     solutions, outcomes = dict(solved.solutions), dict(solved.outcomes)
     profiles: dict[tuple[str, str, str], Profile] = {}
     places = positions(case.problem, case.lines, solutions) if solutions else {}
+    edge = edge_of(solutions) if solutions else None
     for source, solution in solutions.items():
         begin = time.perf_counter()
         try:
             found = list(sample_contact(solution, source, case.problem))
             for line in case.lines:
-                found += sample(solution, source, line, places[line], case.problem)
+                found += sample(solution, source, line, places[line], case.problem, edge)
         except Exception as error:  # as above
             outcomes[source] = SourceResult(source, outcomes[source].seconds, message_of(error))
             continue
@@ -105,6 +106,7 @@ def judge_case(case: Case, solved: Solved, *, invariants: bool = True) -> CaseRe
         seconds=sum(s.seconds for s in solved.outcomes.values()) + time.perf_counter() - started,
         text=case.text,
         invariants=tuple(held),
+        warnings=case.warnings,
     )
 
 
@@ -120,6 +122,7 @@ def failed(case: Case, reason: str, seconds: float) -> CaseResult:
         verdicts=tuple((claim, Verdict(Outcome.NO_RESULT, reason)) for claim in case.claims),
         seconds=seconds,
         text=case.text,
+        warnings=case.warnings,
     )
 
 

@@ -35,7 +35,7 @@ class CaseResult:
     problem : the fields of CoatedContact, with the scales a_h, p_h, delta_h and the interfaces.
     verdicts : one (Claim, Verdict) per claim of the case, in its order.
     published : of a published case its citation and the tables as printed; empty for any other.
-    invariants : of each solution by itself.
+    invariants : of each solution by itself.   warnings : of implausible input, a line each.
     """
 
     name: str
@@ -49,6 +49,7 @@ class CaseResult:
     text: str = ""
     published: dict[str, Any] = field(default_factory=dict)
     invariants: tuple[Invariant, ...] = ()
+    warnings: tuple[str, ...] = ()
 
     @property
     def outcome(self) -> Outcome:

@@ -1,18 +1,20 @@
 """Profiles of a solution along the lines of a case."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
 
 import numpy as np
 
+from verification.judging.invariants.refinement import followed
 from verification.problem.arrays import Array
 from verification.problem.body import on_body
 from verification.problem.contact import BALL, FLAT, CoatedContact, Solution, stress_with_uncertainty
 from verification.problem.profile import Line, Profile
 from verification.problem.quantity import BALL_PEAKS, IN_PLANE, PEAKS, QUANTITIES, SCALARS, SLOPES
 from verification.sampling import oblique
-from verification.sampling.tension import Search
+from verification.sampling.tension import Search, around_edge, edge_uncertainty
 
-__all__ = ["positions", "sample", "sample_contact"]
+__all__ = ["edge_of", "positions", "sample", "sample_contact"]
 
 # Of a: distances from the contact edge of points on the surface line, either side.
 NEAR_EDGE = np.array([0.0, 1e-4, 1e-3, 1e-2])
@@ -39,6 +41,7 @@ def positions(
     and ``NEAR_EDGE``.
     """
     a = max(solution.contact_radius for solution in solutions.values())
+    edge = edge_of(solutions)
     nodes = next(iter(solutions.values())).surface_nodes
     wanted = 2.5 * a * np.linspace(0, 1, 101)
     if problem.friction:
@@ -46,8 +49,9 @@ def positions(
     wanted = wanted[np.abs(wanted) <= np.abs(nodes).max()]
     x = nodes[np.unique(np.abs(nodes[None, :] - wanted[:, None]).argmin(axis=1))]
     z = {body: _depths(problem.seen_from(body), a) for body in problem.bodies}
-    edge = list(solutions.values())[-1].contact_radius * np.concatenate([1 + NEAR_EDGE, 1 - NEAR_EDGE])
-    surface = np.unique(np.concatenate([x, edge, -edge] if problem.friction else [x, edge]))
+    near = edge * np.concatenate([1 + NEAR_EDGE, 1 - NEAR_EDGE])
+    clear = x[np.abs(np.abs(x) - edge) > NEAR_EDGE[1] * edge]
+    surface = np.unique(np.concatenate([clear, near, -near] if problem.friction else [clear, near]))
     return {
         line: z[line.body]
         if line.coordinate == "z"
@@ -58,6 +62,11 @@ def positions(
     }
 
 
+def edge_of(solutions: Mapping[str, Solution]) -> float:
+    """Contact radius [m] of the last solution, the reference: where the surface line has r = a."""
+    return float(list(solutions.values())[-1].contact_radius)
+
+
 def _depths(problem: CoatedContact, a: float) -> Array:
     """Depths on the axis [m]: at least six in each layer, none on an interface; spacing grows with depth."""
     bounds = np.array([0.0, *problem.interfaces, max(4 * a, *(2 * z for z in problem.interfaces), 0.0)])
@@ -66,57 +75,69 @@ def _depths(problem: CoatedContact, a: float) -> Array:
 
 
 def sample(
-    solution: Solution, source: str, line: Line, position: Array, problem: CoatedContact | None = None
+    solution: Solution,
+    source: str,
+    line: Line,
+    position: Array,
+    problem: CoatedContact | None = None,
+    edge: float | None = None,
 ) -> tuple[Profile, ...]:
     """Every quantity of ``line`` at ``position`` [m]: the four stresses, on the surface the pressure too.
 
     Off the plane y = 0 see ``oblique``. On a line of the ball x is that of the flat.
 
     problem : on the surface also its largest tension with its place, as ``PEAKS`` of the contact.
+    edge : as of ``edge_of``; points of the surface at this radius [m] are evaluated at the solution's own
+           contact edge, where a value does not depend on the error of the radius.
     """
     if line.depth is None and line.coordinate != "z":
         return oblique.sample(solution, source, line, position)
     solution, turned = on_body(solution, line.body), -1.0 if line.body == BALL else 1.0
-    x, _, z = line.points(position)
+    x, _, z = (np.array(along) for along in line.points(position))
     x = turned * x
     stated = solution.uncertainty is not None
-    profiles = []
+    surface = line.place == "surface"
+    at = np.flatnonzero(np.abs(position) == edge) if surface else np.arange(0)
+    side = np.sign(x[at])
+    x[at] = side * float(solution.contact_radius)
+    around = (side[:, None] * around_edge(solution)).ravel() if at.size and stated else np.zeros(0)
+    search = Search(solution, problem.seen_from(line.body)) if problem is not None and surface else None
+    # In one call, whose cost hardly depends on the number of points.
+    parts = (x, around, np.zeros(0) if search is None else search.x)
+    points = np.concatenate(parts)
+    depth = np.concatenate([z, np.zeros(points.size - z.size)])
+    sigma, U = stress_with_uncertainty(solution, points, 0.0, depth, layer=line.layer)
+    ends = np.cumsum([part.size for part in parts])[:-1]
+    values, near, sought = np.split(sigma, ends, axis=-1)
+    wide, near_U, sought_U = (None,) * 3 if U is None else np.split(U, ends, axis=-1)
+    if wide is not None and near_U is not None and around.size:
+        wide[..., at] = _at_edge(
+            solution, near, near_U, lambda one: one.stress(side * one.contact_radius, 0.0, 0.0, layer=0)
+        )
+    values[0, 2] = values[2, 0] = turned * values[0, 2]
+    found = [(name, values[component], wide, component) for name, component in IN_PLANE.items()]
+    profiles = [
+        Profile(name, line.name, position, value, source, None if U is None else U[component])
+        for name, value, U, component in found
+    ]
     if line.name == "surface":  # the pressure is that of both bodies
-        profiles.append(
-            Profile(
-                "pressure",
-                line.name,
-                position,
-                solution.pressure(x),
-                source,
-                solution.pressure_uncertainty(x) if stated else None,
-            )
-        )
-    count = x.size
-    search = None
-    if problem is not None and line.place == "surface":
-        search = Search(solution, problem.seen_from(line.body))
-    if search is not None:  # in one call, whose cost hardly depends on the number of points
-        x, z = np.concatenate([x, search.x]), np.zeros(count + search.x.size)
-    sigma, U = stress_with_uncertainty(solution, x, 0.0, z, layer=line.layer)
+        spread = solution.pressure_uncertainty(x) if stated else None
+        if spread is not None and around.size:
+            near, near_U = solution.pressure(around), solution.pressure_uncertainty(around)
+            spread[at] = _at_edge(solution, near, near_U, lambda one: one.pressure(side * one.contact_radius))
+        profiles.append(Profile("pressure", line.name, position, solution.pressure(x), source, spread))
     if search is not None:
-        found = search.largest(sigma[0, 0, count:], None if U is None else U[0, 0, count:])
-        numbers = ((found.value, found.uncertainty), (turned * found.place, found.place_uncertainty))
+        best = search.largest(sought[0, 0], None if sought_U is None else sought_U[0, 0])
+        numbers = ((best.value, best.uncertainty), (turned * best.place, best.place_uncertainty))
         names = PEAKS if line.body == FLAT else BALL_PEAKS
-        for name, (value, uncertain) in zip(names, numbers, strict=True):
-            spread = None if uncertain is None else np.array([uncertain])
-            profiles.append(Profile(name, "contact", np.zeros(1), np.array([value]), source, spread))
-        sigma, U = sigma[..., :count], None if U is None else U[..., :count]
-    sigma[0, 2] = sigma[2, 0] = turned * sigma[0, 2]
-    for name, component in IN_PLANE.items():
-        profiles.append(
-            Profile(
-                name,
-                line.name,
-                position,
-                sigma[component],
-                source,
-                None if U is None else U[component],
-            )
-        )
+        for name, (number, uncertain) in zip(names, numbers, strict=True):
+            own = None if uncertain is None else np.array([uncertain])
+            profiles.append(Profile(name, "contact", np.zeros(1), np.array([number]), source, own))
     return tuple(profiles)
+
+
+def _at_edge(solution: Solution, value: Array, U: Array, at_own_edge: Callable[[Any], Array]) -> Array:
+    """Uncertainty at the solution's own edge from values at ``around_edge`` of each side, (..., 5 sides)."""
+    change = followed(solution, at_own_edge)
+    shape = (*value.shape[:-1], -1, 5)
+    return edge_uncertainty(value.reshape(shape), U.reshape(shape), change)

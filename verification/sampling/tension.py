@@ -2,7 +2,8 @@
 
 sigma_xx on y = z = 0 has a cusp at r = a and is smooth elsewhere: in t of r = a cos t inside the contact and
 r = a cosh t outside it, up to the edge from either side. The edge is one candidate, the local maxima in t are
-the others: bracketed by samples, then found as the maximum of a Chebyshev interpolant.
+the others: bracketed by samples, then found as the maximum of a Chebyshev polynomial, of no higher degree
+than the uncertainty of the stress supports.
 """
 
 from dataclasses import dataclass
@@ -20,9 +21,9 @@ __all__ = ["Search", "Tension", "around_edge", "edge_uncertainty"]
 
 # Of t: samples close to the edge, where thin films bend, then evenly. REACH: of a, beside 4 bending lengths.
 CLOSE, STEP, REACH = np.geomspace(0.01, 0.5, 20), 0.09, 4.0
-NODES = 17  # of the Chebyshev interpolant between the neighbours of the largest sample
+WINDOW, NODES = 3, 33  # samples either side of the largest one, Chebyshev nodes between the outermost
+FIT = 0.1  # of the uncertainty: what the polynomial may leave
 CLEAR = 0.1  # of the largest sample: by as much it may lie below the maximum that it brackets
-ELEMENT = 1 / 6  # size of the methods' elements over the distance from the edge
 # Of a: the distance from the edge at which the uncertainty of the stress no longer is that of the radius.
 BESIDE = 1e-2
 
@@ -71,7 +72,7 @@ class Search:
             local = (sample[1:-1] >= sample[:-2]) & (sample[1:-1] >= sample[2:])
             i = 1 + int(np.argmax(np.where(local, sample[1:-1], -np.inf)))
             if local.any() and sample[i] + CLEAR * abs(sample[i]) > highest:
-                found = self._maximum(side, t[i - 1], t[i + 1])
+                found = self._maximum(side, t[max(i - WINDOW, 0)], t[min(i + WINDOW, t.size - 1)])
                 others.append((found.value, found.place))
                 if found.value > (highest if best is None else best.value):
                     best = found
@@ -106,7 +107,7 @@ class Search:
         """The smooth maximum for t between ``first`` and ``last``.
 
         The error of its place is |error of sigma'| / |sigma''|; that of sigma' is estimated by the
-        uncertainty over the length on which the error varies, that of an element or a patch.
+        uncertainty over the distance of two samples, about the size of an element.
         """
         a = float(self.solution.contact_radius)
         middle, half = (first + last) / 2, abs(last - first) / 2
@@ -114,7 +115,11 @@ class Search:
         sigma, U = stress_with_uncertainty(
             self.solution, side * _radius(a, middle + half * s), 0.0, 0.0, layer=0
         )
+        usual = 0.0 if U is None else float(np.median(U[0, 0]))
         c = chebyshev.chebfit(s, sigma[0, 0], NODES - 1)
+        # The nodes make the terms orthogonal: cut off, the sum of those left out bounds the residual.
+        rest = np.cumsum(np.abs(c[::-1]))[::-1]
+        c = c[: max(int(np.count_nonzero(rest > FIT * usual)), 3)]
         roots = chebyshev.chebroots(chebyshev.chebder(c))
         real = roots[(np.abs(roots.imag) < 1e-6) & (np.abs(roots.real) <= 1)].real
         at = float(max([*real, s[np.argmax(sigma[0, 0])]], key=lambda place: chebyshev.chebval(place, c)))
@@ -122,10 +127,10 @@ class Search:
         value, place = float(chebyshev.chebval(at, c)), float(side * _radius(a, np.array(t)))
         if U is None:
             return Tension(value, place, None, None)
-        slope = a * (np.sin(t) if t < 0 else np.sinh(t))
+        wide = float(U[0, 0, np.abs(s - at) <= 1 / WINDOW].max())
+        slope = a * abs(np.sin(t) if t < 0 else np.sinh(t))
         bend = abs(float(chebyshev.chebval(at, chebyshev.chebder(c, 2)))) / (half * slope) ** 2
-        wide = float(U[0, 0].max())
-        length = ELEMENT * abs(abs(place) - a)
+        length = half * slope / WINDOW
         return Tension(value, place, wide, wide / (length * bend) if length * bend else np.inf)
 
 

@@ -81,10 +81,10 @@ def _reduced(keyword: str, label: str, values: tuple[float, ...], **fixed: Any) 
 # elements are varied on a coarser mesh, to save time.
 _FEM = partial(NumericalParameter, "fem_reference")
 ELEMENTS = (
-    _FEM("element size", _reduced("size", "size {}", (0.5, 0.36, 0.25, 0.16), order=4), order=4.0),
-    _FEM("element order", _varied("order", "order {}", (2, 3, 4), size=0.25), order=4.0),
-    _FEM("outer boundary", _varied("far", "at {:g}", (125.0, 250.0, 500.0, 1000.0), size=0.36)),
-    _FEM("load balance", _reduced("load_tolerance", "{:.0e}", (1e-5, 1e-6, 1e-7, 1e-8), size=0.36)),
+    _FEM("element size", _reduced("size", "size {}", (0.36, 0.27, 0.19, 0.12), order=4), order=4.0),
+    _FEM("element order", _varied("order", "order {}", (2, 3, 4), size=0.19), order=4.0),
+    _FEM("outer boundary", _varied("far", "at {:g}", (125.0, 250.0, 500.0, 1000.0), size=0.27)),
+    _FEM("load balance", _reduced("load_tolerance", "{:.0e}", (1e-5, 1e-6, 1e-7, 1e-8), size=0.27)),
 )
 # Coarse numerics whose uncertainty is below the caps; stresses and thin coatings need smaller elements.
 METHOD_SOURCES = (
@@ -107,8 +107,8 @@ METHOD_SOURCES = (
         solve_elements,
         package="fem_reference",
         parameters=ELEMENTS,
-        coarse={"size": 0.25},
-        coarse_stress={"size": 0.22},
+        coarse={"size": 0.2},
+        coarse_stress={"size": 0.17},
         fields="mesh",
     ),
 )

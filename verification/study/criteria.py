@@ -16,7 +16,7 @@ from pydantic import Field, model_validator
 from scipy.interpolate import PchipInterpolator
 
 from verification.cases.toml import Strict
-from verification.cases.units import Pascals
+from verification.cases.units import InSI, Pascals
 from verification.problem.arrays import Array
 from verification.study.curves import Curve
 from verification.study.quantities import Stress
@@ -50,6 +50,16 @@ class Criteria(Strict):
         if self.strength is not None and self.minimise is not None:
             raise ValueError("takes strength or minimise, not both")
         return self
+
+    def warnings(self) -> tuple[str, ...]:
+        """A line for each implausible strength."""
+        return tuple(
+            f"criteria.strength.{name} = {value:g} Pa is below 1 MPa"
+            + ("; check its unit" if isinstance(value, InSI) else f"; {value:g} looks like {unit}")
+            for name, value in (self.strength or {}).items()
+            for unit in ["GPa" if value < 100 else "MPa"]
+            if value < 1e6
+        )
 
     def strengths(self, p_h: float) -> dict[str, float]:
         """Strength [Pa] of every mode in the criterion; ``p_h`` [Pa] for all where none is given."""

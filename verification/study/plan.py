@@ -18,7 +18,8 @@ from typing import Annotated, Any
 import numpy as np
 from pydantic import Discriminator, Field, Tag, model_validator
 
-from verification.cases.contact import BallEntry, refuse_unfit_scales
+from verification.cases.contact import BallEntry, Limited, Material, refuse_unfit_scales
+from verification.cases.plausibility import likely_slips, warnings_of
 from verification.cases.toml import CaseError, Poisson, Positive, Strict, Text, read_bounded, read_toml
 from verification.cases.units import Metres, Newtons, Pascals
 from verification.problem.arrays import Ball
@@ -59,6 +60,7 @@ class Study:
     cross_check : every point whose number is a multiple is also solved by the other sources; 0 none.
     ball : None is rigid, or as of CoatedContact.
     numerics : each source's own keywords.  criteria : of the preferable thickness.  text : the file.
+    warnings : of implausible numbers, a line each.
     """
 
     name: str
@@ -75,6 +77,7 @@ class Study:
     numerics: dict[str, dict[str, Any]] = field(default_factory=dict)
     criteria: Criteria = field(default_factory=Criteria)
     text: str = ""
+    warnings: tuple[str, ...] = ()
 
     @property
     def points(self) -> int:
@@ -113,12 +116,7 @@ def thicknesses_between(low: float, high: float, count: int) -> tuple[float, ...
 Values = Annotated[list[Positive], Field(min_length=1, max_length=100_000)]
 
 
-class _Substrate(Strict):
-    E: Pascals
-    nu: Poisson
-
-
-class _Coating(Strict):
+class _Coating(Limited):
     E: Pascals | None = None
     nu: Poisson
 
@@ -126,7 +124,7 @@ class _Coating(Strict):
 class _Problem(Strict):
     radius: Metres
     load: Newtons
-    substrate: _Substrate
+    substrate: Material
     coating: _Coating
     ball: BallEntry | None = None
 
@@ -219,15 +217,20 @@ def parse_study(raw: bytes, path: Path) -> Study:
     assert asked is not None
     values = thicknesses_between(asked.start, asked.to, asked.count) if isinstance(asked, _Range) else asked
     thicknesses = tuple(value * scale for value in values)
+
+    def slips(*given: float) -> str:
+        coatings = tuple((moduli[0], p.coating.nu, h) for h in given)
+        return likely_slips(replace(bare, coatings=coatings, ball=ball)).replace("coatings.0", "coating")
+
     for i, h in enumerate(thicknesses):
         if not 1e-2 <= h / bare.a_h <= 1e2:
             raise CaseError(
                 f"{path}: sweep.{key}: value {i + 1} is {h / bare.a_h:.3g} a_h, with a_h = {bare.a_h:.3g} m; "
-                "a study supports 0.01 to 100"
+                f"a study supports 0.01 to 100{slips(h)}"
             )
     for E in moduli:
         if not 1e-3 <= E / p.substrate.E <= 1e3:
-            raise CaseError(f"{path}: E1/E2 = {E / p.substrate.E:.3g}; a study supports 1e-3 to 1e3")
+            raise CaseError(f"{path}: E1/E2 = {E / p.substrate.E:.3g}; a study supports 1e-3 to 1e3{slips()}")
     study = Study(
         name=path.stem,
         title=checked.title,
@@ -247,10 +250,31 @@ def parse_study(raw: bytes, path: Path) -> Study:
         },
         criteria=checked.criteria,
         text=text,
+        warnings=_warnings(bare, ball, thicknesses, checked),
     )
     if study.points > MOST_POINTS:
         raise CaseError(f"{path}: sweep: {study.points} points; a study has at most {MOST_POINTS}")
     return study
+
+
+def _warnings(
+    bare: CoatedContact,
+    ball: Ball | None,
+    thicknesses: tuple[float, ...],
+    checked: _StudyFile,
+) -> tuple[str, ...]:
+    """Those of the thinnest coating and the thickest, each line once."""
+    p = checked.problem
+    limits = p.substrate.limits("substrate") | p.coating.limits("coating")
+    limits |= p.ball.all_limits() if p.ball else {}
+    found = [
+        line.replace("coatings.0.", "coating.")
+        # A ratio has no unit.
+        for E in ([p.coating.E] if p.coating.E else [p.substrate.E])
+        for h in (min(thicknesses), max(thicknesses))
+        for line in warnings_of(replace(bare, coatings=((E, p.coating.nu, h),), ball=ball), limits)
+    ]
+    return (*dict.fromkeys(found), *checked.criteria.warnings())
 
 
 def shipped_studies() -> dict[str, Path]:

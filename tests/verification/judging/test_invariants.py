@@ -35,7 +35,7 @@ def exact(problem=SLIDING):
 
 @functools.cache
 def finite_elements():
-    return fem_reference.solve(**keywords(SLIDING), size=0.16)
+    return fem_reference.solve(**keywords(SLIDING), size=0.12)
 
 
 class Changed:
@@ -46,6 +46,8 @@ class Changed:
 
     def __getattr__(self, name):
         sound = getattr(self._sound, name)
+        if name == "coarser" and sound is not None:
+            return Changed(sound, **self._changes)
         change = self._changes.get(name)
         if change is None:
             return sound

@@ -123,7 +123,7 @@ def test_sliding_coated_field_is_in_equilibrium(sliding):
 
 def test_tractions_are_continuous_across_every_interface(sliding):
     x = np.linspace(-2, 2, 21) * BARE.a_h
-    for k, z in enumerate(np.cumsum([h for _, _, h in sliding.field.coatings])):
+    for k, z in enumerate(np.cumsum([h for _, _, h in sliding.fields[0].coatings])):
         upper, lower = (sliding.stress(x, 0.2 * BARE.a_h, z, layer=side) for side in (k, k + 1))
         assert np.abs(upper - lower)[:, 2].max() < 1e-10 * BARE.p_h
         assert np.abs(upper - lower)[0, 0].max() > 1e-2 * BARE.p_h

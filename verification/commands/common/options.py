@@ -21,4 +21,7 @@ RecordsFolder = Annotated[Path, Parameter(help=_RECORDS_HELP, show_default=False
 Jobs = Annotated[int | None, Parameter(name=["--jobs", "-j"], help=_JOBS_HELP)]
 Resume = Annotated[bool, Parameter(negative="", help="Keep the valid results in the output directory.")]
 Quiet = Annotated[bool, Parameter(name=["--quiet", "-q"], negative="", help="Print nothing but errors.")]
+Strict = Annotated[
+    bool, Parameter(negative="", help="Refuse implausible numbers, which otherwise are warned of.")
+]
 AsJson = Annotated[bool, Parameter(name="--json", negative="", help="Print JSON instead of text.")]

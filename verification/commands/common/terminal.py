@@ -29,6 +29,20 @@ def print_error(message: str) -> None:
     sys.stderr.write(f"coatcheck: {one_line(message)}\n")
 
 
+def print_warnings(warnings: Iterable[str], name: str, *, strict: bool, silent: bool = False) -> None:
+    """Print each of the ``warnings`` of ``name`` on standard error in a line, unless ``silent``.
+
+    strict : raise CommandError with the first instead.
+    """
+    from verification.commands.common.exits import CommandError
+
+    for message in warnings:
+        if strict:
+            raise CommandError(f"{name}: {message}")
+        if not silent:
+            print_error(f"warning: {name}: {message}")
+
+
 def print_json(content: Any) -> None:
     """Print ``content`` on standard output as JSON."""
     sys.stdout.write(json.dumps(content, indent=2) + "\n")

@@ -20,6 +20,7 @@ _ORDER = (
     "fields",
     "references",
     "harness",
+    "coverage",
 )
 
 

@@ -22,6 +22,7 @@ from verification.credibility.self_tests import self_tests
 from verification.judging.invariant import Invariant
 from verification.judging.invariants import check as invariants_of
 from verification.judging.invariants.resolved import NAMES
+from verification.judging.verdict import Claim
 from verification.problem.contact import Solution
 from verification.problem.profile import Profile
 from verification.problem.quantity import DISPLACEMENTS
@@ -130,34 +131,36 @@ def _judged(case: Case, clean: CaseResult, fault: Fault) -> tuple[list[Check], P
     profiles |= fresh
     checks += [of_invariant(row, case.name) for row in invariants]
     checks += _drifts(clean, fresh)
+
+    def concerned(claim: Claim) -> bool:
+        return not available or bool(set(claim.between) & set(solve))
+
     verdicts = [
         (claim, run.decide(claim, profiles, outcomes, case.problem))
         for claim in case.claims
-        if not available or set(claim.between) & set(solve)
+        if concerned(claim)
     ]
     coated = bool(case.problem.coatings)
     checks += [of_claim(claim, verdict, case.name, coated) for claim, verdict in verdicts]
     now = replace(clean, verdicts=tuple(verdicts), invariants=tuple(invariants))
-    checks.append(_coverage(clean, now, set(solved.solutions)))
-    return checks, fresh
-
-
-def _coverage(clean: CaseResult, now: CaseResult, sources: set[str]) -> Check:
-    """What the trial judged, compared with the clean run: its claims, the invariants of its ``sources``."""
-    claims = {(claim.quantity, claim.line, claim.between) for claim, _ in now.verdicts}
     before = replace(
         clean,
-        verdicts=tuple((c, v) for c, v in clean.verdicts if (c.quantity, c.line, c.between) in claims),
-        invariants=tuple(row for row in clean.invariants if row.source in sources and row.name not in NAMES),
+        verdicts=tuple((claim, verdict) for claim, verdict in clean.verdicts if concerned(claim)),
+        invariants=tuple(
+            row for row in clean.invariants if row.source in solved.solutions and row.name not in NAMES
+        ),
     )
-    return of_manifest(differences(now, manifest_of(before)), clean.name)
+    checks.append(of_manifest(differences(now, manifest_of(before)), clean.name))
+    return checks, fresh
 
 
 def _sampled(case: Case, clean: CaseResult, source: str, solution: Solution) -> list[Profile]:
     places = {profile.line: profile.position for profile in clean.profiles}
     found = list(sample_contact(solution, source, case.problem))
+    radii = [p for p in clean.profiles if (p.quantity, p.line) == ("contact_radius", "contact")]
+    edge = float(radii[-1].value[0])
     for line in case.lines:
-        found += sample(solution, source, line, places[line.name], case.problem)
+        found += sample(solution, source, line, places[line.name], case.problem, edge)
     return found
 
 

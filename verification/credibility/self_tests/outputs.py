@@ -15,7 +15,7 @@ from verification.problem.profile import Profile
 from verification.regression.baseline import Regression, regression, updated
 from verification.regression.exits import run_code
 from verification.regression.junit import junit_xml
-from verification.regression.manifest import Difference
+from verification.regression.manifest import Difference, differences, manifest_of
 from verification.running.result import CaseResult, RunInfo, SourceResult
 
 HERE = RunInfo("known", "2026-01-01T00:00:00+00:00", 1.0, 1, None, "here", {})
@@ -29,11 +29,13 @@ def _result(
 ) -> CaseResult:
     """A case of two sources, a line of five points and two invariants, of which ``kept`` are left."""
     x = np.linspace(-1.0, 1.0, 5)
-    profiles = tuple(Profile("sigma_xx", "surface", x, 1e9 * x, s, np.full(5, 1e4)) for s in ("one", "two"))
+    stress = [Profile("sigma_xx", "surface", x, 1e9 * x, s, np.full(5, 1e4)) for s in ("one", "two")]
+    radius = Profile("contact_radius", "contact", np.zeros(1), np.array([0.7]), "one", np.zeros(1))
+    profiles = (*stress, radius)
     claims = [Claim(q, "surface", ("one", "two"), 1e-3, "known") for q in ("sigma_xx", "sigma_yy")]
     verdict = Verdict(outcome, "known", 1e-6, 1e-5, 1e-5, 0.0, judged)
     invariants = tuple(
-        Invariant("symmetry", s, 1e-6, 1e-5, Outcome.AGREES, "known", 5e-3, 7) for s in ("one", "two")
+        Invariant("symmetry", s, 1e-6, 1e-5, Outcome.AGREES, "known", 5e-3, 7, 1e-5) for s in ("one", "two")
     )
     sources = (SourceResult("one", 1.0), SourceResult("two", 1.0))
     verdicts = tuple((claim, verdict) for claim in claims)[:kept]
@@ -44,11 +46,11 @@ def _result(
 def _changed(value: float = 0.0, U: float = 1.0) -> CaseResult:
     """One value of the second source moved by ``value`` [Pa], its uncertainty multiplied by ``U``."""
     result = _result()
-    first, second = result.profiles
+    first, second, radius = result.profiles
     at = np.arange(5) == 3
     assert second.uncertainty is not None
     moved = replace(second, value=second.value + value * at, uncertainty=second.uncertainty * (U * at + ~at))
-    return replace(result, profiles=(first, moved))
+    return replace(result, profiles=(first, moved, radius))
 
 
 def _beside(result: CaseResult, info: RunInfo = HERE, tests: Mapping[str, int] | None = None) -> Regression:
@@ -69,7 +71,7 @@ def of_regression() -> Answers:
         ("a U half as large", _changed(U=0.5), True, False),
         ("a U five times as large", _changed(U=5.0), True, True),
         ("a U that is NaN", _changed(U=np.nan), True, True),
-        ("a source that is gone", replace(_result(), profiles=_result().profiles[:1]), True, True),
+        ("a source that is gone", replace(_result(), profiles=_result().profiles[::2]), True, True),
     ):
         yield f"{what}, here", _beside(result).unexplained, here
         yield f"{what}, elsewhere", _beside(result, ELSEWHERE).unexplained, elsewhere
@@ -80,6 +82,7 @@ def of_regression() -> Answers:
         ("the first point", {"extent": (0.0, 1.0)}, True),
         ("the last point", {"extent": (-1.0, 0.5)}, True),
         ("a gap", {"gap": 0.6}, True),
+        ("a cap of one per cent more", {"cap": 1.01e-3}, True),
         ("a narrower cap", {"cap": 5e-4}, False),
         ("a narrower scale", {"scale": 1e8}, False),
         ("more points", {"points": 6}, False),
@@ -87,6 +90,22 @@ def of_regression() -> Answers:
     ):
         found = _beside(_result(judged=replace(JUDGED, **change)), ELSEWHERE).judged
         yield f"{what} changed", [(row.less, row.count) for row in found], [(less, 2)]
+    rows: list[bool]
+    for what, change, rows in (
+        ("a cap", {"cap": 6e-3}, [True]),
+        ("residuals", {"points": 6}, [True]),
+        ("a bound five times as large", {"widest": 5e-5}, [True]),
+        ("a bound three times as large", {"widest": 3e-5}, []),
+        ("more residuals", {"points": 8}, [False]),
+    ):
+        first, second = _result().invariants
+        found = _beside(_result(invariants=(first, replace(second, **change))), ELSEWHERE).judged
+        yield f"{what} of an invariant changed", [row.less for row in found], rows
+    for what, counted, less in (("fewer", (True, False), True), ("more", (True, True, True), False)):
+        tables = {"tables": [], "columns": [{"counted": [True, True]}]}
+        now = _result(published=tables | {"columns": [{"counted": list(counted)}]})
+        found = differences(now, manifest_of(_result(published=tables)))
+        yield f"{what} published values that count", [row.less for row in found], [less]
     for what, changed, count in (
         ("nothing", _result(), 0),
         ("a comparison and an invariant", _result(kept=1), 2),

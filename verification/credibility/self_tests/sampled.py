@@ -1,18 +1,20 @@
 """Sampling of a labelled solution: every line, the points of a table."""
 
+from dataclasses import replace
 from typing import cast
 
 import numpy as np
 
 from verification.credibility.self_tests.answers import Answers
-from verification.credibility.self_tests.stand_ins import Labelled, labelled, moved
-from verification.problem.contact import CoatedContact, Solution
+from verification.credibility.self_tests.stand_ins import ON_BALL, Labelled, labelled, moved
+from verification.problem.contact import BALL, CoatedContact, Solution
 from verification.problem.points import Points
-from verification.problem.profile import line_of, lines_of
+from verification.problem.profile import line_of, lines_of, oblique_lines
 from verification.sampling.lines import sample, sample_contact
 from verification.sampling.points import values
 
 PROBLEM = CoatedContact(1e-2, 40.0, ((6e11, 0.25, 5e-5),), (3e11, 0.0), 0.25)
+COATED_BALL = replace(PROBLEM, ball=(3e11, 0.0, ((4e11, 0.2, 3e-5),)))
 
 
 def of_sampling() -> Answers:
@@ -57,6 +59,16 @@ def of_sampling() -> Answers:
             yield f"{profile.quantity} on the line {name}", float(profile.value[1]), wanted
             stated = profile.uncertainty
             yield "its uncertainty", None if stated is None else float(stated[1]), 1e-3 * wanted
+    # of the ball, at the same x and y, in the frame of the flat
+    for line in (*lines_of(COATED_BALL), *oblique_lines(COATED_BALL)):
+        if line.body != BALL:
+            continue
+        there = (float(v[1]) for v in np.broadcast_arrays(*line.points(along)))
+        point = next(there), next(there), next(there)
+        for profile in sample(cast(Solution, solution), "known", line, along):
+            i, *rest = ("xyz".index(letter) for letter in profile.quantity.partition("_")[2])
+            wanted = ON_BALL * (labelled(i, rest[0], point, line.layer) if rest else moved(i, point))
+            yield f"{profile.quantity} on the line {line.name}", float(profile.value[1]), wanted
 
 
 def of_points_of_tables() -> Answers:

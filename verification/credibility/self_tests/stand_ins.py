@@ -74,6 +74,9 @@ class Failing(Stated):
         raise ValueError("no stresses today")
 
 
+ON_BALL = 1.5  # every labelled number of the ball over that of the flat
+
+
 def labelled(i: int, j: int, place: tuple[float, float, float], layer: int | None) -> float:
     """A stress that tells its component, place and layer."""
     low, high = sorted((i, j))
@@ -101,20 +104,25 @@ class Labelled:
     def pressure_uncertainty(self, x: ArrayLike, y: ArrayLike = 0.0) -> Array:
         return 1e-3 * self.pressure(x, y)
 
-    def stress(self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None) -> Array:
+    def stress(
+        self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None, body: str = FLAT
+    ) -> Array:
         places = np.stack(np.broadcast_arrays(*(np.asarray(v, dtype=float) for v in (x, y, z))), axis=-1)
         at = [
             [[labelled(i, j, tuple(place), layer) for place in places.tolist()] for j in range(3)]
             for i in range(3)
         ]
-        return np.array(at)
+        return np.array(at) * (1 if body == FLAT else ON_BALL)
 
-    def stress_uncertainty(self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None) -> Array:
-        return 1e-3 * self.stress(x, y, z, layer)
+    def stress_uncertainty(
+        self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None, body: str = FLAT
+    ) -> Array:
+        return 1e-3 * self.stress(x, y, z, layer, body)
 
-    def displacement(self, x: ArrayLike, y: ArrayLike, z: ArrayLike) -> Array:
+    def displacement(self, x: ArrayLike, y: ArrayLike, z: ArrayLike, body: str = FLAT) -> Array:
         places = np.stack(np.broadcast_arrays(*(np.asarray(v, dtype=float) for v in (x, y, z))), axis=-1)
-        return np.array([[moved(i, tuple(place)) for place in places.tolist()] for i in range(3)])
+        at = np.array([[moved(i, tuple(place)) for place in places.tolist()] for i in range(3)])
+        return at * (1 if body == FLAT else ON_BALL)
 
-    def displacement_uncertainty(self, x: ArrayLike, y: ArrayLike, z: ArrayLike) -> Array:
-        return 1e-3 * self.displacement(x, y, z)
+    def displacement_uncertainty(self, x: ArrayLike, y: ArrayLike, z: ArrayLike, body: str = FLAT) -> Array:
+        return 1e-3 * self.displacement(x, y, z, body)

@@ -46,6 +46,10 @@ def of_store() -> Answers:
         yield "a result of another input", kept(replace(case, text="another input")), "refused"
         other = replace(case.problem, friction=0.1)
         yield "a result of another problem", kept(replace(case, problem=other)), "refused"
+        failed = replace(result, verdicts=((case.claims[0], Verdict(Outcome.NO_RESULT, "known")),))
+        write_checked(path, to_json(failed) | {"made_by": fingerprint()})
+        yield "a result without an answer", kept(case), "computed again"
+        write_checked(path, to_json(result) | {"made_by": fingerprint()})
         raw = path.read_bytes()
         path.write_bytes(raw.replace(b"3.14159", b"3.14158"))
         yield "a result with a changed digit", kept(case), "refused"

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from verification.credibility.self_tests.answers import Answers
+from verification.judging.invariant import decide
 from verification.judging.verdict import Outcome, compare, judge
 from verification.problem.profile import Profile
 
@@ -34,6 +35,17 @@ def of_judging() -> Answers:
     yield "uncertainty over the scale", verdict.uncertainty, 2e-3
     yield "margin over the scale", verdict.margin, -1e-3
 
+    def holds(residual: list[float], bound: list[float] | None) -> Outcome:
+        return decide("known", "known", "0 = 0", residual, bound, cap=5e-3).outcome
+
+    yield "residuals within their bounds", holds([1e-3, -1e-4], [2e-3, 2e-4]), Outcome.AGREES
+    yield "a small residual beyond its bound", holds([1e-3, -1e-4], [2e-3, 5e-5]), Outcome.DISAGREES
+    yield "a bound beyond the cap", holds([1e-3, 1e-4], [2e-3, 6e-3]), Outcome.INCONCLUSIVE
+    yield "a residual without a bound", holds([1e-3, 1e-4], None), Outcome.INCONCLUSIVE
+    yield "a residual that is NaN", holds([1e-3, np.nan], [2e-3, 2e-3]), Outcome.NO_RESULT
+    yield "a bound that is NaN", holds([1e-3, 1e-4], [2e-3, np.nan]), Outcome.NO_RESULT
+    yield "no residual", holds([], []), Outcome.NO_RESULT
+
 
 def of_points() -> Answers:
     x = np.linspace(-1.0, 1.0, 101)
@@ -45,6 +57,12 @@ def of_points() -> Answers:
     here = np.abs(x - x[70]) < 1e-9
     yield "without it", judge(compare(a, b, scale=1.0, excluded=here), 1.0).outcome, Outcome.AGREES
     yield "with it alone", judge(compare(a, b, scale=1.0, excluded=~here), 1.0).outcome, Outcome.DISAGREES
+    some = np.zeros(101, dtype=bool)
+    some[:10] = some[50:55] = True
+    judged = judge(compare(a, b, scale=1.0, excluded=some), 1.0).judged
+    assert judged is not None
+    found = judged.points, judged.extent, judged.gap
+    yield "without some", found, (86, (float(x[10]), 1.0), float(x[55] - x[49]))
     nothing = np.ones(101, dtype=bool)
     yield "without any", judge(compare(a, b, scale=1.0, excluded=nothing), 1.0).outcome, Outcome.NO_RESULT
     elsewhere = replace(b, position=x + 1e-3)

@@ -14,11 +14,12 @@ from verification.cases.contact import Case
 from verification.credibility.self_tests.answers import Answers
 from verification.credibility.self_tests.stand_ins import Failing, Misplaced, Spoiled, Stated
 from verification.judging.claims import standard_claims
-from verification.judging.verdict import Outcome
+from verification.judging.verdict import Claim, Outcome
 from verification.problem.contact import CoatedContact
+from verification.problem.profile import Profile
 from verification.problem.quantity import QUANTITIES, SCALARS
-from verification.running.contact import judge_case, solve_case
-from verification.running.result import CaseResult
+from verification.running.contact import decide, judge_case, solve_case
+from verification.running.result import CaseResult, SourceResult
 from verification.sources.references.hamilton import Hamilton
 from verification.sources.registry import REFERENCES, sources_of
 
@@ -62,9 +63,28 @@ def of_runs() -> Answers:
     yield "a method with a vague U", vague, Outcome.INCONCLUSIVE
     nothing = replace(honest, verdicts=()).outcome
     yield "a case that judges nothing", nothing, Outcome.NO_RESULT
+    yield from _decisions()
     for at in (0.5, 0.9, 1.0, 1.1):
         spoiled = ran(semianalytic=true, fem_reference=Spoiled(*MATERIAL, at=at)).outcome
         yield f"a pressure that is off at {at} a", spoiled, Outcome.DISAGREES
+
+
+def _decisions() -> Answers:
+    """Scale and edge zone go by the last source, the reference: its contact is twice as wide as Hertz's."""
+    contact = {"contact_radius": (3e-4, 2e-4), "peak_pressure": (9e8, 1e9), "approach": (3e-6, 2e-6)}
+    x, U = 1e-4 * np.arange(4.0), np.full(4, 1e5)
+    claim = Claim("pressure", "surface", ("one", "two"), 1e-2, "known", 0.1)
+    for place, outcome in ((1, Outcome.DISAGREES), (2, Outcome.AGREES), (3, Outcome.DISAGREES)):
+        off = 1e7 * (np.arange(4) == place)
+        pressures = (("one", 1e8 + off), ("two", 1e8 + 0 * x))
+        found = [Profile("pressure", "surface", x, p, s, U) for s, p in pressures]
+        for name, values in contact.items():
+            for s, value in zip(("one", "two"), values, strict=True):
+                found.append(Profile(name, "contact", np.zeros(1), np.array([value]), s, np.zeros(1)))
+        known = {(p.quantity, p.line, p.source): p for p in found}
+        verdict = decide(claim, known, {s: SourceResult(s, 1.0) for s in ("one", "two")}, PROBLEM)
+        yield f"off at {place} a_h with an edge zone", verdict.outcome, outcome
+        yield "its scale", verdict.judged and verdict.judged.scale, 1e9
 
 
 def of_coverage() -> Answers:
@@ -95,7 +115,10 @@ def of_coverage() -> Answers:
         elif claim.quantity in SCALARS:
             yield f"scale of {what}", judged.scale, float(abs(profile.value[0]))
     x = result.profile_of["pressure", "surface", "semianalytic"].position / 1e-4
-    yield "points at both edges", [int(np.sum(np.abs(x - edge) < 1e-9)) for edge in (-1, 1)], [1, 1]
+    yield "points around both edges", [int(np.sum(np.abs(x - edge) < 0.0101)) for edge in (-1, 1)], [7, 7]
+    # trailing edge: (1 - 2 nu)/3 + (4 + nu)/8 pi f of p0; Hamilton, Goodman, J. Appl. Mech. 33 (1966) 371
+    for peak, wanted in (("largest_tension", 6e9 / pi * (1 / 3 + pi / 8)), ("tension_place", -1e-4)):
+        yield peak, float(result.profile_of[peak, "contact", "semianalytic"].value[0]), wanted
     everywhere = 9.0
     low: tuple[float, float, float]
     high: tuple[float, float, float]

@@ -76,6 +76,7 @@ def write_study_report(
         ("substrate", f"E = {study.substrate[0] / 1e9:g} GPa, nu = {study.substrate[1]:g}"),
         ("coating", f"nu = {study.coating_nu:g}"),
         ("scales", f"a_h = {a_h * 1e6:.4g} µm, p_h = {p_h / 1e6:.4g} MPa"),
+        *(("implausible", message) for message in study.warnings),
         *facts,
     ]
     solved = sum(c.h.size for c in every)

@@ -192,12 +192,13 @@ def _solve(
     tail: float,
 ) -> ExactSolution:
     """Contact of the flat with a rigid ball, or of the two ``solids``, flat and ball."""
-    E_star = 1 / sum(1 / contact_modulus(*solid) for solid in solids)
+    moduli = [contact_modulus(*solid) for solid in solids]
+    E_star = moduli[0] if len(moduli) == 1 else 1 / sum(1 / E for E in moduli)
     guess = _radius_guess(radius, load, E_star, solids)
     x_i, w_i = gauss_legendre(_contact_nodes(nodes, guess, solids))
     s, weight = 0.5 * (1 + x_i), 0.5 * w_i
     k, k_weight = _kernel_wavenumbers(solids, guess, panel, tail)
-    kernel = k_weight * _excess(solids, E_star, k)
+    kernel = k_weight * (_compliance(solids, E_star, k) - 1)
 
     def contact(a: float) -> tuple[Array, float, float]:
         x = a * s
@@ -238,21 +239,20 @@ def _solve(
     return ExactSolution(abel, delta, fields, diagnostics, stiffness)
 
 
-def _excess(solids: tuple[_Solid, ...], E_star: float, k: Array) -> Array:
-    """M(k) - 1 of the ``solids`` together."""
-    total = np.zeros_like(k)
-    for coatings, substrate in solids:
-        if coatings:
-            M = LayeredHalfSpace(coatings, substrate, k).compliance
-            total += E_star / contact_modulus(coatings, substrate) * (M - 1)
-    return total
+def _compliance(solids: tuple[_Solid, ...], E_star: float, k: Array) -> Array:
+    """M(k) of the ``solids`` together."""
+    responses = [LayeredHalfSpace(*solid, k).compliance if solid[0] else np.ones_like(k) for solid in solids]
+    if len(solids) == 1:
+        return responses[0]
+    shares = [E_star / contact_modulus(*solid) for solid in solids]
+    return np.sum([share * M for share, M in zip(shares, responses, strict=True)], axis=0)
 
 
 def _radius_guess(radius: float, load: float, E_star: float, solids: tuple[_Solid, ...]) -> float:
     """Hertz radius with the contact modulus seen by waves of that very length."""
     a = float((3 * load * radius / (4 * E_star)) ** (1 / 3))
     for _ in range(40):
-        M = 1 + float(_excess(solids, E_star, np.array([2.0 / a]))[0])
+        M = float(_compliance(solids, E_star, np.array([2.0 / a]))[0])
         a = 0.5 * (a + float((3 * load * radius * M / (4 * E_star)) ** (1 / 3)))
     return a
 

@@ -1,0 +1,146 @@
+"""Implausible numbers: a line each with the likely slip; none where nothing is wrong."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from verification.cases.contact import parse_case, read_case, shipped_cases
+from verification.cases.plausibility import YIELD, beyond_limits, warnings_of
+from verification.cases.toml import CaseError
+from verification.problem.contact import CoatedContact
+from verification.study.plan import parse_study, read_study_file, shipped_studies
+
+CONTACT = CoatedContact(10e-3, 20.0, ((450e9, 0.22, 3e-6),), (210e9, 0.3))
+CASE = """
+title = "Mine"
+[problem]
+radius = {radius}
+load = {load}
+substrate = {{ E = {E}, nu = 0.3{more} }}
+ball = {{ E = {ball}, nu = 0.27 }}
+[[problem.coatings]]
+E = {coating}
+nu = 0.22
+thickness = {thickness}
+"""
+STUDY = """
+title = "Mine"
+[problem]
+radius = {radius}
+load = {load}
+substrate = {{ E = {E}, nu = 0.3{more} }}
+coating = {{ E = {coating}, nu = 0.22 }}
+[sweep]
+thickness = [{thickness}]
+[criteria.strength]
+sigma_xx_surface = {strength}
+"""
+GOOD = {
+    "radius": "10e-3",
+    "load": "20",
+    "E": "210e9",
+    "ball": "310e9",
+    "coating": "450e9",
+    "thickness": "3e-6",
+    "strength": "2.5e9",
+    "more": "",
+}
+
+
+def found(template, **changed):
+    """What is told of a file: its warnings, or the message that refuses it."""
+    text = template.format(**GOOD | changed).encode()
+    try:
+        read = parse_study if template is STUDY else parse_case
+        return list(read(text, Path("mine.toml")).warnings)
+    except CaseError as error:
+        return [str(error)]
+
+
+# Ten typical files, each with one slip of a unit; the message has to lead to it.
+SLIPS = [
+    (CASE, {"E": "210"}, "substrate.E = 210 looks like GPa"),
+    (CASE, {"E": "210000", "coating": "450000", "ball": "310000"}, "substrate.E = 210000 looks like MPa"),
+    (CASE, {"ball": "310"}, "ball.E = 310 looks like GPa"),
+    (CASE, {"coating": "450"}, "coatings.0.E = 450 looks like GPa"),
+    (CASE, {"thickness": "3"}, "coatings.0.thickness = 3 looks like um"),
+    (CASE, {"thickness": "0.003"}, "coatings.0.thickness = 0.003 looks like mm"),
+    (CASE, {"radius": "10"}, "radius = 10 looks like mm"),
+    (CASE, {"load": "20000"}, "check load, radius, E"),
+    (STUDY, {"thickness": "3"}, "thickness = 3 looks like um"),
+    (
+        STUDY,
+        {"strength": "2.5"},
+        "criteria.strength.sigma_xx_surface = 2.5 Pa is below 1 MPa; 2.5 looks like GPa",
+    ),
+    (CASE, {"E": '"210 MPa"'}, "strain p_h/E*"),
+    (CASE, {"thickness": '"3 mm"'}, "check its unit"),
+    (STUDY, {"radius": "10"}, "radius = 10 looks like mm"),
+]
+
+
+@pytest.mark.parametrize(("template", "changed", "message"), SLIPS)
+def test_slip_of_a_unit_is_refused_or_warned_of(template, changed, message):
+    lines = found(template, **changed)
+    assert any(message in line for line in lines), lines
+    assert all("\n" not in line for line in lines)
+
+
+@pytest.mark.parametrize("template", [CASE, STUDY])
+def test_nothing_is_told_of_good_files(template):
+    assert found(template) == []
+    assert found(template, E='"210 GPa"', thickness='"3 um"', load='"20 N"', radius='"10 mm"') == []
+
+
+def test_nothing_is_told_of_the_shipped_files():
+    for path in shipped_cases().values():
+        assert read_case(path).warnings == (), path
+    for path in shipped_studies().values():
+        assert read_study_file(path).warnings == (), path
+
+
+@pytest.mark.parametrize(
+    ("changed", "message"),
+    [
+        (
+            {"substrate": (0.99e6, 0.3), "coatings": (), "load": 1e-3},
+            "substrate.E = 990000 Pa is below 1 MPa",
+        ),
+        ({"substrate": (2.1e12, 0.3)}, "substrate.E = 2.1e+12 Pa is above 2 TPa"),
+        ({"load": 4e4}, "contact radius a_h = 0.11 R is above 0.1 R"),
+        (
+            {"coatings": ((450e9, 0.22, 11e-3),)},
+            "thickness = 0.011 m is beyond the radius of the ball, 0.01 m",
+        ),
+        ({"coatings": ((450e9, 0.22, 2e-3),)}, "contact radii; what lies below has no part"),
+        ({"load": 2e4}, "strain p_h/E* = 5.5 % is above 5 %"),
+    ],
+)
+def test_each_limit(changed, message):
+    assert any(message in line for line in warnings_of(replace(CONTACT, **changed)))
+
+
+def test_cost_of_the_parabola_is_that_of_its_height():
+    line = next(line for line in warnings_of(replace(CONTACT, load=4e6)) if "parabola" in line)
+    problem = replace(CONTACT, load=4e6)
+    a, R = problem.a_h, problem.radius
+    sphere, parabola = R - (R**2 - a**2) ** 0.5, a**2 / (2 * R)
+    assert f"{100 * (sphere / parabola - 1):.2g} % higher" in line
+
+
+def test_hardness_and_yield_strength():
+    p0 = CONTACT.p_h
+    assert (
+        beyond_limits(p0, {"substrate.hardness": 1.01 * p0, "substrate.yield_strength": 1.01 * p0 / YIELD})
+        == ()
+    )
+    hard, soft = beyond_limits(
+        p0, {"substrate.hardness": 0.99 * p0, "ball.yield_strength": 0.99 * p0 / YIELD}
+    )
+    assert "is beyond it, substrate.hardness" in hard
+    assert "is beyond 1.6 times it, ball.yield_strength" in soft
+    for template in (CASE, STUDY):
+        assert found(template, more=', hardness = "8 GPa", yield_strength = "1.5 GPa"') == []
+        (line,) = found(template, more=', hardness = "0.8 GPa"')
+        assert "substrate.hardness = 800 MPa" in line

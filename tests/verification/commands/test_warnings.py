@@ -1,0 +1,48 @@
+"""Implausible input on terminal, page and in JSON; an option refuses it."""
+
+import json
+from dataclasses import replace
+
+import pytest
+from quick_case import coatcheck
+from synthetic_results import INFO, contact, result_of
+
+from verification.commands.common.exits import CommandError
+from verification.commands.common.terminal import print_warnings
+from verification.report.material import Material
+from verification.report.page import render
+from verification.running.result import from_json, to_json
+
+LINE = "load = 3 <looks> like mN"
+
+
+def test_warnings_are_lines_on_standard_error(capsys):
+    print_warnings((LINE, "second"), "mine", strict=False)
+    assert capsys.readouterr().err == f"coatcheck: warning: mine: {LINE}\ncoatcheck: warning: mine: second\n"
+    print_warnings((LINE,), "mine", strict=False, silent=True)
+    assert capsys.readouterr().err == ""
+
+
+def test_strict_refuses(capsys):
+    with pytest.raises(CommandError, match=f"^mine: {LINE}$") as error:
+        print_warnings((LINE,), "mine", strict=True, silent=True)
+    assert error.value.code == 2
+
+
+def test_result_and_page_have_them():
+    result = replace(result_of(contact(), points=5), warnings=(LINE,))
+    assert from_json(json.loads(json.dumps(to_json(result)))).warnings == (LINE,)
+    page = render(Material([result], INFO))
+    assert "load = 3 &lt;looks&gt; like mN" in page
+    assert "Implausible:" in page
+    assert "Implausible:" not in render(Material([result_of(contact(), points=5)], INFO))
+
+
+def test_run_refuses_an_implausible_case_when_strict(tmp_path):
+    path = tmp_path / "slip.toml"
+    path.write_text(
+        'title = "Slip"\n[problem]\nradius = 10\nload = 20\nsubstrate = { E = 210e9, nu = 0.3 }\n'
+    )
+    done = coatcheck("run", str(path), "--strict", cwd=tmp_path)
+    assert done.returncode == 2
+    assert done.stderr == "coatcheck: slip: radius = 10 m is above 1 m; radius = 10 looks like mm\n"

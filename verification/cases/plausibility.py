@@ -1,0 +1,109 @@
+"""Plausibility of a problem: one line for each number that is possible but hardly meant.
+
+A warning blocks nothing. Where a bare SI number looks like one in the unit that people write it in, the line
+names that unit: E = 210 is meant in GPa.
+"""
+
+from collections.abc import Iterator, Mapping
+
+from verification.cases.units import InSI
+from verification.problem.contact import BALL, CoatedContact
+
+__all__ = ["beyond_limits", "likely_slips", "warnings_of"]
+
+MODULI = (1e6, 2e12)  # Pa
+USUAL_MODULI = (1e9, 1.3e12)  # Pa, polymers to diamond
+USUAL_THICKNESSES = (1e-8, 2e-4)  # m
+LARGEST_RADIUS = 1.0  # m
+WIDEST = 0.1  # a_h / R
+THICKEST = 20.0  # h / a_h; beyond it the substrate has no part in the contact
+STRAIN = 0.05  # p_h / E*
+YIELD = 1.6  # p0 over the yield strength where yielding begins below the surface. Johnson (6.9)
+_MODULUS_UNITS = {"GPa": 1e9, "MPa": 1e6, "kPa": 1e3}
+_LENGTH_UNITS = {"um": 1e-6, "mm": 1e-3, "nm": 1e-9}
+
+Limits = Mapping[str, float]
+
+
+def warnings_of(problem: CoatedContact, limits: Limits | None = None) -> tuple[str, ...]:
+    """A line for each implausible number of ``problem``, before it is solved.
+
+    limits : hardness and yield strength [Pa] by their keys, as ``beyond_limits`` has them.
+    """
+    return (*_numbers(problem), *_contact(problem), *beyond_limits(problem.p_h, limits or {}))
+
+
+def beyond_limits(p0: float, limits: Limits) -> tuple[str, ...]:
+    """A line for each hardness, or yield strength, that the peak pressure ``p0`` [Pa] exceeds."""
+    found = []
+    for key, value in limits.items():
+        factor, what = (1.0, "it") if key.endswith("hardness") else (YIELD, f"{YIELD:g} times it")
+        if p0 > factor * value:
+            found.append(
+                f"peak pressure {_stress(p0)} is beyond {what}, {key} = {_stress(value)}: not elastic"
+            )
+    return tuple(found)
+
+
+def likely_slips(problem: CoatedContact) -> str:
+    """ "; KEY = NUMBER looks like UNIT" for what a refusal may come from; "" where nothing looks so."""
+    slips = [line.split("; ")[-1] for line in _numbers(problem) if "looks like" in line]
+    return "".join(f"; {slip}" for slip in slips[:2])
+
+
+def _numbers(problem: CoatedContact) -> Iterator[str]:
+    """Lines for the numbers of the materials by themselves."""
+    if problem.radius > LARGEST_RADIUS:
+        yield f"radius = {problem.radius:g} m is above {LARGEST_RADIUS:g} m" + _slip(
+            "radius", problem.radius, _LENGTH_UNITS, (1e-5, LARGEST_RADIUS), prefer="mm"
+        )
+    for body in problem.bodies:
+        seen, of = problem.seen_from(body), f"{BALL}." if body == BALL else ""
+        moduli = {f"{of}coatings.{i}.E": E for i, (E, _, _) in enumerate(seen.coatings)}
+        base = f"{of}E" if body == BALL else "substrate.E"
+        for key, E in {base: seen.substrate[0], **moduli}.items():
+            if not MODULI[0] <= E <= MODULI[1]:
+                which = "below 1 MPa" if MODULI[0] > E else "above 2 TPa"
+                yield f"{key} = {E:g} Pa is {which}" + _slip(key, E, _MODULUS_UNITS, USUAL_MODULI)
+        for i, (_, _, h) in enumerate(seen.coatings):
+            key = f"{of}coatings.{i}.thickness"
+            slip = _slip(key, h, _LENGTH_UNITS, USUAL_THICKNESSES)
+            if h > problem.radius:
+                yield f"{key} = {h:g} m is beyond the radius of the ball, {problem.radius:g} m" + slip
+            elif h > THICKEST * problem.a_h:
+                yield (
+                    f"{key} = {h:g} m is {h / problem.a_h:.3g} contact radii; what lies below has no part"
+                ) + slip
+
+
+def _contact(problem: CoatedContact) -> Iterator[str]:
+    """Lines for what the numbers make together."""
+    ratio, strain = problem.a_h / problem.radius, problem.p_h / problem.E_star
+    if ratio > WIDEST:
+        sphere = 1 - (1 - min(ratio, 1.0) ** 2) ** 0.5
+        cost = 100 * (sphere / (ratio**2 / 2) - 1)
+        yield (
+            f"contact radius a_h = {ratio:.2g} R is above {WIDEST:g} R: at the contact edge the sphere is "
+            f"{cost:.2g} % higher than the parabola that is solved"
+        )
+    if strain > STRAIN:
+        yield (
+            f"strain p_h/E* = {100 * strain:.2g} % is above {100 * STRAIN:g} %, beyond small strains and "
+            "most materials; check load, radius, E"
+        )
+
+
+def _slip(
+    key: str, value: float, units: Mapping[str, float], usual: tuple[float, float], prefer: str = ""
+) -> str:
+    """ "; KEY = VALUE looks like UNIT" of a bare SI number; "; check its unit" of any other."""
+    if isinstance(value, InSI):
+        return "; check its unit"
+    for unit in sorted(units, key=lambda unit: unit != prefer):
+        if usual[0] <= value * units[unit] <= usual[1]:
+            return f"; {key} = {value:g} looks like {unit}"
+    return "; check its unit"
+
+
+def _stress(value: float) -> str:
+    return f"{value / 1e9:.3g} GPa" if value >= 1e9 else f"{value / 1e6:.3g} MPa"
