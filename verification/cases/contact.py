@@ -33,7 +33,7 @@ class Case:
     """``problem`` with the ``claims`` about it; ``numerics`` holds each method's own keywords.
 
     text : the file it was read from, kept with the results so that they carry their full input.
-    warnings : of implausible numbers, a line each.
+    warnings : of implausible numbers, a line each.   limits : hardness, yield strength [Pa] by their keys.
     resolve : whether it is also solved scaled, with equal moduli, thick and thin (``invariants.resolved``).
     """
 
@@ -46,6 +46,7 @@ class Case:
     text: str = ""
     resolve: bool = False
     warnings: tuple[str, ...] = ()
+    limits: dict[str, float] = field(default_factory=dict)
 
     @property
     def lines(self) -> tuple[Line, ...]:
@@ -195,9 +196,18 @@ def parse_case(raw: bytes, path: Path) -> Case:
     claims = _claims(path, checked, problem)
     if not claims:
         raise CaseError(f"{path}: claim: nothing is claimed of this problem, so that nothing would be judged")
-    warnings = warnings_of(problem, checked.problem.limits())
+    limits = checked.problem.limits()
     return Case(
-        path.stem, checked.title, problem, claims, checked.source, numerics, text, checked.resolve, warnings
+        path.stem,
+        checked.title,
+        problem,
+        claims,
+        checked.source,
+        numerics,
+        text,
+        checked.resolve,
+        warnings_of(problem, limits),
+        limits,
     )
 
 

@@ -63,8 +63,8 @@ def quantities(
     top = surface(parts, a, h, min(a + 2 * h, 7 * a))
     upper, lower = plane(parts, knots, h, 0), plane(parts, knots, h, 1)
     near = crowded(a, 0.5 * min(a, h), 0.5 * (a + h))
-    above = [plane(parts, near, z, 0) for z in _depths(0.0, h, 0.5 * a)[1:-1]]
-    below = [plane(parts, near, z, 1) for z in _depths(h, 1.5 * h + 2 * a, 0.5 * max(a / 2, h))[1:]]
+    above = [plane(parts, near, z, 0) for z in depths(0.0, h, 0.5 * a)[1:-1]]
+    below = [plane(parts, near, z, 1) for z in depths(h, 1.5 * h + 2 * a, 0.5 * max(a / 2, h))[1:]]
     lines: dict[str, tuple[Plane, Measure]] = {
         "sigma_xx_surface": (top, lambda s: s[XX]),
         "sigma_xx_base": (upper, lambda s: s[XX]),
@@ -75,15 +75,15 @@ def quantities(
     layers = {"von_mises_coating": [top, *above, upper], "von_mises_substrate": [lower, *below]}
     found: dict[float, dict[str, Located]] = {}
     for f in frictions:
-        found[f] = {name: _tensile(_largest(line, measure, f)) for name, (line, measure) in lines.items()}
+        found[f] = {name: tensile(largest(line, measure, f)) for name, (line, measure) in lines.items()}
         for name, planes in layers.items():
-            candidates = [_largest(planes[0], von_mises, f), _largest(planes[-1], von_mises, f)]
-            inside = _between(parts, planes, near, f)
-            found[f][name] = max([*candidates, *inside], key=lambda place: place.value)
+            candidates = [largest(planes[0], von_mises, f), largest(planes[-1], von_mises, f)]
+            within = inside(parts, planes, near, f, von_mises)
+            found[f][name] = max([*candidates, *within], key=lambda place: place.value)
     return found
 
 
-def _depths(top: float, bottom: float, width: float) -> Array:
+def depths(top: float, bottom: float, width: float) -> Array:
     """Depths from ``top`` to ``bottom``, densest at the top."""
     end = np.arcsinh((bottom - top) / width)
     z = top + width * np.sinh(np.linspace(0, end, 5 + int(2 * end)))
@@ -91,7 +91,7 @@ def _depths(top: float, bottom: float, width: float) -> Array:
     return z
 
 
-def _largest(line: Plane, measure: Measure, friction: float) -> Located:
+def largest(line: Plane, measure: Measure, friction: float) -> Located:
     """The largest ``measure`` of the stresses along a line."""
     x = _both_sides(line.knots, DENSE)
     value = measure(line(x, friction))
@@ -110,22 +110,24 @@ def _largest(line: Plane, measure: Measure, friction: float) -> Located:
     return Located(best, _propagated(measure, stress, line.uncertainty(at, friction)), at, line.z)
 
 
-def _between(parts: Parts, planes: Sequence[Plane], knots: Array, friction: float) -> list[Located]:
-    """The largest von Mises stress between the planes of a layer; none where it lies on an outer one."""
+def inside(
+    parts: Parts, planes: Sequence[Plane], knots: Array, friction: float, measure: Measure
+) -> list[Located]:
+    """The largest ``measure`` between the planes of a layer; none where it lies on an outer one."""
     x = _both_sides(knots, FINE)
     depth = np.array([p.z for p in planes])
     z = _finer(depth, FINE)
     stress = CubicSpline(depth, np.stack([p(x, friction) for p in planes]), axis=0)
-    value = von_mises(np.moveaxis(stress(z), 1, 0))
+    value = measure(np.moveaxis(stress(z), 1, 0))
     i, j = np.unravel_index(int(np.argmax(value)), value.shape)
     if not (0 < i < z.size - 1 and 0 < j < x.size - 1):
         return []
     at_z = _vertex(z[i - 1 : i + 2], value[i - 1 : i + 2, j])
     at_x = _vertex(x[j - 1 : j + 2], value[i, j - 1 : j + 2])
     stress_there, bound = stress_at(parts, at_x, at_z, planes[1].layer, friction)
-    best = float(von_mises(stress_there))
+    best = float(measure(stress_there))
     interpolation = abs(best - float(value[i, j]))  # which may have located another point than the maximum
-    return [Located(best, _propagated(von_mises, stress_there, bound) + interpolation, at_x, at_z)]
+    return [Located(best, _propagated(measure, stress_there, bound) + interpolation, at_x, at_z)]
 
 
 def _both_sides(knots: Array, fine: int) -> Array:
@@ -146,7 +148,7 @@ def _propagated(measure: Measure, s: Array, bound: Array) -> float:
     return float(sum(np.abs(measure(s + step) - value) for step in np.diag(bound)))
 
 
-def _tensile(found: Located) -> Located:
+def tensile(found: Located) -> Located:
     """``found``, or 0 for compression, with the part of the uncertainty that exceeds 0."""
     if found.value > 0:
         return found

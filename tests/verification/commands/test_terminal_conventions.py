@@ -30,6 +30,7 @@ from verification.running.stored import read_run
 
 COMMANDS = (
     "run",
+    "solve",
     "list",
     "report",
     "view",

@@ -57,13 +57,14 @@ def _load(solution: Solution, problem: CoatedContact, n: int, reach: float = np.
 def surface(solution: Solution, source: str, problem: CoatedContact) -> tuple[Invariant, ...]:
     """sigma_zz = -p, sigma_xz = -f p, sigma_yz = 0 in the contact; no traction outside it.
 
-    Bounded by the uncertainties of stress and pressure at the same points, which are nodes of the solution.
+    On y = 0 and at ``ANGLE`` from it, at the same radii, where a circumferential traction shows too. Bounded
+    by the uncertainties of stress and pressure at the same points, on y = 0 nodes of the solution.
     """
     x = solution.contact_radius * SURFACE
     nodes = solution.surface_nodes
     x = nodes[np.abs(nodes[:, None] - x).argmin(axis=0)]
-    y = np.zeros_like(x)
-    inside = np.abs(x) < solution.contact_radius
+    inside = np.tile(np.abs(x) < solution.contact_radius, 2)
+    x, y = np.outer([1.0, np.cos(ANGLE)], x).ravel(), np.outer([0.0, np.sin(ANGLE)], x).ravel()
     f, p_h = problem.friction, problem.p_h
     p = solution.pressure(x, y) / p_h
     stress, spread = stress_with_uncertainty(solution, x, y, 0.0, layer=0)

@@ -1,0 +1,138 @@
+"""coatcheck solve: options as a case file, table in 100 columns, JSON, figure, exit codes."""
+
+import json
+import re
+from pathlib import Path
+
+import pytest
+from quick_case import coatcheck
+
+from verification.cases.contact import parse_case
+from verification.commands import solve as command
+from verification.desk import answer as desk
+from verification.desk.wording import case_text
+
+WORDS = ["solve", "--ball", "10 mm", "--load", "20 N", "--substrate", "210 GPa, 0.3"]
+FAST = [*WORDS, "--friction", "0.25"]
+
+
+def test_options_are_a_case_file():
+    text = case_text(
+        "10 mm, 310 GPa, 0.27",
+        "20 N",
+        "210e9, 0.3",
+        ["0.3 um, 280 GPa, 0.21", "2 um, 180 GPa, 0.2"],
+        0.15,
+        ["1 um, 259 GPa, 0.22"],
+    )
+    problem = parse_case(text.encode(), Path("options")).problem
+    assert problem.coatings == ((280e9, 0.21, 3e-7), (180e9, 0.2, 2e-6))
+    assert problem.ball == (310e9, 0.27, ((259e9, 0.22, 1e-6),))
+    assert (problem.radius, problem.load, problem.substrate) == (0.01, 20.0, (210e9, 0.3))
+    assert problem.friction == 0.15
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (["solve"], "give a case file, or --ball, --load and --substrate"),
+        ([*WORDS, "--coating", "3 um, 450 GPa"], '--coating "3 um, 450 GPa": give thickness, E, nu, 3 parts'),
+        (
+            [*WORDS, "--coating", "3 N, 450 GPa, 0.2"],
+            "options: problem.coatings.0.thickness must be a number",
+        ),
+        ([*WORDS, "--ball-coating", "3 um, 450 GPa, 0.2"], '--ball "10 mm": give radius, E, nu'),
+        ([*WORDS, "--plot", "picture.gif"], "the name has to end in .png, .pdf, .svg"),
+        (["solve", "05_ratio_4", "--load", "20 N"], "give a file or the options of a problem, not both"),
+        (["solve", "05_ratio_5"], "did you mean 05_ratio_4"),
+        (["solve", "none.toml"], "none.toml: there is no such file"),
+        ([*WORDS[:-1], "210, 0.3", "--strict"], "substrate.E = 210 looks like GPa"),
+        ([*WORDS[:-1], '210 GPa", 0.3'], "options: problem.substrate.E must be a number or a stress"),
+    ],
+)
+def test_bad_words_end_in_one_message(words, message, tmp_path):
+    done = coatcheck(*words, cwd=tmp_path)
+    assert done.returncode == 2
+    assert message in done.stderr
+    assert done.stderr.count("\n") == 1
+    assert done.stdout == ""
+
+
+def test_table_fits_a_hundred_columns(tmp_path, monkeypatch):
+    monkeypatch.setenv("COLUMNS", "100")
+    done = coatcheck(*FAST, cwd=tmp_path)
+    assert (done.returncode, done.stderr) == (0, "")
+    lines = done.stdout.splitlines()
+    assert max(map(len, lines)) <= 100
+    (p0,) = [line for line in lines if line.startswith("p0")]
+    assert p0.split()[1:3] == ["MPa", "1272.6"]
+    (edge,) = [line for line in lines if line.startswith("sigma_xx")]
+    assert edge.split()[1:] == ["surface", "706.92", *edge.split()[3:4], "-86.62", "0.00"]
+
+
+def test_json_holds_everything_and_the_figure_is_written(tmp_path):
+    done = coatcheck(*FAST, "--json", "--plot", "stress.png", cwd=tmp_path)
+    assert done.returncode == 0
+    content = json.loads(done.stdout, parse_constant=lambda name: pytest.fail(name))
+    assert content["answer"]["numbers"]["peak_pressure"][0] == pytest.approx(1272.6e6, rel=1e-4)
+    assert {e["quantity"] for e in content["answer"]["extremes"]} == {"sigma_xx", "sigma_1", "von_mises"}
+    assert content["problem"]["friction"] == 0.25
+    assert content["warnings"] == []
+    assert content["check"] is None
+    (course,) = content["answer"]["courses"]
+    assert len(course["x"]) == len(course["stress"][0])
+    assert parse_case(content["case_file"].encode(), Path("again.toml")).problem.radius == 0.01
+    assert (tmp_path / "stress.png").read_bytes().startswith(b"\x89PNG")
+
+
+@pytest.mark.parametrize("suffix", [".pdf", ".svg"])
+def test_figure_has_the_format_of_its_name(suffix, tmp_path):
+    from verification.problem.contact import CoatedContact
+    from verification.report.figures.solved import write
+
+    problem = CoatedContact(10e-3, 20.0, ((420e9, 0.3, 3e-5),), (210e9, 0.3), 0.2)
+    path = tmp_path / f"stress{suffix}"
+    write(desk.answer(problem, "semianalytic"), "A title with <b> and $", path)
+    assert path.read_bytes()[:4] == {".pdf": b"%PDF", ".svg": b"<?xm"}[suffix]
+
+
+def test_check_shows_the_differences_and_fails_beyond_both_uncertainties(tmp_path, monkeypatch):
+    def made(problem, source, numerics=None):
+        found = desk.answer(problem, "hertz")
+        off = 1.0 if source == "semianalytic" else factor
+        numbers = {name: (off * value, 1e-6 * value) for name, (value, _) in found.numbers.items()}
+        return desk.Answer(source, 0.1, numbers, found.extremes, found.courses)
+
+    monkeypatch.setattr(command, "answer", made)
+    for given, code in ((1 + 1e-6, 0), (1 + 1e-5, 1)):
+        factor = given
+        done = coatcheck(*FAST, "--check", cwd=tmp_path)
+        assert done.returncode == code
+        assert "elements − this" in done.stdout
+        assert re.search(r"p0 +MPa .* \+1\.3e-0[23]", done.stdout)
+        assert (
+            f"{6 - 3 * code} of 6 numbers of the finite elements are within both uncertainties" in done.stdout
+        )
+
+
+def test_what_cannot_be_solved_is_no_result(tmp_path, monkeypatch):
+    def fails(*_):
+        raise ValueError("the iteration stopped")
+
+    monkeypatch.setattr(command, "answer", fails)
+    done = coatcheck(*FAST, cwd=tmp_path)
+    assert (done.returncode, done.stderr) == (3, "coatcheck: options: semianalytic: the iteration stopped\n")
+
+
+def test_peak_pressure_of_the_solution_is_compared_with_limits(tmp_path):
+    """Under a stiff coating p0 exceeds that of Hertz on the substrate."""
+    path = tmp_path / "hard.toml"
+    path.write_text(
+        'title = "Hard"\n[problem]\nradius = "10 mm"\nload = "20 N"\n'
+        'substrate = { E = "210 GPa", nu = 0.3 }\n'
+        'coatings = [{ E = "420 GPa", nu = 0.3, thickness = "90 um", hardness = "1.3 GPa" }]\n'
+    )
+    done = coatcheck("solve", str(path), cwd=tmp_path)
+    assert done.returncode == 0
+    assert "warning: hard: peak pressure 1.89 GPa is beyond it, coatings.0.hardness = 1.3 GPa" in done.stderr
+    assert coatcheck("solve", str(path), "--strict", cwd=tmp_path).returncode == 2

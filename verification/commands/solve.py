@@ -1,0 +1,249 @@
+"""coatcheck solve: the answer to one problem in MPa with places in um."""
+
+import math
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Annotated, Any
+
+from cyclopts import Parameter
+from rich.markup import escape
+from rich.table import Table
+
+from verification.cases.contact import Case, parse_case, read_case, shipped_cases
+from verification.cases.plausibility import beyond_limits
+from verification.commands.common.exits import EXIT, CommandError, no_result, with_exit_code
+from verification.commands.common.options import AsJson, Flag, Strict
+from verification.commands.common.solving import require_gmsh
+from verification.commands.common.terminal import did_you_mean, print_json, print_out, print_warnings
+from verification.desk.answer import Answer, Difference, answer, differences
+from verification.desk.wording import case_text
+from verification.judging.outcome import Outcome
+from verification.problem.contact import BALL, FLAT, CoatedContact
+from verification.problem.quantity import QUANTITIES
+from verification.running.records import encode
+from verification.running.result import describe, message_of
+from verification.sources.registry import METHODS
+
+METHOD, SECOND = METHODS
+DIGITS = 5  # of a value, unless its uncertainty ends before
+
+
+@with_exit_code
+def solve(
+    file: str | None = None,
+    /,
+    *,
+    ball: str | None = None,
+    load: str | None = None,
+    coating: Annotated[list[str] | None, Parameter(negative="")] = None,
+    substrate: str | None = None,
+    friction: float | None = None,
+    ball_coating: Annotated[list[str] | None, Parameter(negative="")] = None,
+    check: Flag = False,
+    plot: Path | None = None,
+    strict: Strict = False,
+    as_json: AsJson = False,
+) -> int:
+    """Solve one problem: size of the contact, largest stresses in MPa, their places in um.
+
+    The semi-analytical method answers. The exit code is 1 where --check finds a difference beyond both
+    uncertainties.
+
+    Args:
+        file: A case file (.toml) or the name of a shipped case; or give the problem by options.
+        ball: "RADIUS" of a rigid ball, "RADIUS, E, NU" of an elastic one: "10 mm, 210 GPa, 0.3".
+        load: "20 N"; bare numbers are SI here and in all other options.
+        coating: "THICKNESS, E, NU", such as "3 um, 450 GPa, 0.22"; once for each, from the surface down.
+        substrate: "E, NU", such as "210 GPa, 0.3".
+        friction: Coefficient f; the ball slides in +x, and the trailing edge is at x < 0.
+        ball_coating: The same of a coating on the ball, from its surface inwards.
+        check: Solve by finite elements too and show their difference.
+        plot: Write a figure of the stresses along x, FILE.png, FILE.pdf or FILE.svg.
+    """
+    given = (ball, load, coating, substrate, friction, ball_coating)
+    case = _from_file(file, given) if file is not None else _from_options(*given)
+    if plot is not None:
+        _require_format(plot)
+    print_warnings(case.warnings, case.name, strict=strict, silent=as_json)
+    if check:
+        require_gmsh()
+    first = _answer(case, METHOD)
+    # Before the solve the peak pressure was that of Hertz.
+    told = any(line.startswith("peak pressure") for line in case.warnings)
+    late = () if told else beyond_limits(first.numbers["peak_pressure"][0], case.limits)
+    print_warnings(late, case.name, strict=strict, silent=as_json)
+    second = _answer(case, SECOND) if check else None
+    apart = differences(first, second) if second is not None else ()
+    if plot is not None:
+        from verification.report.figures.solved import write
+
+        write(first, case.title, plot)
+    if as_json:
+        print_json(_content(case, (*case.warnings, *late), first, second, apart))
+    else:
+        _print(case, first, second, apart)
+    agree = all(difference.within for difference in apart)
+    return EXIT[Outcome.AGREES if agree else Outcome.DISAGREES]
+
+
+def _from_file(file: str, given: Sequence[Any]) -> Case:
+    if any(one is not None for one in given):
+        raise CommandError(f"{file}: give a file or the options of a problem, not both")
+    shipped = shipped_cases()
+    if file in shipped:
+        return read_case(shipped[file])
+    if file.endswith(".toml") or "/" in file or Path(file).exists():
+        return read_case(Path(file))
+    near = did_you_mean(file, shipped)
+    raise CommandError(f"{file}: neither a shipped case (see coatcheck list) nor a .toml file{near}")
+
+
+def _from_options(
+    ball: str | None,
+    load: str | None,
+    coating: list[str] | None,
+    substrate: str | None,
+    friction: float | None,
+    ball_coating: list[str] | None,
+) -> Case:
+    if ball is None or load is None or substrate is None:
+        raise CommandError("give a case file, or --ball, --load and --substrate; see coatcheck solve --help")
+    try:
+        text = case_text(ball, load, substrate, coating or [], friction or 0.0, ball_coating or [])
+    except ValueError as error:
+        raise CommandError(str(error)) from None
+    return parse_case(text.encode("utf-8", errors="replace"), Path("options"))
+
+
+def _require_format(plot: Path) -> None:
+    from verification.report.figures.solved import FORMATS
+
+    if plot.suffix.lower() not in FORMATS:
+        raise CommandError(f"--plot = {plot}; the name has to end in {', '.join(FORMATS)}")
+
+
+def _answer(case: Case, source: str) -> Answer:
+    try:
+        return answer(case.problem, source, case.numerics.get(source))
+    except Exception as error:  # as of any solve
+        raise no_result(f"{case.name}: {source}: {message_of(error)}") from None
+
+
+def _content(
+    case: Case,
+    warnings: Sequence[str],
+    first: Answer,
+    second: Answer | None,
+    apart: Sequence[Difference],
+) -> dict[str, Any]:
+    """Everything, in SI; what is not finite is null."""
+    return _finite(
+        {
+            "title": case.title,
+            "source": case.source,
+            "problem": describe(case.problem),
+            "case_file": case.text,
+            "warnings": list(warnings),
+            "answer": encode(first),
+            "check": None if second is None else encode(second),
+            "differences": [encode(one) for one in apart],
+        }
+    )
+
+
+def _finite(content: Any) -> Any:
+    if isinstance(content, Mapping):
+        return {key: _finite(value) for key, value in content.items()}
+    if isinstance(content, list | tuple):
+        return [_finite(value) for value in content]
+    if content in ("NaN", "Infinity", "-Infinity") or (
+        isinstance(content, float) and not math.isfinite(content)
+    ):
+        return None
+    return content
+
+
+def _print(case: Case, first: Answer, second: Answer | None, apart: Sequence[Difference]) -> None:
+    gap = {difference.key: difference for difference in apart}
+
+    def checked(key: tuple[str, ...], unit: float) -> list[str]:
+        if key not in gap:
+            return []
+        shown = f"{gap[key].value / unit:+.1e}"
+        return [shown if gap[key].within else f"[bold red]{shown}[/]"]
+
+    numbers = Table(box=None, header_style="bold", pad_edge=False)
+    table = Table(box=None, header_style="bold", pad_edge=False)
+    for head in ("contact", ""):
+        numbers.add_column(head)
+    for head in ("largest", "place"):
+        table.add_column(head)
+    more = ["elements − this"] if second else []
+    for head in ("value", "±", *more):
+        numbers.add_column(head, justify="right", no_wrap=True)
+    for head in ("MPa", "±", "x um", "z um", *more):
+        table.add_column(head, justify="right", no_wrap=True)
+    for name, (value, stated) in first.numbers.items():
+        unit, scale = ("MPa", 1e6) if QUANTITIES[name].unit == "Pa" else ("um", 1e-6)
+        cells = [_value(value / scale, stated and stated / scale), _spread(stated, scale)]
+        numbers.add_row(QUANTITIES[name].symbol, unit, *cells, *checked((name,), scale))
+    body = FLAT
+    for at in first.extremes:
+        if at.body != body:
+            table.add_row("")
+            body = at.body
+        where = at.where if body == FLAT else f"{body}, {at.where}"
+        key = (at.body, at.quantity, at.where)
+        places = ["-", "-"] if math.isnan(at.x) else [f"{at.x * 1e6:.2f}", f"{at.z * 1e6:.2f}"]
+        shown = [_value(at.value / 1e6, at.uncertainty / 1e6), _spread(at.uncertainty, 1e6)]
+        table.add_row(at.quantity, where, *shown, *places, *checked(key, 1e6))
+    seconds = f"semi-analytical {first.seconds:.1f} s" + (
+        f", finite elements {second.seconds:.1f} s" if second else ""
+    )
+    print_out(
+        f"[bold]{escape(case.title)}[/]",
+        *(escape(line) for line in _given(case.problem)),
+        "",
+        numbers,
+        "",
+        table,
+        "",
+        f"tension positive, in the plane y = 0, x along sliding, z into each body; {seconds}",
+    )
+    outside = [difference for difference in apart if not difference.within]
+    if second is not None:
+        total = f"{len(apart) - len(outside)} of {len(apart)} numbers of the finite elements"
+        print_out(f"{total} are within both uncertainties")
+
+
+def _given(problem: CoatedContact) -> list[str]:
+    """The problem, a line for each body, load and layer."""
+
+    def solid(E: float, nu: float) -> str:
+        return f"E = {E / 1e9:.4g} GPa, nu = {nu:g}"
+
+    kind = "rigid" if problem.ball is None else solid(*problem.ball[:2])
+    size = f"R = {problem.radius * 1e3:.4g} mm, {kind}"
+    lines = [f"ball        {size}; W = {problem.load:.4g} N, f = {problem.friction:g}"]
+    for body in problem.bodies:
+        seen = problem.seen_from(body)
+        for i, (E, nu, h) in enumerate(seen.coatings, start=1):
+            on = f"coating {i}   " if body == FLAT else f"on the {BALL} {i} "
+            lines.append(f"{on}{h * 1e6:.4g} um, {solid(E, nu)}")
+        if body == FLAT:
+            lines.append(f"substrate   {solid(*seen.substrate)}")
+    return lines
+
+
+def _value(value: float, spread: float | None) -> str:
+    """``value`` in at most DIGITS digits, and in none beyond the first of its uncertainty."""
+    if value == 0:
+        return "0"
+    decimals = DIGITS - 1 - math.floor(math.log10(abs(value)))
+    if spread and math.isfinite(spread):
+        decimals = min(decimals, -math.floor(math.log10(spread)))
+    return f"{value:.{max(decimals, 0)}f}"
+
+
+def _spread(stated: float | None, scale: float) -> str:
+    return "-" if stated is None or math.isnan(stated) else f"{stated / scale:.0e}"

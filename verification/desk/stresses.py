@@ -1,0 +1,152 @@
+"""The largest stresses of a contact with any number of coatings, each with place, layer, uncertainty.
+
+The searches are those of the plane y = 0, where a sphere that slides along x has its largest stresses:
+
+    sigma_1 = max(sigma_yy, (sigma_xx + sigma_zz)/2 + sqrt((sigma_xx - sigma_zz)^2/4 + sigma_xz^2))
+
+since sigma_xy = sigma_yz = 0 there by symmetry.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from verification.problem.arrays import Array
+from verification.problem.body import on_body
+from verification.problem.contact import BALL, CoatedContact, Solution, stress_with_uncertainty
+from verification.problem.quantity import von_mises
+from verification.sampling.tension import Search
+from verification.study.planes import XX, XZ, ZZ, Parts, Plane, crowded, plane, surface
+from verification.study.quantities import Located, Measure, depths, inside, largest, tensile
+
+__all__ = ["Course", "Extreme", "first_principal", "stresses"]
+
+REACH, POINTS = 2.0, 401  # of a course, over a
+
+
+@dataclass(frozen=True)
+class Extreme:
+    """The largest ``quantity`` at one place of a ``body``: ``value`` +- ``uncertainty`` [Pa] at x, z [m].
+
+    quantity : sigma_xx, |sigma_xz|, sigma_zz, sigma_1 or von_mises.   where : "surface", "base of coating 1",
+    "top of substrate", "interface 1", "coating 1" and the like.   x : along the sliding of the ball over the
+    flat; NaN with value 0 where a tensile stress is nowhere positive.   z : into the body.
+    """
+
+    body: str
+    quantity: str
+    where: str
+    value: float
+    uncertainty: float
+    x: float
+    z: float
+
+
+@dataclass(frozen=True, eq=False)
+class Course:
+    """sigma_xx, sigma_yy, sigma_zz, sigma_xz [Pa], (4, n), along ``x`` [m] at one place as of ``Extreme``."""
+
+    body: str
+    where: str
+    x: Array
+    stress: Array
+
+
+def first_principal(s: Array) -> Array:
+    """The largest principal stress [Pa] from xx, yy, zz, xz, (4, ...), in the plane of symmetry."""
+    xx, yy, zz, xz = s
+    return np.maximum(yy, (xx + zz) / 2 + np.hypot((xx - zz) / 2, xz))
+
+
+def stresses(solution: Solution, problem: CoatedContact) -> tuple[tuple[Extreme, ...], tuple[Course, ...]]:
+    """Every largest stress of ``solution``, first of the flat from its surface down, then of an elastic ball.
+
+    With them the stresses along x on the surface and both sides of each interface, out to 2 a.
+    Raises what ``solution.stress`` raises.
+    """
+    found, drawn = [], []
+    for body in problem.bodies:
+        seen, turned = problem.seen_from(body), -1.0 if body == BALL else 1.0
+        layers = _Layers.of(on_body(solution, body), seen)
+        for quantity, where, at in layers.extremes():
+            place = turned * at.x + 0.0  # no -0
+            found.append(Extreme(body, quantity, where, at.value, at.uncertainty, place, at.z))
+        x = np.linspace(-REACH, REACH, POINTS) * float(solution.contact_radius)
+        for where, line in layers.lines():
+            stress = line(turned * x, seen.friction)
+            stress[XZ] *= turned
+            drawn.append(Course(body, where, x, stress))
+    return tuple(found), tuple(drawn)
+
+
+@dataclass(frozen=True, eq=False)
+class _Layers:
+    """One body: planes on the upper side of each layer, ``tops``, the lower of each coating, ``bases``."""
+
+    solution: Solution
+    problem: CoatedContact
+    parts: Parts
+    tops: list[Plane]
+    bases: list[Plane]
+
+    @classmethod
+    def of(cls, solution: Solution, problem: CoatedContact) -> "_Layers":
+        parts, a = Parts(solution, problem.friction), float(solution.contact_radius)
+        h = problem.coatings[0][2] if problem.coatings else a
+        tops, bases = [surface(parts, a, h, min(a + 2 * h, 7 * a))], []
+        for k, z in enumerate(problem.interfaces):
+            knots = crowded(a, 0.5 * min(a, z), a + 2.5 * z)
+            bases.append(plane(parts, knots, z, k))
+            tops.append(plane(parts, knots, z, k + 1))
+        return cls(solution, problem, parts, tops, bases)
+
+    def name(self, layer: int) -> str:
+        return "substrate" if layer == len(self.problem.coatings) else f"coating {layer + 1}"
+
+    def lines(self) -> Iterator[tuple[str, Plane]]:
+        yield "surface", self.tops[0]
+        for k, (base, top) in enumerate(zip(self.bases, self.tops[1:], strict=True)):
+            yield f"base of {self.name(k)}", base
+            yield f"top of {self.name(k + 1)}", top
+
+    def extremes(self) -> Iterator[tuple[str, str, Located]]:
+        """(quantity, where, the largest), the place in the frame of the body."""
+        f = self.problem.friction
+        yield "sigma_xx", "surface", self._surface()
+        for where, line in list(self.lines())[1:]:
+            yield "sigma_xx", where, tensile(largest(line, lambda s: s[XX], f))
+        for k, base in enumerate(self.bases):
+            yield "|sigma_xz|", f"interface {k + 1}", largest(base, lambda s: np.abs(s[XZ]), f)
+            yield "sigma_zz", f"interface {k + 1}", tensile(largest(base, lambda s: s[ZZ], f))
+        for layer in range(len(self.tops)):
+            planes, knots = self._planes(layer)
+            measures: dict[str, Measure] = {"sigma_1": first_principal, "von_mises": von_mises}
+            for quantity, measure in measures.items():
+                ends = [largest(planes[0], measure, f), largest(planes[-1], measure, f)]
+                within = inside(self.parts, planes, knots, f, measure)
+                best = max([*ends, *within], key=lambda at: at.value)
+                yield quantity, self.name(layer), tensile(best)
+
+    def _surface(self) -> Located:
+        """The largest tension of the surface, with the cusp at the contact edge as a candidate."""
+        search = Search(self.solution, self.problem)
+        sigma, U = stress_with_uncertainty(self.solution, search.x, 0.0, 0.0, layer=0)
+        found = search.largest(sigma[0, 0], None if U is None else U[0, 0])
+        spread = float("nan") if found.uncertainty is None else found.uncertainty
+        return tensile(Located(found.value, spread, found.place, 0.0))
+
+    def _planes(self, layer: int) -> tuple[list[Plane], Array]:
+        """Planes of a layer from its upper side down, with the radii of those between."""
+        a, bounds = float(self.solution.contact_radius), (0.0, *self.problem.interfaces)
+        top, coating = bounds[layer], layer < len(self.bases)
+        h = bounds[layer + 1] if coating else (top or a)
+        knots = crowded(a, 0.5 * min(a, h), 0.5 * (a + h))
+        if coating:
+            between = depths(top, h, 0.5 * a)[1:-1]
+        else:
+            between = depths(top, 1.5 * top + 2 * a, 0.5 * max(a / 2, top))[1:]
+        # They only locate: the uncertainty is evaluated at the place found.
+        parts = replace(self.parts, stated=False)
+        planes = [plane(parts, knots, float(z), layer) for z in between]
+        return [self.tops[layer], *planes, *([self.bases[layer]] if coating else [])], knots
