@@ -1,14 +1,20 @@
 """Inputs of which every number is worked out by hand: a case file, a published table."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
 from verification.cases.contact import parse_case
+from verification.cases.digits import digit_changes
 from verification.cases.published import read_published
 from verification.cases.table import FOLDER
 from verification.credibility.self_tests.answers import Answers
 from verification.judging.claims import standard_claims
+
+# Changes of one digit by ten half digits or more, 9 of each up to the hundredths, 1 to 5 of a thousandth: of
+# values that count, of those that depart.
+CHANGES = (675, 299)
 
 
 def of_case_file() -> Answers:
@@ -51,3 +57,14 @@ def of_published_table() -> Answers:
     yield "radial strain", float(strain.value[2]), -5.592e-5
     yield "half of its fourth digit", float(strain.uncertainty[2]), 0.5e-8
     yield "coatings", case.problem.coatings[0][2], 6 * inch
+    # a source that has the published values, then one whose uncertainty is half of the scale
+    claims = tuple(
+        c for c in case.claims if c.line == stress.profile.line and c.between[0] == "fem_reference"
+    )
+    for U, share in ((0.0, 1), (0.5 * stress.scale, 0)):
+        mine = replace(stress.reference, uncertainty=np.full(stress.profile.value.shape, U))
+        known = {(stress.profile.quantity, stress.profile.line, "fem_reference"): mine}
+        groups = digit_changes((stress,), claims, known)["groups"]
+        for name, cells, changes in (("counted", 22, CHANGES[0]), ("departures", 8, CHANGES[1])):
+            found = tuple(groups[name][key] for key in ("cells", "changes", "noticed"))
+            yield f"changes of digits, {name}", found, (cells, changes, share * changes)
