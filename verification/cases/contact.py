@@ -6,7 +6,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import AfterValidator, Field, model_validator
 
-from verification.cases.plausibility import likely_slips, warnings_of
+from verification.cases.plausibility import likely_slips, residual_warnings, warnings_of
 from verification.cases.toml import (
     CaseError,
     Friction,
@@ -17,11 +17,11 @@ from verification.cases.toml import (
     read_bounded,
     read_toml,
 )
-from verification.cases.units import Metres, Newtons, Pascals
+from verification.cases.units import AnyPascals, Metres, Newtons, Pascals
 from verification.judging.claims import standard_claims
 from verification.judging.verdict import Claim
 from verification.problem.arrays import Ball, Coatings
-from verification.problem.contact import BALL, CoatedContact
+from verification.problem.contact import BALL, FLAT, CoatedContact
 from verification.problem.profile import Line, line_of, lines_of, oblique_lines
 from verification.sources.registry import METHODS, sources_of
 
@@ -34,6 +34,7 @@ class Case:
 
     text : the file it was read from, kept with the results so that they carry their full input.
     warnings : of implausible numbers, a line each.   limits : hardness, yield strength [Pa] by their keys.
+    residual : equibiaxial stress [Pa] of each coating by body, no part of ``problem``; {} without any.
     resolve : whether it is also solved scaled, with equal moduli, thick and thin (``invariants.resolved``).
     """
 
@@ -47,6 +48,7 @@ class Case:
     resolve: bool = False
     warnings: tuple[str, ...] = ()
     limits: dict[str, float] = field(default_factory=dict)
+    residual: dict[str, tuple[float, ...]] = field(default_factory=dict)
 
     @property
     def lines(self) -> tuple[Line, ...]:
@@ -67,21 +69,39 @@ class Limited(Strict):
 
 
 class Material(Limited):
-    """An elastic material."""
+    """An elastic material; ``expansion`` is its coefficient of thermal expansion [1/K]."""
 
     E: Pascals
     nu: Poisson
+    expansion: Annotated[float, Field(ge=-1e-3, le=1e-3)] | None = None
 
 
 class _Coating(Material):
     thickness: Metres | None = None
     thickness_over_a_h: Positive | None = None
+    residual_stress: AnyPascals | None = None
 
     @model_validator(mode="after")
     def _one_thickness(self) -> "_Coating":
         if (self.thickness is None) == (self.thickness_over_a_h is None):
             raise ValueError("needs exactly one of thickness [m] or thickness_over_a_h")
         return self
+
+    def residual(self, below: float | None, change: float | None) -> float:
+        """Equibiaxial residual stress [Pa]: that given, or by thermal mismatch, or 0.
+
+        sigma = E/(1 - nu) (alpha_s - alpha) dT, of a thin film whose strain is that of its thick substrate.
+        L. B. Freund, S. Suresh, Thin Film Materials, Cambridge University Press, 2003, chapter 2.
+        below : expansion of the substrate alpha_s [1/K].   change : of the temperature since deposition [K].
+        Raises ValueError where both are given, or the mismatch lacks a part.
+        """
+        if self.expansion is None:
+            return self.residual_stress or 0.0
+        if self.residual_stress is not None:
+            raise ValueError("residual_stress and expansion are both given; give one")
+        if below is None or change is None:
+            raise ValueError("expansion requires that of the substrate, and problem.temperature_change")
+        return self.E / (1 - self.nu) * (below - self.expansion) * change
 
     def in_metres(self, a_h: float) -> float:
         return self.thickness if self.thickness is not None else a_h * (self.thickness_over_a_h or 0.0)
@@ -121,6 +141,26 @@ class _Problem(Strict):
     substrate: Material
     coatings: Annotated[list[_Coating], Field(default_factory=list, max_length=50)]
     ball: BallEntry | None = None
+    temperature_change: Annotated[float, Field(ge=-5000, le=5000)] | None = None
+
+    def residual(self) -> dict[str, tuple[float, ...]]:
+        """Residual stress [Pa] of each coating by body; {} where there is none.
+
+        Raises ValueError naming the coating whose residual stress is not determined.
+        """
+        bodies = {FLAT: (self.substrate.expansion, self.coatings)}
+        if self.ball:
+            bodies[BALL] = (self.ball.expansion, self.ball.coatings)
+        found = {}
+        for body, (below, coatings) in bodies.items():
+            stresses = []
+            for i, coating in enumerate(coatings):
+                try:
+                    stresses.append(coating.residual(below, self.temperature_change))
+                except ValueError as error:
+                    raise ValueError(f"{'ball.' if body == BALL else ''}coatings.{i}: {error}") from None
+            found[body] = tuple(stresses)
+        return found if any(any(stresses) for stresses in found.values()) else {}
 
     def contact(self) -> CoatedContact:
         """The problem; a thickness over a_h is that over the scale of both bodies uncoated."""
@@ -182,7 +222,7 @@ def parse_case(raw: bytes, path: Path) -> Case:
     """Check the content of a case file; ``path`` names it in messages. Raises CaseError."""
     text, checked = read_toml(raw, path, _CaseFile)
     try:
-        problem = checked.problem.contact()
+        problem, residual = checked.problem.contact(), checked.problem.residual()
     except (ValueError, OverflowError, ZeroDivisionError) as error:
         raise CaseError(f"{path}: problem: {error}") from None
     refuse_unfit_scales(path, problem)
@@ -206,8 +246,9 @@ def parse_case(raw: bytes, path: Path) -> Case:
         numerics,
         text,
         checked.resolve,
-        warnings_of(problem, limits),
+        (*warnings_of(problem, limits), *residual_warnings(residual)),
         limits,
+        residual,
     )
 
 

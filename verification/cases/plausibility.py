@@ -9,7 +9,7 @@ from collections.abc import Iterator, Mapping
 from verification.cases.units import InSI
 from verification.problem.contact import BALL, CoatedContact
 
-__all__ = ["beyond_limits", "likely_slips", "warnings_of"]
+__all__ = ["beyond_limits", "likely_slips", "residual_warnings", "warnings_of"]
 
 MODULI = (1e6, 2e12)  # Pa
 USUAL_MODULI = (1e9, 1.3e12)  # Pa, polymers to diamond
@@ -18,6 +18,7 @@ LARGEST_RADIUS = 1.0  # m
 WIDEST = 0.1  # a_h / R
 THICKEST = 20.0  # h / a_h; beyond it the substrate has no part in the contact
 STRAIN = 0.05  # p_h / E*
+RESIDUAL = (1e6, 2e10)  # Pa, magnitude of a residual stress
 YIELD = 1.6  # p0 over the yield strength where yielding begins below the surface. Johnson (6.9)
 _MODULUS_UNITS = {"GPa": 1e9, "MPa": 1e6, "kPa": 1e3}
 _LENGTH_UNITS = {"um": 1e-6, "mm": 1e-3, "nm": 1e-9}
@@ -42,6 +43,20 @@ def beyond_limits(p0: float, limits: Limits) -> tuple[str, ...]:
             found.append(
                 f"peak pressure {_stress(p0)} is beyond {what}, {key} = {_stress(value)}: not elastic"
             )
+    return tuple(found)
+
+
+def residual_warnings(residual: Mapping[str, tuple[float, ...]]) -> tuple[str, ...]:
+    """A line for each residual stress [Pa] below 1 MPa or above 20 GPa in magnitude."""
+    found = []
+    for body, stresses in residual.items():
+        for i, value in enumerate(stresses):
+            if value and not RESIDUAL[0] <= abs(value) <= RESIDUAL[1]:
+                key = f"{'ball.' if body == BALL else ''}coatings.{i}.residual_stress"
+                slip = "; check its unit"
+                if not isinstance(value, InSI) and abs(value) < 1e5:
+                    slip = f"; {key} = {value:g} looks like {'GPa' if abs(value) < 50 else 'MPa'}"
+                found.append(f"{key} = {value:g} Pa is not between 1 MPa and 20 GPa{slip}")
     return tuple(found)
 
 

@@ -15,7 +15,7 @@ from pydantic import Field, ValidationError, WrapValidator
 if TYPE_CHECKING:
     from pint import UnitRegistry
 
-__all__ = ["InSI", "Metres", "Newtons", "Pascals", "Seconds", "in_si", "of_file"]
+__all__ = ["AnyPascals", "InSI", "Metres", "Newtons", "Pascals", "Seconds", "in_si", "of_file"]
 
 LONGEST = 60  # characters of a text
 _NUMBER = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d{1,4})?)(.*)", re.ASCII | re.DOTALL)
@@ -93,5 +93,6 @@ def _with_unit(unit: str) -> WrapValidator:
 
 Metres = Annotated[float, Field(gt=0), _with_unit("m")]
 Pascals = Annotated[float, Field(gt=0), _with_unit("Pa")]
+AnyPascals = Annotated[float, _with_unit("Pa")]  # of either sign
 Newtons = Annotated[float, Field(gt=0), _with_unit("N")]
 Seconds = Annotated[float, Field(gt=0), _with_unit("s")]

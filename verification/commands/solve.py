@@ -124,7 +124,7 @@ def _require_format(plot: Path) -> None:
 
 def _answer(case: Case, source: str) -> Answer:
     try:
-        return answer(case.problem, source, case.numerics.get(source))
+        return answer(case.problem, source, case.numerics.get(source), case.residual)
     except Exception as error:  # as of any solve
         raise no_result(f"{case.name}: {source}: {message_of(error)}") from None
 
@@ -142,6 +142,7 @@ def _content(
             "title": case.title,
             "source": case.source,
             "problem": describe(case.problem),
+            "residual_stress": case.residual,
             "case_file": case.text,
             "warnings": list(warnings),
             "answer": encode(first),
@@ -202,7 +203,7 @@ def _print(case: Case, first: Answer, second: Answer | None, apart: Sequence[Dif
     )
     print_out(
         f"[bold]{escape(case.title)}[/]",
-        *(escape(line) for line in _given(case.problem)),
+        *(escape(line) for line in _given(case.problem, case.residual)),
         "",
         numbers,
         "",
@@ -210,13 +211,17 @@ def _print(case: Case, first: Answer, second: Answer | None, apart: Sequence[Dif
         "",
         f"tension positive, in the plane y = 0, x along sliding, z into each body; {seconds}",
     )
+    if case.residual:
+        print_out(
+            "with residual stress; the shear of an interface near a free edge of its coating is not covered"
+        )
     outside = [difference for difference in apart if not difference.within]
     if second is not None:
         total = f"{len(apart) - len(outside)} of {len(apart)} numbers of the finite elements"
         print_out(f"{total} are within both uncertainties")
 
 
-def _given(problem: CoatedContact) -> list[str]:
+def _given(problem: CoatedContact, residual: Mapping[str, Sequence[float]]) -> list[str]:
     """The problem, a line for each body, load and layer."""
 
     def solid(E: float, nu: float) -> str:
@@ -229,7 +234,9 @@ def _given(problem: CoatedContact) -> list[str]:
         seen = problem.seen_from(body)
         for i, (E, nu, h) in enumerate(seen.coatings, start=1):
             on = f"coating {i}   " if body == FLAT else f"on the {BALL} {i} "
-            lines.append(f"{on}{h * 1e6:.4g} um, {solid(E, nu)}")
+            stress = residual[body][i - 1] if residual else 0.0
+            more = f", residual stress {stress / 1e6:.4g} MPa" if stress else ""
+            lines.append(f"{on}{h * 1e6:.4g} um, {solid(E, nu)}{more}")
         if body == FLAT:
             lines.append(f"substrate   {solid(*seen.substrate)}")
     return lines

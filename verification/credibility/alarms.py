@@ -7,12 +7,18 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+import numpy as np
+
 from verification.judging.verdict import Outcome
 from verification.running.records import decode, encode
 from verification.running.result import CaseResult, RunInfo
 from verification.running.store import StoreError, read_checked, write_checked
+from verification.sources.registry import EXACT, METHODS
 
-SCHEMA = "coatcheck-alarms/2"
+SCHEMA = "coatcheck-alarms/3"
+# Of log10 error/U: the ends of the bins; below the first and above the last all is counted in the outermost.
+DECADES = tuple(float(x) for x in np.arange(-5, 1.01, 0.25))
+LEAST = 1e-9  # of the largest reference value of a profile: smaller errors are rounding
 
 
 @dataclass(frozen=True)
@@ -30,6 +36,21 @@ class Alarm:
 
 
 @dataclass(frozen=True)
+class Ratios:
+    """Error over uncertainty of every value of a method, the exact reference taken for the truth.
+
+    counts : values in each of the bins of ``DECADES``.   within : share with an error of at most U.
+    median : of U over the error.   Errors below ``LEAST`` do not count.
+    """
+
+    source: str
+    values: int
+    within: float
+    median: float
+    counts: tuple[int, ...]
+
+
+@dataclass(frozen=True)
 class AlarmRecord:
     """The alarms of ``problems`` random problems of ``seed``, with provenance and seconds in total.
 
@@ -44,6 +65,7 @@ class AlarmRecord:
     invariants: int
     alarms: tuple[Alarm, ...]
     smallest_margin: float | None
+    ratios: tuple[Ratios, ...]
     started: str
     seconds: float
     commit: str | None
@@ -75,12 +97,32 @@ def counted(results: Sequence[CaseResult], seed: int, info: RunInfo) -> AlarmRec
         len(invariants),
         tuple(alarms),
         min(margins, default=None),
+        tuple(_ratios(results, source) for source in METHODS),
         info.started,
         info.seconds,
         info.commit,
         info.machine,
         dict(info.versions),
     )
+
+
+def _ratios(results: Sequence[CaseResult], source: str) -> Ratios:
+    found = []
+    for result in results:
+        profiles = {(p.quantity, p.line, p.source): p for p in result.profiles}
+        for (quantity, line, name), mine in profiles.items():
+            exact = profiles.get((quantity, line, EXACT[0]))
+            if name != source or exact is None or mine.uncertainty is None or exact.uncertainty is None:
+                continue
+            error = np.abs(mine.value - exact.value)
+            counted = error > LEAST * np.abs(exact.value).max(initial=0.0)
+            U = (mine.uncertainty + exact.uncertainty)[counted]
+            found.append(error[counted] / np.maximum(U, np.finfo(float).tiny))
+    ratio = np.concatenate(found) if found else np.zeros(0)
+    place = np.clip(np.log10(np.maximum(ratio, 1e-99)), DECADES[0], DECADES[-1])
+    counts, _ = np.histogram(place, DECADES)
+    within, median = (float(np.mean(ratio <= 1)), float(1 / np.median(ratio))) if ratio.size else (1.0, 0.0)
+    return Ratios(source, int(ratio.size), within, median, tuple(counts.tolist()))
 
 
 def path_in(folder: Path) -> Path:

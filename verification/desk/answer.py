@@ -41,8 +41,16 @@ class Difference:
     within: bool
 
 
-def answer(problem: CoatedContact, source: str, numerics: Mapping[str, Any] | None = None) -> Answer:
-    """Solve ``problem`` by ``source`` and find its largest stresses. Raises what the source raises."""
+def answer(
+    problem: CoatedContact,
+    source: str,
+    numerics: Mapping[str, Any] | None = None,
+    residual: Mapping[str, tuple[float, ...]] | None = None,
+) -> Answer:
+    """Solve ``problem`` by ``source``, find its largest stresses, with ``residual`` ones as of ``stresses``.
+
+    Raises what the source raises.
+    """
     begin = time.perf_counter()
     solve = SOURCES[source].solve
     if solve is None:
@@ -52,7 +60,7 @@ def answer(problem: CoatedContact, source: str, numerics: Mapping[str, Any] | No
         name: (QUANTITIES[name].value(solution, problem), QUANTITIES[name].uncertainty(solution, problem))
         for name in NUMBERS
     }
-    found, drawn = stresses(solution, problem)
+    found, drawn = stresses(solution, problem, residual)
     return Answer(source, time.perf_counter() - begin, numbers, found, drawn)
 
 

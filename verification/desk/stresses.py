@@ -4,10 +4,12 @@ The searches are those of the plane y = 0, where a sphere that slides along x ha
 
     sigma_1 = max(sigma_yy, (sigma_xx + sigma_zz)/2 + sqrt((sigma_xx - sigma_zz)^2/4 + sigma_xz^2))
 
-since sigma_xy = sigma_yz = 0 there by symmetry.
+since sigma_xy = sigma_yz = 0 there by symmetry. An equibiaxial residual stress of a coating
+adds to sigma_xx, sigma_yy within it alone: the half-space below balances it at no stress. The tractions of an
+interface change near a free edge of the coating only, which is not part of this.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -17,8 +19,17 @@ from verification.problem.body import on_body
 from verification.problem.contact import BALL, CoatedContact, Solution, stress_with_uncertainty
 from verification.problem.quantity import von_mises
 from verification.sampling.tension import Search
-from verification.study.planes import XX, XZ, ZZ, Parts, Plane, crowded, plane, surface
-from verification.study.quantities import Located, Measure, depths, inside, largest, tensile
+from verification.study.planes import XX, XZ, ZZ, Parts, Plane, crowded, plane, stress_at, surface
+from verification.study.quantities import (
+    Located,
+    Measure,
+    depths,
+    inside,
+    largest,
+    propagated,
+    tensile,
+    vertex,
+)
 
 __all__ = ["Course", "Extreme", "first_principal", "stresses"]
 
@@ -31,7 +42,8 @@ class Extreme:
 
     quantity : sigma_xx, |sigma_xz|, sigma_zz, sigma_1 or von_mises.   where : "surface", "base of coating 1",
     "top of substrate", "interface 1", "coating 1" and the like.   x : along the sliding of the ball over the
-    flat; NaN with value 0 where a tensile stress is nowhere positive.   z : into the body.
+    flat; NaN with value 0 where a tensile stress is nowhere positive, in a layer without residual stress.
+    z : into the body.
     """
 
     body: str
@@ -59,22 +71,25 @@ def first_principal(s: Array) -> Array:
     return np.maximum(yy, (xx + zz) / 2 + np.hypot((xx - zz) / 2, xz))
 
 
-def stresses(solution: Solution, problem: CoatedContact) -> tuple[tuple[Extreme, ...], tuple[Course, ...]]:
+def stresses(
+    solution: Solution, problem: CoatedContact, residual: Mapping[str, tuple[float, ...]] | None = None
+) -> tuple[tuple[Extreme, ...], tuple[Course, ...]]:
     """Every largest stress of ``solution``, first of the flat from its surface down, then of an elastic ball.
 
-    With them the stresses along x on the surface and both sides of each interface, out to 2 a.
+    With them the stresses along x on the surface, both sides of each interface, out to 2 a.
+    residual : equibiaxial stress [Pa] of each coating by body, 0 unless given.
     Raises what ``solution.stress`` raises.
     """
     found, drawn = [], []
     for body in problem.bodies:
         seen, turned = problem.seen_from(body), -1.0 if body == BALL else 1.0
-        layers = _Layers.of(on_body(solution, body), seen)
+        layers = _Layers.of(on_body(solution, body), seen, (residual or {}).get(body, ()))
         for quantity, where, at in layers.extremes():
             place = turned * at.x + 0.0  # no -0
             found.append(Extreme(body, quantity, where, at.value, at.uncertainty, place, at.z))
         x = np.linspace(-REACH, REACH, POINTS) * float(solution.contact_radius)
         for where, line in layers.lines():
-            stress = line(turned * x, seen.friction)
+            stress = line(turned * x, seen.friction) + layers.added(line.layer, 1)
             stress[XZ] *= turned
             drawn.append(Course(body, where, x, stress))
     return tuple(found), tuple(drawn)
@@ -89,9 +104,10 @@ class _Layers:
     parts: Parts
     tops: list[Plane]
     bases: list[Plane]
+    residual: tuple[float, ...]
 
     @classmethod
-    def of(cls, solution: Solution, problem: CoatedContact) -> "_Layers":
+    def of(cls, solution: Solution, problem: CoatedContact, residual: tuple[float, ...]) -> "_Layers":
         parts, a = Parts(solution, problem.friction), float(solution.contact_radius)
         h = problem.coatings[0][2] if problem.coatings else a
         tops, bases = [surface(parts, a, h, min(a + 2 * h, 7 * a))], []
@@ -99,7 +115,20 @@ class _Layers:
             knots = crowded(a, 0.5 * min(a, z), a + 2.5 * z)
             bases.append(plane(parts, knots, z, k))
             tops.append(plane(parts, knots, z, k + 1))
-        return cls(solution, problem, parts, tops, bases)
+        return cls(solution, problem, parts, tops, bases, residual)
+
+    def added(self, layer: int, dimensions: int) -> Array:
+        """xx, yy, zz, xz [Pa] of the residual stress of a layer, (4,) + (1,) * ``dimensions``."""
+        stress = self.residual[layer] if layer < len(self.residual) else 0.0
+        return (stress * np.array([1.0, 1.0, 0.0, 0.0])).reshape(4, *[1] * dimensions)
+
+    def _total(self, measure: Measure, layer: int) -> Measure:
+        """``measure`` of a stress with the residual stress of its layer."""
+        return lambda s: measure(s + self.added(layer, s.ndim - 1))
+
+    def _shown(self, found: Located, layer: int) -> Located:
+        """As ``tensile`` in a layer without residual stress; with one as it is, with its sign."""
+        return found if self.added(layer, 0).any() else tensile(found)
 
     def name(self, layer: int) -> str:
         return "substrate" if layer == len(self.problem.coatings) else f"coating {layer + 1}"
@@ -115,18 +144,41 @@ class _Layers:
         f = self.problem.friction
         yield "sigma_xx", "surface", self._surface()
         for where, line in list(self.lines())[1:]:
-            yield "sigma_xx", where, tensile(largest(line, lambda s: s[XX], f))
+            measure = self._total(lambda s: s[XX], line.layer)
+            yield "sigma_xx", where, self._shown(largest(line, measure, f), line.layer)
         for k, base in enumerate(self.bases):
             yield "|sigma_xz|", f"interface {k + 1}", largest(base, lambda s: np.abs(s[XZ]), f)
             yield "sigma_zz", f"interface {k + 1}", tensile(largest(base, lambda s: s[ZZ], f))
         for layer in range(len(self.tops)):
             planes, knots = self._planes(layer)
             measures: dict[str, Measure] = {"sigma_1": first_principal, "von_mises": von_mises}
-            for quantity, measure in measures.items():
+            for quantity, plain in measures.items():
+                measure = self._total(plain, layer)
                 ends = [largest(planes[0], measure, f), largest(planes[-1], measure, f)]
-                within = inside(self.parts, planes, knots, f, measure)
+                within = inside(self.parts, planes, knots, f, measure) + self._between(planes, measure)
                 best = max([*ends, *within], key=lambda at: at.value)
-                yield quantity, self.name(layer), tensile(best)
+                yield quantity, self.name(layer), self._shown(best, layer)
+
+    def _between(self, planes: list[Plane], measure: Measure) -> list[Located]:
+        """The largest on the planes between, moved to the vertex in depth; none where an outer plane has it.
+
+        Unlike ``inside`` it needs no interpolation in depth, whose error exceeds a small sigma_1 under strong
+        compression. Its uncertainty contains the change by the move.
+        """
+        found = [largest(one, measure, self.problem.friction) for one in planes]
+        k = int(np.argmax([at.value for at in found]))
+        if not 0 < k < len(planes) - 1:
+            return []
+        near = found[k - 1 : k + 2]
+        z = np.array([at.z for at in near])
+        depth = vertex(z, np.array([at.value for at in near]))
+        places = [(found[k].x, found[k].z), (float(np.interp(depth, z, [at.x for at in near])), depth)]
+        layer, f = planes[1].layer, self.problem.friction
+        stress = [stress_at(self.parts, x, z, layer, f) for x, z in places]
+        values = [float(measure(one)) for one, _ in stress]
+        best = int(np.argmax(values))
+        spread = propagated(measure, *stress[best]) + abs(values[1] - values[0])
+        return [Located(values[best], spread, *places[best])]
 
     def _surface(self) -> Located:
         """The largest tension of the surface, with the cusp at the contact edge as a candidate."""
@@ -134,7 +186,8 @@ class _Layers:
         sigma, U = stress_with_uncertainty(self.solution, search.x, 0.0, 0.0, layer=0)
         found = search.largest(sigma[0, 0], None if U is None else U[0, 0])
         spread = float("nan") if found.uncertainty is None else found.uncertainty
-        return tensile(Located(found.value, spread, found.place, 0.0))
+        total = found.value + float(self.added(0, 0)[XX])
+        return self._shown(Located(total, spread, found.place, 0.0), 0)
 
     def _planes(self, layer: int) -> tuple[list[Plane], Array]:
         """Planes of a layer from its upper side down, with the radii of those between."""

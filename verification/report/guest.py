@@ -165,13 +165,12 @@ def _cases(found: Examined) -> Section:
                 *cells,
                 Cell("–" if taken is None else seconds(taken), taken),
                 Cell("–" if memory is None else f"{memory / 1e6:.0f} MB", memory),
-                *_own(result.name),
             )
         )
     table = Table(
         "Digits that agree with the exact reference, by case, with the worst verdict; time and peak memory "
-        "at the finest level beside those of the two methods of coatcheck, as recorded with the package.",
-        ["case", *names, "time", "memory", "semi-analytical", "finite elements"],
+        "at the finest level.",
+        ["case", *names, "time", "memory"],
         rows,
     )
     return Section("cases", "Cases", [Part("", [table])])
@@ -185,16 +184,6 @@ def _digits_cell(verdicts: Sequence[Verdict]) -> Cell:
     gap = max((v.difference for v in verdicts if v.difference is not None), default=None)
     style = OUTCOMES[worst]
     return Cell(f"{style.letter} {digits(gap)}", gap, f"verdict {style.css}", style.word)
-
-
-def _own(case: str) -> list[Cell]:
-    from verification.guests.own import times
-
-    known = times().get(case, {})
-    return [
-        Cell("–" if method not in known else f"{known[method][0]:.1f} s, {known[method][1] / 1e6:.0f} MB")
-        for method in ("semianalytic", "fem_reference")
-    ]
 
 
 def _failures(found: Examined) -> Section | None:

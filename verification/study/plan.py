@@ -200,6 +200,11 @@ def parse_study(raw: bytes, path: Path) -> Study:
     """Check the content of a study file; ``path`` names it in messages. Raises CaseError."""
     text, checked = read_toml(raw, path, _StudyFile)
     p, sweep = checked.problem, checked.sweep
+    coatings = p.ball.coatings if p.ball else []
+    if any(m.expansion is not None for m in (p.substrate, *coatings, *([p.ball] if p.ball else []))) or any(
+        c.residual_stress is not None for c in coatings
+    ):
+        raise CaseError(f"{path}: problem: expansion, residual_stress belong to cases; a study has neither")
     try:
         substrate = (p.substrate.E, p.substrate.nu)
         bare = CoatedContact(p.radius, p.load, (), substrate, ball=p.ball.bare if p.ball else None)

@@ -107,7 +107,7 @@ def largest(line: Plane, measure: Measure, friction: float) -> Located:
         if -found.fun > best:
             at, best = float(found.x), -float(found.fun)
     stress = line(np.array([at]), friction)[:, 0]
-    return Located(best, _propagated(measure, stress, line.uncertainty(at, friction)), at, line.z)
+    return Located(best, propagated(measure, stress, line.uncertainty(at, friction)), at, line.z)
 
 
 def inside(
@@ -122,12 +122,12 @@ def inside(
     i, j = np.unravel_index(int(np.argmax(value)), value.shape)
     if not (0 < i < z.size - 1 and 0 < j < x.size - 1):
         return []
-    at_z = _vertex(z[i - 1 : i + 2], value[i - 1 : i + 2, j])
-    at_x = _vertex(x[j - 1 : j + 2], value[i, j - 1 : j + 2])
+    at_z = vertex(z[i - 1 : i + 2], value[i - 1 : i + 2, j])
+    at_x = vertex(x[j - 1 : j + 2], value[i, j - 1 : j + 2])
     stress_there, bound = stress_at(parts, at_x, at_z, planes[1].layer, friction)
     best = float(measure(stress_there))
     interpolation = abs(best - float(value[i, j]))  # which may have located another point than the maximum
-    return [Located(best, _propagated(measure, stress_there, bound) + interpolation, at_x, at_z)]
+    return [Located(best, propagated(measure, stress_there, bound) + interpolation, at_x, at_z)]
 
 
 def _both_sides(knots: Array, fine: int) -> Array:
@@ -142,7 +142,7 @@ def _finer(points: Array, fine: int) -> Array:
     return np.append(inner.ravel(), points[-1])
 
 
-def _propagated(measure: Measure, s: Array, bound: Array) -> float:
+def propagated(measure: Measure, s: Array, bound: Array) -> float:
     """Uncertainty of a measure from those of the four stresses, added in magnitude."""
     value = float(measure(s))
     return float(sum(np.abs(measure(s + step) - value) for step in np.diag(bound)))
@@ -156,7 +156,7 @@ def tensile(found: Located) -> Located:
     return Located(0.0, excess, float("nan"), float("nan"))
 
 
-def _vertex(x: Array, y: Array) -> float:
+def vertex(x: Array, y: Array) -> float:
     """Position of the maximum of the parabola through three points, within their interval."""
     c = np.polyfit(x - x[1], y, 2)
     if c[0] >= 0:

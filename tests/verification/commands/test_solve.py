@@ -97,7 +97,7 @@ def test_figure_has_the_format_of_its_name(suffix, tmp_path):
 
 
 def test_check_shows_the_differences_and_fails_beyond_both_uncertainties(tmp_path, monkeypatch):
-    def made(problem, source, numerics=None):
+    def made(problem, source, *_):
         found = desk.answer(problem, "hertz")
         off = 1.0 if source == "semianalytic" else factor
         numbers = {name: (off * value, 1e-6 * value) for name, (value, _) in found.numbers.items()}

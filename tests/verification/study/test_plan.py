@@ -63,6 +63,7 @@ def test_every_kth_point_is_checked_by_both_others():
         ("load = 20.0", "load = inf", "problem.load must be a finite number"),
         ("load = 20.0", "load = 1e12", "problem.load: gives a contact radius"),
         ("nu = 0.25", "nu = 0.5", "problem.coating.nu"),
+        ("nu = 0.3 }", "nu = 0.3, expansion = 1e-5 }", "expansion, residual_stress belong to cases"),
         ("nu = 0.25", "nu = 0.25, E = 1e9", "exactly one of problem.coating.E or sweep.modulus_ratio"),
         ("modulus_ratio = [0.5, 2.0]", "", "exactly one of problem.coating.E or sweep.modulus_ratio"),
         ("modulus_ratio = [0.5, 2.0]", "modulus_ratio = []", "sweep.modulus_ratio"),

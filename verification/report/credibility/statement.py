@@ -7,7 +7,7 @@ of the result, evidence for each.
 
 from collections.abc import Sequence
 
-from verification.credibility.alarms import AlarmRecord
+from verification.credibility.alarms import DECADES, AlarmRecord
 from verification.credibility.faults.record import Record
 from verification.credibility.independence import shared
 from verification.credibility.mutation.record import MutantRecord
@@ -22,10 +22,12 @@ from verification.report.credibility.tables import (
     parameter_table,
     range_table,
 )
+from verification.report.figures.loglog import draw_histogram
 from verification.report.material import Evidence, Material
 from verification.report.sections.accuracy import accuracies, coverage_table
 from verification.report.sections.baseline import baseline_message
-from verification.report.tables.cells import Part, Section, Table, row, words
+from verification.report.tables.cells import Gallery, Panel, Part, Section, Table, row, words
+from verification.report.tables.labels import source_label
 from verification.report.tables.numbers import plain
 from verification.running.result import CaseResult
 
@@ -115,7 +117,7 @@ def section(material: Material) -> Section | None:
         ),
         *map(Part, COMMON_EQUATION),
         Part(f"{_faults(evidence)} {_mutants(evidence)}", [], title="6. Fault detection"),
-        Part(_alarms(evidence), [alarm_table(evidence.alarms)], title="7. False alarms"),
+        Part(_alarms(evidence), [alarm_table(evidence.alarms)], _histograms(evidence), "7. False alarms"),
         Part(NOT_CLAIMED, title="8. Not claimed"),
     ]
     return Section(ANCHOR, "Credibility", parts, evidence.failures)
@@ -240,6 +242,29 @@ def _mutants(evidence: Evidence, *, short: bool = False) -> str:
         return NO_RECORD[short].format("mutants", "mutants")
     text = mutants_message(record)
     return text if short else f"Apart from these, changes at random places: {text} Measured {_when(record)}."
+
+
+def _histograms(evidence: Evidence) -> Gallery | None:
+    """Error over uncertainty of each method in the random problems of the false alarms."""
+    record = evidence.alarms
+    if record is None or not any(one.values for one in record.ratios):
+        return None
+    panels = [
+        Panel(
+            source_label(one.source),
+            draw_histogram(DECADES, one.counts, f"Error over uncertainty of {source_label(one.source)}"),
+            f"{one.values} values, {100 * one.within:.3g} % within U; median of U over the error "
+            f"{one.median:.3g}",
+            "",
+        )
+        for one in record.ratios
+    ]
+    caption = (
+        "Error over stated uncertainty of every value in the random problems, the integral equation taken "
+        "for the truth; errors below 1e-9 of the largest value of a profile are left out. Right of the line, "
+        "an error exceeds its uncertainty; far to the left, an uncertainty is needlessly large."
+    )
+    return Gallery((), panels, caption)
 
 
 def _alarms(evidence: Evidence, *, short: bool = False) -> str:

@@ -108,6 +108,20 @@ def draw_loglog(
     return drawing(WIDTH, HEIGHT, label, axes)
 
 
+def draw_histogram(edges: Sequence[float], counts: Sequence[int], label: str) -> Markup:
+    """Shares of ``counts`` between ``edges``, exponents of ten; a line at 1."""
+    share = np.array(counts) / max(sum(counts), 1)
+    top = 1.1 * float(share.max(initial=0.01))
+    axes = Axes(BOX, (edges[0], edges[-1]), (0.0, top))
+    exponents = [float(e) for e in range(ceil(edges[0]), floor(edges[-1]) + 1)]
+    axes.ticks(
+        [(e, power_of_ten(e)) for e in exponents], [(0.0, "0"), (top / 1.1, f"{top / 1.1:.2g}")], "error/U"
+    )
+    axes.band(np.repeat(edges, 2)[1:-1], 0.0, np.repeat(share, 2), "semi", 0.4)
+    axes.line(np.zeros(2), np.array([0.0, top]), Style("cap", DASHES))
+    return drawing(WIDTH, HEIGHT, label, axes)
+
+
 def _separated(places: Sequence[float]) -> list[float]:
     """Increasing ``places`` moved apart as little as needed, all of them between 0 and 1."""
     found = list(places)

@@ -1,0 +1,147 @@
+"""Residual stress of coatings: closed forms of mismatch, of the sum; what a file may say of it."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from verification.cases.contact import parse_case
+from verification.cases.toml import CaseError
+from verification.desk.answer import answer
+from verification.problem.contact import CoatedContact
+from verification.sources.registry import SOURCES
+
+STRESS = -2e9
+SLIDING = CoatedContact(10e-3, 20.0, ((210e9, 0.3, 10e-6),), (210e9, 0.3), 0.25)
+FILE = """
+title = "DLC"
+[problem]
+radius = "10 mm"
+load = "20 N"
+temperature_change = -300
+substrate = { E = "210 GPa", nu = 0.3, expansion = 12e-6 }
+ball = { E = "210 GPa", nu = 0.3, coatings = [{ E = "180 GPa", nu = 0.2, thickness = "1 um" }] }
+[[problem.coatings]]
+E = "180 GPa"
+nu = 0.2
+thickness = "2 um"
+expansion = 2e-6
+[[problem.coatings]]
+E = "280 GPa"
+nu = 0.21
+thickness = "1 um"
+residual_stress = "150 MPa"
+"""
+
+
+def parse(text):
+    return parse_case(text.encode(), Path("dlc.toml"))
+
+
+@pytest.fixture(scope="module")
+def both():
+    """The same contact without and with a residual stress in its coating."""
+    return answer(SLIDING, "hamilton"), answer(SLIDING, "hamilton", residual={"flat": (STRESS,)})
+
+
+def at(found, quantity, where):
+    (one,) = [e for e in found.extremes if (e.quantity, e.where) == (quantity, where)]
+    return one
+
+
+def test_mismatch_of_expansion_is_that_of_a_thin_film():
+    """A film that would shrink less than its substrate is compressed: E/(1 - nu) (alpha_s - alpha) dT."""
+    residual = parse(FILE).residual
+    assert residual["flat"] == pytest.approx((180e9 / 0.8 * 10e-6 * -300, 150e6), rel=1e-14)
+    assert residual["ball"] == (0.0,)
+    # Hooke: biaxial stress with the strain of the substrate, free in z.
+    E, nu, sigma = 180e9, 0.2, residual["flat"][0]
+    assert (sigma - nu * sigma) / E + 2e-6 * -300 == pytest.approx(12e-6 * -300, rel=1e-12)
+
+
+def test_it_is_no_part_of_the_contact():
+    without = FILE.replace("expansion = 2e-6\n", "").replace('residual_stress = "150 MPa"\n', "")
+    assert parse(without).residual == {}
+    assert parse(without).problem == parse(FILE).problem
+
+
+def test_tension_at_the_trailing_edge_is_the_sum(both):
+    """p0 ((1 - 2 nu)/3 + f pi (4 + nu)/8) of Hamilton and Goodman plus the residual stress."""
+    found = at(both[1], "sigma_xx", "surface")
+    exact = SLIDING.p_h * ((1 - 0.6) / 3 + 0.25 * np.pi * 4.3 / 8) + STRESS
+    assert found.value == pytest.approx(exact, rel=1e-6)
+    assert found.value < 0  # shown as it is, not as 0
+    assert found.x == pytest.approx(-SLIDING.a_h, rel=1e-6)
+
+
+def test_it_adds_within_its_coating_alone(both):
+    plain, total = both
+    base = "base of coating 1"
+    assert at(total, "sigma_xx", base).value == pytest.approx(
+        at(plain, "sigma_xx", base).value + STRESS, rel=1e-6
+    )
+    for where in ("interface 1", "substrate", "top of substrate"):
+        pairs = [(a, b) for a, b in zip(plain.extremes, total.extremes, strict=True) if a.where == where]
+        assert pairs
+        assert all(a == b or (np.isnan(a.x) and np.isnan(b.x)) for a, b in pairs)
+    surface, base, below = (b.stress - a.stress for a, b in zip(plain.courses, total.courses, strict=True))
+    for change in (surface, base):
+        np.testing.assert_allclose(change[:2], STRESS, rtol=1e-9)
+        np.testing.assert_array_equal(change[2:], 0.0)
+    np.testing.assert_array_equal(below, 0.0)
+
+
+@pytest.mark.parametrize("stress", [-2e9, 1.5e9])
+def test_principal_and_von_mises_stress_are_those_of_the_summed_tensor(stress):
+    found = answer(SLIDING, "hamilton", residual={"flat": (stress,)})
+    solution, a = SOURCES["hamilton"].solve(SLIDING, {}), SLIDING.a_h
+    x, z = np.meshgrid(np.linspace(-2, 2, 401) * a, np.linspace(0, 10e-6, 41), indexing="ij")
+    sigma = solution.stress(x.ravel(), 0.0, z.ravel(), layer=0)
+    sigma[0, 0] += stress
+    sigma[1, 1] += stress
+    values = np.linalg.eigvalsh(np.moveaxis(sigma, -1, 0))
+    mises = np.sqrt(((values[:, [0, 1, 2]] - values[:, [1, 2, 0]]) ** 2).sum(axis=1) / 2)
+    for quantity, direct in (("sigma_1", values[:, 2].max()), ("von_mises", mises.max())):
+        largest = at(found, quantity, "coating 1")
+        scale = abs(stress) + SLIDING.p_h
+        assert -largest.uncertainty <= largest.value - direct <= 5e-3 * scale
+
+
+def test_of_a_coated_ball_it_belongs_to_the_ball():
+    problem = replace(SLIDING, coatings=(), ball=(210e9, 0.3, ((180e9, 0.2, 10e-6),)))
+    plain = answer(problem, "semianalytic")
+    total = answer(problem, "semianalytic", residual={"flat": (), "ball": (STRESS,)})
+    for a, b in zip(plain.extremes, total.extremes, strict=True):
+        if (a.body, a.where, a.quantity) == ("ball", "surface", "sigma_xx"):
+            assert b.value == pytest.approx(a.value + STRESS, rel=1e-12)
+        if a.body == "flat":
+            assert a == b
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        (", expansion = 12e-6", "", "problem: coatings.0: expansion requires that of the substrate"),
+        ("temperature_change = -300\n", "", "problem: coatings.0: expansion requires that of the substrate"),
+        (
+            'residual_stress = "150 MPa"',
+            'residual_stress = "150 MPa"\nexpansion = 1e-6',
+            "problem: coatings.1: residual_stress and expansion are both given",
+        ),
+        ('"150 MPa"', '"150 um"', "problem.coatings.1.residual_stress must be a number or a stress"),
+        ("-300", '"-300 K"', "problem.temperature_change must be a number"),
+        ("expansion = 2e-6", "expansion = 2.0", "problem.coatings.0.expansion"),
+    ],
+)
+def test_bad_files_end_in_one_message(old, new, message):
+    assert old in FILE
+    with pytest.raises(CaseError) as error:
+        parse(FILE.replace(old, new, 1))
+    assert message in str(error.value)
+
+
+def test_slip_of_its_unit_is_warned_of():
+    (line,) = parse(FILE.replace('"150 MPa"', "-2.0")).warnings
+    assert line.endswith("coatings.1.residual_stress = -2 looks like GPa")
+    assert parse(FILE).warnings == ()
