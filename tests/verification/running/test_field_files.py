@@ -81,6 +81,7 @@ def test_the_boxes_carry_stress_and_displacement_layer_by_layer(case, folder, so
         assert set(grid.point_data) == FIELDS
         assert set(grid.cell_data["layer"]) == {layer}
         x, y, z = grid.points.T
+        assert np.abs(x).min() < 1e-9 * solution.contact_radius
         # Below eight patches whole patches are as good as the halved ones that single points stand on.
         deep = np.flatnonzero((z > 8 * solution.diagnostics.patch_size) | (z == 0))
         some = np.random.default_rng(layer).choice(deep, 60, replace=False)

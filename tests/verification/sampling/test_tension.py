@@ -12,7 +12,7 @@ from verification.problem.contact import stress_with_uncertainty
 from verification.problem.profile import lines_of
 from verification.problem.quantity import PEAKS
 from verification.sampling.lines import positions, sample
-from verification.sampling.tension import Search, Tension
+from verification.sampling.tension import Search, Tension, edge_uncertainty
 from verification.sources.exact import solve_exactly
 from verification.sources.references.hamilton import Hamilton
 
@@ -110,3 +110,10 @@ def test_no_shipped_claim_leaves_a_zone_out():
     for case in shipped:
         peaks = [claim.between for claim in case.claims if claim.quantity in PEAKS]
         assert len(peaks) == 2 * len({claim.between for claim in standard_claims(case.problem)})
+
+
+def test_the_uncertainty_at_the_edge_is_beside_it_plus_what_no_change_of_the_radius_explains():
+    value, U = np.array([1.0, 0.7, 0.8, 1.1, 0.8]), np.array([0.5, 0.1, 0.12, 0.3, 0.3])
+    assert edge_uncertainty(value, U, None) == pytest.approx(0.5 - 0.2)
+    assert edge_uncertainty(value, U - [0.25, 0, 0, 0, 0], None) == pytest.approx(0.12)
+    assert edge_uncertainty(value, U, np.array(0.02)) == pytest.approx(0.14)
