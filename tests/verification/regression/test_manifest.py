@@ -93,8 +93,8 @@ def test_less_that_is_judged_is_a_failure_on_any_machine(recorded, change, messa
         (
             Edit(
                 "verification.sampling.lines:sample",
-                "stress_with_uncertainty(solution, x, 0.0, z",
-                "stress_with_uncertainty(solution, x, 0.3 * solution.contact_radius, z",
+                "stress_with_uncertainty(solution, points, 0.0, depth",
+                "stress_with_uncertainty(solution, points, 0.3 * solution.contact_radius, depth",
             ),
             "sampling",
         ),
