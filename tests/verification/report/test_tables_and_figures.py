@@ -94,7 +94,8 @@ def test_the_worst_verdict_of_a_group_decides_its_cell():
 
 
 def test_every_outcome_differs_without_colour():
-    assert len({style.letter for style in OUTCOMES.values()}) == len({s.mark for s in OUTCOMES.values()}) == len(Outcome)
+    letters, marks = ({getattr(style, name) for style in OUTCOMES.values()} for name in ("letter", "mark"))
+    assert len(letters) == len(marks) == len(Outcome)
     sources = ("semianalytic", "fem_reference", "integral_equation", "hertz", "another")
     assert len({(source_style(s).dash, source_style(s).width) for s in sources}) == len(sources)
     pairs = [("semianalytic", "fem_reference"), ("semianalytic", "hertz"), ("fem_reference", "hertz")]
