@@ -16,6 +16,7 @@ from verification.running.store import StoreError, read_checked, write_checked
 from verification.sources.registry import EXACT, METHODS
 
 SCHEMA = "coatcheck-alarms/3"
+READABLE = (SCHEMA, "coatcheck-alarms/2")  # the second without ratios
 # Of log10 error/U: the ends of the bins; below the first and above the last all is counted in the outermost.
 DECADES = tuple(float(x) for x in np.arange(-5, 1.01, 0.25))
 LEAST = 1e-9  # of the largest reference value of a profile: smaller errors are rounding
@@ -65,12 +66,12 @@ class AlarmRecord:
     invariants: int
     alarms: tuple[Alarm, ...]
     smallest_margin: float | None
-    ratios: tuple[Ratios, ...]
     started: str
     seconds: float
     commit: str | None
     machine: str
     versions: dict[str, str]
+    ratios: tuple[Ratios, ...] = ()
 
 
 def counted(results: Sequence[CaseResult], seed: int, info: RunInfo) -> AlarmRecord:
@@ -97,12 +98,12 @@ def counted(results: Sequence[CaseResult], seed: int, info: RunInfo) -> AlarmRec
         len(invariants),
         tuple(alarms),
         min(margins, default=None),
-        tuple(_ratios(results, source) for source in METHODS),
         info.started,
         info.seconds,
         info.commit,
         info.machine,
         dict(info.versions),
+        tuple(_ratios(results, source) for source in METHODS),
     )
 
 
@@ -143,7 +144,7 @@ def read_record(folder: Path) -> AlarmRecord | None:
     if not path.exists():
         return None
     data = read_checked(path)
-    if data.get("schema") != SCHEMA:
+    if data.get("schema") not in READABLE:
         raise StoreError(f"{path}: not a record of false alarms that this version reads; measure it again")
     try:
         return decode(AlarmRecord, data)

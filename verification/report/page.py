@@ -105,7 +105,10 @@ def _matrix(material: Material) -> Table:
 
 def _counts(results: Sequence[CaseResult]) -> list[tuple[OutcomeStyle, int]]:
     counted = Counter(verdict.outcome for result in results for _, verdict in result.verdicts)
-    return [(style, counted[outcome]) for outcome, style in reversed(OUTCOMES.items())]
+    shown = [
+        outcome for outcome in reversed(OUTCOMES) if counted[outcome] or outcome is not Outcome.UNSUPPORTED
+    ]
+    return [(OUTCOMES[outcome], counted[outcome]) for outcome in shown]
 
 
 def _failures(material: Material) -> list[str]:

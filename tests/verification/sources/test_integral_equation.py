@@ -180,3 +180,10 @@ def test_stated_uncertainty_brackets_a_finer_solution():
     for name in ("contact_radius", "approach", "peak_pressure"):
         assert abs(getattr(usual, name) - getattr(fine, name)) <= getattr(usual.uncertainty, name)
     assert usual.uncertainty.peak_pressure < 1e-8 * usual.peak_pressure
+
+
+def test_a_depth_just_below_the_surface_is_refused_before_it_fills_the_memory(sliding):
+    a = sliding.contact_radius
+    with pytest.raises(ValueError, match=r"depth z = .* wavenumbers; choose z = 0"):
+        sliding.stress(0.5 * a, 0.0, 1e-6 * a)
+    assert np.isfinite(sliding.stress(0.5 * a, 0.0, 1e-3 * a)).all()

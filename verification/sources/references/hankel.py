@@ -28,6 +28,8 @@ from verification.sources.references.quadrature import wavenumber_panels
 
 CHUNK = 2_000_000  # products of wavenumbers with radii held in memory at once
 KEPT = 16  # depths of which the amplitudes are kept, for the other fields at the same points
+KEPT_SIZE = 100_000  # wavenumbers of a plane that is kept
+MOST = 4_000_000  # wavenumbers: as many need a gigabyte
 
 
 class AxisymmetricPressure(Protocol):
@@ -141,11 +143,14 @@ class HankelField:
         On the surface the amplitudes are those in excess of the homogeneous solid of the top material.
         """
         key = (z, layer, float(r.max(initial=0.0)))
-        if key not in self._kept:
-            if len(self._kept) >= KEPT:
-                self._kept.clear()
-            self._kept[key] = self._amplitudes(*key)
-        return self._kept[key]
+        if key in self._kept:
+            return self._kept[key]
+        if len(self._kept) >= KEPT:
+            self._kept.clear()
+        found = self._amplitudes(*key)
+        if found[0].size <= KEPT_SIZE:
+            self._kept[key] = found
+        return found
 
     def _amplitudes(self, z: float, layer: int, r: float) -> tuple[Array, Array, list[Amplitudes]]:
         k, weight = self._wavenumbers(z or 2 * self.coatings[0][2], r)
@@ -166,6 +171,12 @@ class HankelField:
         end = (self.tail + 2 * np.log(self.tail)) / reach
         bent = bending_length(self.coatings, self.substrate) if self.coatings else 0.0
         deepest = max(bent, reach, self.pressure.a)
+        count = self.nodes * end * (self.pressure.a + r) / 8
+        if count > MOST:
+            raise ValueError(
+                f"depth z = {reach:g} m with contact radius a = {self.pressure.a:g} m needs {count:.2g} "
+                "wavenumbers; choose z = 0 or a depth above 1e-4 a"
+            )
         return wavenumber_panels(end, 1 / deepest, 8 / (self.pressure.a + r), self.nodes)
 
     def _homogeneous_surface(self, r: Array, theta: Array) -> Array:
