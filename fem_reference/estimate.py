@@ -103,15 +103,19 @@ class PressureEstimate:
 
 
 @dataclass(frozen=True, eq=False)
-class _ComparisonPoints:
+class _Uncached:
+    """A dataclass that is pickled without its cached properties."""
+
+    def __getstate__(self) -> dict[str, object]:
+        return {f.name: getattr(self, f.name) for f in fields(self)}
+
+
+@dataclass(frozen=True, eq=False)
+class _ComparisonPoints(_Uncached):
     """Points at which two solutions are compared, located on the meshes of both."""
 
     final: Discretisation
     companion: Discretisation
-
-    def __getstate__(self) -> dict[str, object]:
-        # pickled without the cached properties
-        return {"final": self.final, "companion": self.companion}
 
     @cached_property
     def _sizes(self) -> tuple[np.ndarray, np.ndarray]:
@@ -158,7 +162,7 @@ class _ComparisonPoints:
 
 
 @dataclass(frozen=True, eq=False)
-class StressEstimate:
+class StressEstimate(_Uncached):
     """Estimated error of the stress of one harmonic as a function of position.
 
     safety : on the difference from the companion over ratio^order - 1
@@ -176,10 +180,6 @@ class StressEstimate:
     relative: float
     everywhere: float
     far: float
-
-    def __getstate__(self) -> dict[str, object]:
-        # pickled without the cached properties
-        return {f.name: getattr(self, f.name) for f in fields(self)}
 
     def displacement(self, u: np.ndarray, at: LocatedPoints) -> np.ndarray:
         """Estimate (3, n) of the displacement ``u`` (3, n) at points."""

@@ -14,14 +14,13 @@ from cyclopts import Parameter
 from rich.markup import escape
 
 from verification.cases.contact import Case, read_case, shipped_cases
-from verification.cases.toml import CaseError
+from verification.commands.common.choice import SHIPPED, path_of, require_distinct
 from verification.commands.common.exits import EXIT, CommandError, with_exit_code
 from verification.commands.common.folders import PACKAGE
 from verification.commands.common.options import AsJson, Flag, Jobs, Quiet
 from verification.commands.common.solving import run_info, solve, worker_count
 from verification.commands.common.terminal import (
     STYLE,
-    did_you_mean,
     named_table,
     one_line,
     print_json,
@@ -247,18 +246,8 @@ def exit_code(found: Examined) -> int:
 
 def _chosen(names: Sequence[str]) -> list[Case]:
     shipped = shipped_cases()
-    cases = []
-    for name in names or shipped:
-        if name in shipped:
-            cases.append(read_case(shipped[name]))
-        elif name.endswith(".toml"):
-            cases.append(read_case(Path(name)))
-        else:
-            near = did_you_mean(name, shipped)
-            raise CaseError(f"{name}: neither a shipped case (see coatcheck list) nor a .toml file{near}")
-    twice = [name for name, count in Counter(case.name for case in cases).items() if count > 1]
-    if twice:
-        raise CaseError(f"{twice[0]}: named twice; give each case file a name of its own")
+    cases = [read_case(path_of(name, shipped, SHIPPED)) for name in names or shipped]
+    require_distinct([case.name for case in cases])
     return cases
 
 

@@ -1,10 +1,8 @@
 """coatcheck run: solve cases, judge every claim, write the report."""
 
 import datetime
-import os
 import shlex
 import time
-import unicodedata
 from collections import Counter
 from collections.abc import Sequence
 from contextlib import suppress
@@ -20,7 +18,7 @@ from rich.table import Column, Table
 
 from verification.cases.contact import Case, read_case, shipped_cases
 from verification.cases.published import PublishedCase, is_published, published_cases, read_published
-from verification.cases.toml import CaseError
+from verification.commands.common.choice import SHIPPED, path_of, require_distinct
 from verification.commands.common.exits import STOPPED, run_code, with_exit_code
 from verification.commands.common.folders import BASELINE, RECORDS, within_package
 from verification.commands.common.options import (
@@ -44,7 +42,6 @@ from verification.commands.common.solving import (
 )
 from verification.commands.common.terminal import (
     STYLE,
-    did_you_mean,
     one_line,
     print_error,
     print_json,
@@ -183,17 +180,10 @@ def _choose(names: Sequence[str]) -> list[Case | PublishedCase]:
             cases.append(read_published(published[name]))
         elif name == "published":
             cases += [read_published(path) for path in published.values()]
-        elif name.endswith(".toml") or "/" in name or os.path.lexists(name):
-            path = Path(name)
-            cases.append(read_published(path) if is_published(path) else read_case(path))
         else:
-            near = did_you_mean(name, [*shipped, *published, "published"])
-            raise CaseError(f"{name}: neither a shipped case (see coatcheck list) nor a .toml file{near}")
-    # Two names may be one to a file system.
-    plain = Counter(unicodedata.normalize("NFC", case.name).casefold() for case in cases)
-    twice = {c.name for c in cases if plain[unicodedata.normalize("NFC", c.name).casefold()] > 1}
-    if twice:
-        raise CaseError(f"{sorted(twice)[0]}: named twice; give each case file a name of its own")
+            path = path_of(name, {}, SHIPPED, [*shipped, *published, "published"])
+            cases.append(read_published(path) if is_published(path) else read_case(path))
+    require_distinct([case.name for case in cases])
     return cases
 
 

@@ -11,10 +11,11 @@ from rich.table import Table
 
 from verification.cases.contact import Case, parse_case, read_case, shipped_cases
 from verification.cases.plausibility import beyond_limits
+from verification.commands.common.choice import SHIPPED, path_of
 from verification.commands.common.exits import EXIT, CommandError, no_result, with_exit_code
 from verification.commands.common.options import AsJson, Flag, Strict
 from verification.commands.common.solving import require_gmsh
-from verification.commands.common.terminal import did_you_mean, print_json, print_out, print_warnings
+from verification.commands.common.terminal import print_json, print_out, print_warnings
 from verification.desk.answer import Answer, Difference, answer, differences
 from verification.desk.wording import case_text
 from verification.judging.outcome import Outcome
@@ -89,13 +90,7 @@ def solve(
 def _from_file(file: str, given: Sequence[Any]) -> Case:
     if any(one is not None for one in given):
         raise CommandError(f"{file}: give a file or the options of a problem, not both")
-    shipped = shipped_cases()
-    if file in shipped:
-        return read_case(shipped[file])
-    if file.endswith(".toml") or "/" in file or Path(file).exists():
-        return read_case(Path(file))
-    near = did_you_mean(file, shipped)
-    raise CommandError(f"{file}: neither a shipped case (see coatcheck list) nor a .toml file{near}")
+    return read_case(path_of(file, shipped_cases(), SHIPPED))
 
 
 def _from_options(
@@ -136,32 +131,18 @@ def _content(
     second: Answer | None,
     apart: Sequence[Difference],
 ) -> dict[str, Any]:
-    """Everything, in SI; what is not finite is null."""
-    return _finite(
-        {
-            "title": case.title,
-            "source": case.source,
-            "problem": describe(case.problem),
-            "residual_stress": case.residual,
-            "case_file": case.text,
-            "warnings": list(warnings),
-            "answer": encode(first),
-            "check": None if second is None else encode(second),
-            "differences": [encode(one) for one in apart],
-        }
-    )
-
-
-def _finite(content: Any) -> Any:
-    if isinstance(content, Mapping):
-        return {key: _finite(value) for key, value in content.items()}
-    if isinstance(content, list | tuple):
-        return [_finite(value) for value in content]
-    if content in ("NaN", "Infinity", "-Infinity") or (
-        isinstance(content, float) and not math.isfinite(content)
-    ):
-        return None
-    return content
+    """Everything, in SI; NaN of a place that does not exist as text."""
+    return {
+        "title": case.title,
+        "source": case.source,
+        "problem": describe(case.problem),
+        "residual_stress": case.residual,
+        "case_file": case.text,
+        "warnings": list(warnings),
+        "answer": encode(first),
+        "check": None if second is None else encode(second),
+        "differences": [encode(one) for one in apart],
+    }
 
 
 def _print(case: Case, first: Answer, second: Answer | None, apart: Sequence[Difference]) -> None:

@@ -13,12 +13,11 @@ from rich.console import Console
 from rich.progress import ProgressColumn, Task, TaskID, TextColumn
 from rich.text import Text
 
-from verification.cases.toml import CaseError
+from verification.commands.common.choice import path_of
 from verification.commands.common.exits import EXIT, STOPPED, CommandError, with_exit_code
 from verification.commands.common.options import AsJson, Jobs, Output, Quiet, Strict
 from verification.commands.common.solving import progress_bar, require_gmsh
 from verification.commands.common.terminal import (
-    did_you_mean,
     print_error,
     print_json,
     print_out,
@@ -115,12 +114,7 @@ def _page(chosen: Study, came: "StudyOutcome", seconds: float) -> Path:
 
 def _choose(plan: str) -> Study:
     shipped = shipped_studies()
-    if plan in shipped:
-        return read_study_file(shipped[plan])
-    if plan.endswith(".toml") or "/" in plan or Path(plan).exists():
-        return read_study_file(Path(plan))
-    near = did_you_mean(plan, shipped)
-    raise CaseError(f"{plan}: neither a shipped study ({', '.join(shipped)}) nor a .toml file{near}")
+    return read_study_file(path_of(plan, shipped, f"study ({', '.join(shipped)})"))
 
 
 class _Rate(ProgressColumn):

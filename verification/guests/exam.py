@@ -66,7 +66,7 @@ def exam_path(folder: Path, case: Case) -> Path:
 
 
 def exam_task(case: Case, folder: Path) -> Task[Exam]:
-    """Solving ``case`` exactly; its profiles at the points that every guest is asked for."""
+    """Solving ``case`` exactly; its profiles at the points required of every guest."""
     path = exam_path(folder, case)
     words = ("verification.guests.exam:prepare", case.name, case.text, str(path))
     cost = 1.0 + len(case.problem.coatings)

@@ -205,28 +205,28 @@ def stress_with_uncertainty(
     A solution with a method of this name evaluates its stress once for both.
     """
     of: dict[str, Any] = {"layer": layer} if body == FLAT else {"layer": layer, "body": body}
-    if solution.uncertainty is None:
-        return solution.stress(x, y, z, **of), None
-    # Looked up in the type: a wrapper that changes ``stress`` alone must not be passed over.
-    both = getattr(type(solution), "stress_with_uncertainty", None)
-    if both is not None:
-        sigma, U = both(solution, x, y, z, **of)
-        return sigma, U
-    return solution.stress(x, y, z, **of), solution.stress_uncertainty(x, y, z, **of)
+    return _with_uncertainty(solution, "stress", x, y, z, **of)
 
 
 def displacement_with_uncertainty(
     solution: Solution, x: ArrayLike, y: ArrayLike, z: ArrayLike, body: str = FLAT
 ) -> tuple[Array, Array | None]:
     """Displacement and its uncertainty [m] at points, (3,) + points, as ``stress_with_uncertainty``."""
-    of: dict[str, Any] = {} if body == FLAT else {"body": body}
+    of = {} if body == FLAT else {"body": body}
+    return _with_uncertainty(solution, "displacement", x, y, z, **of)
+
+
+def _with_uncertainty(
+    solution: Solution, field: str, *points: ArrayLike, **of: Any
+) -> tuple[Array, Array | None]:
     if solution.uncertainty is None:
-        return solution.displacement(x, y, z, **of), None
-    both = getattr(type(solution), "displacement_with_uncertainty", None)
+        return getattr(solution, field)(*points, **of), None
+    # Looked up in the type: a wrapper that changes the field alone must not be passed over.
+    both = getattr(type(solution), f"{field}_with_uncertainty", None)
     if both is not None:
-        u, U = both(solution, x, y, z, **of)
-        return u, U
-    return solution.displacement(x, y, z, **of), solution.displacement_uncertainty(x, y, z, **of)
+        value, U = both(solution, *points, **of)
+        return value, U
+    return getattr(solution, field)(*points, **of), getattr(solution, f"{field}_uncertainty")(*points, **of)
 
 
 def _require_solid(coatings: Coatings, substrate: tuple[float, float], friction: float, of: str = "") -> None:

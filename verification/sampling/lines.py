@@ -52,14 +52,15 @@ def positions(
     near = edge * np.concatenate([1 + NEAR_EDGE, 1 - NEAR_EDGE])
     clear = x[np.abs(np.abs(x) - edge) > NEAR_EDGE[1] * edge]
     surface = np.unique(np.concatenate([clear, near, -near] if problem.friction else [clear, near]))
-    return {
-        line: z[line.body]
-        if line.coordinate == "z"
-        else oblique.positions(problem, line, a)
-        if line.depth is None
-        else (surface if line.depth == 0 else x)
-        for line in lines
-    }
+
+    def along(line: Line) -> Array:
+        if line.coordinate == "z":
+            return z[line.body]
+        if line.depth is None:
+            return oblique.positions(problem, line, a)
+        return surface if line.depth == 0 else x
+
+    return {line: along(line) for line in lines}
 
 
 def edge_of(solutions: Mapping[str, Solution]) -> float:

@@ -53,7 +53,7 @@ def test_the_pytest_plugin_has_one_test_for_each_comparison(tmp_path):
     description = tmp_path / "g" / "guest.toml"
     command = f'command = ["{sys.executable}", "-S", "-E", "adapter.py"]'
     description.write_text(f'name = "g"\n{command}\nclaim = 1e-6\n')
-    words = ["-p", "verification.guests.plugin", "-p", "no:cacheprovider", "g/guest.toml", "-q"]
+    words = ["-p", "no:cacheprovider", "g/guest.toml", "-q"]
     words += ["--coatcheck-cases", "01_uncoated_steel"]
     done = subprocess.run(
         [sys.executable, "-m", "pytest", *words], cwd=tmp_path, capture_output=True, text=True, timeout=120

@@ -38,9 +38,8 @@ def alarms(
     """Solve clean random problems; count the verdicts that are not AGREES, each a false alarm.
 
     One to five coatings, E1/E2 from 0.02 to 50, h/a_h from 0.02 to 10, Poisson ratios to 0.49, friction to
-    0.8;
-    the same seed draws the same problems everywhere. Each is left as a case file under OUTPUT/problems, all
-    of them in a report.
+    0.8, every other with an elastic ball; the same seed draws the same problems everywhere. Each is left as
+    a case file under OUTPUT/problems, all of them in a report.
 
     Args:
         count: Number of problems.

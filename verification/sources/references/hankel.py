@@ -174,8 +174,9 @@ class HankelField:
         count = self.nodes * end * (self.pressure.a + r) / 8
         if count > MOST:
             raise ValueError(
-                f"depth z = {reach:g} m with contact radius a = {self.pressure.a:g} m needs {count:.2g} "
-                "wavenumbers; choose z = 0 or a depth above 1e-4 a"
+                f"depth z = {reach:g} m (on the surface twice the first coating's thickness) with contact "
+                f"radius a = {self.pressure.a:g} m needs {count:.2g} wavenumbers; choose z = 0 or a depth "
+                "above 1e-4 a, a coating above half of that"
             )
         return wavenumber_panels(end, 1 / deepest, 8 / (self.pressure.a + r), self.nodes)
 
