@@ -1,4 +1,4 @@
-"""The manual as one PDF with contents and page numbers, through an installed Chromium.
+"""The manual as one PDF, its pages numbered, through an installed Chromium.
 
 The page is printed twice: the first print shows on which page each heading lies.
 """
