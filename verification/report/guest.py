@@ -8,8 +8,9 @@ import numpy as np
 from markupsafe import Markup
 
 from verification.guests.diagnosis import slips
-from verification.guests.exam import REFERENCE, profiles_of
+from verification.guests.exam import profiles_of
 from verification.guests.examination import Examined, outcome_counts
+from verification.guests.subjects import REFERENCE
 from verification.judging.verdict import Claim, Outcome, Verdict
 from verification.problem.quantity import QUANTITIES
 from verification.report.figures.curves import Curve, Difference, draw
