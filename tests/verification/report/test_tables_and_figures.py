@@ -21,7 +21,7 @@ from verification.report.tables.case import budget_table, comparison_table, cont
 from verification.report.tables.csv import embedded, line_csv
 from verification.report.tables.labels import OUTCOMES, pair_style, source_style
 from verification.report.tables.lookup import contact_radius, difference, judged, reference_source
-from verification.report.tables.numbers import aligned, engineering, scientific, seconds
+from verification.report.tables.numbers import aligned, engineering, scientific, seconds, with_uncertainty
 from verification.report.tables.symbols import drawn, typeset, unicode
 
 COATED = contact((2 * STEEL[0], 0.3, 1.0))
@@ -62,6 +62,25 @@ def test_engineering_prefix(value, unit, shown):
 def test_a_value_ends_where_its_uncertainty_ends(value, spread, shown):
     _, (_, text) = aligned([(1e9, 0.0), (value, spread)], "Pa")
     assert re.sub("<[^>]*>", "", text) == shown
+
+
+@pytest.mark.parametrize(
+    ("value", "spread", "shown"),
+    [
+        (1.2726114e9, 4.8e5, "1.27261 ± 0.00048 GPa"),
+        (1.2726114e9, 1.234e8, "1.27 ± 0.12 GPa"),
+        (1.2726114e9, 2e10, "1 ± 20 GPa"),
+        (1.2726114e9, None, "1.27261 GPa"),
+        (1.2726114e9, 0.0, "1.2726114 GPa"),
+        (1.2726114e9, 3.2e-1, "1.27261140 ± 3.2e-10 GPa"),
+        (1.2726114e9, nan, "1.27261 GPa ± nan Pa"),
+        (1.2726114e9, -2.0, "1.27261 GPa ± -2 Pa"),
+        (1.2726114e9, 1e300, "1.27261 GPa ± 1e+300 Pa"),
+        (inf, 1.0, "not finite"),
+    ],
+)
+def test_a_value_in_text_ends_where_its_uncertainty_ends(value, spread, shown):
+    assert with_uncertainty(value, spread, "Pa") == shown
 
 
 def test_numbers_of_a_column_share_their_unit_and_their_decimal_point():
