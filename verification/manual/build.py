@@ -12,10 +12,9 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
-from verification.manual.blocks import BLOCKS
+from verification.manual.blocks import BLOCKS, SOURCE
 from verification.manual.pages import generated_pages
 
-SOURCE = Path(__file__).parent / "source"
 NEEDED = ("sphinx", "myst_parser", "furo", "pypdf")
 BLOCK = re.compile(r"^```\{generated\} (\w+)\n```$", re.MULTILINE)
 
@@ -73,7 +72,7 @@ def assemble(source: Path) -> None:
         if path.exists():
             raise ManualError(f"{name}: generated, and kept in {SOURCE.name}/ too; rename that one")
         path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_bytes(content.encode() if isinstance(content, str) else content)
+        path.write_bytes(content if isinstance(content, bytes) else _with_blocks(content, name).encode())
 
 
 def _with_blocks(text: str, page: str) -> str:

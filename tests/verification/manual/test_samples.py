@@ -57,7 +57,7 @@ def failures(samples: list[tuple[str, str]], work: Path) -> Iterator[str]:
             elif language == "toml":
                 _read(code, work)
             elif language in ("sh", "console"):
-                for line in code.splitlines():
+                for line in re.sub(r" \\\n *", " ", code).splitlines():
                     _parsed(line)
         except Exception as error:  # whatever a sample raises is its failure
             yield f"{first}: {type(error).__name__}: {error}"
