@@ -2,7 +2,7 @@
 // 0.002 along the axis keeps the elements there from collapsing, which would lose their contact.
 SetFactory("OpenCASCADE");
 z[] = {%(z)s};
-far = 2000; hole = 0.002; rim = 4; top = 2; pieces = 80;
+far = 2000; hole = 0.002; rim = 3; top = 2; pieces = 80;
 For k In {1:#z[]-1}
   Rectangle(k) = {hole, -z[k], 0, far, z[k] - z[k-1]};
 EndFor
@@ -24,12 +24,12 @@ Line(l+3) = {p[pieces+2], p[0]};
 c = newll; Curve Loop(c) = {l:l+3};
 Plane Surface(#z[]) = {c};
 For k In {1:#z[]}
-  Physical Surface(k) = {k};
+  Physical Surface(Sprintf("S%%g", k), k) = {k};
 EndFor
 Field[1] = MathEval;
-Field[1].F = "%(size)s * Max(1, Sqrt(x*x + y*y) / 1.5)";
+Field[1].F = "%(size)s * Max(1, Sqrt(x*x + y*y) / 1.3)";
 Background Field = 1;
 Mesh.MeshSizeExtendFromBoundary = 0;
 Mesh.MeshSizeFromPoints = 0;
 Mesh.ElementOrder = 2;
-Mesh.MshFileVersion = 2.2;
+Mesh.Format = 39;  // Abaqus
