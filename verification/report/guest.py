@@ -3,6 +3,7 @@
 from collections import Counter
 from collections.abc import Sequence
 from math import log10
+from typing import Any
 
 import numpy as np
 from markupsafe import Markup
@@ -85,6 +86,33 @@ def badge(found: Examined) -> str:
         '<g fill="#fff" font-family="Verdana,sans-serif" font-size="11"><text x="6" y="14">'
         'coatcheck</text><text x="{at}" y="14">{text}</text></g></svg>\n'
     ).format(width=left + right, left=left, right=right, colour=colour, at=left + 6, text=text)
+
+
+def summary(found: Examined) -> dict[str, Any]:
+    """The examination in a few numbers, for a table of several guests.
+
+    differences : the largest of each kind of quantity, by the name of a scalar.   seconds : shortest, longest
+    answer at the finest level.   memory : the largest [bytes], None where it is not known.
+    """
+    total, guest = outcome_counts(found.results), found.guest
+    differences: dict[str, float] = {}
+    for claim, verdict in (item for result in found.results for item in result.verdicts):
+        if verdict.difference is not None:
+            kind = QUANTITIES[claim.quantity].kind
+            name = claim.quantity if kind == "scalar" else kind
+            differences[name] = max(differences.get(name, 0.0), verdict.difference)
+    own = [s for r in found.results for s in r.sources if s.source == guest.name and s.seconds]
+    times = [source.seconds for source in own]
+    return {
+        "guest": guest.name,
+        "cases": len(own),
+        "levels": f"{guest.parameter} {', '.join(f'{v:g}' for v in guest.levels)}" if guest.levels else "",
+        "agree": total[Outcome.AGREES],
+        "answered": sum(total.values()) - total[Outcome.UNSUPPORTED],
+        "differences": differences,
+        "seconds": [min(times, default=0.0), max(times, default=0.0)],
+        "memory": max((s.diagnostics["memory"] for s in own if "memory" in s.diagnostics), default=None),
+    }
 
 
 def _uncertainty(found: Examined) -> str:
