@@ -253,8 +253,8 @@ def _histograms(evidence: Evidence) -> Gallery | None:
         Panel(
             source_label(one.source),
             draw_histogram(DECADES, one.counts, f"Error over uncertainty of {source_label(one.source)}"),
-            f"{one.values} values, {100 * one.within:.3g} % within U; median of U over the error "
-            f"{one.median:.3g}",
+            f"{one.values} values, {100 * one.within:.4g} % within U, largest error over U "
+            f"{one.largest:.3g}; median of U over the error {one.median:.3g}",
             "",
         )
         for one in record.ratios
