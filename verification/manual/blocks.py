@@ -166,7 +166,7 @@ def real_guests() -> str:
         agree = f"{one['agree']} of {one['answered']}"
         rows.append([text(one["guest"]), str(one["cases"]), text(one["levels"]), *cells, time, memory, agree])
     head = ["code", "problems", "levels", "$p_0$", "$a$", r"$\delta$", "$p(r)$", "$u_z$ under a square"]
-    caption = "Largest difference from the exact solution; time at the finest level, one core of a busy machine."
+    caption = "Largest difference from the exact solution; time at the finest level, on a busy machine."
     return table([*head, "time", "memory", "agree"], rows, 3) + f"\n\n{caption}\n"
 
 

@@ -4,7 +4,7 @@ import numpy as np
 import tamaas
 
 
-def half_space(n, side, substrate):
+def half_space(n, side, substrate):  # noqa: D103
     tamaas.set_log_level(tamaas.LogLevel.warning)
     model = tamaas.ModelFactory.createModel(tamaas.model_type.basic_2d, [side, side], [n, n])
     model.E, model.nu = substrate
