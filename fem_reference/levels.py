@@ -118,10 +118,10 @@ def mesh_at(solid: LayeredSolid, grading: Grading, contact_radius: float) -> Mer
 def _meshes_at(solids: Solids, grading: Grading, contact_radius: float) -> Meshes:
     """Mesh of each of the ``solids``, alike on the surface; layers of equal thicknesses share one."""
     far = max(solid.far for solid in solids)
-    length = min((h for solid in solids for h in solid.thicknesses[:1]), default=contact_radius)
+    film = min((h for solid in solids for h in solid.thicknesses[:1]), default=contact_radius)
     made = {
         thicknesses: meridian_mesh(
-            contact_radius=contact_radius, thicknesses=thicknesses, far=far, grading=grading, length=length
+            contact_radius=contact_radius, thicknesses=thicknesses, far=far, grading=grading, film=film
         )
         for thicknesses in dict.fromkeys(solid.thicknesses for solid in solids)
     }

@@ -19,6 +19,7 @@ def setup(app: Any) -> dict[str, bool]:
     app.add_html_math_renderer("mathml", (_inline_formula, None), (_formula, None))
     app.connect("autodoc-process-docstring", _docstring)
     app.connect("autodoc-process-signature", _signature)
+    app.connect("missing-reference", _missing)
     return {"parallel_read_safe": True, "parallel_write_safe": True}
 
 
@@ -47,6 +48,14 @@ def _formula(writer: Any, node: Any) -> None:
 
 def _docstring(app: Any, what: str, name: str, it: object, options: object, lines: list[str]) -> None:
     lines[:] = restructured("\n".join(lines)).splitlines()
+
+
+def _missing(app: Any, env: Any, node: Any, content: Any) -> None:
+    """Warn of a function, method or module that a page names and the code lacks."""
+    from sphinx.util.logging import getLogger
+
+    if node.get("refdomain") == "py" and node.get("reftype") in ("func", "meth", "mod"):
+        getLogger(__name__).warning("no %s %r", node["reftype"], node["reftarget"], location=node)
 
 
 def _signature(
