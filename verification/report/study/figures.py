@@ -403,6 +403,7 @@ def _places(lines: QuadContourSet, h: Array, ratio: Array) -> list[tuple[float, 
 
 
 def pale(colour: str) -> tuple[float, float, float]:
+    """A ``colour`` for areas: nearer to white."""
     r, g, b = mpl.colors.to_rgb(colour)
     return (0.45 * r + 0.55, 0.45 * g + 0.55, 0.45 * b + 0.55)
 

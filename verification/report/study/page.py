@@ -182,6 +182,7 @@ def inputs_section(study: Study) -> Section:
 
 
 def load_text(study: Study) -> str:
+    """The load of a study, or its range."""
     return f"{study.load:g} N" if study.loads is None else f"{study.loads[0]:g} to {study.loads[1]:g} N"
 
 
@@ -327,6 +328,7 @@ def _near_cells(judgement: Judged, h: float, mode: str, units: Units) -> list[Ce
 
 
 def drawn_section(anchor: str, title: str, drawings: Sequence[Drawn]) -> Section:
+    """The figures of one kind, with what is common to them."""
     panels = [
         Panel(
             d.title,
@@ -368,6 +370,7 @@ def _maps(study: Study, found: Sequence[Curve], failures: list[str]) -> list[Dra
 
 
 def check_sections(checks: Sequence[Difference], tensions: Sequence[TensionCheck]) -> list[Section]:
+    """The largest differences of the other sources; no section where nothing was checked."""
     if not checks:
         return []
     rows = [
