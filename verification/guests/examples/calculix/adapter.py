@@ -5,7 +5,7 @@ import tempfile
 from pathlib import Path
 
 import numpy as np
-from deck import INP, deck, table
+from deck import INP, deck, table  # type: ignore[import-not-found]
 
 
 def solve(radius, load, substrate, coatings=(), size=0.1):
