@@ -155,9 +155,9 @@ def _quantities(found: Examined) -> Section:
                 (WORST_FIRST.index(worst), -(gap or 0.0)),
                 row(
                     Cell(quantity, note=QUANTITIES[quantity].meaning),
-                    outcome_cell(worst),
-                    Cell(digits(gap), gap),
                     words("; ".join(why[:MOST_REASONS])),
+                    Cell(digits(gap), gap),
+                    outcome_cell(worst),
                     Cell(f"{count[Outcome.AGREES]} of {answered}", count[Outcome.AGREES] / answered),
                     number(gap),
                     words(where),
@@ -168,7 +168,7 @@ def _quantities(found: Examined) -> Section:
     table = Table(
         "The largest difference over all cases and lines with the digits that it leaves; relative to the "
         "value (p0, a, approach), else to the smaller of p_h and p0.",
-        ["quantity", "worst", "digits", "likely reason", "agree", "largest difference", "where"],
+        ["quantity", "likely reason", "digits", "worst", "agree", "largest difference", "where"],
         [line for _, line in sorted(rows, key=lambda item: item[0])],
     )
     parts = [Part("", [table])]
