@@ -9,7 +9,8 @@ multiplied with Roache's factor of two meshes (P. J. Roache, J. Fluids Eng. 116 
     U = SAFETY |difference| / (ratio^order - 1),
 
 with the order of the elements and the ratio of the companion's triangles to those of the mesh next to the
-point: a thin coating, an interface, the axis keep the mesher from the ratio that it was asked for.
+point: a thin coating, an interface, the axis keep the mesher from the ratio that it was asked for. On an
+interface the estimate is at least that of the triangles beside it.
 
 Both solutions miss the given load within its tolerance, by amounts that are known. Changes between meshes are
 therefore taken at the given load: W ~ a^slope, d delta = dW / stiffness.
@@ -213,31 +214,48 @@ class StressEstimate(_Uncached):
         return np.concatenate([error, moved])
 
     @cached_property
-    def _corners(self) -> np.ndarray:
-        """Estimate at the corners of each triangle, (9, 3, triangles); a vertex has one value per layer."""
+    def _vertices(self) -> np.ndarray:
+        """Estimate at the vertices of the triangles of each layer, (9, layers, points)."""
         d = self.field.discretisation
-        t = d.triangulation.t
-        vertices = t + d.mesh.layer * d.mesh.points.shape[1]
-        worst = self._compared(self.points.triangles).reshape(9, -1, t.shape[1]).max(axis=1)
-        estimate = np.zeros((9, (int(d.mesh.layer.max()) + 1) * d.mesh.points.shape[1]))
+        points = d.mesh.points.shape[1]
+        vertices = d.triangulation.t + d.mesh.layer * points
+        worst = self._compared(self.points.triangles).reshape(9, -1, vertices.shape[1]).max(axis=1)
+        estimate = np.zeros((9, (int(d.mesh.layer.max()) + 1) * points))
         for share in np.divide(REACH, (1.0, *REACH[:-1])):
             for corner in vertices:
                 for component, row in zip(worst, estimate, strict=True):
                     np.maximum.at(row, corner, share * component)
             worst = estimate[:, vertices].max(axis=1)
-        return estimate[:, vertices]
+        return estimate.reshape(9, -1, points)
+
+    @cached_property
+    def _corners(self) -> np.ndarray:
+        """Estimate at the corners of each triangle, (9, 3, triangles)."""
+        d = self.field.discretisation
+        return self._vertices[:, d.mesh.layer, d.triangulation.t]
 
     @cached_property
     def _planes(self) -> dict[tuple[float, int], tuple[np.ndarray, np.ndarray]]:
-        """Vertices and estimates on the surface and on both sides of each interface, by (depth, layer)."""
+        """Vertices and estimates on the surface and on both sides of each interface, by (depth, layer).
+
+        Two solutions may agree on an interface without either being exact: the estimate is at least that of
+        the triangles of its side, of the tractions the geometric mean of both.
+        """
         found = {
             key: (vertices, _largest(self._error(points, key[1]), vertices.size))
             for key, (vertices, points) in self.points.planes.items()
         }
-        for upper, depth in enumerate(self.field.discretisation.mesh.depths):
+        mesh = self.field.discretisation.mesh
+        for upper, depth in enumerate(mesh.depths):
+            here = np.flatnonzero(mesh.points[1] == depth)
+            here = here[np.argsort(mesh.points[0, here])][: found[float(depth), upper][0].size]
+            beside = self._vertices[:6, upper : upper + 2][..., here]
+            beside[_TRACTIONS] = np.sqrt(beside[_TRACTIONS].prod(axis=1, keepdims=True))
             sides = [found[float(depth), layer][1] for layer in (upper, upper + 1)]
-            for side in sides:
-                side[_TRACTIONS] = np.maximum(sides[0][_TRACTIONS], sides[1][_TRACTIONS])
+            tractions = np.maximum(sides[0][_TRACTIONS], sides[1][_TRACTIONS])
+            for number, side in enumerate(sides):
+                side[_TRACTIONS] = tractions
+                np.maximum(side, beside[:, number], out=side)
         return found
 
     def __call__(self, at: LocatedPoints) -> np.ndarray:
@@ -358,7 +376,7 @@ def estimates(
     central = sum(body.central_displacement for body in bodies)
     displacement, factor = units.displacement, _factor(d.order, size)
     pointwise, functional = factor * _coarseness(size), _functional_factor(d.order, size)
-    balance = load_residual / 3 * a
+    balance = load_residual / 2 * a  # a ~ W^(1/n), n at least 2 on any layers
     radius_error = functional * size_radius + SAFETY * edge + far_radius + balance
     everywhere = far_pressure + load_residual / 3 * largest
     pressure = PressureEstimate(

@@ -123,10 +123,10 @@ def _meshes_at(solids: Solids, grading: Grading, contact_radius: float) -> Meshe
     """
     contact_radius = float(f"{contact_radius:.5g}")
     far = max(solid.far for solid in solids)
-    length = min((h for solid in solids for h in solid.thicknesses[:1]), default=contact_radius)
+    film = min((h for solid in solids for h in solid.thicknesses[:1]), default=contact_radius)
     made = {
         thicknesses: meridian_mesh(
-            contact_radius=contact_radius, thicknesses=thicknesses, far=far, grading=grading, length=length
+            contact_radius=contact_radius, thicknesses=thicknesses, far=far, grading=grading, film=film
         )
         for thicknesses in dict.fromkeys(solid.thicknesses for solid in solids)
     }

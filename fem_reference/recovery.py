@@ -30,7 +30,7 @@ __all__ = ["EDGE_SERIES", "HarmonicField", "edge_distances"]
 
 # Distances from the edge over EDGE_SIZE times the radius: the series replaces the strains below the first
 # and is fitted from there to the second.
-EDGE_SERIES = 20.0, 1000.0
+EDGE_SERIES = 20.0, 5000.0
 # A displaced edge adds the power -1/2, which is fitted and left out.
 _POWERS = np.array([-0.5, 0.5, 1.0, 1.5, 2.0])
 
@@ -41,7 +41,8 @@ def edge_distances(mesh: MeridianMesh) -> np.ndarray:
     A film on the surface limits the series to distances far below its thickness.
     """
     smallest, largest = EDGE_SERIES
-    film = 0.05 * mesh.length / (EDGE_SIZE * mesh.contact_radius)
+    thickness = (mesh.length / mesh.contact_radius) ** 2  # of the thinnest film on top, over a
+    film = 0.05 * thickness / EDGE_SIZE
     return np.geomspace(1.0, max(min(largest, film), 5 * smallest) / smallest, 32)
 
 

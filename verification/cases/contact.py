@@ -56,6 +56,10 @@ class Case:
         return lines_of(self.problem) + oblique_lines(self.problem)
 
 
+Expansion = Annotated[float, Field(ge=-1e-3, le=1e-3)]
+TemperatureChange = Annotated[float, Field(ge=-5000, le=5000)]
+
+
 class Limited(Strict):
     """Stresses of a material beyond which the contact is not elastic."""
 
@@ -73,21 +77,16 @@ class Material(Limited):
 
     E: Pascals
     nu: Poisson
-    expansion: Annotated[float, Field(ge=-1e-3, le=1e-3)] | None = None
+    expansion: Expansion | None = None
 
 
-class _Coating(Material):
-    thickness: Metres | None = None
-    thickness_over_a_h: Positive | None = None
+class Stressed(Strict):
+    """A coating with a residual stress, given or by thermal mismatch."""
+
     residual_stress: AnyPascals | None = None
+    expansion: Expansion | None = None
 
-    @model_validator(mode="after")
-    def _one_thickness(self) -> "_Coating":
-        if (self.thickness is None) == (self.thickness_over_a_h is None):
-            raise ValueError("needs exactly one of thickness [m] or thickness_over_a_h")
-        return self
-
-    def residual(self, below: float | None, change: float | None) -> float:
+    def residual(self, E: float, nu: float, below: float | None, change: float | None) -> float:
         """Equibiaxial residual stress [Pa]: that given, or by thermal mismatch, or 0.
 
         sigma = E/(1 - nu) (alpha_s - alpha) dT, of a thin film whose strain is that of its thick substrate.
@@ -101,7 +100,18 @@ class _Coating(Material):
             raise ValueError("residual_stress and expansion are both given; give one")
         if below is None or change is None:
             raise ValueError("expansion requires that of the substrate, and problem.temperature_change")
-        return self.E / (1 - self.nu) * (below - self.expansion) * change
+        return E / (1 - nu) * (below - self.expansion) * change
+
+
+class _Coating(Material, Stressed):
+    thickness: Metres | None = None
+    thickness_over_a_h: Positive | None = None
+
+    @model_validator(mode="after")
+    def _one_thickness(self) -> "_Coating":
+        if (self.thickness is None) == (self.thickness_over_a_h is None):
+            raise ValueError("needs exactly one of thickness [m] or thickness_over_a_h")
+        return self
 
     def in_metres(self, a_h: float) -> float:
         return self.thickness if self.thickness is not None else a_h * (self.thickness_over_a_h or 0.0)
@@ -141,7 +151,7 @@ class _Problem(Strict):
     substrate: Material
     coatings: Annotated[list[_Coating], Field(default_factory=list, max_length=50)]
     ball: BallEntry | None = None
-    temperature_change: Annotated[float, Field(ge=-5000, le=5000)] | None = None
+    temperature_change: TemperatureChange | None = None
 
     def residual(self) -> dict[str, tuple[float, ...]]:
         """Residual stress [Pa] of each coating by body; {} where there is none.
@@ -156,7 +166,7 @@ class _Problem(Strict):
             stresses = []
             for i, coating in enumerate(coatings):
                 try:
-                    stresses.append(coating.residual(below, self.temperature_change))
+                    stresses.append(coating.residual(coating.E, coating.nu, below, self.temperature_change))
                 except ValueError as error:
                     raise ValueError(f"{'ball.' if body == BALL else ''}coatings.{i}: {error}") from None
             found[body] = tuple(stresses)

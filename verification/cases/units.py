@@ -5,17 +5,29 @@ is the same number as 3e-6.
 """
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
 from decimal import Decimal
 from functools import cache
 from typing import TYPE_CHECKING, Annotated, Any
 
-from pydantic import Field, ValidationError, WrapValidator
+from pydantic import BaseModel, Field, ValidationError, WrapValidator
 
 if TYPE_CHECKING:
     from pint import UnitRegistry
 
-__all__ = ["AnyPascals", "InSI", "Metres", "Newtons", "Pascals", "Seconds", "in_si", "of_file"]
+__all__ = [
+    "AnyPascals",
+    "InSI",
+    "Metres",
+    "Newtons",
+    "Pascals",
+    "Seconds",
+    "Units",
+    "in_si",
+    "of_file",
+    "units_of",
+]
 
 LONGEST = 60  # characters of a text
 _NUMBER = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d{1,4})?)(.*)", re.ASCII | re.DOTALL)
@@ -33,7 +45,64 @@ _USUAL = {
 
 
 class InSI(float):
-    """A number given with a unit: it is in SI, whatever the unit of bare numbers in its file."""
+    """A number given with a ``unit``: it is in SI, whatever the unit of bare numbers in its file."""
+
+    unit = ""
+
+    @classmethod
+    def given_in(cls, value: float, unit: str) -> "InSI":
+        found = cls(value)
+        found.unit = unit
+        return found
+
+
+@dataclass(frozen=True)
+class Units:
+    """Units in which results are printed: names with the SI value of 1."""
+
+    length: str = "µm"
+    metre: float = 1e-6
+    stress: str = "MPa"
+    pascal: float = 1e6
+
+    def shown_stress(self, value: float) -> str:
+        """A given stress [Pa] with its unit."""
+        return f"{value / self.pascal:.4g} {self.stress}"
+
+    def shown_length(self, value: float) -> str:
+        """A given length [m] with its unit."""
+        return f"{value / self.metre:.4g} {self.length}"
+
+
+# Keys whose units are those of results. Moduli are in GPa in any file, without a wish for stresses in GPa.
+_LENGTHS = ("thickness",)
+_STRESSES = ("strength", "residual_stress", "hardness", "yield_strength")
+
+
+def units_of(file: BaseModel) -> Units:
+    """Units of printed results: of the first coating thickness, of the first strength or residual stress.
+
+    µm and MPa for those that have no unit in the file.
+    """
+    given = list(_with_units(file, ""))
+    found = Units()
+    for length in [one.unit for key, one in given if key in _LENGTHS][:1]:
+        found = replace(found, length=length.replace("um", "µm"), metre=float(in_si(f"1 {length}", "m")))
+    for stress in [one.unit for key, one in given if key in _STRESSES][:1]:
+        found = replace(found, stress=stress, pascal=float(in_si(f"1 {stress}", "Pa")))
+    return found
+
+
+def _with_units(part: Any, key: str) -> Iterator[tuple[str, InSI]]:
+    """Numbers given with a unit under the key, of those above, that holds them, in the order of the file."""
+    if isinstance(part, InSI):
+        yield key, part
+    elif isinstance(part, BaseModel | dict):
+        for name, value in part if isinstance(part, BaseModel) else part.items():
+            yield from _with_units(value, name if name in _LENGTHS + _STRESSES else key)
+    elif isinstance(part, list):
+        for value in part:
+            yield from _with_units(value, key)
 
 
 def in_si(text: str, unit: str) -> InSI:
@@ -62,7 +131,8 @@ def in_si(text: str, unit: str) -> InSI:
         ) from None
     if not alike:
         raise ValueError(f"{needs}; {name!r} is no unit of {_KINDS[unit]}")
-    return InSI(_registry().Quantity(Decimal(parts[1]), found).to(unit).magnitude)
+    value = _registry().Quantity(Decimal(parts[1]), found).to(unit).magnitude
+    return InSI.given_in(float(value), name)
 
 
 def of_file(value: float, unit: float) -> float:
@@ -84,7 +154,7 @@ def _with_unit(unit: str) -> WrapValidator:
             return checked(given)
         value = in_si(given, unit)
         try:
-            return InSI(checked(float(value)))
+            return InSI.given_in(checked(float(value)), value.unit)
         except ValidationError as error:
             raise ValueError(error.errors(include_url=False)[0]["msg"]) from None
 

@@ -28,8 +28,8 @@ from verification.commands.common.terminal import (
 )
 from verification.guests.description import FILE, Guest, parse_guest, read_guest
 from verification.guests.diagnosis import slips
-from verification.guests.exam import REFERENCE
 from verification.guests.examination import Examined, examined, outcome_counts, packed_cases
+from verification.guests.subjects import REFERENCE
 from verification.judging.outcome import Outcome
 from verification.problem.quantity import unit_of
 from verification.regression.junit import junit_xml

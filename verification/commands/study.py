@@ -10,8 +10,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rich.console import Console
-from rich.progress import ProgressColumn, Task, TaskID, TextColumn
-from rich.text import Text
+from rich.markup import escape
+from rich.progress import TaskID
 
 from verification.commands.common.choice import path_of
 from verification.commands.common.exits import EXIT, STOPPED, CommandError, with_exit_code
@@ -26,10 +26,15 @@ from verification.commands.common.terminal import (
 from verification.judging.verdict import Outcome
 from verification.running.pool import cores
 from verification.running.provenance import commit, machine
+from verification.sources.registry import SOURCES
 from verification.study.plan import Study, read_study_file, shipped_studies
 
 if TYPE_CHECKING:
+    from verification.report.study.page import Written
     from verification.study.engine import Outcome as StudyOutcome
+
+LABELS = {name: source.label for name, source in SOURCES.items()}
+FIGURE_GROUPS = 5
 
 
 @with_exit_code
@@ -56,7 +61,7 @@ def thickness(
         scheduler: Address of a running Dask scheduler, in place of a local cluster.
         limit: Only the first so many points.
         cross_check: Solve every k-th point by finite elements and by the exact reference too.
-        figures: Draw the table: PLAN.html, and figures/PLAN for print.
+        figures: Draw figures for the page, PLAN.html, and for print, in figures/PLAN.
     """
     if (jobs is not None and jobs < 1) or (limit is not None and limit < 1):
         raise CommandError(f"--jobs = {jobs}, --limit = {limit}; both must be positive")
@@ -71,10 +76,13 @@ def thickness(
 
     silent = quiet or as_json
     begin = time.perf_counter()
+    written = None
     try:
-        with _bars(silent) as report:
+        if not silent:
+            sys.stderr.write(f"coatcheck: {_forecast(chosen, output, jobs, limit)}\n")
+        with _bars(silent) as (report, drawing):
             came = run_study(chosen, output, partial(connected, scheduler, jobs), limit=limit, report=report)
-        page = _page(chosen, came, time.perf_counter() - begin) if figures else None
+            written = _page(chosen, came, time.perf_counter() - begin, figures, drawing)
     except SchedulerError as error:
         raise CommandError(str(error)) from None
     except KeyboardInterrupt:
@@ -88,19 +96,42 @@ def thickness(
     if as_json:
         content = asdict(came) | {"table": str(came.table), "lost": len(came.lost)}
         content["warnings"] = chosen.warnings
-        content["page"] = None if page is None else str(page)
+        content |= {"page": str(written.page), "answer": written.answer}
         print_json(content)
     elif not quiet:
         seconds = time.perf_counter() - begin
         print_out(
+            *(f"[bold]{escape(line)}[/]" for line in written.answer),
             f"{came.points} points in {seconds:.0f} s: {came.done} solves done, {came.kept} found in the "
-            f"cache, {came.failed} of {came.rows} rows failed; table: {came.table}"
-            + ("" if page is None else f"; page: {page}")
+            f"cache, {came.failed} of {came.rows} rows failed; table: {came.table}; page: {written.page}",
         )
     return EXIT[Outcome.NO_RESULT] if came.failed else EXIT[Outcome.AGREES]
 
 
-def _page(chosen: Study, came: "StudyOutcome", seconds: float) -> Path:
+def _forecast(chosen: Study, output: Path, jobs: int | None, limit: int | None) -> str:
+    """The stages of the study with the time they take, before the first of them starts."""
+    from verification.study.engine import forecast
+
+    processes = jobs or cores()
+    parts, seconds = [], 0.0
+    for source, expected in forecast(chosen, output, limit).items():
+        seconds += expected.missing * expected.seconds / processes
+        stored = expected.solves - expected.missing
+        parts.append(
+            f"{expected.solves} {LABELS[source]}" + (f" ({stored} of them stored)" if stored else "")
+        )
+    about = f"{seconds:.0f} s" if seconds < 100 else f"{seconds / 60:.0f} min"
+    what = f"{chosen.title}: solves: {', '.join(parts)}, then figures"
+    return f"{what}; about {about} on {processes} idle cores"
+
+
+def _page(
+    chosen: Study,
+    came: "StudyOutcome",
+    seconds: float,
+    figures: bool,
+    drawing: Callable[[str], None],
+) -> "Written":
     from verification.report.study.page import write_study_report
 
     facts = [
@@ -109,7 +140,7 @@ def _page(chosen: Study, came: "StudyOutcome", seconds: float) -> Path:
         ("commit", commit() or "not in a repository"),
         ("machine", f"{machine()}, {cores()} cores"),
     ]
-    return write_study_report(came.table, chosen, came.table.parent, facts)
+    return write_study_report(came.table, chosen, came.table.parent, facts, figures=figures, drawing=drawing)
 
 
 def _choose(plan: str) -> Study:
@@ -117,24 +148,21 @@ def _choose(plan: str) -> Study:
     return read_study_file(path_of(plan, shipped, f"study ({', '.join(shipped)})"))
 
 
-class _Rate(ProgressColumn):
-    """Points a second."""
-
-    def render(self, task: Task) -> Text:
-        return Text("" if task.speed is None else f"{task.speed:.2f}/s")
-
-
 @contextmanager
-def _bars(silent: bool) -> Iterator[Callable[[str, int, int], None]]:
-    """A progress bar for the points of each source with rate and time left, unless ``silent``."""
-    console = Console(stderr=True)
-    bar = progress_bar(console, TextColumn("points"), _Rate(), silent=silent)
+def _bars(silent: bool) -> Iterator[tuple[Callable[[str, int, int], None], Callable[[str], None]]]:
+    """Progress bars, unless ``silent``: points of each source, from the first second; then the figures."""
+    bar = progress_bar(Console(stderr=True), silent=silent)
     tasks: dict[str, TaskID] = {}
 
     def report(source: str, done: int, total: int) -> None:
         if source not in tasks:
-            tasks[source] = bar.add_task(source, total=total)
+            tasks[source] = bar.add_task(f"points, {LABELS[source]}", total=total)
         bar.update(tasks[source], completed=done, total=total)
 
+    def drawing(name: str) -> None:
+        if "drawing" not in tasks:
+            tasks["drawing"] = bar.add_task("", total=FIGURE_GROUPS)
+        bar.update(tasks["drawing"], advance=1, description=f"drawing: {name}")
+
     with bar:
-        yield report
+        yield report, drawing

@@ -41,7 +41,7 @@ class Ratios:
     """Error over uncertainty of every value of a method, the exact reference taken for the truth.
 
     counts : values in each of the bins of ``DECADES``.   within : share with an error of at most U.
-    median : of U over the error.   Errors below ``LEAST`` do not count.
+    median : of U over the error.   largest : of the error over U.   Errors below ``LEAST`` do not count.
     """
 
     source: str
@@ -49,6 +49,7 @@ class Ratios:
     within: float
     median: float
     counts: tuple[int, ...]
+    largest: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -56,7 +57,6 @@ class AlarmRecord:
     """The alarms of ``problems`` random problems of ``seed``, with provenance and seconds in total.
 
     agreeing : problems in which all comparisons agree and all invariants hold.
-    smallest_margin : the least (U - |A - B|)/U of all comparisons that agree.
     """
 
     seed: int
@@ -65,7 +65,6 @@ class AlarmRecord:
     comparisons: int
     invariants: int
     alarms: tuple[Alarm, ...]
-    smallest_margin: float | None
     started: str
     seconds: float
     commit: str | None
@@ -85,11 +84,6 @@ def counted(results: Sequence[CaseResult], seed: int, info: RunInfo) -> AlarmRec
         *((r, nothing) for r in results if not r.verdicts),
     ]
     alarms = [Alarm(r.name, r.title, *row, r.text) for r, row in found if row[3] is not Outcome.AGREES]
-    margins = [
-        v.margin / (v.margin + v.difference)
-        for _, _, v in verdicts
-        if v.outcome is Outcome.AGREES and v.margin is not None and v.difference
-    ]
     return AlarmRecord(
         seed,
         len(results),
@@ -97,7 +91,6 @@ def counted(results: Sequence[CaseResult], seed: int, info: RunInfo) -> AlarmRec
         len(verdicts),
         len(invariants),
         tuple(alarms),
-        min(margins, default=None),
         info.started,
         info.seconds,
         info.commit,
@@ -123,7 +116,9 @@ def _ratios(results: Sequence[CaseResult], source: str) -> Ratios:
     place = np.clip(np.log10(np.maximum(ratio, 1e-99)), DECADES[0], DECADES[-1])
     counts, _ = np.histogram(place, DECADES)
     within, median = (float(np.mean(ratio <= 1)), float(1 / np.median(ratio))) if ratio.size else (1.0, 0.0)
-    return Ratios(source, int(ratio.size), within, median, tuple(counts.tolist()))
+    return Ratios(
+        source, int(ratio.size), within, median, tuple(counts.tolist()), float(ratio.max(initial=0.0))
+    )
 
 
 def path_in(folder: Path) -> Path:

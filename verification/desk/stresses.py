@@ -29,6 +29,7 @@ from verification.study.quantities import (
     propagated,
     tensile,
     vertex,
+    with_residual,
 )
 
 __all__ = ["Course", "Extreme", "first_principal", "stresses"]
@@ -124,7 +125,7 @@ class _Layers:
 
     def _total(self, measure: Measure, layer: int) -> Measure:
         """``measure`` of a stress with the residual stress of its layer."""
-        return lambda s: measure(s + self.added(layer, s.ndim - 1))
+        return with_residual(measure, self.residual[layer] if layer < len(self.residual) else 0.0)
 
     def _shown(self, found: Located, layer: int) -> Located:
         """As ``tensile`` in a layer without residual stress; with one as it is, with its sign."""

@@ -34,12 +34,16 @@ LEAST_LEVELS, MOST_LEVELS = 3, 12
 
 
 class Supports(Strict):
-    """What a code can solve: the largest number of coatings, friction, stresses, an elastic ball."""
+    """What a code can solve: the largest number of coatings, friction, stresses, an elastic ball.
+
+    loads : prescribed ones, each a uniform pressure on a disc or on a square.
+    """
 
     coatings: Annotated[int, Field(ge=0, le=50)] = 0
     ball: bool = False
     friction: bool = False
     stress: bool = False
+    loads: Annotated[list[Literal["disc", "square"]], Field(max_length=2)] = Field(default=[])
 
 
 class Units(Strict):

@@ -12,7 +12,8 @@ from typing import Any
 import numpy as np
 from scipy.optimize import minimize_scalar
 
-from verification.guests.exam import ALONG_SURFACE, REFERENCE
+from verification.guests.exam import ALONG_SURFACE
+from verification.guests.subjects import REFERENCE
 from verification.judging.verdict import Outcome
 from verification.problem.arrays import Array
 from verification.problem.profile import Profile

@@ -7,13 +7,25 @@ from typing import Any
 
 import numpy as np
 
-from verification.cases.contact import Case, parse_case
+from verification.cases.contact import parse_case
 from verification.guests.description import Guest
-from verification.guests.protocol import Answer, ElasticBall, Layer, LineOfPoints, Question, Sphere
+from verification.guests.protocol import (
+    Answer,
+    Disc,
+    ElasticBall,
+    Layer,
+    LineOfPoints,
+    Problem,
+    Question,
+    Sphere,
+    Square,
+)
+from verification.guests.subjects import REFERENCE, SPHERE, SquareLoad, Subject, subject_of
 from verification.judging.verdict import Claim
 from verification.problem.arrays import Coatings
+from verification.problem.contact import CoatedContact
 from verification.problem.geometry import layer_at
-from verification.problem.profile import Profile, line_of
+from verification.problem.profile import Profile
 from verification.problem.quantity import unit_of
 from verification.running.contact import failed
 from verification.running.pool import Task
@@ -21,14 +33,8 @@ from verification.running.provenance import fingerprint
 from verification.running.records import plain
 from verification.running.result import CaseResult, SourceResult, describe, from_json, to_json
 from verification.running.store import StoreError, read_checked, write_checked
-from verification.sampling.lines import positions, sample, sample_contact
-from verification.sources.exact import solve_exactly
-from verification.sources.registry import EXACT
 
-REFERENCE = EXACT[0]
-# Claims of a case are about pairs of sources; those of the first method are the ones that a guest meets.
 ALONG_SURFACE = ("surface", "oblique surface")  # lines that cross the contact edge
-PATTERN = ("semianalytic", REFERENCE)
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,21 +44,21 @@ class Exam:
     result: CaseResult
 
 
-def prepare(name: str, text: str, path: str) -> None:
-    """Solve the case file ``text`` exactly, sample it on its lines, store it at ``path``."""
-    case = parse_case(text.encode(), Path(f"{name}.toml"))
-    solution = solve_exactly(case.problem)
-    places = positions(case.problem, case.lines, {REFERENCE: solution})
-    profiles = list(sample_contact(solution, REFERENCE, case.problem))
-    for line in case.lines:
-        profiles += sample(solution, REFERENCE, line, places[line], case.problem)
+def read_subject(name: str, text: str, load: str = SPHERE) -> Subject:
+    """The subject of the case file ``text`` under ``load``; ``name`` is that of the case."""
+    return subject_of(parse_case(text.encode(), Path(f"{name}.toml")), load)
+
+
+def prepare(name: str, text: str, path: str, load: str = SPHERE) -> None:
+    """Solve the case file ``text`` under ``load`` exactly, sample it on its lines, store it at ``path``."""
+    case = read_subject(name, text, load)
     result = CaseResult(
         name=case.name,
         title=case.title,
         source=case.source,
         problem=describe(case.problem),
         sources=(SourceResult(REFERENCE, 0.0),),
-        profiles=tuple(profiles),
+        profiles=case.exact(),
         verdicts=(),
         seconds=0.0,
         text=case.text,
@@ -60,24 +66,24 @@ def prepare(name: str, text: str, path: str) -> None:
     write_checked(Path(path), to_json(result) | {"made_by": fingerprint()})
 
 
-def exam_path(folder: Path, case: Case) -> Path:
+def exam_path(folder: Path, case: Subject) -> Path:
     """Where the exact reference of ``case`` lies in a run directory."""
     return folder / "problems" / f"{case.name}.json"
 
 
-def exam_task(case: Case, folder: Path) -> Task[Exam]:
+def exam_task(case: Subject, folder: Path) -> Task[Exam]:
     """Solving ``case`` exactly; its profiles at the points required of every guest."""
     path = exam_path(folder, case)
-    words = ("verification.guests.exam:prepare", case.name, case.text, str(path))
+    words = ("verification.guests.exam:prepare", case.stem, case.text, str(path), case.load)
     cost = 1.0 + len(case.problem.coatings)
     return Task(case.name, words, path, lambda data: Exam(from_json(data)), partial(_failed, case), cost=cost)
 
 
-def _failed(case: Case, reason: str, seconds: float) -> Exam:
+def _failed(case: Subject, reason: str, seconds: float) -> Exam:
     return Exam(failed(case, reason, seconds))
 
 
-def kept_exam(folder: Path, case: Case) -> CaseResult | None:
+def kept_exam(folder: Path, case: Subject) -> CaseResult | None:
     """The exact reference of an earlier run, where it is of the same case file and code."""
     try:
         data = read_checked(exam_path(folder, case))
@@ -88,12 +94,8 @@ def kept_exam(folder: Path, case: Case) -> CaseResult | None:
     return result if same and data.get("made_by") == fingerprint() and result.profiles else None
 
 
-def claims_of(case: Case, guest: Guest) -> tuple[Claim, ...]:
-    """The claims of ``case`` about the exact reference, as claims about the guest.
-
-    The cap is that of the case, or what the guest claims, where this is more.
-    """
-    found = [claim for claim in case.claims if claim.between == PATTERN]
+def claims_of(case: Subject, guest: Guest) -> tuple[Claim, ...]:
+    """The claims of ``case`` as claims about the guest; the cap is what it claims, where this is more."""
     return tuple(
         Claim(
             claim.quantity,
@@ -103,19 +105,18 @@ def claims_of(case: Case, guest: Guest) -> tuple[Claim, ...]:
             claim.why,
             max(claim.edge, guest.edge) if claim.line in ALONG_SURFACE else claim.edge,
         )
-        for claim in found
+        for claim in case.claims
     )
 
 
 def question_of(
-    case: Case, exam: CaseResult, guest: Guest, claims: tuple[Claim, ...], parameter: dict[str, float]
+    case: Subject, exam: CaseResult, guest: Guest, claims: tuple[Claim, ...], parameter: dict[str, float]
 ) -> Question:
     """The question about ``case`` in the units of ``guest``, at the points of ``exam``.
 
     Only quantities of ``claims`` that the guest gives by its own statement are wanted.
     """
-    problem = case.problem
-    m, Pa, N = (guest.factor(unit) for unit in ("m", "Pa", "N"))
+    m = guest.factor("m")
     wanted: dict[str, list[str]] = {}
     for claim in claims:
         if guest.gives(claim.quantity):
@@ -124,36 +125,46 @@ def question_of(
     for name, quantities in wanted.items():
         if name == "contact":
             continue
-        line = line_of(name, problem)
+        line = case.line(name)
         along = next(p.position for p in exam.profiles if p.line == name)
         x, y, z = line.points(along)
-        layers = layer_at(z, problem.seen_from(line.body).coatings, line.layer)
+        layers = layer_at(z, case.problem.seen_from(line.body).coatings, line.layer)
         points: dict[str, Any] = {"x": x / m, "y": y / m, "z": z / m, "layer": layers}
         at = {name: v.tolist() for name, v in points.items()}
         lines.append(LineOfPoints(line=name, body=line.body, quantities=quantities, **at))
+
+    level = "".join(f"@{name}={value:g}" for name, value in parameter.items())
+    return Question(
+        id=f"{case.name}{level}",
+        problem=_in_units(case, guest),
+        parameter=dict(parameter),
+        contact=wanted.get("contact", []),
+        lines=lines,
+    )
+
+
+def _in_units(case: Subject, guest: Guest) -> Problem:
+    """The problem of ``case`` in the units of ``guest``."""
+    problem = case.loaded
+    m, Pa, N = (guest.factor(unit) for unit in ("m", "Pa", "N"))
 
     def materials(coatings: Coatings) -> list[Layer]:
         return [Layer(E=E / Pa, nu=nu, thickness=h / m) for E, nu, h in coatings]
 
     E, nu = problem.substrate
+    solid: dict[str, Any] = {
+        "coatings": materials(problem.coatings),
+        "substrate": Layer(E=E / Pa, nu=nu),
+    }
+    if isinstance(problem, SquareLoad):
+        return Square(side=problem.side / m, pressure=problem.pressure / Pa, **solid)
+    if not isinstance(problem, CoatedContact):
+        return Disc(load_radius=problem.load_radius / m, pressure=problem.pressure / Pa, **solid)
     ball = problem.ball and ElasticBall(
         E=problem.ball[0] / Pa, nu=problem.ball[1], coatings=materials(problem.ball[2])
     )
-    sphere = Sphere(
-        radius=problem.radius / m,
-        load=problem.load / N,
-        friction=problem.friction,
-        coatings=materials(problem.coatings),
-        substrate=Layer(E=E / Pa, nu=nu),
-        ball=ball,
-    )
-    level = "".join(f"@{name}={value:g}" for name, value in parameter.items())
-    return Question(
-        id=f"{case.name}{level}",
-        problem=sphere,
-        parameter=dict(parameter),
-        contact=wanted.get("contact", []),
-        lines=lines,
+    return Sphere(
+        radius=problem.radius / m, load=problem.load / N, friction=problem.friction, ball=ball, **solid
     )
 
 

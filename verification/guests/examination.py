@@ -13,6 +13,7 @@ from verification.guests.doors.asking import ask_task, end_programs
 from verification.guests.doors.files import pack
 from verification.guests.doors.program import Solved
 from verification.guests.exam import claims_of, exam_task, kept_exam, question_of
+from verification.guests.subjects import Subject, subjects_of
 from verification.guests.verdicts import judged, refused
 from verification.judging.verdict import Claim, Outcome, Verdict
 from verification.running.result import CaseResult
@@ -76,7 +77,8 @@ def examined(guest: Guest, cases: Sequence[Case], folder: Path, solve: Solve, jo
 
     solve : runs tasks with a time limit each, as ``run_tasks`` does.   jobs : programs side by side.
     """
-    chosen = [case for case in cases if guest.refusal(case.problem) is None]
+    subjects = subjects_of(cases, guest)
+    chosen = [case for case in subjects if guest.refusal(case.problem) is None]
     exams = dict(zip((case.name for case in chosen), _exams(chosen, folder, solve), strict=True))
     able = [case for case in chosen if exams[case.name].profiles]
     limit = guest.time_limit * len(guest.questions) + MARGIN
@@ -87,7 +89,7 @@ def examined(guest: Guest, cases: Sequence[Case], folder: Path, solve: Solve, jo
         end_programs()
     replies = {case.name: answer for case, answer in zip(able, answers, strict=True)}
     results = []
-    for case in cases:
+    for case in subjects:
         reason = guest.refusal(case.problem)
         if reason is not None:
             results.append(refused(guest, case, reason))
@@ -103,7 +105,7 @@ def packed_cases(guest: Guest, cases: Sequence[Case], folder: Path, solve: Solve
 
     Raises StoreError where one cannot be solved or written.
     """
-    chosen = [case for case in cases if guest.refusal(case.problem) is None]
+    chosen = [case for case in subjects_of(cases, guest) if guest.refusal(case.problem) is None]
     for case, exam in zip(chosen, _exams(chosen, folder, solve), strict=True):
         if not exam.profiles:
             raise StoreError(f"{case.name}: {exam.sources[0].failure}")
@@ -113,7 +115,7 @@ def packed_cases(guest: Guest, cases: Sequence[Case], folder: Path, solve: Solve
     return len(chosen)
 
 
-def _exams(cases: Sequence[Case], folder: Path, solve: Solve) -> list[CaseResult]:
+def _exams(cases: Sequence[Subject], folder: Path, solve: Solve) -> list[CaseResult]:
     """The exact reference of each case, those of an earlier run kept."""
     found = {case.name: exam for case in cases if (exam := kept_exam(folder, case)) is not None}
     new = [case for case in cases if case.name not in found]

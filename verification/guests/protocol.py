@@ -54,6 +54,27 @@ class Sphere(_Strict):
     ball: ElasticBall | None = None
 
 
+class Disc(_Strict):
+    """A uniform pressure on a disc around the origin; coatings from the surface down."""
+
+    load_radius: float
+    pressure: float
+    coatings: list[Layer]
+    substrate: Layer
+
+
+class Square(_Strict):
+    """A uniform pressure on a square of ``side`` around the origin; coatings from the surface down."""
+
+    side: float
+    pressure: float
+    coatings: list[Layer]
+    substrate: Layer
+
+
+Problem = Sphere | Disc | Square
+
+
 class LineOfPoints(_Strict):
     """Points x, y, z with the layer of each, counted from 0 at the surface; the quantities wanted there.
 
@@ -77,7 +98,7 @@ class Question(_Strict):
 
     protocol: Literal["coatcheck-guest/1"] = VERSION
     id: str
-    problem: Sphere
+    problem: Problem
     parameter: dict[str, float | int] = Field(default_factory=dict)
     contact: list[str]
     lines: list[LineOfPoints]

@@ -4,11 +4,11 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
-from verification.cases.contact import Case
 from verification.guests.description import Guest
 from verification.guests.doors.program import Solved
-from verification.guests.exam import REFERENCE, claims_of, profiles_of
+from verification.guests.exam import claims_of, profiles_of
 from verification.guests.refinement import LEAST, estimated
+from verification.guests.subjects import REFERENCE, Subject
 from verification.judging.verdict import Claim, Outcome, Verdict
 from verification.problem.profile import Profile
 from verification.running.contact import decide
@@ -17,7 +17,7 @@ from verification.running.result import CaseResult, SourceResult, describe
 Key = tuple[str, str]  # quantity, line
 
 
-def judged(guest: Guest, case: Case, exam: CaseResult, replies: Sequence[Solved]) -> CaseResult:
+def judged(guest: Guest, case: Subject, exam: CaseResult, replies: Sequence[Solved]) -> CaseResult:
     """The verdicts on ``replies``, one for each level, with the profiles behind them."""
     levels = [profiles_of(reply.answer, exam, guest) for reply in replies]
     last = replies[-1].answer
@@ -40,7 +40,7 @@ def judged(guest: Guest, case: Case, exam: CaseResult, replies: Sequence[Solved]
     return _result(case, (mine, exact), tuple(profiles.values()), verdicts, sum(r.seconds for r in replies))
 
 
-def refused(guest: Guest, case: Case, reason: str) -> CaseResult:
+def refused(guest: Guest, case: Subject, reason: str) -> CaseResult:
     """The result of a case that the guest does not solve, by its own statement."""
     verdict = Verdict(Outcome.UNSUPPORTED, reason)
     return _result(
@@ -107,7 +107,7 @@ def _diagnostics(guest: Guest, replies: Sequence[Solved], memory: int | None) ->
 
 
 def _result(
-    case: Case,
+    case: Subject,
     sources: tuple[SourceResult, ...],
     profiles: tuple[Profile, ...],
     verdicts: Sequence[tuple[Claim, Verdict]],

@@ -18,6 +18,7 @@ from contextlib import contextmanager, nullcontext
 from dataclasses import dataclass, field
 from itertools import chain, groupby, islice, takewhile
 from pathlib import Path
+from statistics import median
 from typing import Any
 
 from verification.running.pool import THREAD_VARIABLES, cores
@@ -33,6 +34,7 @@ DIED = "every worker that it was submitted to was killed, most likely for lack o
 WAIT = 60.0  # s, for the first worker
 PAUSE = 5.0  # s between two writings of the table
 CONNECT_WITHIN = 5.0  # s, to a scheduler that was named
+USUAL = dict(zip(SOURCES, (0.9, 2.5, 1.0), strict=True))  # s
 SHARE = 0.02  # of the time, at most, is spent on writing the table while it grows
 # With Dask's own setting every freed array is returned to the system, and a third of the time is spent on
 # allocating anew; the memory kept between solves here is bounded too.
@@ -64,6 +66,46 @@ class Outcome:
     lost: dict[str, str] = field(default_factory=dict)
     complete: bool = False
     seconds: float = 0.0
+
+
+@dataclass(frozen=True)
+class Forecast:
+    """Solves of one source, the ``missing`` ones of them, and the usual ``seconds`` of one on a core."""
+
+    solves: int
+    missing: int
+    seconds: float
+
+
+def forecast(study: Study, folder: Path, limit: int | None = None) -> dict[str, Forecast]:
+    """What a run of ``study`` in ``folder`` has to solve, by source.
+
+    A solve takes as long as the median of those recorded in ``folder``, or ``USUAL`` seconds.
+    """
+    points = study.points if limit is None else min(limit, study.points)
+    cache, seconds = Cache(folder / "cache"), _recorded(folder / "ledger.jsonl")
+    counts = {source: [0, 0] for source in SOURCES}
+    for one in takewhile(lambda one: one.first < points, study.solves()):
+        counts[one.source][0] += 1
+        counts[one.source][1] += not cache.has(one.key)
+    return {
+        source: Forecast(count[0], count[1], seconds.get(source, USUAL[source]))
+        for source, count in counts.items()
+        if count[0]
+    }
+
+
+def _recorded(ledger: Path) -> dict[str, float]:
+    """Median seconds of a solve by source, from a ledger; {} without a readable one."""
+    found: dict[str, list[float]] = {}
+    try:
+        for line in ledger.read_text(encoding="utf-8").splitlines()[-1000:]:
+            note = json.loads(line)
+            if note["event"] == "stored":
+                found.setdefault(note["source"], []).append(float(note["seconds"]))
+    except (OSError, ValueError, KeyError, TypeError):
+        return {}
+    return {source: median(seconds) for source, seconds in found.items()}
 
 
 def table_path(folder: Path, study: Study) -> Path:
@@ -205,7 +247,7 @@ class _Run:
 
     def covered(self, one: Solve) -> int:
         """Number of requested points that a solve covers."""
-        return min(len(self.study.frictions), self.outcome.points - one.first)
+        return min(one.points, self.outcome.points - one.first)
 
     def missing(self) -> Iterator[Solve]:
         """The distinct solves that are not in the cache: first the curves, then their checks."""
@@ -324,4 +366,4 @@ class _Run:
                 found = self.cache.get(one.key, one.request)
             except StoreError:
                 return []  # not solved yet
-        return table_rows(one.first, one.key, one.request, found)[: self.covered(one)]
+        return table_rows(one.first, one.key, one.request, found, one.places)[: self.covered(one)]

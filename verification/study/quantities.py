@@ -6,7 +6,7 @@ depths, then evaluated by the solution itself.
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal, get_args
 
 import numpy as np
@@ -46,11 +46,12 @@ class Located:
 
 
 def quantities(
-    solution: Solution, problem: CoatedContact, frictions: Sequence[float]
-) -> dict[float, dict[str, Located]]:
-    """Every stress of ``QUANTITIES`` at each friction, from one ``solution``.
+    solution: Solution, problem: CoatedContact, frictions: Sequence[float], residual: Sequence[float] = (0.0,)
+) -> dict[tuple[float, float], dict[str, Located]]:
+    """Every stress of ``QUANTITIES`` by residual stress and friction, from one ``solution``.
 
     solution : of ``problem``, which has one coating, at friction 1, or at 0 where no other is asked for.
+    residual : equibiaxial stresses [Pa] of the coating, each added to sigma_xx, sigma_yy within it.
     A tensile stress that is nowhere positive has value 0 and position NaN. Without friction, where the field
     is symmetric in x, the position is on the trailing side.
     Raises ValueError where a friction is given and the solution has none, or what ``solution.stress`` raises.
@@ -73,14 +74,33 @@ def quantities(
         "sigma_zz_interface": (upper, lambda s: s[ZZ]),
     }
     layers = {"von_mises_coating": [top, *above, upper], "von_mises_substrate": [lower, *below]}
-    found: dict[float, dict[str, Located]] = {}
+    found: dict[tuple[float, float], dict[str, Located]] = {}
     for f in frictions:
-        found[f] = {name: tensile(largest(line, measure, f)) for name, (line, measure) in lines.items()}
-        for name, planes in layers.items():
-            candidates = [largest(planes[0], von_mises, f), largest(planes[-1], von_mises, f)]
-            within = inside(parts, planes, near, f, von_mises)
-            found[f][name] = max([*candidates, *within], key=lambda place: place.value)
+        alone = {name: largest(line, measure, f) for name, (line, measure) in lines.items()}
+        for stress in residual:
+            added = {name: stress for name in ("sigma_xx_surface", "sigma_xx_base")}
+            here = {
+                name: tensile(replace(at, value=at.value + added.get(name, 0.0)))
+                for name, at in alone.items()
+            }
+            for name, planes in layers.items():
+                if name == "von_mises_substrate" and (residual[0], f) in found:
+                    here[name] = found[residual[0], f][name]
+                    continue
+                measure = with_residual(von_mises, stress if name == "von_mises_coating" else 0.0)
+                candidates = [largest(planes[0], measure, f), largest(planes[-1], measure, f)]
+                within = inside(parts, planes, near, f, measure)
+                here[name] = max([*candidates, *within], key=lambda place: place.value)
+            found[stress, f] = here
     return found
+
+
+def with_residual(measure: Measure, residual: float) -> Measure:
+    """``measure`` of a stress with an equibiaxial ``residual`` stress [Pa] added to sigma_xx, sigma_yy."""
+    if not residual:
+        return measure
+    added = residual * np.array([1.0, 1.0, 0.0, 0.0])
+    return lambda s: measure(s + added.reshape(4, *[1] * (s.ndim - 1)))
 
 
 def depths(top: float, bottom: float, width: float) -> Array:

@@ -3,7 +3,8 @@
 Columns, in SI units unless they say "over":
 
     point, source, status ("solved" or "failed"), failure (the message, null where there is none)
-    radius, load, coating_E, coating_nu, thickness, substrate_E, substrate_nu, friction       the input
+    radius, load, coating_E, coating_nu, thickness, residual_stress, substrate_E, substrate_nu,
+    friction                                                                                       the input
     ball (JSON): E, nu, coatings of an elastic ball, null of a rigid one
     modulus_ratio (E1/E2), thickness_over_a_h; a_h, p_h, delta_h of the bare substrate and ball
     peak_pressure, contact_radius, approach: X, X_over_p_h | a_h | delta_h, X_uncertainty
@@ -37,7 +38,8 @@ SCALARS = {name: ALL[name].scale for name in CONTACT_SCALARS}
 SCALES = dict.fromkeys(QUANTITIES, "p_h") | SCALARS
 
 _INPUT = (
-    *("radius", "load", "coating_E", "coating_nu", "thickness", "substrate_E", "substrate_nu", "friction"),
+    *("radius", "load", "coating_E", "coating_nu", "thickness", "residual_stress"),
+    *("substrate_E", "substrate_nu", "friction"),
     *("modulus_ratio", "thickness_over_a_h", "a_h", "p_h", "delta_h"),
 )
 _RESULT = (

@@ -228,6 +228,6 @@ def test_guest_files_have_a_unit_of_time(tmp_path):
 
 
 def test_bare_numbers_do_not_import_pint():
-    code = "import sys; from verification.commands.list_cases import list_cases; list_cases(); "
+    code = "import sys; from verification.commands.shipped.list_cases import list_cases; list_cases(); "
     code += "assert 'pint' not in sys.modules"
     subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, timeout=60)

@@ -20,7 +20,7 @@ from verification.cases.contact import shipped_cases
 from verification.cases.published import published_cases
 from verification.commands.common import terminal
 from verification.commands.compare import compare
-from verification.commands.list_cases import list_cases
+from verification.commands.shipped.list_cases import list_cases
 from verification.report.material import Material
 from verification.report.pdf import NoBrowser, browser, printed
 from verification.report.write import report_json

@@ -9,8 +9,9 @@ from verification.cases.contact import read_case, shipped_cases
 from verification.guests.description import Guest, Supports
 from verification.guests.diagnosis import slips
 from verification.guests.doors.program import Solved
-from verification.guests.exam import REFERENCE, claims_of, prepare, question_of
+from verification.guests.exam import claims_of, prepare, question_of
 from verification.guests.protocol import VERSION, Answer
+from verification.guests.subjects import REFERENCE, subject_of
 from verification.guests.verdicts import judged
 from verification.problem.contact import CoatedContact
 from verification.running.result import from_json
@@ -29,7 +30,7 @@ def exams(tmp_path_factory):
     """Each case with its exact reference."""
     found = {}
     for name in (HERTZ, COATED, SLIDING):
-        case = read_case(shipped_cases()[name])
+        case = subject_of(read_case(shipped_cases()[name]))
         path = tmp_path_factory.mktemp("exam") / "exam.json"
         prepare(case.name, case.text, str(path))
         found[name] = case, from_json(read_checked(path))

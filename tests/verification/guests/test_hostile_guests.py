@@ -16,6 +16,7 @@ from verification.guests.doors.files import pack
 from verification.guests.doors.program import Program
 from verification.guests.exam import claims_of, exam_path, prepare, question_of
 from verification.guests.protocol import ProtocolError
+from verification.guests.subjects import subject_of
 from verification.guests.verdicts import judged
 from verification.judging.verdict import Outcome
 from verification.running.pool import run_tasks
@@ -160,7 +161,7 @@ SLOW = {
 @pytest.fixture(scope="module")
 def hertz(tmp_path_factory):
     """The uncoated case with its exact reference and where that is stored."""
-    case = read_case(shipped_cases()["01_uncoated_steel"])
+    case = subject_of(read_case(shipped_cases()["01_uncoated_steel"]))
     folder = tmp_path_factory.mktemp("hostile")
     path = exam_path(folder, case)
     prepare(case.name, case.text, str(path))

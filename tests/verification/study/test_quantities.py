@@ -34,7 +34,7 @@ class Uncoated:
 
     @cached_property
     def found(self):
-        return quantities(self.exact, self.problem, FRICTIONS)
+        return {f: at for (_, f), at in quantities(self.exact, self.problem, FRICTIONS).items()}
 
 
 @pytest.fixture(scope="module")
@@ -111,9 +111,11 @@ def test_one_solution_with_unit_friction_speaks_for_every_other():
     bare = CoatedContact(problem.radius, problem.load, problem.coatings, problem.substrate, 0.0)
     none = quantities(integral_equation.solve(**keywords), bare, (0.0,))
     for name in QUANTITIES:
-        assert unit[0.0][name].value == pytest.approx(none[0.0][name].value, rel=1e-9, abs=1e-3), name
+        assert unit[0.0, 0.0][name].value == pytest.approx(none[0.0, 0.0][name].value, rel=1e-9, abs=1e-3), (
+            name
+        )
     # sliding asked for outright, at the trailing side of the base where unit friction finds its peak
-    at = unit[0.3]["sigma_xx_base"]
+    at = unit[0.0, 0.3]["sigma_xx_base"]
     sliding = integral_equation.solve(**keywords, friction=0.3)
     assert at.value == pytest.approx(sliding.stress(at.x, 0.0, at.z, layer=0)[0, 0], rel=1e-6)
 
@@ -122,6 +124,23 @@ def test_friction_of_a_frictionless_solution_is_refused():
     problem = contact((420e9, 0.25, 0.6))
     with pytest.raises(ValueError, match="solve with friction=1"):
         quantities(Hamilton(1e-2, 20.0, 210e9, 0.3, 0.5), problem, (0.25,))
+
+
+def test_residual_stress_adds_to_the_coating_alone(uncoated):
+    case, stress = uncoated[1.0], -0.4 * uncoated[1.0].exact.peak_pressure
+    found = quantities(case.exact, case.problem, (0.0, 0.5), (0.0, stress))
+    for f in (0.0, 0.5):
+        plain, more = found[0.0, f], found[stress, f]
+        surface = plain["sigma_xx_surface"].value + stress
+        assert more["sigma_xx_surface"].value == pytest.approx(max(surface, 0), rel=1e-12)
+        for name in ("sigma_xx_substrate", "sigma_xz_interface", "sigma_zz_interface", "von_mises_substrate"):
+            assert more[name].value == plain[name].value
+    # on the axis, without friction: |sigma_xx + s - sigma_zz|, or |s| far from the contact
+    a = case.exact.contact_radius
+    z = np.linspace(0, a, 2001)
+    sigma = case.exact.stress(0 * z, 0.0, z)
+    expected = max(np.abs(sigma[0, 0] + stress - sigma[2, 2]).max(), abs(stress))
+    assert found[stress, 0.0]["von_mises_coating"].value >= expected * (1 - 1e-5)
 
 
 def test_compression_is_no_tension(uncoated):

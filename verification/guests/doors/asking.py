@@ -4,12 +4,12 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from verification.cases.contact import Case, parse_case
 from verification.guests.description import Guest, parse_guest
 from verification.guests.doors.files import read_answer
 from verification.guests.doors.program import GRACE, Program, Solved, command_of
-from verification.guests.exam import claims_of, exam_path, question_of
+from verification.guests.exam import claims_of, exam_path, question_of, read_subject
 from verification.guests.protocol import VERSION, Answer, ProtocolError, Question
+from verification.guests.subjects import Subject
 from verification.running.pool import Task
 from verification.running.records import plain
 from verification.running.result import from_json
@@ -18,10 +18,10 @@ from verification.running.store import StoreError, read_checked, write_checked
 Replies = list[Solved]
 
 
-def ask(guest_file: str, guest_text: str, name: str, text: str, exam: str, path: str) -> None:
-    """Put the case file ``text`` to the guest at every level; store its answers at ``path``."""
+def ask(guest_file: str, guest_text: str, name: str, text: str, load: str, exam: str, path: str) -> None:
+    """Put the case file ``text`` under ``load`` to the guest at every level, its answers to ``path``."""
     guest = parse_guest(guest_text.encode(), Path(guest_file))
-    case = parse_case(text.encode(), Path(f"{name}.toml"))
+    case = read_subject(name, text, load)
     result = from_json(read_checked(Path(exam)))
     claims = claims_of(case, guest)
     questions = [question_of(case, result, guest, claims, parameter) for parameter in guest.questions]
@@ -38,7 +38,7 @@ _at_work: dict[str, Program] = {}
 
 
 def answered(
-    guest: Guest, case: Case, questions: list[Question], at_work: dict[str, Program] | None = None
+    guest: Guest, case: Subject, questions: list[Question], at_work: dict[str, Program] | None = None
 ) -> Replies:
     """The guest's answer to each question; what it does instead becomes an error, and ends the questions.
 
@@ -68,7 +68,7 @@ def end_programs() -> None:
         _at_work.popitem()[1].end()
 
 
-def ask_task(guest: Guest, case: Case, folder: Path, process: int = 0) -> Task[Replies]:
+def ask_task(guest: Guest, case: Subject, folder: Path, process: int = 0) -> Task[Replies]:
     """Asking ``guest`` about ``case``, whose exact reference lies in ``folder``.
 
     process : tasks of one number share a process, and so the program of the guest.
@@ -78,8 +78,9 @@ def ask_task(guest: Guest, case: Case, folder: Path, process: int = 0) -> Task[R
         "verification.guests.doors.asking:ask",
         str(guest.folder / "guest.toml"),
         guest.text,
-        case.name,
+        case.stem,
         case.text,
+        case.load,
         str(exam_path(folder, case)),
         str(path),
     )
@@ -96,7 +97,7 @@ def _read(data: dict[str, Any]) -> Replies:
     ]
 
 
-def _none(case: Case, reason: str, seconds: float) -> Replies:
+def _none(case: Subject, reason: str, seconds: float) -> Replies:
     answer = Answer(protocol=VERSION, id=case.name, error=reason)
     return [Solved(answer, seconds)]
 

@@ -1,22 +1,26 @@
 """What a guest's function returned, at the points of a question.
 
 A mapping or an object with any of contact_radius, approach, peak_pressure, largest_tension, tension_place,
-pressure(x, y), stress(x, y, z, layer), displacement(x, y, z); for each an uncertainty if there is one:
+pressure(x, y), stress(x, y, z, layer), displacement(x, y, z), stress_plane(z, layer) at nodes in x and y; for
+each an uncertainty if there is one:
 ``uncertainty`` with the names of the numbers, pressure_uncertainty, stress_uncertainty.
 """
 
 import inspect
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import suppress
+from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
+from scipy.interpolate import RectBivariateSpline
 
 from verification.guests.protocol import LineOfPoints, Question
+from verification.guests.subjects import PLANE, Load
 from verification.problem.arrays import Array
 from verification.problem.contact import FLAT, CoatedContact
-from verification.problem.profile import Profile, line_of
+from verification.problem.profile import Line, Profile
 from verification.problem.quantity import DISPLACEMENTS, PEAKS, QUANTITIES, STRESSES
 from verification.sampling.lines import sample
 from verification.sampling.tension import Search
@@ -72,7 +76,7 @@ class _Plain(Face):
         self.uncertainty = None
 
 
-def values_of(result: Any, problem: CoatedContact, question: Question) -> tuple[Numbers, Numbers]:
+def values_of(result: Any, problem: Load, question: Question) -> tuple[Numbers, Numbers]:
     """Values and uncertainties that ``result`` gives of those wanted, by line and quantity.
 
     Raises NotGiven where it gives none, ValueError for one of a wrong shape.
@@ -97,7 +101,12 @@ def values_of(result: Any, problem: CoatedContact, question: Question) -> tuple[
             if getattr(stated, name, None) is not None:
                 uncertainty["contact"][name] = float(getattr(stated, name))
     missing = set(question.contact) - set(values["contact"])
-    if not whole and missing & set(PEAKS) and _able(face, "stress", "contact_radius"):
+    if (
+        isinstance(problem, CoatedContact)
+        and not whole
+        and missing & set(PEAKS)
+        and _able(face, "stress", "contact_radius")
+    ):
         values["contact"] |= dict(zip(PEAKS, _largest_tension(face, problem), strict=True))
     for asked in question.lines:
         for p in _sampled(result, problem, asked) if whole else _on_line(face, asked):
@@ -125,12 +134,41 @@ def _largest_tension(face: Any, problem: CoatedContact) -> tuple[float, float]:
     return found.value, found.place
 
 
-def _sampled(solution: Any, problem: CoatedContact, asked: LineOfPoints) -> tuple[Profile, ...]:
+def _sampled(solution: Any, problem: Load, asked: LineOfPoints) -> tuple[Profile, ...]:
     """Every quantity of a whole solution on a line, with the uncertainties, as the methods are sampled."""
-    line = line_of(asked.line, problem)
-    points = (np.array(v) for v in (asked.x, asked.y, asked.z))
-    along = sum((v - o) * d for v, o, d in zip(points, line.origin, line.direction, strict=True))
-    return sample(solution, "guest", line, np.asarray(along), problem if line.depth == 0 else None)
+    points = np.array([asked.x, asked.y, asked.z])
+    (_, y, z), ends = points, points[:, [0, -1]]
+    direction = np.diff(ends)[:, 0] / np.linalg.norm(np.diff(ends))
+    moving = np.flatnonzero(direction)
+    # Along an axis the coordinate itself, to the last bit.
+    position = points[moving[0]] if moving.size == 1 else direction @ points
+    origin = ends[:, 0] - (direction @ ends[:, 0]) * direction
+    level = z[0] == z[-1]
+    line = Line(
+        asked.line,
+        float(z[0]) if level and not y.any() else None,
+        asked.layer[0] if level else None,
+        tuple(origin.tolist()),
+        tuple(direction.tolist()),
+        asked.body,
+    )
+    contact = problem if line.depth == 0 and isinstance(problem, CoatedContact) else None
+    found = sample(solution, "guest", line, position, contact)
+    if asked.line != PLANE or (plane := _of_plane(solution, asked)) is None:
+        return found
+    return tuple(replace(p, value=plane[p.quantity]) if p.quantity in plane else p for p in found)
+
+
+def _of_plane(face: Any, asked: LineOfPoints) -> dict[str, Array] | None:
+    """The stresses of a whole plane at points, by a cubic spline; None where the plane is not given there."""
+    if not _able(face, "stress_plane", "nodes"):
+        return None
+    nodes = np.asarray(face.nodes, dtype=float)
+    x, y = np.array(asked.x), np.array(asked.y)
+    if nodes.ndim != 1 or max(abs(x).max(), abs(y).max()) > min(-nodes[0], nodes[-1]):
+        return None
+    sigma = _shaped("stress_plane", face.stress_plane(asked.z[0], asked.layer[0]), (3, 3, *2 * nodes.shape))
+    return {name: RectBivariateSpline(nodes, nodes, sigma[c]).ev(x, y) for name, c in STRESSES.items()}
 
 
 def _on_line(face: Any, asked: LineOfPoints) -> Iterator[Profile]:
@@ -140,7 +178,9 @@ def _on_line(face: Any, asked: LineOfPoints) -> Iterator[Profile]:
     flat = asked.body == FLAT
     if flat and "pressure" in asked.quantities and _able(face, "pressure"):
         found["pressure"] = face.pressure(x, y)
-    if flat and set(STRESSES) & set(asked.quantities) and _able(face, "stress"):
+    if asked.line == PLANE and (plane := _of_plane(face, asked)) is not None:
+        found |= plane
+    elif flat and set(STRESSES) & set(asked.quantities) and _able(face, "stress"):
         sigma, layers = np.empty((3, 3, x.size)), np.array(asked.layer)
         for layer in sorted(set(asked.layer)):
             here = layers == layer

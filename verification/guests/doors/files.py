@@ -15,9 +15,9 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from verification.cases.contact import Case
 from verification.guests.description import Guest
 from verification.guests.protocol import VERSION, Answer, ProtocolError, Question, check
+from verification.guests.subjects import Subject
 from verification.problem.quantity import unit_of
 from verification.running.store import StoreError, read_bounded, write_atomically
 
@@ -25,14 +25,14 @@ MOST_BYTES = 20_000_000
 HEAD = ("number", "line", "x", "y", "z", "layer")
 
 
-def place_of(guest: Guest, case: Case, question: Question) -> Path:
+def place_of(guest: Guest, case: Subject, question: Question) -> Path:
     """Directory of the files of ``question``."""
     assert guest.results is not None
     level = [f"{name}_{value:g}" for name, value in question.parameter.items()]
     return (guest.folder / guest.results / case.name).joinpath(*level)
 
 
-def pack(guest: Guest, case: Case, question: Question) -> Path:
+def pack(guest: Guest, case: Subject, question: Question) -> Path:
     """Write the files of ``question``; those that are there stay as they are. Returns their directory."""
     folder = place_of(guest, case, question)
     units = guest.units
@@ -55,7 +55,7 @@ def pack(guest: Guest, case: Case, question: Question) -> Path:
     return folder
 
 
-def fill(guest: Guest, case: Case, question: Question, answer: Answer) -> None:
+def fill(guest: Guest, case: Subject, question: Question, answer: Answer) -> None:
     """Fill the files of ``question`` with the values of ``answer``, as a user would."""
     folder = place_of(guest, case, question)
     given, U = answer.values or {}, answer.uncertainty
@@ -80,7 +80,7 @@ def fill(guest: Guest, case: Case, question: Question, answer: Answer) -> None:
     write_atomically(folder / "points.csv", _written(points))
 
 
-def read_answer(guest: Guest, case: Case, question: Question) -> Answer:
+def read_answer(guest: Guest, case: Subject, question: Question) -> Answer:
     """The answer that was filled in. Raises ProtocolError naming file, row and column."""
     folder = place_of(guest, case, question)
     values: dict[str, dict[str, Any]] = {}

@@ -9,13 +9,15 @@ import os
 import sys
 import traceback
 from collections.abc import Callable
+from dataclasses import fields
 from importlib import import_module
 from typing import Any
 
 from verification.guests.doors.face import NotGiven, values_of
-from verification.guests.protocol import TOKEN, VERSION, Answer, Layer, Question
+from verification.guests.protocol import TOKEN, VERSION, Answer, Disc, Layer, Question, Square
+from verification.guests.subjects import Load, SquareLoad
 from verification.problem.arrays import Coatings
-from verification.problem.contact import CoatedContact, NotClaimed, keywords
+from verification.problem.contact import CoatedContact, NotClaimed, PrescribedLoad
 from verification.running.records import plain
 
 
@@ -51,10 +53,14 @@ def answer(place: str, question: Question) -> Answer:
         return Answer(**given, error=f"{type(error).__name__}: {_message(error)}{where}")
 
 
-def problem_of(question: Question) -> CoatedContact:
+def problem_of(question: Question) -> Load:
     """The problem of ``question`` in the units of the guest."""
     p = question.problem
     substrate = (p.substrate.E, p.substrate.nu)
+    if isinstance(p, Disc):
+        return PrescribedLoad(p.pressure, p.load_radius, _layers(p.coatings), substrate)
+    if isinstance(p, Square):
+        return SquareLoad(p.pressure, p.side, _layers(p.coatings), substrate)
     ball = None if p.ball is None else (p.ball.E, p.ball.nu, _layers(p.ball.coatings))
     return CoatedContact(p.radius, p.load, _layers(p.coatings), substrate, p.friction, ball)
 
@@ -63,13 +69,13 @@ def _layers(coatings: list[Layer]) -> Coatings:
     return tuple((c.E, c.nu, c.thickness or 0.0) for c in coatings)
 
 
-def called(function: Callable[..., Any], problem: CoatedContact, parameter: dict[str, float]) -> Any:
+def called(function: Callable[..., Any], problem: Load, parameter: dict[str, float]) -> Any:
     """``function`` called with the problem by keywords; one that it lacks must be nothing."""
-    given = keywords(problem)
+    given = {f.name: getattr(problem, f.name) for f in fields(problem)}
     accepted = inspect.signature(function).parameters
     if not any(p.kind is inspect.Parameter.VAR_KEYWORD for p in accepted.values()):
         for name, nothing in (("friction", 0.0), ("coatings", ()), ("ball", None)):
-            if name not in accepted and given[name] == nothing:
+            if name in given and name not in accepted and given[name] == nothing:
                 del given[name]
     return function(**given, **parameter)
 

@@ -107,8 +107,9 @@ def equilibrium(
 ) -> Invariant:
     """sigma_ij,j = 0 inside ``layer``, as the force on a slab of the vertical step's height.
 
-    Bounded by the error of the differences plus the propagated uncertainty of the stresses, at each point the
-    largest of the places and of the farthest points at their depth.
+    Bounded by the error of the differences, the largest of the three equations since in one of them it may
+    pass through zero, plus the propagated uncertainty of the stresses, at each point the largest of the
+    places and of the farthest points at their depth.
     """
     x, y, z = stencil.points
     height = stencil.step[2] / problem.p_h
@@ -119,7 +120,8 @@ def equilibrium(
         U = np.empty((3, 3, x.size))
         x, y, z = stencil.corners
         U[:] = solution.stress_uncertainty(x, y, z, layer).max(axis=-1, keepdims=True)
-        bound = np.einsum("jijn->in", stencil.propagated(U) + error) * height
+        differences = np.einsum("jijn->in", error).max(axis=0)
+        bound = (np.einsum("jijn->in", stencil.propagated(U)) + differences) * height
     name = layer_name(layer, problem)
     law = f"div sigma = 0 in {name}, times the step over p_h"
     return decide(f"equilibrium, {name}", source, law, force, bound)

@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 from matplotlib.ticker import MaxNLocator
 
+from verification.cases.units import Units
 from verification.problem.arrays import Array
 from verification.problem.contact import CoatedContact
 from verification.problem.quantity import IN_PLANE, QUANTITIES, von_mises
@@ -13,14 +14,12 @@ from verification.report.study.figures import Drawn, drawn, sheet
 from verification.sources.registry import METHODS, solvers
 from verification.study.curves import Curve
 from verification.study.plan import Study
+from verification.study.quantities import with_residual
 
-LEVELS = 18
+LEVELS = 14
 COLUMNS, ROWS, FEWEST = 81, 28, 6
 WIDEST, DEEPEST = 2.0, 1.6  # of the largest contact radius, what is drawn
-FIELDS = (
-    *(f"${QUANTITIES[name].tex} / p_h$" for name in ("sigma_xx", "sigma_xz")),
-    "von Mises stress $/ p_h$",
-)
+FIELDS = (*(f"${QUANTITIES[name].tex}$" for name in ("sigma_xx", "sigma_xz")), "von Mises stress")
 
 
 def nearest(curve: Curve, wanted: Sequence[float]) -> tuple[float, ...]:
@@ -28,65 +27,94 @@ def nearest(curve: Curve, wanted: Sequence[float]) -> tuple[float, ...]:
     return tuple(sorted({float(curve.h[np.abs(np.log(curve.h / h)).argmin()]) for h in wanted if h > 0}))
 
 
-def contour_figure(study: Study, curve: Curve, thicknesses: Sequence[float]) -> Drawn:
-    """Three maps a row, a row for each of ``thicknesses`` over a_h, of the coating and friction of ``curve``.
+def contour_figures(study: Study, curve: Curve, thicknesses: Sequence[float]) -> list[Drawn]:
+    """Three maps above each other for each of ``thicknesses`` over a_h, of the coating of ``curve``.
 
-    Solved anew by the semi-analytical method. Raises what it raises.
+    Every figure has the same extent and the same scales. Solved anew by the semi-analytical method, with the
+    residual stress of the coating. Raises what it raises.
     """
-    a_h = curve.a_h
+    a_h, units = curve.a_h, study.units
     solutions = [_solved(study, curve, h) for h in thicknesses]
     radius = max(s.contact_radius for s in solutions) / a_h
     half, deep = WIDEST * radius, DEEPEST * radius
     x = np.linspace(-half, half, COLUMNS)
     depths = [_depths(h, deep) for h in thicknesses]
+    residual = study.residual[study.moduli.index(_modulus(study, curve))] if study.residual else 0.0
     fields = [
-        [_fields(s, x * a_h, z * a_h, layer, curve.p_h) for layer, z in enumerate(levels)]
+        [
+            _fields(s, x * a_h, z * a_h, layer, 0.0 if layer else residual, units)
+            for layer, z in enumerate(levels)
+        ]
         for s, levels in zip(solutions, depths, strict=True)
     ]
-    rows = [["h / a_h", "x / a_h", "z / a_h", "layer", "sigma_xx / p_h", "sigma_xz / p_h", "von Mises / p_h"]]
-    with sheet(180, 12 + 48 * len(thicknesses)) as figure:
-        panels = figure.subplots(len(thicknesses), 3, sharex=True, sharey=True, squeeze=False)
-        for column, name in enumerate(FIELDS):
-            low, high = _range([field[column] for row in fields for field in row])
-            levels = np.asarray(MaxNLocator(LEVELS, steps=[1, 2, 2.5, 5, 10]).tick_values(low, high))
-            for h, solution, layers_z, field, axes in zip(
-                thicknesses, solutions, depths, fields, panels[:, column], strict=True
-            ):
-                for z, values in zip(layers_z, (layer[column] for layer in field), strict=True):
-                    filled = axes.contourf(
-                        x, z, values, levels=levels, cmap="RdBu_r" if column < 2 else "viridis", extend="both"
-                    )
-                    axes.contour(x, z, values, levels=levels, colors="#333333", linewidths=0.25)
-                axes.axhline(h, color="black", linewidth=0.9, linestyle=(0, (4, 2)))
-                axes.plot(
-                    np.array([-1, 1]) * solution.contact_radius / a_h, [0, 0], color="black", linewidth=3
-                )
-                axes.set_xlim(-half, half)
-                axes.set_ylim(deep, 0)
-                axes.set_title(f"{name}, h = {h:.3g} $a_h$", fontsize=7.5)
-            bar = figure.colorbar(filled, ax=panels[:, column], location="bottom", shrink=0.9, aspect=28)
-            ticks = MaxNLocator(4).tick_values(levels[0], levels[-1])
-            bar.set_ticks(ticks[(ticks >= levels[0]) & (ticks <= levels[-1])].tolist())
-        for axes in panels[-1]:
-            axes.set_xlabel("$x / a_h$")
-        for axes in panels[:, 0]:
-            axes.set_ylabel("$z / a_h$")
-        for h, layers_z, field in zip(thicknesses, depths, fields, strict=True):
-            rows += _numbers(h, x, layers_z, field)
-        name = f"contours_{curve.ratio:.4g}_f{curve.friction:g}".replace(".", "_")
+    scales = []
+    for column in range(3):
+        low, high = _range([layer[column] for row in fields for layer in row])
+        scales.append(np.asarray(MaxNLocator(LEVELS, steps=[1, 2, 2.5, 5, 10]).tick_values(low, high)))
+    return [
+        _one(curve, units, x, *one, scales, (half, deep))
+        for one in zip(thicknesses, solutions, depths, fields, strict=True)
+    ]
+
+
+def _one(
+    curve: Curve,
+    units: Units,
+    x: Array,
+    h: float,
+    solution: Any,
+    levels_z: list[Array],
+    field: list[tuple[Array, Array, Array]],
+    scales: list[Array],
+    extent: tuple[float, float],
+) -> Drawn:
+    size = curve.a_h / units.metre
+    with sheet(150, right=17) as figure:
+        panels = figure.subplots(3, 1, sharex=True, squeeze=False)[:, 0]
+        for column, (axes, name, levels) in enumerate(zip(panels, FIELDS, scales, strict=True)):
+            for z, values in zip(levels_z, (layer[column] for layer in field), strict=True):
+                filled = axes.contourf(
+                    x * size, z * size, values, levels=levels, cmap="RdBu_r" if column < 2 else "viridis",
+                    extend="both",
+                )  # fmt: skip
+                filled.set_rasterized(True)
+                axes.contour(x * size, z * size, values, levels=levels, colors="#333333", linewidths=0.25)
+            axes.axhline(h * size, color="black", linewidth=0.9, linestyle=(0, (4, 2)))
+            edge = solution.contact_radius / units.metre
+            axes.plot([-edge, edge], [0, 0], color="black", linewidth=3, solid_capstyle="butt")
+            axes.set_xlim(-extent[0] * size, extent[0] * size)
+            axes.set_ylim(extent[1] * size, 0)
+            axes.set_ylabel(f"z [{units.length}]")
+            place = axes.get_position()
+            bar = figure.colorbar(
+                filled, cax=figure.add_axes((place.x1 + 0.02, place.y0, 0.03, place.height))
+            )
+            bar.set_label(f"{name} [{units.stress}]")
+            bar.locator = MaxNLocator(6)
+            bar.update_ticks()
+        panels[-1].set_xlabel(f"x [{units.length}], along sliding")
+        over = panels[0].secondary_xaxis("top", functions=(lambda v: v / size, lambda v: v * size))
+        over.set_xlabel("$x / a_h$")
+        rows = [["h / a_h", f"x [{units.length}]", f"z [{units.length}]", "layer"]]
+        rows[0] += [f"{name} [{units.stress}]" for name in ("sigma_xx", "sigma_xz", "von Mises")]
+        rows += _numbers(h, x * size, [z * size for z in levels_z], field)
+        name = f"contours_{curve.ratio:.4g}_f{curve.friction:g}_h{h:.3g}".replace(".", "_")
         return drawn(
             figure,
             name,
-            f"Stresses in the x-z plane, {curve.label}",
-            "Sliding in +x. Thick bar: the contact; dashed: the interface. One scale a column.",
+            f"Stresses in the x-z plane, {curve.label}, h = {h * size:.3g} {units.length}",
+            "",
             rows,
         )
 
 
+def _modulus(study: Study, curve: Curve) -> float:
+    return min(study.moduli, key=lambda E: abs(E / study.substrate[0] - curve.ratio))
+
+
 def _solved(study: Study, curve: Curve, h: float) -> Any:
-    E, nu = study.substrate
-    coating = (curve.ratio * E, study.coating_nu, h * curve.a_h)
-    problem = CoatedContact(study.radius, study.load, (coating,), (E, nu), curve.friction, study.ball)
+    coating = (_modulus(study, curve), study.coating_nu, h * curve.a_h)
+    problem = CoatedContact(study.radius, study.load, (coating,), study.substrate, curve.friction, study.ball)
     numerics = study.numerics.get(METHODS[0], {}) | {"estimate_uncertainty": False}
     return solvers()[METHODS[0]](problem, numerics)
 
@@ -100,11 +128,14 @@ def _depths(h: float, deep: float) -> list[Array]:
     return [within, np.append(h, every[every > 1.02 * h])]
 
 
-def _fields(solution: Any, x: Array, z: Array, layer: int, p_h: float) -> tuple[Array, Array, Array]:
+def _fields(
+    solution: Any, x: Array, z: Array, layer: int, residual: float, units: Units
+) -> tuple[Array, Array, Array]:
     sigma = solution.stress(x[None, :], 0.0, z[:, None], layer=layer)
-    s = np.array([sigma[component] for component in IN_PLANE.values()]) / p_h
-    names = list(IN_PLANE)
-    return s[names.index("sigma_xx")], s[names.index("sigma_xz")], von_mises(s)
+    s = np.array([sigma[component] for component in IN_PLANE.values()]) / units.pascal
+    names, added = list(IN_PLANE), residual / units.pascal
+    stress = (s[names.index("sigma_xx")] + added, s[names.index("sigma_xz")])
+    return *stress, np.asarray(with_residual(von_mises, added)(s))
 
 
 def _range(values: Sequence[Array]) -> tuple[float, float]:

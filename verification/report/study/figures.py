@@ -1,11 +1,11 @@
-"""Figures of a study fit for a paper: each as vector PDF, as PNG, its numbers as CSV.
+"""Figures of a study at the width of a column: each as vector PDF, as SVG, its numbers as CSV.
 
-Lengths over a_h, stresses over p_h, both of the bare substrate; a second axis gives MPa.
+Lengths and stresses are in the units of the study; second axes give them over a_h, p_h of the substrate.
 """
 
 import io
 import warnings
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -15,22 +15,24 @@ import matplotlib as mpl
 import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.backends.backend_pdf import FigureCanvasPdf
+from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.colors import ListedColormap
 from matplotlib.contour import QuadContourSet
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
-from matplotlib.ticker import NullFormatter, ScalarFormatter
+from matplotlib.ticker import LogLocator, NullFormatter, ScalarFormatter
 from scipy.interpolate import PchipInterpolator
 
+from verification.cases.units import Units
 from verification.problem.arrays import Array
 from verification.problem.quantity import QUANTITIES as QUANTITY
 from verification.report.tables.csv import written
 from verification.running.store import write_atomically
 from verification.sources.registry import SOURCES as RECORDS
-from verification.study.criteria import MODES, Judged
+from verification.study.choice.criteria import MODES
+from verification.study.choice.thickness import Choice
 from verification.study.curves import Curve
 from verification.study.quantities import QUANTITIES
 from verification.study.table import SCALARS, SOURCES
@@ -38,190 +40,220 @@ from verification.study.table import SCALARS, SOURCES
 # Okabe and Ito's colours, distinct for the colour-blind; dashes distinguish friction.
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00", "#000000")
 DASHES: tuple[Any, ...] = ("-", (0, (5, 2)), (0, (1.2, 1.4)), (0, (5, 1.5, 1, 1.5)))
-DPI = 200
+COLUMN, LEFT, TOP, BOTTOM, ROW = 88.0, 15.0, 9.5, 9.0, 3.7  # mm; a row of the legend
 LEAST = 1e-7  # smaller differences are drawn here
 NAMES = {
     "sigma_xx_surface": r"largest $\sigma_{xx}$, surface",
-    "sigma_xx_base": r"largest $\sigma_{xx}$, base of the coating",
-    "sigma_xx_substrate": r"largest $\sigma_{xx}$, top of the substrate",
+    "sigma_xx_base": r"largest $\sigma_{xx}$, base",
+    "sigma_xx_substrate": r"largest $\sigma_{xx}$, substrate",
     "sigma_xz_interface": r"largest $|\sigma_{xz}|$, interface",
     "sigma_zz_interface": r"largest $\sigma_{zz}$, interface",
-    "von_mises_coating": "largest von Mises stress, coating",
-    "von_mises_substrate": "largest von Mises stress, substrate",
+    "von_mises_coating": "von Mises, coating",
+    "von_mises_substrate": "von Mises, substrate",
 }
+SCALE_NAMES = {"p_h": "p_h", "a_h": "a_h", "delta_h": r"\delta_h"}
 _SETTINGS: Any = {
-    "font.size": 8,
+    "font.size": 7,
     "font.family": "DejaVu Sans",
     "axes.linewidth": 0.6,
-    "lines.linewidth": 1.3,
+    "lines.linewidth": 1.2,
     "xtick.direction": "in",
     "ytick.direction": "in",
     "pdf.fonttype": 42,
+    "svg.hashsalt": "coatcheck",
     "savefig.facecolor": "white",
 }
 
 
 @dataclass(frozen=True)
 class Drawn:
-    """One figure under its ``name``, the bytes of its ``pdf`` and ``png``, its numbers as ``csv``."""
+    """One figure under its ``name``, the bytes of its ``pdf`` and ``svg``, its numbers as ``csv``."""
 
     name: str
     title: str
     caption: str
     pdf: bytes
-    png: bytes
+    svg: bytes
     csv: str
 
 
 @contextmanager
-def sheet(width: float, height: float) -> Iterator[Figure]:
-    """An empty figure of ``width`` by ``height`` [mm] in the settings of a paper."""
+def sheet(height: float, legend: int = 0, right: float = 13.5) -> Iterator[Figure]:
+    """An empty figure of a column's width and a ``height`` [mm] in the settings of a paper.
+
+    legend : rows of keys under it.   right : margin [mm].
+    Margins are fixed: to measure every label instead takes longer than all the rest.
+    """
     with mpl.rc_context(_SETTINGS), warnings.catch_warnings():
         # Curves without one finite number leave an empty frame, without a warning.
         warnings.simplefilter("ignore")
-        yield Figure(figsize=(width / 25.4, height / 25.4), layout="constrained")
+        total = height + ROW * legend
+        figure = Figure(figsize=(COLUMN / 25.4, total / 25.4))
+        figure.subplots_adjust(
+            left=LEFT / COLUMN,
+            right=1 - right / COLUMN,
+            top=1 - TOP / total,
+            bottom=(BOTTOM + ROW * legend) / total,
+            hspace=0.16,
+        )
+        yield figure
 
 
 def drawn(figure: Figure, name: str, title: str, caption: str, rows: Sequence[Sequence[str]]) -> Drawn:
     """``figure`` written both ways; the same figure always gives the same bytes."""
-    pdf, png = io.BytesIO(), io.BytesIO()
-    FigureCanvasAgg(figure)
-    # Laid out once, not again for each format.
-    layout = figure.get_layout_engine()
-    assert layout is not None
-    layout.execute(figure)
-    figure.set_layout_engine(None)
-    FigureCanvasPdf(figure).print_figure(pdf, format="pdf", metadata={"CreationDate": None})
-    FigureCanvasAgg(figure).print_figure(png, format="png", dpi=DPI, metadata={"Software": None})
-    return Drawn(name, title, caption, pdf.getvalue(), png.getvalue(), written(rows))
+    pdf, svg = io.BytesIO(), io.BytesIO()
+    FigureCanvasPdf(figure).print_figure(pdf, format="pdf", metadata={"CreationDate": None}, dpi=300)
+    FigureCanvasSVG(figure).print_figure(svg, format="svg", metadata={"Date": None}, dpi=200)
+    return Drawn(name, title, caption, pdf.getvalue(), svg.getvalue(), written(rows))
 
 
 def write_drawn(figure: Drawn, folder: Path) -> None:
-    """NAME.pdf, NAME.png, NAME.csv under ``folder``. Raises StoreError where it cannot be written."""
-    for kind, data in (("pdf", figure.pdf), ("png", figure.png), ("csv", figure.csv)):
+    """NAME.pdf, NAME.svg, NAME.csv under ``folder``. Raises StoreError where it cannot be written."""
+    for kind, data in (("pdf", figure.pdf), ("svg", figure.svg), ("csv", figure.csv)):
         write_atomically(folder / f"{figure.name}.{kind}", data)
 
 
-def stress_figures(curves: Sequence[Curve]) -> list[Drawn]:
-    """For each failure mode its stress against thickness, compliant beside stiff coatings."""
-    p_h = curves[0].p_h
+def stress_figures(curves: Sequence[Curve], units: Units) -> list[Drawn]:
+    """For each failure mode its stress against thickness, compliant above stiff coatings."""
     return [
-        _against_thickness(
-            curves, f"stress_{name}", name, f"{name}: {MODES[name]}", f"{NAMES[name]} / $p_h$", p_h=p_h
-        )
+        _against_thickness(curves, units, f"stress_{name}", [name], f"{name}: {MODES[name]}")
         for name in QUANTITIES
     ]
 
 
-def contact_figure(curves: Sequence[Curve]) -> list[Drawn]:
+def contact_figure(curves: Sequence[Curve], units: Units) -> list[Drawn]:
     """Peak pressure, contact radius and approach against thickness; they do not depend on friction."""
     smallest = min(curve.friction for curve in curves)
     chosen = [curve for curve in curves if curve.friction == smallest]
-    scales = {"delta_h": r"\delta_h"}
-    found = []
-    for name, scale in SCALARS.items():
-        label = f"${QUANTITY[name].tex} / {scales.get(scale, scale)}$"
-        found.append(_against_thickness(chosen, f"contact_{name}", name, name.replace("_", " "), label))
-    return found
+    title = "Peak pressure, contact radius, approach"
+    return [_against_thickness(chosen, units, "contact", list(SCALARS), title)]
 
 
 def _values(curve: Curve, quantity: str) -> Array:
     return curve.stress[quantity] if quantity in curve.stress else curve.scalar[quantity]
 
 
+def _label(quantity: str) -> str:
+    return NAMES.get(quantity) or f"${QUANTITY[quantity].tex}$"
+
+
+def _scale(curve: Curve, quantity: str, units: Units) -> tuple[str, float, str]:
+    """Name of the scale of a quantity, its value in the units, the unit."""
+    scale = SCALARS.get(quantity, "p_h")
+    size = getattr(curve, scale)
+    if scale == "p_h":
+        return scale, size / units.pascal, units.stress
+    return scale, size / units.metre, units.length
+
+
 def _against_thickness(
-    curves: Sequence[Curve], name: str, quantity: str, title: str, label: str, *, p_h: float | None = None
+    curves: Sequence[Curve], units: Units, name: str, quantities: Sequence[str], title: str
 ) -> Drawn:
     sides = [
         ("compliant coating, $E_1 < E_2$", [c for c in curves if c.ratio < 1]),
         ("stiff coating, $E_1 \\geq E_2$", [c for c in curves if c.ratio >= 1]),
     ]
     sides = [(heading, members) for heading, members in sides if members]
+    # A panel for each quantity holds all coatings, or one for each side a single quantity.
+    panels_of = [
+        (quantity, heading if len(sides) == 2 else "", members)
+        for quantity in quantities
+        for heading, members in (sides if len(quantities) == 1 else [("", list(curves))])
+    ]
     frictions = sorted({c.friction for c in curves})
     ratios = sorted({c.ratio for c in curves})
     colours = {ratio: COLOURS[i % len(COLOURS)] for i, ratio in enumerate(ratios)}
-    rows = [["E1/E2", "f", "h / a_h", f"{quantity} over its scale", "source"]]
-    checked = any(curve.marks for curve in curves)
-    with sheet(170 if len(sides) == 2 else 130, 92 if checked else 68) as figure:
-        heights = (3, 1)[: 1 + checked]
-        grid = figure.subplots(
-            len(heights), len(sides), sharey="row", sharex="col", squeeze=False, height_ratios=heights
-        )
-        panels = grid[0]
-        for axes, (heading, members) in zip(panels, sides, strict=True):
+    thickness = f"h [{units.length}]"
+    rows = [["E1/E2", "f", "h / a_h", thickness, "quantity", "over its scale", "value", "unit", "source"]]
+    checked = len(quantities) == 1 and any(curve.marks for curve in curves)
+    heights = [3.0] * len(panels_of) + [1.3] * checked
+    sources = {s for c in curves for s in c.marks}
+    keys = _keys(ratios, frictions, sources)
+    with sheet(TOP + BOTTOM + 13.5 * sum(heights), -(-len(keys) // 3)) as figure:
+        panels = figure.subplots(len(heights), 1, sharex=True, squeeze=False, height_ratios=heights)[:, 0]
+        for axes, (quantity, heading, members) in zip(panels, panels_of, strict=False):
+            scale, size, unit = _scale(curves[0], quantity, units)
             for curve in members:
-                colour = colours[curve.ratio]
+                colour, h = colours[curve.ratio], curve.a_h / units.metre
                 dash = DASHES[frictions.index(curve.friction) % len(DASHES)]
-                axes.plot(curve.h, _values(curve, quantity), color=colour, linestyle=dash)
+                axes.plot(curve.h * h, _values(curve, quantity) * size, color=colour, linestyle=dash)
                 points = {SOURCES[0]: (curve.h, _values(curve, quantity))}
                 for source, marks in curve.marks.items():
-                    _mark(axes, *marks[quantity], source, colour)
+                    at, value = marks[quantity]
+                    _mark(axes, at * h, value * size, source, colour)
                     points[source] = marks[quantity]
                 rows += [
-                    [f"{curve.ratio:g}", f"{curve.friction:g}", f"{x:.9g}", f"{y:.9g}", source]
-                    for source, (h, value) in points.items()
-                    for x, y in zip(h, value, strict=True)
+                    [
+                        *(f"{curve.ratio:g}", f"{curve.friction:g}", f"{x:.9g}", f"{x * h:.6g}", quantity),
+                        *(f"{y:.9g}", f"{y * size:.6g}", unit, source),
+                    ]
+                    for source, (at, value) in points.items()
+                    for x, y in zip(at, value, strict=True)
                 ]
-            _thickness_axis(axes, heading)
-        panels[0].set_ylabel(label)
+            axes.set_ylabel(f"{_label(quantity)} [{unit}]")
+            beside(axes, size, f"over ${SCALE_NAMES[scale]}$")
+            axes.grid(True, linewidth=0.3, color="#cccccc")
+            if heading:
+                axes.text(0.5, 0.97, heading, transform=axes.transAxes, ha="center", va="top")
+                axes.margins(y=0.12)
         if checked:
-            for axes in panels:
-                axes.set_xlabel("")
-            _differences(grid[1], sides, quantity, colours)
-        if p_h is not None:
-            unit = p_h / 1e6
-            second = panels[-1].secondary_yaxis("right", functions=(lambda y: y * unit, lambda y: y / unit))
-            second.set_ylabel("MPa")
-        _legend(figure, ratios, frictions, {s for c in curves for s in c.marks})
-        caption = (
-            "Lines: semi-analytical method; circles: finite elements; crosses: the exact reference, at the "
-            "cross-checked points; below, how far these are from the lines, over the same scale; dashes 0.5 "
-            "percent, dots 0.1."
-            if checked
-            else "Lines: semi-analytical method; no point was cross-checked."
-        )
-        return drawn(figure, name, title, caption, rows)
+            _differences(panels[-1], curves, units, quantities[0], colours)
+        thickness_axes(list(panels), curves[0].a_h / units.metre, units)
+        below(figure, keys, 3)
+        return drawn(figure, name, title, "", rows)
 
 
 def _differences(
-    panels: Sequence[Axes], sides: Sequence[tuple[str, list[Curve]]], quantity: str, colours: dict[float, str]
+    axes: Axes, curves: Sequence[Curve], units: Units, quantity: str, colours: dict[float, str]
 ) -> None:
     """|mark - curve| at every cross-checked thickness, on a logarithmic scale that ends at ``LEAST``."""
-    for axes, (_, members) in zip(panels, sides, strict=True):
-        for curve in members:
-            for source, marks in curve.marks.items():
-                at, value = marks[quantity]
-                known = np.isin(at, curve.h)
-                here = _values(curve, quantity)[np.searchsorted(curve.h, at[known])]
-                gap = np.maximum(np.abs(value[known] - here), LEAST)
-                _mark(axes, at[known], gap, source, colours[curve.ratio])
-        axes.set_yscale("log")
-        axes.set_ylim(0.6 * LEAST, 1e-2)
-        axes.set_yticks([1e-7, 1e-5, 1e-3])
-        axes.axhline(5e-3, color="#666666", linewidth=0.7, linestyle=(0, (4, 2)))
-        axes.axhline(1e-3, color="#666666", linewidth=0.7, linestyle=(0, (1, 1.5)))
-        _thickness_axis(axes, "")
-    panels[0].set_ylabel("difference")
+    for curve in curves:
+        for source, marks in curve.marks.items():
+            at, value = marks[quantity]
+            known = np.isin(at, curve.h)
+            here = _values(curve, quantity)[np.searchsorted(curve.h, at[known])]
+            gap = np.maximum(np.abs(value[known] - here), LEAST)
+            _mark(axes, at[known] * curve.a_h / units.metre, gap, source, colours[curve.ratio])
+    axes.set_yscale("log")
+    axes.set_ylim(0.6 * LEAST, 1e-2)
+    axes.set_yticks([1e-7, 1e-5, 1e-3])
+    axes.grid(True, linewidth=0.3, color="#cccccc")
+    axes.set_ylabel("difference\nover $p_h$")
 
 
 def _mark(axes: Axes, h: Array, value: Array, source: str, colour: str) -> None:
     marker = RECORDS[source].style.marker
-    axes.plot(h, value, marker, color=colour, markerfacecolor="none", markersize=4.5, markeredgewidth=0.8)
+    axes.plot(h, value, marker, color=colour, markerfacecolor="none", markersize=4, markeredgewidth=0.7)
 
 
-def _thickness_axis(axes: Axes, title: str) -> None:
-    axes.set_xscale("log")
-    axes.xaxis.set_major_formatter(ScalarFormatter())
-    axes.xaxis.set_minor_formatter(NullFormatter())
-    low, high = axes.get_xlim()
-    ticks = (0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100)
-    axes.set_xticks([tick for tick in ticks if low <= tick <= high])
-    axes.set_xlabel(r"coating thickness, $h / a_h$")
-    axes.set_title(title, fontsize=8)
-    axes.grid(True, linewidth=0.3, color="#cccccc")
+def beside(axes: Axes, size: float, label: str) -> None:
+    """A second vertical axis for the values over ``size``."""
+    second = axes.secondary_yaxis("right", functions=_over(size))
+    second.set_ylabel(label)
+    second.ticklabel_format(axis="y", scilimits=(-2, 4))
 
 
-def _legend(figure: Figure, ratios: Sequence[float], frictions: Sequence[float], sources: set[str]) -> None:
+def _over(size: float) -> tuple[Callable[[Any], Any], Callable[[Any], Any]]:
+    """Of a second axis: from a value to that over ``size``, and back."""
+    return (lambda value: value / size), (lambda value: value * size)
+
+
+def thickness_axes(panels: Sequence[Axes], a_h: float, units: Units) -> None:
+    """Logarithmic thickness below the last of ``panels``, over ``a_h`` above the first."""
+    for axes in panels:
+        axes.set_xscale("log")
+    top = panels[0].secondary_xaxis("top", functions=_over(a_h))
+    top.set_xlabel("$h / a_h$")
+    low, high = panels[0].get_xlim()
+    subs = (1.0, 2.0, 5.0) if high > 8 * low else (1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 7.0)
+    for axis in (top.xaxis, panels[-1].xaxis):
+        axis.set_major_locator(LogLocator(subs=subs))
+        axis.set_major_formatter(ScalarFormatter())
+        axis.set_minor_formatter(NullFormatter())
+    panels[-1].set_xlabel(f"coating thickness h [{units.length}]")
+
+
+def _keys(ratios: Sequence[float], frictions: Sequence[float], sources: set[str]) -> list[Line2D]:
     def key(label: str, colour: str = "#444444", **style: Any) -> Line2D:
         return Line2D([], [], color=colour, label=label, **style)
 
@@ -231,104 +263,127 @@ def _legend(figure: Figure, ratios: Sequence[float], frictions: Sequence[float],
     for record in (RECORDS[source] for source in SOURCES[1:] if source in sources):
         marker = record.style.marker
         handles.append(key(record.label, marker=marker, linestyle="none", markerfacecolor="none"))
-    _below(figure, handles, min(len(handles), 5))
+    return handles
 
 
-def _below(figure: Figure, handles: Sequence[Artist], columns: int) -> None:
-    figure.legend(handles=handles, loc="outside lower center", ncols=columns, frameon=False)
-
-
-def use_figures(judgements: Sequence[Judged]) -> list[Drawn]:
-    """Stress over strength against thickness, admissible ranges shaded; [] where no strengths are given."""
-    chosen = [j for j in judgements if j.limited]
-    if not chosen:
-        return []
-    found = []
-    caption = (
-        "Green: admissible thicknesses, where every stress stays below its strength. Triangle: the "
-        "preferable thickness."
+def below(figure: Figure, handles: Sequence[Artist], columns: int) -> None:
+    """The legend of a figure under it, in at most so many columns."""
+    figure.legend(
+        handles=handles,
+        loc="lower center",
+        ncols=min(columns, len(handles)),
+        borderaxespad=0.2,
+        labelspacing=0.35,
+        frameon=False,
+        fontsize=6.5,
+        columnspacing=1.2,
+        handlelength=2.2,
     )
-    for ratio in sorted({j.curve.ratio for j in chosen}):
-        members = [j for j in chosen if j.curve.ratio == ratio]
-        rows = [["E1/E2", "f", "h / a_h", "h [m]", *members[0].modes]]
-        with sheet(62 * len(members) + 12, 75) as figure:
-            panels = figure.subplots(1, len(members), sharey=True, squeeze=False)[0]
-            for axes, judgement in zip(panels, members, strict=True):
-                curve = judgement.curve
-                for low, high in judgement.admissible:
-                    axes.axvspan(low, high, color="#d5efe1", linewidth=0)
-                for mode, use in zip(judgement.modes, judgement.utilisation, strict=True):
-                    at = list(MODES).index(mode)
-                    axes.plot(curve.h, use, color=COLOURS[at], label=mode, marker=".", markersize=3)
-                axes.axhline(1.0, color="#c02a2a", linewidth=0.9, linestyle=(0, (4, 2)))
-                axes.plot(*judgement.preferable[:2], "v", color="black", markersize=4)
-                axes.set_yscale("log")
-                axes.set_ylim(0.02, 1.5 * max(1.0, *(float(j.utilisation.max()) for j in members)))
-                _thickness_axis(axes, f"$E_1/E_2$ = {ratio:.4g}, f = {curve.friction:g}")
-                rows += [
-                    [f"{ratio:g}", f"{curve.friction:g}", f"{h:.9g}", f"{h * curve.a_h:.6g}"]
-                    + [f"{u:.6g}" for u in judgement.utilisation[:, i]]
-                    for i, h in enumerate(curve.h)
-                ]
-            panels[0].set_ylabel("stress over strength")
-            _below(figure, panels[0].get_legend_handles_labels()[0], 3)
-            name = f"use_{ratio:.4g}".replace(".", "_")
-            found.append(drawn(figure, name, f"Stress over strength, E1/E2 = {ratio:.4g}", caption, rows))
-    return found
 
 
-def governing_figure(judgements: Sequence[Judged]) -> list[Drawn]:
-    """The mode that governs over (h/a_h, E1/E2), a panel for each friction; [] for a single modulus.
+def use_figures(choices: Sequence[Choice], units: Units) -> list[Drawn]:
+    """Stress over strength against thickness, admissible ranges shaded; [] where no strengths are given.
+
+    Of strengths that scatter the probability that each mode governs too, and that any fails.
+    """
+    return [_use(choice, units) for choice in choices if choice.judgements[0].limited]
+
+
+def _use(choice: Choice, units: Units) -> Drawn:
+    curve, modes = choice.judgements[0].curve, choice.judgements[0].modes
+    size = curve.a_h / units.metre
+    scattered = choice.criteria.scatters
+    colours = [COLOURS[list(MODES).index(mode)] for mode in modes]
+    use = choice.use.max(axis=0)
+    some = np.linspace(0, choice.h.size - 1, 81).astype(int)
+    h = choice.h[some] * size
+    rows = [["h / a_h", f"h [{units.length}]", *modes]]
+    numbers = [use[:, some]]
+    with sheet(72 + 38 * scattered, (len(modes) + scattered + 1) // 2, right=4) as figure:
+        panels = figure.subplots(1 + scattered, 1, sharex=True, squeeze=False)[:, 0]
+        axes = panels[0]
+        for pair in choice.ranges:
+            ends = [edge if end is None else end.h for end, edge in zip(pair, choice.h[[0, -1]], strict=True)]
+            axes.axvspan(ends[0] * size, ends[1] * size, color="#d5efe1", linewidth=0)
+        for colour, mode, one in zip(colours, modes, use, strict=True):
+            axes.plot(choice.h * size, one, color=colour, label=mode)
+        axes.axhline(1.0, color="#c02a2a", linewidth=0.9, linestyle=(0, (4, 2)))
+        axes.set_yscale("log")
+        axes.set_ylim(0.02, 1.5 * max(1.0, float(use.max())))
+        axes.set_ylabel("stress over strength")
+        axes.grid(True, linewidth=0.3, color="#cccccc")
+        caption = (
+            "Largest over all frictions. Green: admissible thicknesses, where every stress stays below its "
+            "strength" + (f", the {100 * choice.criteria.fractile:g} % fractile." if scattered else ".")
+        )
+        if scattered:
+            chances = choice.chances(choice.h[some])
+            axes = panels[1]
+            axes.stackplot(h, *chances.governs, colors=[_pale(c) for c in colours], linewidth=0)
+            axes.plot(h, chances.fails, color="black", label="coating fails")
+            axes.set_ylim(0, 1)
+            axes.set_ylabel("probability")
+            caption += (
+                " Below: probability that each mode governs; line: that any stress exceeds its strength."
+            )
+            rows[0] += [f"{mode} governs" for mode in modes] + ["fails"]
+            numbers += [chances.governs, chances.fails[None]]
+        thickness_axes(list(panels), size, units)
+        handles = [line for one in panels for line in one.get_legend_handles_labels()[0] if line in one.lines]
+        below(figure, handles, 2)
+        values = np.concatenate(numbers)
+        rows += [
+            [f"{choice.h[i]:.6g}", f"{x:.6g}", *(f"{v:.6g}" for v in column)]
+            for i, x, column in zip(some, h, values.T, strict=True)
+        ]
+        name = f"use_{curve.ratio:.4g}".replace(".", "_")
+        return drawn(figure, name, f"Stress over strength, E1/E2 = {curve.ratio:.4g}", caption, rows)
+
+
+def governing_figure(choices: Sequence[Choice], units: Units) -> list[Drawn]:
+    """The mode that governs over (h, E1/E2), the largest over frictions; [] for a single modulus.
 
     Between the solved points, which are dots, each use of strength is read by monotone cubics in log h,
     then by straight lines in log E1/E2.
     """
-    frictions = sorted({j.curve.friction for j in judgements})
-    grids = [_map([j for j in judgements if j.curve.friction == f]) for f in frictions]
-    if any(grid is None for grid in grids):
+    grid = _map(choices)
+    if grid is None:
         return []
-    modes = judgements[0].modes
-    rows = [["f", "E1/E2", "h / a_h", "largest use", "governing"]]
-    with sheet(62 * len(frictions) + 8, 78) as figure:
-        panels = figure.subplots(1, len(frictions), sharey=True, squeeze=False)[0]
-        for axes, friction, grid in zip(panels, frictions, grids, strict=True):
-            assert grid is not None
-            h, ratio, use = grid
-            governing, largest = use.argmax(axis=0), use.max(axis=0)
-            colours = ListedColormap([_pale(COLOURS[list(MODES).index(mode)]) for mode in modes])
-            axes.pcolormesh(
-                h, ratio, governing, cmap=colours, vmin=-0.5, vmax=len(modes) - 0.5, shading="nearest",
-                rasterized=True
-            )  # fmt: skip
-            lines = axes.contour(h, ratio, largest, levels=6, colors="#555555", linewidths=0.6)
-            axes.clabel(lines, fontsize=6, fmt="%.3g", manual=_places(lines, h, ratio))
-            if judgements[0].limited:
-                axes.contour(h, ratio, largest, levels=[1.0], colors="#c02a2a", linewidths=1.6)
-            for judgement in judgements:
-                curve = judgement.curve
-                if curve.friction == friction:
-                    axes.plot(curve.h, np.full_like(curve.h, curve.ratio), ".", color="#222222", ms=1.6)
-            axes.set_yscale("log")
-            axes.yaxis.set_minor_formatter(NullFormatter())
-            axes.set_yticks(sorted({j.curve.ratio for j in judgements}))
-            axes.yaxis.set_major_formatter(lambda y, _: f"{y:.3g}")
-            _thickness_axis(axes, f"f = {friction:g}")
-            rows += [
-                [
-                    f"{friction:g}",
-                    *(f"{x:.6g}" for x in (ratio[i], h[j], largest[i, j])),
-                    modes[governing[i, j]],
-                ]
-                for i in range(0, ratio.size, 4)
-                for j in range(0, h.size, 8)
-            ]
-        panels[0].set_ylabel("$E_1/E_2$")
+    first = choices[0].judgements[0]
+    modes, size = first.modes, first.curve.a_h / units.metre
+    over, ratio, use = grid
+    h, governing, largest = over * size, use.argmax(axis=0), use.max(axis=0)
+    with sheet(78, len(modes), right=4) as figure:
+        axes = figure.subplots(1, 1)
+        colours = ListedColormap([_pale(COLOURS[list(MODES).index(mode)]) for mode in modes])
+        axes.pcolormesh(
+            h, ratio, governing, cmap=colours, vmin=-0.5, vmax=len(modes) - 0.5, shading="nearest",
+            rasterized=True
+        )  # fmt: skip
+        lines = axes.contour(h, ratio, largest, levels=6, colors="#555555", linewidths=0.6)
+        axes.clabel(lines, fontsize=6, fmt="%.3g", manual=_places(lines, h, ratio))
+        if first.limited:
+            axes.contour(h, ratio, largest, levels=[1.0], colors="#c02a2a", linewidths=1.6)
+        for curve in (one.judgements[0].curve for one in choices):
+            axes.plot(curve.h * size, np.full_like(curve.h, curve.ratio), ".", color="#222222", ms=1.6)
+        axes.set_yscale("log")
+        axes.yaxis.set_minor_formatter(NullFormatter())
+        axes.set_yticks(sorted({one.judgements[0].curve.ratio for one in choices}))
+        axes.yaxis.set_major_formatter(lambda y, _: f"{y:.3g}")
+        axes.set_ylabel("$E_1/E_2$")
+        thickness_axes([axes], size, units)
         handles = [Patch(color=_pale(COLOURS[list(MODES).index(m)]), label=f"{m}: {MODES[m]}") for m in modes]
-        _below(figure, handles, 2)
-        quantity = "stress over strength, red where it is 1" if judgements[0].limited else "stress over p_h"
+        below(figure, handles, 1)
+        rows = [["E1/E2", "h / a_h", f"h [{units.length}]", "largest use", "governing"]]
+        rows += [
+            [*(f"{x:.6g}" for x in (ratio[i], over[j], h[j], largest[i, j])), modes[governing[i, j]]]
+            for i in range(0, ratio.size, 4)
+            for j in range(0, h.size, 8)
+        ]
+        quantity = "stress over strength, red where it is 1" if first.limited else "stress over p_h"
         caption = (
-            f"Colour: the mode whose stress is largest against its strength. Lines: the largest {quantity}. "
-            "Dots: solved points."
+            "Colour: the mode whose stress is largest against its strength, at the worst friction. Lines: "
+            f"the largest {quantity}. Dots: solved points."
         )
         return [drawn(figure, "governing_mode", "Governing failure mode", caption, rows)]
 
@@ -352,17 +407,17 @@ def _pale(colour: str) -> tuple[float, float, float]:
     return (0.45 * r + 0.55, 0.45 * g + 0.55, 0.45 * b + 0.55)
 
 
-def _map(judgements: Sequence[Judged]) -> tuple[Array, Array, Array] | None:
+def _map(choices: Sequence[Choice]) -> tuple[Array, Array, Array] | None:
     """h/a_h, E1/E2, uses of strength (modes, ratios, thicknesses) on a dense grid; None for one modulus."""
-    members = sorted(judgements, key=lambda j: j.curve.ratio)
+    members = sorted(choices, key=lambda one: one.judgements[0].curve.ratio)
     if len(members) < 2:
         return None
-    h = np.geomspace(max(j.curve.h[0] for j in members), min(j.curve.h[-1] for j in members), 240)
-    ratio = np.geomspace(members[0].curve.ratio, members[-1].curve.ratio, 120)
+    h = np.geomspace(max(one.h[0] for one in members), min(one.h[-1] for one in members), 240)
+    known = np.log([one.judgements[0].curve.ratio for one in members])
+    ratio = np.exp(np.linspace(known[0], known[-1], 120))
     rows = np.stack(
-        [PchipInterpolator(np.log(j.curve.h), j.utilisation, axis=1)(np.log(h)) for j in members], axis=1
+        [PchipInterpolator(np.log(one.h), one.use.max(axis=0), axis=1)(np.log(h)) for one in members], axis=1
     )
-    known = np.log([j.curve.ratio for j in members])
     at = np.clip(np.searchsorted(known, np.log(ratio)) - 1, 0, known.size - 2)
     share = ((np.log(ratio) - known[at]) / np.diff(known)[at])[:, None]
     return h, ratio, (1 - share) * rows[:, at] + share * rows[:, at + 1]

@@ -1,16 +1,22 @@
-"""Recommended thickness of a study, the failure modes that bound it, the cross-checks near it.
+"""The answer of a study in words: which thicknesses are good, which failure modes limit them.
 
-One coating at several frictions is recommended where it is admissible at all of them. Each end of that range
-is where some stress of some friction meets its strength: the failure mode beyond.
+No number has more digits than its uncertainty supports; limits are rounded to the safe side.
 """
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
+from verification.cases.units import Units
 from verification.report.tables.labels import source_label
-from verification.study.criteria import MODES, Judged
+from verification.study.choice.criteria import MODES, Judged
+from verification.study.choice.thickness import Choice, End, Range
+
+__all__ = ["Near", "answers", "between", "checked_messages", "near", "rounded"]
+
+DIGITS = 2  # of a thickness, at most
 
 
 @dataclass(frozen=True)
@@ -41,111 +47,124 @@ def near(judgement: Judged, h: float, mode: str) -> tuple[Near, ...]:
     return tuple(found)
 
 
-def recommendation_messages(judgements: Sequence[Judged]) -> list[str]:
-    """For each modulus what is recommended, which failure bounds it, the cross-checks nearest to it.
+def rounded(value: float, uncertainty: float, upwards: bool | None = None, digits: int = DIGITS) -> str:
+    """A positive ``value`` in at most ``digits`` digits, the last no finer than its ``uncertainty``.
 
-    Without strengths, or with none of them judged, a single message: where the preferable thicknesses lie.
+    upwards : whether it is rounded up or down; to the nearest for None.
     """
-    limited = [j for j in judgements if j.limited]
-    if not limited:
-        return _preferable_range(judgements)
-    found = []
-    for ratio in sorted({j.curve.ratio for j in limited}):
-        members = sorted((j for j in limited if j.curve.ratio == ratio), key=lambda j: j.curve.friction)
-        found += _of_modulus(members)
-    return found
+    last = math.floor(math.log10(value)) - digits + 1
+    if uncertainty > 0 and math.isfinite(uncertainty):
+        last = max(last, math.ceil(math.log10(uncertainty)))
+    last = min(last, math.floor(math.log10(value)))
+    step = 10.0**last
+    # 1e-9: a value that is round already stays
+    shift = 0.0 if upwards is None else (-1e-9 if upwards else 1e-9)
+    steps = value / step + shift
+    count = round(steps) if upwards is None else math.ceil(steps) if upwards else math.floor(steps)
+    return f"{(count or 1) * step:.{max(-last, 0)}f}"
 
 
-def _preferable_range(judgements: Sequence[Judged]) -> list[str]:
-    if not judgements:
-        return []
-    thin = min(judgements, key=lambda j: j.preferable[0])
-    thick = max(judgements, key=lambda j: j.preferable[0])
-    ends = [
-        f"h = {j.preferable[0]:.3g} a_h ({j.curve.label}; {j.preferable[2]} governs)" for j in (thin, thick)
-    ]
-    return [
-        f"Over the {len(judgements)} curves the preferable thickness lies between {ends[0]} and {ends[1]}."
-    ]
+def answers(choices: Sequence[Choice], units: Units) -> list[str]:
+    """The answer for each modulus in a line."""
+    return [_answer(one, units, several=len(choices) > 1) for one in choices]
 
 
-def _of_modulus(members: Sequence[Judged]) -> list[str]:
-    curve = members[0].curve
-    frictions = [j.curve.friction for j in members]
-    every = f"f = {frictions[0]:g}" + (f" to {frictions[-1]:g}" if len(members) > 1 else "")
-    name = f"E1/E2 = {curve.ratio:.3g}"
-    ranges = members[0].admissible
-    for j in members[1:]:
-        ranges = _overlap(ranges, j.admissible)
-    if not ranges:
-        j = min(members, key=lambda j: -j.preferable[1])
-        h, use, mode = j.preferable
-        return [
-            f"{name}: no thickness of the sweep is admissible at every friction ({every}); with "
-            f"f = {j.curve.friction:g} even the preferable h = {_micrometres(j, h)} uses {use:.2f} of the "
-            f"strength in {mode}: {MODES[mode]}. {_checked([(j, h, mode)])}"
-        ]
-    found = []
-    for low, high in ranges:
-        ends = [_bound(members, low, thinner=True), _bound(members, high, thinner=False)]
-        at = members[0].h
-        inside = np.flatnonzero((at >= low) & (at <= high))
-        used = np.array([np.interp(at[inside], j.h, j.largest) for j in members])
-        best = int(used.max(axis=0).argmin())
-        worst = members[int(used[:, best].argmax())]
-        h = float(at[inside[best]])
-        mode = worst.modes[worst.governing[int(np.abs(worst.h - h).argmin())]]
-        beyond = "; ".join(
-            f"{side}, {_beyond(end)}" for side, end in zip(("thinner", "thicker"), ends, strict=True)
+def _answer(found: Choice, units: Units, *, several: bool) -> str:
+    frictions = [j.curve.friction for j in found.judgements]
+    at = f"f = {frictions[0]:g}" + (f" to {frictions[-1]:g}" if len(frictions) > 1 else "")
+    name = f"E1/E2 = {found.judgements[0].curve.ratio:.3g}: " if several else ""
+    if not found.judgements[0].limited:
+        return f"{name}{_even(found, units)} at {at}{_limits(found, found.even)}."
+    if not found.ranges:
+        judgement, mode = found.governing(found.best)
+        use = rounded(found.least, found.error)
+        return (
+            f"{name}no thickness of the sweep keeps every stress below its strength at {at}; even the best, "
+            f"{_length(found, found.best, units)}, uses {use} of it: {MODES[mode]} "
+            f"(f = {judgement.curve.friction:g})."
         )
-        places = [(*end[:1], place, end[1]) for place, end in zip((low, high), ends, strict=True) if end]
-        found.append(
-            f"{name}: h = {low * curve.a_h * 1e6:.3g} to {_micrometres(worst, high)} is admissible at every "
-            f"friction ({every}). {beyond[0].upper()}{beyond[1:]}. "
-            f"Within it h = {_micrometres(worst, h)} uses least, {used[:, best].max():.2f} of the strength "
-            f"in {mode} with f = {worst.curve.friction:g}. {_checked([*places, (worst, h, mode)])}"
+    parts = []
+    for pair in found.ranges:
+        parts.append(
+            f"{between(found, pair, units, safe=True)} keeps every stress below its strength at {at}"
+            f"{_limits(found, pair)}"
         )
-    return found
+    use = rounded(found.least, found.error)
+    return f"{name}{'. '.join(parts)}. {_even(found, units)}, at {use} of the strength."
 
 
-def _overlap(
-    a: Sequence[tuple[float, float]], b: Sequence[tuple[float, float]]
-) -> tuple[tuple[float, float], ...]:
-    both = [(max(p, r), min(q, s)) for p, q in a for r, s in b]
-    return tuple((low, high) for low, high in both if low < high)
+def _even(found: Choice, units: Units) -> str:
+    percent = math.ceil(100 * found.tolerance - 1e-9)
+    verb = f"are within {percent} % of each other"
+    return f"{between(found, found.even, units)} {verb}"
 
 
-def _bound(members: Sequence[Judged], h: float, *, thinner: bool) -> tuple[Judged, str] | None:
-    """The curve whose range ends at ``h`` with the mode that governs there; None at a sweep's end."""
-    if h in (members[0].h[0], members[0].h[-1]):
-        return None
-    j = next(j for j in members if h in [r[0 if thinner else 1] for r in j.admissible])
-    return j, j.modes[j.governing[int(np.abs(np.log(j.h / h)).argmin())]]
+def between(found: Choice, pair: Range, units: Units, *, safe: bool = False) -> str:
+    """ "2 to 10 µm"; inwards where ``safe``, with the ends of the sweep named."""
+    low, high = pair
+    scale = found.judgements[0].curve.a_h / units.metre
+    ends = []
+    for end, edge, upwards in ((low, found.h[0], True), (high, found.h[-1], False)):
+        value, U = (float(edge), 0.0) if end is None else (end.h, end.uncertainty)
+        ends.append(rounded(value * scale, U * scale, upwards if safe and end else None))
+    swept = [word for word, end in (("thinnest", low), ("thickest", high)) if end is None]
+    beyond = f" (the {' and the '.join(swept)} of the sweep)" if swept else ""
+    if ends[0] == ends[1] or float(ends[0]) > float(ends[1]):
+        return f"about {_length(found, found.best, units)}{beyond}"
+    return f"{ends[0]} to {ends[1]} {units.length}{beyond}"
 
 
-def _beyond(end: tuple[Judged, str] | None) -> str:
-    if end is None:
-        return "the sweep ends"
-    j, mode = end
-    return f"{MODES[mode]} ({mode}, f = {j.curve.friction:g})"
+def _length(found: Choice, h: float, units: Units) -> str:
+    return f"{rounded(h * found.judgements[0].curve.a_h / units.metre, 0.0)} {units.length}"
 
 
-def _micrometres(j: Judged, h: float) -> str:
-    return f"{h * j.curve.a_h * 1e6:.3g} µm"
+def _limits(found: Choice, pair: Range) -> str:
+    """What sets each limit, with its share of the samples in which the coating fails there."""
+    said = []
+    words = (
+        ("the limit below is set where", "above where") if pair[0] else ("", "the limit above is set where")
+    )
+    for word, end in zip(words, pair, strict=True):
+        if end is not None:
+            said.append(f"{word} {MODES[end.mode]} ({_share(found, end)}f = {end.friction:g})")
+    return f"; {', '.join(said)}" if said else ""
 
 
-def _checked(places: Sequence[tuple[Judged, float, str]]) -> str:
-    """The cross-checks nearest to each (curve, thickness, mode), every source with its worst difference."""
-    found = [(j, one) for j, h, mode in places for one in near(j, h, mode)]
+def _share(found: Choice, end: End) -> str:
+    if not found.criteria.scatters:
+        return ""
+    chances = found.chances(np.array([end.h]))
+    if not chances.fails[0]:
+        return ""
+    share = chances.breaks[found.judgements[0].modes.index(end.mode), 0] / chances.fails[0]
+    return f"{100 * share:.0f} % of the failures there, "
+
+
+def checked_messages(choices: Sequence[Choice], units: Units) -> list[str]:
+    """For each modulus the cross-checks nearest to what is recommended, every source with its worst."""
+    return [message for one in choices if (message := _checked(one, units))]
+
+
+def _checked(choice: Choice, units: Units) -> str:
+    pairs = [*choice.ranges, choice.even]
+    places = [(end.h, end.mode, end.friction) for pair in pairs for end in pair if end is not None]
+    judgement, mode = choice.governing(choice.best)
+    places.append((choice.best, mode, judgement.curve.friction))
+    by_friction = {j.curve.friction: j for j in choice.judgements}
+    found = [(by_friction[f], one) for h, mode, f in places for one in near(by_friction[f], h, mode)]
     if not found:
-        return "No point near it was cross-checked."
+        return ""
     parts = []
     for source in dict.fromkeys(one.source for _, one in found):
         j, one = max(
             ((j, one) for j, one in found if one.source == source), key=lambda item: item[1].difference
         )
+        stress = one.difference * j.curve.p_h / units.pascal
         parts.append(
-            f"at most {one.difference:.1e} p_h off the {source_label(source)} ({one.mode}, "
-            f"h = {_micrometres(j, one.h)}, f = {j.curve.friction:g})"
+            f"at most {stress:.1g} {units.stress} off the {source_label(source)} ({one.mode}, "
+            f"{_length(choice, one.h, units)}, f = {j.curve.friction:g})"
         )
-    return f"At the checked thicknesses nearest to it these stresses are {' and '.join(parts)}."
+    return (
+        f"E1/E2 = {judgement.curve.ratio:.3g}: at the checked thicknesses nearest to these the governing "
+        f"stresses are {' and '.join(parts)}."
+    )

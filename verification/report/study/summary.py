@@ -6,7 +6,7 @@ import numpy as np
 
 from verification.problem.quantity import QUANTITIES
 from verification.report.tables.labels import source_label
-from verification.study.criteria import MODES
+from verification.study.choice.criteria import MODES
 from verification.study.curves import Curve, Difference
 from verification.study.table import SCALARS
 

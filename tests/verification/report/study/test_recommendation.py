@@ -4,9 +4,11 @@ import numpy as np
 import pytest
 import study_table
 
-from verification.report.study.recommendation import near, recommendation_messages
+from verification.cases.units import Units
+from verification.report.study.recommendation import answers, checked_messages, near, rounded
 from verification.report.study.summary import main_messages
-from verification.study.criteria import Criteria, judged
+from verification.study.choice.criteria import Criteria, judged
+from verification.study.choice.thickness import choice
 from verification.study.curves import curves
 from verification.study.table import read_columns
 
@@ -26,43 +28,84 @@ def test_the_nearest_cross_check_is_named_with_its_difference(found):
     assert one.difference == pytest.approx(3e-4, rel=1e-6)
 
 
+def chosen(found, criteria, ratio=2.0):
+    return choice([judged(c, criteria) for c in found if c.ratio == ratio], criteria)
+
+
 def test_recommended_is_what_is_admissible_at_every_friction(found):
     criteria = Criteria(strength={"sigma_xx_surface": 0.9 * study_table.P_H})
-    (said,) = recommendation_messages([judged(c, criteria) for c in found if c.ratio == 2.0])
+    one = chosen(found, criteria)
+    (answer,) = answers([one], Units())
     # f = 0.25 is the harder one: (0.1 + f) E1/E2 (1 + log(2 h)^2 / 4) = 0.9
     reach = np.exp(2 * np.sqrt(0.9 / 0.7 - 1))
-    low, high = (float(s) for s in said.split("h = ")[1].split(" µm")[0].split(" to "))
-    assert low == pytest.approx(0.5 / reach * study_table.A_H * 1e6, rel=0.03)
-    assert high == pytest.approx(0.5 * reach * study_table.A_H * 1e6, rel=0.03)
-    for part in (
-        "admissible at every friction (f = 0 to 0.25)",
-        "Thinner, the coating cracks at its surface (sigma_xx_surface, f = 0.25)",
-        "thicker, the coating cracks at its surface",
-        "0.78 of the strength in sigma_xx_surface",
-        "at most 3.0e-04 p_h off the finite elements",
-    ):
-        assert part in said
+    low, high = one.ranges[0]
+    for end, exact in ((low, 0.5 / reach), (high, 0.5 * reach)):
+        assert abs(end.h - exact) <= end.uncertainty < 0.1 * exact
+        assert (end.mode, end.friction) == ("sigma_xx_surface", 0.25)
+    assert "keeps every stress below its strength at f = 0 to 0.25" in answer
+    cracks = "the coating cracks at its surface (f = 0.25)"
+    assert f"the limit below is set where {cracks}, above where {cracks}" in answer
+    assert "at 0.78 of the strength" in answer
+    (checked,) = checked_messages([one], Units())
+    assert "at most 0.4 MPa off the finite elements" in checked
+
+
+def test_equally_good_thicknesses_are_those_within_the_tolerance(found):
+    one = chosen(found, Criteria(minimise=["sigma_xx_surface"]))
+    # 1 + log(2 h)^2 / 4 = 1 + tolerance
+    reach = np.exp(2 * np.sqrt(one.tolerance))
+    low, high = one.even
+    for end, exact in ((low, 0.5 / reach), (high, 0.5 * reach)):
+        assert abs(end.h - exact) <= max(end.uncertainty, 0.02 * exact)
+    (answer,) = answers([one], Units())
+    percent = (
+        f"are within {np.ceil(100 * one.tolerance):.0f} % of each other at f = 0 to 0.25; the limit below"
+    )
+    assert percent in answer
+
+
+@pytest.mark.parametrize(
+    ("value", "uncertainty", "upwards", "text"),
+    [
+        (3.1416, 0.0, None, "3.1"),
+        (3.1416, 0.02, None, "3.1"),
+        (3.1416, 0.2, None, "3"),
+        (3.1416, 0.0, True, "3.2"),
+        (3.1616, 0.0, False, "3.1"),
+        (41.9, 0.3, True, "42"),
+        (41.9, 3.0, False, "40"),
+        (41.9, 300.0, None, "40"),
+        (0.0314, 0.0, None, "0.031"),
+        (2.0, 0.0, True, "2.0"),
+        (950.0, 40.0, True, "1000"),
+    ],
+)
+def test_no_number_is_finer_than_its_uncertainty(value, uncertainty, upwards, text):
+    assert rounded(value, uncertainty, upwards) == text
 
 
 def test_an_end_of_the_sweep_is_no_failure(found):
     criteria = Criteria(strength={"von_mises_substrate": 0.8 * study_table.P_H})
-    (said,) = recommendation_messages([judged(c, criteria) for c in found if c.ratio == 2.0])
+    (answer,) = answers([chosen(found, criteria)], Units())
     # 0.7 E1/E2 (1 + f) e^-h = 0.8: too thin yields, however thick holds
-    assert "Thinner, the substrate yields (von_mises_substrate, f = 0.25); thicker, the sweep ends" in said
+    assert "µm (the thickest of the sweep) keeps" in answer
+    assert "the limit below is set where the substrate yields (f = 0.25)." in answer
 
 
-def test_where_nothing_is_admissible_the_sentence_says_what_breaks(found):
+def test_where_nothing_is_admissible_the_answer_names_what_breaks(found):
     criteria = Criteria(strength={"sigma_xx_surface": 1e6})
-    messages = recommendation_messages([judged(c, criteria) for c in found])
-    assert len(messages) == 2
-    for said in messages:
-        assert "no thickness of the sweep is admissible at every friction" in said
-        assert "with f = 0.25 even the preferable" in said
+    texts = answers([chosen(found, criteria, ratio) for ratio in (0.5, 2.0)], Units())
+    assert len(texts) == 2
+    for text in texts:
+        assert "no thickness of the sweep keeps every stress below its strength at f = 0 to 0.25" in text
+        assert text.endswith("the coating cracks at its surface (f = 0.25).")
 
 
-def test_without_strengths_the_span_of_preferable_thicknesses_is_named(found):
-    (said,) = recommendation_messages([judged(c, Criteria()) for c in found])
-    assert said.startswith("Over the 4 curves the preferable thickness lies between h = ")
+def test_answer_is_in_the_units_of_the_user(found):
+    nm = Units(length="nm", metre=1e-9)
+    criteria = Criteria(strength={"von_mises_substrate": 0.8 * study_table.P_H})
+    (answer,) = answers([chosen(found, criteria)], nm)
+    assert "000 nm (the thickest" in answer
 
 
 def test_the_summary_is_a_sentence_a_stress_and_one_for_the_contact(found):

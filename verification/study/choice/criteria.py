@@ -2,11 +2,13 @@
 
     utilisation u_i(h) = safety * stress_i(h) / strength_i,   governing mode: the largest u_i
 
-A thickness is admissible where every u_i, computed with its stress plus numerical uncertainty, is at most 1;
-the preferable one minimises the largest u_i. Without strengths the criterion is the least maximum of a few
+Of a strength that scatters it is the fractile below which a stated share lies, 5 % unless given. A thickness
+is admissible where every u_i, computed with its stress plus numerical uncertainty, is at most 1; the
+preferable one minimises the largest u_i. Without strengths the criterion is the least maximum of a few
 stresses over p_h, which is the same with equal strengths.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Annotated
 
@@ -16,8 +18,9 @@ from pydantic import Field, model_validator
 from scipy.interpolate import PchipInterpolator
 
 from verification.cases.toml import Strict
-from verification.cases.units import InSI, Pascals
+from verification.cases.units import InSI
 from verification.problem.arrays import Array
+from verification.study.choice.strength import Given, Strength, strength_of
 from verification.study.curves import Curve
 from verification.study.quantities import Stress
 
@@ -38,11 +41,13 @@ class Criteria(Strict):
     """The table ``[criteria]`` of a study file.
 
     strength : upper limit of each stress [Pa].   safety : factor on every stress.
+    fractile : share of weaker ones below the strength that counts, of strengths that scatter.
     minimise : without strengths, the stresses whose maximum is minimised.
     """
 
-    strength: Annotated[dict[Stress, Pascals], Field(min_length=1)] | None = None
+    strength: Annotated[dict[Stress, Given], Field(min_length=1)] | None = None
     safety: Annotated[float, Field(ge=1, le=100)] = 1.0
+    fractile: Annotated[float, Field(gt=0, le=0.5)] = 0.05
     minimise: Annotated[list[Stress], Field(min_length=1)] | None = None
 
     @model_validator(mode="after")
@@ -53,18 +58,30 @@ class Criteria(Strict):
 
     def warnings(self) -> tuple[str, ...]:
         """A line for each implausible strength."""
-        return tuple(
-            f"criteria.strength.{name} = {value:g} Pa is below 1 MPa"
-            + ("; check its unit" if isinstance(value, InSI) else f"; {value:g} looks like {unit}")
-            for name, value in (self.strength or {}).items()
-            for unit in ["GPa" if value < 100 else "MPa"]
-            if value < 1e6
-        )
+        found = []
+        for name, given in (self.strength or {}).items():
+            # of a range its lower end, of a distribution its mean
+            key, value = ("", given) if isinstance(given, float) else given.first
+            if value < 1e6:
+                unit = "GPa" if value < 100 else "MPa"
+                slip = "check its unit" if isinstance(value, InSI) else f"{value:g} looks like {unit}"
+                found.append(f"criteria.strength.{name}{key} = {value:g} Pa is below 1 MPa; {slip}")
+        return tuple(found)
+
+    @property
+    def scatters(self) -> bool:
+        """Whether any strength is more than one value."""
+        return any(one.scatters for one in self.given().values())
+
+    def given(self, shown: Callable[[float], str] = str) -> dict[str, Strength]:
+        """Strength of every mode that has one, in the order of ``MODES``; {} without strengths."""
+        given = self.strength or {}
+        return {mode: strength_of(given[mode], shown) for mode in MODES if mode in given}
 
     def strengths(self, p_h: float) -> dict[str, float]:
-        """Strength [Pa] of every mode in the criterion; ``p_h`` [Pa] for all where none is given."""
+        """Strength [Pa] that counts of every mode in the criterion; ``p_h`` [Pa] for all without any."""
         if self.strength is not None:
-            return {mode: self.strength[mode] for mode in MODES if mode in self.strength}
+            return {mode: float(one.quantile(self.fractile)) for mode, one in self.given().items()}
         chosen = self.minimise or ["sigma_xx_surface", "sigma_xx_base", "sigma_xz_interface"]
         return {mode: p_h for mode in MODES if mode in chosen}
 
@@ -76,9 +93,9 @@ class Criteria(Strict):
                 f"No strengths are given, so the preferable thickness is where the largest of {names} is "
                 "smallest; [criteria] minimise names other stresses, [criteria] strength gives strengths."
             )
-        limits = ", ".join(f"{name} {value / 1e6:g} MPa" for name, value in self.strength.items())
         factor = f", each stress times {self.safety:g}" if self.safety != 1 else ""
-        return f"Every stress must stay below its strength{factor}: {limits}."
+        kind = f"the {100 * self.fractile:g} % fractile of its strength" if self.scatters else "its strength"
+        return f"Every stress must stay below {kind}{factor}."
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,0 +1,43 @@
+"""coatcheck manual: the manual as HTML pages, to read without a network, or as a PDF."""
+
+import sys
+from pathlib import Path
+
+from verification.commands.common.exits import CommandError, no_result, with_exit_code
+from verification.commands.common.options import AsJson, Flag, Output, Quiet
+from verification.commands.common.terminal import print_json
+
+
+@with_exit_code
+def manual(
+    *,
+    output: Output = Path("manual"),
+    pdf: Flag = False,
+    time_limit: float = 300.0,
+    quiet: Quiet = False,
+    as_json: AsJson = False,
+) -> int:
+    """Write the manual: theory, cases, formats, API, from the sources of this version.
+
+    Requires the extra manual: pip install 'coatcheck[manual]'.
+
+    Args:
+        output: Directory of the pages, index.html first.
+        pdf: Also write coatcheck.pdf there, through an installed Chromium or Chrome.
+        time_limit: Seconds that printing may take.
+    """
+    from verification.manual.book import print_manual
+    from verification.manual.build import build
+    from verification.report.pdf import NoBrowser
+
+    try:
+        files = print_manual(output, "coatcheck.pdf", time_limit) if pdf else [build(output)]
+    except NoBrowser as error:
+        raise no_result(str(error)) from None
+    except ValueError as error:
+        raise CommandError(str(error)) from None
+    if as_json:
+        print_json({"files": [str(file) for file in files]})
+    elif not quiet:
+        sys.stdout.write("".join(f"{file}\n" for file in files))
+    return 0

@@ -1,0 +1,190 @@
+"""Generated blocks of pages: ``{generated} name`` is replaced by what ``BLOCKS[name]`` returns.
+
+Every number comes from the baseline or a record of this version.
+"""
+
+import re
+from collections.abc import Callable, Sequence
+from datetime import datetime
+from pathlib import Path
+
+from verification.cases.contact import read_case, shipped_cases
+from verification.cases.published import published_cases, read_published
+from verification.credibility import alarms
+from verification.credibility.faults.campaign import RECORD
+from verification.credibility.faults.record import read_record
+from verification.manual.markdown import symbol, table, text
+from verification.manual.numbers import FOLDER, baseline, largest, pairs
+from verification.manual.tour import solved
+from verification.problem.quantity import QUANTITIES
+from verification.report.tables.numbers import scientific, seconds
+from verification.sources.registry import SOURCES
+
+SOURCE = Path(__file__).parent / "source"
+RECORDS = FOLDER.parents[1] / "credibility" / "shipped"
+METHODS = ("semianalytic", "fem_reference")
+FIELDS = ("stress", "pressure", "displacement")
+
+
+def headline() -> str:
+    """The largest differences of every case of the default run."""
+    rows = []
+    for path in shipped_cases().values():
+        case = read_case(path)
+        found = [p for p in pairs(case.name) if p.between == METHODS]
+        cells = [
+            scientific(next(p.worst for p in found if p.quantity == name), 1)
+            for name in ("peak_pressure", "contact_radius", "approach")
+        ]
+        exact = [largest(case.name, (method, "integral_equation"), *FIELDS) for method in METHODS]
+        fields = [scientific(value, 1) for value in (largest(case.name, METHODS, *FIELDS), *exact)]
+        count = str(len(pairs(case.name)))
+        rows.append([f"[{text(case.title)}](/cases/{case.name}.md)", *cells, *fields, count])
+    head = ["case", "$p_0$", "$a$", r"$\delta$", "lines, both methods", "semi-analytical, exact"]
+    return _dated() + table([*head, "finite elements, exact", "comparisons"], rows, 1) + f"\n{HEADLINE}"
+
+
+HEADLINE = r"""
+$p_0$, $a$, $\delta$: relative difference between both methods. Lines: the largest difference of stresses and
+pressures over the smaller of $p_h$ and $p_0$, of displacements over the smaller of $\delta_h$ and $\delta$.
+"""
+
+
+def totals() -> str:
+    """What the default run judges, in one sentence."""
+    known = baseline()
+    contacts = [name for name in known.cases if not known.published(name)]
+    comparisons = sum(len(c.pairs) for name in contacts for c in known.manifests[name].comparisons)
+    invariants = sum(len(known.manifests[name].invariants) for name in contacts)
+    points = sum(len(p.position) for name in contacts for p in pairs(name))
+    return (
+        f"The default run solves {len(contacts)} cases. It judges {comparisons} comparisons at {points} "
+        f"points and {invariants} invariants; the baseline holds {known.last.numbers} numbers."
+    )
+
+
+def published_counts() -> str:
+    """Number of values of each published case, with what departs."""
+    rows = []
+    for path in published_cases().values():
+        case = read_published(path)
+        counted = sum(int(item.counted.sum()) for item in case.columns)
+        values = sum(len(item.text) for item in case.columns)
+        departed = sum(int((item.departure != 0).sum()) for item in case.columns)
+        name = f"[{text(case.title)}](/published/{case.name}.md)"
+        rows.append([name, str(case.citation["year"]), str(values), str(counted), str(departed)])
+    total = ["all", "", *(str(sum(int(row[i]) for row in rows)) for i in (2, 3, 4))]
+    head = ["case", "year", "values", "counted", "departures"]
+    return table(head, [*rows, total], 1)
+
+
+def quantities() -> str:
+    """Every quantity with name in files, unit, scale, cap."""
+    rows = [
+        [f"`{q.name}`", symbol(q.name), q.unit, q.kind, scientific(q.cap, 1), text(q.meaning)]
+        for q in QUANTITIES.values()
+    ]
+    return table(["name in files", "symbol", "unit", "kind", "cap", "meaning"], rows)
+
+
+def sources() -> str:
+    """Every source of numbers."""
+    rows = [
+        [f"`{s.name}`", s.label, s.kind.value, f"`{s.package}`" * bool(s.package)] for s in SOURCES.values()
+    ]
+    return table(["name in files", "label", "kind", "code"], rows)
+
+
+def invariants() -> str:
+    """Every invariant of the default run: how often judged, at how many points, largest bound."""
+    found: dict[str, list[tuple[int, float]]] = {}
+    for name, manifest in baseline().manifests.items():
+        if not baseline().published(name):
+            for law, _, _, points, widest in manifest.invariants:
+                plain = re.sub(r"^ball, |, (coating|interface) \d+|, substrate", "", law)
+                found.setdefault(plain, []).append((points, widest))
+    rows = [
+        [law, str(len(all_)), str(sum(n for n, _ in all_)), scientific(max(U for _, U in all_))]
+        for law, all_ in sorted(found.items())
+    ]
+    return table(["invariant", "judged", "residuals", "largest bound"], rows, 1)
+
+
+def fault_score() -> str:
+    """Planted faults: how many are caught, by group."""
+    record = read_record(RECORDS / RECORD)
+    if record is None:
+        return "No record of planted faults is part of this version."
+    groups: dict[str, list[bool]] = {}
+    for row in record.rows:
+        groups.setdefault(row.group, []).append(row.caught)
+    rows = [[text(name), str(len(found)), str(sum(found))] for name, found in groups.items()]
+    missed = [[f"`{row.name}`", text(row.description), text(row.reason)] for row in record.survivors]
+    line = (
+        f"{_day(record.started)}: {record.caught} of {len(record.rows)} planted faults are caught, "
+        f"{record.as_predicted} by a check that was named for it beforehand, in {seconds(record.seconds)}; "
+        f"with nothing planted {len(record.alarms)} of {len(record.controls)} trials failed a check."
+    )
+    parts = [line, table(["group", "faults", "caught"], rows, 1)]
+    if missed:
+        parts += ["Not caught:", table(["fault", "what is changed", "why no check notices"], missed)]
+    return "\n\n".join(parts)
+
+
+def false_alarms() -> str:
+    """Verdicts other than AGREES on random problems without an error."""
+    record = alarms.read_record(RECORDS)
+    if record is None:
+        return "No record of false alarms is part of this version."
+    parts = [
+        f"{_day(record.started)}: {len(record.alarms)} false alarms in {record.comparisons} comparisons and "
+        f"{record.invariants} invariants of {record.problems} random problems (seed {record.seed}), of which "
+        f"{record.agreeing} agree throughout."
+    ]
+    if record.ratios:
+        rows = [
+            [SOURCES[r.source].label, str(r.values), f"{r.within:.1%}", f"{r.median:.3g}"]
+            for r in record.ratios
+        ]
+        head = ["method", "values", "error within $U$", "median of $U$ over error"]
+        parts.append(table(head, rows, 1))
+    return "\n\n".join(parts)
+
+
+def history() -> str:
+    """Updates of the baseline with their reasons, the last first."""
+    rows = [[_day(u.when), str(u.numbers), text(u.why)] for u in reversed(baseline().history)]
+    return table(["date", "numbers", "reason"], rows)
+
+
+def more_pages() -> str:
+    """Table of contents of the pages that the index does not name."""
+    index = (SOURCE / "index.md").read_text(encoding="utf-8")
+    named = set(re.findall(r"^\w+$", index, re.MULTILINE))
+    more = [path.stem for path in sorted(SOURCE.glob("*.md")) if path.stem not in {*named, "index"}]
+    return "\n".join(["```{toctree}", ":maxdepth: 1", ":caption: More", "", *more, "```"]) if more else ""
+
+
+def _dated() -> str:
+    last = baseline().last
+    return f"Baseline of {_day(last.when)}, commit {last.commit or 'unknown'}, on {last.machine}.\n\n"
+
+
+def _day(when: str) -> str:
+    return datetime.fromisoformat(when).date().isoformat()
+
+
+_ALL: Sequence[Callable[[], str]] = (
+    headline,
+    totals,
+    published_counts,
+    quantities,
+    sources,
+    invariants,
+    fault_score,
+    false_alarms,
+    history,
+    solved,
+    more_pages,
+)
+BLOCKS: dict[str, Callable[[], str]] = {block.__name__: block for block in _ALL}

@@ -1,0 +1,1 @@
+"""Which thickness, which load: strengths, failure modes, their probabilities."""
