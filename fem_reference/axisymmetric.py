@@ -25,9 +25,6 @@ import scipy.sparse as sp
 from skfem import (
     Basis,
     BilinearForm,
-    ElementTriP2,
-    ElementTriP3,
-    ElementTriP4,
     FacetBasis,
     LinearForm,
     MeshTri,
@@ -35,13 +32,11 @@ from skfem import (
 )
 
 from .dissection import CholeskyFactor, DissectionTree, bisected, unknowns
-from .integrals import reference_integrals
+from .integrals import ELEMENTS, reference_integrals
 from .location import Locator
 from .mesh import MeridianMesh
 
 __all__ = ["ELEMENTS", "Discretisation", "Stiffness", "constrained_solve", "elasticity", "strain_operator"]
-
-ELEMENTS = {2: ElementTriP2, 3: ElementTriP3, 4: ElementTriP4}
 
 
 def strain_operator(harmonic: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -188,7 +183,7 @@ class Discretisation:
         Returns shape (triangles, size, size), unknowns by node, then field.
         """
         A = np.stack(strain_operator(harmonic))
-        integrals = reference_integrals(ELEMENTS[self.order], self.order)
+        integrals = reference_integrals(self.order)
         factors = integrals.factors(self.mesh.points, self.triangulation.t)
         size = self.basis.Nbfun * A.shape[2]
         K = np.empty((len(factors), size, size))

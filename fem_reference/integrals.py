@@ -15,10 +15,12 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
-from skfem import Element
+from skfem import ElementTriP2, ElementTriP3, ElementTriP4
 from skfem.quadrature import get_quadrature
 
-__all__ = ["ReferenceIntegrals", "reference_integrals", "shape_functions"]
+__all__ = ["ELEMENTS", "ReferenceIntegrals", "reference_integrals", "shape_functions"]
+
+ELEMENTS = {2: ElementTriP2, 3: ElementTriP3, 4: ElementTriP4}
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,9 +78,9 @@ class ReferenceIntegrals:
 
 
 @lru_cache
-def reference_integrals(element: type[Element], order: int) -> ReferenceIntegrals:
-    """Those of the shape functions of ``element``, of polynomial ``order``."""
-    shape = element()
+def reference_integrals(order: int) -> ReferenceIntegrals:
+    """Those of the shape functions of polynomial ``order``."""
+    shape = ELEMENTS[order]()
     X, weights = get_quadrature(shape.refdom, 2 * order)
     found = [shape.lbasis(X, i) for i in range(len(shape.doflocs))]
     phi, slope = np.stack([value for value, _ in found]), np.stack([gradient for _, gradient in found])
@@ -92,9 +94,9 @@ def reference_integrals(element: type[Element], order: int) -> ReferenceIntegral
     return ReferenceIntegrals(slopes, mixed, np.einsum("iq,jq->qij", phi, phi), corners.T, weights)
 
 
-def shape_functions(element: type[Element], order: int, X: np.ndarray) -> tuple[np.ndarray, ...]:
+def shape_functions(order: int, X: np.ndarray) -> tuple[np.ndarray, ...]:
     """Values of the shape functions at X (2, n), derivatives by both reference coordinates; (i, n) each."""
-    powers, coefficients = _monomials(element, order)
+    powers, coefficients = _monomials(order)
     x = np.cumprod([np.ones(X.shape), *[X] * order], axis=0)
     lower = np.maximum(powers - 1, 0)
     (k, m), (k_1, m_1) = powers, lower
@@ -103,10 +105,10 @@ def shape_functions(element: type[Element], order: int, X: np.ndarray) -> tuple[
 
 
 @lru_cache
-def _monomials(element: type[Element], order: int) -> tuple[np.ndarray, np.ndarray]:
+def _monomials(order: int) -> tuple[np.ndarray, np.ndarray]:
     """Powers (2, terms) of the monomials up to ``order``, coefficients (i, terms) of each shape function."""
     powers = np.array([(k, m) for k in range(order + 1) for m in range(order + 1 - k)]).T
-    shape = element()
+    shape = ELEMENTS[order]()
     X = np.array(shape.doflocs).T
     values = np.stack([shape.lbasis(X, i)[0] for i in range(X.shape[1])])
     return powers, np.linalg.solve((X[0] ** powers[0][:, None] * X[1] ** powers[1][:, None]).T, values.T).T

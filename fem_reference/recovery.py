@@ -21,7 +21,7 @@ from functools import cached_property
 
 import numpy as np
 
-from .axisymmetric import ELEMENTS, Discretisation, elasticity, strain_operator
+from .axisymmetric import Discretisation, elasticity, strain_operator
 from .integrals import shape_functions
 from .location import LocatedPoints
 from .mesh import EDGE_SIZE, MeridianMesh
@@ -106,7 +106,7 @@ class HarmonicField:
         A_r, A_z, A_0 = strain_operator(self.harmonic)
         count = A_r.shape[1]
         u = self.fields.reshape(count, -1)[:, numbers]
-        phi, by_X, by_Y = shape_functions(ELEMENTS[d.order], d.order, X)
+        phi, by_X, by_Y = shape_functions(d.order, X)
         values, along_X, along_Y = (np.einsum("fin,in->fn", u, shape) for shape in (phi, by_X, by_Y))
         d_r = (along_X * J[1, 1] - along_Y * J[1, 0]) / det
         d_z = (along_Y * J[0, 0] - along_X * J[0, 1]) / det
