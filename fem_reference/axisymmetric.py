@@ -18,6 +18,7 @@ O. C. Zienkiewicz and R. L. Taylor, The Finite Element Method for Solid and Stru
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
@@ -225,7 +226,7 @@ class Discretisation:
 
 
 @BilinearForm
-def _mass(u, v, w):
+def _mass(u: Any, v: Any, w: Any) -> Any:
     return u * v * w.x[0]
 
 

@@ -318,7 +318,9 @@ def _tables(
         start = stop
 
 
-def _kept(kept: Tables, below: Callable[..., list[PointForce]], z: Array, layer, scale, *, excess):
+def _kept(
+    kept: Tables, below: Callable[..., list[PointForce]], z: Array, layer: int, scale: float, *, excess: bool
+) -> list[PointForce]:
     """Point-force tables from ``kept``, or by ``below`` and then kept, for at most ``KEPT`` depths in all."""
     key = (z.tobytes(), layer, scale, excess)
     if key not in kept:

@@ -80,6 +80,7 @@ def si_of(name: str, units: dict[str, float], where: str) -> float:
 def columns_of(
     table: TableEntry, content: PublishedTable, units: dict[str, float], problem: Problem, key: str
 ) -> list[PublishedColumn]:
+    """The columns of a table, line by line. Raises PublishedError, or ValueError that names a key."""
     content = content.where(table.rows) if table.rows else content
     labels = content.text(table.label) if table.label else ("",) * len(content.rows)
     found = []

@@ -14,6 +14,7 @@ if TYPE_CHECKING:
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
+    """The option that names a guest."""
     group = parser.getgroup("coatcheck", "examination of a contact code")
     group.addoption(
         "--coatcheck-guest", metavar="GUEST", help="directory with a guest.toml, or a guest's name"

@@ -17,46 +17,55 @@ from verification.manual.pages import generated_pages
 
 NEEDED = ("sphinx", "myst_parser", "furo", "pypdf")
 BLOCK = re.compile(r"^```\{generated\} (\w+)\n```$", re.MULTILINE)
+HTML, ONE_PAGE = "html", "singlehtml"
+MARK = "objects.inv"  # a file of every manual, by which a folder is known as one
 
 
 class ManualError(ValueError):
     """The manual cannot be built as it is."""
 
 
-def build(folder: Path, style: str = "html") -> Path:
+def build(folder: Path, one_page: Path | None = None) -> Path:
     """Write the manual to ``folder``; returns its first page.
 
-    style : "html", a page for each chapter, or "singlehtml", one page to be printed.
-    Raises ManualError with every warning of the build.
+    one_page : where it is also written as one page, to be printed.
+    Raises ManualError with every warning of the build, or where ``folder`` holds something else.
     """
     missing = [name for name in NEEDED if find_spec(name) is None]
     if missing:
         raise ManualError(f"{', '.join(missing)} missing; install the extra: pip install 'coatcheck[manual]'")
+    if folder.exists() and any(folder.iterdir()) and not (folder / MARK).exists():
+        raise ManualError(f"{folder}: holds something else than a manual; give another --output")
+    with tempfile.TemporaryDirectory() as work:
+        source = Path(work) / "source"
+        assemble(source)
+        warnings = _run(source, folder, HTML)
+        if one_page is not None:
+            warnings += _run(source, one_page, ONE_PAGE)
+    if warnings:
+        raise ManualError("the manual has errors:\n" + "\n".join(warnings[:50]))
+    return folder / "index.html"
+
+
+def _run(source: Path, folder: Path, style: str) -> list[str]:
+    """Warnings of Sphinx, which writes the pages to ``folder``; a second style reads nothing again."""
     from sphinx.application import Sphinx
     from sphinx.util.docutils import docutils_namespace, patch_docutils
 
     warnings = io.StringIO()
-    with tempfile.TemporaryDirectory() as work:
-        source = Path(work) / "source"
-        assemble(source)
-        with patch_docutils(), docutils_namespace():
-            app = Sphinx(
-                srcdir=source,
-                confdir=None,
-                outdir=folder.resolve(),
-                doctreedir=Path(work) / "doctrees",
-                buildername=style,
-                confoverrides=_settings(style),
-                status=None,
-                warning=warnings,
-                freshenv=True,
-            )
-            app.build(force_all=True)
-        found = [line.replace(f"{source}/", "") for line in warnings.getvalue().splitlines() if line.strip()]
-    if found or app.statuscode:
-        raise ManualError("the manual has errors:\n" + "\n".join(found[:50]))
-    shutil.rmtree(folder / "_sources", ignore_errors=True)
-    return folder / "index.html"
+    with patch_docutils(), docutils_namespace():
+        app = Sphinx(
+            srcdir=source,
+            confdir=None,
+            outdir=folder.resolve(),
+            doctreedir=source.parent / "doctrees",
+            buildername=style,
+            confoverrides=_settings(style),
+            status=None,
+            warning=warnings,
+        )
+        app.build()
+    return [line.replace(f"{source}/", "") for line in warnings.getvalue().splitlines() if line.strip()]
 
 
 def assemble(source: Path) -> None:
@@ -90,18 +99,18 @@ def _settings(style: str) -> dict[str, Any]:
     """Configuration of Sphinx: nothing of a page is loaded from the network."""
     return {
         "project": "coatcheck",
-        "author": "the authors of coatcheck",
-        "copyright": "the authors of coatcheck",
+        "author": "the coatcheck authors",
+        "copyright": "the coatcheck authors",
         "version": version("coatcheck"),
         "release": version("coatcheck"),
         "extensions": ["myst_parser", "sphinx.ext.autodoc", "verification.manual.typeset"],
         "myst_enable_extensions": ["dollarmath", "amsmath", "deflist", "colon_fence", "attrs_inline"],
         "myst_heading_anchors": 4,
         "html_math_renderer": "mathml",
-        "html_theme": "furo" if style == "html" else "basic",
+        "html_theme": "furo" if style == HTML else "basic",
         "html_title": f"coatcheck {version('coatcheck')}",
         "html_static_path": ["_static"],
-        "html_css_files": ["manual.css"] if style == "html" else ["manual.css", "print.css"],
+        "html_css_files": ["manual.css"] if style == HTML else ["manual.css", "print.css"],
         "html_show_sourcelink": False,
         "html_copy_source": False,
         "html_use_index": True,

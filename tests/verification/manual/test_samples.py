@@ -12,35 +12,27 @@ from pathlib import Path
 import pytest
 
 from verification.cases.contact import parse_case
+from verification.cases.published import parse_published
+from verification.cases.toml import CaseError
 from verification.cli import app
-from verification.manual.build import assemble
-from verification.study.plan import read_study_file
+from verification.guests.description import parse_guest
+from verification.manual.blocks import SOURCE
+from verification.study.plan import parse_study
 
+ROOT = Path(__file__).resolve().parents[3]
+PAGES = (
+    *sorted(SOURCE.glob("*.md")),
+    ROOT / "verification" / "guests" / "PROTOCOL.md",
+    ROOT / "README.md",
+    ROOT / "CONTRIBUTING.md",
+)
 FENCE = re.compile(r"^( *)```(\w+)\n(.*?)^\1```$", re.MULTILINE | re.DOTALL)
+QUICK = ("toml", "sh", "console")
 
 
-@pytest.fixture(scope="module")
-def pages(tmp_path_factory):
-    """Text of every page by its path."""
-    source = tmp_path_factory.mktemp("manual") / "source"
-    assemble(source)
-    return {path.relative_to(source).as_posix(): path.read_text() for path in source.rglob("*.md")}
-
-
-@pytest.mark.slow
-def test_every_sample_of_the_manual_does_what_its_page_states(pages, tmp_path):
-    found = [
-        f"{name}: {message}"
-        for name, text in pages.items()
-        for message in failures(list(samples_of(text)), tmp_path)
-    ]
-    assert found == []
-
-
-def samples_of(text: str) -> Iterator[tuple[str, str]]:
+def samples_of(text: str) -> list[tuple[str, str]]:
     """Language with content of every fenced block."""
-    for found in FENCE.finditer(text):
-        yield found[2], found[3]
+    return [(found[2], found[3]) for found in FENCE.finditer(text)]
 
 
 def failures(samples: list[tuple[str, str]], work: Path) -> Iterator[str]:
@@ -76,17 +68,44 @@ def _doctested(code: str, space: dict[str, object]) -> Iterator[str]:
 def _read(code: str, work: Path) -> None:
     """Read a whole file as its reader does, a part of one as TOML. Raises ValueError."""
     keys = tomllib.loads(code).keys()
-    path = work / "sample.toml"
-    path.write_text(code, encoding="utf-8")
-    if "sweep" in keys and "title" in keys:
-        read_study_file(path)
-    elif {"title", "problem"} <= keys and "table" not in keys:
-        parse_case(code.encode(), path)
+    raw, path = code.encode(), work / "sample.toml"
+    if {"title", "sweep"} <= keys:
+        parse_study(raw, path)
+    elif {"title", "table"} <= keys:
+        (work / "my_table.csv").write_text("depth,s_z\n10,0.65\n")
+        parse_published(raw, path)
+    elif {"title", "problem"} <= keys:
+        parse_case(raw, path)
+    elif {"name", "supports"} <= keys:
+        parse_guest(raw, path)
 
 
 def _parsed(line: str) -> None:
     """Parse a line that calls coatcheck; nothing of it is run. Raises CycloptsError."""
-    command = re.sub(r"^\$ |  +#.*$", "", line.strip())
-    words = shlex.split(command) if command.startswith("coatcheck ") else []
-    if words and not {"<", "|", ">", "&&"} & set(words):
+    words = shlex.split(re.sub(r"^\$ |  +#.*$", "", line.strip()))
+    if words[:1] == ["coatcheck"] and not {"<", "|", ">", "&&"} & set(words):
         app.parse_args(words[1:], exit_on_error=False, print_error=False)
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
+def test_files_and_commands_on_a_page_are_those_of_this_version(page, tmp_path):
+    quick = [sample for sample in samples_of(page.read_text()) if sample[0] in QUICK]
+    assert list(failures(quick, tmp_path)) == []
+
+
+def test_a_wrong_option_or_key_on_a_page_is_noticed(tmp_path):
+    wrong = [
+        ("sh", "coatcheck run --outptu reports\n"),
+        ("toml", 'title = "a"\n[problem]\nradios = 1\n'),
+        ("pycon", ">>> 1 + 1\n3\n"),
+        ("python", "import no_such_module\n"),
+    ]
+    assert [len(list(failures([sample], tmp_path))) for sample in wrong] == [1, 1, 1, 1]
+    with pytest.raises(CaseError):
+        _read(wrong[1][1], tmp_path)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
+def test_every_line_of_python_on_a_page_runs(page, tmp_path):
+    assert list(failures(samples_of(page.read_text()), tmp_path)) == []

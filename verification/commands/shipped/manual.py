@@ -31,9 +31,7 @@ def manual(
     from verification.report.pdf import NoBrowser
 
     try:
-        files = [build(output)]
-        if pdf:
-            files.append(print_manual(output / "coatcheck.pdf", time_limit))
+        files = print_manual(output, "coatcheck.pdf", time_limit) if pdf else [build(output)]
     except NoBrowser as error:
         raise no_result(str(error)) from None
     except ValueError as error:

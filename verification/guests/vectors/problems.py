@@ -130,6 +130,7 @@ def _discs() -> Iterator[PrescribedLoad]:
 
 
 def log_uniform(random: np.random.Generator, bounds: tuple[float, float]) -> float:
+    """A number between the ``bounds``, uniform in its logarithm, rounded."""
     low, high = np.log(bounds)
     return rounded(float(np.exp(random.uniform(low, high))))
 
