@@ -116,7 +116,12 @@ def mesh_at(solid: LayeredSolid, grading: Grading, contact_radius: float) -> Mer
 
 
 def _meshes_at(solids: Solids, grading: Grading, contact_radius: float) -> Meshes:
-    """Mesh of each of the ``solids``, alike on the surface; layers of equal thicknesses share one."""
+    """Mesh of each of the ``solids``, alike on the surface; layers of equal thicknesses share one.
+
+    The contact radius is rounded to five digits, so that the rounding of a search does not decide on the
+    triangles; the search stretches the meshes to its own.
+    """
+    contact_radius = float(f"{contact_radius:.5g}")
     far = max(solid.far for solid in solids)
     stacks = tuple(solid.thicknesses for solid in solids)
     made = {

@@ -15,7 +15,6 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
-from numpy.polynomial import legendre
 from numpy.typing import NDArray
 from scipy.special import j0
 
@@ -89,9 +88,11 @@ def contact(radius: float, load: float | None, approach: float | None, body: Bod
             raise NotConverged(f"the layers' compliance is {M:g} of the first one's; check the moduli")
         return (0.75 * load * radius * M / E_star) ** (1 / 3) if load else (radius * (approach or 0)) ** 0.5
 
-    a = Hertz(radius)
+    a, last = Hertz(radius), 0.0
     for _ in range(40):
-        a = 0.5 * (a + Hertz(a))
+        a, last = 0.5 * (a + Hertz(a)), a
+        if abs(a - last) < 1e-6 * a:
+            break
 
     def solved(a: float, share: float) -> RoundContact:
         terms = share * min(MOST, 6 + 6 * np.sqrt(a / depth))
@@ -114,7 +115,7 @@ class _Collocation:
 
     def __init__(self, excess: Callable[[Array], Array], depth: float, a: float, terms: int) -> None:
         self.excess, self.terms = excess, terms
-        s, _ = legendre.leggauss(terms + 1)
+        s, _ = abel.gauss_legendre(terms + 1)
         self.rho = np.sqrt((1 - s) / 2)
         self.inner = abel.over_circle(terms, self.rho)
         # a may grow in the search

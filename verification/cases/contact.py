@@ -6,6 +6,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import AfterValidator, Field, model_validator
 
+from verification.cases.graded import LAYERS, Modulus, moduli
 from verification.cases.plausibility import likely_slips, residual_warnings, warnings_of
 from verification.cases.toml import (
     CaseError,
@@ -35,6 +36,7 @@ class Case:
     text : the file it was read from, kept with the results so that they carry their full input.
     warnings : of implausible numbers, a line each.   limits : hardness, yield strength [Pa] by their keys.
     residual : equibiaxial stress [Pa] of each coating by body, no part of ``problem``; {} without any.
+    layers : number of sub-layers of each coating by body; {} where no coating is graded.
     resolve : whether it is also solved scaled, with equal moduli, thick and thin (``invariants.resolved``).
     """
 
@@ -49,6 +51,7 @@ class Case:
     warnings: tuple[str, ...] = ()
     limits: dict[str, float] = field(default_factory=dict)
     residual: dict[str, tuple[float, ...]] = field(default_factory=dict)
+    layers: dict[str, tuple[int, ...]] = field(default_factory=dict)
 
     @property
     def lines(self) -> tuple[Line, ...]:
@@ -103,9 +106,20 @@ class Stressed(Strict):
         return E / (1 - nu) * (below - self.expansion) * change
 
 
-class _Coating(Material, Stressed):
+class _Coating(Limited, Stressed):
+    """One coating; of a graded one E is a course over its depth, followed by ``layers`` sub-layers."""
+
+    E: Modulus
+    nu: Poisson
     thickness: Metres | None = None
     thickness_over_a_h: Positive | None = None
+    layers: Annotated[int, Field(ge=2, le=LAYERS)] | None = None
+
+    @model_validator(mode="after")
+    def _graded(self) -> "_Coating":
+        if (self.layers is None) != isinstance(self.E, float):
+            raise ValueError("is graded: needs E as a course over the depth, with its number of layers")
+        return self
 
     @model_validator(mode="after")
     def _one_thickness(self) -> "_Coating":
@@ -113,8 +127,15 @@ class _Coating(Material, Stressed):
             raise ValueError("needs exactly one of thickness [m] or thickness_over_a_h")
         return self
 
-    def in_metres(self, a_h: float) -> float:
-        return self.thickness if self.thickness is not None else a_h * (self.thickness_over_a_h or 0.0)
+    def sublayers(self, over: int) -> int:
+        """Number of its sub-layers, over ``over``."""
+        return max(1, (self.layers or 1) // over)
+
+    def in_metres(self, a_h: float, over: int = 1) -> Coatings:
+        """E, nu, thickness of its sub-layers."""
+        thickness = self.thickness if self.thickness is not None else a_h * (self.thickness_over_a_h or 0.0)
+        n = self.sublayers(over)
+        return tuple((E, self.nu, thickness / n) for E in moduli(self.E, n))
 
 
 class BallEntry(Material):
@@ -131,17 +152,20 @@ class BallEntry(Material):
         """The ball without its coatings."""
         return self.E, self.nu, ()
 
-    def coated(self, a_h: float) -> Ball:
+    def coated(self, a_h: float, over: int = 1) -> Ball:
         """The ball; a thickness over a_h is that over the scale of both bodies uncoated."""
-        return self.E, self.nu, _in_metres(self.coatings, a_h)
+        return self.E, self.nu, _in_metres(self.coatings, a_h, over)
 
 
 def _limits(coatings: list[_Coating], key: str) -> dict[str, float]:
     return {k: v for i, c in enumerate(coatings) for k, v in c.limits(f"{key}.{i}").items()}
 
 
-def _in_metres(coatings: list[_Coating], a_h: float) -> Coatings:
-    return tuple((c.E, c.nu, c.in_metres(a_h)) for c in coatings)
+def _in_metres(coatings: list[_Coating], a_h: float, over: int = 1) -> Coatings:
+    found = tuple(layer for c in coatings for layer in c.in_metres(a_h, over))
+    if len(found) > LAYERS:
+        raise ValueError(f"coatings have {len(found)} layers; at most {LAYERS} are supported on a body")
+    return found
 
 
 class _Problem(Strict):
@@ -153,8 +177,14 @@ class _Problem(Strict):
     ball: BallEntry | None = None
     temperature_change: TemperatureChange | None = None
 
-    def residual(self) -> dict[str, tuple[float, ...]]:
-        """Residual stress [Pa] of each coating by body; {} where there is none.
+    def layers(self, over: int = 1) -> dict[str, tuple[int, ...]]:
+        """Number of sub-layers of each coating by body; {} where no coating is graded."""
+        bodies = {FLAT: self.coatings} | ({BALL: self.ball.coatings} if self.ball else {})
+        found = {body: tuple(c.sublayers(over) for c in coatings) for body, coatings in bodies.items()}
+        return found if any(c.layers for coatings in bodies.values() for c in coatings) else {}
+
+    def residual(self, over: int = 1) -> dict[str, tuple[float, ...]]:
+        """Residual stress [Pa] of each sub-layer of the coatings by body; {} where there is none.
 
         Raises ValueError naming the coating whose residual stress is not determined.
         """
@@ -166,20 +196,24 @@ class _Problem(Strict):
             stresses = []
             for i, coating in enumerate(coatings):
                 try:
-                    stresses.append(coating.residual(coating.E, coating.nu, below, self.temperature_change))
+                    for E in moduli(coating.E, coating.sublayers(over)):
+                        stresses.append(coating.residual(E, coating.nu, below, self.temperature_change))
                 except ValueError as error:
                     raise ValueError(f"{'ball.' if body == BALL else ''}coatings.{i}: {error}") from None
             found[body] = tuple(stresses)
         return found if any(any(stresses) for stresses in found.values()) else {}
 
-    def contact(self) -> CoatedContact:
-        """The problem; a thickness over a_h is that over the scale of both bodies uncoated."""
+    def contact(self, over: int = 1) -> CoatedContact:
+        """The problem; a thickness over a_h is that over the scale of both bodies uncoated.
+
+        over : divisor of the number of sub-layers.
+        """
         ball, substrate = self.ball, (self.substrate.E, self.substrate.nu)
         bare = CoatedContact(
             self.radius, self.load, (), substrate, self.friction, ball.bare if ball else None
         )
-        given = ball.coated(bare.a_h) if ball else None
-        return replace(bare, coatings=_in_metres(self.coatings, bare.a_h), ball=given)
+        given = ball.coated(bare.a_h, over) if ball else None
+        return replace(bare, coatings=_in_metres(self.coatings, bare.a_h, over), ball=given)
 
     def limits(self) -> dict[str, float]:
         """Hardness and yield strength [Pa] of every material that has one, by their keys."""
@@ -228,11 +262,14 @@ def read_case(path: Path) -> Case:
     return parse_case(read_bounded(path, "case", "one problem"), path)
 
 
-def parse_case(raw: bytes, path: Path) -> Case:
-    """Check the content of a case file; ``path`` names it in messages. Raises CaseError."""
+def parse_case(raw: bytes, path: Path, over: int = 1) -> Case:
+    """Check the content of a case file; ``path`` names it in messages. Raises CaseError.
+
+    over : divisor of the number of sub-layers of graded coatings.
+    """
     text, checked = read_toml(raw, path, _CaseFile)
     try:
-        problem, residual = checked.problem.contact(), checked.problem.residual()
+        problem, residual = checked.problem.contact(over), checked.problem.residual(over)
     except (ValueError, OverflowError, ZeroDivisionError) as error:
         raise CaseError(f"{path}: problem: {error}") from None
     refuse_unfit_scales(path, problem)
@@ -259,6 +296,7 @@ def parse_case(raw: bytes, path: Path) -> Case:
         (*warnings_of(problem, limits), *residual_warnings(residual)),
         limits,
         residual,
+        checked.problem.layers(over),
     )
 
 

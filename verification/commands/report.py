@@ -3,7 +3,7 @@
 import sys
 from dataclasses import replace
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Literal
 
 from cyclopts import Parameter
 
@@ -23,6 +23,7 @@ def report(
     /,
     *,
     pdf: Flag = False,
+    paper: Literal["A4", "Letter"] = "A4",
     baseline: Annotated[Path | None, Parameter(name=["--baseline", "-b"])] = None,
     records: Path | None = None,
     time_limit: float = 300.0,
@@ -34,9 +35,10 @@ def report(
     Args:
         folder: Directory of the run.
         pdf: Also print the page to report.pdf there, through an installed Chromium or Chrome.
+        paper: Size of its sheets.
         baseline: Directory of a baseline to compare with instead of the run's own comparison.
         records: Directory of credibility records to show instead of those stored with the run.
-        time_limit: Seconds that printing may take.
+        time_limit: Seconds that each of two prints may take.
     """
     from verification.report.material import gather, stored_material
     from verification.report.pdf import NoBrowser, printed
@@ -61,7 +63,7 @@ def report(
                 evidence = replace(evidence, baseline=compared)
             files = [write_report(replace(material, evidence=evidence), folder)]
             if pdf:
-                files.append(printed(files[0], folder / "report.pdf", time_limit))
+                files.append(printed(files[0], folder / "report.pdf", time_limit, paper))
     except NoBrowser as error:
         raise no_result(str(error)) from None
     except ValueError as error:

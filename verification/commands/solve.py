@@ -1,7 +1,7 @@
 """coatcheck solve: the answer to one problem in MPa with places in um."""
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -19,7 +19,7 @@ from verification.commands.common.terminal import print_json, print_out, print_w
 from verification.desk.answer import Answer, Difference, answer, differences
 from verification.desk.wording import case_text
 from verification.judging.outcome import Outcome
-from verification.problem.contact import BALL, FLAT, CoatedContact
+from verification.problem.contact import BALL, FLAT
 from verification.problem.quantity import QUANTITIES
 from verification.running.records import encode
 from verification.running.result import describe, message_of
@@ -75,14 +75,15 @@ def solve(
     print_warnings(late, case.name, strict=strict, silent=as_json)
     second = _answer(case, SECOND) if check else None
     apart = differences(first, second) if second is not None else ()
+    halved = _halved(case, first)
     if plot is not None:
         from verification.report.figures.solved import write
 
         write(first, case.title, plot)
     if as_json:
-        print_json(_content(case, (*case.warnings, *late), first, second, apart))
+        print_json(_content(case, (*case.warnings, *late), first, second, apart, halved))
     else:
-        _print(case, first, second, apart)
+        _print(case, first, second, apart, halved)
     agree = all(difference.within for difference in apart)
     return EXIT[Outcome.AGREES if agree else Outcome.DISAGREES]
 
@@ -119,9 +120,17 @@ def _require_format(plot: Path) -> None:
 
 def _answer(case: Case, source: str) -> Answer:
     try:
-        return answer(case.problem, source, case.numerics.get(source), case.residual)
+        return answer(case.problem, source, case.numerics.get(source), case.residual, case.layers)
     except Exception as error:  # as of any solve
         raise no_result(f"{case.name}: {source}: {message_of(error)}") from None
+
+
+def _halved(case: Case, first: Answer) -> tuple[Difference, ...]:
+    """Differences by half of the sub-layers of graded coatings, which shows their error; () without."""
+    if not case.layers:
+        return ()
+    half = parse_case(case.text.encode(), Path(case.name), over=2)
+    return differences(first, _answer(half, METHOD))
 
 
 def _content(
@@ -130,6 +139,7 @@ def _content(
     first: Answer,
     second: Answer | None,
     apart: Sequence[Difference],
+    halved: Sequence[Difference],
 ) -> dict[str, Any]:
     """Everything, in SI; NaN of a place that does not exist as text."""
     return {
@@ -142,17 +152,26 @@ def _content(
         "answer": encode(first),
         "check": None if second is None else encode(second),
         "differences": [encode(one) for one in apart],
+        "half_of_the_sublayers": [encode(one) for one in halved],
     }
 
 
-def _print(case: Case, first: Answer, second: Answer | None, apart: Sequence[Difference]) -> None:
+def _print(
+    case: Case,
+    first: Answer,
+    second: Answer | None,
+    apart: Sequence[Difference],
+    halved: Sequence[Difference],
+) -> None:
     gap = {difference.key: difference for difference in apart}
+    coarser = {difference.key: difference for difference in halved}
 
     def checked(key: tuple[str, ...], unit: float) -> list[str]:
-        if key not in gap:
-            return []
-        shown = f"{gap[key].value / unit:+.1e}"
-        return [shown if gap[key].within else f"[bold red]{shown}[/]"]
+        cells = []
+        if second:
+            shown = f"{gap[key].value / unit:+.1e}"
+            cells.append(shown if gap[key].within else f"[bold red]{shown}[/]")
+        return cells + ([f"{coarser[key].value / unit:+.1e}"] if coarser else [])
 
     numbers = Table(box=None, header_style="bold", pad_edge=False)
     table = Table(box=None, header_style="bold", pad_edge=False)
@@ -160,7 +179,7 @@ def _print(case: Case, first: Answer, second: Answer | None, apart: Sequence[Dif
         numbers.add_column(head)
     for head in ("largest", "place"):
         table.add_column(head)
-    more = ["elements − this"] if second else []
+    more = ["elements − this"] * (second is not None) + ["half the sub-layers − this"] * bool(halved)
     for head in ("value", "±", *more):
         numbers.add_column(head, justify="right", no_wrap=True)
     for head in ("MPa", "±", "x um", "z um", *more):
@@ -184,7 +203,7 @@ def _print(case: Case, first: Answer, second: Answer | None, apart: Sequence[Dif
     )
     print_out(
         f"[bold]{escape(case.title)}[/]",
-        *(escape(line) for line in _given(case.problem, case.residual)),
+        *(escape(line) for line in _given(case)),
         "",
         numbers,
         "",
@@ -202,8 +221,9 @@ def _print(case: Case, first: Answer, second: Answer | None, apart: Sequence[Dif
         print_out(f"{total} are within both uncertainties")
 
 
-def _given(problem: CoatedContact, residual: Mapping[str, Sequence[float]]) -> list[str]:
-    """The problem, a line for each body, load and layer."""
+def _given(case: Case) -> list[str]:
+    """The problem, a line for each body, load and coating."""
+    problem = case.problem
 
     def solid(E: float, nu: float) -> str:
         return f"E = {E / 1e9:.4g} GPa, nu = {nu:g}"
@@ -212,15 +232,25 @@ def _given(problem: CoatedContact, residual: Mapping[str, Sequence[float]]) -> l
     size = f"R = {problem.radius * 1e3:.4g} mm, {kind}"
     lines = [f"ball        {size}; W = {problem.load:.4g} N, f = {problem.friction:g}"]
     for body in problem.bodies:
-        seen = problem.seen_from(body)
-        for i, (E, nu, h) in enumerate(seen.coatings, start=1):
-            on = f"coating {i}   " if body == FLAT else f"on the {BALL} {i} "
-            stress = residual[body][i - 1] if residual else 0.0
-            more = f", residual stress {stress / 1e6:.4g} MPa" if stress else ""
-            lines.append(f"{on}{h * 1e6:.4g} um, {solid(E, nu)}{more}")
+        seen, begin = problem.seen_from(body), 0
+        for i, n in enumerate(case.layers.get(body) or (1,) * len(seen.coatings), start=1):
+            layers, on = seen.coatings[begin : begin + n], "coating" if body == FLAT else f"on the {BALL}"
+            stress = sorted(case.residual[body][begin : begin + n]) if case.residual else [0.0]
+            (E, nu, _), last = layers[0], layers[-1][0]
+            course = f", E to {last / 1e9:.4g} GPa in {n} sub-layers" if n > 1 else ""
+            more = f", residual stress {_range(stress[0] / 1e6, stress[-1] / 1e6)} MPa" if any(stress) else ""
+            lines.append(
+                f"{on} {i}   "[:12]
+                + f"{sum(h for *_, h in layers) * 1e6:.4g} um, {solid(E, nu)}{course}{more}"
+            )
+            begin += n
         if body == FLAT:
             lines.append(f"substrate   {solid(*seen.substrate)}")
     return lines
+
+
+def _range(low: float, high: float) -> str:
+    return f"{low:.4g}" if low == high else f"{low:.4g} to {high:.4g}"
 
 
 def _value(value: float, spread: float | None) -> str:

@@ -63,9 +63,84 @@ def thickness(
         cross_check: Solve every k-th point by finite elements and by the exact reference too.
         figures: Draw figures for the page, PLAN.html, and for print, in figures/PLAN.
     """
+    return _study(
+        plan,
+        output,
+        jobs,
+        scheduler,
+        limit,
+        cross_check=cross_check,
+        figures=figures,
+        strict=strict,
+        quiet=quiet,
+        as_json=as_json,
+        loads=False,
+    )
+
+
+@with_exit_code
+def load(
+    plan: str = "dlc_load",
+    *,
+    output: Output = Path("reports/study"),
+    jobs: Jobs = None,
+    scheduler: str | None = None,
+    limit: int | None = None,
+    cross_check: bool = True,
+    figures: bool = True,
+    strict: Strict = False,
+    quiet: Quiet = False,
+    as_json: AsJson = False,
+) -> int:
+    """Which load? The load at which each failure mode reaches its strength, over thickness and friction.
+
+    A stopped study resumes where it was stopped; no point is solved twice.
+
+    Args:
+        plan: Name of a shipped study with sweep.load, or the path of a .toml study file.
+        output: Directory of the table, PLAN.parquet, and of the cache.
+        scheduler: Address of a running Dask scheduler, in place of a local cluster.
+        limit: Only the first so many points.
+        cross_check: Solve every k-th point by finite elements and by the exact reference too.
+        figures: Draw figures for the page, PLAN.html, and for print, in figures/PLAN.
+    """
+    return _study(
+        plan,
+        output,
+        jobs,
+        scheduler,
+        limit,
+        cross_check=cross_check,
+        figures=figures,
+        strict=strict,
+        quiet=quiet,
+        as_json=as_json,
+        loads=True,
+    )
+
+
+def _study(
+    plan: str,
+    output: Path,
+    jobs: int | None,
+    scheduler: str | None,
+    limit: int | None,
+    *,
+    cross_check: bool,
+    figures: bool,
+    strict: bool,
+    quiet: bool,
+    as_json: bool,
+    loads: bool,
+) -> int:
     if (jobs is not None and jobs < 1) or (limit is not None and limit < 1):
         raise CommandError(f"--jobs = {jobs}, --limit = {limit}; both must be positive")
     chosen = _choose(plan)
+    if loads != (chosen.loads is not None):
+        what = "sweeps the load; use coatcheck study load" if chosen.loads else "has no sweep.load"
+        raise CommandError(f"{plan}: this study {what}")
+    if loads and chosen.criteria.strength is None:
+        raise CommandError(f"{plan}: criteria.strength is missing; a critical load needs strengths")
     print_warnings(chosen.warnings, chosen.name, strict=strict, silent=quiet or as_json)
     if not cross_check:
         chosen = replace(chosen, cross_check=0)
@@ -132,6 +207,7 @@ def _page(
     figures: bool,
     drawing: Callable[[str], None],
 ) -> "Written":
+    from verification.report.study.load import write_load_report
     from verification.report.study.page import write_study_report
 
     facts = [
@@ -140,7 +216,8 @@ def _page(
         ("commit", commit() or "not in a repository"),
         ("machine", f"{machine()}, {cores()} cores"),
     ]
-    return write_study_report(came.table, chosen, came.table.parent, facts, figures=figures, drawing=drawing)
+    write = write_study_report if chosen.loads is None else write_load_report
+    return write(came.table, chosen, came.table.parent, facts, figures=figures, drawing=drawing)
 
 
 def _choose(plan: str) -> Study:

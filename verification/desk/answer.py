@@ -46,8 +46,9 @@ def answer(
     source: str,
     numerics: Mapping[str, Any] | None = None,
     residual: Mapping[str, tuple[float, ...]] | None = None,
+    layers: Mapping[str, tuple[int, ...]] | None = None,
 ) -> Answer:
-    """Solve ``problem`` by ``source``, find its largest stresses, with ``residual`` ones as of ``stresses``.
+    """Solve ``problem`` by ``source``, find its largest stresses; ``residual``, ``layers`` as there.
 
     Raises what the source raises.
     """
@@ -60,7 +61,7 @@ def answer(
         name: (QUANTITIES[name].value(solution, problem), QUANTITIES[name].uncertainty(solution, problem))
         for name in NUMBERS
     }
-    found, drawn = stresses(solution, problem, residual)
+    found, drawn = stresses(solution, problem, residual, layers)
     return Answer(source, time.perf_counter() - begin, numbers, found, drawn)
 
 

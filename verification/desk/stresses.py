@@ -73,32 +73,44 @@ def first_principal(s: Array) -> Array:
 
 
 def stresses(
-    solution: Solution, problem: CoatedContact, residual: Mapping[str, tuple[float, ...]] | None = None
+    solution: Solution,
+    problem: CoatedContact,
+    residual: Mapping[str, tuple[float, ...]] | None = None,
+    layers: Mapping[str, tuple[int, ...]] | None = None,
 ) -> tuple[tuple[Extreme, ...], tuple[Course, ...]]:
     """Every largest stress of ``solution``, first of the flat from its surface down, then of an elastic ball.
 
     With them the stresses along x on the surface, both sides of each interface, out to 2 a.
-    residual : equibiaxial stress [Pa] of each coating by body, 0 unless given.
+    residual : equibiaxial stress [Pa] of each layer by body, 0 unless given.
+    layers : number of sub-layers of each coating by body, 1 unless given; they count as one coating.
     Raises what ``solution.stress`` raises.
     """
     found, drawn = [], []
     for body in problem.bodies:
         seen, turned = problem.seen_from(body), -1.0 if body == BALL else 1.0
-        layers = _Layers.of(on_body(solution, body), seen, (residual or {}).get(body, ()))
-        for quantity, where, at in layers.extremes():
+        sublayers = (layers or {}).get(body) or (1,) * len(seen.coatings)
+        parts = _Layers.of(on_body(solution, body), seen, (residual or {}).get(body, ()), sublayers)
+        for quantity, where, at in parts.extremes():
             place = turned * at.x + 0.0  # no -0
             found.append(Extreme(body, quantity, where, at.value, at.uncertainty, place, at.z))
         x = np.linspace(-REACH, REACH, POINTS) * float(solution.contact_radius)
-        for where, line in layers.lines():
-            stress = line(turned * x, seen.friction) + layers.added(line.layer, 1)
+        for where, line in parts.lines():
+            stress = line(turned * x, seen.friction) + parts.added(line.layer, 1)
             stress[XZ] *= turned
             drawn.append(Course(body, where, x, stress))
     return tuple(found), tuple(drawn)
 
 
+def _value(at: Located) -> float:
+    return at.value
+
+
 @dataclass(frozen=True, eq=False)
 class _Layers:
-    """One body: planes on the upper side of each layer, ``tops``, the lower of each coating, ``bases``."""
+    """One body: planes on the upper side of each layer, ``tops``, the lower of each coating's, ``bases``.
+
+    bounds : number of the layer with which each coating begins, then that of the substrate.
+    """
 
     solution: Solution
     problem: CoatedContact
@@ -106,17 +118,25 @@ class _Layers:
     tops: list[Plane]
     bases: list[Plane]
     residual: tuple[float, ...]
+    bounds: tuple[int, ...]
 
     @classmethod
-    def of(cls, solution: Solution, problem: CoatedContact, residual: tuple[float, ...]) -> "_Layers":
+    def of(
+        cls,
+        solution: Solution,
+        problem: CoatedContact,
+        residual: tuple[float, ...],
+        sublayers: tuple[int, ...],
+    ) -> "_Layers":
         parts, a = Parts(solution, problem.friction), float(solution.contact_radius)
-        h = problem.coatings[0][2] if problem.coatings else a
+        bounds = (0, *(int(n) for n in np.cumsum(sublayers, dtype=int)))
+        h = problem.interfaces[bounds[1] - 1] if problem.coatings else a
         tops, bases = [surface(parts, a, h, min(a + 2 * h, 7 * a))], []
         for k, z in enumerate(problem.interfaces):
             knots = crowded(a, 0.5 * min(a, z), a + 2.5 * z)
             bases.append(plane(parts, knots, z, k))
             tops.append(plane(parts, knots, z, k + 1))
-        return cls(solution, problem, parts, tops, bases, residual)
+        return cls(solution, problem, parts, tops, bases, residual, bounds)
 
     def added(self, layer: int, dimensions: int) -> Array:
         """xx, yy, zz, xz [Pa] of the residual stress of a layer, (4,) + (1,) * ``dimensions``."""
@@ -131,14 +151,14 @@ class _Layers:
         """As ``tensile`` in a layer without residual stress; with one as it is, with its sign."""
         return found if self.added(layer, 0).any() else tensile(found)
 
-    def name(self, layer: int) -> str:
-        return "substrate" if layer == len(self.problem.coatings) else f"coating {layer + 1}"
+    def name(self, number: int) -> str:
+        return "substrate" if number == len(self.bounds) - 1 else f"coating {number + 1}"
 
     def lines(self) -> Iterator[tuple[str, Plane]]:
         yield "surface", self.tops[0]
-        for k, (base, top) in enumerate(zip(self.bases, self.tops[1:], strict=True)):
-            yield f"base of {self.name(k)}", base
-            yield f"top of {self.name(k + 1)}", top
+        for number, k in enumerate(self.bounds[1:]):
+            yield f"base of {self.name(number)}", self.bases[k - 1]
+            yield f"top of {self.name(number + 1)}", self.tops[k]
 
     def extremes(self) -> Iterator[tuple[str, str, Located]]:
         """(quantity, where, the largest), the place in the frame of the body."""
@@ -147,18 +167,38 @@ class _Layers:
         for where, line in list(self.lines())[1:]:
             measure = self._total(lambda s: s[XX], line.layer)
             yield "sigma_xx", where, self._shown(largest(line, measure, f), line.layer)
-        for k, base in enumerate(self.bases):
+        for k, base in enumerate(self.bases[i - 1] for i in self.bounds[1:]):
             yield "|sigma_xz|", f"interface {k + 1}", largest(base, lambda s: np.abs(s[XZ]), f)
             yield "sigma_zz", f"interface {k + 1}", tensile(largest(base, lambda s: s[ZZ], f))
-        for layer in range(len(self.tops)):
+        measures: dict[str, Measure] = {"sigma_1": first_principal, "von_mises": von_mises}
+        for number, layer in enumerate(self.bounds):
+            below = (*self.bounds, layer + 1)[number + 1]
+            if below - layer > 1:
+                for quantity, plain in measures.items():
+                    yield quantity, self.name(number), self._graded(plain, range(layer, below))
+                continue
             planes, knots = self._planes(layer)
-            measures: dict[str, Measure] = {"sigma_1": first_principal, "von_mises": von_mises}
             for quantity, plain in measures.items():
                 measure = self._total(plain, layer)
                 ends = [largest(planes[0], measure, f), largest(planes[-1], measure, f)]
                 within = inside(self.parts, planes, knots, f, measure) + self._between(planes, measure)
                 best = max([*ends, *within], key=lambda at: at.value)
-                yield quantity, self.name(layer), self._shown(best, layer)
+                yield quantity, self.name(number), self._shown(best, layer)
+
+    def _graded(self, plain: Measure, layers: range) -> Located:
+        """The largest at the top and base of every sub-layer; uncertain too by the maximum between them."""
+        found = []
+        for layer in layers:
+            measure = self._total(plain, layer)
+            ends = (self.tops[layer], self.bases[layer])
+            found.append(max((largest(one, measure, self.problem.friction) for one in ends), key=_value))
+        best = int(np.argmax([at.value for at in found]))
+        at = found[best]
+        # Between two planes it may be larger, but not beyond the outer ones.
+        outer = at.z in (self.tops[layers[0]].z, self.bases[layers[-1]].z)
+        near = sorted(one.value for one in found[max(best - 1, 0) : best + 2])
+        excess = 0.0 if outer else near[-1] - near[-2]
+        return self._shown(replace(at, uncertainty=at.uncertainty + excess), layers[best])
 
     def _between(self, planes: list[Plane], measure: Measure) -> list[Located]:
         """The largest on the planes between, moved to the vertex in depth; none where an outer plane has it.

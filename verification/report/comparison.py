@@ -5,9 +5,8 @@ from verification.regression.comparison import RunComparison
 from verification.regression.drift import State
 from verification.report.html.templates import render_sections
 from verification.report.sections.baseline import MOST, case_table, drift_table
-from verification.report.tables.cells import Cell, Part, Section, Table, number, row, words
+from verification.report.tables.cells import Cell, Part, Section, Table, number, outcome_cell, row, words
 from verification.report.tables.labels import pair_label
-from verification.report.tables.matrix import outcome_cell
 from verification.report.tables.numbers import factor, scientific, seconds
 
 

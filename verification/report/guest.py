@@ -25,11 +25,11 @@ from verification.report.tables.cells import (
     Section,
     Table,
     number,
+    outcome_cell,
     row,
     words,
 )
 from verification.report.tables.labels import OUTCOMES, row_css
-from verification.report.tables.matrix import outcome_cell
 from verification.report.tables.numbers import plain, seconds
 from verification.running.result import CaseResult, RunInfo
 from verification.sources.record import Style
@@ -184,7 +184,7 @@ def _digits_cell(verdicts: Sequence[Verdict]) -> Cell:
         return Cell("–")
     gap = max((v.difference for v in verdicts if v.difference is not None), default=None)
     style = OUTCOMES[worst]
-    return Cell(f"{style.letter} {digits(gap)}", gap, f"verdict {style.css}", style.word)
+    return Cell(f"{style.mark} {digits(gap)}", gap, f"verdict {style.css}", style.word)
 
 
 def _failures(found: Examined) -> Section | None:

@@ -54,7 +54,7 @@ def _closed_accepts(problem: Problem, kind: str, *, sliding: bool) -> bool:
     return problem.homogeneous and (problem.friction > 0) is sliding
 
 
-_EXACT, _CLOSED = Style("exact", (), 5.0, 0.35, "+"), Style("hertz", (1.0, 1.4), 1.8)
+_EXACT, _CLOSED = Style("exact", (), 5.0, 0.35, "+"), Style("hertz", (1.0, 1.4), 1.8, marker="s")
 _smooth, _sliding = partial(_closed_accepts, sliding=False), partial(_closed_accepts, sliding=True)
 # The exact curve lies below the methods' as a broad grey band.
 REFERENCE_SOURCES = (

@@ -103,7 +103,7 @@ METHOD_SOURCES = (
         "fem_reference",
         Kind.METHOD,
         "finite elements",
-        Style("fem", (3.6, 3.0), 1.9),
+        Style("fem", (3.6, 3.0), 1.9, marker="^"),
         solve_elements,
         package="fem_reference",
         parameters=ELEMENTS,

@@ -120,10 +120,11 @@ class Study:
         thin, thick = min(self.thicknesses), max(self.thicknesses)
         first, last = thin / (unit * high ** (1 / 3)), thick / (unit * low ** (1 / 3))
         steps = max(1, round(3 * (count - 1) * np.log(last / first) / np.log(high / low)))
-        found = []
+        ratio, found = (last / first) ** (3 / steps), []
         for s in np.geomspace(first, last, steps + 1).tolist():
             loads = [(h, (h / (s * unit)) ** 3) for h in self.thicknesses]
-            found.append(tuple((h, W) for h, W in loads if low * (1 - 1e-9) <= W <= high * (1 + 1e-9)))
+            # Up to the first load beyond either end.
+            found.append(tuple((h, W) for h, W in loads if low / ratio < W * (1 + 1e-9) and high * ratio > W))
         return tuple(places for places in found if places)
 
     def solves(self) -> Iterator[Solve]:

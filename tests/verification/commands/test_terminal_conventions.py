@@ -52,6 +52,7 @@ COMMANDS = (
     "vectors",
     "study",
     "study thickness",
+    "study load",
 )
 
 

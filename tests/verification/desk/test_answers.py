@@ -6,10 +6,12 @@ import numpy as np
 import pytest
 from scipy.optimize import minimize_scalar
 
+from verification.cases.graded import Course, moduli
 from verification.desk.answer import answer, differences
 from verification.desk.stresses import first_principal
 from verification.problem.contact import CoatedContact
 from verification.problem.quantity import von_mises
+from verification.sources.registry import EXACT, METHODS, solvers
 
 BARE = CoatedContact(10e-3, 20.0, (), (210e9, 0.3))
 SLIDING = replace(BARE, friction=0.25)
@@ -154,3 +156,31 @@ def test_unknown_uncertainty_is_not_within():
     found = answer(SLIDING, "hertz")
     stated = replace(found, numbers={"peak_pressure": (1.0, None)})
     assert not differences(stated, stated)[0].within
+
+
+@pytest.mark.slow
+def test_thirty_sub_layers_agree_with_the_elements():
+    E = moduli(Course(course="exponential", top=4e11, base=210e9), 30)
+    bare = CoatedContact(3e-3, 20.0, (), (210e9, 0.3), 0.1)
+    graded = replace(bare, coatings=tuple((one, 0.25, 0.5 * bare.a_h / 30) for one in E))
+    ours, elements = (solvers()[source](graded, {}) for source in METHODS)
+    assert abs(ours.peak_pressure - elements.peak_pressure) < 1e-4 * bare.p_h
+    x, h = np.linspace(-2, 2, 41) * bare.a_h, graded.interfaces
+    for z, layer in ((0.0, 0), (h[9], 9), (h[9], 10), (h[29], 29), (h[29], 30)):
+        difference = ours.stress(x, 0.0, z, layer=layer) - elements.stress(x, 0.0, z, layer=layer)
+        # next to the edge on the surface the elements state more themselves
+        inside = np.abs(np.abs(x) - ours.contact_radius) > 0.02 * bare.a_h
+        assert np.abs(difference[..., inside]).max() < 1e-4 * bare.p_h
+
+
+@pytest.mark.slow
+def test_sub_layers_converge_and_count_as_one_coating():
+    course, found = Course(course="linear", top=4e11, base=210e9), []
+    bare = CoatedContact(3e-3, 20.0, (), (210e9, 0.3), 0.1)
+    for n in (2, 4, 8):
+        coatings = tuple((E, 0.25, 0.5 * bare.a_h / n) for E in moduli(course, n))
+        problem, fast = replace(bare, coatings=coatings), {"estimate_uncertainty": False}
+        found.append(answer(problem, EXACT[0], fast, layers={"flat": (n,)}))
+    assert {at.where for at in found[2].extremes if at.quantity == "sigma_1"} == {"coating 1", "substrate"}
+    p0 = [one.numbers["peak_pressure"][0] for one in found]
+    assert (p0[1] - p0[0]) / (p0[2] - p0[1]) == pytest.approx(4, rel=0.1)

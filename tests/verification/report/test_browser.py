@@ -1,4 +1,6 @@
-"""The report page in a real browser: quiet, offline, within the screen, usable by keyboard."""
+"""The report in a real browser: quiet, offline, page by page within its limits, usable by keyboard."""
+
+import re
 
 import pytest
 from headless import Page, browser, page
@@ -6,6 +8,7 @@ from synthetic_results import INFO, showcase
 from synthetic_study import study
 
 from verification.report.material import Evidence, Material
+from verification.report.pdf import page_numbers, printed, with_numbers
 from verification.report.write import write_report
 from verification.sampling.plane import sample_plane
 from verification.sources.references.hertz import Hertz
@@ -35,22 +38,29 @@ def chromium(tmp_path_factory):
         yield opened
 
 
+HEIGHT = "document.querySelector('.page.here').getBoundingClientRect().height"
+GO = "(where) => { location.hash = where; return new Promise((done) => setTimeout(done, 300)); }"
+
+
+def go(chromium: Page, where: str) -> None:
+    chromium.evaluate(f"({GO})({where!r})")
+
+
 @pytest.mark.parametrize("dark", [False, True], ids=["light", "dark"])
-def test_the_page_fits_and_is_silent(chromium: Page, report, dark):
+def test_every_page_fits_and_is_silent(chromium: Page, report, dark):
     chromium.open(report, width=390, dark=dark)
-    # content-visibility lays out what is far off only when it is near: bring everything near.
-    chromium.evaluate(
-        "document.querySelectorAll('.case').forEach(c => c.style.contentVisibility = 'visible')"
-    )
-    chromium.evaluate("document.querySelectorAll('details').forEach(d => d.open = true)")
-    for width in (390, 820, 1360):
-        chromium.resize(width)
-        assert chromium.evaluate(STICKING_OUT) == 0, width
+    for where in chromium.evaluate("[...document.querySelectorAll('.page')].map((page) => page.id)"):
+        go(chromium, where)
+        for width in (390, 820, 1280):
+            chromium.resize(width)
+            assert chromium.evaluate(STICKING_OUT) == 0, (where, width)
+        assert chromium.evaluate(HEIGHT) <= (1600 if where == "first" else 8000), where
+    assert chromium.evaluate("document.querySelectorAll('.page.here').length") == 1
     loud = [e for e in chromium.events if e["method"] in ("Runtime.consoleAPICalled", "Log.entryAdded")]
     loud += [e for e in chromium.events if e["method"] == "Runtime.exceptionThrown"]
     assert loud == []
     asked = [e for e in chromium.events if e["method"] == "Network.requestWillBeSent"]
-    addresses = {e["params"]["request"]["url"] for e in asked}
+    addresses = {e["params"]["request"]["url"].partition("#")[0] for e in asked}
     assert {a for a in addresses if not a.startswith("data:")} == {report.as_uri()}
 
 
@@ -69,8 +79,9 @@ def test_text_stands_out_in_both_colour_schemes(chromium: Page, report):
                 if (!/, 0\\)$/.test(colour)) return numbers(colour); } return [255, 255, 255]; };
               const worst = {};
               for (const node of document.querySelectorAll(
-                  'h1, p, a, td, dt, figcaption span, .agrees, .disagrees, .inconclusive')) {
-                if (!node.textContent.trim()) continue;
+                  'h1, h2, p, a, th, td, dt, summary, figcaption span, .agrees, .disagrees, .inconclusive, '
+                  + '.agrees-ink, .disagrees-ink, .inconclusive-ink, .no-result-ink')) {
+                if (!node.textContent.trim() || node.closest('.skip')) continue;
                 const a = light(numbers(getComputedStyle(node).color)), b = light(ground(node));
                 const ratio = (Math.max(a, b) + .05) / (Math.min(a, b) + .05);
                 const name = node.tagName + '.' + node.className;
@@ -85,26 +96,27 @@ def test_text_stands_out_in_both_colour_schemes(chromium: Page, report):
 
 def test_a_pressed_column_head_sorts_the_table(chromium: Page, report):
     chromium.open(report, width=1360)
-    column = "[...document.querySelectorAll('#times tbody tr')].map(r => r.cells[1].textContent)"
-    before = chromium.evaluate("[...document.querySelectorAll('.matrix tbody th')].map(c => c.textContent)")
-    chromium.evaluate("document.querySelector('.matrix thead tr:last-child button').focus()")
+    go(chromium, "cases")
+    heads = "[...document.querySelectorAll('.all-cases tbody th')].map(c => c.textContent)"
+    before = chromium.evaluate(heads)
+    chromium.evaluate("document.querySelector('.all-cases thead button').focus()")
     chromium.press("Enter", 13)
-    after = chromium.evaluate("[...document.querySelectorAll('.matrix tbody th')].map(c => c.textContent)")
+    after = chromium.evaluate(heads)
     assert sorted(before) == sorted(after)
     assert after != before
-    assert chromium.evaluate("document.querySelector('.matrix th[aria-sort]').ariaSort") == "ascending"
-    assert chromium.evaluate(column)
+    assert chromium.evaluate("document.querySelector('.all-cases th[aria-sort]').ariaSort") == "ascending"
 
 
 def test_everything_can_be_reached_by_keyboard(chromium: Page, report):
     chromium.open(report, width=1360)
+    go(chromium, "cases")
     reached = set()
     for _ in range(60):
         chromium.press("Tab", 9)
         reached.add(
             chromium.evaluate("document.activeElement.tagName + '.' + document.activeElement.className")
         )
-    assert {"A.skip", "DIV.scroll", "BUTTON.", "A."} <= reached
+    assert {"A.brand", "DIV.scroll", "BUTTON.", "A.", "INPUT."} <= reached
     outline = chromium.evaluate("getComputedStyle(document.activeElement).outlineStyle")
     assert outline != "none"
     # What scrolls inside its own box must take the focus too, or a keyboard cannot scroll it.
@@ -135,20 +147,55 @@ def test_a_title_from_a_stranger_runs_nothing(chromium: Page, report):
 
 def test_the_pictures_below_the_contact_are_there(chromium: Page, report):
     chromium.open(report, width=1360)
-    chromium.evaluate(
-        "document.querySelectorAll('.case').forEach(c => c.style.contentVisibility = 'visible')"
-    )
-    assert chromium.evaluate("document.querySelectorAll('svg.field').length") == 9
+    go(chromium, chromium.evaluate("document.querySelector('svg.field').closest('.page').id"))
+    assert chromium.evaluate("document.querySelectorAll('svg.field').length") == 6
     loaded = """Promise.all([...document.querySelectorAll('svg.field image')].map(async (image) => {
         const copy = new Image(); copy.src = image.getAttribute('href'); await copy.decode();
         return copy.naturalWidth * copy.naturalHeight; })).then((sizes) => Math.min(...sizes))"""
     assert chromium.evaluate(loaded) > 50
     # Three panels in a row on a wide screen, one below the other on a phone.
-    places = """new Set([...document.querySelectorAll('.fields .panel')].map(
+    places = """new Set([...document.querySelectorAll('.here .panel:has(.field)')].map(
         (panel) => Math.round(panel.getBoundingClientRect().x))).size"""
     assert chromium.evaluate(places) == 3
-    chromium.open(report, width=390)
+    chromium.resize(390)
     assert chromium.evaluate(places) == 1
+
+
+def test_a_pointer_on_a_comparison_names_it_and_a_click_draws_it(chromium: Page, report):
+    chromium.open(report, width=1360)
+    place = """(() => { const box = document.querySelector('.here svg.strip .ring').getBoundingClientRect();
+        return [box.x + box.width / 2, box.y + box.height / 2]; })()"""
+    x, y = chromium.evaluate(place)
+    chromium.call("Input.dispatchMouseEvent", type="mouseMoved", x=x, y=y)
+    told = chromium.evaluate("document.querySelector('.tip').textContent")
+    assert re.search(r"\|A − B\| .*U .*cap .*(agrees|disagrees|inconclusive)", told)
+    for kind in ("mousePressed", "mouseReleased"):
+        chromium.call("Input.dispatchMouseEvent", type=kind, x=x, y=y, button="left", clickCount=1)
+    chromium.evaluate("new Promise((done) => setTimeout(done, 400))")
+    opened = chromium.evaluate("[location.hash, document.querySelector('.page.here').id]")
+    assert opened[0].startswith(f"#{opened[1]}")
+    go(chromium, f"{opened[1]}~axis~sigma_xx")
+    assert chromium.evaluate("document.querySelectorAll('.here .plot path').length") > 20
+    assert chromium.evaluate("document.querySelector('.here .explorer select.line').value") == "axis"
+    # The arrow keys read the values.
+    chromium.evaluate("document.querySelector('.here .plot').focus()")
+    chromium.press("ArrowRight", 39)
+    assert "semi-analytical" in chromium.evaluate("document.querySelector('.tip').textContent")
+    chromium.evaluate("document.querySelector('.here .numbers-of').open = true")
+    rows = "document.querySelectorAll('.here .comparisons tbody tr').length"
+    assert chromium.evaluate(f"new Promise((done) => setTimeout(() => done({rows}), 100))") > 20
+
+
+def test_the_search_finds_a_case(chromium: Page, report):
+    chromium.open(report, width=1360)
+    go(chromium, "cases")
+    chromium.evaluate("document.querySelector('.menu input').focus()")
+    chromium.call("Input.insertText", text="silver nan")
+    shown = "[...document.querySelectorAll('.menu li')].filter((item) => !item.hidden).length"
+    assert chromium.evaluate(shown) == 1
+    chromium.press("Enter", 13)
+    chromium.evaluate("new Promise((done) => setTimeout(done, 200))")
+    assert chromium.evaluate("document.querySelector('.page.here').id") == "case-silver"
 
 
 def test_dark_and_light_can_be_chosen_by_keyboard(chromium: Page, report):
@@ -163,16 +210,27 @@ def test_dark_and_light_can_be_chosen_by_keyboard(chromium: Page, report):
         assert chromium.evaluate(ground) == first
 
 
-def test_every_gallery_offers_its_numbers(chromium: Page, report):
+def test_without_the_script_and_on_paper_every_page_shows(chromium: Page, report):
+    shown = "[...document.querySelectorAll('.page')].filter((page) => page.offsetHeight).length"
     chromium.open(report, width=1360)
-    bare = """[...document.querySelectorAll('.panels')].filter(
-        (panels) => !panels.nextElementSibling?.querySelector('a[data-csv]')).length"""
-    assert chromium.evaluate("document.querySelectorAll('.panels').length") > 10
-    assert chromium.evaluate(bare) == 0
+    count = chromium.evaluate("document.querySelectorAll('.page').length")
+    assert chromium.evaluate(shown) == 1
+    chromium.call("Emulation.setEmulatedMedia", media="print")
+    assert chromium.evaluate(shown) == count
+    chromium.call("Emulation.setEmulatedMedia", media="")
+    chromium.evaluate("document.documentElement.classList.remove('js')")
+    assert chromium.evaluate(shown) == count
 
 
-def test_the_matrix_comes_before_the_particulars_of_the_run(chromium: Page, report):
-    chromium.open(report, width=1360)
-    order = "document.querySelector('.matrix').compareDocumentPosition(document.querySelector('dl.facts'))"
-    assert chromium.evaluate(order) & 4
-    assert chromium.evaluate("document.querySelector('.matrix').getBoundingClientRect().top") < 800
+def test_a_case_is_one_sheet_and_the_contents_have_its_number(report, tmp_path):
+    pdf = printed(report, tmp_path / "report.pdf", 120.0).read_bytes()
+    numbers = page_numbers(pdf)
+    cases = sorted(number for name, number in numbers.items() if re.fullmatch(r"case-[a-z0-9-]*", name))
+    assert numbers["first"] == 1
+    # What agrees; a case that fails has more figures.
+    for name, following in (("thin", "thick"), ("dlc-chromium-steel", "mos2")):
+        assert numbers[f"case-{following}"] == numbers[f"case-{name}"] + 1
+    assert cases[-1] < numbers["cases"]
+    text = with_numbers(report.read_text(encoding="utf-8"), numbers)
+    assert f"<b>{numbers['case-thick']}</b>" in text
+    assert page_numbers(b"not a PDF") == {}

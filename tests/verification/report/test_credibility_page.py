@@ -95,7 +95,7 @@ def test_figures_of_a_record_carry_date_and_commit(evidence, tmp_path):
     assert f"{count} false alarms in {record.comparisons} comparisons" in text
     assert "1 of the problems agree throughout" in text
     assert "Measured 2026-10-09, c0ffee123456" in text
-    assert record.alarms[0].reason in text
+    assert record.alarms[0].reason in said(section(known).parts[-2])
     assert figures(known)[1] in text
     glance = {row.head.text: [c.text for c in row.cells] for row in section(known).parts[0].tables[0].rows}
     assert glance["False alarms"][1] == "2026-10-09, c0ffee123456"
@@ -195,7 +195,7 @@ def test_the_page_takes_the_section_and_escapes_it(evidence, tmp_path):
     bad = result_of(contact((E / 2, NU, 1.0)), name="vague", points=9, errors={"semianalytic": 4e-3})
     alarms.write_record(tmp_path, counted([replace(bad, title="<script>alert(1)</script>")], 1, INFO))
     text = render(Material(RESULTS[:1], INFO, gather(tmp_path)))
-    assert '<section class="run" id="credibility">' in text
+    assert '<section class="page run" id="credibility">' in text
     for title in STEPS:
         assert f"<h3>{title}</h3>" in text
     assert "&lt;script&gt;alert(1)" in text

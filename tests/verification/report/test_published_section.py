@@ -41,9 +41,13 @@ def page(results):
 
 def rows_of(page, anchor):
     """The text of every row of the section, cells parted by |."""
-    section = page.split(f'<article class="case" id="case-{anchor}">')[1].split("</article>")[0]
+    section = page.split(f'<article class="page case published" id="case-{anchor}">')[1].split("</article>")[
+        0
+    ]
     rows = re.findall(r"<tr.*?</tr>", section, re.DOTALL)
-    return ["|".join(re.findall(r"<t[dh][^>]*>(?:<[^>]*>)*([^<]*)", row)) for row in rows]
+    cells = [re.findall(r"<t[dh][^>]*>(.*?)</t[dh]>", row, re.DOTALL) for row in rows]
+    rows = ["|".join(re.sub("<[^>]*>", "", cell) for cell in row) for row in cells]
+    return [row.replace("·10−", "e-") for row in rows]
 
 
 def test_citation_and_how_it_was_read_are_said_in_full(page):

@@ -13,16 +13,16 @@ from synthetic_results import STEEL, contact, result_of
 
 from verification.judging.verdict import Outcome
 from verification.report.figures import panels
-from verification.report.figures.curves import FLOOR, Curve, Difference, draw
-from verification.report.figures.panels import line_figures
+from verification.report.figures.curves import FLOOR, LOWER, UPPER, Curve, Difference, draw
+from verification.report.figures.panels import case_figures
 from verification.report.figures.plot import Axes, drawing, polyline
 from verification.report.sections.accuracy import accuracies, coverage_table
-from verification.report.tables.case import budget_table, contact_table, verdict_table
+from verification.report.tables.case import budget_table, comparison_table, contact_tables, failing_table
 from verification.report.tables.csv import embedded, line_csv
 from verification.report.tables.labels import OUTCOMES, pair_style, source_style
 from verification.report.tables.lookup import contact_radius, difference, judged, reference_source
-from verification.report.tables.matrix import verdict_matrix
-from verification.report.tables.numbers import engineering, scientific, seconds, with_uncertainty
+from verification.report.tables.numbers import aligned, engineering, scientific, seconds, with_uncertainty
+from verification.report.tables.symbols import drawn, typeset, unicode
 
 COATED = contact((2 * STEEL[0], 0.3, 1.0))
 
@@ -47,6 +47,26 @@ def test_engineering_prefix(value, unit, shown):
 @pytest.mark.parametrize(
     ("value", "spread", "shown"),
     [
+        (1.2726114e9, 4.8e5, "1.27261(48)"),
+        (1.2726114e9, 1.234e8, "1.27(12)"),
+        (1.2726114e9, 2e10, "1(20)"),
+        (1.2726114e9, None, "1.27261"),
+        (1.2726114e9, 0.0, "1.27261140"),
+        (1.2726114e9, 3.2e-1, "1.27261140"),
+        (1.2726114e9, nan, "not finite"),
+        (1.2726114e9, 1e300, "not finite"),
+        (inf, 1.0, "not finite"),
+        (1.27e300, 1.0, "1.270e+291"),
+    ],
+)
+def test_a_value_ends_where_its_uncertainty_ends(value, spread, shown):
+    _, (_, text) = aligned([(1e9, 0.0), (value, spread)], "Pa")
+    assert re.sub("<[^>]*>", "", text) == shown
+
+
+@pytest.mark.parametrize(
+    ("value", "spread", "shown"),
+    [
         (1.2726114e9, 4.8e5, "1.27261 ± 0.00048 GPa"),
         (1.2726114e9, 1.234e8, "1.27 ± 0.12 GPa"),
         (1.2726114e9, 2e10, "1 ± 20 GPa"),
@@ -59,8 +79,27 @@ def test_engineering_prefix(value, unit, shown):
         (inf, 1.0, "not finite"),
     ],
 )
-def test_a_value_ends_where_its_uncertainty_ends(value, spread, shown):
+def test_a_value_in_text_ends_where_its_uncertainty_ends(value, spread, shown):
     assert with_uncertainty(value, spread, "Pa") == shown
+
+
+def test_numbers_of_a_column_share_their_unit_and_their_decimal_point():
+    unit, texts = aligned([(1.2726114e9, 4.8e5), None, (12.5e9, 1e8)], "Pa")
+    assert unit == "GPa"
+    assert texts[1] == "–"
+    # What follows the point has one width, so that right-aligned cells have their points in one line.
+    assert [re.findall('min-width:(.*?)"', text) for text in (texts[0], texts[2])] == [["10ch"]] * 2
+    assert [re.sub("<[^>]*>", "", text) for text in (texts[0], texts[2])] == ["1.27261(48)", "12.50(10)"]
+
+
+def test_symbols_are_typeset_and_strangers_words_escaped():
+    assert typeset("sigma_xx") == "<i>σ</i><sub><i>xx</i></sub>"
+    assert typeset("3.1e-5 of a_h") == "3.1·10<sup>−5</sup> of <i>a</i><sub>H</sub>"
+    assert typeset("<b> my_sigma_xx a_half 0x1e-5") == "&lt;b&gt; my_sigma_xx a_half 0x1e-5"
+    assert unicode("E1/E2 = 2, dW/d delta, 1e-3") == "E_1/E_2 = 2, dW/dδ, 10⁻³"
+    shifts = [float(shift) for shift in re.findall(r'dy="([^"]*)em"', drawn("p_h + 1"))]
+    sizes = [0.78, 1.0]
+    assert sum(shift * size for shift, size in zip(shifts, sizes, strict=True)) == pytest.approx(0, abs=0.01)
 
 
 def test_fractions_and_times_are_short():
@@ -82,20 +121,8 @@ def test_the_best_reference_is_the_last_exact_one_that_gave_a_result():
     assert reference_source(result_of(COATED, failures=everything, points=11)) is None
 
 
-def test_the_worst_verdict_of_a_group_decides_its_cell():
-    result = result_of(COATED, spoil={("sigma_yy", "surface", "fem_reference"): 9 * COATED.p_h}, points=31)
-    (row,) = verdict_matrix([result], {result: "case-x"}).rows
-    cells = {(cell.css.split()[1], cell.text[0], cell.href) for cell in row.cells if "verdict" in cell.css}
-    assert ("disagrees", "D", "#case-x-surface") in cells
-    assert row.cells[0].text.startswith("D")
-    wrong = [cell for cell in row.cells[1:] if cell.text[0] == "D"]
-    assert len(wrong) == 2  # against the other method, against the reference
-    assert all(cell.sort == pytest.approx(9, abs=1) and "sigma_yy on surface" in cell.note for cell in wrong)
-
-
 def test_every_outcome_differs_without_colour():
-    letters, marks = ({getattr(style, name) for style in OUTCOMES.values()} for name in ("letter", "mark"))
-    assert len(letters) == len(marks) == len(Outcome)
+    assert len({style.mark for style in OUTCOMES.values()}) == len(Outcome)
     sources = ("semianalytic", "fem_reference", "integral_equation", "hertz", "another")
     assert len({(source_style(s).dash, source_style(s).width) for s in sources}) == len(sources)
     pairs = [("semianalytic", "fem_reference"), ("semianalytic", "hertz"), ("fem_reference", "hertz")]
@@ -103,23 +130,32 @@ def test_every_outcome_differs_without_colour():
 
 
 def test_contact_table_states_the_true_difference():
+    (table,) = contact_tables(result_of(COATED, points=11))
     result = result_of(COATED, points=11)
-    table = contact_table(result)
-    row = next(row for row in table.rows if row.head.text == "semi-analytical")
+    rows = {row.head.text: row for row in table.rows}
     theirs = result.profile_of["peak_pressure", "contact", "integral_equation"].value[0]
     ours = result.profile_of["peak_pressure", "contact", "semianalytic"].value[0]
-    assert row.cells[0].sort == ours
-    assert row.cells[2].sort == pytest.approx(abs(ours / theirs - 1), rel=1e-12)
-    assert "±" in row.cells[0].text
+    assert table.columns[1] == "p0 [GPa]"
+    assert rows["semi-analytical"].cells[0].sort == ours
+    gap = rows["semi-analytical – integral equation"].cells[0].sort
+    assert gap == pytest.approx(abs(ours / theirs - 1), rel=1e-12)
+    assert "(" in rows["semi-analytical"].cells[0].text
 
 
-def test_failing_verdicts_lead_their_table():
+def test_failing_verdicts_lead_their_table_and_every_quantity_has_a_row():
     result = result_of(COATED, errors={"semianalytic": 2e-3}, stated={"semianalytic": 0.7}, points=31)
-    table = verdict_table(result.verdicts, result.problem["a_h"])
-    ranks = [row.head.sort for row in table.rows]
+    bad = [v for _, v in result.verdicts if v.outcome is not Outcome.AGREES]
+    ranks = [row.head.sort for row in failing_table(result, COATED.a_h, 10**6).rows]
     assert ranks == sorted(ranks)
-    assert ranks[0] == OUTCOMES[Outcome.DISAGREES].rank < ranks[-1]
-    assert len(table.rows) == len(result.verdicts)
+    assert len(ranks) == len(bad) > 20
+    table = failing_table(result, COATED.a_h, 20)
+    assert len(table.rows) == 20
+    assert f"The worst 20 of {len(bad)}" in table.caption
+    assert not failing_table(result_of(COATED, points=11), COATED.a_h, 20)
+    table = comparison_table(result)
+    assert len(table.rows) == len({(c.quantity, c.line) for c, _ in result.verdicts})
+    shown = sum(cell.css == "verdict disagrees" for row in table.rows for cell in row.cells)
+    assert shown == sum(v.outcome is Outcome.DISAGREES for v in bad)
 
 
 def test_the_budget_names_the_knob_that_dominates():
@@ -181,9 +217,10 @@ def test_csv_holds_every_number_behind_a_figure():
         if profile.line == "interface 1, upper side":
             column = head.index(f"{profile.quantity} [Pa] {profile.source}")
             values = np.array([float(row[column]) for row in body])
-            assert values == pytest.approx(profile.value, rel=1e-7)
+            # Each value to a twentieth of its uncertainty.
+            assert (np.abs(values - profile.value) <= 0.051 * profile.uncertainty).all()
             spread = np.array([float(row[column + 1]) for row in body])
-            assert spread == pytest.approx(profile.uncertainty, rel=1e-2)
+            assert spread == pytest.approx(profile.uncertainty, rel=6e-2)
 
 
 def test_embedded_numbers_do_not_change_from_run_to_run():
@@ -209,25 +246,25 @@ def test_a_figure_tells_its_curve_to_a_tenth_of_a_unit():
     line = next(part for part in text.split("<path")[1:] if "s-semi" in part)
     (path,) = re.findall(r'd="M([^"l]*)l([^"]*)"', line)
     start, steps = ([float(n) for n in re.findall(r"-?[0-9]*\.?[0-9]+", part)] for part in path)
-    # The frame is 0.835 of 320 units wide and 0.495 of 300 high, six percent of the range above and below.
-    margin = 0.06 / 1.12 * 0.495 * 300
-    assert start == pytest.approx([48, 300 * (1 - 0.485) - margin], abs=0.1)
-    assert sum(steps[0::2]) == pytest.approx(0.835 * 320, abs=0.15)
-    assert sum(steps[1::2]) == pytest.approx(-0.495 * 300 / 1.12, abs=0.15)
+    # Six percent of the range above and below.
+    left, top, width, height = UPPER
+    assert start == pytest.approx([left, top + height * 1.06 / 1.12], abs=0.1)
+    assert sum(steps[0::2]) == pytest.approx(width, abs=0.15)
+    assert sum(steps[1::2]) == pytest.approx(-height / 1.12, abs=0.15)
 
 
 def test_differences_below_the_floor_are_drawn_on_it():
     text = figure(np.full(60, 1e-12))
     pair = [part for part in text.split("<path")[1:] if "s-pair" in part]
     height = float(pair[-1].split('d="M')[1].split("l")[0].split()[1])
-    assert height == pytest.approx(300 * (1 - 0.135), abs=0.1)
+    assert height == pytest.approx(LOWER[1] + LOWER[3], abs=0.1)
     assert FLOOR == 1e-9
 
 
 def test_a_figure_has_no_identifier_and_its_curves_end_at_the_frame():
     text = figure(np.linspace(0, 1, 60))
     assert "id=" not in text
-    assert text.count('<svg x="48.0"') == 2
+    assert text.count('<svg x="42.0"') == 2
 
 
 def test_labels_are_text_not_markup():
@@ -262,8 +299,8 @@ def test_figures_are_drawn_in_the_scales_of_the_bare_substrate(monkeypatch):
 
     monkeypatch.setattr(panels, "draw", record)
     result = result_of(COATED, errors={"semianalytic": 2e-3}, stated={"semianalytic": 0.7}, points=201)
-    line_figures(result, "surface")
-    curves, differences, more = drawn[0]
+    case_figures(result)
+    curves, differences, more = next(one for one in drawn if 'data-quantity="pressure"' in one[2]["data"])
     assert len(curves) == len(differences) == 3
     for curve in curves:
         assert (curve.position.min(), curve.position.max()) == pytest.approx((-2, 2), rel=1e-12)
@@ -282,16 +319,32 @@ def test_figures_are_drawn_in_the_scales_of_the_bare_substrate(monkeypatch):
     assert more["coordinate"] == "x / a_h"
     assert more["unjudged"] == []
     zoned = replace(result, verdicts=tuple((replace(c, edge=0.05), v) for c, v in result.verdicts))
-    line_figures(zoned, "surface")
-    zones = np.array(drawn[-1][2]["unjudged"])
+    drawn.clear()
+    case_figures(zoned)
+    zones = np.array(drawn[0][2]["unjudged"])
     assert zones == pytest.approx(np.array([(-1.05, -0.95), (0.95, 1.05)]), rel=1e-6)
 
 
-def test_a_claimless_line_shows_what_was_sampled():
-    result = result_of(COATED, points=31)
-    assert [panel.title for panel in line_figures(result, "axis").panels] == [
-        "sigma_xx / p_h",
-        "sigma_zz / p_h",
-    ]
-    bare = replace(result, verdicts=())
-    assert len(line_figures(bare, "axis").panels) == 4
+def test_sources_that_coincide_have_marks_at_places_of_their_own():
+    x = np.linspace(-2, 2, 129)
+    styles = [source_style(name) for name in ("integral_equation", "semianalytic", "fem_reference")]
+    curves = [Curve(x, 1e-5 * n + x**2, style) for n, style in enumerate(styles)]
+    text = str(draw(curves, [], label="p", coordinate="x / a_h"))
+    marks = [re.findall(r"M([\d.]+) ", part) for part in re.findall(r'd="([^"]*)" class="point s-', text)]
+    assert len(marks) == 2
+    assert not set(marks[0]) & set(marks[1])
+    assert 'class="s-semi"' not in text  # a line of its own only where it departs
+    curves[1] = Curve(x, 0.1 + x**2, styles[1])
+    assert 'class="s-semi"' in str(draw(curves, [], label="p", coordinate="x / a_h"))
+
+
+def test_what_fails_is_drawn_first_and_the_rest_is_what_one_looks_at():
+    titles = [panel.title for panel in case_figures(result_of(COATED, points=31)).panels]
+    assert titles[:3] == ["p / p_h, surface", "sigma_xx / p_h, surface", "sigma_xx / p_h, axis"]
+    spoiled = result_of(COATED, spoil={("sigma_yy", "off plane", "fem_reference"): 9 * COATED.p_h}, points=31)
+    figures = case_figures(spoiled)
+    assert figures.panels[0].title == "sigma_yy / p_h, off plane"
+    assert figures.panels[0].css == "fails"
+    assert "A red ring" in figures.caption
+    assert case_figures(replace(spoiled, profiles=())) is None
+    assert len(case_figures(replace(spoiled, verdicts=())).panels) >= 6

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from html_document import Document
 
 from verification.cases.published import published_cases, read_published
 from verification.cases.toml import CaseError
@@ -83,7 +84,7 @@ def test_every_value_is_judged_and_departures_are_shown(files):
     assert from_json(to_json(result)).problem["control"] == "contact_radius"
     page = render(Material([result], INFO))
     assert "Departures of the sources" in page
-    assert "stiffness of the flat punch over 2 a E1*" in page
+    assert "stiffness of the flat punch over 2 a E1*" in " ".join(Document(page).whole("figcaption"))
     wrong = run(files(csv=CSV.replace("2.483525", "2.483535")), exact)
     judged = {c.line.rsplit(" ", 1)[1]: v.outcome for c, v in wrong.verdicts if EXACT[0] in c.between}
     assert judged["k"] is Outcome.DISAGREES

@@ -62,10 +62,14 @@ def faults_section(record: Record) -> Section:
         parts.append(
             Part("Faults that were not detected, with the reason and a possible check.", [survivors])
         )
-    parts.append(Part(_explained(record), [_matrix(rows, title) for title, rows in _groups(record)]))
     if record.controls:
         text = "Negative controls, the same trials with nothing planted: any detection is a false alarm."
-        parts.append(Part(text, [_matrix(record.controls, "Nothing planted")]))
+        parts.append(Part(text, [_controls(record.controls)]))
+    parts.append(Part(_explained(record), title="Faults against checks"))
+    parts += [
+        Part("", [_matrix(rows, title)], folded=f"{title}, {len(rows)} faults")
+        for title, rows in _groups(record)
+    ]
     failures = [f"{row.name} changes no number, so it is not a fault." for row in record.idle]
     failures += [f"{row.name}, a negative control, is detected: {row.by}" for row in record.alarms]
     failures += [f"{row.name}: {row.failure}" for row in record.rows if row.failure]
@@ -182,6 +186,21 @@ def _matrix(faults: Sequence[Fault], caption: str) -> Table:
     columns = ["fault", "fault planted", "in", "outcome", "predicted check", *COLUMNS, "change"]
     spans = [("", 5), ("checks that do not pass", len(COLUMNS)), ("", 1)]
     return Table(caption, columns, made, spans, "faults")
+
+
+def _controls(controls: Sequence[Fault]) -> Table:
+    """Trials with nothing planted: silence is right, a detection is a false alarm."""
+    silent = Cell("✓ no alarm", 1.0, "verdict agrees")
+    rows = [
+        row(
+            one.name,
+            words(one.description),
+            Cell("✗ false alarm", 0.0, "verdict disagrees", one.by) if one.caught else silent,
+            number(sum(seen.made for seen in one.columns.values()), str),
+        )
+        for one in controls
+    ]
+    return Table("Nothing planted.", ["control", "solved again", "outcome", "checks"], rows)
 
 
 def _catch_cell(row: Fault) -> Cell:

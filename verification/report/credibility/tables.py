@@ -9,10 +9,9 @@ from verification.credibility.independence import Part
 from verification.credibility.manufactured import DesignOrder
 from verification.judging.verdict import Outcome
 from verification.problem.quantity import SCALARS
-from verification.report.tables.cells import Cell, Table, number, row, tally, words
+from verification.report.tables.cells import Cell, Table, number, outcome_cell, row, tally, words
 from verification.report.tables.labels import pair_label, source_label
 from verification.report.tables.lookup import layers, scale
-from verification.report.tables.matrix import outcome_cell
 from verification.report.tables.numbers import plain
 from verification.running.result import CaseResult
 

@@ -13,9 +13,11 @@ from verification.sources.record import Style
 
 FLOOR = 1e-9
 TOP = 1e-1
-WIDTH, HEIGHT = 320, 300
-UPPER = (48.0, 6.0, 267.2, 148.5)  # left, top, width, height
-LOWER = (48.0, 166.5, 267.2, 93.0)
+WIDTH, HEIGHT = 320, 238
+UPPER = (42.0, 5.0, 273.0, 112.0)  # left, top, width, height
+LOWER = (42.0, 125.0, 273.0, 84.0)
+MARKED = 9  # points of a curve that are marked, each source at places of its own
+APART = 0.004  # of the range; curves further apart than this are drawn as lines besides
 CAP = Style("cap", (6.0, 3.0), 1.0)
 
 # Fewer points than this are published or measured values, not computed along the line.
@@ -54,8 +56,12 @@ def draw(
     coordinate: str,
     cap: float | None = None,
     unjudged: Iterable[tuple[float, float]] = (),
+    data: str = "",
 ) -> Markup:
     """One figure as inline SVG: curves above, differences below on a logarithmic scale.
+
+    The broadest curve is a line. Sources that coincide with it have marks, at places of their own, so that
+    each can be seen; where one departs it is a line, too.
 
     coordinate : the label of the axis, e.g. "x / a_h".   unjudged : spans of it excluded from the verdicts.
     cap : the largest admissible uncertainty, drawn as a line.
@@ -68,7 +74,10 @@ def draw(
     along = round_ticks(*span, 6)
     upper.ticks([(x, "") for x, _ in along])
     lower.ticks(along, label=coordinate)
-    return drawing(WIDTH, HEIGHT, label, upper, lower)
+    left, _, width, _ = UPPER
+    if data:
+        data += f' data-axis="{left:g} {width:g} {span[0]:.6g} {span[1]:.6g}"'
+    return drawing(WIDTH, HEIGHT, label, upper, lower, data=data)
 
 
 def _span(curves: Sequence[Curve], differences: Sequence[Difference]) -> tuple[float, float]:
@@ -88,9 +97,26 @@ def _draw_curves(curves: Sequence[Curve], span: tuple[float, float]) -> Axes:
     axes = Axes(UPPER, span, (low - margin, high + margin))
     axes.ticks(y=round_ticks(low, high, 5))
     # Broad full lines first: a dashed one on top leaves both visible.
-    for curve in sorted(curves, key=lambda curve: (bool(curve.style.dash), -curve.style.width)):
-        axes.line(curve.position, curve.value, curve.style, dots=curve.position.size < FEW)
+    found = sorted(curves, key=lambda curve: (bool(curve.style.dash), -curve.style.width))
+    base = min(found, key=lambda curve: -curve.style.width, default=None)
+    for n, curve in enumerate(found):
+        few = curve.position.size < FEW
+        alone = base is None or curve is base or _apart(curve, base, high - low)
+        if alone or few:
+            axes.line(curve.position, curve.value, curve.style, dots=few)
+        if curve is not base and not few:
+            share = (np.arange(MARKED) + (n + 0.5) / len(found)) / MARKED
+            places = span[0] + share * (span[1] - span[0])
+            at = np.unique(np.abs(curve.position[:, None] - places).argmin(axis=0))
+            axes.marks(curve.position[at], curve.value[at], curve.style)
     return axes
+
+
+def _apart(curve: Curve, base: Curve, extent: float) -> bool:
+    """True where the two can be told apart, or cannot be compared."""
+    if not np.array_equal(curve.position, base.position):
+        return True
+    return not (np.abs(curve.value - base.value) < APART * extent).all()
 
 
 def _draw_differences(

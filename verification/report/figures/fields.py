@@ -1,4 +1,4 @@
-"""Stresses in the plane below the contact: both methods beside their difference."""
+"""Stresses in the plane below the contact, with the difference of both methods."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -28,10 +28,9 @@ EVERY = 3  # of the columns in the table of numbers
 
 @dataclass(frozen=True)
 class Pictures:
-    """Panels in rows of ``across``, one row a quantity, with caption, and the numbers behind as CSV."""
+    """The quantities side by side, below them their differences, with caption and the numbers as CSV."""
 
     panels: tuple[Panel, ...]
-    across: int
     caption: str
     csv: str
     file: str
@@ -47,11 +46,10 @@ def pictures(result: CaseResult, plane: Plane | None) -> Pictures | None:
     sources = [name for name in METHODS if name in plane.stress]
     bottoms = [float(z[-1]) / a_h for z in plane.depths]
     frame = Frame(float(plane.x[-1]) / a_h, bottoms[-1], tuple(bottoms[:-1]), plane.radius / a_h)
-    panels = [panel for quantity in SHOWN for panel in _row(plane, quantity, sources, frame, a_h, p_h)]
+    rows = [_panels(plane, quantity, sources, frame, a_h, p_h) for quantity in SHOWN]
     return Pictures(
-        tuple(panels),
-        len(panels) // len(SHOWN),
-        _caption(plane, sources),
+        tuple(panel for some in zip(*rows, strict=True) for panel in some),
+        _caption(plane, sources, frame),
         embedded(plane_csv(plane)),
         f"{slug(result.name)}-plane.csv",
         failures,
@@ -64,12 +62,12 @@ def plane_csv(plane: Plane) -> str:
     columns = [["layer"], ["x [m]"], ["z [m]"]]
     for k, z in enumerate(plane.depths):
         columns[0] += [str(k)] * (z.size * x.size)
-        columns[1] += [f"{v:.6g}" for v in np.tile(x, z.size)]
-        columns[2] += [f"{v:.6g}" for v in np.repeat(z, x.size)]
+        columns[1] += [f"{v:.5g}" for v in np.tile(x, z.size)]
+        columns[2] += [f"{v:.5g}" for v in np.repeat(z, x.size)]
     for source, layers in plane.stress.items():
         for name in (*IN_PLANE, "von_mises"):
             values = np.concatenate([_quantity(sigma, name)[:, ::EVERY].ravel() for sigma in layers])
-            columns.append([f"{name} [Pa] {source}", *(f"{v:.6g}" for v in values)])
+            columns.append([f"{name} [Pa] {source}", *(f"{v:.5g}" for v in values)])
     return written(list(zip_longest(*columns, fillvalue="")))
 
 
@@ -77,26 +75,39 @@ def _quantity(sigma: Array, name: str) -> Array:
     return von_mises(sigma) if name == "von_mises" else sigma[list(IN_PLANE).index(name)]
 
 
-def _row(
+def _panels(
     plane: Plane, quantity: str, sources: Sequence[str], frame: Frame, a_h: float, p_h: float
 ) -> list[Panel]:
-    """A panel a method on one scale of colours, then the difference of the two."""
+    """The field of the first method, then its difference from the other."""
     x, depths = plane.x / a_h, [z / a_h for z in plane.depths]
     fields = {s: [_quantity(sigma, quantity) / p_h for sigma in plane.stress[s]] for s in sources}
-    colours = _colours(quantity, [f for some in fields.values() for f in some])
+    source, shown = next(iter(fields.items()))
     title = f"{TITLES.get(quantity, quantity)} / p_h"
-    panels = []
-    for source, some in fields.items():
-        values = np.concatenate([f.ravel() for f in some])
-        known = values[np.isfinite(values)]
-        span = f"{plain(known.min(), 3)} to {plain(known.max(), 3)}" if known.size else "not finite"
-        drawn = draw_field(
-            rasterised(x, depths, some, frame), frame, colours, label=f"{title} by {source_label(source)}"
-        )
-        panels.append(Panel(f"{title}, {source_label(source)}", drawn, span, ""))
+    values = np.concatenate([f.ravel() for f in shown])
+    known = values[np.isfinite(values)]
+    span = f"{plain(known.min(), 3)} to {plain(known.max(), 3)}" if known.size else "not finite"
+    drawn = draw_field(
+        rasterised(x, depths, shown, frame),
+        frame,
+        _colours(quantity, shown),
+        label=f"{title} by {source_label(source)}",
+    )
+    panels = [Panel(title, drawn, f"{source_label(source)}, {span}", "")]
     if len(sources) == 2:
         panels.append(_difference(fields, x, depths, frame, title))
     return panels
+
+
+def plane_difference(plane: Plane, scale: float) -> tuple[float, str] | None:
+    """Largest difference of the methods anywhere in the plane over ``scale``, with the stress it is of."""
+    if len(plane.stress) != 2 or not scale > 0:
+        return None
+    one, other = plane.stress.values()
+    gaps = [np.abs(a - b).max(axis=(1, 2)) for a, b in zip(one, other, strict=True) if a.size]
+    largest = np.max(gaps, axis=0) / scale if gaps else np.zeros(1)
+    if not np.isfinite(largest).all():
+        return None
+    return float(largest.max()), list(IN_PLANE)[int(largest.argmax())]
 
 
 def _difference(
@@ -119,7 +130,7 @@ def _difference(
         label=f"difference of both methods in {title}, logarithmic",
         lines=False,
     )
-    return Panel(f"|difference| of {title}", drawn, f"largest {scientific(largest)}", "")
+    return Panel(f"difference in {title}", drawn, f"largest {scientific(largest)}", "")
 
 
 def _colours(quantity: str, values: Sequence[Array]) -> Scale:
@@ -133,17 +144,15 @@ def _colours(quantity: str, values: Sequence[Array]) -> Scale:
     return Scale(-largest, largest, DIVERGING)
 
 
-def _caption(plane: Plane, sources: Sequence[str]) -> str:
-    points = sum(z.size for z in plane.depths) * plane.x.size
+def _caption(plane: Plane, sources: Sequence[str], frame: Frame) -> str:
     text = (
-        "Plane y = 0, lengths over a_h, stresses over p_h, tension positive; the red bar is the contact, "
-        f"lines across are interfaces. {points} points on {sum(z.size for z in plane.depths)} depths, "
-        "interfaces from either side; between them the colours are interpolated. "
+        "Plane y = 0; the red bar is the contact, lines across are interfaces, where stresses may jump. "
+        "Level lines at the ticks of the colour bar. "
     )
+    if frame.stretched:
+        text += "Thin layers are drawn thicker than they are: read z off the axis. "
     if len(sources) == 2:
         text += (
-            "Both methods are taken at the same points, nodes of the semi-analytical grid, and drawn with "
-            "one scale of colours; level lines at its ticks. The difference is logarithmic, its scale from "
-            f"{scientific(10.0**FLOOR, 1)} the same in every case."
+            "Below, the difference of the methods at the same points, on one logarithmic scale in every case."
         )
     return text

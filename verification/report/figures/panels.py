@@ -1,17 +1,19 @@
 """The figures of a case: one panel for each quantity on each line."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from markupsafe import Markup
+from markupsafe import Markup, escape
 
 from verification.judging.verdict import Claim, Outcome
-from verification.problem.quantity import DISPLACEMENTS, QUANTITIES
-from verification.report.figures.curves import FLOOR, Curve, Difference, draw
+from verification.problem.profile import ON_BALL
+from verification.problem.quantity import QUANTITIES
+from verification.report.figures.curves import Curve, Difference, draw
+from verification.report.figures.plot import MARKS
 from verification.report.tables.cells import Panel
-from verification.report.tables.labels import pair_label, pair_style, source_label, source_style
+from verification.report.tables.labels import pair_label, pair_style, source_label, source_style, symbol_of
 from verification.report.tables.lookup import (
-    claimed_quantities,
     contact_radius,
     coordinate,
     difference,
@@ -24,10 +26,25 @@ from verification.running.result import CaseResult
 from verification.sources.record import Style
 from verification.sources.registry import METHODS
 
+MOST_FAILING = 6  # panels of comparisons that do not agree, besides the chosen ones
+MOST = 9
+# What is looked at first, on the flat; of a ball its surface besides.
+CHOSEN = (
+    ("pressure", "surface"),
+    ("sigma_xx", "surface"),
+    ("sigma_xx", "axis"),
+    ("sigma_xx", "interface 1, upper side"),
+    ("sigma_xx", "interface 1, lower side"),
+    ("sigma_xz", "interface 1, upper side"),
+    ("sigma_zz", "axis"),
+    ("sigma_xx", f"{ON_BALL}surface"),
+    ("u_z", "oblique surface"),
+)
+
 
 @dataclass(frozen=True)
-class LineFigures:
-    """The panels of one line, with a legend each for the curves and for the differences."""
+class CaseFigures:
+    """The panels of one case, with a legend each for the curves and for the differences."""
 
     panels: tuple[Panel, ...]
     curves: tuple[tuple[Markup, str], ...]
@@ -35,22 +52,38 @@ class LineFigures:
     caption: str
 
 
-def line_figures(result: CaseResult, line: str) -> LineFigures:
-    """Everything drawn about ``line``."""
-    quantities = claimed_quantities(result, line)
-    panels = tuple(_panel(result, line, q) for q in quantities)
-    sources = [s for s in sources_with_profiles(result) if any(p.source == s for p in _on(result, line))]
-    pairs = list(dict.fromkeys(pair for q in quantities for pair in _pairs(result, line, q)))
-    return LineFigures(
-        panels,
-        tuple((swatch(source_style(source)), source_label(source)) for source in sources),
+def case_figures(result: CaseResult) -> CaseFigures | None:
+    """Panels of what does not agree, then of what is looked at first; None of a case without profiles."""
+    drawable = {(p.quantity, p.line) for p in result.profiles if p.line != "contact"}
+    bad = [
+        (c.quantity, c.line)
+        for c, v in result.verdicts
+        if v.outcome is not Outcome.AGREES and (c.quantity, c.line) in drawable
+    ]
+    chosen = [place for place in CHOSEN if place in drawable]
+    places = list(dict.fromkeys([*list(dict.fromkeys(bad))[:MOST_FAILING], *chosen]))
+    places = places[: max(MOST, MOST_FAILING)]
+    places = places[: len(places) // 3 * 3] if len(places) > 3 else places  # whole rows of three
+    if not places:
+        return None
+    pairs = list(dict.fromkeys(pair for quantity, line in places for pair in _pairs(result, line, quantity)))
+    sources = [s for s in sources_with_profiles(result) if any(p.source == s for p in result.profiles)]
+    base = next((s for s in sources if source_style(s).width > 3), None)
+    return CaseFigures(
+        tuple(_panel(result, line, quantity) for quantity, line in places),
+        tuple((swatch(source_style(s), marked=s != base), source_label(s)) for s in sources),
         tuple((swatch(pair_style(pair)), pair_label(pair)) for pair in pairs),
-        _caption(result, line),
+        _caption(result, places),
     )
 
 
-def swatch(style: Style) -> Markup:
-    """A short piece of a line as the figures draw it."""
+def swatch(style: Style, *, marked: bool = False) -> Markup:
+    """A short piece of a line as the figures draw it, or its mark."""
+    if marked:
+        return Markup(
+            '<svg class="swatch" viewBox="0 0 36 10" aria-hidden="true">'
+            '<path d="M18 5{}" class="point s-{}"/></svg>'
+        ).format(MARKS[style.marker], style.colour)
     dash = " ".join(f"{length * style.width:.1f}" for length in style.dash)
     return Markup(
         '<svg class="swatch" viewBox="0 0 36 10" aria-hidden="true"><path d="M1 5h34" class="s-{}" '
@@ -98,17 +131,18 @@ def _panel(result: CaseResult, line: str, quantity: str) -> Panel:
     figure = draw(
         curves,
         differences,
-        label=f"{quantity} on {line} by every source, with differences",
+        label=f"{symbol_of(quantity)} on {line} by every source, with differences",
         coordinate=f"{coordinate(line)} / a_h",
         cap=cap,
         unjudged=zones,
+        data=f'data-quantity="{escape(quantity)}" data-line="{escape(line)}"',
     )
     bad = [(c, v) for c, v in claims if v.outcome is not Outcome.AGREES]
     largest = max((v.difference for _, v in claims if v.difference is not None), default=None)
-    note = f"largest judged difference {scientific(largest)}"
+    note = f"largest difference {scientific(largest)}"
     if bad:
         note = f"{len(bad)} of {len(claims)} do not agree, difference {scientific(largest)}"
-    title = f"{QUANTITIES[quantity].symbol if quantity in QUANTITIES else quantity} / {unit}"
+    title = f"{symbol_of(quantity)} / {unit}, {line}"
     return Panel(title, figure, note if claims else "not compared", "fails" if bad else "")
 
 
@@ -127,18 +161,19 @@ def _unjudged(result: CaseResult, claims: list[Claim], curves: list[Curve]) -> l
     return [span for span in ((-outer, -inner), (inner, outer)) if span[1] > low and span[0] < high]
 
 
-def _caption(result: CaseResult, line: str) -> str:
-    displaced = any(profile.quantity in DISPLACEMENTS for profile in _on(result, line))
-    also = (", displacements in units of delta_h", ", of delta_h and approach for displacements")
-    above, below = also if displaced else ("", "")
+def _caption(result: CaseResult, places: Sequence[tuple[str, str]]) -> str:
+    """What to see in the panels."""
+    verdicts = [v for c, v in result.verdicts if (c.quantity, c.line) in places]
+    together = all(v.outcome is Outcome.AGREES for v in verdicts)
     text = (
-        f"Above: the quantity in units of p_h{above} over {coordinate(line)} / a_h, tension positive. Below: "
-        f"|A − B| over the smaller of p_h and p0{below}, logarithmic, from {scientific(FLOOR, 1)}; the thin "
-        "line that bounds a tint is U_A + U_B, and a difference below its own line agrees; red dashes: the "
-        "cap on U."
+        "Above, the sources coincide to the width of the line: the grey line is the reference, the marks are "
+        "the methods. Below, on a logarithmic scale, every difference lies under the thin line that bounds "
+        "its tint, U = U_A + U_B, and that line under the cap (red dashes)."
+        if together
+        else "Above, the values of every source; below, on a logarithmic scale, their differences. A "
+        "difference above the thin line that bounds its tint, U = U_A + U_B, disagrees; a tint above the cap "
+        "(red dashes) is inconclusive. A red ring marks the point that decides."
     )
-    edges = [claim.edge for claim, _ in result.verdicts if claim.line == line and claim.edge]
-    if edges:
-        text += f" Grey: within {100 * max(edges):.0f} % of the contact edge, not judged."
-    failed = any(claim.line == line and v.outcome is not Outcome.AGREES for claim, v in result.verdicts)
-    return text + (" A red ring marks the point that decides a failed comparison." if failed else "")
+    if any(claim.edge for claim, _ in result.verdicts if (claim.quantity, claim.line) in places):
+        text += " Grey: next to the contact edge, not judged."
+    return f"{text} Lengths over a_h, tension positive; differences over the smaller of p_h and p0."

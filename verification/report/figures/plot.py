@@ -9,12 +9,20 @@ import numpy as np
 from markupsafe import Markup, escape
 
 from verification.problem.arrays import Array
+from verification.report.tables.symbols import drawn, unicode
 from verification.sources.record import Style
 
+# Marks of single points, open, in units of the drawing; by the shapes of ``Style.marker``.
+MARKS = {
+    "o": "m-2.6 0a2.6 2.6 0 1 0 5.2 0a2.6 2.6 0 1 0-5.2 0z",
+    "^": "m0-3.1l3 5.2h-6z",
+    "s": "m-2.4-2.4h4.8v4.8h-4.8z",
+    "+": "m-3 0h6m-3-3v6",
+}
 # Larger numbers are failures; a curve has a gap there.
 HUGE = 1e12
 FAR = 1e4  # units; nothing is drawn farther off than this
-STRAIGHT = 0.06  # units; a point nearer than this to the chord of its neighbours is left out
+STRAIGHT = 0.09  # units; a point nearer than this to the chord of its neighbours is left out
 
 
 class Axes:
@@ -54,6 +62,14 @@ class Axes:
         if dots:
             marks = "".join(f"M{u:.1f} {v:.1f}h0" for u, v in points[np.isfinite(points).all(axis=1)])
             self._inside.append(f'<path d="{marks}" class="dots s-{style.colour}"/>')
+
+    def marks(self, x: Array, y: Array, style: Style) -> None:
+        """Single points of a curve, each with the mark of its style."""
+        path = "".join(
+            f"M{u:.1f} {v:.1f}{MARKS[style.marker]}" for u, v in self.place(x, y) if isfinite(u + v)
+        )
+        if path:
+            self._inside.append(f'<path d="{path}" class="point s-{style.colour}"/>')
 
     def band(self, x: Array, low: float, high: Array, colour: str, opacity: float) -> None:
         """The area between ``low`` and ``high``, in a gap of ``high`` interrupted."""
@@ -142,7 +158,7 @@ class Axes:
         if text and isfinite(u) and isfinite(v):
             aligned = f' text-anchor="{anchor}"' if anchor else ""
             self._around.append(
-                f'<text x="{u:.1f}" y="{v:.1f}" class="f-{colour}"{aligned}>{escape(text)}</text>'
+                f'<text x="{u:.1f}" y="{v:.1f}" class="f-{colour}"{aligned}>{drawn(text)}</text>'
             )
 
     def markup(self) -> str:
@@ -156,11 +172,15 @@ class Axes:
         )
 
 
-def drawing(width: float, height: float, label: str, *axes: Axes) -> Markup:
-    """A figure of ``width`` by ``height`` units; ``label`` describes it to a screen reader."""
+def drawing(width: float, height: float, label: str, *axes: Axes, data: str = "") -> Markup:
+    """A figure of ``width`` by ``height`` units; ``label`` describes it to a screen reader.
+
+    data : further attributes, escaped, for the script of the page.
+    """
     inner = "".join(one.markup() for one in axes)
     return Markup(
-        f'<svg class="figure" viewBox="0 0 {width:g} {height:g}" role="img" aria-label="{escape(label)}">'
+        f'<svg class="figure" viewBox="0 0 {width:g} {height:g}" role="img" '
+        f'aria-label="{escape(unicode(label))}"{f" {data}" if data else ""}>'
         f"{inner}</svg>"
     )
 

@@ -21,11 +21,13 @@ from scipy.interpolate import PchipInterpolator
 
 from verification.problem.arrays import Array
 from verification.report.figures.plot import Axes, polyline, power_of_ten, round_ticks
+from verification.report.tables.symbols import drawn, unicode
 
 LEFT, TOP, RIGHT, BOTTOM = 34.0, 12.0, 52.0, 32.0  # margins around the raster, in units of the drawing
 WIDTH = 250.0  # of the raster
 PIXELS = 200  # along x
 COLOURS = 96
+THINNEST = 0.14  # of the height of a picture: what a layer has at least, to be seen
 NO_NUMBER = (128, 128, 128)
 
 
@@ -55,12 +57,38 @@ class Frame:
     """The part of the plane that is drawn, lengths over a_h.
 
     half : it reaches from -half to half.  depth : from 0 to here.  interfaces : depths.  contact : radius.
+    A layer thinner than ``THINNEST`` of the depth is drawn that thick, the others that much thinner.
     """
 
     half: float
     depth: float
     interfaces: tuple[float, ...]
     contact: float
+
+    @property
+    def edges(self) -> list[float]:
+        """Depths of the surface, of each interface above the lower end, of the lower end."""
+        return [0.0, *(z for z in self.interfaces if z < self.depth), self.depth]
+
+    @property
+    def shares(self) -> list[float]:
+        """Where the edges are drawn, as a share of the height."""
+        parts = np.diff(self.edges) / self.depth
+        thin = parts < THINNEST
+        rest = 1 - THINNEST * thin.sum()
+        if not thin.any() or rest < THINNEST:
+            return [edge / self.depth for edge in self.edges]
+        parts = np.where(thin, THINNEST, parts * rest / max(parts[~thin].sum(), 1e-30))
+        return [0.0, *np.cumsum(parts)[:-1].tolist(), 1.0]
+
+    @property
+    def stretched(self) -> bool:
+        """Whether a layer is drawn thicker than it is."""
+        return bool(np.abs(np.array(self.shares) - np.array(self.edges) / self.depth).max() > 1e-9)
+
+    def place(self, z: float) -> float:
+        """Where the depth ``z`` is drawn, as a share of the height."""
+        return float(np.interp(z, self.edges, self.shares))
 
     @property
     def rows(self) -> int:
@@ -81,8 +109,9 @@ def rasterised(
     Linear along x, along z monotone cubics (``smooth``) or straight lines; never across an interface.
     """
     columns = frame.half * (2 * (np.arange(PIXELS) + 0.5) / PIXELS - 1)
-    rows = frame.depth * (np.arange(frame.rows) + 0.5) / frame.rows
-    owner = np.searchsorted(frame.interfaces, rows)
+    middles = (np.arange(frame.rows) + 0.5) / frame.rows
+    rows = np.interp(middles, frame.shares, frame.edges)
+    owner = np.searchsorted(frame.shares[1:-1], middles)
     out = np.full((frame.rows, PIXELS), np.nan)
     for k, (z, value) in enumerate(zip(depths, values, strict=True)):
         mine = owner == k
@@ -103,22 +132,36 @@ def draw_field(raster: Array, frame: Frame, scale: Scale, *, label: str, lines: 
     raster : as from ``rasterised``, NaN is drawn grey.   lines : draw level lines at the ticks of the scale.
     """
     width, height = LEFT + WIDTH + RIGHT, TOP + frame.height + BOTTOM
-    axes = Axes((LEFT, TOP, WIDTH, frame.height), (-frame.half, frame.half), (frame.depth, 0.0))
-    axes.ticks(round_ticks(-frame.half, frame.half, 5), round_ticks(0.0, frame.depth, 5), "x / a_h")
+    axes = Axes((LEFT, TOP, WIDTH, frame.height), (-frame.half, frame.half), (1.0, 0.0))
+    axes.ticks(round_ticks(-frame.half, frame.half, 5), _depths(frame), "x / a_h")
     axes.add(_image(_address(coloured(raster, scale), ragged=not lines), LEFT, WIDTH, frame))
     if lines:
         axes.add(_level_lines(raster, frame, scale))
     unit = WIDTH / (2 * frame.half)
-    across = "".join(f"M{LEFT} {TOP + d * unit:.1f}h{WIDTH:g}" for d in frame.interfaces if d < frame.depth)
+    across = "".join(f"M{LEFT} {TOP + at * frame.height:.1f}h{WIDTH:g}" for at in frame.shares[1:-1])
     axes.add(f'<path d="{across}" class="edge casing"/><path d="{across}" class="edge"/>')
     half, middle = min(frame.contact, frame.half) * unit, TOP + frame.height / 2
     return Markup(
         f'<svg class="figure field" viewBox="0 0 {width:.0f} {height:.1f}" role="img" '
-        f'aria-label="{escape(label)}">{axes.markup()}<path d="M{LEFT + WIDTH / 2 - half:.1f} {TOP - 3.5}'
-        f'h{2 * half:.1f}" class="s-cap" stroke-width="4"/><text x="10" y="{middle:.1f}" class="f-muted" '
-        f'text-anchor="middle" transform="rotate(-90 10 {middle:.1f})">z / a_h</text>'
+        f'aria-label="{escape(unicode(label))}">{axes.markup()}'
+        f'<path d="M{LEFT + WIDTH / 2 - half:.1f} {TOP - 3.5}h{2 * half:.1f}" class="s-cap" '
+        'stroke-width="4"/>'
+        f'<text x="10" y="{middle:.1f}" class="f-muted" '
+        f'text-anchor="middle" transform="rotate(-90 10 {middle:.1f})">{drawn("z / a_h")}</text>'
         f"{_bar(frame, scale)}</svg>"
     )
+
+
+def _depths(frame: Frame) -> list[tuple[float, str]]:
+    """Ticks along z: the edges of the layers, then round numbers that keep clear of them."""
+    apart = 11.0 / frame.height
+    found: list[tuple[float, str]] = []
+    wanted = [(z, f"{z:.2g}") for z in frame.edges[:-1]] + round_ticks(0.0, frame.depth, 5)
+    for z, text in wanted:
+        at = frame.place(z)
+        if all(abs(at - other) >= apart for other, _ in found):
+            found.append((at, text))
+    return found
 
 
 def _image(address: str, left: float, width: float, frame: Frame) -> str:
@@ -156,7 +199,7 @@ def _level_lines(raster: Array, frame: Frame, scale: Scale) -> str:
     rows, columns = raster.shape
     x = LEFT + WIDTH * (np.arange(columns) + 0.5) / columns
     z = TOP + frame.height * (np.arange(rows) + 0.5) / rows
-    bounds = [0, *(round(rows * d / frame.depth) for d in frame.interfaces if d < frame.depth), rows]
+    bounds = [round(rows * share) for share in frame.shares]
     path = []
     for low, high in itertools.pairwise(bounds):
         if high - low < 3 or not np.isfinite(raster[low:high]).all():
@@ -177,6 +220,6 @@ def _bar(frame: Frame, scale: Scale) -> str:
             at = TOP + (1 - share) * frame.height
             parts.append(
                 f'<path d="M{left + width} {at:.1f}h3" class="s-muted"/>'
-                f'<text x="{left + width + 5}" y="{at + 3.5:.1f}" class="f-ink">{text}</text>'
+                f'<text x="{left + width + 5}" y="{at + 3.5:.1f}" class="f-ink">{drawn(text)}</text>'
             )
     return "".join(parts)

@@ -2,11 +2,12 @@
 
 from math import isfinite, log, sqrt
 
-from markupsafe import Markup, escape
+from markupsafe import Markup
 
 from verification.problem.contact import BALL
 from verification.report.tables.lookup import contact_radius, layers, scale
 from verification.report.tables.numbers import engineering, plain
+from verification.report.tables.symbols import drawn
 from verification.running.result import CaseResult
 
 WIDTH, HEIGHT = 400, 250
@@ -41,8 +42,8 @@ def sketch(result: CaseResult) -> Markup:
         if height > 0:
             parts.append(_layer(top, height, _shade(E, moduli)))
         name = "substrate" if below else f"coating {number + 1}" if len(found) > 2 else "coating"
-        what = f"E {engineering(E, 'Pa', 3)}, nu {plain(nu, 3)}"
-        size = "" if below else f"h {engineering(thickness * a_h, 'm', 3)} = {plain(thickness, 3)} a_h"
+        what = f"E = {engineering(E, 'Pa', 3)}, nu = {plain(nu, 3)}"
+        size = "" if below else f"h = {engineering(thickness * a_h, 'm', 3)} = {plain(thickness, 3)} a_h"
         labels.append((min(top + min(height / 2, 24.0), HEIGHT - 6.0), name, what, size))
         top += height
     parts += [_contact(result, a_h, unit), *_labels(labels)]
@@ -74,7 +75,7 @@ def _ball(result: CaseResult) -> tuple[str, str]:
         return "rigid sphere, its", "radius not to scale"
     coats, (E, nu, _) = len(found) - 1, found[-1]
     coated = f", {coats} coating{'s' if coats > 1 else ''}" if coats else ""
-    return f"elastic ball{coated},", f"E {engineering(E, 'Pa', 3)}, nu {plain(nu, 3)}"
+    return f"elastic ball{coated},", f"E = {engineering(E, 'Pa', 3)}, nu = {plain(nu, 3)}"
 
 
 def _sphere(unit: float, ball: tuple[str, str]) -> str:
@@ -87,9 +88,9 @@ def _sphere(unit: float, ball: tuple[str, str]) -> str:
     return (
         f'<path d="M{left:.1f} 4V{at:.1f}A{radius:.1f} {radius:.1f} 0 0 0 {right:.1f} {at:.1f}V4" '
         f'class="sphere"/><path d="M{middle:.1f} 10v36m-5-9l5 9 5-9" class="s-ink arrow"/>'
-        f'<text x="{middle + 10:.1f}" y="30" class="f-ink">W</text>'
-        f'<text x="{BLOCK + 26}" y="22" class="f-muted small">{ball[0]}</text>'
-        f'<text x="{BLOCK + 26}" y="35" class="f-muted small">{ball[1]}</text>'
+        f'<text x="{middle + 10:.1f}" y="30" class="f-ink it">W</text>'
+        f'<text x="{BLOCK + 26}" y="22" class="f-muted small">{drawn(ball[0])}</text>'
+        f'<text x="{BLOCK + 26}" y="35" class="f-muted small">{drawn(ball[1])}</text>'
     )
 
 
@@ -100,7 +101,8 @@ def _contact(result: CaseResult, a_h: float, unit: float) -> str:
     half, middle = min(a / a_h * unit, BLOCK / 2), BLOCK / 2
     return (
         f'<path d="M{middle - half:.1f} {SURFACE}h{2 * half:.1f}" class="s-cap" stroke-width="3.5"/>'
-        f'<text x="{middle:.1f}" y="{SURFACE - 6}" class="f-ink small" text-anchor="middle">2a</text>'
+        f'<text x="{middle:.1f}" y="{SURFACE - 6}" class="f-ink small" text-anchor="middle">'
+        '2<tspan class="it">a</tspan></text>'
     )
 
 
@@ -115,7 +117,7 @@ def _labels(labels: list[tuple[float, str, str, str]]) -> list[str]:
         at = max(min(depth - 12, latest), at, 42.0)
         lines = [
             f'<tspan x="{BLOCK + 26}" dy="{0 if i == 0 else 13}" class="{"strong" if i == 0 else ""}">'
-            f"{escape(line)}</tspan>"
+            f"{drawn(line)}</tspan>"
             for i, line in enumerate((name, what, size))
             if line
         ]

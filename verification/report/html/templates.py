@@ -10,6 +10,7 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 
 from verification.report.tables.cells import Section
+from verification.report.tables.symbols import typeset, unicode
 
 HTML = Path(__file__).parent
 
@@ -17,13 +18,15 @@ HTML = Path(__file__).parent
 @cache
 def _environment() -> Environment:
     """One for all pages, so that each template is compiled once."""
-    return Environment(
+    made = Environment(
         loader=FileSystemLoader(HTML),
         autoescape=True,
         undefined=StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,
     )
+    made.filters |= {"symbols": typeset, "unicode": unicode}
+    return made
 
 
 def rendered(template: str, **content: object) -> str:

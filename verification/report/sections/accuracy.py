@@ -9,8 +9,8 @@ import numpy as np
 from verification.judging.verdict import Claim
 from verification.problem.quantity import PEAKS, QUANTITIES, SCALARS, SLOPES
 from verification.report.material import Material
-from verification.report.tables.cells import Cell, Part, Section, Table, number, row, tally
-from verification.report.tables.labels import source_label
+from verification.report.tables.cells import Cell, Part, Section, Table, case_cell, number, row, tally, words
+from verification.report.tables.labels import source_label, symbol_of
 from verification.report.tables.lookup import (
     GROUPS,
     difference,
@@ -19,7 +19,6 @@ from verification.report.tables.lookup import (
     reference_source,
     sources_with_profiles,
 )
-from verification.report.tables.matrix import case_cell
 from verification.report.tables.numbers import factor, plain, scientific
 from verification.running.result import CaseResult
 from verification.sources.registry import METHODS, REFERENCES
@@ -62,7 +61,7 @@ def section(material: Material) -> Section | None:
     """How often the stated uncertainty covers the true error, then the errors of each method."""
     results = material.contacts
     parts = [
-        Part("", [overview])
+        Part("", [overview], folded=f"Errors of {source_label(source)}, case by case")
         for source in METHODS
         if (overview := accuracy_overview(results, material.anchors, source))
     ]
@@ -107,36 +106,6 @@ def _accuracy(result: CaseResult, claim: Claim, source: str, exact: str) -> Accu
     return Accuracy(source, claim.quantity, claim.line, float(error[worst]), estimate, smallest)
 
 
-def accuracy_table(result: CaseResult) -> Table:
-    """True error beside own estimate for each quantity of one case; None without an exact reference."""
-    found = accuracies(result)
-    sources = [s for s in METHODS if any(item.source == s for item in found)]
-    places = list(dict.fromkeys((item.quantity, item.line) for item in found))
-    rows = []
-    for quantity, line in places:
-        cells = [Cell(line)]
-        for source in sources:
-            match = [i for i in found if (i.source, i.quantity, i.line) == (source, quantity, line)]
-            cells += _three_cells(match[0]) if match else [Cell("–")] * 3
-        rows.append(row(quantity, *cells))
-    return Table(
-        "Largest error against the exact reference, the uncertainty stated at that point, and the smallest "
-        "ratio of stated to true over all judged points: the error is covered everywhere at 1 or more.",
-        ["quantity", "line", *["error", "stated", "ratio"] * len(sources)],
-        rows,
-        [("", 2), *((source_label(source), 3) for source in sources)],
-    )
-
-
-def _three_cells(item: Accuracy) -> list[Cell]:
-    ratio = "not stated" if item.ratio is None else plain(item.ratio, 2) if item.ratio < 1e4 else "> 1e4"
-    return [
-        number(item.error),
-        number(item.estimate),
-        Cell(ratio, item.ratio if item.ratio is not None else -1.0, f"flag {item.css}"),
-    ]
-
-
 def accuracy_overview(results: Sequence[CaseResult], anchors: Mapping[CaseResult, str], source: str) -> Table:
     """The errors of one method over all cases, the worst quantity of each group; None where there is none."""
     columns = [*SCALARS, *SLOPES, *PEAKS, *GROUPS[1:]]
@@ -148,11 +117,11 @@ def accuracy_overview(results: Sequence[CaseResult], anchors: Mapping[CaseResult
         cells = [
             _overview_cell([i for i in found if name in (i.quantity, group_of(i.line))]) for name in columns
         ]
-        rows.append(row(case_cell(result, f"#{anchors[result]}-accuracy"), *cells))
+        rows.append(row(case_cell(result, f"#{anchors[result]}-comparisons"), *cells))
     return Table(
         f"Error of {source_label(source)} against the exact reference, then the uncertainty it states for "
         "the same point. Marked where the estimate is below the error (▼) or below half of it (▼▼).",
-        ["case", *(name.replace("_", " ") for name in columns)],
+        ["case", *(QUANTITIES[name].symbol if name in QUANTITIES else name for name in columns)],
         rows,
         css="overview",
     )
@@ -164,9 +133,9 @@ def _overview_cell(found: Sequence[Accuracy]) -> Cell:
     worst = max(found, key=lambda item: item.error)
     weakest = min(found, key=lambda item: -1.0 if item.ratio is None else item.ratio)
     mark = {"agrees": "", "inconclusive": " ▼", "disagrees": " ▼▼"}[weakest.css]
-    note = f"largest error: {worst.quantity} on {worst.line}"
+    note = f"largest error: {symbol_of(worst.quantity)} on {worst.line}"
     if weakest.ratio is not None:
-        note += f"; smallest ratio {plain(weakest.ratio, 2)}: {weakest.quantity} on {weakest.line}"
+        note += f"; smallest ratio {plain(weakest.ratio, 2)}: {symbol_of(weakest.quantity)} on {weakest.line}"
     text = f"{scientific(worst.error)} | {scientific(worst.estimate)}{mark}"
     return Cell(text, worst.error, f"flag {weakest.css}", note)
 
@@ -197,7 +166,7 @@ def coverage_table(results: Sequence[CaseResult]) -> Table:
                         f"{100 * share:.1f} %", share, f"flag {'agrees' if share >= COVERED else 'disagrees'}"
                     ),
                     number(1 / worst.ratio, partial(plain, digits=2)) if worst.ratio else "not stated",
-                    f"{worst.quantity.replace('_', ' ')} on {worst.line}, {case.title}",
+                    words(f"{symbol_of(worst.quantity)} on {worst.line}, {case.title}"),
                     number(float(np.median(stated)) if stated else None, partial(factor, better=1.0)),
                     number(max(item.error for _, item in found)),
                 )

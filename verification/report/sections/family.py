@@ -5,13 +5,13 @@ for each E1/E2 at one thickness, without friction or with one coefficient.
 """
 
 from collections.abc import Sequence
-from dataclasses import replace
 from itertools import zip_longest
 from typing import NamedTuple
 
 import numpy as np
 from markupsafe import Markup
 
+from verification.problem.arrays import Array
 from verification.problem.quantity import QUANTITIES, SCALARS
 from verification.report.figures.panels import swatch
 from verification.report.figures.plot import HUGE, Axes, drawing, round_ticks
@@ -22,10 +22,14 @@ from verification.report.tables.labels import source_label, source_style
 from verification.report.tables.lookup import coordinate, layers, scalar, scale, sources_with_profiles
 from verification.report.tables.numbers import plain
 from verification.running.result import CaseResult
+from verification.sources.record import Style
 from verification.sources.registry import CLOSED
 
 WIDTH, HEIGHT = 320, 260
 BOX = (48.0, 6.5, 265.6, 215.8)  # left, top, width, height
+MARKED = 7  # points of a curve that are marked
+LABEL = np.array([9.0, -7.0])  # from a point to the middle of the text beside it, in units of the drawing
+DASHED = ((), (6.0, 2.0), (3.0, 2.0), (1.0, 1.6), (6.0, 2.0, 1.0, 2.0))
 SMALLEST = 3  # fewer than this many moduli are no family
 PANELS = (
     ("pressure", "surface"),
@@ -103,10 +107,16 @@ def _gallery(members: Sequence[Member]) -> Gallery:
         if (figure := _draw(members, quantity, line))
     ]
     sources = dict.fromkeys(s for m in members for s in sources_with_profiles(m.result))
-    legend = [(swatch(source_style(source)), source_label(source)) for source in sources]
+    broad = [s for s in sources if source_style(s).width > 3] or list(sources)[:1]
+    legend = [
+        (swatch(Style("ink"), marked=False), source_label(s))
+        if s in broad
+        else (swatch(source_style(s), marked=True), source_label(s))
+        for s in sources
+    ]
     caption = (
-        "E1/E2 beside each curve; the sources overlie each other, their differences are in the sections of "
-        "the cases."
+        "Lines: the best reference, E1/E2 beside each; marks: the methods, which lie on the lines. Their "
+        "differences are on the pages of the cases."
     )
     return Gallery(legend, panels, caption, _curves_csv(members, shown))
 
@@ -152,34 +162,61 @@ def _numbers(members: Sequence[Member]) -> Table:
 
 
 def _draw(members: Sequence[Member], quantity: str, line: str) -> Markup:
-    """Every curve of ``quantity`` on ``line``, at its largest magnitude its E1/E2."""
-    alone = len({p.source for m in members for p in m.result.profiles}) == 1
-    curves, texts = [], []
-    for member in members:
+    """The reference curve of every member, its E1/E2 beside it, with marks of the other sources."""
+    curves: list[tuple[Array, Array, Style, bool]] = []
+    texts: list[tuple[Array, Array, str]] = []
+    for n, member in enumerate(members):
         a_h, p_h = scale(member.result, "a_h"), scale(member.result, "p_h")
         found = [p for p in member.result.profiles if (p.quantity, p.line) == (quantity, line)]
         for profile in sorted(found, key=lambda p: -source_style(p.source).width):
-            style = source_style(profile.source)
-            if alone:
-                # The broad pale line of the exact curve lies below others; alone it is an ordinary line.
-                style = replace(style, width=1.6, opacity=1.0)
             x, y = profile.position / a_h, profile.value / p_h
-            curves.append((x, np.where(np.abs(y) < HUGE, y, np.nan), style))
-        if found and np.isfinite(curves[-1][1]).any():
-            x, y, _ = curves[-1]
-            at = int(np.nanargmax(np.abs(y)))
-            texts.append((x[at], y[at], plain(member.ratio, 3)))
-    values = np.concatenate([y[np.isfinite(y)] for _, y, _ in curves] or [np.zeros(0)])
-    places = np.concatenate([x[np.abs(x) < HUGE] for x, _, _ in curves] or [np.zeros(0)])
+            y = np.where(np.abs(y) < HUGE, y, np.nan)
+            base = profile.source == max(found, key=lambda p: source_style(p.source).width).source
+            style = Style("ink", DASHED[n % len(DASHED)], 1.3) if base else source_style(profile.source)
+            curves.append((x, y, style, base))
+            if base:
+                texts.append((x, y, plain(member.ratio, 3)))
+    values = np.concatenate([y[np.isfinite(y)] for _, y, _, _ in curves] or [np.zeros(0)])
+    places = np.concatenate([x[np.abs(x) < HUGE] for x, _, _, _ in curves] or [np.zeros(0)])
     (low, high), span = _ends(values, (-1.0, 1.0)), _ends(places, (0.0, 1.0))
     margin = 0.09 * (high - low)
     axes = Axes(BOX, span, (low - margin, high + margin))
     axes.ticks(round_ticks(*span, 6), round_ticks(low, high, 6), f"{coordinate(line)} / a_h")
-    for x, y, style in curves:
-        axes.line(x, y, style)
-    for x, y, text in texts:
-        axes.text(x, y, text)
+    for x, y, style, base in curves:
+        if base:
+            axes.line(x, y, style)
+        else:
+            offset = 0.25 if style.marker == "o" else 0.75
+            at = np.unique(np.abs(x[:, None] - _spread(x, offset)).argmin(axis=0))
+            axes.marks(x[at], y[at], style)
+    for (u, v), text in zip(_clear(axes, texts), texts, strict=True):
+        axes.text(u, v, text[2])
     return drawing(WIDTH, HEIGHT, f"{quantity} on {line} for every E1/E2", axes)
+
+
+def _spread(x: Array, offset: float) -> Array:
+    """Evenly spaced places of marks over the extent of ``x``."""
+    return np.nanmin(x) + (np.arange(MARKED) + offset) / MARKED * np.ptp(x)
+
+
+def _clear(axes: Axes, curves: Sequence[tuple[Array, Array, str]]) -> list[tuple[float, float]]:
+    """A point of each curve for its label, far from the other curves and from the labels before."""
+    drawn = [axes.place(x, y) for x, y, _ in curves]
+    written = np.full((1, 2), 1e4)
+    found = []
+    for n, points in enumerate(drawn):
+        if not len(points):
+            found.append((np.nan, np.nan))
+            continue
+        middles = points + LABEL
+        others = np.concatenate([written, *(some for m, some in enumerate(drawn) if m != n)])
+        gaps = np.abs(middles[:, None, :] - others[None]) / np.array([1.6, 1.0])  # a text is wider than high
+        room = np.nan_to_num(np.hypot(gaps[..., 0], gaps[..., 1]), nan=np.inf).min(axis=1)
+        usable = np.isfinite(points).all(axis=1) & (points[:, 0] < BOX[0] + BOX[2] - 24)
+        best = int(np.argmax(np.where(usable, room, -1.0)))
+        written = np.concatenate([written, middles[best : best + 1]])
+        found.append((float(curves[n][0][best]), float(curves[n][1][best])))
+    return found
 
 
 def _ends(values: np.ndarray, otherwise: tuple[float, float]) -> tuple[float, float]:

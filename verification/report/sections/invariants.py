@@ -3,14 +3,12 @@
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from functools import partial
 
 from verification.judging.invariants import Invariant
 from verification.judging.verdict import Outcome
 from verification.report.material import Material
 from verification.report.tables.cells import Cell, Part, Section, Table, number, row, tally
 from verification.report.tables.labels import OUTCOMES, row_css, source_label
-from verification.report.tables.matrix import outcome_cell
 from verification.report.tables.numbers import plain, scientific
 from verification.running.result import CaseResult
 
@@ -18,44 +16,34 @@ _NUMBERED = re.compile(r", (?:coating|interface|layer) \d+$|, substrate$")
 
 
 def invariant_table(found: Sequence[Invariant]) -> Table | None:
-    """The invariants of a case, or some of them, the worst first; None where there are none."""
+    """The invariants of a case, or some of them, a row each; None where there are none."""
     if not found:
         return None
-    rows = [
-        row(
-            outcome_cell(one.outcome),
-            one.name,
-            source_label(one.source),
-            Cell(one.message, css="reason"),
-            number(one.value),
-            number(one.bound),
-            number(one.margin, partial(scientific, sign=True)),
-            number(one.share, _percent),
-            css=row_css(one.outcome),
-        )
-        for one in sorted(found, key=_badness)
-    ]
+    sources = list(dict.fromkeys(one.source for one in found))
+    rows = []
+    for name in dict.fromkeys(one.name for one in sorted(found, key=_badness)):
+        mine = {one.source: one for one in found if one.name == name}
+        first = min(mine.values(), key=_badness)
+        cells = [_share_cell(mine.get(source)) for source in sources]
+        rows.append(row(name, Cell(first.message, css="reason"), *cells, css=row_css(first.outcome)))
     return Table(
-        "Conditions that a solution satisfies by itself. Residual and bound at the point where the "
-        "residual takes the largest share of its bound; the bound follows from the uncertainty stated there, "
-        "the error of the differences or quadrature, and rounding.",
-        ["verdict", "invariant", "source", "condition", "residual", "bound", "margin", "share"],
+        "Conditions that a solution satisfies by itself. The residual as a share of its bound, which follows "
+        "from the uncertainty stated there, the error of the differences or quadrature, and rounding: beyond "
+        "100 % the invariant is violated. The condition is that of the source closest to its bound.",
+        ["invariant", "condition", *(source_label(source) for source in sources)],
         rows,
         css="verdicts",
     )
 
 
-def invariant_cell(result: CaseResult, href: str) -> Cell:
-    """The invariants of a case in one cell of the verdict matrix: the worst outcome, how many hold."""
-    found = result.invariants
-    if not found:
-        return Cell("", None, "nothing", "no invariant was evaluated")
-    worst = min(found, key=_badness)
-    style = OUTCOMES[worst.outcome]
-    held = sum(one.outcome is Outcome.AGREES for one in found)
-    note = f"{held} of {len(found)} hold; {worst.name} of {source_label(worst.source)}: {worst.message}"
-    text = f"{style.letter} {held}" if held == len(found) else f"{style.letter} {held}/{len(found)}"
-    return Cell(text, held / len(found), f"verdict {style.css}", note, href)
+def _share_cell(one: Invariant | None) -> Cell:
+    if one is None:
+        return Cell("")
+    if one.outcome is Outcome.AGREES:
+        return number(one.share, _percent)
+    style = OUTCOMES[one.outcome]
+    note = f"residual {scientific(one.value)}, bound {scientific(one.bound)}"
+    return Cell(f"{style.mark} {_percent(one.share)}", one.share, f"verdict {style.css}", note)
 
 
 def section(material: Material) -> Section | None:

@@ -10,9 +10,8 @@ from verification.cases.columns import RECOMPUTED
 from verification.problem.profile import Profile
 from verification.problem.quantity import QUANTITIES
 from verification.report.material import Material
-from verification.report.tables.cells import Cell, Part, Section, Table, number, row, tally
+from verification.report.tables.cells import Cell, Part, Section, Table, number, outcome_cell, row, tally
 from verification.report.tables.labels import row_css, source_label
-from verification.report.tables.matrix import outcome_cell
 from verification.report.tables.numbers import plain, scientific
 from verification.running.result import CaseResult
 from verification.sources.registry import EXACT, METHODS, PUBLISHED, REFERENCES

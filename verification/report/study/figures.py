@@ -319,7 +319,7 @@ def _use(choice: Choice, units: Units) -> Drawn:
         if scattered:
             chances = choice.chances(choice.h[some])
             axes = panels[1]
-            axes.stackplot(h, *chances.governs, colors=[_pale(c) for c in colours], linewidth=0)
+            axes.stackplot(h, *chances.governs, colors=[pale(c) for c in colours], linewidth=0)
             axes.plot(h, chances.fails, color="black", label="coating fails")
             axes.set_ylim(0, 1)
             axes.set_ylabel("probability")
@@ -355,7 +355,7 @@ def governing_figure(choices: Sequence[Choice], units: Units) -> list[Drawn]:
     h, governing, largest = over * size, use.argmax(axis=0), use.max(axis=0)
     with sheet(78, len(modes), right=4) as figure:
         axes = figure.subplots(1, 1)
-        colours = ListedColormap([_pale(COLOURS[list(MODES).index(mode)]) for mode in modes])
+        colours = ListedColormap([pale(COLOURS[list(MODES).index(mode)]) for mode in modes])
         axes.pcolormesh(
             h, ratio, governing, cmap=colours, vmin=-0.5, vmax=len(modes) - 0.5, shading="nearest",
             rasterized=True
@@ -372,7 +372,7 @@ def governing_figure(choices: Sequence[Choice], units: Units) -> list[Drawn]:
         axes.yaxis.set_major_formatter(lambda y, _: f"{y:.3g}")
         axes.set_ylabel("$E_1/E_2$")
         thickness_axes([axes], size, units)
-        handles = [Patch(color=_pale(COLOURS[list(MODES).index(m)]), label=f"{m}: {MODES[m]}") for m in modes]
+        handles = [Patch(color=pale(COLOURS[list(MODES).index(m)]), label=f"{m}: {MODES[m]}") for m in modes]
         below(figure, handles, 1)
         rows = [["E1/E2", "h / a_h", f"h [{units.length}]", "largest use", "governing"]]
         rows += [
@@ -402,7 +402,8 @@ def _places(lines: QuadContourSet, h: Array, ratio: Array) -> list[tuple[float, 
     return found
 
 
-def _pale(colour: str) -> tuple[float, float, float]:
+def pale(colour: str) -> tuple[float, float, float]:
+    """A ``colour`` for areas: nearer to white."""
     r, g, b = mpl.colors.to_rgb(colour)
     return (0.45 * r + 0.55, 0.45 * g + 0.55, 0.45 * b + 0.55)
 

@@ -107,10 +107,10 @@ def write_study_report(
     said = answers(choices, units)
     sections = [
         _preference(study, choices, said),
-        _inputs(study),
-        *(_drawn_section(*group) for group in groups if group[2]),
+        inputs_section(study),
+        *(drawn_section(*group) for group in groups if group[2]),
         _summary(found, checks),
-        *_checks(checks, tension_checks(columns)),
+        *check_sections(checks, tension_checks(columns)),
         Section("extremes", "Extremes of every curve", [_extremes(found, units)]),
         *_failed(every, failures),
     ]
@@ -130,7 +130,7 @@ def write_study_report(
     return Written(page, tuple(said))
 
 
-def _inputs(study: Study) -> Section:
+def inputs_section(study: Study) -> Section:
     """Every input and assumption in one table."""
     units, bare = study.units, study.bare
     E_ball = "rigid" if study.ball is None else _solid(*study.ball[:2])
@@ -181,7 +181,8 @@ def _inputs(study: Study) -> Section:
     return Section("inputs", "Inputs and assumptions", [Part("", [Table("", ["", ""], rows)])])
 
 
-def _load(study: Study) -> str:
+def load_text(study: Study) -> str:
+    """The load of a study, or its range."""
     return f"{study.load:g} N" if study.loads is None else f"{study.loads[0]:g} to {study.loads[1]:g} N"
 
 
@@ -326,7 +327,8 @@ def _near_cells(judgement: Judged, h: float, mode: str, units: Units) -> list[Ce
     ]
 
 
-def _drawn_section(anchor: str, title: str, drawings: Sequence[Drawn]) -> Section:
+def drawn_section(anchor: str, title: str, drawings: Sequence[Drawn]) -> Section:
+    """The figures of one kind, with what is common to them."""
     panels = [
         Panel(
             d.title,
@@ -367,7 +369,8 @@ def _maps(study: Study, found: Sequence[Curve], failures: list[str]) -> list[Dra
     return drawings
 
 
-def _checks(checks: Sequence[Difference], tensions: Sequence[TensionCheck]) -> list[Section]:
+def check_sections(checks: Sequence[Difference], tensions: Sequence[TensionCheck]) -> list[Section]:
+    """The largest differences of the other sources; no section where nothing was checked."""
     if not checks:
         return []
     rows = [

@@ -1,20 +1,19 @@
 """The tables of one case: contact, verdicts, uncertainty budget, run times."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from functools import partial
 from math import isfinite
 from typing import Any
 
 import numpy as np
 
-from verification.judging.verdict import Claim, Verdict
-from verification.problem.contact import FLAT
-from verification.problem.quantity import QUANTITIES, SCALARS, unit_of
-from verification.report.tables.cells import Cell, Table, number, row
-from verification.report.tables.labels import OUTCOMES, pair_label, row_css, source_label
-from verification.report.tables.lookup import coordinate, divisor, layers, reference_source, scalar, scale
-from verification.report.tables.matrix import outcome_cell
-from verification.report.tables.numbers import engineering, plain, scientific, with_uncertainty
+from verification.judging.verdict import Claim, Outcome, Verdict
+from verification.problem.contact import BALL, FLAT
+from verification.problem.quantity import BALL_PEAKS, PEAKS, QUANTITIES, SCALARS, SLOPES, unit_of
+from verification.report.tables.cells import Cell, Table, number, outcome_cell, row
+from verification.report.tables.labels import OUTCOMES, pair_label, row_css, source_label, symbol_of
+from verification.report.tables.lookup import coordinate, layers, scalar, scale
+from verification.report.tables.numbers import aligned, engineering, plain, scientific
 from verification.running.result import CaseResult
 
 _FACTS = {
@@ -23,11 +22,11 @@ _FACTS = {
     "radius": ("sphere radius R", "m"),
     "load": ("load W", "N"),
     "friction": ("friction f", ""),
-    "a_h": ("a_h, Hertz contact radius", "m"),
-    "p_h": ("p_h, Hertz peak pressure", "Pa"),
-    "delta_h": ("delta_h, Hertz approach", "m"),
-    "dundurs_beta": ("Dundurs' beta of the surfaces", ""),
-    "S_h": ("S_h, Hertz stiffness dW/d delta", "N/m"),
+    "a_h": ("Hertz contact radius a_h", "m"),
+    "p_h": ("Hertz peak pressure p_h", "Pa"),
+    "delta_h": ("Hertz approach delta_h", "m"),
+    "dundurs_beta": ("Dundurs' β of the surfaces", ""),
+    "S_h": ("Hertz stiffness S_h", "N/m"),
 }
 
 
@@ -68,93 +67,108 @@ def layer_table(result: CaseResult, body: str = FLAT) -> Table:
     return Table(caption, ["layer", "E", "E / E_s", "nu", "h", f"h / {length}"], rows)
 
 
-def contact_table(result: CaseResult, quantities: Sequence[str] = SCALARS) -> Table:
-    """``quantities``, one number each, of every source with uncertainty and difference."""
-    base = reference_source(result)
-    against = f"vs {source_label(base)}" if base else "difference"
+def contact_tables(result: CaseResult) -> list[Table]:
+    """The numbers of the contact, then of an elastic ball those of its own surface."""
+    ball = [_contact_table(result, BALL_PEAKS, "The surface of the ball.")] if layers(result, BALL) else []
+    text = (
+        "In parentheses the uncertainty of the last digits. Below, |A − B| of each pair of sources, its U, "
+        "over the value; of the largest tension over the smaller of p_h and p0, of its place over a."
+    )
+    return [table for table in (_contact_table(result, SCALARS + SLOPES + PEAKS, text), *ball) if table]
+
+
+def _contact_table(result: CaseResult, quantities: Sequence[str], caption: str) -> Table:
+    """Numbers of a contact, a column each: by every source, then the differences."""
+    names = [q for q in quantities if any(scalar(result, q, s.source) for s in result.sources)]
+    heads, columns = [], []
+    for quantity in names:
+        found = [scalar(result, quantity, source.source) for source in result.sources]
+        unit, texts = aligned(found, unit_of(quantity))
+        heads.append(f"{QUANTITIES[quantity].symbol} [{unit}]" if unit else QUANTITIES[quantity].symbol)
+        columns.append(
+            [
+                Cell("no result", css="no-result") if pair is None else Cell(text, float(pair[0]))
+                for text, pair in zip(texts, found, strict=True)
+            ]
+        )
+    rows = [
+        row(
+            source_label(source.source),
+            *(column[n] for column in columns),
+            css="" if source.failure is None else "failed",
+        )
+        for n, source in enumerate(result.sources)
+    ]
+    verdicts = {(c.quantity, c.between): v for c, v in result.verdicts if c.line == "contact"}
+    for pair in dict.fromkeys(between for _, between in verdicts):
+        judged = [verdicts.get((quantity, pair)) for quantity in names]
+        gaps = [Cell("–") if v is None else _judged_cell(v, v.difference) for v in judged]
+        bounds = [Cell("–") if v is None else number(v.uncertainty) for v in judged]
+        rows.append(row(pair_label(pair), *gaps, css="gap"))
+        rows.append(row("U of both", *bounds, css="bound"))
+    return Table(caption, ["source", *heads], rows if names else [], css="numbers")
+
+
+def _judged_cell(verdict: Verdict, value: float | None) -> Cell:
+    """A difference; with the mark and the colour of its verdict where it does not agree."""
+    style = OUTCOMES[verdict.outcome]
+    if verdict.outcome is Outcome.AGREES:
+        return number(value)
+    return Cell(f"{style.mark} {scientific(value)}", value, f"verdict {style.css}", verdict.reason)
+
+
+def comparison_table(result: CaseResult) -> Table:
+    """Largest difference and largest U of every pair of sources, a row for each quantity on each line."""
+    verdicts = {(c.quantity, c.line, c.between): (c, v) for c, v in result.verdicts}
+    pairs = list(dict.fromkeys(between for _, _, between in verdicts))
     rows = []
-    for source in result.sources:
-        cells: list[Cell] = []
-        for quantity in quantities:
-            cells += _scalar_cells(result, quantity, source.source, base)
-        css = "" if source.failure is None else "failed"
-        rows.append(row(source_label(source.source), *cells, css=css))
-    columns = ["source"]
-    groups = [("", 1)]
-    for quantity in quantities:
-        columns += [QUANTITIES[quantity].symbol, f"/ {QUANTITIES[quantity].scale}", against]
-        groups.append((quantity.replace("_", " "), 3))
+    for quantity, line in dict.fromkeys((quantity, line) for quantity, line, _ in verdicts):
+        found = [verdicts.get((quantity, line, pair)) for pair in pairs]
+        cap = next((claim.cap for claim, _ in filter(None, found)), None)
+        cells = [Cell(line), number(cap, partial(scientific, digits=1))]
+        for one in found:
+            if one is None:
+                cells += [Cell(""), Cell("")]
+            else:
+                verdict = one[1]
+                cells += [_judged_cell(verdict, verdict.difference), number(verdict.uncertainty)]
+        rows.append(row(symbol_of(quantity), *cells))
     return Table(
-        "Numbers of the contact with the numerical uncertainty each source states (±), made dimensionless "
-        "with the Hertz scales of the bare substrate, of both bodies where the ball is elastic, and the "
-        "difference over the value, of the largest tension over the smaller of p_h and p0, of "
-        "its place over a.",
-        columns,
+        "Largest |A − B| and largest U = U_A + U_B over the judged points, over the scale of the comparison: "
+        "the value (p0, a, approach, dW/d delta), a (places), the smaller of delta_h and approach "
+        "(displacements) or of p_h and p0.",
+        ["quantity", "line", "cap on U", *["|A − B|", "U"] * len(pairs)],
         rows,
-        groups,
+        [("", 3), *((pair_label(pair), 2) for pair in pairs)],
+        "comparisons",
     )
 
 
-def _scalar_cells(result: CaseResult, quantity: str, source: str, base: str | None) -> list[Cell]:
-    found = scalar(result, quantity, source)
-    if found is None:
-        return [Cell("no result", css="no-result"), Cell("–"), Cell("–")]
-    value, uncertainty = found
-    note = "" if uncertainty else "uncertainty not stated" if uncertainty is None else "exact"
-    shown = Cell(with_uncertainty(value, uncertainty, unit_of(quantity)), value, note=note)
-    relative = value / scale(result, QUANTITIES[quantity].scale)
-    ratio = Cell(f"{relative:.6f}", relative)
-    reference = scalar(result, quantity, base) if base else None
-    reach = divisor(result, quantity, reference[0]) if reference else None
-    if reference is None or source == base or not reach:
-        return [shown, ratio, Cell("–")]
-    gap = (value - reference[0]) / reach
-    return [shown, ratio, Cell(scientific(gap, sign=True), abs(gap))]
-
-
-def verdict_table(
-    verdicts: Sequence[tuple[Claim, Verdict]],
-    a_h: float,
-    most: int | None = None,
-    parameter: Callable[[Claim, Verdict], str] | None = None,
-) -> Table:
-    """The comparisons, the worst first; ``most`` keeps as many of them.
-
-    parameter : gives what dominates the uncertainty of a comparison; no such column without.
-    """
+def failing_table(result: CaseResult, a_h: float, most: int) -> Table:
+    """The comparisons that do not agree, the worst first; ``most`` of them."""
+    bad = [item for item in result.verdicts if item[1].outcome is not Outcome.AGREES]
     rows = []
-    for claim, verdict in sorted(verdicts, key=lambda item: _badness(item[1]))[:most]:
+    for claim, verdict in sorted(bad, key=lambda item: _badness(item[1]))[:most]:
         where = ""
         if verdict.worst is not None and claim.line != "contact" and a_h:
             where = f"{coordinate(claim.line)} = {plain(verdict.worst / a_h, 3)} a_h"
         rows.append(
             row(
                 outcome_cell(verdict.outcome),
-                Cell(claim.quantity, note=claim.why),
+                Cell(symbol_of(claim.quantity), note=claim.why),
                 claim.line,
                 pair_label(claim.between),
                 number(verdict.difference),
                 number(verdict.uncertainty),
                 number(claim.cap),
-                number(verdict.margin, partial(scientific, sign=True)),
-                *([parameter(claim, verdict)] if parameter is not None else []),
                 Cell(where, verdict.worst),
                 Cell(verdict.reason, css="reason"),
                 css=row_css(verdict.outcome),
             )
         )
-    columns = ["verdict", "quantity", "line", "between", "max |A − B|", "max U", "cap", "margin"]
-    columns += ["largest part of U"] if parameter is not None else []
-    part = "the source and the numerical parameter with the largest part of U; " if parameter else ""
-    return Table(
-        "Largest difference and largest uncertainty U = U_A + U_B over the judged points, the cap on U, the "
-        "smallest margin U − |A − B|, all as fractions of the value (p0, a, approach, dW/d delta), of a "
-        "(places), of the smaller of delta_h and approach (displacements) or of the smaller of p_h and p0; "
-        f"{part}the deciding point.",
-        [*columns, "at", "reason"],
-        rows,
-        css="verdicts",
-    )
+    columns = ["verdict", "quantity", "line", "between", "max |A − B|", "max U", "cap", "at", "reason"]
+    more = f" The worst {most} of {len(bad)}." if len(bad) > most else ""
+    return Table(f"Comparisons that do not agree.{more}", columns, rows, css="verdicts")
 
 
 def _badness(verdict: Verdict) -> tuple[int, float]:

@@ -6,8 +6,11 @@ from typing import Any
 
 from markupsafe import Markup
 
+from verification.judging.verdict import Outcome
 from verification.report.tables.csv import embedded, written
+from verification.report.tables.labels import OUTCOMES
 from verification.report.tables.numbers import scientific
+from verification.running.result import CaseResult
 
 
 @dataclass(frozen=True)
@@ -32,6 +35,17 @@ def number(value: float | None, show: Callable[[Any], str] = scientific, css: st
 def words(text: str) -> Cell:
     """A cell of running text, which may wrap."""
     return Cell(text, css="words")
+
+
+def outcome_cell(outcome: Outcome, href: str = "") -> Cell:
+    """A verdict as mark, word and colour; it sorts by how bad it is."""
+    style = OUTCOMES[outcome]
+    return Cell(f"{style.mark} {style.word}", float(style.rank), f"verdict {style.css}", "", href)
+
+
+def case_cell(result: CaseResult, href: str) -> Cell:
+    """The title of a case as the head of a row, with its name for a pointer."""
+    return Cell(result.title, note=f"{result.title} ({result.name})", href=href)
 
 
 def tally(good: int, total: int, css: str = "") -> Cell:
@@ -106,6 +120,10 @@ class Part:
     gallery: Gallery | None = None
     title: str = ""
     folded: str = ""
+
+    def __bool__(self) -> bool:
+        """False where there is nothing to show."""
+        return bool(self.text or self.title or self.gallery or any(self.tables))
 
     @property
     def download(self) -> str:

@@ -7,10 +7,14 @@ from collections.abc import Sequence
 from io import StringIO
 from itertools import zip_longest
 
+import numpy as np
+
 from verification.problem.profile import Profile
 from verification.problem.quantity import unit_of
 from verification.report.tables.lookup import coordinate
 from verification.running.result import CaseResult
+
+MOST_DIGITS = 12
 
 
 def line_csv(result: CaseResult, line: str) -> str:
@@ -33,9 +37,9 @@ def line_csv(result: CaseResult, line: str) -> str:
             columns.append([f"{coordinate(line)} [m]", *(f"{x:.9g}" for x in group[0].position.tolist())])
         for profile in group:
             head = f"{profile.quantity} [{unit_of(profile.quantity)}] {profile.source}"
-            columns.append([_safe(head), *(f"{v:.8g}" for v in profile.value.tolist())])
+            columns.append([_safe(head), *_cut(profile)])
             if profile.uncertainty is not None:
-                uncertainty = [f"{v:.3g}" for v in profile.uncertainty.tolist()]
+                uncertainty = [f"{v:.2g}" for v in profile.uncertainty.tolist()]
                 columns.append([_safe(f"uncertainty of {head}"), *uncertainty])
     return written(list(zip_longest(*columns, fillvalue="")))
 
@@ -51,6 +55,17 @@ def written(rows: Sequence[Sequence[str]]) -> str:
     out = StringIO()
     csv.writer(out, lineterminator="\n").writerows(rows)
     return out.getvalue()
+
+
+def _cut(profile: Profile) -> list[str]:
+    """The values, each to a tenth of its uncertainty; eight digits where none is stated."""
+    values = profile.value
+    if profile.uncertainty is None:
+        return [f"{v:.8g}" for v in values.tolist()]
+    with np.errstate(all="ignore"):
+        digits = np.ceil(np.log10(np.abs(values) / profile.uncertainty) + 1.7)
+    digits = np.clip(np.nan_to_num(digits, nan=2, posinf=MOST_DIGITS), 2, MOST_DIGITS).astype(int)
+    return [f"{v:.{d}g}" for v, d in zip(values.tolist(), digits.tolist(), strict=True)]
 
 
 def _safe(text: str) -> str:

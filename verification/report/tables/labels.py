@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 from verification.judging.verdict import Outcome
+from verification.problem.quantity import QUANTITIES
 from verification.sources.record import Style
 from verification.sources.registry import METHODS, SOURCES
 
@@ -13,9 +14,8 @@ _BETWEEN_REFERENCES = Style("ink", (1.0, 1.4), 1.4)
 
 @dataclass(frozen=True)
 class OutcomeStyle:
-    """How a verdict is shown without relying on colour: a letter, a mark, a word."""
+    """How a verdict is shown without relying on colour: a mark, a word."""
 
-    letter: str
     mark: str
     word: str
     css: str
@@ -23,17 +23,22 @@ class OutcomeStyle:
 
 
 OUTCOMES = {
-    Outcome.DISAGREES: OutcomeStyle("D", "✗", "disagrees", "disagrees", 0),
-    Outcome.NO_RESULT: OutcomeStyle("N", "∅", "no result", "no-result", 1),
-    Outcome.INCONCLUSIVE: OutcomeStyle("I", "?", "inconclusive", "inconclusive", 2),
-    Outcome.AGREES: OutcomeStyle("A", "✓", "agrees", "agrees", 3),
-    Outcome.UNSUPPORTED: OutcomeStyle("U", "–", "unsupported", "unsupported", 4),
+    Outcome.DISAGREES: OutcomeStyle("✗", "disagrees", "disagrees", 0),
+    Outcome.NO_RESULT: OutcomeStyle("∅", "no result", "no-result", 1),
+    Outcome.INCONCLUSIVE: OutcomeStyle("?", "inconclusive", "inconclusive", 2),
+    Outcome.AGREES: OutcomeStyle("✓", "agrees", "agrees", 3),
+    Outcome.UNSUPPORTED: OutcomeStyle("–", "unsupported", "unsupported", 4),
 }
 
 
 def row_css(outcome: Outcome) -> str:
     """Class of the row of a verdict: none where it agrees."""
     return "" if outcome in (Outcome.AGREES, Outcome.UNSUPPORTED) else OUTCOMES[outcome].css
+
+
+def symbol_of(quantity: str) -> str:
+    """The symbol of a quantity; an unknown one keeps its name."""
+    return QUANTITIES[quantity].symbol if quantity in QUANTITIES else quantity
 
 
 def source_label(source: str) -> str:

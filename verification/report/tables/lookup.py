@@ -14,13 +14,6 @@ from verification.running.result import CaseResult
 from verification.sources.registry import METHODS, REFERENCES
 
 GROUPS = ("contact", "surface", "axis", "interfaces", "off plane")
-TITLES = {
-    "surface": "Along the surface",
-    "axis": "Along the axis",
-    "off plane": "Off the plane y = 0: along x at y = 0.4 a_h, in the first layer",
-    "oblique": "Oblique line from (−0.9, −0.2, 0) a_h through the layers, direction (0.48, 0.36, 0.8)",
-    "oblique surface": "Surface at 30 degrees from x, out to five contact radii",
-}
 _GROUP_OF = {"contact": GROUPS[0], "oblique": GROUPS[4], "oblique surface": GROUPS[4]}
 
 
@@ -28,13 +21,6 @@ def group_of(line: str) -> str:
     """The column of the verdict matrix that a line belongs to."""
     line = line.removeprefix(ON_BALL)
     return GROUPS[3] if line.startswith("interface") else _GROUP_OF.get(line, line)
-
-
-def title_of(line: str) -> str:
-    """The title of the figures along a line."""
-    there = line.removeprefix(ON_BALL)
-    title = TITLES.get(there, there.capitalize())
-    return title if there == line else f"Ball: {title[0].lower()}{title[1:]}"
 
 
 def lines(result: CaseResult) -> tuple[str, ...]:
@@ -108,13 +94,6 @@ def contact_radius(result: CaseResult) -> float | None:
 def coordinate(line: str) -> str:
     """The coordinate that runs along ``line``."""
     return coordinate_of(line)
-
-
-def claimed_quantities(result: CaseResult, line: str) -> tuple[str, ...]:
-    """Quantities on ``line`` with a claim; where there is none, all that were sampled."""
-    sampled = tuple(dict.fromkeys(p.quantity for p in result.profiles if p.line == line))
-    claimed = {claim.quantity for claim, _ in result.verdicts if claim.line == line}
-    return tuple(q for q in sampled if q in claimed) or sampled
 
 
 def judged(result: CaseResult, claim: Claim, position: NDArray[np.float64]) -> NDArray[np.bool_]:

@@ -1,7 +1,10 @@
 """Numbers as text: engineering prefixes, as many digits as the uncertainty supports."""
 
+from collections.abc import Sequence
 from math import floor, isfinite, log10
 from typing import Any
+
+from markupsafe import Markup
 
 _PREFIXES = {-15: "f", -12: "p", -9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G", 12: "T"}
 MOST_DIGITS = 9
@@ -41,6 +44,42 @@ def with_uncertainty(value: Any, uncertainty: Any, unit: str) -> str:
     form = f".{decimals}f" if abs(mantissa) < 1e4 and decimals <= 12 else ".6g"
     plus_minus = format(width, f".{decimals}f" if 0.5 * 10**-decimals <= width < 1e6 else ".1e")
     return f"{_minus(format(mantissa, form))} ± {plus_minus} {shown}"
+
+
+def aligned(values: Sequence[tuple[Any, Any] | None], unit: str) -> tuple[str, list[Markup | str]]:
+    """(value, uncertainty) pairs [SI] of one column: its unit with one prefix, the texts point under point.
+
+    The uncertainty follows in parentheses, in units of the last digit; two digits of it, at most nine of the
+    value. A pair that is None has no text; an uncertainty None is "not stated" (six digits are shown), 0 is
+    "exact".
+    """
+    found = [_number(pair[0]) for pair in values if pair is not None]
+    first = next((number for number in found if number), 0.0)
+    factor, prefix = _prefix(first)
+    parts = [("", "") if pair is None else _parted(*pair, factor) for pair in values]
+    width = max((len(after) for _, after in parts), default=0)
+    mark = Markup('{}<span class="after" style="min-width:{}ch">{}</span>')
+    texts = [mark.format(whole, width, after) if whole else "–" for whole, after in parts]
+    return f"{prefix}{unit}" if unit != "1" else "", texts
+
+
+def _parted(value: Any, uncertainty: Any, factor: float) -> tuple[str, str]:
+    """What stands before the decimal point; the rest."""
+    number, stated = _number(value), _number(uncertainty)
+    if number is None or (uncertainty is not None and not 0 <= (-1.0 if stated is None else stated) < 1e30):
+        return "not finite", ""
+    mantissa = number / factor
+    if not 1e-6 < abs(mantissa) < 1e6 and mantissa:
+        return _minus(f"{mantissa:.3e}"), ""
+    whole = floor(log10(abs(mantissa))) if mantissa else 0
+    most = MOST_DIGITS - 1 - whole
+    width = 0.0 if stated is None else stated / factor
+    decimals = max((5 if uncertainty is None else MOST_DIGITS - 1) - whole, 0)
+    if width > 0:
+        decimals = min(max(1 - floor(log10(width)), 0), max(most, 0))
+    text, point, after = _minus(f"{mantissa:.{decimals}f}").partition(".")
+    last = round(width * 10**decimals) if 0 < width < 1e9 else 0
+    return text, f"{point}{after}{f'({last})' if last else ''}"
 
 
 def scientific(value: Any, digits: int = 2, sign: bool = False) -> str:

@@ -16,7 +16,7 @@ from verification.problem.arrays import Array
 from verification.study.choice.criteria import SAMPLES, Criteria, Judged
 from verification.study.choice.strength import Strength
 
-__all__ = ["Chances", "Choice", "End", "choice", "sampled"]
+__all__ = ["Chances", "Choice", "End", "choice", "sampled", "strengths_drawn"]
 
 EVEN = 0.01  # of the smallest utilisation, unless the curves are less certain
 HALVED = 4  # at least by as much the error of interpolation falls with half the distance of points
@@ -104,9 +104,7 @@ def sampled(stress: Array, strengths: Mapping[str, Strength], drawn: int = DRAWN
 
     Their standard error is at most 0.5/sqrt(drawn), 0.4 %.
     """
-    rng = np.random.default_rng(SEED)
-    shares = rng.random((drawn, len(strengths)))
-    strength = np.stack([s.quantile(shares[:, i]) for i, s in enumerate(strengths.values())], axis=1)
+    strength = strengths_drawn(strengths, drawn)
     governs, breaks = np.zeros(stress.shape), np.zeros(stress.shape)
     for k, here in enumerate(stress.T):
         use = here / strength
@@ -114,6 +112,12 @@ def sampled(stress: Array, strengths: Mapping[str, Strength], drawn: int = DRAWN
         governs[:, k] = np.bincount(mode, minlength=here.size)
         breaks[:, k] = np.bincount(mode[beyond], minlength=here.size)
     return Chances(governs / drawn, breaks.sum(axis=0) / drawn, breaks / drawn)
+
+
+def strengths_drawn(strengths: Mapping[str, Strength], drawn: int = DRAWN) -> Array:
+    """Samples of independent ``strengths`` [Pa], (drawn, modes); the same each time."""
+    shares = np.random.default_rng(SEED).random((drawn, len(strengths)))
+    return np.stack([s.quantile(shares[:, i]) for i, s in enumerate(strengths.values())], axis=1)
 
 
 def choice(judgements: Sequence[Judged], criteria: Criteria) -> Choice:

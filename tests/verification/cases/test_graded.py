@@ -1,0 +1,88 @@
+"""Graded coatings: moduli of the sub-layers, their place in a case, refused input."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from verification.cases.contact import parse_case
+from verification.cases.graded import Course, Table, moduli
+from verification.cases.toml import CaseError
+
+TEXT = """
+title = "Graded"
+[problem]
+radius = "10 mm"
+load = "20 N"
+substrate = { E = "210 GPa", nu = 0.3 }
+[[problem.coatings]]
+layers = 30
+E = { course = "exponential", top = "400 GPa", base = "210 GPa" }
+nu = 0.25
+thickness = "30 um"
+residual_stress = "-1 GPa"
+[[problem.coatings]]
+E = "279 GPa"
+nu = 0.21
+thickness = "1 um"
+"""
+LINEAR = Course(course="linear", top=4e11, base=2e11)
+
+
+def parse(text, over=1):
+    return parse_case(text.encode(), Path("mine.toml"), over)
+
+
+def test_courses_at_the_middle_of_each_sub_layer():
+    np.testing.assert_allclose(moduli(LINEAR, 4), [375e9, 325e9, 275e9, 225e9], rtol=1e-14)
+    found = moduli(Course(course="exponential", top=4e11, base=1e11), 2)
+    np.testing.assert_allclose(found, [4e11 * 0.25**0.25, 4e11 * 0.25**0.75], rtol=1e-14)
+    table = Table(depth=[0.0, 0.5, 1.0], E=[4e11, 2e11, 2e11])
+    np.testing.assert_allclose(moduli(table, 4), [350e9, 250e9, 200e9, 200e9], rtol=1e-14)
+    assert moduli(3e11, 1) == (3e11,)
+
+
+def test_mean_modulus_converges_with_the_square_of_the_sub_layers():
+    exact = (4e11 - 1e11) / np.log(4)
+    errors = [
+        abs(np.mean(moduli(Course(course="exponential", top=4e11, base=1e11), n)) / exact - 1)
+        for n in (5, 10, 20)
+    ]
+    assert errors[0] / errors[1] == pytest.approx(4, rel=0.02)
+    assert errors[1] / errors[2] == pytest.approx(4, rel=0.02)
+
+
+def test_a_graded_coating_is_its_sub_layers_of_one_thickness():
+    case = parse(TEXT)
+    assert case.layers == {"flat": (30, 1)}
+    assert case.residual == {"flat": (-1e9,) * 30 + (0.0,)}
+    thickness = [h for _, _, h in case.problem.coatings]
+    np.testing.assert_allclose(thickness, [1e-6] * 31, rtol=1e-14)
+    assert parse(TEXT, over=2).layers == {"flat": (15, 1)}
+    plain = TEXT[: TEXT.index("[[problem")] + TEXT[TEXT.rindex("[[problem") :]
+    assert parse(plain).layers == {}
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ("layers = 30\n", "", "needs E as a course over the depth, with its number of layers"),
+        ('E = "279 GPa"', 'E = "279 GPa"\nlayers = 5', "needs E as a course"),
+        ("layers = 30", "layers = 50", "coatings have 51 layers; at most 50"),
+        ("layers = 30", "layers = 1", "coatings.0.layers"),
+        ('course = "exponential"', 'course = "cubic"', "coatings.0.E.course"),
+        ('top = "400 GPa"', 'top = "400 Gpa"', "did you mean GPa"),
+        ('top = "400 GPa", ', "", "top is missing"),
+        ('course = "exponential", top = "400 GPa", base = "210 GPa"', "depth = [0, 1], E = [4e11]", "E list"),
+        ('course = "exponential", top = "400 GPa", base = "210 GPa"', "depth = [0, 0.5], E = [4e11, 2e11]",
+         "do not rise from 0 to 1"),
+        ('course = "exponential", top = "400 GPa", base = "210 GPa"', "depth = [0, 1, 1], E = [4e11, 2e11]",
+         "has 3 depths"),
+    ],
+)  # fmt: skip
+def test_bad_graded_coating_is_one_message_with_its_key(old, new, message):
+    with pytest.raises(CaseError) as error:
+        parse(TEXT.replace(old, new, 1))
+    assert "problem" in str(error.value)
+    assert "\n" not in str(error.value)
+    assert message.replace("E list", "coatings.0.E") in str(error.value)
