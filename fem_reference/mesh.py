@@ -27,8 +27,8 @@ _FAN = 0.94
 # Sizes are uniform to this depth over the contact radius, then grow by this share a unit of the stretched
 # plane.
 _NEAR, _GROWTH = 3.0, 0.4
-# Triangles across a coating: fewer, and the companion's difference tells nothing of the error. Films buried at
-# many times their thickness are left to flatter ones: the least size over the usual one.
+# Triangles across a coating: fewer, and the companion's difference tells nothing of the error. Films buried
+# at many times their thickness are left to flatter ones: the least size over the usual one.
 _ROWS, _LEAST_ROW = 2.0, 0.25
 
 
