@@ -9,8 +9,8 @@ multiplied with Roache's factor of two meshes (P. J. Roache, J. Fluids Eng. 116 
     U = SAFETY |difference| / (ratio^order - 1),
 
 with the order of the elements and the ratio of the companion's triangles to those of the mesh next to the
-point: a thin coating, an interface, the axis keep the mesher from the ratio that it was asked for. On an
-interface the estimate is at least that of the triangles beside it.
+point: a thin coating, an interface, the axis keep the mesher from the ratio that it was asked for. On the
+surface and on interfaces the estimate is at least that of the triangles beside them.
 
 Both solutions miss the given load within its tolerance, by amounts that are known. Changes between meshes are
 therefore taken at the given load: W ~ a^slope, d delta = dW / stiffness.
@@ -52,7 +52,7 @@ _STRIP = 0.3
 # Of sizes of triangles, beyond which their local ratio is that of two irregular meshes.
 _LEAST_RATIO, _LARGEST_RATIO = 1.08, 1.6
 # zz, rz, tz: one value on both sides of an interface, in error by that of either side
-_TRACTIONS = [2, 3, 5]
+_TRACTIONS, _IN_PLANE = [2, 3, 5], [0, 1, 4]
 
 # corners, middles and centre of the reference triangle: the hoop strain is worst on the axis itself
 _SAMPLES = np.array([[0, 1, 0, 1 / 2, 1 / 2, 0, 1 / 3], [0, 0, 1, 0, 1 / 2, 1 / 2, 1 / 3]])
@@ -238,24 +238,32 @@ class StressEstimate(_Uncached):
     def _planes(self) -> dict[tuple[float, int], tuple[np.ndarray, np.ndarray]]:
         """Vertices and estimates on the surface and on both sides of each interface, by (depth, layer).
 
-        Two solutions may agree on an interface without either being exact: the estimate is at least that of
-        the triangles of its side, of the tractions the geometric mean of both.
+        Two solutions may agree on a plane without either being exact: the estimate is at least that of the
+        triangles of its side, of the tractions of an interface the geometric mean of both sides. On the
+        surface the tractions are given, and a series replaces the triangles next to the edge.
         """
         found = {
             key: (vertices, _largest(self._error(points, key[1]), vertices.size))
             for key, (vertices, points) in self.points.planes.items()
         }
         mesh = self.field.discretisation.mesh
-        for upper, depth in enumerate(mesh.depths):
+
+        def beside(depth: float, layers: slice, count: int) -> np.ndarray:
             here = np.flatnonzero(mesh.points[1] == depth)
-            here = here[np.argsort(mesh.points[0, here])][: found[float(depth), upper][0].size]
-            beside = self._vertices[:6, upper : upper + 2][..., here]
-            beside[_TRACTIONS] = np.sqrt(beside[_TRACTIONS].prod(axis=1, keepdims=True))
+            return self._vertices[:6, layers, here[np.argsort(mesh.points[0, here])][:count]]
+
+        vertices, surface = found[0.0, 0]
+        clear = np.abs(vertices - mesh.contact_radius) > _STRIP * mesh.contact_radius
+        least = np.where(clear, beside(0.0, slice(0, 1), vertices.size)[:, 0], 0.0)
+        surface[_IN_PLANE] = np.maximum(surface, least)[_IN_PLANE]
+        for upper, depth in enumerate(mesh.depths):
             sides = [found[float(depth), layer][1] for layer in (upper, upper + 1)]
+            triangles = beside(depth, slice(upper, upper + 2), sides[0].shape[1])
+            triangles[_TRACTIONS] = np.sqrt(triangles[_TRACTIONS].prod(axis=1, keepdims=True))
             tractions = np.maximum(sides[0][_TRACTIONS], sides[1][_TRACTIONS])
             for number, side in enumerate(sides):
                 side[_TRACTIONS] = tractions
-                np.maximum(side, beside[:, number], out=side)
+                np.maximum(side, triangles[:, number], out=side)
         return found
 
     def __call__(self, at: LocatedPoints) -> np.ndarray:
@@ -421,9 +429,10 @@ def _functional_factor(order: int, size: float) -> float:
     """The same for contact radius, approach and stiffness.
 
     Functionals of the solution converge with up to twice the order (G. Strang and G. J. Fix, An Analysis of
-    the Finite Element Method, 1973, section 3.4); all but one is relied on.
+    the Finite Element Method, 1973, section 3.4); all but one is relied on, of triangles too large for their
+    order nothing beyond it.
     """
-    return _factor(2 * order - 1, size)
+    return _factor(2 * order - 1 if size <= _ASYMPTOTIC_SIZE else order, size)
 
 
 def _coarseness(size: float) -> float:

@@ -123,12 +123,12 @@ def _meshes_at(solids: Solids, grading: Grading, contact_radius: float) -> Meshe
     """
     contact_radius = float(f"{contact_radius:.5g}")
     far = max(solid.far for solid in solids)
-    film = min((h for solid in solids for h in solid.thicknesses[:1]), default=contact_radius)
+    stacks = tuple(solid.thicknesses for solid in solids)
     made = {
         thicknesses: meridian_mesh(
-            contact_radius=contact_radius, thicknesses=thicknesses, far=far, grading=grading, film=film
+            contact_radius=contact_radius, thicknesses=thicknesses, far=far, grading=grading, stacks=stacks
         )
-        for thicknesses in dict.fromkeys(solid.thicknesses for solid in solids)
+        for thicknesses in dict.fromkeys(stacks)
     }
     return Meshes(tuple(made[solid.thicknesses] for solid in solids))
 
