@@ -11,7 +11,7 @@ and Fourier Spectral Methods (2001), section 2. Inverting Abel's integral for ev
 equation of the second kind of Lebedev and Ufliand, PMM 22 (1958) 320-326.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -73,8 +73,14 @@ def _reflecting_depth(body: Body) -> float:
     return 14.0 / float(k[felt[-1] if felt.size else 0])
 
 
-def contact(radius: float, load: float | None, approach: float | None, body: Body) -> list[RoundContact]:
-    """Contact of a sphere, with every share of the terms in ``SHARES``.
+def contact(
+    radius: float,
+    load: float | None,
+    approach: float | None,
+    body: Body,
+    shares: Sequence[float] = SHARES,
+) -> list[RoundContact]:
+    """Contact of a sphere, with every share of the terms in ``shares``.
 
     radius [m], and load [N] or approach [m], the other None.
     Raises NotConverged where no contact radius is found.
@@ -104,7 +110,7 @@ def contact(radius: float, load: float | None, approach: float | None, body: Bod
         rough, a = a, solved(a, SHARES[-1]).profile.radius
         if 0.9 < a / rough < 1.1:
             break
-    return [solved(a, share) for share in SHARES]
+    return [solved(a, share) for share in shares]
 
 
 class _Collocation:

@@ -1,4 +1,4 @@
-"""The model of CalculiX filled in: mesh by gmsh, sets and faces by coordinates; a table of its results."""
+"""The model of CalculiX filled in: mesh by gmsh, sets by coordinates, a table of its results."""
 
 import subprocess
 from pathlib import Path
