@@ -25,9 +25,6 @@ import scipy.sparse as sp
 from skfem import (
     Basis,
     BilinearForm,
-    ElementTriP2,
-    ElementTriP3,
-    ElementTriP4,
     FacetBasis,
     LinearForm,
     MeshTri,
@@ -35,13 +32,11 @@ from skfem import (
 )
 
 from .dissection import CholeskyFactor, DissectionTree, bisected, unknowns
+from .integrals import ELEMENTS, reference_integrals
 from .location import Locator
 from .mesh import MeridianMesh
 
 __all__ = ["ELEMENTS", "Discretisation", "Stiffness", "constrained_solve", "elasticity", "strain_operator"]
-
-_BLOCK = 64  # triangles whose stiffness is computed together
-ELEMENTS = {2: ElementTriP2, 3: ElementTriP3, 4: ElementTriP4}
 
 
 def strain_operator(harmonic: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -106,7 +101,9 @@ class Discretisation:
 
     @cached_property
     def basis(self) -> Basis:
-        return Basis(self.triangulation, ELEMENTS[self.order](), intorder=2 * self.order)
+        """Numbers and places of the unknowns; its quadrature of one point, in the middle, is not used."""
+        middle = np.full((2, 1), 1 / 3), np.array([0.5])
+        return Basis(self.triangulation, ELEMENTS[self.order](), quadrature=middle)
 
     @cached_property
     def locator(self) -> Locator:
@@ -185,28 +182,18 @@ class Discretisation:
 
         Returns shape (triangles, size, size), unknowns by node, then field.
         """
-        A = np.stack(strain_operator(harmonic), axis=1)
-        strains, kinds, fields = A.shape
-        r = np.asarray(self.basis.global_coordinates())[0]
-        weight = r * self.basis.dx
-        triangles, local = len(r), len(self.basis.basis)
-        phi = np.stack([np.broadcast_to(np.asarray(b[0]), r.shape) for b in self.basis.basis], axis=-1)
-        d_r, d_z = (np.stack([b[0].grad[i] for b in self.basis.basis], axis=-1) for i in (0, 1))
-        D = np.stack([elasticity(E, nu, harmonic) for E, nu in materials])[self.mesh.layer]
-        A = A.reshape(strains, kinds * fields)
-        # by (f, g), (a, b)
-        coupling = (A.T @ D @ A).reshape(triangles, kinds, fields, kinds, fields).transpose(0, 2, 4, 1, 3)
-        coupling = coupling.reshape(triangles, fields**2, kinds**2)
-        K = np.empty((triangles, local, fields, local, fields))
-        # in blocks that stay in the cache of the processor
-        for begin in range(0, triangles, _BLOCK):
-            block = slice(begin, begin + _BLOCK)
-            s = np.concatenate([d_r[block], d_z[block], phi[block] / r[block, :, None]], axis=-1)
-            integrals = s.transpose(0, 2, 1) @ (s * weight[block, :, None])
-            integrals = integrals.reshape(-1, kinds, local, kinds, local).transpose(0, 1, 3, 2, 4)
-            coupled = coupling[block] @ integrals.reshape(-1, kinds**2, local**2)
-            K[block] = coupled.reshape(-1, fields, fields, local, local).transpose(0, 3, 1, 4, 2)
-        return K.reshape(triangles, local * fields, local * fields)
+        A = np.stack(strain_operator(harmonic))
+        integrals = reference_integrals(self.order)
+        factors = integrals.factors(self.mesh.points, self.triangulation.t)
+        size = self.basis.Nbfun * A.shape[2]
+        K = np.empty((len(factors), size, size))
+        layer = self.mesh.layer
+        begins = np.flatnonzero(np.diff(layer, prepend=-1))
+        for begin, end in zip(begins, [*begins[1:], layer.size], strict=True):
+            E, nu = materials[layer[begin]]
+            coupling = np.einsum("asf,st,btg->abfg", A, elasticity(E, nu, harmonic), A, optimize=True)
+            np.matmul(factors[begin:end], integrals.coupled(coupling), out=K[begin:end].reshape(-1, size**2))
+        return K
 
     def surface_basis(self, facets: np.ndarray) -> FacetBasis:
         """Shape functions on surface edges, with quadrature exact for products of two and r."""

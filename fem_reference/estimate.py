@@ -9,8 +9,8 @@ multiplied with Roache's factor of two meshes (P. J. Roache, J. Fluids Eng. 116 
     U = SAFETY |difference| / (ratio^order - 1),
 
 with the order of the elements and the ratio of the companion's triangles to those of the mesh next to the
-point: a thin coating, an interface, the axis keep the mesher from the ratio that it was asked for. On an
-interface the estimate is at least that of the triangles beside it.
+point: a thin coating, an interface, the axis keep the mesher from the ratio that it was asked for. On the
+surface and on interfaces the estimate is at least that of the triangles beside them.
 
 Both solutions miss the given load within its tolerance, by amounts that are known. Changes between meshes are
 therefore taken at the given load: W ~ a^slope, d delta = dW / stiffness.
@@ -20,7 +20,9 @@ the edge by up to the square root of da. The change of the field under that disp
 estimate of pressures and stresses.
 
 The error of a displacement is smooth and mostly that of the whole mesh: its estimate is one number for each
-component, the largest difference at the samples of all triangles times the same factor.
+component, the largest difference at the samples of all triangles times the same factor. In a thin coating,
+whose triangles are small for its sake alone, that is also true of the stress: the relative error of the
+approach, due to the whole mesh, counts everywhere.
 """
 
 from collections.abc import Callable
@@ -52,7 +54,7 @@ _STRIP = 0.3
 # Of sizes of triangles, beyond which their local ratio is that of two irregular meshes.
 _LEAST_RATIO, _LARGEST_RATIO = 1.08, 1.6
 # zz, rz, tz: one value on both sides of an interface, in error by that of either side
-_TRACTIONS = [2, 3, 5]
+_TRACTIONS, _IN_PLANE = [2, 3, 5], [0, 1, 4]
 
 # corners, middles and centre of the reference triangle: the hoop strain is worst on the axis itself
 _SAMPLES = np.array([[0, 1, 0, 1 / 2, 1 / 2, 0, 1 / 3], [0, 0, 1, 0, 1 / 2, 1 / 2, 1 / 3]])
@@ -238,24 +240,32 @@ class StressEstimate(_Uncached):
     def _planes(self) -> dict[tuple[float, int], tuple[np.ndarray, np.ndarray]]:
         """Vertices and estimates on the surface and on both sides of each interface, by (depth, layer).
 
-        Two solutions may agree on an interface without either being exact: the estimate is at least that of
-        the triangles of its side, of the tractions the geometric mean of both.
+        Two solutions may agree on a plane without either being exact: the estimate is at least that of the
+        triangles of its side, of the tractions of an interface the geometric mean of both sides. On the
+        surface the tractions are given, and a series replaces the triangles next to the edge.
         """
         found = {
             key: (vertices, _largest(self._error(points, key[1]), vertices.size))
             for key, (vertices, points) in self.points.planes.items()
         }
         mesh = self.field.discretisation.mesh
-        for upper, depth in enumerate(mesh.depths):
+
+        def beside(depth: float, layers: slice, count: int) -> np.ndarray:
             here = np.flatnonzero(mesh.points[1] == depth)
-            here = here[np.argsort(mesh.points[0, here])][: found[float(depth), upper][0].size]
-            beside = self._vertices[:6, upper : upper + 2][..., here]
-            beside[_TRACTIONS] = np.sqrt(beside[_TRACTIONS].prod(axis=1, keepdims=True))
+            return self._vertices[:6, layers, here[np.argsort(mesh.points[0, here])][:count]]
+
+        vertices, surface = found[0.0, 0]
+        clear = np.abs(vertices - mesh.contact_radius) > _STRIP * mesh.contact_radius
+        least = np.where(clear, beside(0.0, slice(0, 1), vertices.size)[:, 0], 0.0)
+        surface[_IN_PLANE] = np.maximum(surface, least)[_IN_PLANE]
+        for upper, depth in enumerate(mesh.depths):
             sides = [found[float(depth), layer][1] for layer in (upper, upper + 1)]
+            triangles = beside(depth, slice(upper, upper + 2), sides[0].shape[1])
+            triangles[_TRACTIONS] = np.sqrt(triangles[_TRACTIONS].prod(axis=1, keepdims=True))
             tractions = np.maximum(sides[0][_TRACTIONS], sides[1][_TRACTIONS])
             for number, side in enumerate(sides):
                 side[_TRACTIONS] = tractions
-                np.maximum(side, beside[:, number], out=side)
+                np.maximum(side, triangles[:, number], out=side)
         return found
 
     def __call__(self, at: LocatedPoints) -> np.ndarray:
@@ -290,13 +300,17 @@ class StressEstimate(_Uncached):
 
 @dataclass(frozen=True, eq=False)
 class Estimates:
-    """Uncertainty of a solution: ``scalars`` in SI units, pressure and stresses in scaled units."""
+    """Uncertainty of a solution: ``scalars`` in SI units, pressure and stresses in scaled units.
+
+    pollution : estimated error of the stress anywhere, due to the whole mesh
+    """
 
     scalars: Uncertainty
     pressure: PressureEstimate
     normal: StressEstimate
     tangential: StressEstimate | None
     companion: ElasticState
+    pollution: float
 
     def with_friction(self, state: ElasticState, friction: float) -> "Estimates":
         """The estimates of ``state``, which slides with ``friction``; the companion is solved for it."""
@@ -307,7 +321,7 @@ class Estimates:
                 self.normal,
                 field=state.tangential,
                 companion=companion.tangential,
-                everywhere=everywhere,
+                everywhere=everywhere + friction * self.pollution,
                 far=far,
             )
         return replace(self, companion=companion, tangential=estimate)
@@ -377,6 +391,9 @@ def estimates(
     displacement, factor = units.displacement, _factor(d.order, size)
     pointwise, functional = factor * _coarseness(size), _functional_factor(d.order, size)
     balance = load_residual / 2 * a  # a ~ W^(1/n), n at least 2 on any layers
+    # what the whole mesh misses shows in the approach, and as such a share of the stress everywhere
+    share = functional * size_approach / central
+    pollution = share * largest
     radius_error = functional * size_radius + SAFETY * edge + far_radius + balance
     everywhere = far_pressure + load_residual / 3 * largest
     pressure = PressureEstimate(
@@ -398,7 +415,7 @@ def estimates(
     budget = tuple((quantity, origin, float(value)) for quantity, origin, value in rows)
     total = {name: sum(value for quantity, _, value in budget if quantity == name) for name, _, _ in budget}
     points = _ComparisonPoints(d, companion.discretisation)
-    relative = load_residual + radius_error / a
+    relative = load_residual + radius_error / a + share
     normal = StressEstimate(
         state.normal,
         companion.normal,
@@ -406,10 +423,11 @@ def estimates(
         SAFETY * _coarseness(size) ** 2,
         radius_error,
         relative,
-        float(far_stress),
+        float(far_stress + pollution),
         float(far_approach),
     )
-    return Estimates(Uncertainty(**total, budget=budget), pressure, normal, None, companion)
+    scalars = Uncertainty(**total, budget=budget)
+    return Estimates(scalars, pressure, normal, None, companion, float(pollution))
 
 
 def _factor(order: int, size: float) -> float:
@@ -421,9 +439,10 @@ def _functional_factor(order: int, size: float) -> float:
     """The same for contact radius, approach and stiffness.
 
     Functionals of the solution converge with up to twice the order (G. Strang and G. J. Fix, An Analysis of
-    the Finite Element Method, 1973, section 3.4); all but one is relied on.
+    the Finite Element Method, 1973, section 3.4); all but one is relied on, of triangles too large for their
+    order nothing beyond it.
     """
-    return _factor(2 * order - 1, size)
+    return _factor(2 * order - 1 if size <= _ASYMPTOTIC_SIZE else order, size)
 
 
 def _coarseness(size: float) -> float:

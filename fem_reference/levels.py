@@ -104,8 +104,12 @@ def solve_levels(
 
 
 def companion_grading(size: float) -> Grading:
-    """The companion of ``Grading.of(size)``: coarser everywhere, with larger triangles at the edge."""
-    return Grading.of(COMPANION * size, edge_size=4 * EDGE_SIZE)
+    """The companion of ``Grading.of(size)``: coarser everywhere, with larger triangles at the edge.
+
+    In thin coatings too: two meshes that are alike there would differ by less than their error.
+    """
+    final = Grading.of(size)
+    return Grading.of(COMPANION * size, edge_size=4 * EDGE_SIZE, rows=final.rows / COMPANION)
 
 
 def mesh_at(solid: LayeredSolid, grading: Grading, contact_radius: float) -> MeridianMesh:
@@ -116,14 +120,19 @@ def mesh_at(solid: LayeredSolid, grading: Grading, contact_radius: float) -> Mer
 
 
 def _meshes_at(solids: Solids, grading: Grading, contact_radius: float) -> Meshes:
-    """Mesh of each of the ``solids``, alike on the surface; layers of equal thicknesses share one."""
+    """Mesh of each of the ``solids``, alike on the surface; layers of equal thicknesses share one.
+
+    The contact radius is rounded to five digits, so that the rounding of a search does not decide on the
+    triangles; the search stretches the meshes to its own.
+    """
+    contact_radius = float(f"{contact_radius:.5g}")
     far = max(solid.far for solid in solids)
-    film = min((h for solid in solids for h in solid.thicknesses[:1]), default=contact_radius)
+    stacks = tuple(solid.thicknesses for solid in solids)
     made = {
         thicknesses: meridian_mesh(
-            contact_radius=contact_radius, thicknesses=thicknesses, far=far, grading=grading, film=film
+            contact_radius=contact_radius, thicknesses=thicknesses, far=far, grading=grading, stacks=stacks
         )
-        for thicknesses in dict.fromkeys(solid.thicknesses for solid in solids)
+        for thicknesses in dict.fromkeys(stacks)
     }
     return Meshes(tuple(made[solid.thicknesses] for solid in solids))
 

@@ -10,7 +10,8 @@ from .mesh import MeridianMesh
 
 __all__ = ["LocatedPoints", "Locator"]
 
-_NEIGHBOURS = 12
+# Triangles whose centroids are nearest: most points lie within one of a few, those on edges need more.
+_NEAREST, _NEIGHBOURS = 4, 12
 # Smallest radius over the contact radius: u/r on the axis is the limit from outside, here exact to rounding.
 _AXIS = 1e-7
 
@@ -80,7 +81,7 @@ class Locator:
         cells = np.zeros(r.shape, dtype=int)
         for k, (members, tree) in enumerate(self._trees):
             mine = np.flatnonzero(layer == k)
-            count = min(_NEIGHBOURS, members.size)
+            count = min(_NEAREST, members.size)
             while mine.size:
                 _, near = tree.query(mesh.plane(r[mine], z[mine]).T, k=count)
                 candidates = members[near.reshape(mine.size, -1)]
@@ -88,10 +89,10 @@ class Locator:
                 inside = np.min([X[0], X[1], 1 - X[0] - X[1]], axis=0)
                 best = np.argmax(inside, axis=1)
                 cells[mine] = candidates[np.arange(mine.size), best]
-                done = inside[np.arange(mine.size), best] > -1e-9
+                done = inside[np.arange(mine.size), best] > (1e-9 if count < _NEIGHBOURS else -1e-9)
                 if count == members.size:
                     break
-                mine, count = mine[~done], min(4 * count, members.size)
+                mine, count = mine[~done], min(max(_NEIGHBOURS, 4 * count), members.size)
         return cells, _reference_coordinates(mesh.points, t[:, cells], r, z)
 
 

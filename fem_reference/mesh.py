@@ -27,6 +27,9 @@ _FAN = 0.94
 # Sizes are uniform to this depth over the contact radius, then grow by this share a unit of the stretched
 # plane.
 _NEAR, _GROWTH = 3.0, 0.4
+# Films buried at many times their thickness are left to flat triangles: the least size for the sake of a
+# coating over the usual one.
+_LEAST_ROW = 0.25
 
 
 @dataclass(frozen=True)
@@ -39,6 +42,7 @@ class Grading:
     edge_size : smallest triangle, at the edge, over the contact radius
     axis_size : size at the point of first contact, in units of the stretched plane
     far_size  : largest size towards the outer boundary, where one unit is a factor e of distance
+    rows      : triangles across each coating at least
     """
 
     size: float = 0.4
@@ -46,12 +50,15 @@ class Grading:
     edge_size: float = EDGE_SIZE
     axis_size: float = 0.2
     far_size: float = 0.8
+    rows: float = 2.0
 
     @classmethod
-    def of(cls, size: float, edge_size: float = EDGE_SIZE) -> "Grading":
+    def of(cls, size: float, edge_size: float = EDGE_SIZE, rows: float = 2.8) -> "Grading":
         """All sizes from one; the fan at the edge and the far field need less fine triangles."""
         edge_rate = min(1.4 * size, 0.6)
-        return cls(size, edge_rate, edge_size, axis_size=0.65 * size, far_size=min(2.7 * size, 0.7))
+        return cls(
+            size, edge_rate, edge_size, axis_size=0.65 * size, far_size=min(2.7 * size, 0.7), rows=rows
+        )
 
 
 @dataclass(frozen=True, eq=False)
@@ -108,12 +115,12 @@ def meridian_mesh(
     thicknesses: tuple[float, ...],
     far: float,
     grading: Grading,
-    film: float | None = None,
+    stacks: tuple[tuple[float, ...], ...] = (),
 ) -> MeridianMesh:
     """Triangulate 0 <= r, z <= ``far`` with a vertex at r = ``contact_radius`` on the surface.
 
-    film : h of the module, None for that of this solid. The vertices of the surface depend on the contact
-    radius, ``far``, ``grading`` and it alone.
+    stacks : thicknesses of the coatings of all solids in contact, this one alone unless given. The vertices
+    of the surface depend on the contact radius, ``far``, ``grading`` and them alone.
     One physical group per layer ("coating 1", ..., "substrate"). Raises ValueError when the contact or the
     coatings do not fit into the half-space.
     """
@@ -128,12 +135,14 @@ def meridian_mesh(
         raise ValueError(
             f"contact radius {a:g} in a half-space cut off at {far:g}; choose a larger far boundary"
         )
-    film = min([a, *thicknesses[:1]] if film is None else [a, film])
-    length = float(np.sqrt(a * film))
+    stacks = stacks or (thicknesses,)
+    length = float(np.sqrt(a * min([a, *(h for stack in stacks for h in stack[:1])])))
     xi = np.array([-np.arcsinh(a / length), 0.0, np.arcsinh((far - a) / length)])
     zeta = np.concatenate([[0.0], np.arcsinh(depths / length), [np.arcsinh(far / length)]])
 
-    nodes, triangles, layer = _triangulate(xi, zeta, a / length, grading)
+    bounds = [np.arcsinh(np.cumsum([0.0, *stack]) / length) for stack in stacks]
+    films = sorted({pair for levels in bounds for pair in pairwise(levels.tolist())})
+    nodes, triangles, layer = _triangulate(xi, zeta, films, a / length, grading)
     # Vertices meant to lie on the axis, the interfaces or the outer boundary lie there exactly.
     r = a + length * np.sinh(nodes[0])
     z = length * np.sinh(nodes[1])
@@ -159,9 +168,13 @@ def _twice_area(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:
 
 
 def _triangulate(
-    xi: np.ndarray, zeta: np.ndarray, scale: float, grading: Grading
+    xi: np.ndarray, zeta: np.ndarray, films: list[tuple[float, float]], scale: float, grading: Grading
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Mesh the stretched plane; ``scale`` = a / l converts ``edge_size`` to units of l."""
+    """Mesh the stretched plane.
+
+    films : upper and lower zeta of the coatings of all bodies.   scale : a / l, converts ``edge_size`` to
+    units of l.
+    """
     with session("coated half-space") as gmsh:
         geo = gmsh.model.geo
         axis = [geo.addPoint(xi[0], level, 0) for level in zeta]
@@ -195,19 +208,27 @@ def _triangulate(
         field.add("MathEval", 3)
         origin = f"Sqrt((x-({_literal(xi[0])}))^2+y*y)"
         field.setString(3, "F", f"{_literal(grading.axis_size)}+0.3*{origin}")
-        field.add("Min", 4)
-        field.setNumbers(4, "FieldsList", [1, 2, 3])
-        field.setAsBackgroundMesh(4)
+        number = 3
+        for upper, lower in films:
+            number += 1
+            field.add("MathEval", number)
+            away = f"Max(0,Max(y-({_literal(lower)}),{_literal(upper)}-y))"
+            row = max((lower - upper) / grading.rows, _LEAST_ROW * grading.size)
+            rows = f"{_literal(row)}*(1+{_literal(_GROWTH)}*{beyond})"
+            field.setString(number, "F", f"{rows}+0.4*{away}")
+        field.add("Min", number + 1)
+        field.setNumbers(number + 1, "FieldsList", list(range(1, number + 1)))
+        field.setAsBackgroundMesh(number + 1)
         gmsh.model.mesh.generate(2)
 
         tags, coordinates, _ = gmsh.model.mesh.getNodes()
-        number = np.full(int(tags.max()) + 1, -1)
-        number[tags.astype(int)] = np.arange(tags.size)
+        order = np.full(int(tags.max()) + 1, -1)
+        order[tags.astype(int)] = np.arange(tags.size)
         triangles, layer = [], []
         for k in range(len(layers)):
             for surface in gmsh.model.getEntitiesForPhysicalGroup(2, k + 1):
                 _, members = gmsh.model.mesh.getElementsByType(2, int(surface))
-                corners = number[members.astype(int)].reshape(-1, 3).T
+                corners = order[members.astype(int)].reshape(-1, 3).T
                 triangles.append(corners)
                 layer.append(np.full(corners.shape[1], k))
     nodes = coordinates.reshape(-1, 3).T[:2]

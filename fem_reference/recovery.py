@@ -22,6 +22,7 @@ from functools import cached_property
 import numpy as np
 
 from .axisymmetric import Discretisation, elasticity, strain_operator
+from .integrals import shape_functions
 from .location import LocatedPoints
 from .mesh import EDGE_SIZE, MeridianMesh
 
@@ -104,14 +105,11 @@ class HarmonicField:
         numbers = np.asarray(d.basis.element_dofs)[:, cells]
         A_r, A_z, A_0 = strain_operator(self.harmonic)
         count = A_r.shape[1]
-        values, d_r, d_z = np.zeros((3, count, at.r.size))
-        nodal = self.fields.reshape(count, -1)
-        for i in range(numbers.shape[0]):
-            phi, dphi = d.basis.elem.lbasis(X, i)
-            u = nodal[:, numbers[i]]
-            values += u * phi
-            d_r += u * (dphi[0] * J[1, 1] - dphi[1] * J[1, 0]) / det
-            d_z += u * (dphi[1] * J[0, 0] - dphi[0] * J[0, 1]) / det
+        u = self.fields.reshape(count, -1)[:, numbers]
+        phi, by_X, by_Y = shape_functions(d.order, X)
+        values, along_X, along_Y = (np.einsum("fin,in->fn", u, shape) for shape in (phi, by_X, by_Y))
+        d_r = (along_X * J[1, 1] - along_Y * J[1, 0]) / det
+        d_z = (along_Y * J[0, 0] - along_X * J[0, 1]) / det
         return values, A_r @ d_r + A_z @ d_z + A_0 @ (values / at.r)
 
     @cached_property

@@ -37,8 +37,8 @@ Ball = tuple[float, float, Coatings]
 
 # Triangle size over its distance from the contact edge.
 QUALITY = {"fast": 0.27, "default": 0.12, "fine": 0.1}
-# The same of the default where neighbouring layers differ by more than a factor in their moduli.
-HARD = ((300.0, 0.08), (10.0, 0.1))
+# The default is that of "fine" where neighbouring layers differ by more than this factor in their moduli.
+CONTRAST = 10.0
 LOAD_TOLERANCE = 1e-8
 
 
@@ -210,9 +210,8 @@ def _size(quality: str, size: float | None, bodies: Sequence[Sequence[tuple[floa
     check_choice("quality", quality, tuple(QUALITY))
     if size is None:
         steps = [upper[0] / lower[0] for layers in bodies for upper, lower in pairwise(layers)]
-        contrast = max((max(step, 1 / step) for step in steps), default=1.0)
-        hard = [size for least, size in HARD if contrast > least and quality == "default"]
-        return hard[0] if hard else QUALITY[quality]
+        hard = any(not 1 / CONTRAST <= step <= CONTRAST for step in steps)
+        return QUALITY["fine" if hard and quality == "default" else quality]
     check_positive(size=size)
     if not 0.08 <= size <= 0.5:
         raise ValueError(f"size = {size:g}; choose it between 0.08 (a minute, gigabytes) and 0.5 (coarse)")

@@ -21,7 +21,7 @@ import numpy as np
 from numpy.polynomial import legendre
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
-from scipy.special import j0, spherical_jn
+from scipy.special import j0
 
 __all__ = [
     "LayerTable",
@@ -29,6 +29,7 @@ __all__ = [
     "cosine_transforms",
     "deflection",
     "from_potential",
+    "gauss_legendre",
     "layer_table",
     "over_circle",
     "potential",
@@ -61,9 +62,17 @@ def wavenumbers(reach: float, last: float, scale: float = np.inf) -> tuple[Array
     width = min(PHASE / reach, scale, last / 4)
     regular = np.linspace(width, last, int(last / width) + 2)[1:] if last > width else np.empty(0)
     edges = np.concatenate([[0], np.geomspace(1e-4 * width, width, 10), regular])
-    s, w = legendre.leggauss(NODES)
+    s, w = gauss_legendre(NODES)
     half = np.diff(edges)[:, None] / 2
     return (edges[:-1, None] + half * (1 + s)).ravel(), (half * w).ravel()
+
+
+@lru_cache
+def gauss_legendre(nodes: int) -> tuple[Array, Array]:
+    """Nodes on [-1, 1] and their weights, read-only, (nodes,) each."""
+    s, w = legendre.leggauss(nodes)
+    s.flags.writeable = w.flags.writeable = False
+    return s, w
 
 
 def layer_table(excess: Callable[[Array], Array], depth: float, radius: float, reach: float) -> LayerTable:
@@ -116,9 +125,9 @@ def from_potential(phi: Array) -> Array:
 @lru_cache
 def _abel(terms: int) -> Array:
     """Column j: Legendre coefficients of q(t) = 2 int_0^1 phi'(t (1 - v^2)) dv for phi = x' P_j(2x' - 1)."""
-    v, w = legendre.leggauss(terms + 1)
+    v, w = gauss_legendre(terms + 1)
     v, w = (1 + v) / 2, w / 2
-    s, ws = legendre.leggauss(terms)
+    s, ws = gauss_legendre(terms)
     y = (1 + s)[:, None] / 2 * (1 - v**2)
     P = legendre.legvander(2 * y - 1, terms - 1)
     slope = P + 2 * y[..., None] * (P[..., : max(terms - 1, 1)] @ legendre.legder(np.eye(terms)))
@@ -131,7 +140,7 @@ def over_circle(terms: int, rho: Array) -> Array:
 
     x' = 1 - x^2, x = rho sin(theta): a polynomial in sin(theta), exact to rounding.
     """
-    s, w = legendre.leggauss(2 * terms + 16)
+    s, w = gauss_legendre(2 * terms + 16)
     end = np.arcsin(np.minimum(1, 1 / np.maximum(rho, 1e-300)))
     x = rho[:, None] * np.sin(end[:, None] * (1 + s) / 2)
     y = 1 - np.minimum(x, 1) ** 2
@@ -148,10 +157,11 @@ def cosine_transforms(terms: int, k: Array) -> Array:
     return _even_legendre(terms) @ _even_spherical_bessel(terms + 1, k)
 
 
+@lru_cache
 def _even_legendre(terms: int) -> Array:
     """x' P_m(2x' - 1) = sum_i c_mi (-1)^i P_2i(x), (terms, terms + 1): int_0^1 P_2i cos(kx) = (-1)^i j_2i."""
     n = np.arange(terms + 1)
-    s, w = legendre.leggauss(2 * terms + 4)
+    s, w = gauss_legendre(2 * terms + 4)
     y = 1 - s**2
     value = y[:, None] * legendre.legvander(2 * y - 1, terms - 1)
     even = legendre.legvander(s, 2 * terms)[:, ::2]
@@ -159,15 +169,34 @@ def _even_legendre(terms: int) -> Array:
 
 
 def _even_spherical_bessel(count: int, x: Array) -> Array:
-    """j_0, j_2, .. j_2(count-1), (count, x.size): upward recurrence where x exceeds the order."""
+    """j_0, j_2, .. j_2(count-1), (count, x.size): by j_(n+1) + j_(n-1) = (2n+1)/x j_n.
+
+    Upwards where x exceeds the order; elsewhere downwards from so high an order that its values are nothing
+    but rounding, scaled to j_0 or j_1 in the end (Miller; Abramowitz and Stegun 10.5).
+    """
     found = np.empty((count, x.size))
     large = x > 2 * count
-    for i in range(count):
-        found[i, ~large] = spherical_jn(2 * i, x[~large])
     y = x[large]
     below, here = np.sin(y) / y, np.sin(y) / y**2 - np.cos(y) / y
     for i in range(count):
         found[i, large] = below
         for n in (2 * i, 2 * i + 1):
             below, here = here, (2 * n + 3) / y * here - below
+    y = np.maximum(x[~large], 1e-8)
+    scaled = np.zeros((count, y.size))
+    here, above = np.full(y.size, 1e-250), np.zeros(y.size)
+    for n in range(2 * count + 16 + int(15 * np.cbrt(count)), 0, -1):
+        if n % 2 == 0 and n < 2 * count:
+            scaled[n // 2] = here
+        here, above = (2 * n + 1) / y * here - above, here
+        if np.abs(here).max(initial=0.0) > 1e200:
+            huge = np.abs(here) > 1e200
+            here[huge] *= 1e-250
+            above[huge] *= 1e-250
+            scaled[:, huge] *= 1e-250
+    scaled[0] = here
+    j_0 = np.sin(y) / y
+    j_1 = np.where(y < 1e-2, y / 3 * (1 - y**2 / 10 * (1 - y**2 / 28)), (j_0 - np.cos(y)) / y)
+    first = np.abs(j_0) >= np.abs(j_1)
+    found[:, ~large] = scaled * (np.where(first, j_0, j_1) / np.where(first, here, above))
     return found

@@ -118,7 +118,7 @@ def half_space_integrals(profile: Profile, r: Array, z: Array, power: int) -> tu
     f1, f2 = legendre.legder(f), legendre.legder(f, 2)
     # |s| at which a path starts that would otherwise start nearer to the origin; |f| is of order 1 there
     nearest = min(0.25, 2 / f.size)
-    nodes, weights = legendre.leggauss(int(14 + 1.4 * f.size))
+    nodes, weights = abel.gauss_legendre(int(14 + 1.4 * f.size))
     nodes, weights = (1 + nodes) / 2, weights / 2
     plain, linear = np.empty((4, r.size)), np.empty((4, r.size))
     step = max(1, BLOCK // (3 * nodes.size))

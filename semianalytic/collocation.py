@@ -11,11 +11,10 @@ and Fourier Spectral Methods (2001), section 2. Inverting Abel's integral for ev
 equation of the second kind of Lebedev and Ufliand, PMM 22 (1958) 320-326.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 import numpy as np
-from numpy.polynomial import legendre
 from numpy.typing import NDArray
 from scipy.special import j0
 
@@ -74,8 +73,14 @@ def _reflecting_depth(body: Body) -> float:
     return 14.0 / float(k[felt[-1] if felt.size else 0])
 
 
-def contact(radius: float, load: float | None, approach: float | None, body: Body) -> list[RoundContact]:
-    """Contact of a sphere, with every share of the terms in ``SHARES``.
+def contact(
+    radius: float,
+    load: float | None,
+    approach: float | None,
+    body: Body,
+    shares: Sequence[float] = SHARES,
+) -> list[RoundContact]:
+    """Contact of a sphere, with every share of the terms in ``shares``.
 
     radius [m], and load [N] or approach [m], the other None.
     Raises NotConverged where no contact radius is found.
@@ -89,9 +94,11 @@ def contact(radius: float, load: float | None, approach: float | None, body: Bod
             raise NotConverged(f"the layers' compliance is {M:g} of the first one's; check the moduli")
         return (0.75 * load * radius * M / E_star) ** (1 / 3) if load else (radius * (approach or 0)) ** 0.5
 
-    a = Hertz(radius)
+    a, last = Hertz(radius), 0.0
     for _ in range(40):
-        a = 0.5 * (a + Hertz(a))
+        a, last = 0.5 * (a + Hertz(a)), a
+        if abs(a - last) < 1e-6 * a:
+            break
 
     def solved(a: float, share: float) -> RoundContact:
         terms = share * min(MOST, 6 + 6 * np.sqrt(a / depth))
@@ -103,7 +110,7 @@ def contact(radius: float, load: float | None, approach: float | None, body: Bod
         rough, a = a, solved(a, SHARES[-1]).profile.radius
         if 0.9 < a / rough < 1.1:
             break
-    return [solved(a, share) for share in SHARES]
+    return [solved(a, share) for share in shares]
 
 
 class _Collocation:
@@ -114,7 +121,7 @@ class _Collocation:
 
     def __init__(self, excess: Callable[[Array], Array], depth: float, a: float, terms: int) -> None:
         self.excess, self.terms = excess, terms
-        s, _ = legendre.leggauss(terms + 1)
+        s, _ = abel.gauss_legendre(terms + 1)
         self.rho = np.sqrt((1 - s) / 2)
         self.inner = abel.over_circle(terms, self.rho)
         # a may grow in the search

@@ -89,7 +89,8 @@ def solve(
         threads=threads,
     )
     sphere = Indenter(lambda grid: grid.radius**2 / (2 * radius), load, approach, round=True)
-    found = collocation.contact(radius, load, approach, body)
+    shares = collocation.SHARES if estimate_uncertainty else collocation.SHARES[:1]
+    found = collocation.contact(radius, load, approach, body, shares)
     a = found[0].profile.radius
     if a > LARGEST * radius:
         raise ValueError(

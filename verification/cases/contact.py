@@ -135,7 +135,8 @@ class _Coating(Limited, Stressed):
         """E, nu, thickness of its sub-layers."""
         thickness = self.thickness if self.thickness is not None else a_h * (self.thickness_over_a_h or 0.0)
         n = self.sublayers(over)
-        return tuple((E, self.nu, thickness / n) for E in moduli(self.E, n))
+        # One layer keeps the number as it was given, which knows whether it had a unit.
+        return tuple((E, self.nu, thickness / n if n > 1 else thickness) for E in moduli(self.E, n))
 
 
 class BallEntry(Material):

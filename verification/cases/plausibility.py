@@ -38,11 +38,9 @@ def beyond_limits(p0: float, limits: Limits) -> tuple[str, ...]:
     """A line for each hardness, or yield strength, that the peak pressure ``p0`` [Pa] exceeds."""
     found = []
     for key, value in limits.items():
-        factor, what = (1.0, "it") if key.endswith("hardness") else (YIELD, f"{YIELD:g} times it")
+        factor, what = (1.0, "") if key.endswith("hardness") else (YIELD, f"{YIELD:g} times ")
         if p0 > factor * value:
-            found.append(
-                f"peak pressure {_stress(p0)} is beyond {what}, {key} = {_stress(value)}: not elastic"
-            )
+            found.append(f"peak pressure {_stress(p0)} is beyond {what}{key} = {_stress(value)}: not elastic")
     return tuple(found)
 
 

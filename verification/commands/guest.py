@@ -33,7 +33,7 @@ from verification.guests.subjects import REFERENCE
 from verification.judging.outcome import Outcome
 from verification.problem.quantity import unit_of
 from verification.regression.junit import junit_xml
-from verification.report.guest import badge
+from verification.report.guest import badge, summary
 from verification.report.guest import page as render
 from verification.report.tables.numbers import engineering
 from verification.running.pool import Task
@@ -228,9 +228,9 @@ def _show(guest: Guest, result: CaseResult) -> None:
 
 def report_json(found: Examined, info: RunInfo) -> str:
     """The results as JSON, for other programs."""
-    content = {"schema": REPORT, "guest": found.guest.name, "run": vars(info)}
+    content = {"schema": REPORT, **summary(found), "run": vars(info)}
     cases = [to_json(result) for result in found.results]
-    return json.dumps(content | {"cases": cases}, allow_nan=False, separators=(",", ":")) + "\n"
+    return json.dumps(content | {"results": cases}, allow_nan=False, separators=(",", ":")) + "\n"
 
 
 def exit_code(found: Examined) -> int:

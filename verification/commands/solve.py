@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Annotated, Any
 
 from cyclopts import Parameter
+from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
@@ -14,7 +15,7 @@ from verification.cases.plausibility import beyond_limits
 from verification.commands.common.choice import SHIPPED, path_of
 from verification.commands.common.exits import EXIT, CommandError, no_result, with_exit_code
 from verification.commands.common.options import AsJson, Flag, Strict
-from verification.commands.common.solving import require_gmsh
+from verification.commands.common.solving import progress_bar, require_gmsh
 from verification.commands.common.terminal import print_json, print_out, print_warnings
 from verification.desk.answer import Answer, Difference, answer, differences
 from verification.desk.wording import case_text
@@ -68,14 +69,20 @@ def solve(
     print_warnings(case.warnings, case.name, strict=strict, silent=as_json)
     if check:
         require_gmsh()
-    first = _answer(case, METHOD)
+    stages = 1 + check + bool(case.layers)
+    bar = progress_bar(Console(stderr=True), silent=as_json)
+    with bar:
+        task = bar.add_task("semi-analytical", total=stages)
+        first = _answer(case, METHOD)
+        bar.update(task, advance=1, description="half of the sub-layers")
+        halved = _halved(case, first)
+        bar.update(task, advance=bool(case.layers), description="finite elements, ten times as long")
+        second = _answer(case, SECOND) if check else None
     # Before the solve the peak pressure was that of Hertz.
     told = any(line.startswith("peak pressure") for line in case.warnings)
     late = () if told else beyond_limits(first.numbers["peak_pressure"][0], case.limits)
     print_warnings(late, case.name, strict=strict, silent=as_json)
-    second = _answer(case, SECOND) if check else None
     apart = differences(first, second) if second is not None else ()
-    halved = _halved(case, first)
     if plot is not None:
         from verification.report.figures.solved import write
 

@@ -241,10 +241,8 @@ def _candidates(mine: Profile, exact: Profile, result: CaseResult) -> Iterator[C
     for other in others:
         profile = result.profile_of.get((other, line, REFERENCE))
         if profile is not None and _norm(profile.value - e) > FINE * _norm(e):
-            axes = {quantity[-2:], other[-2:]}
-            normal = all(pair[0] == pair[1] for pair in axes)
-            swapped = " and ".join(sorted({pair[0] for pair in axes})) if normal else ""
-            cause = f": {swapped} transposed?" if swapped else ""
+            axes = set(quantity[-2:]) ^ set(other[-2:])
+            cause = f": {' and '.join(sorted(axes))} transposed?" if len(axes) == 2 else ""
             yield f"equal to {other}{cause}", profile.value, None
             yield f"equal to -{other}{cause}", -profile.value, None
     if "side" in line:

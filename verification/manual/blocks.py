@@ -3,6 +3,7 @@
 Every number comes from the baseline or a record of this version.
 """
 
+import json
 import re
 from collections.abc import Callable, Sequence
 from datetime import datetime
@@ -16,12 +17,14 @@ from verification.credibility.faults.record import read_record
 from verification.manual.markdown import symbol, table, text
 from verification.manual.numbers import FOLDER, baseline, largest, pairs
 from verification.manual.tour import solved
+from verification.manual.worked import worked_1, worked_2, worked_3
 from verification.problem.quantity import QUANTITIES
 from verification.report.tables.numbers import scientific, seconds
 from verification.sources.registry import SOURCES
 
 SOURCE = Path(__file__).parent / "source"
 RECORDS = FOLDER.parents[1] / "credibility" / "shipped"
+GUESTS = FOLDER.parents[1] / "guests" / "shipped" / "guests.json"
 METHODS = ("semianalytic", "fem_reference")
 FIELDS = ("stress", "pressure", "displacement")
 
@@ -81,10 +84,10 @@ def published_counts() -> str:
 def quantities() -> str:
     """Every quantity with name in files, unit, scale, cap."""
     rows = [
-        [f"`{q.name}`", symbol(q.name), q.unit, q.kind, scientific(q.cap, 1), text(q.meaning)]
+        [f"`{q.name}`", symbol(q.name), text(q.meaning), q.kind, q.unit, scientific(q.cap, 1)]
         for q in QUANTITIES.values()
     ]
-    return table(["name in files", "symbol", "unit", "kind", "cap", "meaning"], rows)
+    return table(["name in files", "symbol", "meaning", "kind", "unit", "cap"], rows, 5)
 
 
 def sources() -> str:
@@ -151,6 +154,23 @@ def false_alarms() -> str:
     return "\n\n".join(parts)
 
 
+def real_guests() -> str:
+    """Codes of others examined: cases, largest differences, time, memory."""
+    columns = ("peak_pressure", "contact_radius", "approach", "pressure", "displacement")
+    rows = []
+    for one in json.loads(GUESTS.read_text(encoding="utf-8")):
+        gaps = (one["differences"].get(name) for name in columns)
+        cells = ["–" if gap is None else scientific(max(gap, 1e-15), 1) for gap in gaps]
+        low, high = one["seconds"]
+        time = seconds(high) if round(low) == round(high) else f"{seconds(low)} to {seconds(high)}"
+        memory = "–" if one["memory"] is None else f"{one['memory'] / 1e6:.0f} MB"
+        agree = f"{one['agree']} of {one['answered']}"
+        rows.append([text(one["guest"]), str(one["cases"]), text(one["levels"]), *cells, time, memory, agree])
+    head = ["code", "problems", "levels", "$p_0$", "$a$", r"$\delta$", "$p(r)$", "$u_z$ under a square"]
+    caption = "Largest difference from the exact solution; time at the finest level, on a busy machine."
+    return table([*head, "time", "memory", "agree"], rows, 3) + f"\n\n{caption}\n"
+
+
 def history() -> str:
     """Updates of the baseline with their reasons, the last first."""
     rows = [[_day(u.when), str(u.numbers), text(u.why)] for u in reversed(baseline().history)]
@@ -183,8 +203,12 @@ _ALL: Sequence[Callable[[], str]] = (
     invariants,
     fault_score,
     false_alarms,
+    real_guests,
     history,
     solved,
+    worked_1,
+    worked_2,
+    worked_3,
     more_pages,
 )
 BLOCKS: dict[str, Callable[[], str]] = {block.__name__: block for block in _ALL}

@@ -1,8 +1,6 @@
-"""The manual as one PDF, its pages numbered, through an installed Chromium.
+"""The manual as one PDF with its contents, through an installed Chromium."""
 
-The page is printed twice: the first print shows on which page each heading lies.
-"""
-
+import base64
 import html
 import re
 import tempfile
@@ -12,9 +10,16 @@ from verification.manual.build import build
 from verification.report.pdf import printed
 
 # Headings of chapters with those of their sections, each in a section with an anchor.
-HEADING = re.compile(r'<section id="([^"]+)">\n(?:<span [^>]*></span>)*<h([23])>(.*?)</h\2>', re.DOTALL)
+HEADING = re.compile(
+    r'<section(?: class="[^"]*")? id="([^"]+)">\n(?:<span [^>]*></span>)*<h([23])>(.*?)</h\2>', re.DOTALL
+)
 PERMALINK = re.compile(r'<a class="headerlink".*?</a>')
 TAG = re.compile(r"<[^>]+>")
+SCRIPT = re.compile(r"<script\b.*?</script>", re.DOTALL)
+SHEET = re.compile(r'<link rel="stylesheet"[^>]*href="([^"?]+)[^"]*"[^>]*/>')
+PICTURE = re.compile(r'(<img\b[^>]*src=")([^":]+)(")')
+FONT = re.compile(r'url\("([^":]+\.woff2)"\)')
+TYPES = {".svg": "image/svg+xml", ".png": "image/png", ".woff2": "font/woff2"}
 
 
 def print_manual(folder: Path, name: str, time_limit: float) -> list[Path]:
@@ -25,37 +30,40 @@ def print_manual(folder: Path, name: str, time_limit: float) -> list[Path]:
     with tempfile.TemporaryDirectory() as work:
         one = Path(work) / "one"
         first = build(folder, one)
-        page, draft = one / "index.html", Path(work) / "draft.pdf"
-        text = page.read_text(encoding="utf-8")
-        page.write_text(with_contents(text, {}), encoding="utf-8")
-        places = pages_of(printed(page, draft, time_limit))
-        page.write_text(with_contents(text, places), encoding="utf-8")
+        page = one / "index.html"
+        page.write_text(with_contents(in_one_file(page)), encoding="utf-8")
         return [first, printed(page, folder / name, time_limit)]
 
 
-def with_contents(page: str, places: dict[str, int]) -> str:
-    """The page with its contents before the first chapter; ``places``: page number by anchor."""
+def in_one_file(page: Path) -> str:
+    """The page with its style sheets, fonts and pictures in it, without scripts."""
+    folder = page.parent
+
+    def sheet(found: re.Match[str]) -> str:
+        path = folder / found[1]
+        style = FONT.sub(
+            lambda font: f'url("{_data(path.parent / font[1])}")', path.read_text(encoding="utf-8")
+        )
+        return f"<style>{style}</style>"
+
+    text = SCRIPT.sub("", page.read_text(encoding="utf-8"))
+    text = SHEET.sub(sheet, text)
+    return PICTURE.sub(lambda found: f"{found[1]}{_data(folder / found[2])}{found[3]}", text)
+
+
+def with_contents(page: str) -> str:
+    """The page with its contents before the first chapter, as `printed` numbers them."""
     rows, first = [], 0
     for found in HEADING.finditer(page):
         anchor, level, title = found[1], found[2], TAG.sub("", PERMALINK.sub("", found[3])).strip()
         first = first or found.start()
-        number = str(places.get(anchor, ""))
         rows.append(
-            f'<li class="level-{level}"><a href="#{html.escape(anchor)}"><span>{title}</span></a>'
-            f"<span>{number}</span></li>"
+            f'<li class="level-{level}"><a href="#{html.escape(anchor)}"><span>{title}</span><b></b></a></li>'
         )
     contents = f'<nav class="contents"><h2>Contents</h2><ol>{"".join(rows)}</ol></nav>'
     return page[:first] + contents + page[first:]
 
 
-def pages_of(path: Path) -> dict[str, int]:
-    """Page number, from 1, of every anchor that a link of the PDF leads to."""
-    from pypdf import PdfReader
-
-    reader = PdfReader(path)
-    found = {}
-    for name, place in reader.named_destinations.items():
-        number = reader.get_destination_page_number(place)
-        if number is not None:
-            found[name.lstrip("/")] = number + 1
-    return found
+def _data(path: Path) -> str:
+    """A file as an address that holds it."""
+    return f"data:{TYPES[path.suffix]};base64,{base64.b64encode(path.read_bytes()).decode()}"

@@ -15,7 +15,7 @@ from typing import Any
 from verification.manual.blocks import BLOCKS, SOURCE
 from verification.manual.pages import generated_pages
 
-NEEDED = ("sphinx", "myst_parser", "furo", "pypdf")
+NEEDED = ("sphinx", "myst_parser", "furo")
 BLOCK = re.compile(r"^```\{generated\} (\w+)\n```$", re.MULTILINE)
 HTML, ONE_PAGE = "html", "singlehtml"
 MARK = "objects.inv"  # a file of every manual, by which a folder is known as one

@@ -35,7 +35,7 @@ def _run() -> tuple[str, bytes]:
         done = subprocess.run(
             [sys.executable, "-m", "verification.cli", *words],
             cwd=work,
-            env={**_environment(), "COLUMNS": "100", "NO_COLOR": "1"},
+            env={**environment(), "COLUMNS": "100", "NO_COLOR": "1"},
             capture_output=True,
             text=True,
             check=True,
@@ -48,6 +48,6 @@ def _page() -> str:
     return re.sub(r" \\\n +", " ", PAGE.read_text(encoding="utf-8"))
 
 
-def _environment() -> dict[str, str]:
+def environment() -> dict[str, str]:
     """The environment, in which the package of this process is found from any directory."""
     return {**os.environ, "PYTHONPATH": os.pathsep.join([str(PAGE.parents[3]), *filter(None, sys.path)])}

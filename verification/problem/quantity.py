@@ -107,7 +107,7 @@ QUANTITIES: dict[str, Quantity] = {
         Quantity("contact_radius", "scalar", _BOTH, "a", "a", "m", "a_h", 2e-4),
         Quantity("approach", "scalar", _BOTH, "approach", r"\delta", "m", "delta_h", 1e-4),
         Quantity(
-            "stiffness", "slope", _CONTACT, "dW/d delta", r"dW/d\delta", "N/m", "S_h", 1e-4, meaning=_SLOPE
+            "stiffness", "slope", _CONTACT, "dW/d delta", r"dW/d\delta", "N/m", "S_h", 2e-5, meaning=_SLOPE
         ),
         Quantity("tau_max", "scalar", _AXIS, "tau_max", r"\tau_{max}", "Pa", meaning=_SHEAR),
         Quantity("von_mises_max", "scalar", _AXIS, "von_mises_max", r"\sigma_{vM}", "Pa", meaning=_MISES),

@@ -3,11 +3,12 @@
 from collections import Counter
 from collections.abc import Sequence
 from math import log10
+from typing import Any
 
 import numpy as np
 from markupsafe import Markup
 
-from verification.guests.diagnosis import slips
+from verification.guests.diagnosis import UNEXPLAINED, slips
 from verification.guests.exam import profiles_of
 from verification.guests.examination import Examined, outcome_counts
 from verification.guests.subjects import REFERENCE
@@ -42,6 +43,7 @@ WORST_FIRST = (
     Outcome.UNSUPPORTED,
 )
 MOST_FIGURES, MOST_DIGITS = 12, 15
+MOST_REASONS, MOST_REASONS_LISTED = 2, 20
 GUEST, EXACT = Style("semi"), Style("exact", (), 5.0, 0.35)
 DASHED = ((), DASHES, DOTS, MIXED)
 OWN = ("semi", "fem")
@@ -86,6 +88,33 @@ def badge(found: Examined) -> str:
     ).format(width=left + right, left=left, right=right, colour=colour, at=left + 6, text=text)
 
 
+def summary(found: Examined) -> dict[str, Any]:
+    """The examination in a few numbers, for a table of several guests.
+
+    differences : the largest of each kind of quantity, by the name of a scalar.   seconds : shortest, longest
+    answer at the finest level.   memory : the largest [bytes], None where it is not known.
+    """
+    total, guest = outcome_counts(found.results), found.guest
+    differences: dict[str, float] = {}
+    for claim, verdict in (item for result in found.results for item in result.verdicts):
+        if verdict.difference is not None:
+            kind = QUANTITIES[claim.quantity].kind
+            name = claim.quantity if kind == "scalar" else kind
+            differences[name] = max(differences.get(name, 0.0), verdict.difference)
+    own = [s for r in found.results for s in r.sources if s.source == guest.name and s.seconds]
+    times = [source.seconds for source in own]
+    return {
+        "guest": guest.name,
+        "cases": len(own),
+        "levels": f"{guest.parameter} {', '.join(f'{v:g}' for v in guest.levels)}" if guest.levels else "",
+        "agree": total[Outcome.AGREES],
+        "answered": sum(total.values()) - total[Outcome.UNSUPPORTED],
+        "differences": differences,
+        "seconds": [min(times, default=0.0), max(times, default=0.0)],
+        "memory": max((s.diagnostics["memory"] for s in own if "memory" in s.diagnostics), default=None),
+    }
+
+
 def _uncertainty(found: Examined) -> str:
     guest = found.guest
     if guest.levels:
@@ -100,11 +129,12 @@ def digits(difference: float | None) -> str:
     """Correct decimal digits of the largest difference; a dash for None."""
     if difference is None:
         return "–"
-    return f"{min(-log10(max(difference, 10.0**-MOST_DIGITS)), MOST_DIGITS):.1f}"
+    return f"{min(max(-log10(max(difference, 10.0**-MOST_DIGITS)), 0.0), MOST_DIGITS):.1f}"
 
 
 def _quantities(found: Examined) -> Section:
-    """A row for each quantity, the worst first: what to look at."""
+    """A row for each quantity, the worst first, with its likely reason: what to look at."""
+    reasons = _reasons(found)
     rows: list[tuple[tuple[int, float], Row]] = []
     for quantity in dict.fromkeys(c.quantity for r in found.results for c, _ in r.verdicts):
         verdicts = [(r, c, v) for r in found.results for c, v in r.verdicts if c.quantity == quantity]
@@ -117,36 +147,56 @@ def _quantities(found: Examined) -> Section:
         if gaps:
             gap, result, claim = max(gaps, key=lambda item: item[0])
             where = result.title + ("" if claim.line == "contact" else f", {claim.line}")
-        cells = [number(float(count[o]), lambda n: f"{n:.0f}" if n else "·") for o in WORST_FIRST]
+        answered = len(verdicts) - count[Outcome.UNSUPPORTED]
+        why = [message for message, places in reasons if any(q == quantity for _, q, _ in places)]
+        why = [message for message in why if not message.startswith(UNEXPLAINED)] or why[:1]
         rows.append(
             (
                 (WORST_FIRST.index(worst), -(gap or 0.0)),
                 row(
                     Cell(quantity, note=QUANTITIES[quantity].meaning),
-                    outcome_cell(worst),
-                    *cells,
-                    number(gap),
+                    words("; ".join(why[:MOST_REASONS])),
                     Cell(digits(gap), gap),
+                    outcome_cell(worst),
+                    Cell(f"{count[Outcome.AGREES]} of {answered}", count[Outcome.AGREES] / answered),
+                    number(gap),
                     words(where),
                     css=row_css(worst),
                 ),
             )
         )
-    heads = ["quantity", "worst", *(OUTCOMES[o].word for o in WORST_FIRST)]
     table = Table(
-        "Comparisons of each quantity over all cases and lines, with the largest difference and the digits "
-        "it leaves; relative to the value (p0, a, approach), else to the smaller of p_h and p0.",
-        [*heads, "largest difference", "digits", "where"],
+        "The largest difference over all cases and lines with the digits that it leaves; relative to the "
+        "value (p0, a, approach), else to the smaller of p_h and p0.",
+        ["quantity", "likely reason", "digits", "worst", "agree", "largest difference", "where"],
         [line for _, line in sorted(rows, key=lambda item: item[0])],
     )
-    named = [(r, slip) for r in found.results for slip in slips(r, found.guest.name)]
     parts = [Part("", [table])]
-    if named:
-        reasons = [row(r.title, words(str(slip))) for r, slip in named]
-        parts.append(
-            Part("Likely reasons.", [Table("What common slips would give.", ["case", "slip"], reasons)])
-        )
+    if reasons:
+        lines = [
+            row(
+                words(message),
+                words("; ".join(dict.fromkeys(_place(q, line) for _, q, line in places))),
+                words("; ".join(dict.fromkeys(r.title for r, _, _ in places))),
+            )
+            for message, places in reasons[:MOST_REASONS_LISTED]
+        ]
+        title = "What common slips would give, most comparisons first."
+        parts.append(Part("Likely reasons.", [Table(title, ["slip", "explains", "cases"], lines)]))
     return Section("quantities", "Which quantity is wrong?", parts)
+
+
+def _reasons(found: Examined) -> list[tuple[str, list[tuple[CaseResult, str, str]]]]:
+    """Each likely slip with its cases, quantities and lines; unexplained differences last."""
+    by: dict[str, list[tuple[CaseResult, str, str]]] = {}
+    for result in found.results:
+        for slip in slips(result, found.guest.name):
+            by.setdefault(slip.message, []).extend((result, *place) for place in slip.places)
+    return sorted(by.items(), key=lambda item: (item[0].startswith(UNEXPLAINED), -len(item[1])))
+
+
+def _place(quantity: str, line: str) -> str:
+    return quantity if line == "contact" else f"{quantity} on {line}"
 
 
 def _cases(found: Examined) -> Section:
@@ -200,7 +250,14 @@ def _failures(found: Examined) -> Section | None:
         return None
     along = [item for item in bad if item[1].line != "contact"]
     along.sort(key=lambda item: -(item[2].difference or 0.0))
-    figures = [_figure(found.guest.name, *item) for item in along[:MOST_FIGURES]]
+    # Every quantity once before one is shown again.
+    seen: Counter[str] = Counter()
+    ranked = []
+    for item in along:
+        ranked.append((seen[item[1].quantity], item))
+        seen[item[1].quantity] += 1
+    ranked.sort(key=lambda one: one[0])
+    figures = [_figure(found.guest.name, *item) for _, item in ranked[:MOST_FIGURES]]
     parts = []
     if figures:
         legend = [(Markup('<span class="s-semi">—</span>'), "guest"), (Markup("<span>━</span>"), "exact")]
@@ -210,7 +267,7 @@ def _failures(found: Examined) -> Section | None:
         )
         parts.append(
             Part(
-                "Values along the line, the largest differences first.",
+                "Values along the line: of each quantity the largest difference, then the others.",
                 gallery=Gallery(legend, figures, caption),
             )
         )
@@ -267,7 +324,7 @@ def _figure(guest: str, result: CaseResult, claim: Claim, verdict: Verdict) -> P
         cap=claim.cap,
         unjudged=[(1 - claim.edge, 1 + claim.edge)] if claim.edge else (),
     )
-    return Panel(f"{claim.quantity}, {claim.line}", figure, result.title, row_css(verdict.outcome))
+    return Panel(f"{claim.quantity}, {claim.line}", figure, result.title, "fails")
 
 
 def _convergence(found: Examined) -> Section | None:

@@ -141,4 +141,5 @@ def _at_edge(solution: Solution, value: Array, U: Array, at_own_edge: Callable[[
     """Uncertainty at the solution's own edge from values at ``around_edge`` of each side, (..., 5 sides)."""
     change = followed(solution, at_own_edge)
     shape = (*value.shape[:-1], -1, 5)
-    return edge_uncertainty(value.reshape(shape), U.reshape(shape), change)
+    ends = None if change is None else change[..., None, :]
+    return edge_uncertainty(value.reshape(shape), U.reshape(shape), ends)

@@ -26,6 +26,7 @@ FIT = 0.1  # of the uncertainty: what the polynomial may leave
 CLEAR = 0.1  # of the largest sample: by as much it may lie below the maximum that it brackets
 # Of a: the distance from the edge at which the uncertainty of the stress no longer is that of the radius.
 BESIDE = 1e-2
+SIDES = np.array([-1.0, 1.0])  # x/a of the ends of the contact
 
 
 @dataclass(frozen=True)
@@ -79,8 +80,7 @@ class Search:
         if best is None:
             if U is None:
                 return Tension(highest, place, None, None)
-            side = np.sign(place)
-            change = followed(self.solution, lambda one: _tension(one, side * one.contact_radius))
+            change = followed(self.solution, lambda one: _tension(one, SIDES * one.contact_radius))
             wide = float(edge_uncertainty(value[at], U[at], change))
             best = Tension(highest, place, wide, float(self.solution.uncertainty.contact_radius))
         if best.uncertainty is None or best.place_uncertainty is None:
@@ -145,14 +145,14 @@ def edge_uncertainty(value: Array, U: Array, change: Array | None) -> Array:
     """Uncertainty [Pa] of stresses at the solution's own contact edge, (...,).
 
     The error of the radius moves the place and not the value. The larger uncertainty ``BESIDE`` the edge,
-    either side, plus the ``change`` of the value at its own edge over the coarser companions, (...,); of a
-    solution without any at least the excess of its uncertainty at the edge over the change by its uncertain
-    radius.
+    either side, plus the ``change`` of the value at its own edge over the coarser companions, (..., ends),
+    the larger of both ends of the contact, since at one it may be small by chance; of a solution without any
+    at least the excess of its uncertainty at the edge over the change by its uncertain radius.
     value, U : at the radii ``around_edge``, (..., 5).
     """
     beside = U[..., 1:3].max(axis=-1)
     if change is not None:
-        return beside + change
+        return beside + change.max(axis=-1)
     return np.maximum(beside, U[..., 0] - np.abs(value[..., 3:] - value[..., :1]).max(axis=-1))
 
 
@@ -160,5 +160,5 @@ def _radius(a: float, t: Array) -> Array:
     return a * np.where(t < 0, np.cos(np.minimum(t, 0)), np.cosh(np.maximum(t, 0)))
 
 
-def _tension(solution: Solution, x: float) -> Array:
-    return solution.stress(np.array([x]), 0.0, 0.0, layer=0)[0, 0, 0]
+def _tension(solution: Solution, x: Array) -> Array:
+    return solution.stress(x, 0.0, 0.0, layer=0)[0, 0]

@@ -169,14 +169,15 @@ def surface(parts: Parts, a: float, h: float, reach: float) -> Plane:
 
 
 def _change(parts: Parts) -> Array | None:
-    """Change of the stress at the contact edge, at x = a and -a, over the coarser companions, (2, 4)."""
+    """Change of the stress at x = a and -a over the coarser companions, (1, 4, 2)."""
 
     def at_edge(solution: Any) -> Array:
         edge = np.array([float(solution.contact_radius)])
         normal, tangential, _ = Parts(solution, parts.friction, stated=False)(edge, 0.0, 0)
         return np.stack([normal + g * tangential for g in (parts.friction, -parts.friction)])[..., 0]
 
-    return followed(parts.solution, at_edge)
+    change = followed(parts.solution, at_edge)
+    return None if change is None else change.T[None]
 
 
 @dataclass(frozen=True)

@@ -10,19 +10,21 @@ from quick_case import coatcheck
 
 import verification
 from verification.cases.contact import read_case, shipped_cases
-from verification.guests.description import read_guest
+from verification.cases.toml import CaseError
+from verification.guests.description import GROUP, installed_guests, read_guest
 from verification.guests.doors.asking import answered
 from verification.guests.doors.files import fill, pack, read_answer
 from verification.guests.exam import claims_of, prepare, question_of
 from verification.guests.protocol import ProtocolError, schema
-from verification.guests.subjects import PLANE, subject_of
+from verification.guests.subjects import PLANE, REFERENCE, subject_of
 from verification.guests.verdicts import judged
 from verification.judging.verdict import Outcome
 from verification.problem.quantity import STRESSES
-from verification.running.contact import run
-from verification.running.result import from_json
+from verification.running.contact import decide
+from verification.running.result import SourceResult, from_json
 from verification.running.store import read_checked
-from verification.sources.registry import solvers
+from verification.sampling.lines import sample, sample_contact
+from verification.sources.registry import SOURCES
 
 PACKAGE = Path(verification.__file__).parent
 EXAMPLES = PACKAGE / "guests" / "examples"
@@ -37,16 +39,16 @@ def guest_in(folder, text):
 
 
 def through_all_doors(method, case, folder):
-    """Results of a method of this package as function, as program and as files, at one case."""
+    """The exact reference; results of a method as function, as program and as files, at one case."""
     path = folder / "exam.json"
     prepare(case.name, case.text, str(path))
     exam = from_json(read_checked(path))
-    name = f'name = "own"\n{SUPPORTS}'
+    name = f'name = "own"\ntime_limit = 900\n{SUPPORTS}'  # of a machine at work
     command = json.dumps([sys.executable, *SERVED, f"{method}:solve"])
     by_function = guest_in(folder / "function", f'{name}callable = "{method}:solve"')
     by_program = guest_in(folder / "program", f"{name}command = {command}")
     by_files = guest_in(folder / "files", f'{name}results = "answers"')
-    results = []
+    results = [exam]
     for guest in (by_function, by_program):
         questions = [question_of(case, exam, guest, claims_of(case, guest), {})]
         replies = answered(guest, case, questions)
@@ -57,11 +59,19 @@ def through_all_doors(method, case, folder):
     return results
 
 
-def inside_verdicts(name, method):
-    case = read_case(shipped_cases()[name])
-    pair = (method, "integral_equation")
-    available = {name: solve for name, solve in solvers().items() if name in pair}
-    return {(c.quantity, c.line): v.outcome for c, v in run(case, available).verdicts if c.between == pair}
+def inside_verdicts(name, method, exam):
+    """Verdicts as the run inside reaches them, at the points that guests are asked for."""
+    case, source = read_case(shipped_cases()[name]), SOURCES[method]
+    solution = source.solve(case.problem, case.numerics.get(method, {}))
+    places = {p.line: p.position for p in exam.profiles}
+    edge = float(exam.profile_of["contact_radius", "contact", REFERENCE].value[0])
+    found = list(sample_contact(solution, method, case.problem))
+    for line in case.lines:
+        found += sample(solution, method, line, places[line.name], case.problem, edge)
+    profiles = {(p.quantity, p.line, p.source): p for p in (*exam.profiles, *found)}
+    sides = {side: SourceResult(side, 0.0) for side in (method, REFERENCE)}
+    claims = [claim for claim in case.claims if claim.between == tuple(sides)]
+    return {(c.quantity, c.line): decide(c, profiles, sides, case.problem).outcome for c in claims}
 
 
 def outcomes(result):
@@ -70,16 +80,18 @@ def outcomes(result):
 
 def check_own(method, name, folder):
     """The verdicts through all doors are equal, and those of the run inside; on the plane they are more."""
-    function, program, files = through_all_doors(method, subject_of(read_case(shipped_cases()[name])), folder)
+    case = subject_of(read_case(shipped_cases()[name]))
+    exam, function, program, files = through_all_doors(method, case, folder)
     assert [v for _, v in function.verdicts] == [v for _, v in program.verdicts]
     assert [v for _, v in function.verdicts] == [v for _, v in files.verdicts]
-    inside = inside_verdicts(name, method)
-    assert set(inside.values()) == {Outcome.AGREES}
+    inside = inside_verdicts(name, method, exam)
     assert outcomes(function) == inside | {(q, PLANE): Outcome.AGREES for q in STRESSES}
+    return function
 
 
 def test_the_semi_analytical_method_gets_the_verdicts_it_has_inside(tmp_path):
-    check_own("semianalytic", "01_uncoated_steel", tmp_path)
+    function = check_own("semianalytic", "01_uncoated_steel", tmp_path)
+    assert set(outcomes(function).values()) == {Outcome.AGREES}
 
 
 @pytest.mark.slow
@@ -121,6 +133,19 @@ def test_a_guest_file_that_cannot_be_used_is_code_2_with_one_message(tmp_path, t
     assert done.returncode == 2
     assert words in done.stderr
     assert len(done.stderr.strip().splitlines()) == 1
+
+
+def test_a_guest_of_an_installed_package_is_found_by_its_name(tmp_path, monkeypatch):
+    shutil.copytree(EXAMPLES / "start", tmp_path / "their_package")
+    record = tmp_path / "their_package-1.0.dist-info"
+    record.mkdir()
+    (record / "METADATA").write_text("Metadata-Version: 2.1\nName: their_package\nVersion: 1.0\n")
+    (record / "entry_points.txt").write_text(f"[{GROUP}]\ntheir_code = their_package\n")
+    with pytest.raises(CaseError, match="their_code"):
+        read_guest("their_code")
+    monkeypatch.syspath_prepend(str(tmp_path))
+    assert installed_guests() == {"their_code": tmp_path / "their_package" / "guest.toml"}
+    assert read_guest("their_code").folder == tmp_path / "their_package"
 
 
 def test_exit_codes_of_a_guest(tmp_path):

@@ -32,7 +32,12 @@ GUESTS = {method: read_guest(ADAPTERS[method].__file__.replace("adapter.py", "")
 approx = partial(pytest.approx, rel=1e-12)
 PASSED = (Outcome.AGREES, Outcome.UNSUPPORTED)
 PRESSED = ("01_uncoated_steel", "05_ratio_4")  # whose solids are examined under prescribed loads
-UNSEEN = set()
+# The faults that no answer shows, with the reason; all but the last are not caught inside either.
+UNSEEN = {
+    "no_padding": "the exact edge profile replaces the deflection of the patches, and the result is right",
+    "stiffness_step": "the stated uncertainty grows with the step and covers it, below the cap",
+    "hoop_traction_on_the_surface": "no shear is asked on the surface off y = 0, where q = f p is given",
+}
 
 
 class Examiner:
@@ -127,5 +132,5 @@ def test_stresses_of_a_whole_plane_are_interpolated():
 @pytest.mark.slow
 def test_planted_faults_are_caught_through_the_door(examiner):
     missed = {fault.name for fault in OF_METHODS if examiner.caught(fault) is None}
-    assert missed <= UNSEEN
+    assert missed <= UNSEEN.keys()
     assert len(missed) <= 0.05 * len(OF_METHODS)

@@ -33,6 +33,8 @@ def test_at_least_500_problems_with_50_000_values(shipped):
 
 def test_the_schema_holds_and_every_value_has_its_uncertainty(shipped):
     content.VectorSet.model_validate_json(json.dumps(shipped))
+    assert "CC0" in shipped["licence"]
+    assert "coatcheck" in shipped["cite"]
     for one in shipped["problems"]:
         for points in one["points"]:
             assert points["values"].keys() == points["uncertainty"].keys()

@@ -4,6 +4,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import numpy as np
+from matplotlib.ticker import MaxNLocator
 
 from verification.report.html.templates import render_sections
 from verification.report.study.figures import (
@@ -247,6 +248,7 @@ def _tracks(study: Study, found: Sequence[Critical]) -> list[Drawn]:
             lower.set_xlabel("load [N]")
             lower.set_xlim(one.load[0], one.load[-1])
             top = upper.secondary_xaxis("top", functions=_pressure(ramp.load, ramp.p0 / units.pascal))
+            top.xaxis.set_major_locator(MaxNLocator(5))
             top.set_xlabel(f"peak pressure $p_0$ [{units.stress}]")
             below(figure, upper.get_legend_handles_labels()[0], 2)
             rows += [

@@ -1,4 +1,4 @@
-"""ContactMechanics: constrained conjugate gradients on a free half-space, uncoated."""
+"""ContactMechanics: constrained conjugate gradients, free half-space, uncoated; its response to a square."""
 
 import numpy as np
 from ContactMechanics import FreeFFTElasticHalfSpace
@@ -6,12 +6,18 @@ from ContactMechanics.Factory import make_system
 from SurfaceTopography import Topography
 
 
-def solve(radius, load, substrate, patches=257):
+def solve(substrate, radius=None, load=None, pressure=None, side=None, patches=257):
     """The contact of a paraboloid on the square [-1.5 a, 1.5 a]^2 of ``patches`` a side, an odd number."""
     E, nu = substrate
-    E_star = E / (1 - nu**2)
+    E_star, n = E / (1 - nu**2), int(patches)
+    if side is not None:
+        half_space = FreeFFTElasticHalfSpace((n, n), E_star, (n * side, n * side))
+        force = np.zeros((2 * n, 2 * n))
+        force[n // 2, n // 2] = -pressure * side**2
+        u = half_space.evaluate_disp(force)
+        at = lambda v: n // 2 + np.rint(v / side).astype(int)  # noqa: E731
+        return {"displacement": lambda x, y, z: np.tile(u[at(x), at(y)], (3, 1))}
     side = 3 * (3 * load * radius / (4 * E_star)) ** (1 / 3)
-    n = int(patches)
     x = (np.arange(n) - n // 2) * side / n
     heights = -(x[:, None] ** 2 + x[None, :] ** 2) / (2 * radius)
     half_space = FreeFFTElasticHalfSpace((n, n), E_star, (side, side))

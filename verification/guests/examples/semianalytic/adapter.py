@@ -1,4 +1,4 @@
-"""The semi-analytical method: spheres, discs, and squares, which are its influence coefficients."""
+"""The semi-analytical method as a guest: spheres, discs, squares by its influence coefficients."""
 
 from typing import Any
 
