@@ -84,10 +84,10 @@ def published_counts() -> str:
 def quantities() -> str:
     """Every quantity with name in files, unit, scale, cap."""
     rows = [
-        [f"`{q.name}`", symbol(q.name), q.unit, q.kind, scientific(q.cap, 1), text(q.meaning)]
+        [f"`{q.name}`", symbol(q.name), text(q.meaning), q.kind, q.unit, scientific(q.cap, 1)]
         for q in QUANTITIES.values()
     ]
-    return table(["name in files", "symbol", "unit", "kind", "cap", "meaning"], rows)
+    return table(["name in files", "symbol", "meaning", "kind", "unit", "cap"], rows, 5)
 
 
 def sources() -> str:

@@ -10,7 +10,9 @@ from verification.manual.build import build
 from verification.report.pdf import printed
 
 # Headings of chapters with those of their sections, each in a section with an anchor.
-HEADING = re.compile(r'<section id="([^"]+)">\n(?:<span [^>]*></span>)*<h([23])>(.*?)</h\2>', re.DOTALL)
+HEADING = re.compile(
+    r'<section(?: class="[^"]*")? id="([^"]+)">\n(?:<span [^>]*></span>)*<h([23])>(.*?)</h\2>', re.DOTALL
+)
 PERMALINK = re.compile(r'<a class="headerlink".*?</a>')
 TAG = re.compile(r"<[^>]+>")
 SCRIPT = re.compile(r"<script\b.*?</script>", re.DOTALL)

@@ -46,7 +46,7 @@ def test_the_page_to_be_printed_loads_no_file_and_lists_its_chapters(tmp_path):
     (tmp_path / "a.svg").write_text("<svg/>")
     (tmp_path / "index.html").write_text(
         '<link rel="stylesheet" type="text/css" href="a.css?v=1" /><script src="a.js"></script>'
-        '<section id="one">\n<h2>First <em>chapter</em><a class="headerlink" href="#one">x</a></h2>'
+        '<section class="a" id="one">\n<h2>First <em>chapter</em><a class="headerlink" href="#one">x</a></h2>'
         '<img alt="" src="a.svg" />'
     )
     page = book.with_contents(book.in_one_file(tmp_path / "index.html"))
