@@ -20,7 +20,9 @@ the edge by up to the square root of da. The change of the field under that disp
 estimate of pressures and stresses.
 
 The error of a displacement is smooth and mostly that of the whole mesh: its estimate is one number for each
-component, the largest difference at the samples of all triangles times the same factor.
+component, the largest difference at the samples of all triangles times the same factor. In a thin coating,
+whose triangles are small for its sake alone, that is also true of the stress: the relative error of the
+approach, due to the whole mesh, counts everywhere.
 """
 
 from collections.abc import Callable
@@ -298,13 +300,17 @@ class StressEstimate(_Uncached):
 
 @dataclass(frozen=True, eq=False)
 class Estimates:
-    """Uncertainty of a solution: ``scalars`` in SI units, pressure and stresses in scaled units."""
+    """Uncertainty of a solution: ``scalars`` in SI units, pressure and stresses in scaled units.
+
+    pollution : estimated error of the stress anywhere, due to the whole mesh
+    """
 
     scalars: Uncertainty
     pressure: PressureEstimate
     normal: StressEstimate
     tangential: StressEstimate | None
     companion: ElasticState
+    pollution: float
 
     def with_friction(self, state: ElasticState, friction: float) -> "Estimates":
         """The estimates of ``state``, which slides with ``friction``; the companion is solved for it."""
@@ -315,7 +321,7 @@ class Estimates:
                 self.normal,
                 field=state.tangential,
                 companion=companion.tangential,
-                everywhere=everywhere,
+                everywhere=everywhere + friction * self.pollution,
                 far=far,
             )
         return replace(self, companion=companion, tangential=estimate)
@@ -385,6 +391,9 @@ def estimates(
     displacement, factor = units.displacement, _factor(d.order, size)
     pointwise, functional = factor * _coarseness(size), _functional_factor(d.order, size)
     balance = load_residual / 2 * a  # a ~ W^(1/n), n at least 2 on any layers
+    # what the whole mesh misses shows in the approach, and as such a share of the stress everywhere
+    share = functional * size_approach / central
+    pollution = share * largest
     radius_error = functional * size_radius + SAFETY * edge + far_radius + balance
     everywhere = far_pressure + load_residual / 3 * largest
     pressure = PressureEstimate(
@@ -406,7 +415,7 @@ def estimates(
     budget = tuple((quantity, origin, float(value)) for quantity, origin, value in rows)
     total = {name: sum(value for quantity, _, value in budget if quantity == name) for name, _, _ in budget}
     points = _ComparisonPoints(d, companion.discretisation)
-    relative = load_residual + radius_error / a
+    relative = load_residual + radius_error / a + share
     normal = StressEstimate(
         state.normal,
         companion.normal,
@@ -414,10 +423,11 @@ def estimates(
         SAFETY * _coarseness(size) ** 2,
         radius_error,
         relative,
-        float(far_stress),
+        float(far_stress + pollution),
         float(far_approach),
     )
-    return Estimates(Uncertainty(**total, budget=budget), pressure, normal, None, companion)
+    scalars = Uncertainty(**total, budget=budget)
+    return Estimates(scalars, pressure, normal, None, companion, float(pollution))
 
 
 def _factor(order: int, size: float) -> float:

@@ -27,9 +27,9 @@ _FAN = 0.94
 # Sizes are uniform to this depth over the contact radius, then grow by this share a unit of the stretched
 # plane.
 _NEAR, _GROWTH = 3.0, 0.4
-# Triangles across a coating: fewer, and the companion's difference tells nothing of the error. Films buried
-# at many times their thickness are left to flatter ones: the least size over the usual one.
-_ROWS, _LEAST_ROW = 2.0, 0.25
+# Films buried at many times their thickness are left to flat triangles: the least size for the sake of a
+# coating over the usual one.
+_LEAST_ROW = 0.25
 
 
 @dataclass(frozen=True)
@@ -42,6 +42,7 @@ class Grading:
     edge_size : smallest triangle, at the edge, over the contact radius
     axis_size : size at the point of first contact, in units of the stretched plane
     far_size  : largest size towards the outer boundary, where one unit is a factor e of distance
+    rows      : triangles across each coating at least
     """
 
     size: float = 0.4
@@ -49,12 +50,15 @@ class Grading:
     edge_size: float = EDGE_SIZE
     axis_size: float = 0.2
     far_size: float = 0.8
+    rows: float = 2.0
 
     @classmethod
-    def of(cls, size: float, edge_size: float = EDGE_SIZE) -> "Grading":
+    def of(cls, size: float, edge_size: float = EDGE_SIZE, rows: float = 2.8) -> "Grading":
         """All sizes from one; the fan at the edge and the far field need less fine triangles."""
         edge_rate = min(1.4 * size, 0.6)
-        return cls(size, edge_rate, edge_size, axis_size=0.65 * size, far_size=min(2.7 * size, 0.7))
+        return cls(
+            size, edge_rate, edge_size, axis_size=0.65 * size, far_size=min(2.7 * size, 0.7), rows=rows
+        )
 
 
 @dataclass(frozen=True, eq=False)
@@ -209,7 +213,7 @@ def _triangulate(
             number += 1
             field.add("MathEval", number)
             away = f"Max(0,Max(y-({_literal(lower)}),{_literal(upper)}-y))"
-            row = max((lower - upper) / _ROWS, _LEAST_ROW * grading.size)
+            row = max((lower - upper) / grading.rows, _LEAST_ROW * grading.size)
             rows = f"{_literal(row)}*(1+{_literal(_GROWTH)}*{beyond})"
             field.setString(number, "F", f"{rows}+0.4*{away}")
         field.add("Min", number + 1)

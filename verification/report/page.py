@@ -32,6 +32,8 @@ from verification.report.sections import (
 from verification.report.tables.cells import Section
 from verification.report.tables.numbers import seconds
 
+# Of more cases each page is compressed until it is opened: a report of hundreds stays small.
+MOST_UNPACKED = 60
 # Pages about the run as a whole in their order, under the heading of the contents; None is left out.
 SECTIONS: tuple[tuple[str, Callable[[Material], Section | None]], ...] = (
     ("Results", overview.section),
@@ -69,6 +71,7 @@ def render(material: Material) -> str:
             chart=first.chart(material),
             worth=first.worth(material),
             not_claimed=first.not_claimed(material),
+            packed=len(material.results) > MOST_UNPACKED,
             groups=[
                 (group, [section for _, section in some])
                 for group, some in groupby(sections, key=lambda pair: pair[0])

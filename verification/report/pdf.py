@@ -1,5 +1,7 @@
 """PDF of a page through an installed Chromium."""
 
+import base64
+import gzip
 import os
 import re
 import shutil
@@ -47,7 +49,7 @@ def printed(page: Path, path: Path, time_limit: float, paper: str = "A4") -> Pat
             f"google-chrome; {page} is written, and any browser prints it"
         )
     try:
-        text = page.read_text(encoding="utf-8").replace(SIZE.format("A4"), SIZE.format(paper))
+        text = whole(page.read_text(encoding="utf-8")).replace(SIZE.format("A4"), SIZE.format(paper))
     except OSError as error:
         raise StoreError(f"{page}: cannot be read ({error.strerror})") from None
     with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as folder:
@@ -92,6 +94,18 @@ def with_numbers(text: str, numbers: Mapping[str, int]) -> str:
         return f"{match[1]}{numbers.get(match[2], '')}</b>"
 
     return re.sub(r'(<a href="#([\w.~-]+)"><span>(?:(?!</a>).)*</span><b>)</b>', entry, text)
+
+
+def whole(text: str) -> str:
+    """The page ``text`` with its compressed pages written out."""
+
+    def body(match: re.Match[str]) -> str:
+        return gzip.decompress(base64.b64decode(match[1])).decode("utf-8")
+
+    packed = (
+        r'<h2>[^\n]*</h2>\n<noscript>[^\n]*</noscript>\n<div class="packed" data-html="[^",]*,([^"]*)"></div>'
+    )
+    return re.sub(packed, body, text)
 
 
 def _print(found: str, text: str, folder: Path, page: Path, time_limit: float) -> bytes:

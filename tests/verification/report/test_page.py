@@ -14,6 +14,8 @@ from html_document import Document
 from synthetic_results import INFO, STEEL, contact, crashed, result_of, showcase
 
 from verification.judging.verdict import Outcome
+from verification.report import page as module
+from verification.report import pdf
 from verification.report.material import Material
 from verification.report.page import render
 from verification.report.sections import first
@@ -149,6 +151,18 @@ def test_a_failed_source_is_said_in_red_with_its_sentence(document, results):
     for _, source in failed:
         assert source.failure in shown
     assert len([a for a in document.all("p") if a.get("class") == "failure"]) == 2
+
+
+def test_pages_of_many_cases_are_compressed_and_come_out_whole(monkeypatch):
+    several = [result_of(contact(), name=name, points=11) for name in ("one", "two")]
+    plain = render(Material(several, INFO))
+    monkeypatch.setattr(module, "MOST_UNPACKED", 1)
+    small = render(Material(several, INFO))
+    assert small.count('<div class="packed"') == 2
+    assert len(small) < 0.85 * len(plain)
+    assert "<h3>The contact</h3>" not in small
+    whole = Document(pdf.whole(small))
+    assert whole.whole("article") == Document(plain).whole("article")
 
 
 def test_every_verdict_that_fails_is_told_with_its_reason_and_all_are_in_the_data(document, results, page):

@@ -29,13 +29,13 @@ function sort(button) {
 }
 
 // Without this script the link gives the compressed file; with it the plain one.
-async function unpacked(link) {
-  const packed = Uint8Array.from(atob(link.href.split(",")[1]), (c) => c.charCodeAt(0));
+async function unpacked(address) {
+  const packed = Uint8Array.from(atob(address.split(",")[1]), (c) => c.charCodeAt(0));
   const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream("gzip"));
   return new Response(stream).text();
 }
 async function save(link) {
-  const address = URL.createObjectURL(new Blob([await unpacked(link)], { type: "text/csv" }));
+  const address = URL.createObjectURL(new Blob([await unpacked(link.href)], { type: "text/csv" }));
   const made = document.createElement("a");
   made.href = address;
   made.download = link.dataset.csv;
@@ -49,7 +49,7 @@ async function profiles(page, line) {
   const link = all("a[data-of]", page).find((a) => a.dataset.of === line);
   if (!link || !("DecompressionStream" in window)) return {};
   if (!known.has(link)) {
-    const rows = (await unpacked(link)).trim().split("\n").map((row) => row.split(","));
+    const rows = (await unpacked(link.href)).trim().split("\n").map((row) => row.split(","));
     const column = (n) => rows.slice(1).map((row) => (row[n] === "" || row[n] === undefined ? NaN : +row[n]));
     const found = {};
     let x = [];
@@ -94,10 +94,19 @@ addEventListener("DOMContentLoaded", () => {
   if (!pages.length) return;
 
   // The part of the address behind "#" opens a page, a place on it, or with "~" a curve: case~line~quantity.
-  function show(event) {
+  async function show(event) {
     const [id, line, quantity] = decodeURIComponent(location.hash.slice(1)).split("~");
+    const page = document.getElementById(id)?.closest(".page") ?? pages.findLast((one) => id.startsWith(`${one.id}-`)) ?? pages[0];
+    const packed = page.querySelector(".packed");
+    if (packed && "DecompressionStream" in window) {
+      const address = packed.dataset.html;
+      packed.remove();
+      const html = await unpacked(address);
+      page.querySelector("h2").remove();
+      page.insertAdjacentHTML("beforeend", html);
+      prepare(page);
+    }
     const target = id ? document.getElementById(id) : null;
-    const page = target?.closest(".page") ?? pages[0];
     for (const one of pages) one.classList.toggle("here", one === page);
     for (const link of all(".menu a")) {
       const current = link.getAttribute("href") === `#${page.id}`;
@@ -177,7 +186,12 @@ addEventListener("DOMContentLoaded", () => {
     });
     return best && best.away < 30 ? best : null;
   }
-  for (const svg of all("svg.strip[data-of]")) {
+  function prepare(within) {
+    all("svg.strip[data-of]", within).forEach(strip);
+    all("svg.figure[data-quantity]", within).forEach(figure);
+    all("details.numbers-of", within).forEach(numbers);
+  }
+  function strip(svg) {
     const ring = document.createElementNS(SVG, "circle");
     ring.setAttribute("r", 3.4);
     ring.setAttribute("class", "under");
@@ -239,7 +253,7 @@ addEventListener("DOMContentLoaded", () => {
   }
   const nearest = (x, at) => x.reduce((best, value, n) => (Math.abs(value - at) < Math.abs(x[best] - at) ? n : best), 0);
 
-  for (const svg of all("svg.figure[data-quantity]")) {
+  function figure(svg) {
     const page = svg.closest(".page");
     const { quantity, line } = svg.dataset;
     const [left, width, low, high] = svg.dataset.axis.split(" ").map(Number);
@@ -270,7 +284,7 @@ addEventListener("DOMContentLoaded", () => {
   }
 
   // The numbers of all comparisons of a case, a row for each quantity on each line.
-  for (const box of all("details.numbers-of")) {
+  function numbers(box) {
     box.addEventListener("toggle", () => {
       const rows = data.cases[box.closest(".page").id]?.rows ?? [];
       if (box.querySelector("table") || !rows.length) return;
@@ -455,5 +469,6 @@ addEventListener("DOMContentLoaded", () => {
     svg.onblur = () => tell();
   }
 
+  prepare(document);
   show();
 });

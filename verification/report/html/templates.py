@@ -10,6 +10,7 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 
 from verification.report.tables.cells import Section
+from verification.report.tables.csv import embedded
 from verification.report.tables.symbols import typeset, unicode
 
 HTML = Path(__file__).parent
@@ -25,7 +26,7 @@ def _environment() -> Environment:
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    made.filters |= {"symbols": typeset, "unicode": unicode}
+    made.filters |= {"symbols": typeset, "unicode": unicode, "embedded": embedded}
     return made
 
 

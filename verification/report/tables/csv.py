@@ -14,7 +14,7 @@ from verification.problem.quantity import unit_of
 from verification.report.tables.lookup import coordinate
 from verification.running.result import CaseResult
 
-MOST_DIGITS = 12
+MOST_DIGITS = 10
 
 
 def line_csv(result: CaseResult, line: str) -> str:
