@@ -12,7 +12,7 @@ __all__ = ["LocatedPoints", "Locator"]
 
 # Triangles whose centroids are nearest: most points lie within one of a few, those on edges need more.
 _NEAREST, _NEIGHBOURS = 4, 12
-# Smallest radius over the contact radius: u/r on the axis is the limit from outside, here exact to rounding.
+# Smallest radius over the contact radius: u/r on the axis is the limit from outside, exact to its square.
 _AXIS = 1e-7
 
 

@@ -34,6 +34,9 @@ EDGE_SERIES = 20.0, 5000.0
 # A displaced edge adds the power -1/2, which is fitted and left out.
 _POWERS = np.array([-0.5, 0.5, 1.0, 1.5, 2.0])
 
+# Rows of the displacement and of the stress that are odd in r, by harmonic.
+_ODD = ([0], [3]), ([2], [0, 1, 2, 4])
+
 
 def edge_distances(mesh: MeridianMesh) -> np.ndarray:
     """Distances from the edge at which the series is fitted, over the smallest of them.
@@ -94,6 +97,11 @@ class HarmonicField:
             displacement[0], displacement[2] = values
         else:
             displacement[:] = values[0] - values[1], values[1], values[2]
+        # Nearer to the axis than ``at.r``: what is odd in r vanishes in proportion.
+        inwards = at.r_given / at.r
+        odd, odd_stresses = _ODD[self.harmonic]
+        displacement[odd] *= inwards
+        stress[odd_stresses] *= inwards
         return displacement, stress
 
     def _fields_and_strains(self, at: LocatedPoints) -> tuple[np.ndarray, np.ndarray]:

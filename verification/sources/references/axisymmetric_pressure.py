@@ -18,6 +18,8 @@ from scipy.optimize import minimize_scalar
 from verification.problem.arrays import Array
 from verification.sources.references.quadrature import gauss_legendre
 
+NEAR_AXIS = 0.1  # of a
+
 
 @dataclass(frozen=True, eq=False)
 class AbelPressure:
@@ -69,8 +71,16 @@ class AbelPressure:
         return self._over_ring(np.asarray(r, dtype=float), power=0)
 
     def resultant(self, r: ArrayLike) -> Array:
-        """int_0^r p(s) s ds [N/rad], the load inside ``r`` over 2 pi; shape of ``r``."""
-        return self.load / (2 * np.pi) - self._over_ring(np.asarray(r, dtype=float), power=2)
+        """int_0^r p(s) s ds [N/rad], the load inside ``r`` over 2 pi; shape of ``r``.
+
+        Next to the axis by quadrature, to be exact over r^2 too, otherwise W less the ring outside.
+        """
+        r = np.asarray(r, dtype=float)
+        x, weight = gauss_legendre(16)
+        t = 0.5 * (1 + x)
+        near = np.minimum(r, NEAR_AXIS * self.a)
+        inside = 0.5 * near**2 * (self.pressure(near[..., None] * t) * t @ weight)
+        return np.where(r > near, self.load / (2 * np.pi) - self._over_ring(r, power=2), inside)
 
     def transform(self, k: Array) -> Array:
         """phat(k) [N]: int_0^1 P_2n(s) cos(ks) ds = (-1)^n j_2n(k)."""
