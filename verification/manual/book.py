@@ -1,7 +1,6 @@
 """The manual as one PDF with its contents, through an installed Chromium."""
 
 import base64
-import html
 import re
 import tempfile
 from pathlib import Path
@@ -52,16 +51,22 @@ def in_one_file(page: Path) -> str:
 
 
 def with_contents(page: str) -> str:
-    """The page with its contents before the first chapter, as `printed` numbers them."""
-    rows, first = [], 0
-    for found in HEADING.finditer(page):
-        anchor, level, title = found[1], found[2], TAG.sub("", PERMALINK.sub("", found[3])).strip()
-        first = first or found.start()
-        rows.append(
-            f'<li class="level-{level}"><a href="#{html.escape(anchor)}"><span>{title}</span><b></b></a></li>'
-        )
+    """The page with its contents before the first chapter, as `printed` numbers them.
+
+    Each heading gets an anchor of its own, for two chapters may have sections of one name.
+    """
+    rows: list[str] = []
+
+    def anchored(found: re.Match[str]) -> str:
+        level, title = found[2], TAG.sub("", PERMALINK.sub("", found[3])).strip()
+        anchor = f"heading-{len(rows)}"
+        rows.append(f'<li class="level-{level}"><a href="#{anchor}"><span>{title}</span><b></b></a></li>')
+        return found[0].replace(f"<h{level}>", f'<h{level} id="{anchor}">')
+
+    first = next((found.start() for found in HEADING.finditer(page)), 0)
+    chapters = HEADING.sub(anchored, page[first:])
     contents = f'<nav class="contents"><h2>Contents</h2><ol>{"".join(rows)}</ol></nav>'
-    return page[:first] + contents + page[first:]
+    return page[:first] + contents + chapters
 
 
 def _data(path: Path) -> str:

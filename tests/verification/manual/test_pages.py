@@ -56,7 +56,7 @@ def test_the_page_to_be_printed_loads_no_file_and_lists_its_chapters(tmp_path):
         "data:image/svg+xml;base64,PHN2Zy8+",
     ]
     assert "data:font/woff2;base64,Zm9udA==" in page
-    assert '<a href="#one"><span>First chapter</span><b></b></a>' in page
+    assert '<a href="#heading-0"><span>First chapter</span><b></b></a>' in page
 
 
 def test_every_block_of_the_manual_has_content():
