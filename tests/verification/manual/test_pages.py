@@ -51,7 +51,7 @@ def test_the_page_to_be_printed_loads_no_file_and_lists_its_chapters(tmp_path):
     )
     page = book.with_contents(book.in_one_file(tmp_path / "index.html"))
     assert re.findall(r'(?:src|href)="([^"]+)"', page) == [
-        "#one",
+        "#heading-0",
         "#one",
         "data:image/svg+xml;base64,PHN2Zy8+",
     ]

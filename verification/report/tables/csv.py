@@ -58,7 +58,7 @@ def written(rows: Sequence[Sequence[str]]) -> str:
 
 
 def _cut(profile: Profile) -> list[str]:
-    """The values, each to a tenth of its uncertainty; eight digits where none is stated."""
+    """The values, each to a tenth of its uncertainty, ten digits at most; eight where none is stated."""
     values = profile.value
     if profile.uncertainty is None:
         return [f"{v:.8g}" for v in values.tolist()]
