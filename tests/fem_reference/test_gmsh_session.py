@@ -31,7 +31,7 @@ def arguments(thickness):
         "load": 20.0,
         "coatings": ((420e9, 0.3, thickness),),
         "substrate": (210e9, 0.3),
-        "size": 0.5,
+        "size": 0.4,
         "order": 2,
         "estimate_uncertainty": False,
     }

@@ -27,7 +27,7 @@ API = {
 }
 # The help of every command in one process, which knows nothing of this room.
 HELP = """
-import io, tomllib
+import io
 from rich.console import Console
 from verification.cli import COMMANDS, app
 for key in COMMANDS:
