@@ -278,7 +278,7 @@ def test_a_stopped_run_has_a_report_of_what_there_is(stored, capsys):
     assert asked(capsys, "report", stored)[0] == 0
     text = (stored / "report.html").read_text(encoding="utf-8")
     assert "stopped before its report" in text
-    assert text.count('<article class="case"') == 2
+    assert text.count('<article class="page case') == 2
 
 
 @pytest.mark.parametrize("spoiled", ["flipped", "cut", "text"])
@@ -321,6 +321,7 @@ def test_a_browser_that_fails_is_one_sentence(tmp_path, monkeypatch, script, tim
     program.write_text(f"#!/bin/sh\n{script}\n")
     program.chmod(0o755)
     monkeypatch.setenv("PATH", f"{program.parent}:/usr/bin:/bin")
+    (tmp_path / "page.html").write_text("<p>a page</p>")
     with pytest.raises(NoBrowser, match=said):
         printed(tmp_path / "page.html", tmp_path / "page.pdf", time_limit)
     assert not (tmp_path / "page.pdf").exists()

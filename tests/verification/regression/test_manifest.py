@@ -139,7 +139,7 @@ def test_a_run_that_judges_less_ends_with_code_6_and_says_so_first(tmp_path):
     message = "less is judged than the manifest records; 1 differences, first quick, contact: cap"
     assert f"manifest: {message}" in " ".join(done.stdout.split())
     page = (tmp_path / "reports" / "report.html").read_text()
-    assert message in page.partition("<nav")[0]
+    assert message in page.partition('id="first"')[2].partition('class="page')[0]
     assert '<testcase classname="run" name="manifest"' in (tmp_path / "reports" / "junit.xml").read_text()
     assert json.loads((tmp_path / "reports" / "report.json").read_text())["baseline"]["manifest"][0]["less"]
 
