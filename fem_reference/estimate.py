@@ -55,6 +55,9 @@ _STRIP = 0.3
 _LEAST_RATIO, _LARGEST_RATIO = 1.08, 1.6
 # zz, rz, tz: one value on both sides of an interface, in error by that of either side
 _TRACTIONS, _IN_PLANE = [2, 3, 5], [0, 1, 4]
+# On a plane the estimate of the triangles beside it counts up to this factor: of nearly incompressible layers
+# theirs is that of the mean stress, which the plane does not have.
+_BESIDE = 3.0
 
 # corners, middles and centre of the reference triangle: the hoop strain is worst on the axis itself
 _SAMPLES = np.array([[0, 1, 0, 1 / 2, 1 / 2, 0, 1 / 3], [0, 0, 1, 0, 1 / 2, 1 / 2, 1 / 3]])
@@ -257,7 +260,7 @@ class StressEstimate(_Uncached):
         vertices, surface = found[0.0, 0]
         clear = np.abs(vertices - mesh.contact_radius) > _STRIP * mesh.contact_radius
         least = np.where(clear, beside(0.0, slice(0, 1), vertices.size)[:, 0], 0.0)
-        surface[_IN_PLANE] = np.maximum(surface, least)[_IN_PLANE]
+        surface[_IN_PLANE] = np.maximum(surface, np.minimum(least, _BESIDE * surface))[_IN_PLANE]
         for upper, depth in enumerate(mesh.depths):
             sides = [found[float(depth), layer][1] for layer in (upper, upper + 1)]
             triangles = beside(depth, slice(upper, upper + 2), sides[0].shape[1])
@@ -265,7 +268,7 @@ class StressEstimate(_Uncached):
             tractions = np.maximum(sides[0][_TRACTIONS], sides[1][_TRACTIONS])
             for number, side in enumerate(sides):
                 side[_TRACTIONS] = tractions
-                np.maximum(side, triangles[:, number], out=side)
+                np.maximum(side, np.minimum(triangles[:, number], _BESIDE * side), out=side)
         return found
 
     def __call__(self, at: LocatedPoints) -> np.ndarray:
@@ -392,7 +395,7 @@ def estimates(
     pointwise, functional = factor * _coarseness(size), _functional_factor(d.order, size)
     balance = load_residual / 2 * a  # a ~ W^(1/n), n at least 2 on any layers
     # what the whole mesh misses shows in the approach, and as such a share of the stress everywhere
-    share = functional * size_approach / central
+    share = functional * size_approach / central if state.normal.root_at_edge else 0.0
     pollution = share * largest
     radius_error = functional * size_radius + SAFETY * edge + far_radius + balance
     everywhere = far_pressure + load_residual / 3 * largest

@@ -222,6 +222,7 @@ def test_without_the_script_and_on_paper_every_page_shows(chromium: Page, report
     assert chromium.evaluate(shown) == count
 
 
+@pytest.mark.slow
 def test_a_case_is_one_sheet_and_the_contents_have_its_number(report, tmp_path):
     pdf = printed(report, tmp_path / "report.pdf", 120.0).read_bytes()
     numbers = page_numbers(pdf)

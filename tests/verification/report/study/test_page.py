@@ -69,6 +69,7 @@ def test_answer_is_the_first_line_and_inputs_come_next(folder):
         assert text in before
 
 
+@pytest.mark.slow
 def test_no_label_or_legend_of_a_figure_is_cut(report, monkeypatch):
     cut = []
 
@@ -100,6 +101,7 @@ def test_without_figures_there_still_is_a_page_with_its_answer(report, tmp_path)
     assert escape(written.answer[0]) in written.page.read_text()
 
 
+@pytest.mark.slow
 def test_the_same_table_gives_the_same_figures(report):
     folder, study = report
     # the one with lines, raster, contours, labels
