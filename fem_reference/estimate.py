@@ -46,7 +46,7 @@ __all__ = ["Estimates", "PressureEstimate", "StressEstimate", "Uncertainty", "co
 SAFETY = 3.0
 # Triangles above this size do not reach the order of the elements. The factor then grows with the size, that
 # of pressures and stresses with its square: on the axis of a fast solution 2.6 times were needed.
-_ASYMPTOTIC_SIZE = 0.2
+_ASYMPTOTIC_SIZE = 0.18
 # Shares of the largest difference in rings of triangles, or cells of a line, by their distance from a point.
 REACH = (1.0, 1.0, 1.0, 0.7, 0.5, 0.35, 0.25)
 # The displacement of the field is part of the estimate within this distance of the edge over the radius.

@@ -37,7 +37,8 @@ Ball = tuple[float, float, Coatings]
 
 # Triangle size over its distance from the contact edge.
 QUALITY = {"fast": 0.27, "default": 0.12, "fine": 0.1}
-# The default is that of "fine" where neighbouring layers differ by more than this factor in their moduli.
+# The same where neighbouring layers differ by more than CONTRAST in their moduli.
+QUALITY_OF_CONTRAST = {"fast": 0.17, "default": 0.1, "fine": 0.1}
 CONTRAST = 10.0
 LOAD_TOLERANCE = 1e-8
 
@@ -66,7 +67,7 @@ def solve(
     ball    : None is rigid; (E, nu, coatings) of an elastic one, its coatings from its surface inwards. Near
         the contact it is a layered half-space.
     order   : polynomial order of the displacement, 2 to 4
-    quality : "fast" (about 1e-3), "default" (about 1e-5, finer next to a large step of moduli) or "fine"
+    quality : "fast" (about 1e-3), "default" (about 1e-5) or "fine"; finer next to a large step of moduli
     size    : triangle size over its distance from the contact edge, 0.08 to 0.5; None for that of ``quality``
     far     : distance of the outer boundary over (a_h + thickness of all coatings)
     max_iterations : contact solves allowed on each mesh level
@@ -211,7 +212,7 @@ def _size(quality: str, size: float | None, bodies: Sequence[Sequence[tuple[floa
     if size is None:
         steps = [upper[0] / lower[0] for layers in bodies for upper, lower in pairwise(layers)]
         hard = any(not 1 / CONTRAST <= step <= CONTRAST for step in steps)
-        return QUALITY["fine" if hard and quality == "default" else quality]
+        return (QUALITY_OF_CONTRAST if hard else QUALITY)[quality]
     check_positive(size=size)
     if not 0.08 <= size <= 0.5:
         raise ValueError(f"size = {size:g}; choose it between 0.08 (a minute, gigabytes) and 0.5 (coarse)")

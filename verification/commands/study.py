@@ -4,11 +4,12 @@ import sys
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import asdict, replace
+from dataclasses import asdict, dataclass, replace
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from cyclopts import Parameter
 from rich.console import Console
 from rich.markup import escape
 from rich.progress import TaskID
@@ -37,102 +38,57 @@ LABELS = {name: source.label for name, source in SOURCES.items()}
 FIGURE_GROUPS = 5
 
 
+@Parameter(name="*")
+@dataclass(frozen=True, kw_only=True)
+class Options:
+    """Options of a study of either kind."""
+
+    output: Output = Path("reports/study")
+    """Directory of the table, PLAN.parquet, and of the cache."""
+    jobs: Jobs = None
+    scheduler: str | None = None
+    """Address of a running Dask scheduler, in place of a local cluster."""
+    limit: int | None = None
+    """Only the first so many points."""
+    cross_check: bool = True
+    """Solve every k-th point by finite elements and by the exact reference too."""
+    figures: bool = True
+    """Draw figures for the page, PLAN.html, and for print, in figures/PLAN."""
+    strict: Strict = False
+    quiet: Quiet = False
+    as_json: AsJson = False
+
+
+DEFAULT = Options()
+
+
 @with_exit_code
-def thickness(
-    plan: str = "default",
-    *,
-    output: Output = Path("reports/study"),
-    jobs: Jobs = None,
-    scheduler: str | None = None,
-    limit: int | None = None,
-    cross_check: bool = True,
-    figures: bool = True,
-    strict: Strict = False,
-    quiet: Quiet = False,
-    as_json: AsJson = False,
-) -> int:
+def thickness(plan: str = "default", *, options: Options = DEFAULT) -> int:
     """Which thickness? Stresses of a coating against thickness, stiffness and friction, cross-checked.
 
     A stopped study resumes where it was stopped; no point is solved twice.
 
     Args:
         plan: Name of a shipped study, or the path of a .toml study file.
-        output: Directory of the table, PLAN.parquet, and of the cache.
-        scheduler: Address of a running Dask scheduler, in place of a local cluster.
-        limit: Only the first so many points.
-        cross_check: Solve every k-th point by finite elements and by the exact reference too.
-        figures: Draw figures for the page, PLAN.html, and for print, in figures/PLAN.
     """
-    return _study(
-        plan,
-        output,
-        jobs,
-        scheduler,
-        limit,
-        cross_check=cross_check,
-        figures=figures,
-        strict=strict,
-        quiet=quiet,
-        as_json=as_json,
-        loads=False,
-    )
+    return _study(plan, options, loads=False)
 
 
 @with_exit_code
-def load(
-    plan: str = "dlc_load",
-    *,
-    output: Output = Path("reports/study"),
-    jobs: Jobs = None,
-    scheduler: str | None = None,
-    limit: int | None = None,
-    cross_check: bool = True,
-    figures: bool = True,
-    strict: Strict = False,
-    quiet: Quiet = False,
-    as_json: AsJson = False,
-) -> int:
+def load(plan: str = "dlc_load", *, options: Options = DEFAULT) -> int:
     """Which load? The load at which each failure mode reaches its strength, over thickness and friction.
 
     A stopped study resumes where it was stopped; no point is solved twice.
 
     Args:
         plan: Name of a shipped study with sweep.load, or the path of a .toml study file.
-        output: Directory of the table, PLAN.parquet, and of the cache.
-        scheduler: Address of a running Dask scheduler, in place of a local cluster.
-        limit: Only the first so many points.
-        cross_check: Solve every k-th point by finite elements and by the exact reference too.
-        figures: Draw figures for the page, PLAN.html, and for print, in figures/PLAN.
     """
-    return _study(
-        plan,
-        output,
-        jobs,
-        scheduler,
-        limit,
-        cross_check=cross_check,
-        figures=figures,
-        strict=strict,
-        quiet=quiet,
-        as_json=as_json,
-        loads=True,
-    )
+    return _study(plan, options, loads=True)
 
 
-def _study(
-    plan: str,
-    output: Path,
-    jobs: int | None,
-    scheduler: str | None,
-    limit: int | None,
-    *,
-    cross_check: bool,
-    figures: bool,
-    strict: bool,
-    quiet: bool,
-    as_json: bool,
-    loads: bool,
-) -> int:
+def _study(plan: str, options: Options, *, loads: bool) -> int:
+    jobs, limit, output = options.jobs, options.limit, options.output
+    silent = options.quiet or options.as_json
     if (jobs is not None and jobs < 1) or (limit is not None and limit < 1):
         raise CommandError(f"--jobs = {jobs}, --limit = {limit}; both must be positive")
     chosen = _choose(plan)
@@ -141,23 +97,23 @@ def _study(
         raise CommandError(f"{plan}: this study {what}")
     if loads and chosen.criteria.strength is None:
         raise CommandError(f"{plan}: criteria.strength is missing; a critical load needs strengths")
-    print_warnings(chosen.warnings, chosen.name, strict=strict, silent=quiet or as_json)
-    if not cross_check:
+    print_warnings(chosen.warnings, chosen.name, strict=options.strict, silent=silent)
+    if not options.cross_check:
         chosen = replace(chosen, cross_check=0)
     if chosen.cross_check:
         require_gmsh()
 
     from verification.study.engine import SchedulerError, connected, run_study, table_path
 
-    silent = quiet or as_json
+    cluster = partial(connected, options.scheduler, jobs)
     begin = time.perf_counter()
     written = None
     try:
         if not silent:
             sys.stderr.write(f"coatcheck: {_forecast(chosen, output, jobs, limit)}\n")
         with _bars(silent) as (report, drawing):
-            came = run_study(chosen, output, partial(connected, scheduler, jobs), limit=limit, report=report)
-            written = _page(chosen, came, time.perf_counter() - begin, figures, drawing)
+            came = run_study(chosen, output, cluster, limit=limit, report=report)
+            written = _page(chosen, came, time.perf_counter() - begin, options.figures, drawing)
     except SchedulerError as error:
         raise CommandError(str(error)) from None
     except KeyboardInterrupt:
@@ -168,12 +124,12 @@ def _study(
         return STOPPED
     for message in came.damaged:
         print_error(f"{message.split(';')[0]}; solved again")
-    if as_json:
+    if options.as_json:
         content = asdict(came) | {"table": str(came.table), "lost": len(came.lost)}
         content["warnings"] = chosen.warnings
         content |= {"page": str(written.page), "answer": written.answer}
         print_json(content)
-    elif not quiet:
+    elif not options.quiet:
         seconds = time.perf_counter() - begin
         print_out(
             *(f"[bold]{escape(line)}[/]" for line in written.answer),

@@ -31,11 +31,11 @@ def build(folder: Path, one_page: Path | None = None) -> Path:
     one_page : where it is also written as one page, to be printed.
     Raises ManualError with every warning of the build, or where ``folder`` holds something else.
     """
+    if folder.exists() and any(folder.iterdir()) and not (folder / MARK).exists():
+        raise ManualError(f"{folder}: holds something else than a manual; give another --output")
     missing = [name for name in NEEDED if find_spec(name) is None]
     if missing:
         raise ManualError(f"{', '.join(missing)} missing; install the extra: pip install 'coatcheck[manual]'")
-    if folder.exists() and any(folder.iterdir()) and not (folder / MARK).exists():
-        raise ManualError(f"{folder}: holds something else than a manual; give another --output")
     with tempfile.TemporaryDirectory() as work:
         source = Path(work) / "source"
         assemble(source)

@@ -107,19 +107,21 @@ class Search:
         """The smooth maximum for t between ``first`` and ``last``.
 
         The error of its place is |error of sigma'| / |sigma''|; that of sigma' is estimated by the
-        uncertainty over the distance of two samples, about the size of an element.
+        uncertainty over the distance of two samples, about the size of an element, or, of a solution with
+        coarser companions, by the root mean square of the change of the slope within that distance; to both
+        twice the slopes of the first two terms left out are added, for those that follow.
         """
         a = float(self.solution.contact_radius)
         middle, half = (first + last) / 2, abs(last - first) / 2
         s = chebyshev.chebpts1(NODES)
-        sigma, U = stress_with_uncertainty(
-            self.solution, side * _radius(a, middle + half * s), 0.0, 0.0, layer=0
-        )
+        x = side * _radius(a, middle + half * s)
+        sigma, U = stress_with_uncertainty(self.solution, x, 0.0, 0.0, layer=0)
         usual = 0.0 if U is None else float(np.median(U[0, 0]))
         c = chebyshev.chebfit(s, sigma[0, 0], NODES - 1)
         # The nodes make the terms orthogonal: cut off, the sum of those left out bounds the residual.
         rest = np.cumsum(np.abs(c[::-1]))[::-1]
-        c = c[: max(int(np.count_nonzero(rest > FIT * usual)), 3)]
+        terms = max(int(np.count_nonzero(rest > FIT * usual)), 3)
+        c, left_out = c[:terms], c[terms : terms + 2]
         roots = chebyshev.chebroots(chebyshev.chebder(c))
         real = roots[(np.abs(roots.imag) < 1e-6) & (np.abs(roots.real) <= 1)].real
         at = float(max([*real, s[np.argmax(sigma[0, 0])]], key=lambda place: chebyshev.chebval(place, c)))
@@ -127,11 +129,15 @@ class Search:
         value, place = float(chebyshev.chebval(at, c)), float(side * _radius(a, np.array(t)))
         if U is None:
             return Tension(value, place, None, None)
-        wide = float(U[0, 0, np.abs(s - at) <= 1 / WINDOW].max())
+        near = np.abs(s - at) <= 1 / WINDOW
+        wide = float(U[0, 0, near].max())
         slope = a * abs(np.sin(t) if t < 0 else np.sinh(t))
         bend = abs(float(chebyshev.chebval(at, chebyshev.chebder(c, 2)))) / (half * slope) ** 2
-        length = half * slope / WINDOW
-        return Tension(value, place, wide, wide / (length * bend) if length * bend else np.inf)
+        change = followed(self.solution, lambda one: _slope(_tension(one, x), s, terms))
+        steep = wide * WINDOW if change is None else float(np.sqrt(np.mean(change[near] ** 2)))
+        for n, coefficient in enumerate(left_out, start=terms):
+            steep += 2 * abs(coefficient * chebyshev.chebval(at, chebyshev.chebder(np.eye(NODES)[n])))
+        return Tension(value, place, wide, steep / (half * slope * bend) if slope * bend else np.inf)
 
 
 def around_edge(solution: Solution) -> Array:
@@ -158,6 +164,12 @@ def edge_uncertainty(value: Array, U: Array, change: Array | None) -> Array:
 
 def _radius(a: float, t: Array) -> Array:
     return a * np.where(t < 0, np.cos(np.minimum(t, 0)), np.cosh(np.maximum(t, 0)))
+
+
+def _slope(value: Array, s: Array, terms: int) -> Array:
+    """Slope at the Chebyshev nodes ``s`` of the polynomial of so many ``terms`` through ``value``."""
+    c = chebyshev.chebfit(s, value, s.size - 1)[:terms]
+    return np.asarray(chebyshev.chebval(s, chebyshev.chebder(c)))
 
 
 def _tension(solution: Solution, x: Array) -> Array:

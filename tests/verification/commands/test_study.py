@@ -5,7 +5,7 @@ import json
 import pytest
 from synthetic_solves import STUDY
 
-from verification.commands.study import thickness
+from verification.commands.study import Options, thickness
 from verification.study.table import read_columns
 
 
@@ -33,7 +33,7 @@ def test_bad_input_is_one_sentence_and_nothing_is_written(plan, options, said, t
     monkeypatch.chdir(tmp_path)
     (tmp_path / "good.toml").write_text(STUDY)
     (tmp_path / "bad.toml").write_text(STUDY.replace("10e-3", "'ten'"))
-    assert thickness(plan, output=tmp_path / "out", quiet=True, **options) == 2
+    assert thickness(plan, options=Options(output=tmp_path / "out", quiet=True, **options)) == 2
     out, err = capsys.readouterr()
     assert out == ""
     assert err.count("\n") == 1
@@ -45,7 +45,7 @@ def test_a_study_of_one_point_from_the_command_line(tmp_path, capfd):
     plan = tmp_path / "one.toml"
     plan.write_text(STUDY + "[semianalytic]\npatches = 33\nestimate_uncertainty = false\n")
     words = {"output": tmp_path / "out", "jobs": 1, "limit": 1, "cross_check": False, "figures": False}
-    assert thickness(str(plan), **words, as_json=True) == 0
+    assert thickness(str(plan), options=Options(**words, as_json=True)) == 0
     out, err = capfd.readouterr()
     assert err == ""
     said = json.loads(out)
@@ -54,7 +54,7 @@ def test_a_study_of_one_point_from_the_command_line(tmp_path, capfd):
     assert found["status"].tolist() == ["solved"]
     assert found["sigma_xx_base"][0] > 0
     # found again, said in a message
-    assert thickness(str(plan), **words) == 0
+    assert thickness(str(plan), options=Options(**words)) == 0
     out, err = capfd.readouterr()
     assert "solves: 1 semi-analytical (1 of them stored), then figures; about 0 s" in err
     assert "0 solves done, 1 found in the cache, 0 of 1 rows failed" in " ".join(out.split())
