@@ -197,8 +197,8 @@ def test_outer_boundary_is_far_enough():
     assert near.contact_radius == pytest.approx(far.contact_radius, rel=1e-5)
 
 
-@pytest.mark.parametrize("ratio", [0.01, 100.0])
-@pytest.mark.parametrize("thickness", [0.01, 20.0])
+# The other two are solved by the slow test against the exact solution.
+@pytest.mark.parametrize(("thickness", "ratio"), [(0.01, 100.0), (20.0, 0.01)])
 def test_extreme_coatings_are_solved_with_positive_pressure_and_gap(ratio, thickness):
     s = solve(
         radius=R,
