@@ -82,7 +82,10 @@ def test_default_numerics_meet_the_figures_asked_everywhere(ratio, thickness, nu
     check(ratio, thickness, nu)
 
 
-@pytest.mark.parametrize(("ratio", "thickness", "nu"), [(2.0, 1.0, (0.3, 0.3)), (0.25, 0.25, (0.3, 0.3))])
+@pytest.mark.parametrize(
+    ("ratio", "thickness", "nu"),
+    [pytest.param(2.0, 1.0, (0.3, 0.3), marks=pytest.mark.slow), (0.25, 0.25, (0.3, 0.3))],
+)
 def test_fast_level_is_good_to_a_thousandth(ratio, thickness, nu):
     s, exact, a_h = both(ratio, thickness, nu, quality="fast", estimate_uncertainty=False)
     p_h = 3 * W / (2 * np.pi * a_h**2)
