@@ -245,7 +245,8 @@ def beside(axes: Axes, size: float, label: str) -> None:
     """A second vertical axis for the values over ``size``."""
     second = axes.secondary_yaxis("right", functions=_over(size))
     second.set_ylabel(label)
-    second.ticklabel_format(axis="y", scilimits=(-2, 4))
+    # A power of ten of its own would lie on the numbers of the axis above.
+    second.yaxis.set_major_formatter(lambda value, _: f"{value:.4g}")
 
 
 def _over(size: float) -> tuple[Callable[[Any], Any], Callable[[Any], Any]]:
