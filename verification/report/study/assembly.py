@@ -129,7 +129,7 @@ def inputs_section(study: Study) -> Section:
         ),
     ]
     rows = [Row(one.head, [Cell(cell.text, css="words") for cell in one.cells]) for one in rows]
-    return Section("inputs", "Inputs and assumptions", [Part("", [Table("", ["", ""], rows)])])
+    return Section("inputs", "Inputs and assumptions", [Part("", [Table("", ["input", "value"], rows)])])
 
 
 def check_sections(checks: Sequence[Difference], tensions: Sequence[TensionCheck]) -> list[Section]:
