@@ -3,7 +3,6 @@
 Every number comes from the baseline or a record of this version.
 """
 
-import json
 import re
 from collections.abc import Callable, Sequence
 from datetime import datetime
@@ -19,12 +18,12 @@ from verification.manual.numbers import FOLDER, baseline, largest, pairs
 from verification.manual.tour import solved
 from verification.manual.worked import WORKED
 from verification.problem.quantity import QUANTITIES
+from verification.report.credibility.guests import COLUMNS, examined
 from verification.report.tables.numbers import scientific, seconds
 from verification.sources.registry import METHODS, SOURCES
 
 SOURCE = Path(__file__).parent / "source"
 RECORDS = FOLDER.parents[1] / "credibility" / "shipped"
-GUESTS = FOLDER.parents[1] / "guests" / "shipped" / "guests.json"
 FIELDS = ("stress", "pressure", "displacement")
 
 
@@ -155,10 +154,9 @@ def false_alarms() -> str:
 
 def real_guests() -> str:
     """Codes of others examined: cases, largest differences, time, memory."""
-    columns = ("peak_pressure", "contact_radius", "approach", "pressure", "displacement")
     rows = []
-    for one in json.loads(GUESTS.read_text(encoding="utf-8")):
-        gaps = (one["differences"].get(name) for name in columns)
+    for one in examined():
+        gaps = (one["differences"].get(name) for name in COLUMNS)
         cells = ["–" if gap is None else scientific(max(gap, 1e-15), 1) for gap in gaps]
         low, high = one["seconds"]
         time = seconds(high) if round(low) == round(high) else f"{seconds(low)} to {seconds(high)}"
