@@ -31,18 +31,16 @@ def section(material: Material) -> Section:
     """The largest differences, time and memory of each code; the same for every run."""
     rows = []
     for one in examined():
-        low, high = one["seconds"]
-        time = seconds(high) if round(low) == round(high) else f"{seconds(low)} to {seconds(high)}"
         memory = one["memory"] and one["memory"] / 1e6
         rows.append(
             row(
                 one["guest"],
+                tally(one["agree"], one["answered"]),
                 number(one["cases"], str),
                 words(one["levels"]),
                 *(number(one["differences"].get(name)) for name in COLUMNS),
-                words(time),
+                number(one["seconds"][1], seconds),
                 number(memory, "{:.0f} MB".format),
-                tally(one["agree"], one["answered"]),
             )
         )
     text = (
@@ -50,6 +48,6 @@ def section(material: Material) -> Section:
         "verification/guests/examples. What a code does not support is not counted. Settings were chosen "
         "with the results in view: this is no blind test."
     )
-    caption = "Largest difference from the exact solution; time at the finest level, on a busy machine."
-    heads = ["code", "problems", "levels", *COLUMNS.values(), "time", "memory", "agree"]
+    caption = "Largest difference from the exact solution; longest time of the finest level, machine busy."
+    heads = ["code", "agree", "problems", "levels", *COLUMNS.values(), "time", "memory"]
     return Section("guests", "Other codes", [Part(text, [Table(caption, heads, rows)])])
