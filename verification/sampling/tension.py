@@ -108,7 +108,7 @@ class Search:
 
         The error of its place is |error of sigma'| / |sigma''|; that of sigma' is estimated by the
         uncertainty over the distance of two samples, about the size of an element, or, of a solution with
-        coarser companions, by the root mean square of the change of the slope within that distance; to both
+        coarser companions, by the largest change of the slope within that distance; to both
         twice the slopes of the first two terms left out are added, for those that follow.
         """
         a = float(self.solution.contact_radius)
@@ -134,7 +134,7 @@ class Search:
         slope = a * abs(np.sin(t) if t < 0 else np.sinh(t))
         bend = abs(float(chebyshev.chebval(at, chebyshev.chebder(c, 2)))) / (half * slope) ** 2
         change = followed(self.solution, lambda one: _slope(_tension(one, x), s, terms))
-        steep = wide * WINDOW if change is None else float(np.sqrt(np.mean(change[near] ** 2)))
+        steep = wide * WINDOW if change is None else float(change[near].max())
         for n, coefficient in enumerate(left_out, start=terms):
             steep += 2 * abs(coefficient * chebyshev.chebval(at, chebyshev.chebder(np.eye(NODES)[n])))
         return Tension(value, place, wide, steep / (half * slope * bend) if slope * bend else np.inf)
