@@ -394,7 +394,9 @@ def estimates(
     displacement, factor = units.displacement, _factor(d.order, size)
     pointwise, functional = factor * _coarseness(size), _functional_factor(d.order, size)
     balance = load_residual / 2 * a  # a ~ W^(1/n), n at least 2 on any layers
-    # what the whole mesh misses shows in the approach, and as such a share of the stress everywhere
+    # What the whole mesh misses of a contact's compliance shows in the approach, changes the pressure, and as
+    # such a share of the stress everywhere. A given pressure is exact: the error of the displacement under it
+    # passes to no stress.
     share = functional * size_approach / central if state.normal.root_at_edge else 0.0
     pollution = share * largest
     radius_error = functional * size_radius + SAFETY * edge + far_radius + balance

@@ -17,15 +17,14 @@ from verification.credibility.faults.record import read_record
 from verification.manual.markdown import symbol, table, text
 from verification.manual.numbers import FOLDER, baseline, largest, pairs
 from verification.manual.tour import solved
-from verification.manual.worked import worked_1, worked_2, worked_3
+from verification.manual.worked import WORKED
 from verification.problem.quantity import QUANTITIES
 from verification.report.tables.numbers import scientific, seconds
-from verification.sources.registry import SOURCES
+from verification.sources.registry import METHODS, SOURCES
 
 SOURCE = Path(__file__).parent / "source"
 RECORDS = FOLDER.parents[1] / "credibility" / "shipped"
 GUESTS = FOLDER.parents[1] / "guests" / "shipped" / "guests.json"
-METHODS = ("semianalytic", "fem_reference")
 FIELDS = ("stress", "pressure", "displacement")
 
 
@@ -206,9 +205,6 @@ _ALL: Sequence[Callable[[], str]] = (
     real_guests,
     history,
     solved,
-    worked_1,
-    worked_2,
-    worked_3,
     more_pages,
 )
-BLOCKS: dict[str, Callable[[], str]] = {block.__name__: block for block in _ALL}
+BLOCKS: dict[str, Callable[[], str]] = {block.__name__: block for block in _ALL} | WORKED
