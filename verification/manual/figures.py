@@ -1,6 +1,12 @@
-"""Figures of the case pages as SVG, drawn from the numbers of the baseline."""
+"""Figures of the case pages as SVG, drawn from the numbers of the baseline.
+
+The picture of a contact case, such as that of the README, is written to standard output by:
+
+python -m verification.manual.figures 14_ratio_4_sliding
+"""
 
 import io
+import sys
 from collections.abc import Sequence
 from typing import Any
 
@@ -9,7 +15,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
-from verification.cases.contact import Case
+from verification.cases.contact import Case, read_case, shipped_cases
 from verification.manual.numbers import Pair, pairs, values
 from verification.report.tables.numbers import engineering, plain
 from verification.sources.registry import EXACT, SOURCES
@@ -218,3 +224,7 @@ def _colour(between: tuple[str, str]) -> str:
 
 def _name(between: tuple[str, str]) -> str:
     return " – ".join("exact" if name in EXACT else SOURCES[name].label for name in between)
+
+
+if __name__ == "__main__":
+    sys.stdout.buffer.write(of_case(read_case(shipped_cases()[sys.argv[1]])))

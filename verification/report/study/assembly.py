@@ -211,9 +211,9 @@ def _drawn_section(anchor: str, title: str, drawings: Sequence[Drawn]) -> Sectio
         for d in drawings
     ]
     captions = {
-        "stress": "Lines: semi-analytical method; circles: finite elements; crosses: the exact reference, at "
+        "stress": "Lines: semi-analytical method; triangles: finite elements; crosses: exact reference, at "
         "the cross-checked points; below, how far these are from the lines. ",
-        "contact": "Lines, circles, crosses as above. ",
+        "contact": "Lines, triangles, crosses as above. ",
         "contours": "Sliding in +x. Thick bar: the contact; dashed: the interface. All thicknesses have the "
         "same extent and the same scales. ",
     }
