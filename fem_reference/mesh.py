@@ -24,8 +24,8 @@ EDGE_SIZE = 1e-7  # smallest triangle, at the contact edge, over the contact rad
 # Size of a triangle in the fan over edge_rate: this power of its distance from the edge. What the innermost
 # triangles miss counts as the root of the distance.
 _FAN = 0.94
-# Sizes are uniform to this depth over the contact radius, then grow by this share a unit of the stretched
-# plane.
+# Sizes are uniform to this depth over the contact radius, or to that of all coatings, then grow by this share
+# a unit of the stretched plane.
 _NEAR, _GROWTH = 3.0, 0.4
 # Films buried at many times their thickness are left to flat triangles: the least size for the sake of a
 # coating over the usual one.
@@ -197,7 +197,8 @@ def _triangulate(
         gmsh.model.addPhysicalGroup(1, [across[0][0]], 1, "contact")
 
         rho = "Sqrt(x*x+y*y)"
-        beyond = f"Max(0,{rho}-{_literal(np.arcsinh(_NEAR * scale))})"
+        near = max([np.arcsinh(_NEAR * scale), *(lower for _, lower in films)])
+        beyond = f"Max(0,{rho}-{_literal(near)})"
         growth = f"(1+{_literal(_GROWTH)}*{beyond})"
         fan = f"{_literal(grading.edge_rate)}*{rho}^{_literal(_FAN)}"
         origin = f"Sqrt((x-({_literal(xi[0])}))^2+y*y)"

@@ -157,7 +157,7 @@ def _surface(axes: Any, case: Case) -> None:
     _curve(axes, case, "pressure", "surface", PALETTE[3], "$p$")
     _curve(axes, case, "sigma_xx", "surface", PALETTE[0], "$\\sigma_{xx}$")
     axes.set(xlim=(-2, 2), xlabel="$x / a_h$", ylabel="over $p_h$")
-    axes.set_title("On the surface: exact —, semi-analytical ○, elements ×", fontsize=9, loc="left")
+    axes.set_title("Surface: exact —, semi-analytical ○, elements ×", fontsize=9, loc="left")
     axes.legend(frameon=False, loc="best")
 
 
@@ -207,8 +207,8 @@ def _distances(axes: Any, rows: Sequence[tuple[str, Sequence[Pair]]]) -> None:
         [_name(pair) for pair in shown],
         fontsize=6.5,
         frameon=False,
-        loc="upper center",
-        bbox_to_anchor=(0.5, -0.55 / axes.get_position().height / axes.figure.get_figheight()),
+        loc="upper right",
+        bbox_to_anchor=(1.0, -0.55 / axes.get_position().height / axes.figure.get_figheight()),
         borderaxespad=0,
         handletextpad=0.1,
         columnspacing=0.8,
