@@ -22,7 +22,7 @@ __all__ = ["ENDS", "Search", "Tension", "around_edge", "edge_uncertainty"]
 # Of t: samples close to the edge, where thin films bend, then evenly. REACH: of a, beside 4 bending lengths.
 CLOSE, STEP, REACH = np.geomspace(0.01, 0.5, 20), 0.09, 4.0
 WINDOW, NODES = 3, 33  # samples either side of the largest one, Chebyshev nodes between the outermost
-FIT = 0.1  # of the uncertainty: what the polynomial may leave
+FIT = 0.3  # of the uncertainty: what the polynomial may leave
 CLEAR = 0.1  # of the largest sample: by as much it may lie below the maximum that it brackets
 # Of a: the distance from the edge at which the uncertainty of the stress no longer is that of the radius.
 BESIDE = 1e-2
