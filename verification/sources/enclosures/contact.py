@@ -11,9 +11,9 @@ With f = d f1 - f2 of ``equation`` and E1* of the first material,
     Y = int_s^1 sin(kappa t)/sqrt(t^2 - s^2) dt
 
 (C2) is p(0) = -int phi'(t)/t dt; on the surface (C3) has A less the homogeneous solid's, which gives
--(1 + 2 nu1)/2 p(0), Johnson, Contact Mechanics (1985), (3.46). (C4): the derivative of the equation with respect
-to a, where phi(a) = 0, has the right side d delta/d a alone; derived here, after Mossakovskii, PMM 27 (1963)
-418-427.
+-(1 + 2 nu1)/2 p(0), Johnson, Contact Mechanics (1985), (3.46). (C4): the derivative of the equation with
+respect to a, where phi(a) = 0, has the right side d delta/d a alone; derived here, after Mossakovskii, PMM 27
+(1963) 418-427.
 """
 
 import math
@@ -23,12 +23,13 @@ from dataclasses import dataclass
 from flint import acb, arb, ctx
 
 from verification.problem.contact import CoatedContact
-from verification.sources.enclosures.equation import Equation, equation, waves
+from verification.sources.enclosures.equation import Equation, Waves, equation, waves
 from verification.sources.enclosures.quadrature import of_bounded, panels
 from verification.sources.enclosures.response import LayeredSolid
 
 EXCESS, SURFACE, UPPER, LOWER = range(4)
 STEPS = 30
+NEAR = 2.0**-30  # relative radius of the ball of radii for which the panels of the proof hold
 
 
 @dataclass(frozen=True, repr=False)
@@ -63,19 +64,20 @@ def enclose(problem: CoatedContact, radii: Sequence[float] = ()) -> Enclosed:
     try:
         a, terms = _near(problem, solid)
         ctx.prec = _bits(terms)
-        a, load, slope = _newton(problem, solid, a, terms)
-        reach = 4 * load.rad() / slope.mid() + a * arb(2) ** -90
-        around = arb(a.mid(), (64 * reach).upper())
+        # the panels of the guess prove nothing; they lead to where those of the proof have to hold
+        a, _ = _newton(problem, solid, a, waves(panels(solid, a), terms), float(a) * NEAR / 16)
+        around = arb(a.mid(), (a * NEAR).upper())
         table = waves(panels(solid, around), terms)
+        a, reach = _newton(problem, solid, a, table, 0.0)
+        W = arb(problem.load)
         while True:
             low, high = (a - reach).mid(), (a + reach).mid()
+            if not (around.lower() < low and high < around.upper()):
+                raise ValueError(f"the load could not be enclosed near a = {float(a):g} m")
             ends = [_edge(problem, equation(solid, end, table)).load for end in (low, high)]
-            W = arb(problem.load)
             if ends[0] < W < ends[1]:
                 break
-            reach = 2 * reach
-            if not (high + reach < around.upper()):
-                raise ValueError(f"the load could not be enclosed near a = {float(a):g} m")
+            reach = 4 * reach
         return _quantities(problem, solid, equation(solid, low.union(high), table), radii)
     finally:
         ctx.prec = bits
@@ -114,16 +116,17 @@ def _near(problem: CoatedContact, solid: LayeredSolid) -> tuple[arb, int]:
     return arb(a), int(56 / rate) + 16
 
 
-def _newton(problem: CoatedContact, solid: LayeredSolid, a: arb, terms: int) -> tuple[arb, arb, arb]:
-    """Radius under the load with load and d load/d a there, from panels of the first guess."""
-    table = waves(panels(solid, a), terms)
+def _newton(
+    problem: CoatedContact, solid: LayeredSolid, a: arb, table: Waves, enough: float
+) -> tuple[arb, arb]:
+    """Radius under the load with the half width of a bracket of it; stops at steps below ``enough`` [m]."""
     for _ in range(STEPS):
         edge = _edge(problem, equation(solid, a, table))
-        load, slope = edge.load, edge.slope
-        step = ((arb(problem.load) - load) / slope).mid()
-        if abs(step) < abs(a) * arb(2) ** -70 + 2 * (load.rad() / slope).abs_upper():
-            return a, load, slope
+        step = ((arb(problem.load) - edge.load) / edge.slope).mid()
+        reach = 4 * (edge.load.rad() / edge.slope).abs_upper() + a * arb(2) ** -90
         a = (a + step).mid()
+        if abs(step) < reach or abs(step) < enough:
+            return a, reach
     raise ValueError(f"no contact radius after {STEPS} steps of Newton's method")
 
 

@@ -5,8 +5,8 @@ With x = a s, phi = E1* a^2/(pi R) f and m(kappa) = M(kappa/a) - 1,
     f + K f = d - s^2,   K f = (2/pi) int_0^inf m cos(kappa s) F(kappa) dkappa
     F(kappa) = int_0^1 f cos(kappa t) dt
 
-Lebedev and Ufliand, PMM 22 (1958) 320-326. f = d f1 - f2 with f1, f2 of the right sides 1, s^2. In L2(0, 1), by
-Plancherel (2/pi) int F^2 = |f|^2, so that
+Lebedev and Ufliand, PMM 22 (1958) 320-326. f = d f1 - f2 with f1, f2 of the right sides 1, s^2. In L2(0, 1)
+(2/pi) int F^2 = |f|^2 by Plancherel, so that
 
     <f, f + K f> = (2/pi) int M F^2 >= min M |f|^2
     |f - g| <= |r| / min M,   r = right side - g - K g                                              (E1)
@@ -20,7 +20,7 @@ With K g by the nodes of ``Panels``, V_j = (2/pi) w_j m_j G(kappa_j), the residu
     |r| <= |coefficients n < N| + sum_j |V_j| t_j + (2/pi) error |g|                                 (E2)
     t_j^2 = |cos(kappa_j s)|^2 - sum_{n < N} c_n(kappa_j)^2
 
-j_2n by j_{n-1} + j_{n+1} = (2n + 1) j_n / x, DLMF 10.51.1, upwards from sin x / x or downwards from DLMF 10.53.1.
+j_2n by j_{n-1} + j_{n+1} = (2n + 1) j_n / x, DLMF 10.51.1, upwards from sin x / x or downwards from 10.53.1.
 """
 
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""Problems that are enclosed: one sphere and load, layers from soft to stiff, from thin to thick.
+"""Problems with proven enclosures: layers from soft to stiff, from thin to thick, under one sphere.
 
 Thicknesses are multiples of a_h; the numbers of each record are exact as binary numbers.
 """

@@ -1,15 +1,15 @@
 """Integrals over the wavenumber with proven bounds of their errors.
 
-kappa = k a. An integrand A(kappa) w(kappa), A of the layers, |w| <= |kappa|^p cosh(Im kappa)^2 for a power p, is
-integrated by Gauss panels of n nodes up to an end, beyond which a tail is bounded. On a panel of half width H, with
-F analytic in the ellipse of semi-axes H (rho +- 1/rho)/2 about its middle,
+kappa = k a. An integrand A(kappa) w(kappa), A of the layers, |w| <= |kappa|^p cosh(Im kappa)^2 for a power p,
+is integrated by Gauss panels of n nodes up to an end, beyond which a tail is bounded. On a panel of half
+width H, with F analytic in the ellipse of semi-axes H (rho +- 1/rho)/2 about its middle,
 
     |int F - sum w_j F_j| <= 8 H rho^(1 - 2n) / (rho - 1) max |F|                                     (Q1)
 
-The rule is exact for polynomials of degree 2n - 1; its weights add up to 2H. The error is therefore at most 4H times
-that of the Chebyshev sum of this degree, 2 rho^(1 - 2n)/(rho - 1) max |F|: Trefethen, Approximation Theory and
-Approximation Practice (2013), theorem 8.2. A is bounded in rectangles that cover the ellipse; a finite value on each
-also proves that A is analytic there.
+The rule is exact for polynomials of degree 2n - 1; its weights add up to 2H. The error is therefore at most
+4H times that of the Chebyshev sum of this degree, 2 rho^(1 - 2n)/(rho - 1) max |F|: Trefethen, Approximation
+Theory and Approximation Practice (2013), theorem 8.2. A is bounded in rectangles that cover the ellipse; a
+finite value on each also proves that A is analytic there.
 
     tail:  C (1 + x)^2 e^{-2x}, D (1 + x) e^{-x} of ``LayeredSolid.tail``, x = kappa h/a, beyond X
     int_X^inf (1 + x)^q x^p e^{-qx} dx <= (1 + X)^q X^p e^{-qX} / (q - (q + p)/X),   q = 1, 2         (Q2)

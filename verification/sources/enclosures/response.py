@@ -1,14 +1,14 @@
 """Response of a layered half-space to a normal load, in complex balls.
 
 A field e^{ikL} under the surface solves y' = k N y for y = (2 G1 k U, 2 G1 k w, T, S), with G1 of the first
-layer, u_L = i U, u_z = w, s_Lz = i T, s_zz = S. In each layer, with s from its top, t from its bottom, x = k h,
+layer, u_L = i U, u_z = w, s_Lz = i T, s_zz = S. In each layer, s from its top, t from its bottom, x = k h,
 
     y = B e^{-ks} X(ks) c + J B e^{-kt} X(kt) g,   X(x) = [[1, x], [0, 1]],   J = diag(1, -1, -1, 1)
     B = [U0; T0],  U0 = [[1, 0], [-1, -(3 - 4 nu)]] G1/G,  T0 = [[-1, -(1 - 2 nu)], [1, 2 (1 - nu)]]
 
-N B = B [[-1, 1], [0, -1]] is Hooke's law with equilibrium; J mirrors z. The waves that rise from the bottom are
-g = R d, with d = P c those that arrive there, P = e^{-x} X(x). Both sides of an interface have the same y. With
-' for the layer below, S' = P' R' P', 0 of the substrate, and constant 2 x 2 matrices R0, V, Q, F,
+N B = B [[-1, 1], [0, -1]] is Hooke's law with equilibrium; J mirrors z. The waves that rise from the bottom
+are g = R d, with d = P c those that arrive there, P = e^{-x} X(x). Both sides of an interface have one y.
+With ' for the layer below, S' = P' R' P', 0 of the substrate, and constant 2 x 2 matrices R0, V, Q, F,
 
     [J B, -B'] (R0, V) = -B,   [J B, -B'] (Q, F) = J B',   R = R0 + Q S' (1 - F S')^{-1} V           (R1)
     surface T = 0, S = -1:   c = (1 + F0 S)^{-1} c0,   T0 F0 = J T0,   T0 c0 = (0, -1)               (R2)
@@ -18,7 +18,7 @@ Long waves, for which (R2) is nearly singular below a stiff layer, use the propa
     y(top) = exp(-N x) y(bottom)
     exp(N x) = cosh x + N sinh x + Q (x sinh x)/2 + N Q (x cosh x - sinh x)/2,   Q = N^2 - 1,   Q^2 = 0   (R3)
 
-Reflection matrices as Kennett, Seismic Wave Propagation in Stratified Media (1983), ch. 6; derived here for statics.
+Reflection matrices: Kennett, Seismic Wave Propagation in Stratified Media (1983), ch. 6; derived for statics.
 """
 
 from collections.abc import Iterator
@@ -38,7 +38,8 @@ class Amplitudes:
     """Balls of the response at one wavenumber, per unit pressure; (sigma_xx + sigma_yy)/2 of the stresses.
 
     excess : M - 1, with u_z = (1 - nu1)/(G1 k) M p on the surface.
-    surface : less that of the homogeneous solid of the first material.   upper, lower : of the first interface.
+    surface : less that of the homogeneous solid of the first material.
+    upper, lower : at the first interface.
     """
 
     excess: acb
@@ -134,8 +135,8 @@ class LayeredSolid:
         Returns C, D such that for every greater wavenumber |excess| and |surface| <= C (1 + x)^2 e^{-2x},
         |upper| and |lower| <= D (1 + x) e^{-x}.
 
-        |P| <= (1 + x) e^{-x} in the maximum norm, which falls with x, so that (R1) and (R2) with rectangles that
-        hold every S beyond k bound R and c. Infinite where these may be singular.
+        |P| <= (1 + x) e^{-x} in the maximum norm, which falls with x, so that (R1) and (R2) with rectangles
+        that hold every S beyond k bound R and c. Not finite where these may be singular.
         """
         S = ZERO
         for h, interface in zip(reversed(self.thickness), reversed(self._interfaces), strict=True):
