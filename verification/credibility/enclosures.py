@@ -49,7 +49,8 @@ class Bounds:
         if not np.isfinite(value):
             return float("inf")
         exact = Fraction(value)
-        return float(max(Fraction(Decimal(self.lower)) - exact, exact - Fraction(Decimal(self.upper)), 0))
+        below, above = Fraction(Decimal(self.lower)) - exact, exact - Fraction(Decimal(self.upper))
+        return float(max(below, above, Fraction(0)))
 
 
 @dataclass(frozen=True)
@@ -109,8 +110,8 @@ def _value(problem: CoatedContact, solution: Solution, bounds: Bounds) -> tuple[
     if bounds.quantity == "sigma_xx":
         layer = 1 if bounds.line == LOWER else 0
         z = 0.0 if bounds.line == SURFACE else problem.interfaces[0]
-        sigma, U = stress_with_uncertainty(solution, 0.0, 0.0, z, layer)
-        return float(sigma[0, 0]), None if U is None else float(U[0, 0])
+        sigma, U_sigma = stress_with_uncertainty(solution, 0.0, 0.0, z, layer)
+        return float(sigma[0, 0]), None if U_sigma is None else float(U_sigma[0, 0])
     if bounds.quantity == "pressure":
         U = None if solution.uncertainty is None else float(solution.pressure_uncertainty(0.0))
         return float(solution.pressure(0.0)), U

@@ -81,9 +81,20 @@ def certify(
         bounds = tuple(Bounds(quantity, line, *_decimal(ball)) for quantity, line, ball in values)
         rings = tuple(Ring(r, *_decimal(ball)) for r, ball in zip(radii, balls.profile, strict=True))
         seconds = round(time.process_time() - began, 2)
-        solid = problem.coatings, problem.substrate
-        how = seconds, balls.bits, balls.terms
-        found.append(Enclosure(name, problem.radius, problem.load, *solid, bounds, *how, rings))
+        found.append(
+            Enclosure(
+                name,
+                problem.radius,
+                problem.load,
+                problem.coatings,
+                problem.substrate,
+                bounds,
+                seconds,
+                balls.bits,
+                balls.terms,
+                rings,
+            )
+        )
         if not quiet and not as_json:
             print_out(escape(f"{name}: {bounds[2].middle:.15g} Pa, {seconds:g} s"))
     stored = None

@@ -204,7 +204,8 @@ def _reflected(interface: tuple[Matrix, Matrix, Matrix, Matrix], S: Matrix) -> M
     R0, V, Q, F = interface
     if S is ZERO:
         return R0
-    one_less = _plus(IDENTITY, tuple(-entry for entry in _product(F, S)))
+    a, b, c, d = _product(F, S)
+    one_less = 1 - a, -b, -c, 1 - d
     return _plus(R0, _product(_product(Q, S), _product(_inverse(one_less), V)))
 
 
