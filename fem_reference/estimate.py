@@ -394,17 +394,21 @@ def estimates(
     displacement, factor = units.displacement, _factor(d.order, size)
     pointwise, functional = factor * _coarseness(size), _functional_factor(d.order, size)
     balance = load_residual / 2 * a  # a ~ W^(1/n), n at least 2 on any layers
-    # what the whole mesh misses shows in the approach, and as such a share of the stress everywhere
+    # What the whole mesh misses of a contact's compliance shows in the approach, changes the pressure, and as
+    # such a share of the stress everywhere. A given pressure is exact: the error of the displacement under it
+    # passes to no stress.
     share = functional * size_approach / central if state.normal.root_at_edge else 0.0
     pollution = share * largest
-    radius_error = functional * size_radius + SAFETY * edge + far_radius + balance
+    # the radius takes part in the singularity at the edge and not in the higher order of functionals
+    size_radius *= factor
+    radius_error = size_radius + SAFETY * edge + far_radius + balance
     everywhere = far_pressure + load_residual / 3 * largest
     pressure = PressureEstimate(
         state.pressure, companion.pressure, d.contact_vertices, pointwise, radius_error, everywhere
     )
     size_peak = float(pressure(np.array([at]))[0]) - everywhere
     rows: tuple[tuple[str, str, float], ...] = (
-        ("contact_radius", "element size", functional * size_radius * units.length),
+        ("contact_radius", "element size", size_radius * units.length),
         ("contact_radius", "edge size", SAFETY * edge * units.length),
         ("contact_radius", "outer boundary", far_radius * units.length),
         ("contact_radius", "load balance", balance * units.length),

@@ -24,8 +24,8 @@ EDGE_SIZE = 1e-7  # smallest triangle, at the contact edge, over the contact rad
 # Size of a triangle in the fan over edge_rate: this power of its distance from the edge. What the innermost
 # triangles miss counts as the root of the distance.
 _FAN = 0.94
-# Sizes are uniform to this depth over the contact radius, then grow by this share a unit of the stretched
-# plane.
+# Sizes are uniform to this depth over the contact radius, or to that of all coatings, then grow by this share
+# a unit of the stretched plane.
 _NEAR, _GROWTH = 3.0, 0.4
 # Films buried at many times their thickness are left to flat triangles: the least size for the sake of a
 # coating over the usual one.
@@ -42,7 +42,8 @@ class Grading:
     edge_size : smallest triangle, at the edge, over the contact radius
     axis_size : size at the point of first contact, in units of the stretched plane
     far_size  : largest size towards the outer boundary, where one unit is a factor e of distance
-    rows      : triangles across each coating at least
+    rows      : triangles across each coating at least; fewer where they would be smaller than
+        ``_LEAST_ROW`` times size
     """
 
     size: float = 0.4
@@ -195,30 +196,31 @@ def _triangulate(
             gmsh.model.addPhysicalGroup(2, [surface], k + 1, name)
         gmsh.model.addPhysicalGroup(1, [across[0][0]], 1, "contact")
 
-        field = gmsh.model.mesh.field
         rho = "Sqrt(x*x+y*y)"
-        field.add("MathEval", 1)
+        near = max([np.arcsinh(_NEAR * scale), *(lower for _, lower in films)])
+        beyond = f"Max(0,{rho}-{_literal(near)})"
+        growth = f"(1+{_literal(_GROWTH)}*{beyond})"
         fan = f"{_literal(grading.edge_rate)}*{rho}^{_literal(_FAN)}"
-        field.setString(1, "F", f"{fan}+{_literal(grading.edge_size * scale)}")
-        field.add("MathEval", 2)
-        beyond = f"Max(0,{rho}-{_literal(np.arcsinh(_NEAR * scale))})"
-        growth = f"{_literal(grading.size)}*(1+{_literal(_GROWTH)}*{beyond})"
-        field.setString(2, "F", f"Min({_literal(grading.far_size)},{growth})")
-        # p(0) has no neighbours on its other side: finer triangles at the point of first contact
-        field.add("MathEval", 3)
         origin = f"Sqrt((x-({_literal(xi[0])}))^2+y*y)"
-        field.setString(3, "F", f"{_literal(grading.axis_size)}+0.3*{origin}")
-        number = 3
+        sizes = [
+            f"{fan}+{_literal(grading.edge_size * scale)}",
+            f"Min({_literal(grading.far_size)},{_literal(grading.size)}*{growth})",
+            # p(0) has no neighbours on its other side: finer triangles at the point of first contact
+            f"{_literal(grading.axis_size)}+0.3*{origin}",
+        ]
         for upper, lower in films:
-            number += 1
-            field.add("MathEval", number)
             away = f"Max(0,Max(y-({_literal(lower)}),{_literal(upper)}-y))"
             row = max((lower - upper) / grading.rows, _LEAST_ROW * grading.size)
-            rows = f"{_literal(row)}*(1+{_literal(_GROWTH)}*{beyond})"
-            field.setString(number, "F", f"{rows}+0.4*{away}")
-        field.add("Min", number + 1)
-        field.setNumbers(number + 1, "FieldsList", list(range(1, number + 1)))
-        field.setAsBackgroundMesh(number + 1)
+            sizes.append(f"{_literal(row)}*{growth}+0.4*{away}")
+        field = gmsh.model.mesh.field
+        numbers = range(1, len(sizes) + 1)
+        for number, size in zip(numbers, sizes, strict=True):
+            field.add("MathEval", number)
+            field.setString(number, "F", size)
+        smallest = len(sizes) + 1
+        field.add("Min", smallest)
+        field.setNumbers(smallest, "FieldsList", list(numbers))
+        field.setAsBackgroundMesh(smallest)
         gmsh.model.mesh.generate(2)
 
         tags, coordinates, _ = gmsh.model.mesh.getNodes()

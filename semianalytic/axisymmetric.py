@@ -138,9 +138,10 @@ def half_space_integrals(profile: Profile, r: Array, z: Array, power: int) -> tu
         t = 0.5j * (s - radius[:, None] ** 2 / s - 2 * depth[:, None])
         tau = radius[:, None] / s
         y = 1 - 2 * t**2
-        slope = -4 * t * legendre.legval(y, f1) * measure
+        first_derivative = legendre.legval(y, f1)
+        slope = -4 * t * first_derivative * measure
         if power:
-            other = (16 * t**2 * legendre.legval(y, f2) - 4 * legendre.legval(y, f1)) * measure
+            other = (16 * t**2 * legendre.legval(y, f2) - 4 * first_derivative) * measure
             z_over_R = np.where(R_a == 0, 0.0, depth / np.where(R_a == 0, 1.0, R_a))
             at_edge = -4 * legendre.legval(-1.0, f1)
         else:

@@ -156,7 +156,8 @@ class LevelProblem:
             extension=_extension(self.body, grid.d),
         )
         load = float(found.pressure.sum() * grid.d**2) + missing
-        noise = self.numerics.tolerance * scale * self.body.contact_modulus / grid.d
+        # p = E* k u / 2, k at most that of a checkerboard, sqrt(2) pi / d
+        noise = self.numerics.tolerance * scale * self.body.contact_modulus * np.pi / 2**0.5 / grid.d
         return Level(grid, found, None, load, found.convolutions, noise)
 
     def _first_guess(self) -> Array:

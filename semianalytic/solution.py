@@ -241,7 +241,8 @@ class Solution:
         change = rate * np.maximum(change, rate * np.abs(second.pressure(r) - third.pressure(r)))
         shift = self.uncertainty.contact_radius
         moved = np.abs([fine.pressure(r + s) - p for s in (-shift, shift)]).max(axis=0)
-        return np.maximum(change, moved) + EXACT * self.peak_pressure
+        rest = float(np.abs(self._level.rest).max())
+        return np.maximum(change, moved) + EXACT * self.peak_pressure + rest
 
     @cached_property
     def _convergence(self) -> float:

@@ -98,12 +98,15 @@ def _of_profiles(levels: list[Level], numerics: Numerics) -> Uncertainty:
     """Refinement study of the edge profile's terms, which the patches follow.
 
     Terms: the change to the finest profile, times the observed convergence.  Quadrature: of the layers'
-    response.  Iteration: the gap it leaves, over the approach.
+    response.  Iteration: the gap it leaves, over the approach; what the patches leave of the profile.
     """
     fine, middle, coarse = levels[:-4:-1]
     shapes = [level.shape for level in (fine, middle, coarse)]
     rate = convergence(*(shape for shape in shapes if isinstance(shape, Profile)))
-    rows = [("approach", "iteration", numerics.tolerance * fine.found.approach)]
+    rows = [
+        ("approach", "iteration", numerics.tolerance * fine.found.approach),
+        ("peak_pressure", "iteration", float(np.abs(fine.rest).max())),
+    ]
     for name, value in fine.scalars.items():
         last, before = abs(value - middle.scalars[name]), abs(middle.scalars[name] - coarse.scalars[name])
         rows.append((name, "edge terms", rate * max(last, rate * before)))

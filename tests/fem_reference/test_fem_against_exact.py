@@ -1,6 +1,6 @@
 """The finite element method against the exact coated sphere: figures asked and its own estimate.
 
-Quick: a few cases. The whole sweep, E1/E2 in {1/4, 1/2, 1, 2, 4} by h/a_h in {1/4, 1/2, 1, 2} by three pairs
+Quick: one case. The whole sweep, E1/E2 in {1/4, 1/2, 1, 2, 4} by h/a_h in {1/4, 1/2, 1, 2} by three pairs
 of Poisson ratios, is slow.
 """
 
@@ -16,7 +16,7 @@ R, W, E = 10e-3, 20.0, 210e9
 PAIRS = ((0.3, 0.3), (0.2, 0.4), (0.45, 0.25))
 RATIOS = (0.25, 0.5, 1.0, 2.0, 4.0)
 THICKNESSES = (0.25, 0.5, 1.0, 2.0)
-QUICK = ((4.0, 0.25, (0.3, 0.3)), (0.25, 1.0, (0.2, 0.4)), (2.0, 2.0, (0.45, 0.25)))
+QUICK = (4.0, 0.25, (0.3, 0.3))
 
 
 def both(ratio, thickness, nu, reference_estimate=False, **numerics):
@@ -70,18 +70,22 @@ def check(ratio, thickness, nu):
     assert s.diagnostics.seconds < 60
 
 
-@pytest.mark.parametrize(("ratio", "thickness", "nu"), QUICK)
-def test_default_numerics_meet_the_figures_asked(ratio, thickness, nu):
-    check(ratio, thickness, nu)
+def test_default_numerics_meet_the_figures_asked():
+    check(*QUICK)
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("ratio", "thickness", "nu"), list(product(RATIOS, THICKNESSES, PAIRS)))
+@pytest.mark.parametrize(
+    ("ratio", "thickness", "nu"), sorted({*product(RATIOS, THICKNESSES, PAIRS)} - {QUICK})
+)
 def test_default_numerics_meet_the_figures_asked_everywhere(ratio, thickness, nu):
     check(ratio, thickness, nu)
 
 
-@pytest.mark.parametrize(("ratio", "thickness", "nu"), [(2.0, 1.0, (0.3, 0.3)), (0.25, 0.25, (0.3, 0.3))])
+@pytest.mark.parametrize(
+    ("ratio", "thickness", "nu"),
+    [pytest.param(2.0, 1.0, (0.3, 0.3), marks=pytest.mark.slow), (0.25, 0.25, (0.3, 0.3))],
+)
 def test_fast_level_is_good_to_a_thousandth(ratio, thickness, nu):
     s, exact, a_h = both(ratio, thickness, nu, quality="fast", estimate_uncertainty=False)
     p_h = 3 * W / (2 * np.pi * a_h**2)
@@ -115,6 +119,7 @@ def test_nearly_incompressible_layers_do_not_lock():
 @pytest.mark.parametrize("thickness", [0.01, 20.0])
 def test_extreme_coatings_stay_within_their_own_estimate(thickness, ratio):
     s, exact, _ = both(ratio, thickness, (0.3, 0.3), reference_estimate=True)
+    assert s.diagnostics.residual_pressure == s.diagnostics.residual_gap == 0
     for name in ("contact_radius", "approach", "peak_pressure"):
         error = abs(getattr(s, name) - getattr(exact, name))
         # the exact equation is hard to integrate for thin compliant coatings and says so

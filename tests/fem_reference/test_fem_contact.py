@@ -186,6 +186,7 @@ def test_pressure_error_falls_at_the_expected_order(order):
     assert np.log2(errors[0] / errors[1]) > order - 1
 
 
+@pytest.mark.slow
 def test_outer_boundary_is_far_enough():
     near, far = (
         solve(radius=R, load=W, coatings=CASES["stiff"], substrate=(E, NU), far=far, quality="fast")
@@ -197,8 +198,8 @@ def test_outer_boundary_is_far_enough():
     assert near.contact_radius == pytest.approx(far.contact_radius, rel=1e-5)
 
 
-@pytest.mark.parametrize("ratio", [0.01, 100.0])
-@pytest.mark.parametrize("thickness", [0.01, 20.0])
+# The other two are solved by the slow test against the exact solution.
+@pytest.mark.parametrize(("thickness", "ratio"), [(0.01, 100.0), (20.0, 0.01)])
 def test_extreme_coatings_are_solved_with_positive_pressure_and_gap(ratio, thickness):
     s = solve(
         radius=R,
@@ -369,6 +370,7 @@ def test_friction_does_not_change_the_pressure():
     np.testing.assert_array_equal(sliding().pressure(x), sliding(0.0).pressure(x))
 
 
+@pytest.mark.slow
 def test_prescribed_hertz_pressure_reproduces_the_contact():
     s = sliding(name="stiff")
     given = solve_prescribed(

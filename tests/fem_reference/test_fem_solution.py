@@ -23,7 +23,7 @@ def parabola(r):
 
 @lru_cache
 def solved(kind, friction=0.0, **keywords):
-    common = {"coatings": COATED, "substrate": (E, NU), "friction": friction, "size": 0.5, "order": 3}
+    common = {"coatings": COATED, "substrate": (E, NU), "friction": friction, "size": 0.5, "order": 2}
     if kind == "sphere":
         return solve(radius=R, load=W, **common, **keywords)
     pressure = 1e9 if kind == "uniform pressure" else parabola

@@ -36,7 +36,7 @@ KNOBS = {
 CASES = [tomllib.loads(path.read_text(encoding="utf-8")) for path in shipped_cases().values()]
 CASES += [tree | KNOBS | {"claim": [CLAIM, CLAIM]} for tree in CASES if tree["problem"].get("coatings")][:4]
 PUBLISHED = [published_cases()[name] for name in ("jones_1962", "hermanowicz_2021", "ellea1_halfspace_axis")]
-REFUSED, QUICK = 2000, 200
+REFUSED, QUICK = 2000, 50
 
 
 def generated(number: int) -> settings:
@@ -119,7 +119,7 @@ def bad_files(tmp_path, monkeypatch, wanted):
     return counts
 
 
-def test_two_hundred_generated_case_files(tmp_path, monkeypatch):
+def test_fifty_generated_case_files(tmp_path, monkeypatch):
     assert bad_files(tmp_path, monkeypatch, QUICK)["refused"] >= QUICK
 
 
@@ -143,7 +143,8 @@ def refusal(read: Callable[[Path], object], path: Path) -> str | None:
     return None
 
 
-def test_generated_published_cases_and_tables_are_refused_in_one_sentence(tmp_path):
+@pytest.mark.parametrize(("files", "texts"), [(120, 60), pytest.param(600, 300, marks=pytest.mark.slow)])
+def test_generated_published_cases_and_tables_are_refused_in_one_sentence(tmp_path, files, texts):
     counts = {"case": 0, "table": 0, "refused": 0}
     trees = [tomllib.loads(path.read_text(encoding="utf-8")) for path in PUBLISHED]
     tables = {}
@@ -158,12 +159,12 @@ def test_generated_published_cases_and_tables_are_refused_in_one_sentence(tmp_pa
         counts["refused"] += message is not None
         assert message is None or re.match(named, message), message
 
-    @generated(600)
+    @generated(files)
     @given(malformed(trees))
     def each_case(made):
         read(made[0], "case", rf"{tmp_path}/mine\.toml: |\w+\.csv[:,] ")
 
-    @generated(300)
+    @generated(texts)
     @given(st.sampled_from(trees), st.data())
     def each_table(tree, data):
         name = tree["table"][0]["file"]
@@ -176,17 +177,18 @@ def test_generated_published_cases_and_tables_are_refused_in_one_sentence(tmp_pa
     sys.stdout.write(
         f"{counts['case']} published cases, {counts['table']} tables: {counts['refused']} refused\n"
     )
-    assert counts["case"] >= 600
-    assert counts["table"] >= 300
-    assert counts["refused"] >= 300
+    assert counts["case"] >= files
+    assert counts["table"] >= texts
+    assert counts["refused"] >= texts
 
 
-def test_generated_study_files_are_refused_in_one_sentence(tmp_path):
+@pytest.mark.parametrize("files", [60, pytest.param(300, marks=pytest.mark.slow)])
+def test_generated_study_files_are_refused_in_one_sentence(tmp_path, files):
     counts = {"files": 0, "refused": 0}
     trees = [tomllib.loads(path.read_text(encoding="utf-8")) for path in shipped_studies().values()]
     path = tmp_path / "mine.toml"
 
-    @generated(300)
+    @generated(files)
     @given(malformed(trees))
     def each(made):
         path.write_bytes(made[0])
@@ -197,8 +199,8 @@ def test_generated_study_files_are_refused_in_one_sentence(tmp_path):
 
     each()
     sys.stdout.write(f"{counts['files']} study files: {counts['refused']} refused\n")
-    assert counts["files"] >= 300
-    assert counts["refused"] >= 200
+    assert counts["files"] >= files
+    assert counts["refused"] >= 2 * files / 3
 
 
 GOOD = """title = "Stiff coating"

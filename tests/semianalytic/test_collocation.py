@@ -78,6 +78,7 @@ def test_a_contact_as_wide_as_the_sphere_is_refused():
         semianalytic.solve(radius=8e-3, load=3e5, coatings=((2.1e8, 0.3, 0.04),), substrate=STEEL)
 
 
+@pytest.mark.slow
 def test_a_stiff_film_on_a_thick_soft_layer_converges():
     s = semianalytic.solve(
         radius=8e-3, load=19.3, coatings=((1.035e13, 0.2, 4e-6), (4.14e9, 0.45, 1.6e-4)), substrate=STEEL

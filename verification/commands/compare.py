@@ -35,7 +35,7 @@ def compare(
     try:
         found = compare_runs(read_run(first), read_run(second))
         if output is not None:
-            from verification.report.comparison import comparison_page
+            from verification.report.runs.comparison import comparison_page
 
             write_atomically(output, comparison_page(found).encode("utf-8", errors="replace"))
     except StoreError as error:
@@ -70,6 +70,6 @@ def _print(found: RunComparison) -> None:
         print_out(f"... with {more} more, which --output or --json shows")
     for name, then, now in found.versions:
         print_out(escape(f"{name}: {one_line(then)} to {one_line(now)}"))
-    from verification.report.comparison import comparison_message
+    from verification.report.runs.comparison import comparison_message
 
     print_out(comparison_message(found))

@@ -1,6 +1,5 @@
 """coatcheck report: write the report of a stored run again, or print it."""
 
-import sys
 from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, Literal
@@ -10,7 +9,7 @@ from cyclopts import Parameter
 from verification.commands.common.exits import CommandError, exit_code, no_result, with_exit_code
 from verification.commands.common.folders import BASELINE, RECORDS, nearest_run, within_package
 from verification.commands.common.options import AsJson, Flag, Quiet
-from verification.commands.common.terminal import print_json
+from verification.commands.common.terminal import print_files
 from verification.credibility.self_tests import self_tests
 from verification.regression.baseline import regression
 from verification.regression.record import read_baseline
@@ -68,8 +67,5 @@ def report(
         raise no_result(str(error)) from None
     except ValueError as error:
         raise CommandError(str(error)) from None
-    if as_json:
-        print_json({"files": [str(file) for file in files]})
-    elif not quiet:
-        sys.stdout.write("".join(f"{file}\n" for file in files))
+    print_files(files, as_json=as_json, quiet=quiet)
     return 0 if material.results else exit_code(material.results)

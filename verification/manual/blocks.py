@@ -3,7 +3,6 @@
 Every number comes from the baseline or a record of this version.
 """
 
-import json
 import re
 from collections.abc import Callable, Sequence
 from datetime import datetime
@@ -18,15 +17,14 @@ from verification.credibility.faults.record import read_record
 from verification.manual.markdown import symbol, table, text
 from verification.manual.numbers import FOLDER, baseline, largest, pairs
 from verification.manual.tour import solved
-from verification.manual.worked import worked_1, worked_2, worked_3
+from verification.manual.worked import WORKED
 from verification.problem.quantity import QUANTITIES
+from verification.report.credibility.guests import COLUMNS, examined
 from verification.report.tables.numbers import scientific, seconds
-from verification.sources.registry import SOURCES
+from verification.sources.registry import METHODS, SOURCES
 
 SOURCE = Path(__file__).parent / "source"
 RECORDS = FOLDER.parents[1] / "credibility" / "shipped"
-GUESTS = FOLDER.parents[1] / "guests" / "shipped" / "guests.json"
-METHODS = ("semianalytic", "fem_reference")
 FIELDS = ("stress", "pressure", "displacement")
 
 
@@ -157,10 +155,9 @@ def false_alarms() -> str:
 
 def real_guests() -> str:
     """Codes of others examined: cases, largest differences, time, memory."""
-    columns = ("peak_pressure", "contact_radius", "approach", "pressure", "displacement")
     rows = []
-    for one in json.loads(GUESTS.read_text(encoding="utf-8")):
-        gaps = (one["differences"].get(name) for name in columns)
+    for one in examined():
+        gaps = (one["differences"].get(name) for name in COLUMNS)
         cells = ["–" if gap is None else scientific(max(gap, 1e-15), 1) for gap in gaps]
         low, high = one["seconds"]
         time = seconds(high) if round(low) == round(high) else f"{seconds(low)} to {seconds(high)}"
@@ -238,10 +235,7 @@ _ALL: Sequence[Callable[[], str]] = (
     real_guests,
     history,
     solved,
-    worked_1,
-    worked_2,
-    worked_3,
     enclosures,
     more_pages,
 )
-BLOCKS: dict[str, Callable[[], str]] = {block.__name__: block for block in _ALL}
+BLOCKS: dict[str, Callable[[], str]] = {block.__name__: block for block in _ALL} | WORKED

@@ -66,13 +66,20 @@ def _index(title: str, text: str, names: str) -> str:
     return f"# {title}\n{text}\n```{{toctree}}\n:maxdepth: 1\n\n{names}\n```\n"
 
 
-def _layers(coatings: Sequence[Sequence[float]], substrate: Sequence[float], a: float) -> str:
+def _layers(
+    coatings: Sequence[Sequence[float]],
+    substrate: Sequence[float],
+    length: float,
+    over: str = "a_h",
+    last: str = "substrate",
+) -> str:
+    """Table of the layers, thicknesses over a ``length`` called ``over`` too; ``last``: the half-space."""
     rows = [
-        [f"coating {i + 1}", engineering(E, "Pa"), plain(nu), engineering(h, "m"), plain(h / a, 3)]
+        [f"coating {i + 1}", engineering(E, "Pa"), plain(nu), engineering(h, "m"), plain(h / length, 3)]
         for i, (E, nu, h) in enumerate(coatings)
     ]
-    rows.append(["substrate", engineering(substrate[0], "Pa"), plain(substrate[1]), "", ""])
-    return table(["layer, from the surface", "$E$", r"$\nu$", "$h$", "$h/a_h$"], rows, 1)
+    rows.append([last, engineering(substrate[0], "Pa"), plain(substrate[1]), "", ""])
+    return table(["layer, from the surface", "$E$", r"$\nu$", "$h$", f"$h/{over}$"], rows, 1)
 
 
 def _problem(problem: CoatedContact) -> str:
@@ -97,7 +104,7 @@ def _problem(problem: CoatedContact) -> str:
         E, nu, coatings = problem.ball
         parts += [
             "The ball is elastic:",
-            _layers(coatings, (E, nu), problem.a_h).replace("substrate", "ball"),
+            _layers(coatings, (E, nu), problem.a_h, last="ball"),
         ]
     return "\n\n".join(parts)
 
@@ -123,7 +130,7 @@ def _contact_page(case: Case) -> str:
         rows.append([symbol(name), *cells])
     head = ["", *(SOURCES[s].label for s in sources)]
     manifest = baseline().manifests[case.name]
-    agreed = sum(bool((p.difference <= p.uncertainty * 1.01 + 1e-10).all()) for p in found)
+    agreed = sum(p.agrees for p in found)
     judged = (
         f"{len(found)} comparisons at {sum(len(p.position) for p in found)} points, "
         f"{len(manifest.invariants)} invariants; {agreed} of {len(found)} comparisons agree."
@@ -197,19 +204,14 @@ def _published_page(case: PublishedCase) -> str:
     problem = case.problem
     if isinstance(problem, CoatedContact):
         parts.append(_problem(problem))
+    elif isinstance(problem, PrescribedLoad):
+        pressure, a = engineering(problem.pressure, "Pa"), problem.load_radius
+        parts.append(f"A uniform pressure of {pressure} on a disc of radius {engineering(a, 'm')}:")
+        parts.append(_layers(problem.coatings, problem.substrate, a, "a"))
     else:
-        given = (
-            [f"sphere of radius {engineering(problem.radius, 'm')}, loaded step by step"]
-            if not isinstance(problem, PrescribedLoad)
-            else [
-                f"uniform pressure of {engineering(problem.pressure, 'Pa')} on a disc of radius "
-                f"{engineering(problem.load_radius, 'm')}"
-            ]
-        )
-        length = problem.load_radius if isinstance(problem, PrescribedLoad) else problem.radius
-        over = "$h/a$" if isinstance(problem, PrescribedLoad) else "$h/R$"
-        layers = _layers(problem.coatings, problem.substrate, length).replace("$h/a_h$", over)
-        parts += [f"A {given[0]}:", layers]
+        R = problem.radius
+        parts.append(f"A sphere of radius {engineering(R, 'm')}, loaded step by step:")
+        parts.append(_layers(problem.coatings, problem.substrate, R, "R"))
     rows = []
     for item in case.columns:
         departed = int(np.count_nonzero(item.departure))

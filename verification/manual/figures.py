@@ -1,6 +1,12 @@
-"""Figures of the case pages as SVG, drawn from the numbers of the baseline."""
+"""Figures of the case pages as SVG, drawn from the numbers of the baseline.
+
+The picture of a contact case, such as that of the README, is written to standard output by:
+
+python -m verification.manual.figures 14_ratio_4_sliding
+"""
 
 import io
+import sys
 from collections.abc import Sequence
 from typing import Any
 
@@ -9,7 +15,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
-from verification.cases.contact import Case
+from verification.cases.contact import Case, read_case, shipped_cases
 from verification.manual.numbers import Pair, pairs, values
 from verification.report.tables.numbers import engineering, plain
 from verification.sources.registry import EXACT, SOURCES
@@ -151,7 +157,7 @@ def _surface(axes: Any, case: Case) -> None:
     _curve(axes, case, "pressure", "surface", PALETTE[3], "$p$")
     _curve(axes, case, "sigma_xx", "surface", PALETTE[0], "$\\sigma_{xx}$")
     axes.set(xlim=(-2, 2), xlabel="$x / a_h$", ylabel="over $p_h$")
-    axes.set_title("On the surface: exact —, semi-analytical ○, elements ×", fontsize=9, loc="left")
+    axes.set_title("Surface: exact —, semi-analytical ○, elements ×", fontsize=9, loc="left")
     axes.legend(frameon=False, loc="best")
 
 
@@ -201,8 +207,8 @@ def _distances(axes: Any, rows: Sequence[tuple[str, Sequence[Pair]]]) -> None:
         [_name(pair) for pair in shown],
         fontsize=6.5,
         frameon=False,
-        loc="upper center",
-        bbox_to_anchor=(0.5, -0.55 / axes.get_position().height / axes.figure.get_figheight()),
+        loc="upper right",
+        bbox_to_anchor=(1.0, -0.55 / axes.get_position().height / axes.figure.get_figheight()),
         borderaxespad=0,
         handletextpad=0.1,
         columnspacing=0.8,
@@ -218,3 +224,7 @@ def _colour(between: tuple[str, str]) -> str:
 
 def _name(between: tuple[str, str]) -> str:
     return " – ".join("exact" if name in EXACT else SOURCES[name].label for name in between)
+
+
+if __name__ == "__main__":
+    sys.stdout.buffer.write(of_case(read_case(shipped_cases()[sys.argv[1]])))

@@ -6,7 +6,9 @@ from pathlib import Path
 
 import numpy as np
 
+from verification.judging.verdict import Comparison, Outcome, compare, judge
 from verification.problem.arrays import Array
+from verification.problem.profile import Profile
 from verification.problem.quantity import QUANTITIES
 from verification.regression.baseline import Baseline
 from verification.regression.drift import Numbers
@@ -25,19 +27,34 @@ def baseline() -> Baseline:
 
 @dataclass(frozen=True, eq=False)
 class Pair:
-    """``quantity`` on ``line`` of two sources; all fractions of ``scale`` [SI].
-
-    difference, uncertainty : |A - B|, U_A + U_B, at each point of ``position`` [m].
-    """
+    """``comparison`` of a ``quantity`` on a ``line`` of two sources."""
 
     quantity: str
     line: str
     between: tuple[str, str]
     cap: float
-    scale: float
-    position: Array
-    difference: Array
-    uncertainty: Array
+    comparison: Comparison
+
+    @property
+    def position(self) -> Array:
+        """Places of the values [m]."""
+        return self.comparison.a.position
+
+    @property
+    def difference(self) -> Array:
+        """|A - B| over the scale of the comparison at each point."""
+        return np.abs(self.comparison.difference)
+
+    @property
+    def uncertainty(self) -> Array:
+        """U_A + U_B over that scale at each point, 0 where none is stated."""
+        U = self.comparison.uncertainty
+        return np.zeros_like(self.position) if U is None else U
+
+    @property
+    def agrees(self) -> bool:
+        """The verdict on the numbers of the baseline."""
+        return judge(self.comparison, self.cap).outcome is Outcome.AGREES
 
     @property
     def kind(self) -> str:
@@ -64,20 +81,17 @@ def pairs(case: str) -> tuple[Pair, ...]:
             keys = [(first, quantity, alike.line), (second, quantity, alike.line)]
             if not all(key in known for key in keys):
                 continue
-            a, b = (known[key] for key in keys)
-            U = _uncertainty(a) + _uncertainty(b)
-            scale = alike.judged.scale
-            difference = np.abs(a.value - b.value) / scale
-            pair = (quantity, alike.line, (first, second), alike.judged.cap, scale, a.position)
-            found.append(Pair(*pair, difference, U / scale))
+            a, b = (_profile(known[key]) for key in keys)
+            comparison = compare(a, b, scale=alike.judged.scale)
+            found.append(Pair(quantity, alike.line, (first, second), alike.judged.cap, comparison))
     return tuple(found)
 
 
-def _uncertainty(n: Numbers) -> Array:
-    return np.zeros_like(n.value) if n.uncertainty is None else n.uncertainty
+def _profile(n: Numbers) -> Profile:
+    return Profile(n.quantity, n.line, n.position, n.value, n.source, n.uncertainty)
 
 
-def largest(case: str, between: tuple[str, str] | None, *kinds: str) -> float | None:
+def largest(case: str, between: tuple[str, ...] | None, *kinds: str) -> float | None:
     """The largest difference of a case over its scale among quantities of these ``kinds``."""
     found = [p.worst for p in pairs(case) if p.kind in kinds and between in (None, p.between)]
     return max(found, default=None)

@@ -7,6 +7,7 @@ import subprocess
 import sys
 import tempfile
 import textwrap
+from collections.abc import Sequence
 from functools import cache
 from pathlib import Path
 
@@ -15,10 +16,7 @@ PAGE = Path(__file__).parent / "source" / "tour.md"
 
 def solved() -> str:
     """The text that the command of the tour prints, as a block of code."""
-    # The time of one solve on a busy machine tells nothing.
-    lines = re.sub(r"; semi-analytical \S+ s$", "", _run()[0].strip(), flags=re.MULTILINE).splitlines()
-    wrapped = [textwrap.fill(line, 88) if len(line) > 88 else line for line in lines]
-    return "```text\n" + "\n".join(wrapped) + "\n```"
+    return _run()[0]
 
 
 def picture() -> bytes:
@@ -28,26 +26,30 @@ def picture() -> bytes:
 
 @cache
 def _run() -> tuple[str, bytes]:
-    found = re.search(r"^coatcheck (solve --ball .+)$", _page(), re.MULTILINE)
+    page = re.sub(r" \\\n +", " ", PAGE.read_text(encoding="utf-8"))  # each command on one line
+    found = re.search(r"^coatcheck (solve --ball .+)$", page, re.MULTILINE)
     assert found, "the tour has no line that begins with coatcheck solve --ball"
     words = [word.replace(".png", ".svg") for word in shlex.split(found[1])]
     with tempfile.TemporaryDirectory() as work:
-        done = subprocess.run(
-            [sys.executable, "-m", "verification.cli", *words],
-            cwd=work,
-            env={**environment(), "COLUMNS": "100", "NO_COLOR": "1"},
-            capture_output=True,
-            text=True,
-            check=True,
-        )
-        return done.stdout, (Path(work) / "stresses.svg").read_bytes()
+        return transcript(words, Path(work)), (Path(work) / "stresses.svg").read_bytes()
 
 
-def _page() -> str:
-    """The page, each command on one line."""
-    return re.sub(r" \\\n +", " ", PAGE.read_text(encoding="utf-8"))
+def transcript(words: Sequence[str], work: Path, prompt: str = "") -> str:
+    """What ``coatcheck`` with these ``words`` prints in the folder ``work``, warnings first, as a block.
 
-
-def environment() -> dict[str, str]:
-    """The environment, in which the package of this process is found from any directory."""
-    return {**os.environ, "PYTHONPATH": os.pathsep.join([str(PAGE.parents[3]), *filter(None, sys.path)])}
+    prompt : a line before it.
+    """
+    path = os.pathsep.join([str(PAGE.parents[3]), *filter(None, sys.path)])
+    done = subprocess.run(
+        [sys.executable, "-m", "verification.cli", *words],
+        cwd=work,
+        env={**os.environ, "PYTHONPATH": path, "COLUMNS": "100", "NO_COLOR": "1"},
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    # The time of one solve on a busy machine tells nothing.
+    printed = re.sub(r"; semi-analytical \S+ s$", "", done.stdout.strip(), flags=re.MULTILINE)
+    lines = [line.rstrip() for line in (*done.stderr.splitlines(), *printed.splitlines())]
+    wrapped = [textwrap.fill(line, 88) if len(line) > 88 else line for line in lines]
+    return "\n".join(["```text", *filter(None, [prompt]), *wrapped, "```"])

@@ -21,7 +21,7 @@ not compared.
 
 from collections import defaultdict
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import StrEnum
 
 import numpy as np
@@ -80,6 +80,7 @@ class Drift:
     """Change of one profile: of its ``count`` numbers ``moved`` have changed.
 
     change : the largest change of a value over its scale, None where there are not two values.
+    departure : the largest change of a value over what is allowed on any machine; above 1 it has left.
     message : what changed, empty where nothing did.   beyond : changed by more than any machine explains.
     """
 
@@ -92,6 +93,7 @@ class Drift:
     change: float | None = None
     message: str = ""
     beyond: bool = False
+    departure: float | None = None
 
 
 def measured(result: CaseResult) -> tuple[Numbers, ...]:
@@ -123,7 +125,9 @@ def drift(then: Numbers, now: Numbers, edges: Sequence[float] = ()) -> Drift:
     change = np.abs(now.value - then.value) / scale
     change = np.where(np.isnan(then.value) & np.isnan(now.value), 0.0, change)
     stated = RELATIVE * scale if then.uncertainty is None else then.uncertainty
-    left = ~(change <= np.fmax(stated / scale, TOLERANCE))  # a number that became NaN has left
+    with np.errstate(over="ignore"):
+        departure = change / np.fmax(stated / scale, TOLERANCE)
+    left = ~(departure <= 1.0)  # a number that became NaN has left
     at_edge = np.full(change.shape, then.quantity in PEAKS)
     if then.line == "surface":
         for a in edges:
@@ -145,12 +149,15 @@ def drift(then: Numbers, now: Numbers, edges: Sequence[float] = ()) -> Drift:
         )
     count = int(moved.sum() + other.sum())
     beyond = bool(not shift <= SHIFT or left.any() or far.any())
-    largest = float(change.max()) if np.isfinite(change).all() else float("inf")
     state = State.DRIFTED if count else State.SAME
-    comparable = largest if shift <= SHIFT else None
-    return Drift(
-        *then.key, state, then.count, min(count, then.count), comparable, "; ".join(messages), beyond
-    )
+    found = Drift(*then.key, state, then.count, min(count, then.count), None, "; ".join(messages), beyond)
+    if shift > SHIFT:
+        return found
+    return replace(found, change=_largest(change), departure=_largest(departure))
+
+
+def _largest(change: Array) -> float:
+    return float(change.max()) if np.isfinite(change).all() else float("inf")
 
 
 def _ratio(then: Numbers, now: Numbers, least: float) -> Array:

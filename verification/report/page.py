@@ -13,7 +13,7 @@ import numpy as np
 from markupsafe import Markup
 
 from verification.regression.manifest import manifest_message
-from verification.report.credibility import faults, mutants, self_tests, statement
+from verification.report.credibility import faults, guests, mutants, self_tests, statement
 from verification.report.html.templates import rendered
 from verification.report.material import Material
 from verification.report.sections import (
@@ -51,6 +51,7 @@ SECTIONS: tuple[tuple[str, Callable[[Material], Section | None]], ...] = (
     ("Evidence", mutants.section),
     ("Evidence", self_tests.section),
     ("Evidence", baseline.section),
+    ("Evidence", guests.section),
 )
 
 

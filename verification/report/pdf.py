@@ -24,6 +24,8 @@ FLAGS = (
 )
 
 SIZE = "@page {{ size: {}"  # of the paper, as the style sheet writes it
+# A sheet of Letter is shorter: a case that fills one of A4 is drawn smaller on it.
+LETTER = "@media print { .case:not(.published) { zoom: .77 !important; margin: 0 11mm; } } "
 
 
 class NoBrowser(Exception):
@@ -49,7 +51,9 @@ def printed(page: Path, path: Path, time_limit: float, paper: str = "A4") -> Pat
             f"google-chrome; {page} is written, and any browser prints it"
         )
     try:
-        text = whole(page.read_text(encoding="utf-8")).replace(SIZE.format("A4"), SIZE.format(paper))
+        text = whole(page.read_text(encoding="utf-8"))
+        if paper == "Letter":
+            text = text.replace(SIZE.format("A4"), LETTER + SIZE.format(paper))
     except OSError as error:
         raise StoreError(f"{page}: cannot be read ({error.strerror})") from None
     with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as folder:

@@ -12,7 +12,7 @@ from verification.problem.contact import BALL, FLAT, CoatedContact, Solution, st
 from verification.problem.profile import Line, Profile
 from verification.problem.quantity import BALL_PEAKS, IN_PLANE, PEAKS, QUANTITIES, SCALARS, SLOPES
 from verification.sampling import oblique
-from verification.sampling.tension import Search, around_edge, edge_uncertainty
+from verification.sampling.tension import ENDS, Search, around_edge, edge_uncertainty
 
 __all__ = ["edge_of", "positions", "sample", "sample_contact"]
 
@@ -113,7 +113,7 @@ def sample(
     wide, near_U, sought_U = (None,) * 3 if U is None else np.split(U, ends, axis=-1)
     if wide is not None and near_U is not None and around.size:
         wide[..., at] = _at_edge(
-            solution, near, near_U, lambda one: one.stress(side * one.contact_radius, 0.0, 0.0, layer=0)
+            solution, near, near_U, lambda one: one.stress(ENDS * one.contact_radius, 0.0, 0.0, layer=0)
         )
     values[0, 2] = values[2, 0] = turned * values[0, 2]
     found = [(name, values[component], wide, component) for name, component in IN_PLANE.items()]
@@ -125,7 +125,7 @@ def sample(
         spread = solution.pressure_uncertainty(x) if stated else None
         if spread is not None and around.size:
             near, near_U = solution.pressure(around), solution.pressure_uncertainty(around)
-            spread[at] = _at_edge(solution, near, near_U, lambda one: one.pressure(side * one.contact_radius))
+            spread[at] = _at_edge(solution, near, near_U, lambda one: one.pressure(ENDS * one.contact_radius))
         profiles.append(Profile("pressure", line.name, position, solution.pressure(x), source, spread))
     if search is not None:
         best = search.largest(sought[0, 0], None if sought_U is None else sought_U[0, 0])

@@ -17,7 +17,7 @@ from verification.problem.arrays import Array
 from verification.problem.contact import CoatedContact, Solution, stress_with_uncertainty
 from verification.sources.references.layered import bending_length
 
-__all__ = ["Search", "Tension", "around_edge", "edge_uncertainty"]
+__all__ = ["ENDS", "Search", "Tension", "around_edge", "edge_uncertainty"]
 
 # Of t: samples close to the edge, where thin films bend, then evenly. REACH: of a, beside 4 bending lengths.
 CLOSE, STEP, REACH = np.geomspace(0.01, 0.5, 20), 0.09, 4.0
@@ -26,7 +26,9 @@ FIT = 0.1  # of the uncertainty: what the polynomial may leave
 CLEAR = 0.1  # of the largest sample: by as much it may lie below the maximum that it brackets
 # Of a: the distance from the edge at which the uncertainty of the stress no longer is that of the radius.
 BESIDE = 1e-2
-SIDES = np.array([-1.0, 1.0])  # x/a of the ends of the contact
+# x/a of the ends of the contact, where the change over the companions is followed: at a single point it may
+# be small by chance.
+ENDS = np.outer([-1.0, 1.0], 1 + np.array([-3e-6, -3e-7, 0.0, 3e-7, 3e-6])).ravel()
 
 
 @dataclass(frozen=True)
@@ -80,7 +82,7 @@ class Search:
         if best is None:
             if U is None:
                 return Tension(highest, place, None, None)
-            change = followed(self.solution, lambda one: _tension(one, SIDES * one.contact_radius))
+            change = followed(self.solution, lambda one: _tension(one, ENDS * one.contact_radius))
             wide = float(edge_uncertainty(value[at], U[at], change))
             best = Tension(highest, place, wide, float(self.solution.uncertainty.contact_radius))
         if best.uncertainty is None or best.place_uncertainty is None:
@@ -108,7 +110,7 @@ class Search:
 
         The error of its place is |error of sigma'| / |sigma''|; that of sigma' is estimated by the
         uncertainty over the distance of two samples, about the size of an element, or, of a solution with
-        coarser companions, by the root mean square of the change of the slope within that distance; to both
+        coarser companions, by the largest change of the slope within that distance; to both
         twice the slopes of the first two terms left out are added, for those that follow.
         """
         a = float(self.solution.contact_radius)
@@ -134,7 +136,7 @@ class Search:
         slope = a * abs(np.sin(t) if t < 0 else np.sinh(t))
         bend = abs(float(chebyshev.chebval(at, chebyshev.chebder(c, 2)))) / (half * slope) ** 2
         change = followed(self.solution, lambda one: _slope(_tension(one, x), s, terms))
-        steep = wide * WINDOW if change is None else float(np.sqrt(np.mean(change[near] ** 2)))
+        steep = wide * WINDOW if change is None else float(change[near].max())
         for n, coefficient in enumerate(left_out, start=terms):
             steep += 2 * abs(coefficient * chebyshev.chebval(at, chebyshev.chebder(np.eye(NODES)[n])))
         return Tension(value, place, wide, steep / (half * slope * bend) if slope * bend else np.inf)
@@ -151,9 +153,9 @@ def edge_uncertainty(value: Array, U: Array, change: Array | None) -> Array:
     """Uncertainty [Pa] of stresses at the solution's own contact edge, (...,).
 
     The error of the radius moves the place and not the value. The larger uncertainty ``BESIDE`` the edge,
-    either side, plus the ``change`` of the value at its own edge over the coarser companions, (..., ends),
-    the larger of both ends of the contact, since at one it may be small by chance; of a solution without any
-    at least the excess of its uncertainty at the edge over the change by its uncertain radius.
+    either side, plus the largest ``change`` at its own ``ENDS`` over the coarser companions, (..., ends); of
+    a solution without any at least the excess of its uncertainty at the edge over the change by its uncertain
+    radius.
     value, U : at the radii ``around_edge``, (..., 5).
     """
     beside = U[..., 1:3].max(axis=-1)

@@ -201,7 +201,7 @@ def _member(ratio: float, friction: float) -> CaseResult:
     return CaseResult(
         name=f"exact-{ratio:g}-{friction:g}",
         title=f"E1/E2 = {ratio:g}, h = a_h, f = {friction:g}",
-        source="configuration of E. J. O'Sullivan and R. B. King, J. Tribol. 110 (1988) 235-240",
+        source="configuration of T. C. O'Sullivan and R. B. King, J. Tribol. 110 (1988) 235-240",
         problem=describe(problem),
         sources=(SourceResult(EXACT[0], seconds, None),),
         profiles=tuple(profiles),

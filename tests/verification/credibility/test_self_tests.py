@@ -5,6 +5,7 @@ from synthetic_results import INFO, contact, result_of
 
 from verification.commands.common.exits import EXIT
 from verification.commands.run import _code
+from verification.credibility import self_tests as room
 from verification.credibility.faults.catalogue import FAULTS
 from verification.credibility.faults.planting import planted
 from verification.credibility.self_tests import SelfTest, self_tests
@@ -28,11 +29,13 @@ def test_the_harness_gives_the_known_answer(test):
     "name",
     [f.name for f in FAULTS.values() if f.group == "harness" and not f.solve and f.where == "harness"],
 )
-def test_a_fault_of_the_harness_turns_the_answer_named_for_it(name):
+def test_a_fault_of_the_harness_turns_the_answer_named_for_it(name, monkeypatch):
     fault = FAULTS[name]
+    named = [test for test in room._TESTS if test[0] in fault.predicted]
+    monkeypatch.setattr(room, "_TESTS", named)
     with planted(fault.changes):
         failed = {test.name for test in self_tests() if not test.passed}
-    assert failed & set(fault.predicted)
+    assert failed
 
 
 def test_a_run_is_no_better_than_its_harness(tmp_path):

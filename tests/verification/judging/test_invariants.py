@@ -35,7 +35,7 @@ def exact(problem=SLIDING):
 
 @functools.cache
 def finite_elements():
-    return fem_reference.solve(**keywords(SLIDING), size=0.12)
+    return fem_reference.solve(**keywords(SLIDING), size=0.18)
 
 
 class Changed:

@@ -7,8 +7,9 @@ import pytest
 from verification.manual import book, build
 from verification.manual.blocks import BLOCKS
 from verification.manual.typeset import restructured
+from verification.manual.worked import WORKED
 
-SLOW = ("solved",)  # solves a problem
+SLOW = ("solved", *WORKED)  # solve problems
 
 
 def test_an_unknown_block_is_refused_with_the_page(tmp_path, monkeypatch):

@@ -14,8 +14,10 @@ from synthetic_results import INFO, STEEL, contact, result_of
 from verification.judging.verdict import Outcome
 from verification.regression.comparison import compare_runs
 from verification.regression.drift import State
-from verification.report.comparison import comparison_message, comparison_page
+from verification.regression.history import history
 from verification.report.material import Material
+from verification.report.runs.comparison import comparison_message, comparison_page
+from verification.report.runs.history import history_page
 from verification.report.write import report_json
 from verification.running.result import CaseResult, RunInfo
 from verification.running.store import StoreError
@@ -150,9 +152,11 @@ def test_what_a_stranger_wrote_stays_text():
 def test_the_page_fits_a_phone(tmp_path):
     path = tmp_path / "c.html"
     path.write_text(comparison_page(compare_runs(run_of(GOOD), run_of(WRONG, replace(GOOD, name="new")))))
+    past = tmp_path / "h.html"
+    past.write_text(history_page(history([run_of(GOOD), run_of(WRONG)], None)))
     with page(tmp_path / "profile") as opened:
-        for width in (390, 1360):
-            opened.open(path, width=width)
+        for shown, width in ((path, 390), (path, 1360), (past, 390), (past, 1360)):
+            opened.open(shown, width=width)
             sticking = "document.documentElement.scrollWidth - document.documentElement.clientWidth"
             assert opened.evaluate(sticking) == 0
             assert [e for e in opened.events if e["method"] == "Runtime.exceptionThrown"] == []

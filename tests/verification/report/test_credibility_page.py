@@ -16,7 +16,7 @@ from verification.credibility.independence import PARTS, imports_of, parts, shar
 from verification.credibility.self_tests import SelfTest
 from verification.credibility.self_tests.enclosed import TEST
 from verification.regression.baseline import regression
-from verification.report.credibility import statement
+from verification.report.credibility import guests, statement
 from verification.report.credibility.faults import faults_section
 from verification.report.credibility.statement import figures
 from verification.report.material import Evidence, Material, gather
@@ -216,3 +216,11 @@ def test_the_page_takes_the_section_and_escapes_it(evidence, tmp_path):
         assert f"<h3>{title}</h3>" in text
     assert "&lt;script&gt;alert(1)" in text
     assert "<script>alert(1)" not in text
+
+
+def test_other_codes_have_their_differences_in_the_report(evidence):
+    (table,) = guests.section(Material(RESULTS, INFO, evidence)).parts[0].tables
+    rows = {one.head.text: [cell.sort for cell in one.cells] for one in table.rows}
+    assert len(rows) == 4
+    assert rows["tamaas"][3] == pytest.approx(5.4e-6, rel=0.1)  # p0
+    assert all(0 < found[0] <= 1 for found in rows.values())

@@ -38,8 +38,14 @@ def on_axis(z):
     return Points.of(np.zeros_like(z), np.zeros_like(z), z, (), None, "m", 1.0)
 
 
-@pytest.mark.parametrize("method", ["semianalytic", "fem_reference"])
-@pytest.mark.parametrize("name", ["ellea1_halfspace_off_axis", "amadeus_three_layer_single_wheel"])
+@pytest.mark.parametrize(
+    ("name", "method"),
+    [
+        ("ellea1_halfspace_off_axis", "fem_reference"),
+        ("ellea1_halfspace_off_axis", "semianalytic"),
+        ("amadeus_three_layer_single_wheel", "semianalytic"),
+    ],
+)
 def test_published_tables_are_met(name, method):
     case = read_published(SHIPPED[name])
     claims = tuple(claim for claim in case.claims if method in claim.between)

@@ -68,8 +68,25 @@ def test_default_contact_meets_the_exact_one_over_the_range(coatings):
     check(coatings)
 
 
-@pytest.mark.parametrize("friction", [pytest.param(0.0, marks=pytest.mark.slow), 0.25])
-@pytest.mark.parametrize(("coatings", "off_plane"), [((), 0), (QUICK[1], 0), (QUICK[2], 9)])
+@pytest.mark.parametrize(
+    ("coatings", "off_plane", "friction"),
+    [
+        (QUICK[1], 0, 0.25),
+        (QUICK[2], 9, 0.25),
+        (((0.1 * E, 0.45, 0.3 * A_H),), 9, 0.5),
+        (((2 * E, 0.25, 10 * A_H),), 9, 0.0),
+        *(
+            pytest.param(*problem, marks=pytest.mark.slow)
+            for problem in (
+                *(((), 0, friction) for friction in (0.0, 0.25)),
+                (QUICK[1], 0, 0.0),
+                (QUICK[2], 9, 0.0),
+                (((10 * E, 0.2, 0.05 * A_H),), 9, 0.25),
+                (((3 * E, 0.2, 0.05 * A_H), (0.4 * E, 0.4, 0.2 * A_H)), 9, 0.25),
+            )
+        ),
+    ],
+)
 def test_stress_meets_the_exact_one(coatings, off_plane, friction):
     problem = {"radius": R, "load": W, "coatings": coatings, "substrate": STEEL, "friction": friction}
     # sliding adds a linear part; that it equals a solve with friction is a law of tests/semianalytic
@@ -81,9 +98,8 @@ def test_stress_meets_the_exact_one(coatings, off_plane, friction):
     away = np.abs(np.hypot(x, y) - a) > 3 * d
     x, y = x[away], y[away]
     depths = [(0.0, None), (1.5 * d, None), (0.2 * a, None), (a, None), (10 * a, None)]
-    if coatings:
-        h = coatings[0][2]
-        depths += [(h, 0), (h, 1)]
+    interfaces = np.cumsum([h for _, _, h in coatings])
+    depths += [(h, upper + side) for upper, h in enumerate(interfaces) for side in (0, 1)]
     for z, layer in depths:
         found, bound = ours.stress_with_uncertainty(x, y, z, layer)
         expected = exact.stress(x, y, z, layer)

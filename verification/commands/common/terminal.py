@@ -7,6 +7,7 @@ import json
 import sys
 from collections.abc import Iterable
 from difflib import get_close_matches
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from verification.judging.outcome import Outcome
@@ -46,6 +47,14 @@ def print_warnings(warnings: Iterable[str], name: str, *, strict: bool, silent: 
 def print_json(content: Any) -> None:
     """Print ``content`` on standard output as JSON."""
     sys.stdout.write(json.dumps(content, indent=2) + "\n")
+
+
+def print_files(files: Iterable[Path], *, as_json: bool, quiet: bool) -> None:
+    """Print the paths of written ``files`` on standard output, as JSON or in lines, none if ``quiet``."""
+    if as_json:
+        print_json({"files": [str(file) for file in files]})
+    elif not quiet:
+        sys.stdout.write("".join(f"{file}\n" for file in files))
 
 
 def did_you_mean(name: str, known: Iterable[str]) -> str:

@@ -1,11 +1,10 @@
 """coatcheck manual: the manual as HTML pages, to read without a network, or as a PDF."""
 
-import sys
 from pathlib import Path
 
 from verification.commands.common.exits import CommandError, no_result, with_exit_code
 from verification.commands.common.options import AsJson, Flag, Output, Quiet
-from verification.commands.common.terminal import print_json
+from verification.commands.common.terminal import print_files
 
 
 @with_exit_code
@@ -36,8 +35,5 @@ def manual(
         raise no_result(str(error)) from None
     except ValueError as error:
         raise CommandError(str(error)) from None
-    if as_json:
-        print_json({"files": [str(file) for file in files]})
-    elif not quiet:
-        sys.stdout.write("".join(f"{file}\n" for file in files))
+    print_files(files, as_json=as_json, quiet=quiet)
     return 0

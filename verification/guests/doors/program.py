@@ -112,7 +112,7 @@ class Program:
     def _end(self) -> str:
         """How a program that closed its output ended."""
         try:
-            code = self.process.wait(GRACE / 4)
+            code = self.process.wait(GRACE)
         except subprocess.TimeoutExpired:
             return "it closed its output without an answer"
         how = f"crashed with signal {-code}" if code < 0 else f"ended with code {code}"

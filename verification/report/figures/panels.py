@@ -28,14 +28,17 @@ from verification.sources.registry import METHODS
 
 MOST_FAILING = 6  # panels of comparisons that do not agree, besides the chosen ones
 MOST = 9
-# What is looked at first, on the flat; of a ball its surface besides.
-CHOSEN = (
+# What is looked at first, on the flat.
+FIRST = (
     ("pressure", "surface"),
     ("sigma_xx", "surface"),
     ("sigma_xx", "axis"),
     ("sigma_xx", "interface 1, upper side"),
     ("sigma_xx", "interface 1, lower side"),
     ("sigma_xz", "interface 1, upper side"),
+)
+CHOSEN = (
+    *FIRST,
     ("sigma_zz", "axis"),
     ("sigma_xx", f"{ON_BALL}surface"),
     ("u_z", "oblique surface"),

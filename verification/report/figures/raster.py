@@ -23,7 +23,7 @@ from verification.problem.arrays import Array
 from verification.report.figures.plot import Axes, polyline, power_of_ten, round_ticks
 from verification.report.tables.symbols import drawn, unicode
 
-LEFT, TOP, RIGHT, BOTTOM = 34.0, 12.0, 52.0, 32.0  # margins around the raster, in units of the drawing
+LEFT, TOP, RIGHT, BOTTOM = 46.0, 12.0, 52.0, 32.0  # margins around the raster, in units of the drawing
 WIDTH = 250.0  # of the raster
 PIXELS = 200  # along x
 COLOURS = 96

@@ -310,7 +310,9 @@ addEventListener("DOMContentLoaded", () => {
   }
 
   // One large figure of a case: any quantity on any line, drawn from the numbers in the page.
-  const WIDTH = 1000, TOP = 12, MIDDLE = 250, LOW = 274, BOTTOM = 440, LEFT = 74, RIGHT = 986;
+  // Narrow on a phone, so that its texts keep their size.
+  const WIDTH = matchMedia("(max-width: 40rem)").matches ? 460 : 1000;
+  const TOP = 12, MIDDLE = 250, LOW = 274, BOTTOM = 440, LEFT = 62, RIGHT = WIDTH - 14;
   function explorer(page, line, quantity) {
     const box = page.querySelector(".explorer");
     const links = all("a[data-of]", page).filter((a) => a.dataset.of !== "contact");
@@ -321,7 +323,7 @@ addEventListener("DOMContentLoaded", () => {
       box.insertAdjacentHTML("beforeend",
         '<p class="choose"><label>Line <select class="line"></select></label> <label>Quantity <select class="quantity"></select></label> ' +
         '<button type="button" class="edge">Contact edge</button> <button type="button" class="whole">Whole line</button></p>' +
-        '<p class="legend"></p><svg class="plot" viewBox="0 0 1000 480" role="img" tabindex="0"></svg>' +
+        '<p class="legend"></p><svg class="plot" viewBox="0 0 ' + WIDTH + ' 480" role="img" tabindex="0"></svg>' +
         '<p class="caption">Above, values; below, |A \u2212 B| (lines) and U of both (tints) on a logarithmic scale, the cap in red. ' +
         "Drag across the figure to enlarge a part; the arrow keys move the reading.</p>");
       const choice = box.querySelector("select.line");
@@ -394,7 +396,7 @@ addEventListener("DOMContentLoaded", () => {
     const L = (v) => BOTTOM - ((Math.log10(Math.max(v, 10 ** least)) - least) / (most - least)) * (BOTTOM - LOW);
     const parts = [`<clipPath id="cut"><path d="M${LEFT} 0H${RIGHT}V480H${LEFT}z"/></clipPath>`];
     const texts = [];
-    for (const [x, label] of round(low, high, 8)) {
+    for (const [x, label] of round(low, high, WIDTH < 500 ? 5 : 8)) {
       parts.push(`<path d="M${X(x).toFixed(1)} ${TOP}V${MIDDLE}M${X(x).toFixed(1)} ${LOW}V${BOTTOM}" class="s-grid"/>`);
       texts.push(`<text x="${X(x).toFixed(1)}" y="${BOTTOM + 17}" text-anchor="middle">${label}</text>`);
     }

@@ -13,7 +13,7 @@ from markupsafe import Markup
 
 from verification.problem.arrays import Array
 from verification.problem.quantity import QUANTITIES, SCALARS
-from verification.report.figures.panels import swatch
+from verification.report.figures.panels import FIRST, swatch
 from verification.report.figures.plot import HUGE, Axes, drawing, round_ticks
 from verification.report.material import Material
 from verification.report.tables.cells import Cell, Gallery, Panel, Part, Section, Table, number, row
@@ -31,14 +31,6 @@ MARKED = 7  # points of a curve that are marked
 LABEL = np.array([9.0, -7.0])  # from a point to the middle of the text beside it, in units of the drawing
 DASHED = ((), (6.0, 2.0), (3.0, 2.0), (1.0, 1.6), (6.0, 2.0, 1.0, 2.0))
 SMALLEST = 3  # fewer than this many moduli are no family
-PANELS = (
-    ("pressure", "surface"),
-    ("sigma_xx", "surface"),
-    ("sigma_xx", "axis"),
-    ("sigma_xx", "interface 1, upper side"),
-    ("sigma_xx", "interface 1, lower side"),
-    ("sigma_xz", "interface 1, upper side"),
-)
 
 
 class Member(NamedTuple):
@@ -98,7 +90,7 @@ def _families(results: Sequence[CaseResult]) -> dict[tuple[float, float, float],
 def _gallery(members: Sequence[Member]) -> Gallery:
     shown = [
         (quantity, line)
-        for quantity, line in PANELS
+        for quantity, line in FIRST
         if any(p.quantity == quantity and p.line == line for m in members for p in m.result.profiles)
     ]
     panels = [

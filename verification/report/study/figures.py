@@ -8,11 +8,13 @@ import warnings
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 import matplotlib as mpl
 import numpy as np
+from fontTools import subset
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_pdf import FigureCanvasPdf
@@ -102,9 +104,22 @@ def sheet(height: float, legend: int = 0, right: float = 13.5) -> Iterator[Figur
 def drawn(figure: Figure, name: str, title: str, caption: str, rows: Sequence[Sequence[str]]) -> Drawn:
     """``figure`` written both ways; the same figure always gives the same bytes."""
     pdf, svg = io.BytesIO(), io.BytesIO()
-    FigureCanvasPdf(figure).print_figure(pdf, format="pdf", metadata={"CreationDate": None}, dpi=300)
+    with _fonts_without_layout():
+        FigureCanvasPdf(figure).print_figure(pdf, format="pdf", metadata={"CreationDate": None}, dpi=300)
     FigureCanvasSVG(figure).print_figure(svg, format="svg", metadata={"Date": None}, dpi=200)
     return Drawn(name, title, caption, pdf.getvalue(), svg.getvalue(), written(rows))
+
+
+@contextmanager
+def _fonts_without_layout() -> Iterator[None]:
+    """Fonts are embedded without tables of layout, which a PDF does not use: half of the time of a figure."""
+    before = subset.Options
+    dropped = [*before().drop_tables, "GSUB", "GPOS", "GDEF"]
+    subset.Options = partial(before, drop_tables=dropped)
+    try:
+        yield
+    finally:
+        subset.Options = before
 
 
 def write_drawn(figure: Drawn, folder: Path) -> None:
@@ -230,7 +245,8 @@ def beside(axes: Axes, size: float, label: str) -> None:
     """A second vertical axis for the values over ``size``."""
     second = axes.secondary_yaxis("right", functions=_over(size))
     second.set_ylabel(label)
-    second.ticklabel_format(axis="y", scilimits=(-2, 4))
+    # A power of ten of its own would lie on the numbers of the axis above.
+    second.yaxis.set_major_formatter(lambda value, _: f"{value:.4g}")
 
 
 def _over(size: float) -> tuple[Callable[[Any], Any], Callable[[Any], Any]]:

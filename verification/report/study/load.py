@@ -6,7 +6,15 @@ from pathlib import Path
 import numpy as np
 from matplotlib.ticker import MaxNLocator
 
-from verification.report.html.templates import render_sections
+from verification.report.study.assembly import (
+    Draw,
+    Written,
+    check_sections,
+    draw_sections,
+    failed_section,
+    inputs_section,
+    write_page,
+)
 from verification.report.study.figures import (
     COLOURS,
     DASHES,
@@ -16,12 +24,9 @@ from verification.report.study.figures import (
     pale,
     sheet,
     thickness_axes,
-    write_drawn,
 )
-from verification.report.study.page import Written, check_sections, drawn_section, inputs_section
 from verification.report.study.recommendation import rounded
 from verification.report.tables.cells import Cell, Part, Section, Table, number, row
-from verification.running.store import write_atomically
 from verification.study.choice.criteria import MODES
 from verification.study.choice.load import Critical, critical, ramps
 from verification.study.curves import differences, tension_checks
@@ -47,33 +52,25 @@ def write_load_report(
     columns = read_columns(table)
     assert study.loads is not None
     found = [critical(ramp, study.criteria, study.loads[:2]) for ramp in ramps(columns)]
-    groups: list[tuple[str, str, list[Drawn]]] = []
+    draws: list[Draw] = []
     if figures and found:
-        for anchor, title, draw in (
-            ("map", "Critical load against thickness", _maps),
-            ("ramp", "Load ramp", _tracks),
-        ):
-            drawing(title)
-            groups.append((anchor, title, draw(study, found)))
-        for _, _, drawings in groups:
-            for one in drawings:
-                write_drawn(one, folder / "figures" / study.name)
+        draws = [
+            ("map", "Critical load against thickness", lambda: _maps(study, found)),
+            ("ramp", "Load ramp", lambda: _tracks(study, found)),
+        ]
+    drawings = draw_sections(draws, folder / "figures" / study.name, drawing)
     said = answers(study, found)
     failed = np.flatnonzero(columns["status"] != "solved")
     failures = sorted({f"h = {columns['thickness'][i]:.4g} m: {columns['failure'][i]}" for i in failed})
     sections = [
         Section("critical", "Critical loads", [Part(text) for text in said] + [_table(study, found)]),
         inputs_section(study),
-        *(drawn_section(*group) for group in groups if group[2]),
+        *drawings,
         *check_sections(differences(columns), tension_checks(columns)),
-        *([Section("failed", "What could not be solved", [], failures[:200])] if failures else []),
+        *failed_section(failures),
     ]
-    head = [("study", study.title), *(("implausible", text) for text in study.warnings), *facts]
-    page = folder / f"{study.name}.html"
-    text = said[0] if said else f"No answer: no ramp of {study.title} has four solved loads."
-    footer = f"Written by coatcheck from {table.name} beside this file."
-    write_atomically(page, render_sections("coatcheck study", text, head, sections, footer))
-    return Written(page, tuple(said))
+    summary = said[0] if said else f"No answer: no ramp of {study.title} has four solved loads."
+    return write_page(table, study, folder, said, summary, sections, [], facts)
 
 
 def answers(study: Study, found: Sequence[Critical]) -> list[str]:

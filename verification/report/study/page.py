@@ -1,16 +1,20 @@
 """The report of a study: figures for a paper beside one page that describes them."""
 
-import base64
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
-from functools import partial
 from pathlib import Path
 
 import numpy as np
-from markupsafe import Markup
 
 from verification.cases.units import Units
-from verification.report.html.templates import render_sections
+from verification.report.study.assembly import (
+    Draw,
+    Written,
+    check_sections,
+    draw_sections,
+    failed_section,
+    inputs_section,
+    write_page,
+)
 from verification.report.study.contours import contour_figures, nearest
 from verification.report.study.figures import (
     Drawn,
@@ -18,7 +22,6 @@ from verification.report.study.figures import (
     governing_figure,
     stress_figures,
     use_figures,
-    write_drawn,
 )
 from verification.report.study.recommendation import (
     answers,
@@ -30,36 +33,22 @@ from verification.report.study.recommendation import (
 from verification.report.study.summary import agreement_messages, main_messages
 from verification.report.tables.cells import (
     Cell,
-    Gallery,
-    Panel,
     Part,
-    Row,
     Section,
     Table,
     number,
     row,
-    words,
 )
-from verification.report.tables.csv import embedded
-from verification.report.tables.labels import source_label
-from verification.report.tables.numbers import scientific
-from verification.running.store import write_atomically
 from verification.study.choice.criteria import MODES, Judged, judged
 from verification.study.choice.thickness import DRAWN, Choice, choice
-from verification.study.curves import Curve, Difference, TensionCheck, curves, differences, tension_checks
+from verification.study.curves import Curve, Difference, curves, differences, tension_checks
 from verification.study.plan import Study
 from verification.study.quantities import QUANTITIES
 from verification.study.table import SCALARS, SOURCES, read_columns
 
+__all__ = ["Written", "write_study_report"]
+
 CONTOURS = (0.1, 0.5, 2.0)  # h/a_h; the solved ones nearest to these
-
-
-@dataclass(frozen=True)
-class Written:
-    """The ``page`` of a study and its ``answer``, a line for each coating."""
-
-    page: Path
-    answer: tuple[str, ...]
 
 
 def write_study_report(
@@ -87,10 +76,10 @@ def write_study_report(
         for ratio in ratios
     ]
     checks = differences(columns)
-    groups: list[tuple[str, str, list[Drawn]]] = []
-    failures: list[str] = []
+    failures = [f"{c.label}, h = {h:.4g} a_h: {message}" for c in every for h, message in c.failures]
+    draws: list[Draw] = []
     if found and figures:
-        draws: list[tuple[str, str, Callable[[], list[Drawn]]]] = [
+        draws = [
             ("use", "Stress over strength", lambda: use_figures(choices, units)),
             ("governing", "Governing failure mode", lambda: governing_figure(choices, units)),
             ("stress", "Stress against thickness", lambda: stress_figures(found, units)),
@@ -98,96 +87,22 @@ def write_study_report(
         ]
         if maps:
             draws.insert(3, ("contours", "In the x-z plane", lambda: _maps(study, found, failures)))
-        for anchor, title, draw in draws:
-            drawing(title)
-            groups.append((anchor, title, draw()))
-        for _, _, drawings in groups:
-            for one in drawings:
-                write_drawn(one, folder / "figures" / study.name)
+    drawings = draw_sections(draws, folder / "figures" / study.name, drawing)
     said = answers(choices, units)
     sections = [
         _preference(study, choices, said),
         inputs_section(study),
-        *(drawn_section(*group) for group in groups if group[2]),
+        *drawings,
         _summary(found, checks),
         *check_sections(checks, tension_checks(columns)),
         Section("extremes", "Extremes of every curve", [_extremes(found, units)]),
-        *_failed(every, failures),
+        *failed_section(failures),
     ]
     solved = sum(c.h.size for c in every)
     lost = sum(len(c.failures) for c in every)
-    head = [
-        ("study", study.title),
-        ("points", f"{solved} solved" + (f", {lost} could not be" if lost else "")),
-        *(("implausible", message) for message in study.warnings),
-        *facts,
-    ]
-    page = folder / f"{study.name}.html"
-    drawn_in = f"; figures/{study.name} holds PDF, SVG, CSV" if groups else ""
-    footer = f"Written by coatcheck from {table.name} beside this file{drawn_in}."
-    text = " ".join(said) or f"No answer: no curve of {study.title} has two solved points."
-    write_atomically(page, render_sections("coatcheck study", text, head, sections, footer))
-    return Written(page, tuple(said))
-
-
-def inputs_section(study: Study) -> Section:
-    """Every input and assumption in one table."""
-    units, bare = study.units, study.bare
-    E_ball = "rigid" if study.ball is None else _solid(*study.ball[:2])
-    on_ball = (
-        []
-        if study.ball is None
-        else [f"{_solid(E, nu)}, {units.shown_length(h)}" for E, nu, h in study.ball[2]]
-    )
-    moduli = ", ".join(f"{E / 1e9:.4g}" for E in study.moduli)
-    ratios = ", ".join(f"{E / study.substrate[0]:.3g}" for E in study.moduli)
-    h = study.thicknesses
-    swept = (
-        f"{units.shown_length(min(h))} to {units.shown_length(max(h))}, {len(h)} of them, "
-        f"{min(h) / bare.a_h:.3g} to {max(h) / bare.a_h:.3g} a_h"
-    )
-    strengths = study.criteria.given(units.shown_stress)
-    rows = [
-        row("ball", f"R = {study.radius * 1e3:g} mm, {E_ball}"),
-        *(row(f"coating {i} on the ball", text) for i, text in enumerate(on_ball, start=1)),
-        row(
-            "load",
-            f"{study.load:g} N" if study.loads is None else f"{study.loads[0]:g} to {study.loads[1]:g} N",
-        ),
-        row("substrate", _solid(*study.substrate)),
-        row("coating", f"E = {moduli} GPa (E1/E2 = {ratios}), nu = {study.coating_nu:g}"),
-        row("thickness", swept),
-        row("friction", ", ".join(f"{f:g}" for f in study.frictions)),
-        row(
-            "residual stress of the coating",
-            ", ".join(units.shown_stress(one) for one in study.residual) or "none",
-        ),
-        row(
-            "uncoated",
-            f"a_h = {units.shown_length(bare.a_h)}, p_h = {units.shown_stress(bare.p_h)}, "
-            f"delta_h = {units.shown_length(bare.delta_h)}",
-        ),
-        *(row(f"strength, {mode}", f"{one.text} ({MODES[mode]})") for mode, one in strengths.items()),
-        row("safety factor on every stress", f"{study.criteria.safety:g}"),
-        row(
-            "assumed",
-            words(
-                "parabolic ball, small strains, linear elasticity, perfect bond, friction that leaves the "
-                "pressure unchanged; strengths are independent of each other"
-            ),
-        ),
-    ]
-    rows = [Row(one.head, [Cell(cell.text, css="words") for cell in one.cells]) for one in rows]
-    return Section("inputs", "Inputs and assumptions", [Part("", [Table("", ["", ""], rows)])])
-
-
-def load_text(study: Study) -> str:
-    """The load of a study, or its range."""
-    return f"{study.load:g} N" if study.loads is None else f"{study.loads[0]:g} to {study.loads[1]:g} N"
-
-
-def _solid(E: float, nu: float) -> str:
-    return f"E = {E / 1e9:.4g} GPa, nu = {nu:g}"
+    points = ("points", f"{solved} solved" + (f", {lost} could not be" if lost else ""))
+    summary = " ".join(said) or f"No answer: no curve of {study.title} has two solved points."
+    return write_page(table, study, folder, said, summary, sections, [points], facts)
 
 
 def _summary(found: Sequence[Curve], checks: Sequence[Difference]) -> Section:
@@ -327,34 +242,6 @@ def _near_cells(judgement: Judged, h: float, mode: str, units: Units) -> list[Ce
     ]
 
 
-def drawn_section(anchor: str, title: str, drawings: Sequence[Drawn]) -> Section:
-    """The figures of one kind, with what is common to them."""
-    panels = [
-        Panel(
-            d.title,
-            Markup(
-                '<img class="print" src="data:image/svg+xml;base64,{}" alt="{}" loading="lazy">'
-                '<a class="csv" href="{}" download="{}.csv.gz" data-csv="{}.csv">Numbers as CSV</a>'
-            ).format(
-                base64.b64encode(d.svg).decode(), f"{d.title}. {d.caption}", embedded(d.csv), d.name, d.name
-            ),
-            d.caption,
-            "",
-        )
-        for d in drawings
-    ]
-    captions = {
-        "stress": "Lines: semi-analytical method; circles: finite elements; crosses: the exact reference, at "
-        "the cross-checked points; below, how far these are from the lines. ",
-        "contact": "Lines, circles, crosses as above. ",
-        "contours": "Sliding in +x. Thick bar: the contact; dashed: the interface. All thicknesses have the "
-        "same extent and the same scales. ",
-    }
-    files = ", ".join(f"{d.name}.pdf" for d in drawings)
-    text = f"{captions.get(anchor, '')}For print, in the folder of figures: {files}."
-    return Section(anchor, title, [Part("", gallery=Gallery([], panels, text))])
-
-
 def _maps(study: Study, found: Sequence[Curve], failures: list[str]) -> list[Drawn]:
     """Contours of the most compliant and the stiffest coating at the middle friction."""
     frictions = sorted({c.friction for c in found})
@@ -367,62 +254,3 @@ def _maps(study: Study, found: Sequence[Curve], failures: list[str]) -> list[Dra
         except Exception as error:  # a map that fails is a message on the page
             failures.append(f"contour map of {curve.label}: {' '.join(str(error).split())[:300]}")
     return drawings
-
-
-def check_sections(checks: Sequence[Difference], tensions: Sequence[TensionCheck]) -> list[Section]:
-    """The largest differences of the other sources; no section where nothing was checked."""
-    if not checks:
-        return []
-    rows = [
-        row(
-            source_label(d.source),
-            d.quantity,
-            number(d.points, str),
-            number(d.largest),
-            number(d.stated),
-            number(d.ratio, "{:.4g}".format),
-            number(d.h, "{:.3g}".format),
-            number(d.friction, "{:g}".format),
-            css="" if d.largest <= d.stated or d.stated != d.stated else "disagrees",
-        )
-        for d in checks
-    ]
-    columns = ["source", "quantity", "points", "largest difference", "uncertainty of both"]
-    table = Table(
-        "The largest difference from the semi-analytical method, over a_h, delta_h or the smaller of p_h and "
-        "p0, where it occurs, the uncertainty both state there.",
-        [*columns, "E1/E2", "h / a_h", "f"],
-        rows,
-    )
-    every = Part("", [_tension_table(tensions)], folded=f"{len(tensions)} rows")
-    return [Section("checks", "Cross-check", [Part("", [table]), every])]
-
-
-def _tension_table(tensions: Sequence[TensionCheck]) -> Table:
-    rows = [
-        row(
-            source_label(t.source),
-            number(t.ratio, "{:.4g}".format),
-            number(t.h, "{:.3g}".format),
-            number(t.friction, "{:g}".format),
-            number(t.tension, "{:.6f}".format),
-            number(t.difference, partial(scientific, sign=True)),
-            number(t.stated),
-            number(t.place, partial(scientific, sign=True)),
-            css="" if abs(t.difference) <= t.stated or t.stated != t.stated else "disagrees",
-        )
-        for t in tensions
-    ]
-    return Table(
-        "The largest tension of the surface by the semi-analytical method at every cross-checked point, "
-        "over p_h; the difference of the other source and the uncertainty of both, over the smaller of p_h "
-        "and p0; the difference of the places, over a.",
-        ["source", "E1/E2", "h / a_h", "f", "tension", "difference", "uncertainty of both", "place"],
-        rows,
-    )
-
-
-def _failed(every: Sequence[Curve], more: Sequence[str]) -> list[Section]:
-    failures = [f"{c.label}, h = {h:.4g} a_h: {message}" for c in every for h, message in c.failures]
-    failures += more
-    return [Section("failed", "What could not be solved", [], failures[:200])] if failures else []

@@ -47,7 +47,9 @@ _PATTERN = re.compile(
             r"(?<!\w)(?P<letter>[hfpERUWxyzsaq])(?P<relation> (?:=|/|<|>|−|≤) )",
             r"(?<!\w)(?P<place>x)(?= of max )",
             r"^(?P<alone>[aEhfpRWxz])(?= \[|$)",
-            r"(?:(?<=radius )|(?<=load )|(?<=friction )|(?<=pressure )|(?<=over ))(?P<named>[RaWfqp])(?!\w)",
+            r"(?:(?<=radius )|(?<=load )|(?<=leaves )|(?<=friction )|(?<=pressure )|(?<=over ))"
+            r"(?P<named>[RaWfqp])(?!\w)",
+            r"(?<=q = )(?P<traction>f p)(?!\w)",
             r"(?<!\w)(?P<bound>U)(?![\w.])",
             r"(?<=\d )(?P<unit>a)(?=[ .,;)]|$)(?! \w)",
             r"(?<=/ )(?P<under>[aW])(?!\w)",

@@ -12,7 +12,7 @@ from typing import Annotated, Any
 
 import numpy as np
 from pydantic import Discriminator, Field, Tag, model_validator
-from scipy.special import ndtr, ndtri
+from scipy.special import ndtri
 
 from verification.cases.toml import Strict
 from verification.cases.units import Pascals
@@ -75,13 +75,11 @@ Given = Annotated[
 class Strength:
     """A strength [Pa] in words, with its distribution.
 
-    quantile : the strength below which a share of all lies.   below : the share below a stress.
-    scatters : False of a single value.
+    quantile : the strength below which a share of all lies.   scatters : False of a single value.
     """
 
     text: str
     quantile: Callable[[Any], Array]
-    below: Callable[[Any], Array]
     scatters: bool = True
 
 
@@ -92,7 +90,6 @@ def strength_of(given: float | Uniform | LogNormal, shown: Callable[[float], str
         return Strength(
             f"{shown(given.start)} to {shown(given.to)}",
             lambda p: low + width * np.asarray(p),
-            lambda stress: np.clip((np.asarray(stress) - low) / width, 0.0, 1.0),
         )
     if isinstance(given, LogNormal):
         s = sqrt(log(1 + (given.standard_deviation / given.mean) ** 2))
@@ -100,11 +97,9 @@ def strength_of(given: float | Uniform | LogNormal, shown: Callable[[float], str
         return Strength(
             f"{shown(given.mean)}, standard deviation {shown(given.standard_deviation)}",
             lambda p: median * np.exp(s * ndtri(p)),
-            lambda stress: ndtr(np.log(np.maximum(stress, 1e-300) / median) / s),
         )
     return Strength(
         shown(given),
         lambda p: np.full(np.shape(p), float(given)),
-        lambda stress: (np.asarray(stress) > given).astype(float),
         scatters=False,
     )

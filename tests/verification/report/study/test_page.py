@@ -8,7 +8,7 @@ import study_table
 from markupsafe import escape
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 
-from verification.report.study import figures
+from verification.report.study import figures, page
 from verification.report.study.figures import governing_figure
 from verification.report.study.page import write_study_report
 from verification.study.choice.criteria import Criteria, judged
@@ -19,23 +19,50 @@ from verification.study.quantities import QUANTITIES
 from verification.study.table import read_columns
 
 
-@pytest.fixture(scope="module")
-def report(tmp_path_factory):
-    """Where a study was reported, and the study."""
-    folder = tmp_path_factory.mktemp("study")
+def reported(folder):
+    """The study that was reported in ``folder``."""
     text = study_table.TEXT.replace("Made of formulas", "<script>alert(1)</script>")
     text += "[criteria.strength]\nsigma_xx_surface = 8e8\nvon_mises_substrate = 9e8\n"
     study = study_table.write(folder / "study.parquet", failed=(3,), text=text)
     write_study_report(folder / "study.parquet", study, folder, maps=False)
-    return folder, study
+    return study
+
+
+@pytest.fixture(scope="module")
+def report(tmp_path_factory):
+    """Where a study was reported with all its figures, and the study."""
+    folder = tmp_path_factory.mktemp("study")
+    return folder, reported(folder)
+
+
+@pytest.fixture(scope="module")
+def brief(tmp_path_factory):
+    """As ``report``, with the figure of the contact alone."""
+    folder = tmp_path_factory.mktemp("study")
+    with pytest.MonkeyPatch.context() as patch:
+        for name in ("use_figures", "governing_figure", "stress_figures"):
+            patch.setattr(page, name, lambda *_: [])
+        return folder, reported(folder)
 
 
 @pytest.fixture
-def folder(report):
-    return report[0]
+def folder(brief):
+    return brief[0]
 
 
-def test_every_failure_mode_has_its_figure_for_print_with_its_numbers(folder):
+def test_a_figure_is_for_print_with_its_numbers(folder):
+    stem = folder / "figures" / "study" / "contact"
+    assert stem.with_suffix(".pdf").read_bytes().startswith(b"%PDF")
+    assert b"<svg" in stem.with_suffix(".svg").read_bytes()
+    with stem.with_suffix(".csv").open() as file:
+        rows = [row for row in csv.DictReader(file) if row["source"] == "semianalytic"]
+    assert {row["over its scale"] for row in rows} == {"1"}
+    assert {path.stem for path in stem.parent.iterdir()} == {"contact"}
+
+
+@pytest.mark.slow
+def test_every_failure_mode_has_its_figure_for_print_with_its_numbers(report):
+    folder, _ = report
     for quantity in QUANTITIES:
         stem = folder / "figures" / "study" / f"stress_{quantity}"
         assert stem.with_suffix(".pdf").read_bytes().startswith(b"%PDF")
@@ -54,19 +81,20 @@ def test_every_failure_mode_has_its_figure_for_print_with_its_numbers(folder):
 
 
 def test_page_needs_nothing_from_outside_and_names_the_failed_point(folder):
-    page = (folder / "study.html").read_text()
-    assert not re.search(r'(?:src|href)="(?!data:|#)', page)
-    assert "no luck" in page
-    assert "35 solved, 1 could not be" in page
-    assert "admissible h [µm]" in page
+    text = (folder / "study.html").read_text()
+    assert not re.search(r'(?:src|href)="(?!data:|#)', text)
+    assert 'src="data:image/svg+xml' in text
+    assert "no luck" in text
+    assert "35 solved, 1 could not be" in text
+    assert "admissible h [µm]" in text
 
 
 def test_answer_is_the_first_line_and_inputs_come_next(folder):
-    page = (folder / "study.html").read_text()
-    assert re.search(r"<h1>E1/E2 = 0.5: [\d.]+ to [\d.]+ µm .*keeps every stress below its strength", page)
-    before = re.sub(r"<[^>]+>", "", page.partition('id="stress"')[0]).replace("\xa0", " ")
-    for text in ("E = 105, 420 GPa (E1/E2 = 0.5, 2), ν = 0.3", "residual stress of the coating", "800 MPa"):
-        assert text in before
+    text = (folder / "study.html").read_text()
+    assert re.search(r"<h1>E1/E2 = 0.5: [\d.]+ to [\d.]+ µm .*keeps every stress below its strength", text)
+    before = re.sub(r"<[^>]+>", "", text.partition('id="contact"')[0]).replace("\xa0", " ")
+    for words in ("E = 105, 420 GPa (E1/E2 = 0.5, 2), ν = 0.3", "residual stress of the coating", "800 MPa"):
+        assert words in before
 
 
 @pytest.mark.slow
@@ -94,8 +122,8 @@ def test_no_label_or_legend_of_a_figure_is_cut(report, monkeypatch):
     assert cut == []
 
 
-def test_without_figures_there_still_is_a_page_with_its_answer(report, tmp_path):
-    folder, study = report
+def test_without_figures_there_still_is_a_page_with_its_answer(brief, tmp_path):
+    folder, study = brief
     written = write_study_report(folder / "study.parquet", study, tmp_path, figures=False)
     assert [path.name for path in tmp_path.iterdir()] == ["study.html"]
     assert escape(written.answer[0]) in written.page.read_text()
@@ -114,6 +142,6 @@ def test_the_same_table_gives_the_same_figures(report):
 
 
 def test_titles_from_strangers_stay_text(folder):
-    page = (folder / "study.html").read_text()
-    assert "<script>alert(1)" not in page
-    assert "&lt;script&gt;alert(1)" in page
+    text = (folder / "study.html").read_text()
+    assert "<script>alert(1)" not in text
+    assert "&lt;script&gt;alert(1)" in text
