@@ -11,6 +11,7 @@ from pathlib import Path
 from verification.cases.contact import read_case, shipped_cases
 from verification.cases.published import published_cases, read_published
 from verification.credibility import alarms
+from verification.credibility.enclosures import read_record as read_enclosures
 from verification.credibility.faults.campaign import RECORD
 from verification.credibility.faults.record import read_record
 from verification.manual.markdown import symbol, table, text
@@ -182,6 +183,37 @@ def more_pages() -> str:
     return "\n".join(["```{toctree}", ":maxdepth: 1", ":caption: More", "", *more, "```"]) if more else ""
 
 
+def enclosures() -> str:
+    """Every enclosed problem with the middle of its bounds, rounded to twelve digits."""
+    record = read_enclosures(RECORDS)
+    if record is None:
+        return "There is no record."
+    rows = []
+    for one in record.enclosures:
+        problem = one.problem
+        layers = ", ".join(
+            f"({E / one.substrate[0]:g}, {nu:g}, {h / problem.a_h:g})" for E, nu, h in one.coatings
+        )
+        scales = (problem.a_h, problem.delta_h, problem.p_h)
+        values = [f"{b.middle / scale:.12f}" for b, scale in zip(one.bounds, scales, strict=False)]
+        width = scientific(max(b.width for b in one.bounds), 1)
+        rows.append([f"`{one.name}`", layers or "none", f"{one.substrate[1]:g}", *values, width])
+    head = [
+        "problem",
+        r"layers $(E/E_s, \nu, h/a_h)$",
+        r"$\nu_s$",
+        "$a/a_h$",
+        r"$\delta/\delta_h$",
+        "$p/p_h$",
+    ]
+    return (
+        f"Made {_day(record.started)}, commit {record.commit or 'unknown'}, on {record.machine}, in "
+        f"{record.seconds:.0f} s with python-flint {record.versions.get('python-flint', 'unknown')}. "
+        "$E_s$, $\\nu_s$ of the substrate; $p$ on the axis; the largest relative width of all values of the "
+        "problem, $\\sigma_{xx}$ included.\n\n" + table([*head, "width"], rows, 1)
+    )
+
+
 def _dated() -> str:
     last = baseline().last
     return f"Baseline of {_day(last.when)}, commit {last.commit or 'unknown'}, on {last.machine}.\n\n"
@@ -203,6 +235,7 @@ _ALL: Sequence[Callable[[], str]] = (
     real_guests,
     history,
     solved,
+    enclosures,
     more_pages,
 )
 BLOCKS: dict[str, Callable[[], str]] = {block.__name__: block for block in _ALL} | WORKED

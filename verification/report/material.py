@@ -12,9 +12,10 @@ from typing import Any, TypeVar
 
 from verification.cases.contact import shipped_cases
 from verification.cases.published import published_cases
-from verification.credibility import accuracy, alarms
+from verification.credibility import accuracy, alarms, enclosures
 from verification.credibility.accuracy import AccuracyStudy
 from verification.credibility.alarms import AlarmRecord
+from verification.credibility.enclosures import EnclosureRecord
 from verification.credibility.faults.campaign import RECORD
 from verification.credibility.faults.record import Record, read_record
 from verification.credibility.independence import Part, parts
@@ -41,7 +42,8 @@ class Evidence:
     """What a report shows beside the results; None or () for what is missing, see ``failures``.
 
     orders, parts : manufactured solutions and imports, measured.
-    faults, alarms, mutants : read from records.   accuracy : errors of the methods over resolution.
+    faults, alarms, mutants, enclosures : read from records.
+    accuracy : errors of the methods over resolution.
     formulas : effective-modulus formulas.
     baseline : the change of each number since the baseline.
     """
@@ -56,6 +58,7 @@ class Evidence:
     self_tests: tuple[SelfTest, ...] = ()
     formulas: EffectiveStudy | None = None
     mutants: MutantRecord | None = None
+    enclosures: EnclosureRecord | None = None
 
 
 def gather(records: Path) -> Evidence:
@@ -71,6 +74,7 @@ def gather(records: Path) -> Evidence:
             return otherwise
 
     mutants = attempt("mutants", lambda: mutation.read_record(records / mutation.RECORD), None)
+    enclosed = attempt("enclosures", lambda: enclosures.read_record(records), None)
     return Evidence(
         attempt("manufactured solutions", design_orders, ()),
         attempt("imports", parts, ()),
@@ -78,6 +82,7 @@ def gather(records: Path) -> Evidence:
         attempt("false alarms", lambda: alarms.read_record(records), None),
         tuple(failures),
         mutants=mutants,
+        enclosures=enclosed,
     )
 
 

@@ -8,9 +8,13 @@ from synthetic_study import study
 
 from verification.credibility import alarms
 from verification.credibility.alarms import counted
+from verification.credibility.enclosures import SHIPPED
+from verification.credibility.enclosures import read_record as read_enclosures
 from verification.credibility.faults import campaign
 from verification.credibility.faults.record import Catch, Record, Row, write_record
 from verification.credibility.independence import PARTS, imports_of, parts, shared
+from verification.credibility.self_tests import SelfTest
+from verification.credibility.self_tests.enclosed import TEST
 from verification.regression.baseline import regression
 from verification.report.credibility import guests, statement
 from verification.report.credibility.faults import faults_section
@@ -63,12 +67,21 @@ def test_the_steps_stand_in_order(evidence):
     assert found.failures == ()
 
 
+def test_enclosures_are_stated_with_what_the_run_found_of_them(evidence):
+    held = SelfTest(TEST, "its values lie in proven enclosures", True, "22 known answers")
+    record = read_enclosures(SHIPPED)
+    text = part(section(evidence, enclosures=record, self_tests=(held,)), STEPS[3]).text
+    assert "Proven bounds hold 146 values of 25 problems" in text
+    assert text.endswith("Held against them in this run: 22 known answers.")
+
+
 def test_what_was_never_measured_is_said_and_not_invented(evidence):
     found = section(evidence)
     assert part(found, STEPS[5]).text.startswith("Not measured")
     assert part(found, STEPS[6]).text.startswith("Not measured")
     glance = {row.head.text: [c.text for c in row.cells] for row in found.parts[0].tables[0].rows}
     assert glance["Fault detection"] == ["not measured", "never"]
+    assert glance["Exact reference"] == ["not measured", "never"]
     assert glance["Mutation testing"] == ["not measured", "never"]
     assert glance["False alarms"] == ["not measured", "never"]
     assert glance["Regression"][0] == "not measured"
@@ -79,7 +92,10 @@ def test_what_was_never_measured_is_said_and_not_invented(evidence):
     assert told["Independence"] == "not measured"
     assert told["Code verification"].startswith("not measured")
     assert told["Solution verification"].startswith("not measured")
-    assert part(empty, STEPS[3]).text == "Nothing was compared in this run."
+    assert part(empty, STEPS[3]).text == (
+        "Nothing was compared in this run. Not measured: there is no record of enclosures; make one with: "
+        "coatcheck certify --record"
+    )
 
 
 def test_figures_of_a_record_carry_date_and_commit(evidence, tmp_path):

@@ -1,8 +1,8 @@
 """Known answers put to the harness itself before its verdicts are believed.
 
 Methods and references watch each other; nothing but this watches what reads the cases, samples the solutions,
-judges and stores. Each self-test knows by hand what has to come out. All together take half a second,
-so that every run makes them.
+judges and stores. Each self-test knows by hand what has to come out, that of the exact reference by proven
+enclosures. All together take a second, so that every run makes them.
 """
 
 from collections.abc import Callable
@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from verification.credibility.self_tests.answers import Answers
+from verification.credibility.self_tests.enclosed import TEST, of_enclosures
 from verification.credibility.self_tests.inputs import of_case_file, of_published_table
 from verification.credibility.self_tests.outputs import of_codes, of_junit, of_regression
 from verification.credibility.self_tests.sampled import of_points_of_tables, of_sampling
@@ -74,6 +75,7 @@ _TESTS: tuple[tuple[str, str, Callable[[], Answers]], ...] = (
         "a number that moved, a U that grew, a check that is gone are noticed",
         of_regression,
     ),
+    (TEST, "its values lie in proven enclosures, widened to 1e-10", of_enclosures),
     ("exit codes", "every outcome of a run ends with its code", of_codes),
     ("JUnit", "every check is a test, and what does not agree is a failure there", of_junit),
 )

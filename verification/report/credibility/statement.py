@@ -8,9 +8,11 @@ of the result, evidence for each.
 from collections.abc import Sequence
 
 from verification.credibility.alarms import DECADES, AlarmRecord
+from verification.credibility.enclosures import EnclosureRecord
 from verification.credibility.faults.record import Record
 from verification.credibility.independence import shared
 from verification.credibility.mutation.record import MutantRecord
+from verification.credibility.self_tests.enclosed import TEST
 from verification.judging.verdict import Outcome
 from verification.report.credibility.manifest import manifest_parts, short_message
 from verification.report.credibility.mutants import mutants_message
@@ -111,7 +113,7 @@ def section(material: Material) -> Section | None:
             title="3. Solution verification",
         ),
         Part(
-            _compared(results),
+            f"{_compared(results)} {_enclosed(evidence)}",
             [pair_table(results)],
             title="4. Comparison with references and between methods",
         ),
@@ -152,6 +154,7 @@ def _overview(material: Material) -> Table:
         ("Code verification", f"{design}; {refinements}", here),
         ("Solution verification", _bracketed(material.contacts), here),
         ("Invariants of each solution", held, here),
+        ("Exact reference", _enclosed(evidence, short=True), _when(evidence.enclosures)),
         ("Comparison", f"{agreeing} of {total} comparisons agree", here),
         ("What was judged", short_message(material), here),
         ("Independence", _short_independence(evidence), here),
@@ -167,7 +170,7 @@ def _overview(material: Material) -> Table:
     )
 
 
-def _when(record: Record | AlarmRecord | MutantRecord | None) -> str:
+def _when(record: Record | AlarmRecord | MutantRecord | EnclosureRecord | None) -> str:
     made = record.info if isinstance(record, MutantRecord) else record
     return "never" if made is None else f"{made.started[:10]}, {made.commit or 'no commit'}"
 
@@ -196,6 +199,28 @@ def _compared(results: Sequence[CaseResult]) -> str:
     if not any(result.published for result in results):
         text += " Published results were not part of it: coatcheck run published."
     return text
+
+
+def _enclosed(evidence: Evidence, *, short: bool = False) -> str:
+    """What is proven of the exact reference, with what this run found of it."""
+    record = evidence.enclosures
+    if record is None:
+        return NO_RECORD[short].format("enclosures", "certify")
+    values = [bounds for one in record.enclosures for bounds in one.bounds]
+    text = (
+        f"Proven bounds hold {len(values)} values of {len(record.enclosures)} problems, relative width "
+        f"{plain(max(bounds.width for bounds in values), 2)} at most."
+    )
+    if short:
+        return text
+    held = next((test for test in evidence.self_tests if test.name == TEST), None)
+    found = "" if held is None else f" Held against them in this run: {held.found}."
+    return (
+        "The exact reference states its uncertainty by two resolutions; it is checked against enclosures of "
+        f"the integral equation by ball arithmetic, without common code. {text} Made {_when(record)}, by "
+        f"coatcheck certify with python-flint {record.versions.get('python-flint', 'unknown')}; the proof is "
+        f"in the manual.{found}"
+    )
 
 
 def _independent(evidence: Evidence) -> str:

@@ -1,0 +1,150 @@
+"""Proven enclosures: the exact reference, both methods and the published tables lie in them."""
+
+import csv
+from unittest import mock
+
+import pytest
+
+import fem_reference
+import semianalytic
+from verification.cases.table import FOLDER
+from verification.credibility.enclosures import SHIPPED, WIDTH, distances, read_record
+from verification.credibility.self_tests.enclosed import COATED, ROUNDING
+from verification.problem.contact import CoatedContact, keywords
+from verification.sources.enclosures.problems import problems
+from verification.sources.references import integral_equation
+from verification.sources.references.layered import LayeredHalfSpace
+
+RECORD = read_record(SHIPPED)
+ALL = {one.name: one for one in RECORD.enclosures}
+
+
+def test_every_problem_is_enclosed_as_narrowly_as_required():
+    assert {name: one.problem for name, one in ALL.items()} == problems()
+    assert len(ALL) >= 24
+    for one in ALL.values():
+        assert len(one.bounds) == (6 if one.coatings else 4)
+        assert max(bounds.width for bounds in one.bounds) <= WIDTH
+
+
+def test_the_exact_reference_lies_in_every_enclosure():
+    outside = []
+    for name, one in ALL.items():
+        exact = integral_equation.solve(**keywords(one.problem))
+        # the largest pressure is the one that is enclosed
+        assert exact.peak_pressure == pytest.approx(exact.pressure(0.0), rel=1e-12)
+        for bounds, distance, U in distances(one, exact):
+            # its own U holds, and an enclosure of the required width contains the value
+            if distance > min(U, WIDTH / 2 * abs(bounds.middle)):
+                outside.append((name, bounds.quantity, bounds.line, distance / abs(bounds.middle)))
+    assert outside == []
+
+
+@pytest.mark.parametrize("name", COATED)
+def test_a_fault_of_the_kernel_of_one_in_a_billion_is_noticed(name):
+    right = LayeredHalfSpace.compliance.fget
+
+    def wrong(self):
+        return 1 + (1 + 1e-9) * (right(self) - 1)
+
+    one = ALL[name]
+    with mock.patch.object(LayeredHalfSpace, "compliance", property(wrong)):
+        exact = integral_equation.solve(**keywords(one.problem))
+    assert any(distance > ROUNDING * abs(bounds.middle) for bounds, distance, _ in distances(one, exact))
+
+
+def test_published_pressures_lie_in_the_enclosed_profiles():
+    ratios = {"E0.5": "ratio_0.5_h_1", "E1": "same_material", "E2": "ratio_2_h_1"}
+    with open(FOLDER / "coated_sphere_exact_pressure_h_equals_a0.csv", newline="") as file:
+        rows = list(csv.DictReader(line for line in file if not line.startswith("#")))
+    for column, name in ratios.items():
+        one = ALL[name]
+        p_h, a_h = one.problem.p_h, one.problem.a_h
+        assert len(rows) == len(one.profile) == 27
+        for row, ring in zip(rows, one.profile, strict=True):
+            assert ring.r / a_h == pytest.approx(float(row["r_over_a0"]))
+            # half of the last published digit
+            for bound in (ring.lower, ring.upper):
+                assert float(bound) / p_h == pytest.approx(float(row[column]), abs=5.01e-7)
+
+
+@pytest.mark.parametrize(
+    ("name", "a", "p0", "approach"),
+    [
+        ("ratio_0.5_h_1", 1.206608, 0.704682, 1.227128),
+        ("same_material", 1.0, 1.0, 1.0),
+        ("ratio_2_h_1", 0.818478, 1.475437, 0.826870),
+    ],
+)
+def test_published_contacts_lie_in_the_enclosures(name, a, p0, approach):
+    one = ALL[name]
+    scales = one.problem.a_h, one.problem.delta_h, one.problem.p_h
+    for bounds, scale, value in zip(one.bounds, scales, (a, approach, p0), strict=False):
+        assert bounds.distance(value * scale) <= 5.01e-7 * scale
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("solve", [semianalytic.solve, fem_reference.solve])
+@pytest.mark.parametrize("name", ALL)
+def test_the_uncertainty_of_both_methods_reaches_the_enclosures(solve, name):
+    one = ALL[name]
+    outside = [
+        (bounds.quantity, bounds.line, distance, U)
+        for bounds, distance, U in distances(one, solve(**keywords(one.problem)))
+        if not distance <= U
+    ]
+    assert outside == []
+
+
+@pytest.mark.slow
+def test_ball_arithmetic_repeats_an_enclosure():
+    pytest.importorskip("flint", reason="ball arithmetic is an extra: pip install 'coatcheck[certify]'")
+    from flint import ctx
+
+    from verification.sources.enclosures.contact import enclose
+
+    name = "ratio_4_h_1"
+    bits, ctx.prec = ctx.prec, 128
+    balls = enclose(problems()[name])
+    ctx.prec = bits
+    for bounds, ball in zip(
+        ALL[name].bounds,
+        (balls.contact_radius, balls.approach, balls.pressure, balls.surface, *balls.interface),
+        strict=True,
+    ):
+        assert bounds.distance(float(ball.mid())) < 1e-14 * abs(bounds.middle)
+
+
+def test_both_forms_of_the_layers_overlap():
+    flint = pytest.importorskip("flint", reason="an extra: pip install 'coatcheck[certify]'")
+    from verification.sources.enclosures.response import LayeredSolid
+
+    solid = LayeredSolid(((4e11, 0.2, 0.3), (5e10, 0.45, 0.4), (3e11, 0.0, 0.2)), (1e11, 0.1))
+    for k in (1e-3, 0.3, 2.0, 5.0):
+        x = [flint.acb(k) * h for h in solid.thickness]
+        for one, other in zip(solid.propagated(x), solid.reflected(x), strict=True):
+            assert one.overlaps(other)
+            assert one.real.rad() < 1e-9
+
+
+def test_the_bound_of_the_tail_holds_beyond_its_end():
+    flint = pytest.importorskip("flint", reason="an extra: pip install 'coatcheck[certify]'")
+    from verification.sources.enclosures.response import LayeredSolid
+
+    h = 0.3
+    solid = LayeredSolid(((4e11, 0.2, h), (5e10, 0.45, 0.4)), (1e11, 0.1))
+    C, D = solid.tail(flint.arb(30))
+    for k in (30.0, 31.0, 45.0, 80.0):
+        x = k * flint.arb(h)
+        fast, slow = C * (1 + x) ** 2 * (-2 * x).exp(), D * (1 + x) * (-x).exp()
+        for value, bound in zip(solid.amplitudes(flint.acb(k)), (fast, fast, slow, slow), strict=True):
+            assert value.abs_upper() < bound
+            assert value.abs_upper() > bound / 1e5  # the bound is no triviality
+
+
+def test_an_elastic_ball_is_refused():
+    pytest.importorskip("flint", reason="an extra: pip install 'coatcheck[certify]'")
+    from verification.sources.enclosures.contact import enclose
+
+    with pytest.raises(ValueError, match="elastic ball"):
+        enclose(CoatedContact(10e-3, 20.0, (), (210e9, 0.3), ball=(210e9, 0.3, ())))

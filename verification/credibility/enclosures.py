@@ -1,0 +1,145 @@
+"""Proven enclosures as the package holds them, with the distance of a solution from each.
+
+``coatcheck certify`` makes them by ``verification.sources.enclosures``; reading needs no ball arithmetic.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from decimal import Decimal
+from fractions import Fraction
+from pathlib import Path
+
+import numpy as np
+
+from verification.problem.arrays import Coatings
+from verification.problem.contact import CoatedContact, Solution, stress_with_uncertainty
+from verification.running.records import decode, encode
+from verification.running.store import StoreError, read_checked, write_checked
+
+SHIPPED = Path(__file__).parent / "shipped"
+SCHEMA = "coatcheck-enclosures/1"
+WIDTH = 1e-10  # largest relative width that is required of an enclosure
+SURFACE, UPPER, LOWER = "surface", "interface 1, upper side", "interface 1, lower side"
+
+
+@dataclass(frozen=True)
+class Bounds:
+    """``quantity`` on the axis lies between two decimal numbers, SI.
+
+    line : "contact" of the scalars, otherwise where the axis meets it.
+    """
+
+    quantity: str
+    line: str
+    lower: str
+    upper: str
+
+    @property
+    def middle(self) -> float:
+        """The nearest binary number to the middle."""
+        return float((Fraction(Decimal(self.lower)) + Fraction(Decimal(self.upper))) / 2)
+
+    @property
+    def width(self) -> float:
+        """Relative to the middle, rounded to nearest."""
+        return float(Fraction(Decimal(self.upper)) - Fraction(Decimal(self.lower))) / abs(self.middle)
+
+    def distance(self, value: float) -> float:
+        """How far ``value`` lies outside, 0 inside; infinite where it is not finite."""
+        if not np.isfinite(value):
+            return float("inf")
+        exact = Fraction(value)
+        below, above = Fraction(Decimal(self.lower)) - exact, exact - Fraction(Decimal(self.upper))
+        return float(max(below, above, Fraction(0)))
+
+
+@dataclass(frozen=True)
+class Ring:
+    """The pressure [Pa] at ``r`` [m] lies between two decimal numbers."""
+
+    r: float
+    lower: str
+    upper: str
+
+
+@dataclass(frozen=True)
+class Enclosure:
+    """One problem, a rigid sphere without friction, with its bounds.
+
+    profile : bounds of the pressure along the radius, of the problems of published tables.
+    bits, terms : precision and number of basis functions of the proof; 0 where a closed form is enclosed.
+    """
+
+    name: str
+    radius: float
+    load: float
+    coatings: Coatings
+    substrate: tuple[float, float]
+    bounds: tuple[Bounds, ...]
+    seconds: float
+    bits: int = 0
+    terms: int = 0
+    profile: tuple[Ring, ...] = ()
+
+    @property
+    def problem(self) -> CoatedContact:
+        """As the sources solve it."""
+        return CoatedContact(self.radius, self.load, self.coatings, self.substrate)
+
+
+@dataclass(frozen=True)
+class EnclosureRecord:
+    """All enclosures with provenance, processor seconds in total."""
+
+    enclosures: tuple[Enclosure, ...]
+    started: str
+    seconds: float
+    commit: str | None
+    machine: str
+    versions: dict[str, str]
+
+
+def distances(enclosure: Enclosure, solution: Solution) -> Iterator[tuple[Bounds, float, float | None]]:
+    """Each bound with the distance of the solution's value from it, then U of this value if stated."""
+    for bounds in enclosure.bounds:
+        value, U = _value(enclosure.problem, solution, bounds)
+        yield bounds, bounds.distance(value), U
+
+
+def _value(problem: CoatedContact, solution: Solution, bounds: Bounds) -> tuple[float, float | None]:
+    if bounds.quantity == "sigma_xx":
+        layer = 1 if bounds.line == LOWER else 0
+        z = 0.0 if bounds.line == SURFACE else problem.interfaces[0]
+        sigma, U_sigma = stress_with_uncertainty(solution, 0.0, 0.0, z, layer)
+        return float(sigma[0, 0]), None if U_sigma is None else float(U_sigma[0, 0])
+    if bounds.quantity == "pressure":
+        U = None if solution.uncertainty is None else float(solution.pressure_uncertainty(0.0))
+        return float(solution.pressure(0.0)), U
+    U = None if solution.uncertainty is None else getattr(solution.uncertainty, bounds.quantity)
+    return getattr(solution, bounds.quantity), U
+
+
+def path_in(folder: Path) -> Path:
+    """Path of the record in ``folder``."""
+    return folder / "enclosures.json"
+
+
+def write_record(folder: Path, record: EnclosureRecord) -> Path:
+    """Store the record in ``folder``, whole or not at all. Raises StoreError."""
+    path = path_in(folder)
+    write_checked(path, {"schema": SCHEMA, **encode(record)})
+    return path
+
+
+def read_record(folder: Path) -> EnclosureRecord | None:
+    """The record in ``folder``, None where there is none. Raises StoreError where it is damaged."""
+    path = path_in(folder)
+    if not path.exists():
+        return None
+    data = read_checked(path)
+    if data.get("schema") != SCHEMA:
+        raise StoreError(f"{path}: not a record of enclosures that this version reads; make it again")
+    try:
+        return decode(EnclosureRecord, data)
+    except ValueError as error:
+        raise StoreError(f"{path}: not a record of enclosures ({error}); make it again") from None
