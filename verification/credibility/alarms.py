@@ -10,9 +10,9 @@ from pathlib import Path
 import numpy as np
 
 from verification.judging.verdict import Outcome
-from verification.running.records import decode, encode
+from verification.running.records import encode, read_stored
 from verification.running.result import CaseResult, RunInfo
-from verification.running.store import StoreError, read_checked, write_checked
+from verification.running.store import write_checked
 from verification.sources.registry import EXACT, METHODS
 
 SCHEMA = "coatcheck-alarms/3"
@@ -135,13 +135,4 @@ def write_record(folder: Path, record: AlarmRecord) -> Path:
 
 def read_record(folder: Path) -> AlarmRecord | None:
     """The record in ``folder``, None where there is none. Raises StoreError where it is damaged."""
-    path = path_in(folder)
-    if not path.exists():
-        return None
-    data = read_checked(path)
-    if data.get("schema") not in READABLE:
-        raise StoreError(f"{path}: not a record of false alarms that this version reads; measure it again")
-    try:
-        return decode(AlarmRecord, data)
-    except ValueError as error:
-        raise StoreError(f"{path}: not a record of false alarms ({error}); measure it again") from None
+    return read_stored(AlarmRecord, path_in(folder), READABLE, "false alarms", "measure it again")

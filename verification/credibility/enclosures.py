@@ -13,8 +13,8 @@ import numpy as np
 
 from verification.problem.arrays import Coatings
 from verification.problem.contact import CoatedContact, Solution, stress_with_uncertainty
-from verification.running.records import decode, encode
-from verification.running.store import StoreError, read_checked, write_checked
+from verification.running.records import encode, read_stored
+from verification.running.store import write_checked
 
 SHIPPED = Path(__file__).parent / "shipped"
 SCHEMA = "coatcheck-enclosures/1"
@@ -133,13 +133,4 @@ def write_record(folder: Path, record: EnclosureRecord) -> Path:
 
 def read_record(folder: Path) -> EnclosureRecord | None:
     """The record in ``folder``, None where there is none. Raises StoreError where it is damaged."""
-    path = path_in(folder)
-    if not path.exists():
-        return None
-    data = read_checked(path)
-    if data.get("schema") != SCHEMA:
-        raise StoreError(f"{path}: not a record of enclosures that this version reads; make it again")
-    try:
-        return decode(EnclosureRecord, data)
-    except ValueError as error:
-        raise StoreError(f"{path}: not a record of enclosures ({error}); make it again") from None
+    return read_stored(EnclosureRecord, path_in(folder), (SCHEMA,), "enclosures", "make it again")

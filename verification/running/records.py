@@ -1,10 +1,14 @@
 """Records as JSON: any frozen dataclass of the project as plain content, with the exact inverse."""
 
+from collections.abc import Collection
 from dataclasses import asdict
 from functools import cache
+from pathlib import Path
 from typing import Any, TypeVar
 
 import numpy as np
+
+from verification.running.store import StoreError, read_checked
 
 T = TypeVar("T")
 
@@ -30,6 +34,23 @@ def decode(kind: type[T], content: Any) -> T:
         raise ValueError(
             f"not a {kind.__name__} of this program ({where}: {first['msg']}); compute it again"
         ) from None
+
+
+def read_stored(kind: type[T], path: Path, schemas: Collection[str], what: str, remedy: str) -> T | None:
+    """The record of ``kind`` stored at ``path``, None where there is none.
+
+    schemas : that this version reads.   what, remedy : of the message of StoreError, raised where the file is
+    damaged, has another schema, or does not fit ``kind``.
+    """
+    if not path.exists():
+        return None
+    data = read_checked(path)
+    if data.get("schema") not in schemas:
+        raise StoreError(f"{path}: not a record of {what} that this version reads; {remedy}")
+    try:
+        return decode(kind, data)
+    except ValueError as error:
+        raise StoreError(f"{path}: not a record of {what} ({error}); {remedy}") from None
 
 
 @cache

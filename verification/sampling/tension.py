@@ -110,8 +110,8 @@ class Search:
 
         The error of its place is |error of sigma'| / |sigma''|; that of sigma' is estimated by the
         uncertainty over the distance of two samples, about the size of an element, or, of a solution with
-        coarser companions, by the largest change of the slope within that distance; to both
-        twice the slopes of the first two terms left out are added, for those that follow.
+        coarser companions, by the largest change of the slope within that distance. To both twice the slopes
+        of the first two terms left out are added, for those that follow.
         """
         a = float(self.solution.contact_radius)
         middle, half = (first + last) / 2, abs(last - first) / 2
@@ -138,7 +138,7 @@ class Search:
         change = followed(self.solution, lambda one: _slope(_tension(one, x), s, terms))
         steep = wide * WINDOW if change is None else float(change[near].max())
         for n, coefficient in enumerate(left_out, start=terms):
-            steep += 2 * abs(coefficient * chebyshev.chebval(at, chebyshev.chebder(np.eye(NODES)[n])))
+            steep += 2 * abs(coefficient * chebyshev.Chebyshev.basis(n).deriv()(at))
         return Tension(value, place, wide, steep / (half * slope * bend) if slope * bend else np.inf)
 
 

@@ -26,6 +26,7 @@ from verification.credibility.enclosures import (
     write_record,
 )
 from verification.judging.outcome import Outcome
+from verification.problem.contact import CoatedContact
 from verification.running.records import plain
 from verification.sources.enclosures.problems import problems, profile_radii
 
@@ -53,8 +54,6 @@ def certify(
     """
     try:
         from flint import ctx
-
-        from verification.sources.enclosures.contact import enclose
     except ModuleNotFoundError:
         raise CommandError("ball arithmetic is missing; pip install 'coatcheck[certify]'") from None
     known = problems()
@@ -66,37 +65,13 @@ def certify(
     ctx.prec = 128
     started, found = datetime.datetime.now(datetime.UTC), []
     for name in names or known:
-        problem, began, radii = known[name], time.process_time(), profile_radii(name)
         try:
-            balls = enclose(problem, radii)
+            one = _certified(name, known[name])
         except ValueError as error:
             raise no_result(f"{name}: {error}") from None
-        values = [
-            ("contact_radius", "contact", balls.contact_radius),
-            ("approach", "contact", balls.approach),
-            ("pressure", SURFACE, balls.pressure),
-            ("sigma_xx", SURFACE, balls.surface),
-            *(("sigma_xx", *side) for side in zip((UPPER, LOWER), balls.interface or (), strict=False)),
-        ]
-        bounds = tuple(Bounds(quantity, line, *_decimal(ball)) for quantity, line, ball in values)
-        rings = tuple(Ring(r, *_decimal(ball)) for r, ball in zip(radii, balls.profile, strict=True))
-        seconds = round(time.process_time() - began, 2)
-        found.append(
-            Enclosure(
-                name,
-                problem.radius,
-                problem.load,
-                problem.coatings,
-                problem.substrate,
-                bounds,
-                seconds,
-                balls.bits,
-                balls.terms,
-                rings,
-            )
-        )
+        found.append(one)
         if not quiet and not as_json:
-            print_out(escape(f"{name}: {bounds[2].middle:.15g} Pa, {seconds:g} s"))
+            print_out(escape(f"{name}: {one.bounds[2].middle:.15g} Pa, {one.seconds:g} s"))
     stored = None
     if record:
         kept = read_record(records) if names else None
@@ -123,6 +98,33 @@ def certify(
         if stored is not None:
             print_out(escape(f"recorded: {stored}"))
     return 0 if widest <= WIDTH else EXIT[Outcome.INCONCLUSIVE]
+
+
+def _certified(name: str, problem: CoatedContact) -> Enclosure:
+    """The enclosure of a problem. Raises ValueError where a bound cannot be proven."""
+    from verification.sources.enclosures.contact import enclose
+
+    began, radii = time.process_time(), profile_radii(name)
+    balls = enclose(problem, radii)
+    values = [
+        ("contact_radius", "contact", balls.contact_radius),
+        ("approach", "contact", balls.approach),
+        ("pressure", SURFACE, balls.pressure),
+        ("sigma_xx", SURFACE, balls.surface),
+        *(("sigma_xx", *side) for side in zip((UPPER, LOWER), balls.interface or (), strict=False)),
+    ]
+    return Enclosure(
+        name,
+        problem.radius,
+        problem.load,
+        problem.coatings,
+        problem.substrate,
+        tuple(Bounds(quantity, line, *_decimal(ball)) for quantity, line, ball in values),
+        round(time.process_time() - began, 2),
+        balls.bits,
+        balls.terms,
+        tuple(Ring(r, *_decimal(ball)) for r, ball in zip(radii, balls.profile, strict=True)),
+    )
 
 
 def _decimal(ball: "arb") -> tuple[str, str]:

@@ -13,7 +13,7 @@ from verification.problem.contact import CoatedContact, Solution, stress_with_un
 SURFACE = np.array([-1.2, -0.9, -0.5, 0.0, 0.25, 0.5, 0.75, 0.9, 1.1, 1.3])
 # Off the mirror planes of a square grid.
 ANGLE = 0.35
-# The field varies over its distance from the contact edge; four steps stay within a quarter of that.
+# The field varies over its distance from the contact edge; four steps stay within an eighth of that.
 PART_OF_REACH = 1 / 32
 
 
