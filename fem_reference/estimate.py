@@ -457,12 +457,14 @@ def _coarseness(size: float) -> float:
 
 
 def _triangle_sizes(d: Discretisation) -> np.ndarray:
-    """Mean size of the triangles that share a vertex with each triangle, either side of interfaces."""
+    """Mean size of the triangles within two rings of each triangle, either side of interfaces."""
     t = d.triangulation.t
     (r0, z0), (r1, z1), (r2, z2) = (d.mesh.points[:, corner] for corner in t)
     size = np.sqrt(0.5 * np.abs((r1 - r0) * (z2 - z0) - (r2 - r0) * (z1 - z0)))
-    around = np.bincount(t.ravel(), np.tile(size, 3)) / np.bincount(t.ravel())
-    return around[t].mean(axis=0)
+    for _ in range(2):  # one ring holds too few triangles on the axis
+        around = np.bincount(t.ravel(), np.tile(size, 3)) / np.bincount(t.ravel())
+        size = around[t].mean(axis=0)
+    return size
 
 
 def _edge_displacement(contact: FixedRadiusContact) -> float:

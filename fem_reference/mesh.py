@@ -24,8 +24,8 @@ EDGE_SIZE = 1e-7  # smallest triangle, at the contact edge, over the contact rad
 # Size of a triangle in the fan over edge_rate: this power of its distance from the edge. What the innermost
 # triangles miss counts as the root of the distance.
 _FAN = 0.94
-# Sizes are uniform to this depth over the contact radius, or to that of all coatings, then grow by this share
-# a unit of the stretched plane.
+# Sizes are uniform to this depth over the contact radius, then grow by this share a unit of the stretched
+# plane; to that of all coatings, then more slowly, since a stack bends beyond its own depth.
 _NEAR, _GROWTH = 3.0, 0.4
 # Films buried at many times their thickness are left to flat triangles: the least size for the sake of a
 # coating over the usual one.
@@ -197,9 +197,9 @@ def _triangulate(
         gmsh.model.addPhysicalGroup(1, [across[0][0]], 1, "contact")
 
         rho = "Sqrt(x*x+y*y)"
-        near = max([np.arcsinh(_NEAR * scale), *(lower for _, lower in films)])
-        beyond = f"Max(0,{rho}-{_literal(near)})"
-        growth = f"(1+{_literal(_GROWTH)}*{beyond})"
+        bare = np.arcsinh(_NEAR * scale)
+        near = max([bare, *(lower for _, lower in films)])
+        growth = f"(1+{_literal(_GROWTH * bare / near)}*Max(0,{rho}-{_literal(near)}))"
         fan = f"{_literal(grading.edge_rate)}*{rho}^{_literal(_FAN)}"
         origin = f"Sqrt((x-({_literal(xi[0])}))^2+y*y)"
         sizes = [
