@@ -9,12 +9,12 @@ the approach delta and the load W as parameters:
     boundary.
 
 The multiplier has the order of u_z itself. Then the second line says u_z = delta - r^2/2 at every node, the
-paraboloid being a polynomial, and the first gives p from the nodal reactions through the mass matrix of the
-contact: the saddle system separates into one positive definite solve and one small one. (Dividing
-reactions by nodal weights instead would fail on the axis, where the weight vanishes.) delta and W follow
-from p(a) = 0 and int p = W, so one factorisation with three right-hand sides, flat punch, paraboloid and far
-field, gives everything. Of an elastic ball u_z is the sum of both bodies' (``coupling``), delta the approach
-of points far from the contact in both.
+paraboloid being a polynomial (of a sphere, its interpolant), and the first gives p from the nodal reactions
+through the mass matrix of the contact: the saddle system separates into one positive definite solve and one
+small one. (Dividing reactions by nodal weights instead would fail on the axis, where the weight vanishes.)
+delta and W follow from p(a) = 0 and int p = W, so one factorisation with three right-hand sides, flat punch,
+paraboloid and far field, gives everything. Of an elastic ball u_z is the sum of both bodies' (``coupling``),
+delta the approach of points far from the contact in both.
 """
 
 from collections.abc import Callable
@@ -90,6 +90,7 @@ class FixedRadiusContact:
     stiffness  : d load / d approach at fixed contact radius
     residual   : largest out-of-balance nodal force over the load
     ball       : None where it is rigid
+    curvature  : of the gap, as in `undeformed_gap`
     """
 
     discretisation: Discretisation
@@ -101,21 +102,34 @@ class FixedRadiusContact:
     stiffness: float
     residual: float
     ball: Ball | None = None
+    curvature: float = 0.0
+
+
+def undeformed_gap(r: np.ndarray, curvature: float = 0.0) -> np.ndarray:
+    """(1 - sqrt(1 - c^2 r^2)) / c^2, of a sphere with ``curvature`` c = L/R; of the paraboloid for c = 0.
+
+    Beyond the sphere's equator it grows on as r^2.
+    """
+    return r**2 / (1 + np.sqrt(np.maximum(1 - (curvature * r) ** 2, 0.0)))
 
 
 def solve_at_radius(
-    solid: LayeredSolid, discretisation: Discretisation, ball: tuple[LayeredSolid, Coupling] | None = None
+    solid: LayeredSolid,
+    discretisation: Discretisation,
+    ball: tuple[LayeredSolid, Coupling] | None = None,
+    curvature: float = 0.0,
 ) -> FixedRadiusContact:
     """Solve the contact whose edge is the mesh's contact radius.
 
     ball : layers of an elastic ball, and its discretisation coupled to that of the flat
+    curvature : of the gap, as in `undeformed_gap`
     """
     d, contact = discretisation, discretisation.contact
     a = d.mesh.contact_radius
     edges = d.facets(lambda x: (x[1] == 0) & (x[0] < a))
     nodes = d.locations[0, contact]
     # flat punch, paraboloid, far field
-    shape = np.stack([np.ones_like(nodes), -(nodes**2) / 2, np.zeros_like(nodes)], axis=1)
+    shape = np.stack([np.ones_like(nodes), -undeformed_gap(nodes, curvature), np.zeros_like(nodes)], axis=1)
     far = np.array([0.0, 0.0, 1.0])
     if ball is None:
         u, reaction, balance = _under_rigid(solid, d, shape, far)
@@ -142,6 +156,7 @@ def solve_at_radius(
         stiffness=float(loads[0] / (1 - loads[2])),
         residual=float(2 * np.pi * np.abs(balance @ combine).max() / abs(W)),
         ball=None if ball is None else Ball(*ball, of_ball @ combine),
+        curvature=curvature,
     )
 
 
@@ -172,7 +187,7 @@ def complementarity(contact: FixedRadiusContact) -> tuple[float, float]:
     """(deepest penetration outside over the approach, largest tension inside over the peak), both >= 0."""
     d = contact.discretisation
     r = d.locations[0, d.surface]
-    gap = r**2 / 2 + contact.fields[d.N + d.surface] - contact.approach
+    gap = undeformed_gap(r, contact.curvature) + contact.fields[d.N + d.surface] - contact.approach
     if contact.ball is not None:
         ball = contact.ball.discretisation
         gap += contact.ball.fields[ball.N + ball.surface]

@@ -59,11 +59,13 @@ def solve_levels(
     max_iterations: int,
     tolerance: float,
     with_companion: bool,
+    curvature: float = 0.0,
 ) -> ContactLevels:
     """Find the contact radius at ``load``, each level starting from the result of the one before.
 
     solids : the flat, then an elastic ball
     order, size, tolerance : of the final level.  max_iterations : contact solves allowed on each level
+    curvature : of the gap, as in `contact.undeformed_gap`
     Raises NotConverged when the load is not reached on one of the levels.
     """
     levels = [_Level("rough", Grading.of(0.6), 2, 0.02), _Level("coarse", Grading.of(_COARSE), order, 1e-3)]
@@ -82,7 +84,7 @@ def solve_levels(
             tolerance=level.tolerance,
             max_iterations=min(max_iterations, _ROUGH_SOLVES) if level.name == "rough" else max_iterations,
             mesh_at=partial(_meshes_at, solids, level.grading),
-            solve_on=partial(_solve_on, solids, level.order),
+            solve_on=partial(_solve_on, solids, level.order, curvature),
         )
         history += [(level.name, *entry) for entry in search.history]
         a, W = search.history[-1]
@@ -138,16 +140,16 @@ def _meshes_at(solids: Solids, grading: Grading, contact_radius: float) -> Meshe
 
 
 def _solve_on(
-    solids: Solids, order: int, meshes: Meshes, previous: FixedRadiusContact | None
+    solids: Solids, order: int, curvature: float, meshes: Meshes, previous: FixedRadiusContact | None
 ) -> FixedRadiusContact:
     flat, *others = meshes.of
     d = Discretisation(flat, order) if previous is None else previous.discretisation.moved(flat)
     if not others:
-        return solve_at_radius(solids[0], d)
+        return solve_at_radius(solids[0], d, curvature=curvature)
     known = None if previous is None or previous.ball is None else previous.ball.coupling
     if others[0] is flat:
         ball = d
     else:
         ball = Discretisation(others[0], order) if known is None else known.ball.moved(others[0])
     coupling = Coupling(d, ball) if known is None else known.moved(d, ball)
-    return solve_at_radius(solids[0], d, (solids[1], coupling))
+    return solve_at_radius(solids[0], d, (solids[1], coupling), curvature)

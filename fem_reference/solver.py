@@ -58,6 +58,7 @@ def solve(
     max_iterations: int = 30,
     load_tolerance: float = LOAD_TOLERANCE,
     estimate_uncertainty: bool = True,
+    gap: str = "parabola",
 ) -> Solution:
     """Sphere pressed on, and with friction slid over, a coated half-space.
 
@@ -72,6 +73,7 @@ def solve(
     far     : distance of the outer boundary over (a_h + thickness of all coatings)
     max_iterations : contact solves allowed on each mesh level
     load_tolerance : relative error of the load allowed on the last two levels
+    gap     : "parabola" r^2/2R or "sphere" R - sqrt(R^2 - r^2)
     The approach is that of distant points of both bodies.
     Poisson ratios up to 0.49 do not lock at order 4; above, digits are lost as 1/(1 - 2 nu), and 0.5 is
     refused. Raises ValueError for bad input, NotConverged when no contact radius has the load.
@@ -82,6 +84,7 @@ def solve(
     )
     check_materials(coatings, substrate, friction)
     check_choice("order", order, (2, 3, 4))
+    check_choice("gap", gap, ("parabola", "sphere"))
     E, nu = substrate
     compliance = (1 - nu**2) / E
     if ball is not None:
@@ -105,6 +108,7 @@ def solve(
         max_iterations=max_iterations,
         tolerance=load_tolerance,
         with_companion=estimate_uncertainty,
+        curvature=a_h / radius if gap == "sphere" else 0.0,
     )
     final, d = levels.final, levels.final.discretisation
     check_radius(final.contact_radius * a_h, radius)

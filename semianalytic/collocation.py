@@ -2,13 +2,13 @@
 
 With p = sqrt(t) q(t), t = 1 - (r/a)^2, the exact deflection of `abel` closes the gap at M + 1 points,
 
-    u(r_i) - delta = -r_i^2 / (2 R),      t_i the Gauss-Legendre points of 0 < t < 1,
+    u(r_i) - delta = -g(r_i),      t_i the Gauss-Legendre points of 0 < t < 1,
 
-linear in the M coefficients and in delta; the contact radius a follows from the load, or from delta, by
-secant steps. The pressure over sqrt(t) is analytic in t with its nearest singularities at 2 h beyond the
-edge, h the depth of what reflects, so that the error falls as exp(-c M sqrt(h/a)): Boyd, Chebyshev
-and Fourier Spectral Methods (2001), section 2. Inverting Abel's integral for every r < a gives the Fredholm
-equation of the second kind of Lebedev and Ufliand, PMM 22 (1958) 320-326.
+linear in the M coefficients and in delta, g the gap, r^2/2R of the parabola; the contact radius a follows
+from the load, or from delta, by secant steps. The pressure over sqrt(t) is analytic in t with its nearest
+singularities at 2 h beyond the edge, h the depth of what reflects, so that the error falls as exp(-c M
+sqrt(h/a)): Boyd, Chebyshev and Fourier Spectral Methods (2001), section 2. Inverting Abel's integral for
+every r < a gives the Fredholm equation of the second kind of Lebedev and Ufliand, PMM 22 (1958) 320-326.
 """
 
 from collections.abc import Callable, Sequence
@@ -21,7 +21,7 @@ from scipy.special import j0
 from semianalytic import abel, frf
 from semianalytic.contact import NotConverged
 from semianalytic.edge_profile import Profile
-from semianalytic.inputs import Body
+from semianalytic.inputs import Body, undeformed_gap
 
 __all__ = ["SHARES", "RoundContact", "compliance_excess", "contact", "reflecting_depth"]
 
@@ -79,10 +79,11 @@ def contact(
     approach: float | None,
     body: Body,
     shares: Sequence[float] = SHARES,
+    gap: str = "parabola",
 ) -> list[RoundContact]:
     """Contact of a sphere, with every share of the terms in ``shares``.
 
-    radius [m], and load [N] or approach [m], the other None.
+    radius [m], and load [N] or approach [m], the other None; gap as in `inputs.undeformed_gap`.
     Raises NotConverged where no contact radius is found.
     """
     excess, E_star, depth = compliance_excess(body), body.contact_modulus, reflecting_depth(body)
@@ -103,7 +104,7 @@ def contact(
     def solved(a: float, share: float) -> RoundContact:
         terms = share * min(MOST, 6 + 6 * np.sqrt(a / depth))
         problem = _Collocation(excess, depth, a, max(4, int(terms)))
-        return problem.solve(a, radius, load, approach, E_star)
+        return problem.solve(a, undeformed_gap(gap, radius), load, approach, E_star)
 
     # a film that bends makes the contact far wider than Hertz's, and the terms go by its width
     for _ in range(4):
@@ -130,14 +131,19 @@ class _Collocation:
         self.bessel = j0(np.outer(self.rho, self.k))
 
     def solve(
-        self, guess: float, radius: float, load: float | None, approach: float | None, E_star: float
+        self,
+        guess: float,
+        gap: Callable[[Array], Array],
+        load: float | None,
+        approach: float | None,
+        E_star: float,
     ) -> RoundContact:
         """The contact; its stiffness from contacts of radii beside it, d log W / d log a over d log delta."""
 
         def at(a: float) -> tuple[Profile, float]:
             u = 2 / E_star * a * (self.inner + (self.bessel * self.excess(self.k / a)) @ self.outer.T)
             equations = np.concatenate([u, -np.ones((len(u), 1))], axis=1)
-            *phi, delta = np.linalg.solve(equations, -((a * self.rho) ** 2) / (2 * radius))
+            *phi, delta = np.linalg.solve(equations, -gap(a * self.rho))
             return Profile(a, abel.from_potential(np.array(phi))), float(delta)
 
         def miss(log_a: float) -> float:

@@ -1,13 +1,21 @@
 """Checked input of the semi-analytical method."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-__all__ = ["COARSEST", "Body", "Numerics", "check_control", "check_finite", "check_positive"]
+__all__ = [
+    "COARSEST",
+    "Body",
+    "Numerics",
+    "check_control",
+    "check_finite",
+    "check_positive",
+    "undeformed_gap",
+]
 
 COARSEST = 33  # patches a side of the coarsest grid
 
@@ -163,6 +171,20 @@ class Body:
                 f"{', '.join(f'{i:g}' for i in interfaces) or 'no depth'} m"
             )
         return np.full(z.shape, layer)
+
+
+def undeformed_gap(name: str, radius: float) -> Callable[[NDArray[Any]], NDArray[Any]]:
+    """Gap [m] of r [m]: "parabola" r^2/2R or "sphere" R - sqrt(R^2 - r^2), r^2/R beyond its equator.
+
+    Raises ValueError for another name.
+    """
+    gaps: dict[str, Callable[[NDArray[Any]], NDArray[Any]]] = {
+        "parabola": lambda r: r**2 / (2 * radius),
+        "sphere": lambda r: r**2 / (radius + np.sqrt(np.maximum(radius**2 - r**2, 0.0))),
+    }
+    if name not in gaps:
+        raise ValueError(f"gap = {name!r}; choose parabola or sphere")
+    return gaps[name]
 
 
 def check_finite(**values: float) -> None:

@@ -24,7 +24,7 @@ from semianalytic import (
 )
 from semianalytic.contact import NotConverged
 from semianalytic.grid import Grid, deconvolve, odd, touches_rim
-from semianalytic.inputs import Body, Numerics, check_control, check_finite, check_positive
+from semianalytic.inputs import Body, Numerics, check_control, check_finite, check_positive, undeformed_gap
 from semianalytic.level import Indenter, Level
 from semianalytic.solution import Solution
 from semianalytic.uncertainty import WIDER, Uncertainty
@@ -58,6 +58,7 @@ def solve(
     edge_correction: bool = True,
     estimate_uncertainty: bool = True,
     threads: int = 1,
+    gap: str = "parabola",
 ) -> Solution:
     """Press a sphere of ``radius`` [m] with ``load`` [N] on a coated half-space.
 
@@ -69,6 +70,7 @@ def solve(
     ``influence``.
     edge_correction : by the edge profile, which gives contact radius and stresses; the patches find what it
     leaves, whatever their conversion, and the approach. False : patches alone, whose edge is a staircase.
+    gap : "parabola" r^2/2R or "sphere" R - sqrt(R^2 - r^2).
 
     Raises ValueError for input without meaning and for a contact as wide as the sphere, NotConverged when the
     iteration stops short.
@@ -88,9 +90,10 @@ def solve(
         edge_correction=edge_correction,
         threads=threads,
     )
-    sphere = Indenter(lambda grid: grid.radius**2 / (2 * radius), load, approach, round=True)
+    undeformed = undeformed_gap(gap, radius)
+    sphere = Indenter(lambda grid: undeformed(grid.radius), load, approach, round=True)
     shares = collocation.SHARES if estimate_uncertainty else collocation.SHARES[:1]
-    found = collocation.contact(radius, load, approach, body, shares)
+    found = collocation.contact(radius, load, approach, body, shares, gap)
     a = found[0].profile.radius
     if a > LARGEST * radius:
         raise ValueError(

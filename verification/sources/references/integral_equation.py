@@ -1,7 +1,10 @@
 """Sphere on a coated half-space, frictionless contact: the Fredholm equation of the second kind.
 
-    phi(x) + (2/pi) int_0^a K(x,t) phi(t) dt = (E*/pi) (delta - x^2/R),   phi(a) = 0
+    phi(x) + (2/pi) int_0^a K(x,t) phi(t) dt = (E*/pi) (delta - G(x)),   phi(a) = 0
     W = 2 pi int_0^a phi dt,   K(x,t) = int_0^inf (M(k) - 1) cos(kx) cos(kt) dk
+
+The gap g(r) of the undeformed bodies enters as G(x) = x int_0^x g'(r) / sqrt(x^2 - r^2) dr, Sneddon (1965):
+x^2/R of the parabola r^2/2R, x artanh(x/R) of the sphere R - sqrt(R^2 - r^2).
 
 The compliances of flat and ball add up, with E1* and M1 of the layers of each:
 
@@ -9,10 +12,11 @@ The compliances of flat and ball add up, with E1* and M1 of the layers of each:
 
 K is smooth, so Gauss-Legendre converges geometrically: no grid in the plane, no elements. Any number of
 coatings. With friction q = f p the pressure is unchanged (Goodman's assumption).
-Lebedev and Ufliand, PMM 22 (1958) 320-326; Dhaliwal and Rau, Int. J. Engng Sci. 8 (1970) 843-856;
-Yu, Sanday and Rath, J. Mech. Phys. Solids 38 (1990) 745-764.
+Sneddon, Int. J. Engng Sci. 3 (1965) 47-57; Lebedev and Ufliand, PMM 22 (1958) 320-326; Dhaliwal and Rau, Int.
+J. Engng Sci. 8 (1970) 843-856; Yu, Sanday and Rath, J. Mech. Phys. Solids 38 (1990) 745-764.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -26,6 +30,18 @@ from verification.sources.references.axisymmetric_pressure import AbelPressure
 from verification.sources.references.hankel import HankelField
 from verification.sources.references.layered import LayeredHalfSpace, bending_length, contact_modulus
 from verification.sources.references.quadrature import gauss_legendre, wavenumber_panels
+
+
+@dataclass(frozen=True)
+class Gap:
+    """Gap of the undeformed bodies, by ``transform(x, R)`` = G(x) [m]; a/R at most ``widest``."""
+
+    transform: Callable[[ArrayLike, float], Array]
+    widest: float
+
+
+PARABOLA = Gap(lambda x, R: x**2 / R, np.inf)  # type: ignore[operator]
+SPHERE = Gap(lambda x, R: x * np.arctanh(x / R), 0.9)  # type: ignore[operator]
 
 
 @dataclass(frozen=True)
@@ -163,19 +179,22 @@ def solve(
     ball: Ball | None = None,
     nodes: int = 80,
     estimate_uncertainty: bool = True,
+    gap: Gap = PARABOLA,
 ) -> ExactSolution:
     """Contact of a sphere of ``radius`` [m] under ``load`` [N]; arguments as in CoatedContact.
 
     nodes : Gauss-Legendre points in the contact; more where a coating is thin.
-    Raises ValueError when no contact radius between 1e-3 and 1e3 of the Hertz radius carries the load.
+    gap : of the undeformed bodies, PARABOLA or SPHERE.
+    Raises ValueError when no contact radius between 1e-3 and 1e3 of the Hertz radius carries the load, nor
+    one below ``gap.widest``.
     """
     solids: tuple[_Solid, ...] = ((coatings, substrate),)
     if ball is not None:
         solids += ((ball[2], ball[:2]),)
-    fine = _solve(radius, load, solids, friction, nodes, 16, 36.0)
+    fine = _solve(radius, load, solids, friction, gap, nodes, 16, 36.0)
     if not estimate_uncertainty:
         return fine
-    coarse = _solve(radius, load, solids, friction, 3 * nodes // 4, 12, 27.0)
+    coarse = _solve(radius, load, solids, friction, gap, 3 * nodes // 4, 12, 27.0)
     return replace(fine, coarser=coarse)
 
 
@@ -187,6 +206,7 @@ def _solve(
     load: float,
     solids: tuple[_Solid, ...],
     friction: float,
+    gap: Gap,
     nodes: int,
     panel: int,
     tail: float,
@@ -205,10 +225,11 @@ def _solve(
         cosine = np.cos(k[:, None] * np.append(x, a))
         K = (2 / np.pi) * (cosine.T * kernel) @ cosine
         A = np.eye(x.size) + K[:-1, :-1] * (a * weight)
-        right = (E_star / np.pi) * np.stack([np.ones_like(x), x**2 / radius], axis=1)
+        right = (E_star / np.pi) * np.stack([np.ones_like(x), gap.transform(x, radius)], axis=1)
         phi = np.linalg.solve(A, right)
+        at_edge = float(gap.transform(a, radius))
         # Nystrom's interpolation gives phi at the edge, where it must vanish.
-        edge = (E_star / np.pi) * np.array([1.0, a**2 / radius]) - (K[-1, :-1] * a * weight) @ phi
+        edge = (E_star / np.pi) * np.array([1.0, at_edge]) - (K[-1, :-1] * a * weight) @ phi
         delta = edge[1] / edge[0]
         stiffness = 2 * np.pi * a * (weight @ phi[:, 0])
         return phi @ np.array([delta, -1.0]), float(delta), float(stiffness)
@@ -217,12 +238,12 @@ def _solve(
         a = float(np.exp(log_a))
         return float(np.log(2 * np.pi * a * (weight @ contact(a)[0]) / load))
 
-    span = np.log(1.5)
-    low = high = np.log(guess)
+    span, widest = np.log(1.5), np.log(gap.widest * radius)
+    low = high = min(np.log(guess), widest)
     while excess(low) > 0 and low > np.log(guess) - 7:
         low -= span
-    while excess(high) < 0 and high < np.log(guess) + 7:
-        high += span
+    while excess(high) < 0 and high < min(np.log(guess) + 7, widest):
+        high = min(high + span, widest)
     if not excess(low) <= 0 <= excess(high):
         raise ValueError(
             f"load = {load:g} N is carried by no contact radius near {guess:g} m; check the moduli"
