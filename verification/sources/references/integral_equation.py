@@ -188,7 +188,7 @@ def solve(
     Raises ValueError when no contact radius between 1e-3 and 1e3 of the Hertz radius carries the load, nor
     one below ``gap.widest``.
     """
-    solids: tuple[_Solid, ...] = ((coatings, substrate),)
+    solids: tuple[Solid, ...] = ((coatings, substrate),)
     if ball is not None:
         solids += ((ball[2], ball[:2]),)
     fine = _solve(radius, load, solids, friction, gap, nodes, 16, 36.0)
@@ -198,13 +198,13 @@ def solve(
     return replace(fine, coarser=coarse)
 
 
-_Solid = tuple[Coatings, tuple[float, float]]
+Solid = tuple[Coatings, tuple[float, float]]
 
 
 def _solve(
     radius: float,
     load: float,
-    solids: tuple[_Solid, ...],
+    solids: tuple[Solid, ...],
     friction: float,
     gap: Gap,
     nodes: int,
@@ -217,8 +217,8 @@ def _solve(
     guess = _radius_guess(radius, load, E_star, solids)
     x_i, w_i = gauss_legendre(_contact_nodes(nodes, guess, solids))
     s, weight = 0.5 * (1 + x_i), 0.5 * w_i
-    k, k_weight = _kernel_wavenumbers(solids, guess, panel, tail)
-    kernel = k_weight * (_compliance(solids, E_star, k) - 1)
+    k, k_weight = kernel_wavenumbers(solids, guess, panel, tail)
+    kernel = k_weight * (compliance(solids, E_star, k) - 1)
 
     def contact(a: float) -> tuple[Array, float, float]:
         x = a * s
@@ -260,7 +260,7 @@ def _solve(
     return ExactSolution(abel, delta, fields, diagnostics, stiffness)
 
 
-def _compliance(solids: tuple[_Solid, ...], E_star: float, k: Array) -> Array:
+def compliance(solids: tuple[Solid, ...], E_star: float, k: Array) -> Array:
     """M(k) of the ``solids`` together."""
     responses = [LayeredHalfSpace(*solid, k).compliance if solid[0] else np.ones_like(k) for solid in solids]
     if len(solids) == 1:
@@ -269,22 +269,22 @@ def _compliance(solids: tuple[_Solid, ...], E_star: float, k: Array) -> Array:
     return np.sum([share * M for share, M in zip(shares, responses, strict=True)], axis=0)
 
 
-def _radius_guess(radius: float, load: float, E_star: float, solids: tuple[_Solid, ...]) -> float:
+def _radius_guess(radius: float, load: float, E_star: float, solids: tuple[Solid, ...]) -> float:
     """Hertz radius with the contact modulus seen by waves of that very length."""
     a = float((3 * load * radius / (4 * E_star)) ** (1 / 3))
     for _ in range(40):
-        M = float(_compliance(solids, E_star, np.array([2.0 / a]))[0])
+        M = float(compliance(solids, E_star, np.array([2.0 / a]))[0])
         a = 0.5 * (a + float((3 * load * radius * M / (4 * E_star)) ** (1 / 3)))
     return a
 
 
-def _contact_nodes(nodes: int, a: float, solids: tuple[_Solid, ...]) -> int:
+def _contact_nodes(nodes: int, a: float, solids: tuple[Solid, ...]) -> int:
     """The kernel varies over the first coating's thickness, so thin ones need nodes in proportion to a/h."""
     thinnest = min((h for coatings, _ in solids for _, _, h in coatings), default=a)
     return int(nodes + 3 * a / thinnest * nodes / 80)
 
 
-def _kernel_wavenumbers(solids: tuple[_Solid, ...], a: float, panel: int, tail: float) -> tuple[Array, Array]:
+def kernel_wavenumbers(solids: tuple[Solid, ...], a: float, panel: int, tail: float) -> tuple[Array, Array]:
     """Gauss panels up to where M - 1 ~ (k h)^2 exp(-2 k h) is negligible; finer near 0."""
     coated = [solid for solid in solids if solid[0]]
     if not coated:
