@@ -29,13 +29,14 @@ On uncoated bodies, with C = f beta, all of it is closed:
 """
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
 from numpy.polynomial import legendre
 
 from verification.problem.arrays import Array
-from verification.problem.contact import CoatedContact
+from verification.problem.contact import CoatedContact, keywords
 from verification.sources.references import integral_equation
 from verification.sources.references.integral_equation import Solid
 from verification.sources.references.layered import LayeredHalfSpace, contact_modulus
@@ -59,13 +60,37 @@ class SlidingChange:
     peak_pressure: float
 
 
-def sliding_change(problem: CoatedContact, nodes: int = 160) -> SlidingChange:
-    """Change of the contact of ``problem`` by the coupling of friction with the normal displacement.
+@dataclass(frozen=True, eq=False)
+class FirstHarmonic:
+    """The pressure p1(r) cos(theta) by psi1 [N/m], with int p1 J1(kr) r dr = int_0^a psi1 sin(kt) dt.
 
-    nodes : quadrature points in the contact, more where a coating is thin.
-    Raises ValueError where the largest pressure is off the axis, or the contact is not found.
+    s, weight : quadrature over s = t/a in (0, 1), (nodes,).  psi, slope : psi1 and d psi1/ds at the nodes.
     """
-    return _Expansion(problem, nodes).change
+
+    a: float
+    s: Array
+    weight: Array
+    psi: Array
+    slope: Array
+
+    def transform(self, k: Array) -> Array:
+        """phat1(k) [N], shape of ``k``."""
+        return self.a * np.sin(np.multiply.outer(k * self.a, self.s)) @ (self.weight * self.psi)
+
+    @property
+    def moment(self) -> float:
+        """int p1 r^2 dr = 2 int psi1 t dt [N m]: that of p1 cos(theta) about the y axis over pi."""
+        return float(2 * self.a**2 * (self.weight @ (self.psi * self.s)))
+
+    def bessel_integral(self, order: int, r: Array) -> Array:
+        """int_0^inf phat1(k) J_order(kr) k dk [Pa] at r >= a, for even ``order``; shape of ``r``.
+
+        = int_0^a psi1'(t) cos(order asin(t/r)) / sqrt(r^2 - t^2) dt.
+        """
+        sine = self.a * self.s / np.asarray(r, dtype=float)[..., None]
+        # (r - t)(r + t), exact to rounding next to the edge
+        root = np.sqrt((r[..., None] - self.a + self.a * (1 - self.s)) * (r[..., None] + self.a * self.s))
+        return (np.cos(order * np.arcsin(sine)) / root) @ (self.weight * self.slope)
 
 
 def coupling(solids: tuple[Solid, ...], E_star: float, k: Array) -> Array:
@@ -96,99 +121,113 @@ class _Nodes(NamedTuple):
         )
 
 
-class _Expansion:
-    """The three potentials at the nodes; lengths over the contact radius a."""
+class SlidingExpansion:
+    """Terms of the contact of ``problem`` in powers of its friction coefficient.
 
-    def __init__(self, problem: CoatedContact, nodes: int) -> None:
+    nodes : quadrature points in the contact, more where a coating is thin.
+    Lengths are over the contact radius a, potentials over E* a^2/(pi R).
+    Raises ValueError where no contact radius is found.
+    """
+
+    def __init__(self, problem: CoatedContact, nodes: int = 160) -> None:
         solids: tuple[Solid, ...] = ((problem.coatings, problem.substrate),)
         if problem.ball is not None:
             solids += ((problem.ball[2], problem.ball[:2]),)
-        self.E_star = 1 / sum(1 / contact_modulus(*solid) for solid in solids)
-        self.exact = integral_equation.solve(
-            radius=problem.radius,
-            load=problem.load,
-            coatings=problem.coatings,
-            substrate=problem.substrate,
-            ball=problem.ball,
-            estimate_uncertainty=False,
-        )
-        self.a, self.radius, self.beta = self.exact.contact_radius, problem.radius, problem.dundurs_beta
-        thinnest = min((h for coatings, _ in solids for _, _, h in coatings), default=self.a)
-        self.nodes = _Nodes.graded(int(nodes * (1 + 0.05 * self.a / thinnest)))
-        k, weight = integral_equation.kernel_wavenumbers(solids, self.a, 16, 36.0)
-        self.k = k * self.a
-        # weights of (M - 1) and N - beta; wavenumbers are over 1/a from here on
-        self.M = weight * self.a * (integral_equation.compliance(solids, self.E_star, k) - 1)
-        self.N = weight * self.a * (coupling(solids, self.E_star, k) - self.beta)
-        s = np.concatenate([self.nodes.s, [0.0, 1.0]])
-        # columns: the nodes, the axis, the edge
-        self.cos, self.sin = np.cos(self.k[:, None] * s), np.sin(self.k[:, None] * s)
-        self.even, self.odd = self._operator(self.cos), self._operator(self.sin)
+        self.problem, self.beta = problem, problem.dundurs_beta
+        self.exact = integral_equation.solve(**keywords(problem), estimate_uncertainty=False)
+        self.a = a = self.exact.contact_radius
+        E_star = 1 / sum(1 / contact_modulus(*solid) for solid in solids)
+        self.scale = E_star * a**2 / (np.pi * problem.radius)
+        thinnest = min((h for coatings, _ in solids for _, _, h in coatings), default=a)
+        self.nodes = _Nodes.graded(int(nodes * (1 + 0.05 * a / thinnest)))
+        self.points = np.append(self.nodes.s, 1.0)  # with the edge
+        k, weight = integral_equation.kernel_wavenumbers(solids, a, 16, 36.0)
+        self.k = k * a
+        # M - 1 and N - beta with the weights of k
+        self.M = weight * a * (integral_equation.compliance(solids, E_star, k) - 1)
+        self.N = weight * a * (coupling(solids, E_star, k) - self.beta)
+        self.cos, self.sin = np.cos(np.outer(self.k, self.points)), np.sin(np.outer(self.k, self.points))
+        self.c = self.exact.abel.c / self.scale
+        self.phi0, self.phi0_slope = _series(self.c, self.points)
 
-    def _operator(self, wave: Array) -> Array:
-        """Nystrom's matrix of K or L: at nodes, axis and edge from values at the nodes."""
-        inner = wave[:, :-2] * self.nodes.weight
-        return 2 / np.pi * (wave.T * self.M) @ inner
-
-    def _solve(self, operator: Array, right: Array) -> Array:
-        """Values at nodes, axis and edge of the solution with ``right`` (points, columns) there."""
-        inner = np.linalg.solve(np.eye(operator.shape[1]) + operator[:-2], right[:-2])
+    def _solve(self, wave: Array, right: Array) -> Array:
+        """Solution with ``right`` (points, columns), by Nystrom's method; ``wave`` : cos kx or sin kx."""
+        operator = 2 / np.pi * (wave.T * self.M) @ (wave[:, :-1] * self.nodes.weight)
+        inner = np.linalg.solve(np.eye(operator.shape[1]) + operator[:-1], right[:-1])
         return right - operator @ inner
+
+    @cached_property
+    def _first(self) -> tuple[Array, float, Array]:
+        """psi1 at the nodes, the shift s1 over a, the derivative of psi1 less its logarithm.
+
+        psi1 = -(beta/pi) phi0 ln[(1 + s)/(1 - s)] + rest: the logarithm is that of the Hilbert transform of
+        phi0, sum c_n Q_2n.
+        """
+        smooth, smooth_slope = _second_kind(self.c, self.points)
+        beta = self.beta / np.pi
+        log = np.append(self.nodes.log, 0.0)  # times phi0 = 0 at the edge
+        coupled = self.N * self.exact.abel.transform(self.k / self.a) / (self.scale * self.a)
+        right = -beta * (self.phi0 * log - 2 * smooth) - 2 / np.pi * self.sin.T @ coupled
+        psi = self._solve(self.sin, np.stack([right, -2 * self.points], axis=1))
+        shift = float(-psi[-1, 0] / psi[-1, 1])
+        psi1 = psi[:-1] @ np.array([1.0, shift])
+        waves = -2 / np.pi * self.k * (coupled + self.M * self._transform(psi1))
+        slope = 2 * beta * smooth_slope[:-1] + self.cos[:, :-1].T @ waves - 2 * shift
+        return psi1, shift, slope
+
+    def _transform(self, psi: Array) -> Array:
+        return self.sin[:, :-1] @ (self.nodes.weight * psi)
+
+    @property
+    def first(self) -> FirstHarmonic:
+        """The pressure of the first order, about the centre of the contact."""
+        psi1, _, slope = self._first
+        s, weight, far, log = self.nodes
+        q, q_slope = (-self.beta / np.pi * part[:-1] for part in (self.phi0, self.phi0_slope))
+        slope = slope + q_slope * log + 2 * q / (far * (1 + s))
+        return FirstHarmonic(self.a, s, weight, self.scale * psi1, self.scale * slope)
 
     @property
     def change(self) -> SlidingChange:
-        """The scalars to the order f^2 at the same load; pressures over a/R E*/pi from here on."""
-        scale = self.E_star * self.a**2 / (np.pi * self.radius)  # of the potentials [N/m]
-        s, weight, log = self.nodes.s, self.nodes.weight, self.nodes.log
-        points = np.concatenate([s, [0.0, 1.0]])
-        c = self.exact.abel.c / scale
-        # psi1 = q ln((1 + s)/(1 - s)) + rest, both parts smooth
-        smooth, smooth_slope = _second_kind(c, points)
-        phi0, phi0_slope = _series(c, points)
-        beta = self.beta / np.pi
-        phat0 = self.exact.abel.transform(self.k / self.a) / (scale * self.a)
-        hilbert = phi0 * np.append(log, [0.0, 0.0]) / 2 - smooth
-        base = -2 * beta * hilbert - 2 / np.pi * self.sin.T @ (self.N * phat0)
-        psi = self._solve(self.odd, np.stack([base, -2 * points], axis=1))
-        shift = -psi[-1, 0] / psi[-1, 1]
-        psi1 = psi @ np.array([1.0, shift])
-        phat1 = self.sin[:, :-2] @ (weight * psi1[:-2])
-        # derivative of what is left of psi1, term by term
-        rest = psi1[:-2] + beta * phi0[:-2] * log
-        waves = -2 / np.pi * self.k * (self.N * phat0 + self.M * phat1)
-        rest_slope = 2 * beta * smooth_slope[:-2] + self.cos[:, :-2].T @ waves - 2 * shift
-        T = np.empty(points.size)
-        T[:-2] = self._conjugate(phi0[:-2], phi0_slope[:-2], rest, rest_slope)
-        T[-2] = weight @ (psi1[:-2] / s)
-        T[-1] = -weight @ (psi1[:-2] * s / (self.nodes.rest * (1 + s)))
-        right = beta * T + self.cos.T @ (self.N * phat1) / np.pi
-        found = self._solve(self.even, np.stack([right, np.ones(points.size)], axis=1))
+        """Scalars to the order f^2 at the same load.
+
+        Raises ValueError where the largest pressure is off the axis.
+        """
+        s, weight, far, _ = self.nodes
+        psi1, shift, slope = self._first
+        conjugate = np.append(self._conjugate(psi1, slope), -weight @ (psi1 * s / (far * (1 + s))))
+        right = self.beta / np.pi * conjugate + self.cos.T @ (self.N * self._transform(psi1)) / np.pi
+        found = self._solve(self.cos, np.stack([right, np.ones(right.size)], axis=1))
         punch = found[:, 1]
-        inner = -found[-1, 0] / found[-1, 1]  # (delta2 - s1^2/2R) over a^2/R
+        inner = -found[-1, 0] / found[-1, 1]  # delta2 - s1^2/2R
         phi2 = found @ np.array([1.0, inner])
-        # at the same load: more of the flat punch
-        missing = -(weight @ phi2[:-2]) / (weight @ punch[:-2])
-        delta = inner + shift**2 / 2 + missing
-        slope = -phi0_slope[-1] / punch[-1]  # d delta0 / d ln a
-        p0 = self._on_axis(phi0)
-        slope1 = self._on_axis_slope(psi1)
-        peak = self._on_axis(phi2) + missing * self._on_axis(punch) + slope1**2 / (4 * self._curvature(scale))
+        # the load of a flat punch restores the load at the contact radius without friction, then the radius
+        missing = -(weight @ phi2[:-1]) / (weight @ punch[:-1])
+        widening = -self.phi0_slope[-1] / punch[-1]  # d delta0 / d ln a
+        tilt = self._on_axis(np.append(psi1 / s, 0.0))  # dp1/dr, by -int (psi1/t)' / t dt
+        peak = self._on_axis(phi2 + missing * punch) + tilt**2 / (4 * self._curvature())
         return SlidingChange(
-            shift=float(shift),
-            centre=float(shift + weight @ (psi1[:-2] * s) / c[0]),
-            contact_radius=float(missing / slope),
-            approach=float(delta * self.a**2 / self.radius / self.exact.approach),
-            peak_pressure=float(peak / p0),
+            shift=shift,
+            centre=float(shift + weight @ (psi1 * s) / self.c[0]),
+            contact_radius=float(missing / widening),
+            approach=float((inner + shift**2 / 2 + missing) * self._unit / self.exact.approach),
+            peak_pressure=float(peak / self._on_axis(self.phi0)),
         )
 
-    def _conjugate(self, phi0: Array, phi0_slope: Array, rest: Array, rest_slope: Array) -> Array:
+    @property
+    def _unit(self) -> float:
+        """Of displacements, a^2/R [m]."""
+        return self.a**2 / self.problem.radius
+
+    def _conjugate(self, psi1: Array, rest_slope: Array) -> Array:
         """PV int psi1(t) t / (t^2 - x^2) dt at the nodes; psi1 = q ln((1+t)/(1-t)) + rest, q = -beta phi0/pi.
 
         With PV int ln((1+t)/(1-t)) / (t-x) dt over (-1, 1) = (pi^2 - ln^2)/2: Tricomi, Integral Equations
         (1957), section 4.3. What is left are differences over t^2 - x^2, smooth.
         """
         s, weight, far, log = self.nodes
-        q, q_slope = -self.beta / np.pi * phi0, -self.beta / np.pi * phi0_slope
+        q, q_slope = (-self.beta / np.pi * part[:-1] for part in (self.phi0, self.phi0_slope))
+        rest = psi1 - q * log
         # t^2 - x^2, rows x, columns t
         apart = (far[:, None] - far[None, :]) * (s[:, None] + s[None, :])
         np.fill_diagonal(apart, 1.0)
@@ -200,23 +239,18 @@ class _Expansion:
         return closed + of_q @ (weight * log) + of_rest @ weight
 
     def _on_axis(self, phi: Array) -> float:
-        """p(0) = phi(0)/a + int [phi(0) - phi(t)] / t^2 dt, of -int phi'(t)/t dt plus the edge's phi(a)/a."""
-        axis = self._at_axis(phi[:-2])
-        return float(axis + self.nodes.weight @ ((axis - phi[:-2]) / self.nodes.s**2))
+        """p(0) = -int phi'(t)/t dt, and phi(a)/a of the edge: phi(0) + int [phi(0) - phi(t)] / t^2 dt.
 
-    def _on_axis_slope(self, psi: Array) -> float:
-        """dp1/dr at r = 0: -int (psi/t)'/t dt, with psi(a) = 0."""
-        return self._on_axis(np.append(psi[:-2] / self.nodes.s, [np.nan, 0.0]))
+        phi(0) from the two nodes next to the axis, so that it is consistent with them to rounding.
+        """
+        s, inner = self.nodes.s, phi[:-1]
+        axis = (inner[0] * s[1] ** 2 - inner[1] * s[0] ** 2) / (s[1] ** 2 - s[0] ** 2)
+        return float(axis + self.nodes.weight @ ((axis - inner) / s**2))
 
-    def _at_axis(self, even: Array) -> float:
-        """Value on the axis from the two nodes next to it, consistent with them to rounding."""
-        first, second = self.nodes.s[:2] ** 2
-        return float((even[0] * second - even[1] * first) / (second - first))
-
-    def _curvature(self, scale: float) -> float:
+    def _curvature(self) -> float:
         """c of p0 = p0(0) - c r^2 next to the axis. Raises ValueError where it is not positive."""
         r = np.array([0.0, 0.005, 0.01])
-        p = self.exact.abel.pressure(r * self.a) * self.a / scale
+        p = self.exact.abel.pressure(r * self.a) * self.a / self.scale
         rough = (p[0] - p[1:]) / r[1:] ** 2
         c = float((4 * rough[0] - rough[1]) / 3)
         if c <= 0:

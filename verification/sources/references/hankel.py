@@ -88,8 +88,8 @@ class HankelField:
             u += self._homogeneous_displacement(r, theta)
             if not self.coatings:
                 return u
-        k, weighted, (normal, *tangential) = self._waves(r, z, layer)
-        J = _bessel(k, r, highest=2 if self.friction else 1)
+        k, weighted, (normal, *tangential) = self.waves(r, z, layer)
+        J = bessel(k, r, highest=2 if self.friction else 1)
         u_r = -(weighted * normal.U) @ J[1]
         u += np.stack([u_r * np.cos(theta), u_r * np.sin(theta), (weighted * normal.w) @ J[0]])
         if self.friction:
@@ -126,18 +126,18 @@ class HankelField:
             total += self._homogeneous_surface(r, theta)
             if not self.coatings:
                 return total
-        k, weighted, (normal, *tangential) = self._waves(r, z, layer)
+        k, weighted, (normal, *tangential) = self.waves(r, z, layer)
         step = max(1, CHUNK // k.size)
         for start in range(0, r.size, step):
             part = slice(start, start + step)
-            J = _bessel(k, r[part], highest=3 if self.friction else 2)
+            J = bessel(k, r[part], highest=3 if self.friction else 2)
             total[:, :, part] += _normal(normal, weighted, J, theta[part])
             if self.friction:
                 plane, anti = tangential
                 total[:, :, part] += self.friction * _sliding(plane, anti, weighted, J, theta[part])
         return total
 
-    def _waves(self, r: Array, z: float, layer: int) -> tuple[Array, Array, list[Amplitudes]]:
+    def waves(self, r: Array, z: float, layer: int) -> tuple[Array, Array, list[Amplitudes]]:
         """Wavenumbers, weights of the integrals with k phat(k), amplitudes of each load at depth ``z``.
 
         On the surface the amplitudes are those in excess of the homogeneous solid of the top material.
@@ -207,7 +207,7 @@ def _planes(z: Array, layers: NDArray[np.int_]) -> Iterator[tuple[NDArray[np.boo
         yield (z == depth) & (layers == layer), depth, layer
 
 
-def _bessel(k: Array, r: Array, highest: int) -> list[Array]:
+def bessel(k: Array, r: Array, highest: int) -> list[Array]:
     """J_0 .. J_highest of k r, each of shape (k, r)."""
     kr = k[:, None] * r[None, :]
     J = [j0(kr), j1(kr)]

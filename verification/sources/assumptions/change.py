@@ -1,0 +1,95 @@
+"""Relative change of a contact by dropping one assumption, of the quantities that designers use.
+
+Of a contact with ``problem``'s load: radius, approach, peak pressure, sigma_xx at the trailing edge of the
+surface, largest |sigma_xz| on the first interface.
+"""
+
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+
+from verification.problem.arrays import Array
+from verification.problem.contact import CoatedContact, keywords
+from verification.sources.assumptions.goodman import SlidingExpansion
+from verification.sources.assumptions.stress import first_harmonic
+from verification.sources.references import integral_equation
+from verification.sources.references.integral_equation import SPHERE, ExactSolution
+
+POINTS = 2 * np.linspace(-1, 1, 161)  # of a line along an interface, x/a
+
+
+@dataclass(frozen=True)
+class Change:
+    """Each relative to its value with the assumption. ``shear`` is None without an interface."""
+
+    contact_radius: float
+    approach: float
+    peak_pressure: float
+    tension: float
+    shear: float | None
+
+
+def of_sphere(problem: CoatedContact) -> Change:
+    """From the gap r^2/2R to that of a sphere; vanishes as (a/R)^2.
+
+    Raises ValueError where the contact is wider than 0.9 R, as ``integral_equation`` does.
+    """
+    solve = partial(integral_equation.solve, **keywords(problem), estimate_uncertainty=False)
+    parabola, sphere = solve(), solve(gap=SPHERE)
+    scalars = {
+        name: getattr(sphere, name) / getattr(parabola, name) - 1
+        for name in ("contact_radius", "approach", "peak_pressure")
+    }
+    tension = _tension(sphere) / _tension(parabola) - 1
+    return Change(**scalars, tension=tension, shear=_shear_change(_shear(parabola), _shear(sphere)))
+
+
+def of_goodman(problem: CoatedContact) -> Change:
+    """By the normal displacement under the traction q = f p, with Dundurs' beta of the materials in contact.
+
+    Scalars to the order (f beta)^2, stresses to the order f beta: by p0 + f p1 cos(theta) and the traction f
+    times it, both about the centre of the contact.
+    Raises ValueError where the largest pressure is off the axis, since a stiff coating bends.
+    """
+    expansion, f = SlidingExpansion(problem), problem.friction
+    change, exact = expansion.change, expansion.exact
+
+    def first(x: Array, z: float, layer: int) -> tuple[Array, Array]:
+        by_pressure, by_traction = first_harmonic(
+            expansion.first, problem.coatings, problem.substrate, x, z, layer
+        )
+        return f * by_pressure.xx + f**2 * by_traction.xx, f * by_pressure.xz + f**2 * by_traction.xz
+
+    edge = np.array([-exact.contact_radius])
+    tension = float(first(edge, 0.0, 0)[0][0]) / _tension(exact)
+    shear = _shear(exact)
+    coupled = None
+    if shear is not None:
+        coupled = shear + first(POINTS * exact.contact_radius, problem.interfaces[0], 0)[1]
+    return Change(
+        contact_radius=f**2 * change.contact_radius,
+        approach=f**2 * change.approach,
+        peak_pressure=f**2 * change.peak_pressure,
+        tension=tension,
+        shear=_shear_change(shear, coupled),
+    )
+
+
+def _tension(exact: ExactSolution) -> float:
+    """sigma_xx [Pa] at x = -a on the surface."""
+    return float(exact.stress(-exact.contact_radius, 0.0, 0.0)[0, 0])
+
+
+def _shear(exact: ExactSolution) -> Array | None:
+    """sigma_xz [Pa] along the first interface of the flat."""
+    coatings = exact.fields[0].coatings
+    if not coatings:
+        return None
+    return exact.stress(POINTS * exact.contact_radius, 0.0, coatings[0][2], 0)[0, 2]
+
+
+def _shear_change(before: Array | None, after: Array | None) -> float | None:
+    if before is None or after is None:
+        return None
+    return float(np.abs(after).max() / np.abs(before).max() - 1)
