@@ -42,7 +42,7 @@ from verification.sources.references.integral_equation import Solid
 from verification.sources.references.layered import LayeredHalfSpace, contact_modulus
 from verification.sources.references.quadrature import gauss_legendre
 
-GRADING = 2  # of the nodes towards the edge, where potentials have a logarithm
+GRADING = 4  # of the nodes towards the edge, where potentials have a logarithm
 
 
 @dataclass(frozen=True)
@@ -64,12 +64,14 @@ class SlidingChange:
 class FirstHarmonic:
     """The pressure p1(r) cos(theta) by psi1 [N/m], with int p1 J1(kr) r dr = int_0^a psi1 sin(kt) dt.
 
-    s, weight : quadrature over s = t/a in (0, 1), (nodes,).  psi, slope : psi1 and d psi1/ds at the nodes.
+    s, weight, far : quadrature over s = t/a in (0, 1), with 1 - s to rounding, (nodes,).
+    psi, slope : psi1 and d psi1/ds at the nodes.
     """
 
     a: float
     s: Array
     weight: Array
+    far: Array
     psi: Array
     slope: Array
 
@@ -88,8 +90,7 @@ class FirstHarmonic:
         = int_0^a psi1'(t) cos(order asin(t/r)) / sqrt(r^2 - t^2) dt.
         """
         sine = self.a * self.s / np.asarray(r, dtype=float)[..., None]
-        # (r - t)(r + t), exact to rounding next to the edge
-        root = np.sqrt((r[..., None] - self.a + self.a * (1 - self.s)) * (r[..., None] + self.a * self.s))
+        root = np.sqrt((r[..., None] - self.a + self.a * self.far) * (r[..., None] + self.a * self.s))
         return (np.cos(order * np.arcsin(sine)) / root) @ (self.weight * self.slope)
 
 
@@ -129,7 +130,7 @@ class SlidingExpansion:
     Raises ValueError where no contact radius is found.
     """
 
-    def __init__(self, problem: CoatedContact, nodes: int = 160) -> None:
+    def __init__(self, problem: CoatedContact, nodes: int = 200) -> None:
         solids: tuple[Solid, ...] = ((problem.coatings, problem.substrate),)
         if problem.ball is not None:
             solids += ((problem.ball[2], problem.ball[:2]),)
@@ -184,8 +185,10 @@ class SlidingExpansion:
         psi1, _, slope = self._first
         s, weight, far, log = self.nodes
         q, q_slope = (-self.beta / np.pi * part[:-1] for part in (self.phi0, self.phi0_slope))
-        slope = slope + q_slope * log + 2 * q / (far * (1 + s))
-        return FirstHarmonic(self.a, s, weight, self.scale * psi1, self.scale * slope)
+        # q / (1 - s), next to the edge by its derivative
+        quotient = np.where(far < 1e-8, -q_slope, q / far)
+        slope = slope + q_slope * log + 2 * quotient / (1 + s)
+        return FirstHarmonic(self.a, s, weight, far, self.scale * psi1, self.scale * slope)
 
     @property
     def change(self) -> SlidingChange:
