@@ -50,7 +50,6 @@ def of_goodman(problem: CoatedContact) -> Change:
 
     Scalars to the order (f beta)^2, stresses to the order f beta: by p0 + f p1 cos(theta) and the traction f
     times it, both about the centre of the contact.
-    Raises ValueError where the largest pressure is off the axis, since a stiff coating bends.
     """
     expansion, f = SlidingExpansion(problem), problem.friction
     change, exact = expansion.change, expansion.exact
@@ -70,7 +69,7 @@ def of_goodman(problem: CoatedContact) -> Change:
     return Change(
         contact_radius=f**2 * change.contact_radius,
         approach=f**2 * change.approach,
-        peak_pressure=f**2 * change.peak_pressure,
+        peak_pressure=expansion.peak_change(f),
         tension=tension,
         shear=_shear_change(shear, coupled),
     )

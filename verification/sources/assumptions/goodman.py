@@ -34,6 +34,9 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.polynomial import legendre
+from numpy.typing import ArrayLike
+from scipy.interpolate import CubicSpline
+from scipy.optimize import minimize_scalar
 
 from verification.problem.arrays import Array
 from verification.problem.contact import CoatedContact, keywords
@@ -50,14 +53,15 @@ class SlidingChange:
     """Change by sliding at the same load, of a contact whose frictionless quantities are those of ``exact``.
 
     shift, centre : of the contact's centre and of the pressure's, x/a over f.
-    contact_radius, approach, peak_pressure : relative change over f^2.
+    contact_radius, approach : relative change over f^2.
+    pressure_on_axis : change of p(0) over f^2 [Pa]; ``SlidingExpansion.peak_change`` has that of the peak.
     """
 
     shift: float
     centre: float
     contact_radius: float
     approach: float
-    peak_pressure: float
+    pressure_on_axis: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -159,22 +163,32 @@ class SlidingExpansion:
 
     @cached_property
     def _first(self) -> tuple[Array, float, Array]:
-        """psi1 at the nodes, the shift s1 over a, the derivative of psi1 less its logarithm.
-
-        psi1 = -(beta/pi) phi0 ln[(1 + s)/(1 - s)] + rest: the logarithm is that of the Hilbert transform of
-        phi0, sum c_n Q_2n.
-        """
-        smooth, smooth_slope = _second_kind(self.c, self.points)
-        beta = self.beta / np.pi
-        log = np.append(self.nodes.log, 0.0)  # times phi0 = 0 at the edge
+        """psi1 at the nodes, the shift s1 over a, N phat0 + (M - 1) phat1 along the wavenumber."""
         coupled = self.N * self.exact.abel.transform(self.k / self.a) / (self.scale * self.a)
-        right = -beta * (self.phi0 * log - 2 * smooth) - 2 / np.pi * self.sin.T @ coupled
+        smooth, _ = _second_kind(self.c, self.points)
+        log = np.append(self.nodes.log, 0.0)  # times phi0 = 0 at the edge
+        right = -self.beta / np.pi * (self.phi0 * log - 2 * smooth) - 2 / np.pi * self.sin.T @ coupled
         psi = self._solve(self.sin, np.stack([right, -2 * self.points], axis=1))
         shift = float(-psi[-1, 0] / psi[-1, 1])
         psi1 = psi[:-1] @ np.array([1.0, shift])
-        waves = -2 / np.pi * self.k * (coupled + self.M * self._transform(psi1))
-        slope = 2 * beta * smooth_slope[:-1] + self.cos[:, :-1].T @ waves - 2 * shift
-        return psi1, shift, slope
+        return psi1, shift, coupled + self.M * self._transform(psi1)
+
+    def _first_at(self, s: Array, far: Array) -> tuple[Array, Array, Array]:
+        """psi1 at ``s``, 1 - s = ``far``; its derivative; that of psi1 + (beta/pi) phi0 ln[(1 + s)/(1 - s)].
+
+        The logarithm is that of the Hilbert transform of phi0, sum c_n Q_2n; the rest is smooth.
+        """
+        _, shift, waves = self._first
+        smooth, smooth_slope = _second_kind(self.c, s)
+        phi0, phi0_slope = _series(self.c, s)
+        q, q_slope, log = -self.beta / np.pi * phi0, -self.beta / np.pi * phi0_slope, np.log((1 + s) / far)
+        phase = np.multiply.outer(s, self.k)
+        rest = 2 * self.beta / np.pi * smooth - 2 / np.pi * np.sin(phase) @ waves - 2 * shift * s
+        slope = 2 * self.beta / np.pi * smooth_slope - 2 * shift
+        slope -= 2 / np.pi * np.cos(phase) @ (self.k * waves)
+        # q / (1 - s), next to the edge by its derivative
+        quotient = np.where(far < 1e-8, -q_slope, q / far)
+        return q * log + rest, slope + q_slope * log + 2 * quotient / (1 + s), slope
 
     def _transform(self, psi: Array) -> Array:
         return self.sin[:, :-1] @ (self.nodes.weight * psi)
@@ -182,22 +196,26 @@ class SlidingExpansion:
     @property
     def first(self) -> FirstHarmonic:
         """The pressure of the first order, about the centre of the contact."""
-        psi1, _, slope = self._first
-        s, weight, far, log = self.nodes
-        q, q_slope = (-self.beta / np.pi * part[:-1] for part in (self.phi0, self.phi0_slope))
-        # q / (1 - s), next to the edge by its derivative
-        quotient = np.where(far < 1e-8, -q_slope, q / far)
-        slope = slope + q_slope * log + 2 * quotient / (1 + s)
-        return FirstHarmonic(self.a, s, weight, far, self.scale * psi1, self.scale * slope)
+        s, weight, far, _ = self.nodes
+        psi, slope, _ = self._first_at(s, far)
+        return FirstHarmonic(self.a, s, weight, far, self.scale * psi, self.scale * slope)
+
+    def first_pressure(self, r: Array) -> Array:
+        """p1 [Pa] at 0 < r < a [m]: -r int_r^a (psi1/t)' / sqrt(t^2 - r^2) dt; shape of ``r``."""
+        w, weight, _, _ = _Nodes.graded(48)
+        inner = 1 - (r[:, None] / self.a) ** 2
+        # t^2 - r^2 = (1 - r^2) w^2
+        t = np.sqrt(1 - inner * (1 - w**2))
+        psi, slope, _ = self._first_at(t, inner * (1 - w**2) / (1 + t))
+        integrand = (slope - psi / t) / t**2 * np.sqrt(inner)
+        return -self.scale / self.a**2 * r * (integrand @ weight)
 
     @property
     def change(self) -> SlidingChange:
-        """Scalars to the order f^2 at the same load.
-
-        Raises ValueError where the largest pressure is off the axis.
-        """
+        """Scalars to the order f^2 at the same load."""
         s, weight, far, _ = self.nodes
-        psi1, shift, slope = self._first
+        psi1, shift, _ = self._first
+        slope = self._first_at(s, far)[2]
         conjugate = np.append(self._conjugate(psi1, slope), -weight @ (psi1 * s / (far * (1 + s))))
         right = self.beta / np.pi * conjugate + self.cos.T @ (self.N * self._transform(psi1)) / np.pi
         found = self._solve(self.cos, np.stack([right, np.ones(right.size)], axis=1))
@@ -207,14 +225,12 @@ class SlidingExpansion:
         # the load of a flat punch restores the load at the contact radius without friction, then the radius
         missing = -(weight @ phi2[:-1]) / (weight @ punch[:-1])
         widening = -self.phi0_slope[-1] / punch[-1]  # d delta0 / d ln a
-        tilt = self._on_axis(np.append(psi1 / s, 0.0))  # dp1/dr, by -int (psi1/t)' / t dt
-        peak = self._on_axis(phi2 + missing * punch) + tilt**2 / (4 * self._curvature())
         return SlidingChange(
             shift=shift,
             centre=float(shift + weight @ (psi1 * s) / self.c[0]),
             contact_radius=float(missing / widening),
             approach=float((inner + shift**2 / 2 + missing) * self._unit / self.exact.approach),
-            peak_pressure=float(peak / self._on_axis(self.phi0)),
+            pressure_on_axis=self.scale / self.a * self._on_axis(phi2 + missing * punch),
         )
 
     @property
@@ -250,15 +266,30 @@ class SlidingExpansion:
         axis = (inner[0] * s[1] ** 2 - inner[1] * s[0] ** 2) / (s[1] ** 2 - s[0] ** 2)
         return float(axis + self.nodes.weight @ ((axis - inner) / s**2))
 
-    def _curvature(self) -> float:
-        """c of p0 = p0(0) - c r^2 next to the axis. Raises ValueError where it is not positive."""
-        r = np.array([0.0, 0.005, 0.01])
-        p = self.exact.abel.pressure(r * self.a) * self.a / self.scale
-        rough = (p[0] - p[1:]) / r[1:] ** 2
-        c = float((4 * rough[0] - rough[1]) / 3)
-        if c <= 0:
-            raise ValueError("the largest pressure is off the axis, where a stiff coating bends")
-        return c
+    def peak_change(self, friction: float) -> float:
+        """Relative change of the largest pressure, from that of p0 to that of p0 + f p1 + f^2 p20(0).
+
+        The peak moves along x by the order f; where p0 is nearly flat, far.
+        """
+        abel, x = self.exact.abel, np.linspace(0.0, 0.98, 50) * self.a
+        p1 = CubicSpline(np.concatenate([-x[:0:-1], x]), _odd(self.first_pressure(x[1:])))
+
+        def pressure(at: ArrayLike) -> Array:
+            return abel.pressure(np.abs(at)) + friction * p1(at)
+
+        grid = np.concatenate([-x[:0:-1], x])
+        best = int(np.argmax(pressure(grid)))
+        bounds = grid[max(best - 1, 0)], grid[min(best + 1, grid.size - 1)]
+        found = minimize_scalar(
+            lambda at: -float(pressure(at)), bounds=bounds, method="bounded", options={"xatol": 1e-9 * self.a}
+        )
+        top = max(-float(found.fun), float(pressure(grid[best])))
+        return float((top + friction**2 * self.change.pressure_on_axis) / abel.peak - 1)
+
+
+def _odd(values: Array) -> Array:
+    """``values`` on one side of the axis, continued to an odd function: both sides with 0 between."""
+    return np.concatenate([-values[::-1], [0.0], values])
 
 
 def _series(c: Array, s: Array) -> tuple[Array, Array]:
