@@ -16,12 +16,16 @@ from verification.sources.assumptions.stress import first_harmonic
 from verification.sources.references import integral_equation
 from verification.sources.references.integral_equation import SPHERE, ExactSolution
 
+FLOOR = 0.1  # of the peak pressure, to which a smaller stress is compared
 POINTS = 2 * np.linspace(-1, 1, 161)  # of a line along an interface, x/a
 
 
 @dataclass(frozen=True)
 class Change:
-    """Each relative to its value with the assumption. ``shear`` is None without an interface."""
+    """Each relative to its value with the assumption, a stress below ``FLOOR`` to that of the peak pressure.
+
+    ``shear`` is None without an interface.
+    """
 
     contact_radius: float
     approach: float
@@ -41,8 +45,12 @@ def of_sphere(problem: CoatedContact) -> Change:
         name: getattr(sphere, name) / getattr(parabola, name) - 1
         for name in ("contact_radius", "approach", "peak_pressure")
     }
-    tension = _tension(sphere) / _tension(parabola) - 1
-    return Change(**scalars, tension=tension, shear=_shear_change(_shear(parabola), _shear(sphere)))
+    before, after, floor = _tension(parabola), _tension(sphere), FLOOR * parabola.peak_pressure
+    return Change(
+        **scalars,
+        tension=(after - before) / max(abs(before), floor),
+        shear=_shear_change(_shear(parabola), _shear(sphere), floor),
+    )
 
 
 def of_goodman(problem: CoatedContact) -> Change:
@@ -61,7 +69,8 @@ def of_goodman(problem: CoatedContact) -> Change:
         return f * by_pressure.xx + f**2 * by_traction.xx, f * by_pressure.xz + f**2 * by_traction.xz
 
     edge = np.array([-exact.contact_radius])
-    tension = float(first(edge, 0.0, 0)[0][0]) / _tension(exact)
+    floor = FLOOR * exact.peak_pressure
+    tension = float(first(edge, 0.0, 0)[0][0]) / max(abs(_tension(exact)), floor)
     shear = _shear(exact)
     coupled = None
     if shear is not None:
@@ -71,7 +80,7 @@ def of_goodman(problem: CoatedContact) -> Change:
         approach=f**2 * change.approach,
         peak_pressure=expansion.peak_change(f),
         tension=tension,
-        shear=_shear_change(shear, coupled),
+        shear=_shear_change(shear, coupled, floor),
     )
 
 
@@ -88,7 +97,8 @@ def _shear(exact: ExactSolution) -> Array | None:
     return exact.stress(POINTS * exact.contact_radius, 0.0, coatings[0][2], 0)[0, 2]
 
 
-def _shear_change(before: Array | None, after: Array | None) -> float | None:
+def _shear_change(before: Array | None, after: Array | None, floor: float) -> float | None:
     if before is None or after is None:
         return None
-    return float(np.abs(after).max() / np.abs(before).max() - 1)
+    one, other = np.abs(before).max(), np.abs(after).max()
+    return float((other - one) / max(one, floor))

@@ -24,7 +24,7 @@ On uncoated bodies, with C = f beta, all of it is closed:
 
     psi1 ~ -(C/pi)(a^2 - x^2) ln[(a + x)/(a - x)],   phi2 ~ -(C^2/4)(a^2 - x^2) (1 - ln^2[..]/pi^2),
     centre of the contact -C a/pi, of the pressure -3 C a/(2 pi), and at the same load, relative,
-    a : (1/18 + 1/(6 pi^2)) C^2,   delta : (1/9 - 1/(6 pi^2)) C^2,
+    a : (1/18 + 1/(6 pi^2)) C^2,   delta : (1/9 - 1/(6 pi^2)) C^2,   p(0) : (-17/72 + 1/(6 pi^2)) C^2,
     peak pressure : (-25/144 + 7/(24 pi^2) + pi^2/128) C^2.
 """
 
@@ -269,7 +269,8 @@ class SlidingExpansion:
     def peak_change(self, friction: float) -> float:
         """Relative change of the largest pressure, from that of p0 to that of p0 + f p1 + f^2 p20(0).
 
-        The peak moves along x by the order f; where p0 is nearly flat, far.
+        The peak moves along x by the order f; where p0 is nearly flat, far. Exact to f^2 where p0 peaks on
+        the axis; to f where it peaks on a ring, since p20 and p22 vary by the order f^2 over the contact.
         """
         abel, x = self.exact.abel, np.linspace(0.0, 0.98, 50) * self.a
         p1 = CubicSpline(np.concatenate([-x[:0:-1], x]), _odd(self.first_pressure(x[1:])))
@@ -296,7 +297,7 @@ def _series(c: Array, s: Array) -> tuple[Array, Array]:
     """sum c_n P_2n(s) with its derivative."""
     full = np.zeros(2 * c.size - 1)
     full[::2] = c
-    return legendre.legval(s, full), legendre.legval(s, legendre.legder(full))
+    return np.asarray(legendre.legval(s, full)), np.asarray(legendre.legval(s, legendre.legder(full)))
 
 
 def _second_kind(c: Array, s: Array) -> tuple[Array, Array]:

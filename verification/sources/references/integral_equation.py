@@ -19,6 +19,7 @@ J. Engng Sci. 8 (1970) 843-856; Yu, Sanday and Rath, J. Mech. Phys. Solids 38 (1
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -36,12 +37,12 @@ from verification.sources.references.quadrature import gauss_legendre, wavenumbe
 class Gap:
     """Gap of the undeformed bodies, by ``transform(x, R)`` = G(x) [m]; a/R at most ``widest``."""
 
-    transform: Callable[[ArrayLike, float], Array]
+    transform: Callable[[Any, float], Any]
     widest: float
 
 
-PARABOLA = Gap(lambda x, R: x**2 / R, np.inf)  # type: ignore[operator]
-SPHERE = Gap(lambda x, R: x * np.arctanh(x / R), 0.9)  # type: ignore[operator]
+PARABOLA = Gap(lambda x, R: x**2 / R, np.inf)
+SPHERE = Gap(lambda x, R: x * np.arctanh(x / R), 0.9)
 
 
 @dataclass(frozen=True)
