@@ -9,8 +9,10 @@ from scipy.sparse.linalg import LinearOperator, gmres
 from scipy.special import j0, j1
 
 from semianalytic import frf
-from verification.problem.contact import CoatedContact
+from verification.problem.contact import CoatedContact, keywords
 from verification.sources.assumptions.goodman import SlidingExpansion, coupling
+from verification.sources.assumptions.stress import first_harmonic
+from verification.sources.references import integral_equation
 from verification.sources.references.layered import contact_modulus
 
 E, NU = 210e9, 0.3
@@ -146,7 +148,7 @@ def solve_on_patches(C, n, half_width=1.15, load=4 / 3, layers=None):
 
     The operator is not symmetric, so that it is no energy's gradient and conjugate gradients do not apply:
     GMRES solves on the active set, which follows the signs of pressure and gap.
-    Returns approach, peak pressure, centre of pressure.
+    Returns approach, peak pressure, centre of pressure; the patches' x and pressure.
     """
     d = 2 * half_width / n
     x = (np.arange(n) - (n - 1) / 2) * d
@@ -188,12 +190,12 @@ def solve_on_patches(C, n, half_width=1.15, load=4 / 3, layers=None):
     i, j = np.unravel_index(p.argmax(), p.shape)
     low, top, high = p[i - 1 : i + 2, j]
     peak = top - (high - low) ** 2 / (8 * (high - 2 * top + low))
-    return np.array([delta, peak, (p.sum(axis=1) @ x) / p.sum()])
+    return np.array([delta, peak, (p.sum(axis=1) @ x) / p.sum()]), x, p
 
 
 def test_patches_without_an_expansion_confirm_the_change():
     C, n = 0.2, 49
-    still, sliding = solve_on_patches(0.0, n), solve_on_patches(C, n)
+    still, sliding = (solve_on_patches(c, n)[0] for c in (0.0, C))
     change = (sliding[:2] / still[:2] - 1) / C**2
     # the next power, C^2, contributes 1 % and 2 %, the staircase the rest
     assert change == pytest.approx(np.array([CLOSED[3], PEAK]), rel=0.05)
@@ -205,10 +207,43 @@ def test_patches_without_an_expansion_confirm_a_coated_contact():
     problem = CoatedContact(1.0, 0.8, (layers[0],), layers[1])
     expansion = SlidingExpansion(problem)
     f, half_width = C / problem.dundurs_beta, 1.15 * expansion.a
-    still, sliding = (solve_on_patches(c, n, half_width, problem.load, layers) for c in (0.0, C))
+    still, sliding = (solve_on_patches(c, n, half_width, problem.load, layers)[0] for c in (0.0, C))
     change = sliding_change(problem)
     assert still[0] == pytest.approx(expansion.exact.approach, rel=1e-3)
     # the staircase; of the peak, which lies on a ring, the terms of f^2 away from the axis
     assert sliding[0] / still[0] - 1 == pytest.approx(f**2 * change[3], rel=0.05)
     assert sliding[1] / still[1] - 1 == pytest.approx(expansion.peak_change(f), rel=0.05)
     assert sliding[2] == pytest.approx(f * change[1] * expansion.a, rel=0.02)
+
+
+def field_of_patches(x, p, f, at, z, nu):
+    """sigma_xz at depth z > 0, sigma_xx at z = 0, along y = 0 by point forces.
+
+    Johnson, Contact Mechanics (1985), eqs. (3.19), (3.76).
+    """
+    area, (px, py) = (x[1] - x[0]) ** 2, np.meshgrid(x, x, indexing="ij")
+    dx, dy, force = at[:, None] - px[p > 0], -py[p > 0], p[p > 0] * area / (2 * np.pi)
+    r = np.sqrt(dx**2 + dy**2 + z**2)
+    if z > 0:
+        return -3 * (dx * z**2 + f * dx**2 * z) / r**5 @ force
+    by_traction = -3 * dx**3 / r**5 + (1 - 2 * nu) * (3 * dx**3 / r**5 - 2 * dx / r**3)
+    return ((1 - 2 * nu) * (dx**2 - dy**2) / r**4 + f * by_traction) @ force
+
+
+def test_patches_confirm_the_stresses_but_for_the_second_order():
+    C, nu = 0.2, 0.0
+    problem = CoatedContact(1.0, 4 / 3, (), (1.0, nu))
+    f, expansion = C / problem.dundurs_beta, SlidingExpansion(problem)
+    _, x, p = solve_on_patches(C, 49)
+    exact = integral_equation.solve(
+        **keywords(replace(problem, friction=f)), estimate_uncertainty=False, nodes=40
+    )
+    for z, at, component in ((0.5, np.linspace(-2, 2, 81), 2), (0.0, np.array([-1.2]), 0)):
+        centred = at - f * expansion.change.shift * expansion.a
+        fields = first_harmonic(expansion.first, (), problem.substrate, centred, z, 0)
+        change = sum(f**n * (one.xz if z else one.xx) for n, one in enumerate(fields, start=1))
+        without = exact.stress(centred, 0.0, z)[0, component]
+        true = np.abs(field_of_patches(x, p, f, at, z, nu)).max()
+        # the stress error stated of the first order in C, see ``credibility.model``
+        assert abs(true / np.abs(without + change).max() - 1) < C**2 / 2
+        assert abs(true / np.abs(without).max() - 1) > 0.5 * C**2

@@ -1,0 +1,43 @@
+"""Error of the model itself: which assumption dominates where, what is missing, the sentence."""
+
+from dataclasses import replace
+
+import pytest
+
+from verification.credibility.model import GOODMAN, PARABOLA, Cost, ModelError, model_error
+from verification.problem.contact import CoatedContact
+
+BARE = CoatedContact(10e-3, 20.0, (), (210e9, 0.3))
+QUANTITIES = ("contact_radius", "approach", "peak_pressure", "tension")
+
+
+def test_friction_dominates_a_small_sliding_contact_and_the_parabola_a_wide_still_one():
+    sliding, wide = model_error(replace(BARE, friction=0.3)), model_error(replace(BARE, load=2e6))
+    assert sliding.largest().assumption == GOODMAN
+    assert sliding.largest().quantity == "tension"
+    assert {wide.largest(quantity).assumption for quantity in QUANTITIES} == {PARABOLA}
+
+
+def test_message_states_the_size_and_the_assumption():
+    error = model_error(replace(BARE, friction=0.3))
+    assert error.message() == f"the model itself is good to 5.7 % of the tension: {GOODMAN}"
+    assert error.message("approach").endswith(f"% of the approach: {GOODMAN}")
+
+
+def test_contact_as_wide_as_the_sphere_has_no_cost_of_the_parabola():
+    error = model_error(replace(BARE, load=1e9))
+    assert [assumption for assumption, _ in error.missing] == [PARABOLA]
+    assert "carried by no contact radius" in error.missing[0][1]
+    assert {cost.assumption for cost in error.costs} == {GOODMAN}
+
+
+def test_uncertainty_counts_in_the_comparison_of_costs():
+    small, sure = Cost(GOODMAN, "approach", 0.01, 0.05), Cost(PARABOLA, "approach", -0.03, 0.0)
+    assert ModelError((small, sure)).largest() is small
+    assert ModelError(()).message() == "the error of the model was not evaluated"
+
+
+@pytest.mark.parametrize("friction", [0.0, 0.5])
+def test_terms_beyond_the_expansion_vanish_without_friction(friction):
+    uncertainty = {cost.uncertainty for cost in model_error(replace(BARE, friction=friction)).costs}
+    assert (uncertainty == {0.0}) is (friction == 0)
