@@ -11,10 +11,10 @@ from verification.problem.contact import CoatedContact
 from verification.sources.assumptions.change import Change, of_goodman, of_sphere
 
 PARABOLA, GOODMAN = "parabola for the sphere", "Goodman's assumption"
-# The relative error of a stress by the terms beyond the first order in C = f beta is below this times C^2: 0.17
-# of a shear, 0.32 of a tension at C up to 0.3 by patches without an expansion. That of a scalar's change is
-# 0.3 C^2 of it; of a peak pressure on a ring, below 0.25 C^2 of the pressure.
-BEYOND = 0.5
+KNOWN: tuple[tuple[str, Callable[[CoatedContact], tuple[Change, Change]]], ...] = (
+    (PARABOLA, of_sphere),
+    (GOODMAN, of_goodman),
+)
 
 
 @dataclass(frozen=True)
@@ -51,30 +51,17 @@ class ModelError:
 
 def model_error(problem: CoatedContact) -> ModelError:
     """What the assumptions cost at ``problem``, in a few tenths of a second."""
-    coupled = (problem.friction * problem.dundurs_beta) ** 2
     costs: list[Cost] = []
     missing: list[tuple[str, str]] = []
-    known: tuple[tuple[str, Callable[[CoatedContact], Change], float], ...] = (
-        (PARABOLA, of_sphere, 0.0),
-        (GOODMAN, of_goodman, coupled),
-    )
-    for assumption, change_of, second in known:
+    for assumption, change_of in KNOWN:
         try:
-            change = change_of(problem)
+            change, uncertainty = change_of(problem)
         except ValueError as error:
             missing.append((assumption, str(error)))
             continue
-        for field in fields(change):
-            value = getattr(change, field.name)
-            if value is not None:
-                costs.append(Cost(assumption, field.name, value, _beyond(field.name, value, second)))
+        costs += [
+            Cost(assumption, field.name, value, getattr(uncertainty, field.name))
+            for field in fields(change)
+            if (value := getattr(change, field.name)) is not None
+        ]
     return ModelError(tuple(costs), tuple(missing))
-
-
-def _beyond(quantity: str, change: float, coupled: float) -> float:
-    """Terms beyond those computed, of ``coupled`` = C^2."""
-    if quantity in ("tension", "shear"):
-        return BEYOND * coupled
-    if quantity == "peak_pressure":
-        return BEYOND * coupled * max(abs(change), 0.5)
-    return BEYOND * coupled * abs(change)

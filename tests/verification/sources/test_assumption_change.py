@@ -18,13 +18,13 @@ def test_sphere_changes_every_quantity_as_the_square_of_the_contact_radius():
     # the same moduli and h/a_h at a load that widens the contact tenfold
     wide = replace(COATED, load=1000 * COATED.load)
     wide = replace(wide, coatings=((4 * E, 0.25, 0.5 * wide.a_h),))
-    small, large = (np.array(astuple(of_sphere(one))) for one in (COATED, wide))
+    small, large = (np.array(astuple(of_sphere(one)[0])) for one in (COATED, wide))
     assert np.log10(large / small) == pytest.approx(2.0, rel=0.05)
 
 
 def test_uncoated_trailing_tension_of_the_sphere_is_that_of_the_pressure_at_the_edge():
     # frictionless, sigma_xx(-a) = (1 - 2 nu) W/(2 pi a^2) whatever the pressure
-    change = of_sphere(BARE)
+    change, _ = of_sphere(BARE)
     assert change.tension == pytest.approx((1 + change.contact_radius) ** -2 - 1, rel=1e-6)
     assert change.shear is None
 
@@ -38,11 +38,11 @@ def test_semianalytical_stress_confirms_the_change_of_tension_by_the_sphere():
         for gap in ("parabola", "sphere")
     )
     tension = [one.stress(-one.contact_radius, 0.0, 0.0)[0, 0] for one in (parabola, sphere)]
-    assert tension[1] / tension[0] - 1 == pytest.approx(of_sphere(problem).tension, rel=1e-4)
+    assert tension[1] / tension[0] - 1 == pytest.approx(of_sphere(problem)[0].tension, rel=1e-4)
 
 
 def test_coupling_changes_scalars_as_the_square_of_friction_and_stresses_in_proportion():
-    small, large = (np.array(astuple(of_goodman(replace(COATED, friction=f)))) for f in (1e-4, 1e-3))
+    small, large = (np.array(astuple(of_goodman(replace(COATED, friction=f))[0])) for f in (1e-4, 1e-3))
     exponent = np.log10(np.abs(large / small))
     assert exponent[:2] == pytest.approx(2.0, rel=0.05)
     assert exponent[3:] == pytest.approx(1.0, rel=0.05)
@@ -50,11 +50,11 @@ def test_coupling_changes_scalars_as_the_square_of_friction_and_stresses_in_prop
 
 def test_trailing_tension_grows_with_dundurs_beta():
     problems = [replace(BARE, substrate=(E, nu), friction=0.3) for nu in (0.5, 0.499, 0.49)]
-    none, small, large = (of_goodman(one).tension for one in problems)
+    none, small, large = (of_goodman(one)[0].tension for one in problems)
     assert none == pytest.approx(0.0, abs=1e-12)
     ratio = problems[2].dundurs_beta / problems[1].dundurs_beta
     assert large / small == pytest.approx(ratio, rel=0.05)
 
 
 def test_nothing_couples_without_friction():
-    assert np.abs(astuple(of_goodman(COATED))).max() < 1e-12
+    assert np.abs([astuple(one) for one in of_goodman(COATED)]).max() < 1e-12

@@ -266,8 +266,8 @@ class SlidingExpansion:
         axis = (inner[0] * s[1] ** 2 - inner[1] * s[0] ** 2) / (s[1] ** 2 - s[0] ** 2)
         return float(axis + self.nodes.weight @ ((axis - inner) / s**2))
 
-    def peak_change(self, friction: float) -> float:
-        """Relative change of the largest pressure, from that of p0 to that of p0 + f p1 + f^2 p20(0).
+    def peak_change(self, friction: float) -> tuple[float, float]:
+        """Relative change of the largest pressure with f p1 + f^2 p20(0) added to p0, then its x/a.
 
         The peak moves along x by the order f; where p0 is nearly flat, far. Exact to f^2 where p0 peaks on
         the axis; to f where it peaks on a ring, since p20 and p22 vary by the order f^2 over the contact.
@@ -284,8 +284,9 @@ class SlidingExpansion:
         found = minimize_scalar(
             lambda at: -float(pressure(at)), bounds=bounds, method="bounded", options={"xatol": 1e-9 * self.a}
         )
-        top = max(-float(found.fun), float(pressure(grid[best])))
-        return float((top + friction**2 * self.change.pressure_on_axis) / abel.peak - 1)
+        place, top = max(((found.x, -found.fun), (grid[best], pressure(grid[best]))), key=lambda one: one[1])
+        change = (top + friction**2 * self.change.pressure_on_axis) / abel.peak - 1
+        return float(change), float(place / self.a)
 
 
 def _odd(values: Array) -> Array:
