@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import pytest
 
-from verification.credibility.model import GOODMAN, PARABOLA, Cost, ModelError, model_error
+from verification.credibility.model.error import GOODMAN, PARABOLA, Cost, ModelError, model_error
 from verification.problem.contact import CoatedContact
 
 BARE = CoatedContact(10e-3, 20.0, (), (210e9, 0.3))
