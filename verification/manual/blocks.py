@@ -14,6 +14,9 @@ from verification.credibility import alarms
 from verification.credibility.enclosures import read_record as read_enclosures
 from verification.credibility.faults.campaign import RECORD
 from verification.credibility.faults.record import read_record
+from verification.credibility.model.error import GOODMAN, PARABOLA
+from verification.credibility.model.maps import FRICTION, Place, read_maps
+from verification.credibility.model.maps import QUANTITIES as MAPPED
 from verification.manual.markdown import symbol, table, text
 from verification.manual.numbers import FOLDER, baseline, largest, pairs
 from verification.manual.tour import solved
@@ -26,6 +29,14 @@ from verification.sources.registry import METHODS, SOURCES
 SOURCE = Path(__file__).parent / "source"
 RECORDS = FOLDER.parents[1] / "credibility" / "shipped"
 FIELDS = ("stress", "pressure", "displacement")
+LEVELS = (0.001, 0.01, 0.05)  # of a relative change by an assumption
+WORDS_OF_MAPS = {
+    "contact_radius": "contact radius",
+    "approach": "approach",
+    "peak_pressure": "peak pressure",
+    "tension": r"$\sigma_{xx}$ at the trailing edge",
+    "shear": r"largest $|\sigma_{xz}|$ on the interface",
+}
 
 
 def headline() -> str:
@@ -214,6 +225,32 @@ def enclosures() -> str:
     )
 
 
+def assumption_costs() -> str:
+    """What each measured assumption costs over the maps: the parabola by a/R, Goodman's assumption by f."""
+    maps = read_maps(RECORDS)
+    assert maps is not None
+    parabola, goodman = [], []
+    for i, name in enumerate(WORDS_OF_MAPS[quantity] for quantity in MAPPED):
+        cost: dict[str, list[tuple[Place, float]]] = {PARABOLA: [], GOODMAN: []}
+        for entry in maps.entries:
+            cost[entry.assumption].append((entry.place, abs(entry.change[i])))
+        steepest = max(change / place.width**2 for place, change in cost[PARABOLA])
+        limits = [f"{(level / steepest) ** 0.5:.2g}" for level in LEVELS]
+        parabola.append([name, f"{steepest:.2g}", *limits])
+        largest_at = [max(change for place, change in cost[GOODMAN] if place.friction == f) for f in FRICTION]
+        goodman.append([name, *(f"{100 * change:.2g}" for change in largest_at)])
+    head = [f"{100 * level:g} % at $a_h/R$" for level in LEVELS]
+    return (
+        f"Made {_day(maps.started)}, commit {maps.commit or 'unknown'}, on {maps.machine}, "
+        f"in {maps.seconds:.0f} s of one core.\n\n"
+        "Parabola in place of the sphere: the largest relative change over $(a_h/R)^2$, and the contact width "
+        "at which it reaches three levels.\n\n"
+        + table(["quantity", "largest change over $(a_h/R)^2$", *head], parabola, 1)
+        + "\n\nGoodman's assumption: the largest relative change of the maps, in percent.\n\n"
+        + table(["quantity", *(f"$f = {f:g}$" for f in FRICTION)], goodman, 1)
+    )
+
+
 def _dated() -> str:
     last = baseline().last
     return f"Baseline of {_day(last.when)}, commit {last.commit or 'unknown'}, on {last.machine}.\n\n"
@@ -236,6 +273,7 @@ _ALL: Sequence[Callable[[], str]] = (
     history,
     solved,
     enclosures,
+    assumption_costs,
     more_pages,
 )
 BLOCKS: dict[str, Callable[[], str]] = {block.__name__: block for block in _ALL} | WORKED
