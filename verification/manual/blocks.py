@@ -243,8 +243,8 @@ def assumption_costs() -> str:
     return (
         f"Made {_day(maps.started)}, commit {maps.commit or 'unknown'}, on {maps.machine}, "
         f"in {maps.seconds:.0f} s of one core.\n\n"
-        "Parabola in place of the sphere: the largest relative change over $(a_h/R)^2$, and the contact width "
-        "at which it reaches three levels.\n\n"
+        "Parabola in place of the sphere: the largest relative change over $(a_h/R)^2$, and the contact "
+        "width at which it reaches three levels.\n\n"
         + table(["quantity", "largest change over $(a_h/R)^2$", *head], parabola, 1)
         + "\n\nGoodman's assumption: the largest relative change of the maps, in percent.\n\n"
         + table(["quantity", *(f"$f = {f:g}$" for f in FRICTION)], goodman, 1)
