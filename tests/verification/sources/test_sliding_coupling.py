@@ -75,7 +75,7 @@ def test_coupling_of_one_layer_is_dundurs_beta_for_short_waves_and_the_substrate
     assert long == pytest.approx(without.dundurs_beta * E_star / without.E_star, rel=1e-4)
 
 
-@pytest.mark.parametrize(("ratio", "h"), [(0.1, 0.1), (0.25, 0.5), (10.0, 0.1), (4.0, 1.0)])
+@pytest.mark.parametrize(("ratio", "h"), [(10.0, 0.1), (0.25, 0.5)])
 def test_expansion_of_a_coated_contact_converges_in_its_nodes(ratio, h):
     coarse, fine = (sliding_change(coated(ratio, h), nodes) for nodes in (100, 150))
     assert fine == pytest.approx(coarse, rel=1e-7)
