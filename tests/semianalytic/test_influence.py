@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from scipy.special import j0
+from scipy.special import j0, sici
 
 from semianalytic import frf, halfspace, influence
 
@@ -117,11 +117,36 @@ def test_plain_conversion_has_the_error_it_is_known_for():
     love = halfspace.surface_deflection(64, 64, 1.0, 1.0)
     plain = influence.plain_coefficients(64, 1.0, np.zeros_like, enlarge=4)
     error = np.abs(plain - love)
+    np.testing.assert_allclose(plain, plain.T, rtol=0, atol=1e-13)
     # 0.4 % at the centre with AL = 2 on the homogeneous half-space, several per cent at far patches
     assert 1e-3 < error[0, 0] / love[0, 0] < 1e-2
     assert (error / love).max() > 0.02
     without = influence.plain_coefficients(64, 1.0, np.zeros_like, enlarge=4, aliases=0)
     assert abs(without[0, 0] - love[0, 0]) > 10 * error[0, 0]
+
+
+@pytest.mark.parametrize("aliases", [0, 1, 2])
+def test_a_unit_spectrum_gives_the_patch_itself(aliases):
+    """M = k: 2 pi times the indicator of the patch, cut off at |kx|, |ky| = (2 aliases + 1) pi / d."""
+    i = np.arange(12)
+    found = influence.plain_coefficients(i.size, 1.0, lambda k: k - 1, enlarge=6, aliases=aliases)
+    end = np.pi * (aliases + 0.5)
+    along = (sici(end * (1 + 2 * i))[0] + sici(end * (1 - 2 * i))[0]) / np.pi
+    # sums for integrals over wavenumbers, (pi / half)^2 of the grid of 72
+    np.testing.assert_allclose(found, 2 * np.pi * np.outer(along, along), rtol=0, atol=1e-3)
+
+
+@pytest.mark.parametrize("near", [0.02, 0.3, 1.0, 2.0, 3.0, 8.0])
+@pytest.mark.parametrize(("inner", "outer"), [(0, 3), (3, 12)])
+def test_gauss_block_is_the_rectangle_of_love(near, inner, outer):
+    """Mean of 1 / sqrt(r^2 + depth^2), singular ``near`` patches below, to the stated digits."""
+    exact = halfspace.surface_deflection(12, 12, 1.0, 1.0, near)
+    mean = exact.copy()
+    reach = np.hypot(near, max(inner - 1, 0.5))
+    influence._gauss_block(mean, lambda r: 1 / np.hypot(r, near), 1.0, inner, outer, reach)
+    if inner == 0:
+        mean[0, 0] = exact[0, 0]  # the loaded patch is integrated in polar coordinates
+    assert np.abs(mean / exact - 1).max() < influence.DIGITS
 
 
 def test_stiffer_coating_deflects_less_under_the_load():

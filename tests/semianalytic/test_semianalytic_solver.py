@@ -223,6 +223,17 @@ def test_uniform_disc_meets_boussinesq():
     np.testing.assert_allclose(sigma[0, 0], lateral, atol=2e-6 * p)
     assert s.approach == pytest.approx(2 * p * a / E_STAR, rel=1e-6)
     assert s.contact_radius == a
+    done = s.diagnostics
+    assert (done.iterations, done.gap_inside, done.penetration_outside, done.load_error) == (0, 0, 0, 0)
+
+
+def test_a_bare_solid_has_no_error_of_conversion():
+    s = semianalytic.solve_prescribed(
+        pressure=1e9, load_radius=1e-4, coatings=(), substrate=STEEL, patches=65
+    )
+    # its coefficients are closed forms, whatever the points of the Hankel transform
+    assert s.uncertainty is not None
+    assert [value for _, parameter, value in s.uncertainty.budget if parameter == "conversion"] == [0, 0, 0]
 
 
 def test_prescribed_pressure_of_a_contact_gives_its_fields(coated):
@@ -413,6 +424,39 @@ def test_a_sphere_given_as_a_profile_is_the_sphere():
     array = indent(heights, 1.2 * A_H)
     # the same gap on the finest grid; the coarser ones only start it
     assert array.approach == pytest.approx(s.approach, rel=1e-7)
+
+
+@pytest.fixture(scope="module")
+def wide():
+    """A contact of patches alone, on a square of six contact radii a side."""
+    return semianalytic.indent(
+        profile=lambda x, y: (x**2 + y**2) / (2 * R),
+        half_width=3 * A_H,
+        load=W,
+        coatings=(),
+        substrate=STEEL,
+        patches=33,
+    )
+
+
+def test_surface_nodes_of_a_wide_square_are_its_patches(wide):
+    np.testing.assert_allclose(wide.surface_nodes, wide.nodes, rtol=0, atol=1e-12 * A_H)
+
+
+def test_uncertainty_of_the_pressure_ends_two_coarse_patches_beyond_the_contacts(wide):
+    x = wide.nodes
+    levels = (wide, wide.coarser, wide.coarser.coarser)
+    touched = np.any([one.pressure(x[:, None], x) > 0 for one in levels], axis=0)
+    last = np.flatnonzero(touched.any(axis=1))[-1]
+    U = wide.pressure_uncertainty(x)
+    assert np.all(U[last : last + 5] > U[-1])
+    assert np.all(U[last + 5 :] == U[-1])
+
+
+def test_stress_uncertainty_of_patches_covers_the_last_refinement(wide):
+    x = np.array([0.6, 0.7, 0.8, 1.0]) * A_H
+    sigma, U = wide.stress_with_uncertainty(x, 0.0, 0.0)
+    assert np.all(np.abs(sigma - wide.coarser.stress(x, 0.0, 0.0)) <= U)
 
 
 def test_cone_gives_sneddon():

@@ -18,6 +18,7 @@ def test_pressure_integrates_to_the_load(sphere):
     a = sphere.contact_radius
     ring = 2 * np.pi * a**2 * sphere.pressure(a * np.sin(t)) * np.sin(t) * np.cos(t)
     assert np.pi / 4 * w @ ring == pytest.approx(sphere.load, rel=1e-12)
+    assert sphere.surface_nodes == pytest.approx(np.linspace(-2 * a, 2 * a, 401))
 
 
 def test_johnson_1985_maximum_shear_is_0310_p0_at_048_a(sphere):

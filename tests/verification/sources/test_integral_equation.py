@@ -9,6 +9,8 @@ import scipy.linalg
 from verification.cases.table import FOLDER
 from verification.problem.contact import CoatedContact
 from verification.sources.references import integral_equation
+from verification.sources.references.axisymmetric_pressure import AbelPressure
+from verification.sources.references.hankel import HankelField
 from verification.sources.references.hertz import Hertz
 from verification.sources.references.layered import LayeredHalfSpace, _in_plane, _propagator
 
@@ -156,6 +158,7 @@ def test_pressure_integrates_to_the_load_and_ends_at_the_edge():
         20.0, rel=1e-12
     )
     assert exact.pressure(1.0000001 * exact.contact_radius) == 0
+    assert exact.surface_nodes == pytest.approx(exact.contact_radius * np.linspace(-2, 2, 401))
     assert exact.diagnostics.load_residual < 1e-12
 
 
@@ -180,6 +183,31 @@ def test_stated_uncertainty_brackets_a_finer_solution():
     for name in ("contact_radius", "approach", "peak_pressure"):
         assert abs(getattr(usual, name) - getattr(fine, name)) <= getattr(usual.uncertainty, name)
     assert usual.uncertainty.peak_pressure < 1e-8 * usual.peak_pressure
+
+
+def test_a_thin_coating_is_given_the_nodes_that_it_needs():
+    usual, fine = (
+        integral_equation.solve(
+            radius=10e-3,
+            load=20.0,
+            coatings=((52.5e9, 0.3, 0.1 * BARE.a_h),),
+            substrate=STEEL,
+            nodes=nodes,
+            estimate_uncertainty=False,
+        )
+        for nodes in (80, 140)
+    )
+    assert abs(usual.contact_radius / fine.contact_radius - 1) < 1e-12
+
+
+@pytest.mark.parametrize("depth", [0.0, 0.5])
+def test_integrals_are_cut_where_less_than_exp_of_the_tail_is_left(depth):
+    pressure = AbelPressure(1.0, np.array([1.0, -1.0]) / 3)
+    layers = ((4.0, 0.2, 0.5), (0.5, 0.4, 0.3)), (1.0, 0.3)
+    cut, whole = (HankelField(pressure, *layers, 0.3, tail=tail) for tail in (10.0, 36.0))
+    x = np.array([0.0, 0.5, 1.0, 2.0])
+    left = cut.stress(x, 0.3, depth) - whole.stress(x, 0.3, depth)
+    assert 0 < np.abs(left).max() < 0.2 * np.exp(-10)
 
 
 def test_a_depth_just_below_the_surface_is_refused_before_it_fills_the_memory(sliding):
