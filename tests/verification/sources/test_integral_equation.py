@@ -190,7 +190,7 @@ def test_a_thin_coating_is_given_the_nodes_that_it_needs():
         integral_equation.solve(
             radius=10e-3,
             load=20.0,
-            coatings=((52.5e9, 0.3, 0.1 * BARE.a_h),),
+            coatings=((52.5e9, 0.3, 0.03 * BARE.a_h),),
             substrate=STEEL,
             nodes=nodes,
             estimate_uncertainty=False,
