@@ -143,7 +143,8 @@ def test_thin_and_thick_limits_are_approached():
         found = pressed(a, ((1.0, 0.5, 1.0),), rigid)
         S, W = squeezed_film(a, 1.0, 1.0)
         off.append((2 * a * found.kappa / (1 - 0.5**2) / S - 1, found.load / W - 1))
-    assert np.array(off[0]) / np.array(off[1]) == pytest.approx([2, 2], rel=0.25)
+    ratio = np.array(off[0]) / np.array(off[1])
+    assert np.all((ratio > 1.7) & (ratio < 2.5)), ratio
     for ratio in (0.25, 4.0):
         exact = [pressed(a, ((ratio, 0.3, 1.0),), (1.0, 0.3)).kappa for a in (0.05, 0.1)]
         laws = [thick(a, ((ratio, 0.3, 1.0),), (1.0, 0.3)) for a in (0.05, 0.1)]

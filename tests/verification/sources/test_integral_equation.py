@@ -190,14 +190,14 @@ def test_a_thin_coating_is_given_the_nodes_that_it_needs():
         integral_equation.solve(
             radius=10e-3,
             load=20.0,
-            coatings=((52.5e9, 0.3, 0.1 * BARE.a_h),),
+            coatings=((52.5e9, 0.3, 0.05 * BARE.a_h),),
             substrate=STEEL,
             nodes=nodes,
             estimate_uncertainty=False,
         )
-        for nodes in (80, 140)
+        for nodes in (32, 64)
     )
-    assert abs(usual.contact_radius / fine.contact_radius - 1) < 1e-12
+    assert abs(usual.contact_radius / fine.contact_radius - 1) < 1e-6
 
 
 @pytest.mark.parametrize("depth", [0.0, 0.5])
