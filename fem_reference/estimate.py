@@ -63,7 +63,8 @@ _BESIDE = 3.0
 
 # corners, middles and centre of the reference triangle: the hoop strain is worst on the axis itself
 _SAMPLES = np.array([[0, 1, 0, 1 / 2, 1 / 2, 0, 1 / 3], [0, 0, 1, 0, 1 / 2, 1 / 2, 1 / 3]])
-# moved this far towards the centre in depth, so that none lies on a plane with a formula of its own
+# Moved this far towards the centre, those of triangles in depth: none lies on a plane with a formula of its
+# own, nor at a vertex of a plane, where two cells have two stresses.
 _INWARDS = 1e-7
 _CELL_SAMPLES = 7
 
@@ -490,8 +491,8 @@ def _at_load(contact: FixedRadiusContact, load: float, slope: float) -> tuple[fl
 
 
 def _samples(vertices: np.ndarray) -> np.ndarray:
-    """Points in each of the cells between increasing ``vertices``, both ends included."""
-    t = np.linspace(0, 1, _CELL_SAMPLES)
+    """Points in each of the cells between increasing ``vertices``, next to both ends included."""
+    t = np.linspace(_INWARDS, 1 - _INWARDS, _CELL_SAMPLES)
     return (vertices[:-1, None] + np.diff(vertices)[:, None] * t).ravel()
 
 
