@@ -183,7 +183,7 @@ def test_vtu_holds_layers_and_both_sides_of_the_interface(tmp_path):
     assert set(layer) == {0, 1}
     cells = read.cells_dict["triangle6"]
     x, _, z = read.points.T
-    on_interface = np.isclose(z, 5e-5, rtol=1e-12)
+    on_interface = np.isclose(z, 5e-5, rtol=1e-12, atol=0)
     upper, lower = (np.intersect1d(np.flatnonzero(on_interface), cells[layer == k]) for k in (0, 1))
     assert np.intersect1d(upper, lower).size == 0
     near = upper[np.abs(x[upper]) < 1e-4]

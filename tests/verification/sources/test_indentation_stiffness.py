@@ -90,7 +90,7 @@ def test_a_point_asked_for_is_reached_from_a_load_that_missed_it():
 def test_the_control_is_what_is_asked_for(control):
     curve = LoadingCurve(100.0, control, (0.01, 0.003), LAYER, RIGID)
     value, _ = exact_loading(curve).quantity(control, np.array([0.003, 0.01]))
-    assert value == pytest.approx([0.003, 0.01], rel=1e-10)
+    assert value == pytest.approx([0.003, 0.01], rel=1e-10, abs=0)
 
 
 @pytest.mark.parametrize("wrong", [{"control": "load"}, {"at": ()}, {"at": (0.1, -1.0)}, {"radius": -1.0}])
