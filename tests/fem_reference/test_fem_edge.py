@@ -101,7 +101,7 @@ def test_the_series_at_the_edge_leaves_out_what_displaces_it(harmonic):
     found, near = field._with_series(r, strain(r)), np.abs(r - 1) < unit
     replaced = [0, 4] if harmonic else [0]
     kept = np.delete(np.arange(count), replaced)
-    np.testing.assert_allclose(found[replaced][:, near], strain(r, 0.0)[replaced][:, near], atol=1e-8)
+    np.testing.assert_allclose(found[replaced][:, near], strain(r, 0.0)[replaced][:, near], rtol=0, atol=1e-8)
     np.testing.assert_array_equal(found[:, ~near], strain(r)[:, ~near])
     np.testing.assert_array_equal(found[kept], strain(r)[kept])
 
