@@ -51,8 +51,10 @@ _ASYMPTOTIC_SIZE = 0.18
 REACH = (1.0, 1.0, 1.0, 0.7, 0.5, 0.35, 0.25)
 # The displacement of the field is part of the estimate within this distance of the edge over the radius.
 _STRIP = 0.3
-# Of sizes of triangles, beyond which their local ratio is that of two irregular meshes.
-_LEAST_RATIO, _LARGEST_RATIO = 1.08, 1.6
+# At some places the final mesh is the worse one: its error is all the difference, or somewhat more.
+_LEAST_FACTOR = 1.25
+# Of sizes of triangles, below which their local ratio is that of two irregular meshes.
+_LEAST_RATIO = 1.08
 # zz, rz, tz: one value on both sides of an interface, in error by that of either side
 _TRACTIONS, _IN_PLANE = [2, 3, 5], [0, 1, 4]
 # On a plane the estimate of the triangles beside it counts up to this factor: of nearly incompressible layers
@@ -61,7 +63,8 @@ _BESIDE = 3.0
 
 # corners, middles and centre of the reference triangle: the hoop strain is worst on the axis itself
 _SAMPLES = np.array([[0, 1, 0, 1 / 2, 1 / 2, 0, 1 / 3], [0, 0, 1, 0, 1 / 2, 1 / 2, 1 / 3]])
-# moved this far towards the centre in depth, so that none lies on a plane with a formula of its own
+# Moved this far towards the centre, those of triangles in depth: none lies on a plane with a formula of its
+# own, nor at a vertex of a plane, where two cells have two stresses.
 _INWARDS = 1e-7
 _CELL_SAMPLES = 7
 
@@ -131,7 +134,7 @@ class _ComparisonPoints(_Uncached):
     def ratio(self, points: _Pair) -> np.ndarray:
         """Size of the companion's triangles over that of the final mesh at ``points``, (n,)."""
         final, companion = (size[at.cells] for size, at in zip(self._sizes, points, strict=True))
-        return np.clip(companion / final, _LEAST_RATIO, _LARGEST_RATIO)
+        return np.maximum(companion / final, _LEAST_RATIO)
 
     def _on_both(self, r: np.ndarray, z: np.ndarray, layer: np.ndarray) -> _Pair:
         return self.final.locator.points(r, z, layer), self.companion.locator.points(r, z, layer)
@@ -213,7 +216,8 @@ class StressEstimate(_Uncached):
         # In the triangles at the axis, where u_r / r is a derivative too, one order less is observed.
         on_axis = (d.mesh.points[0, d.triangulation.t] == 0).any(axis=0)[points[0].cells]
         ratio, order = self.points.ratio(points), d.order - on_axis
-        error = self.safety / (ratio**order - 1) * np.abs(difference) + self.relative * np.abs(final)
+        factor = np.maximum(self.safety / (ratio**order - 1), _LEAST_FACTOR)
+        error = factor * np.abs(difference) + self.relative * np.abs(final)
         # that of all triangles moves a point, not that of those next to it
         moved = self.safety / (COMPANION ** (d.order + 1) - 1) * np.abs(u - other)
         return np.concatenate([error, moved])
@@ -487,8 +491,8 @@ def _at_load(contact: FixedRadiusContact, load: float, slope: float) -> tuple[fl
 
 
 def _samples(vertices: np.ndarray) -> np.ndarray:
-    """Points in each of the cells between increasing ``vertices``, both ends included."""
-    t = np.linspace(0, 1, _CELL_SAMPLES)
+    """Points in each of the cells between increasing ``vertices``, next to both ends included."""
+    t = np.linspace(_INWARDS, 1 - _INWARDS, _CELL_SAMPLES)
     return (vertices[:-1, None] + np.diff(vertices)[:, None] * t).ravel()
 
 

@@ -37,9 +37,11 @@ Ball = tuple[float, float, Coatings]
 
 # Triangle size over its distance from the contact edge.
 QUALITY = {"fast": 0.27, "default": 0.12, "fine": 0.1}
-# The same where neighbouring layers differ by more than CONTRAST in their moduli.
-QUALITY_OF_CONTRAST = {"fast": 0.17, "default": 0.1, "fine": 0.1}
-CONTRAST = 10.0
+# The same where the moduli of neighbouring layers differ by more than this factor.
+CONTRASTS = {
+    10.0: {"fast": 0.17, "default": 0.1, "fine": 0.1},
+    100.0: {"fast": 0.15, "default": 0.085, "fine": 0.085},
+}
 LOAD_TOLERANCE = 1e-8
 
 
@@ -215,8 +217,10 @@ def _size(quality: str, size: float | None, bodies: Sequence[Sequence[tuple[floa
     check_choice("quality", quality, tuple(QUALITY))
     if size is None:
         steps = [upper[0] / lower[0] for layers in bodies for upper, lower in pairwise(layers)]
-        hard = any(not 1 / CONTRAST <= step <= CONTRAST for step in steps)
-        return (QUALITY_OF_CONTRAST if hard else QUALITY)[quality]
+        largest = max((max(step, 1 / step) for step in steps), default=1.0)
+        return min(
+            [QUALITY[quality], *(sizes[quality] for least, sizes in CONTRASTS.items() if largest > least)]
+        )
     check_positive(size=size)
     if not 0.08 <= size <= 0.5:
         raise ValueError(f"size = {size:g}; choose it between 0.08 (a minute, gigabytes) and 0.5 (coarse)")

@@ -4,6 +4,9 @@ import numpy as np
 import pytest
 
 from fem_reference import solve
+from fem_reference.axisymmetric import Discretisation
+from fem_reference.mesh import EDGE_SIZE, Grading, meridian_mesh
+from fem_reference.recovery import EDGE_SERIES, HarmonicField
 from verification.sources.references import hamilton, integral_equation
 
 R, W, E, NU = 10e-3, 20.0, 210e9, 0.3
@@ -66,3 +69,51 @@ def test_hard_ultra_thin_film_converges():
     s = solve(**given, quality="fast", estimate_uncertainty=False)
     exact = integral_equation.solve(**given, estimate_uncertainty=False)
     assert s.contact_radius == pytest.approx(exact.contact_radius, rel=1e-3)
+
+
+class Strained(HarmonicField):
+    """Strains that are given, in place of the derivatives of a displacement."""
+
+    def _fields_and_strains(self, at):
+        return np.zeros((2 + self.harmonic, at.r.size)), self.pressure(at)
+
+
+def strained(strain, harmonic=0):
+    """The field of ``strain``, a function of points, on a coated solid in contact at radius 1."""
+    mesh = meridian_mesh(contact_radius=1.0, thicknesses=(0.5,), far=500.0, grading=Grading(axis_size=0.6))
+    d = Discretisation(mesh, 2)
+    return Strained(d, np.zeros((2 + harmonic) * d.N), ((4.0, 0.1), (1.0, 0.4)), harmonic, strain, -1.0, True)
+
+
+@pytest.mark.parametrize("harmonic", [0, 1])
+def test_the_series_at_the_edge_leaves_out_what_displaces_it(harmonic):
+    inside, outside, count = 0.3, -0.7, 4 + 2 * harmonic
+
+    def strain(r, displaced=2e-5):
+        d = np.abs(r - 1)
+        root = np.where(r < 1, inside, outside) * np.sqrt(d)
+        return np.tile(
+            1 + root + displaced * np.where(r < 1, 1, -1) / np.sqrt(np.maximum(d, 1e-12)), (count, 1)
+        )
+
+    field, unit = strained(lambda at: strain(at.r), harmonic), EDGE_SERIES[0] * EDGE_SIZE
+    r = 1 + unit * np.array([-1.1, -0.9, -0.1, 0.0, 0.1, 0.9, 1.1])
+    found, near = field._with_series(r, strain(r)), np.abs(r - 1) < unit
+    replaced = [0, 4] if harmonic else [0]
+    kept = np.delete(np.arange(count), replaced)
+    np.testing.assert_allclose(found[replaced][:, near], strain(r, 0.0)[replaced][:, near], rtol=0, atol=1e-8)
+    np.testing.assert_array_equal(found[:, ~near], strain(r)[:, ~near])
+    np.testing.assert_array_equal(found[kept], strain(r)[kept])
+
+
+def test_the_interface_has_the_traction_of_the_side_with_the_smaller_error():
+    """Of the weights E / M^2 with M = lambda + 2 G of either side."""
+    field = strained(lambda at: np.tile([[0.0], [0.0], [1.0], [0.0]], at.r.size))
+    at = field.discretisation.locator.points(np.array([0.7]), np.array([0.5]), np.array([0]))
+    (upper, _, sides), *_ = at.interfaces
+    E, nu = np.array(field.materials).T
+    G = E / (2 * (1 + nu))
+    M = 2 * G + 2 * G * nu / (1 - 2 * nu)
+    expected = np.average(M, weights=E / M**2)
+    np.testing.assert_allclose(field._interface_tractions(upper, sides)[0], expected, rtol=1e-13)
+    np.testing.assert_allclose(field(at)[1][2], expected, rtol=1e-13)

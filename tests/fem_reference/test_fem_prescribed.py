@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from fem_reference import solve_prescribed
+from fem_reference.validation import GivenPressure
 
 E, NU = 210e9, 0.3
 A, P = 1e-4, 1e9
@@ -60,9 +61,14 @@ def test_response_is_linear_in_the_pressure():
     np.testing.assert_allclose(
         two.stress(x, 0.1 * A, z), 2.5 * one.stress(x, 0.1 * A, z), rtol=1e-9, atol=1e-9 * P
     )
-    assert two.approach == pytest.approx(2.5 * one.approach, rel=1e-12)
+    assert two.approach == pytest.approx(2.5 * one.approach, rel=1e-12, abs=0)
     x = np.linspace(-0.9, 0.9, 7) * A
     np.testing.assert_allclose(one.pressure(x), cap(np.abs(x)), rtol=1e-12)
+
+
+def test_given_pressure_ends_at_the_load_radius_within_rounding():
+    pressure = GivenPressure(lambda r: 6.0 + r, radius=2.0, scale=4.0)
+    np.testing.assert_array_equal(pressure([0, 1, 1 + 5e-13, 1 + 1.5e-12, 2]), [1.5, 2, 2, 0, 0])
 
 
 def test_given_pressure_carries_no_pressure_uncertainty():

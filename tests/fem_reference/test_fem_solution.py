@@ -1,12 +1,17 @@
-"""A solution as a plain object: pickled, sliding with another friction, stress with its uncertainty."""
+"""A solution as a plain object: pickled, sliding with another friction, the parts of its uncertainty."""
 
 import pickle
+from dataclasses import replace
 from functools import lru_cache
 
 import numpy as np
 import pytest
 
 from fem_reference import solve, solve_prescribed
+from fem_reference.contact import solve_at_radius
+from fem_reference.estimate import SAFETY, contact_estimates, estimates
+from fem_reference.levels import ContactLevels
+from fem_reference.state import ElasticState
 
 R, W, E, NU = 10e-3, 20.0, 210e9, 0.3
 A = 8e-5
@@ -81,3 +86,109 @@ def test_stress_with_its_uncertainty_equals_both_apart(layer):
     stress, uncertainty = s.stress_with_uncertainty(X, Y, z, layer)
     np.testing.assert_array_equal(stress, s.stress(X, Y, z, layer))
     np.testing.assert_array_equal(uncertainty, s.stress_uncertainty(X, Y, z, layer))
+
+
+# What each cause adds to the uncertainty, where the solutions are compared
+
+
+@lru_cache
+def contact():
+    """The contact on the final mesh, solved alone."""
+    state = solved("sphere").state
+    return solve_at_radius(state.solid, state.discretisation)
+
+
+def budget(found):
+    return {(quantity, origin): value for quantity, origin, value in found.scalars.budget}
+
+
+def estimated(companion):
+    """Budget and uncertainty of the stiffness if ``companion`` were the contact on the coarser mesh."""
+    one, s = contact(), solved("sphere")
+    states = (ElasticState.of_contact(s.state.solid, one),)
+    (found,), stiffness = contact_estimates(
+        ContactLevels(one, companion, 3.0, ()), states, s.units, one.load, 0.5
+    )
+    return budget(found), stiffness
+
+
+def test_a_companion_that_agrees_leaves_no_error_of_element_size():
+    one = contact()
+    # what a companion misses of the load is no error of its mesh
+    missing = replace(one, load=1.001 * one.load, approach=one.approach + 1e-3 * one.load / one.stiffness)
+    (same, least), (other, _) = estimated(one), estimated(missing)
+    assert same["contact_radius", "element size"] < 1e-9 * same["contact_radius", "edge size"]
+    assert same["approach", "element size"] < 1e-12 * solved("sphere").approach
+    assert other["approach", "element size"] < 1e-12 * solved("sphere").approach
+    # larger or smaller alike
+    for name in ("approach", "stiffness"):
+        up, down = (estimated(replace(one, **{name: getattr(one, name) * f})) for f in (1.001, 0.999))
+        larger, smaller = (row["approach", "element size"] for row, _ in (up, down))
+        assert larger == pytest.approx(smaller, rel=1e-6, abs=1e-12 * solved("sphere").approach)
+        assert up[1] == pytest.approx(down[1])
+        assert max(larger, up[1] - least) > 0
+
+
+def test_each_cause_adds_to_the_uncertainty():
+    s = solved("sphere")
+    found, unit, state = s.bodies[0].estimates, s.units, s.state
+
+    def of(load_residual=0.0, edge=0.0, changes=(0.0, 0.0)):
+        return estimates(state, found.companion, unit, changes, load_residual, edge, 0.5)
+
+    none, load, edge, size = of(), of(load_residual=1e-3), of(edge=1e-3), of(changes=(1e-3, 1e-3))
+    for one in (none, load, edge, size):
+        rows, scalars = budget(one), one.scalars
+        for name in ("contact_radius", "approach", "peak_pressure"):
+            total = sum(value for (quantity, _), value in rows.items() if quantity == name)
+            assert getattr(scalars, name) == pytest.approx(total, abs=0)
+        # the same causes in the estimates of pressure and stress
+        radius_error = pytest.approx(scalars.contact_radius / unit.length, rel=1e-14, abs=0)
+        assert one.pressure.radius_error == one.normal.radius_error == radius_error
+        far_and_load = rows["peak_pressure", "outer boundary"] + rows["peak_pressure", "load balance"]
+        assert one.pressure.everywhere * unit.pressure == pytest.approx(far_and_load)
+    # W ~ a^2 at least; p ~ W^(1/3)
+    assert budget(load)["contact_radius", "load balance"] == pytest.approx(
+        1e-3 / 2 * s.contact_radius, rel=1e-6, abs=0
+    )
+    assert budget(load)["approach", "load balance"] == pytest.approx(1e-3 * s.approach, rel=1e-6, abs=0)
+    assert budget(load)["peak_pressure", "load balance"] == pytest.approx(
+        1e-3 / 3 * s.peak_pressure, rel=1e-6
+    )
+    assert load.normal.relative - none.normal.relative == pytest.approx(1.5e-3)
+    assert edge.normal.radius_error - none.normal.radius_error == pytest.approx(SAFETY * 1e-3)
+    assert size.normal.radius_error > none.normal.radius_error
+    assert size.pollution > none.pollution == 0
+    assert size.normal.everywhere - none.normal.everywhere == pytest.approx(size.pollution)
+
+
+def test_each_part_of_the_estimate_adds_to_that_of_stress_and_displacement():
+    s = solved("sphere")
+    found, a = s.bodies[0].estimates.normal, s.state.mesh.contact_radius
+    r, z = a * np.array([0.0, 0.5, 1.0, 1.02, 0.3, 2.0]), a * np.array([0.0, 0.2, 0.0, 0.01, 0.9, 1.5])
+    at = s.state.discretisation.locator.points(r, z, np.searchsorted(s.state.mesh.depths, z))
+    u, stress = found.field(at)
+    before, moved = found(at), found.displacement(u, at)
+    more = replace(found, far=found.far + 1, everywhere=found.everywhere + 2)
+    np.testing.assert_allclose(more.displacement(u, at), moved + 1)
+    np.testing.assert_allclose(more(at), before + 2)
+    more = replace(found, relative=found.relative + 1)
+    np.testing.assert_allclose(more.displacement(u, at), moved + np.abs(u))
+    assert np.all((more(at) > before)[stress != 0])
+    # a displaced edge counts beside the edge alone
+    displaced, near = replace(found, radius_error=1e-2 * a)._displaced(at), np.hypot(r - a, z) < 0.3 * a
+    assert np.all(displaced[:, ~near] == 0)
+    assert np.all(displaced[0, near] > 0)
+
+
+def test_solutions_are_compared_inside_the_triangles():
+    points, mesh = solved("sphere").bodies[0].estimates.normal.points, solved("sphere").state.mesh
+    final, companion = points.triangles
+    assert final.z.size == 7 * mesh.layer.size
+    assert final.z.min() > 0
+    assert not np.isin(final.z, mesh.depths).any()
+    assert np.min([*final.X, 1 - final.X.sum(axis=0)]) > -1e-9
+    np.testing.assert_array_equal(final.z, companion.z)
+    vertices = points.final.contact_vertices
+    assert (vertices[0], vertices[-1]) == (0, mesh.contact_radius)
+    assert np.all(np.diff(vertices) > 0)

@@ -152,6 +152,14 @@ def test_every_layer_is_filled_and_its_boundaries_are_met(thicknesses, a):
         assert corners[1][:, mine].min() == levels[k]
         assert corners[1][:, mine].max() == levels[k + 1]
     assert np.any((m.points[0] == a) & (m.points[1] == 0))
+    # thick coatings and buried films need no fine triangles
+    assert m.layer.size < 2000
+
+
+@pytest.mark.parametrize(("a", "thicknesses"), [(50.0, ()), (1.0, (250.0,))])
+def test_contact_and_coatings_as_large_as_the_solid_are_refused(a, thicknesses):
+    with pytest.raises(ValueError, match="choose a larger far boundary"):
+        mesh(a, thicknesses)
 
 
 def test_stretching_keeps_depths_and_moves_the_edge():
@@ -159,6 +167,10 @@ def test_stretching_keeps_depths_and_moves_the_edge():
     assert m.contact_radius == 1.03
     assert np.any((m.points[0] == 1.03) & (m.points[1] == 0))
     assert np.any(m.points[1] == 0.5)
+    xi, zeta = m.plane(*m.points)
+    np.testing.assert_allclose(1.03 * (1 + m.length * np.sinh(xi)), m.points[0], rtol=0, atol=1e-12)
+    np.testing.assert_allclose(m.length * np.sinh(zeta), m.points[1], rtol=0, atol=1e-12)
+    assert m.length == pytest.approx(np.sqrt(0.5))
 
 
 def test_vtu_holds_layers_and_both_sides_of_the_interface(tmp_path):
@@ -171,7 +183,7 @@ def test_vtu_holds_layers_and_both_sides_of_the_interface(tmp_path):
     assert set(layer) == {0, 1}
     cells = read.cells_dict["triangle6"]
     x, _, z = read.points.T
-    on_interface = np.isclose(z, 5e-5, rtol=1e-12)
+    on_interface = np.isclose(z, 5e-5, rtol=1e-12, atol=0)
     upper, lower = (np.intersect1d(np.flatnonzero(on_interface), cells[layer == k]) for k in (0, 1))
     assert np.intersect1d(upper, lower).size == 0
     near = upper[np.abs(x[upper]) < 1e-4]

@@ -87,7 +87,7 @@ def test_comparison_of_runs_sees_a_changed_number_and_a_changed_verdict(tmp_path
     ):
         write_checked(tmp_path / "b" / "cases" / "x.json", payload | change)
         difference, _ = largest_difference(tmp_path / "a", tmp_path / "b")
-        assert difference == pytest.approx(expected, rel=1e-6)
+        assert difference == pytest.approx(expected, rel=1e-6, abs=0)
 
 
 # Stands for a run that goes wrong: it solves what it has solved before, and leaves a process behind.

@@ -7,6 +7,7 @@ import sys
 import tomllib
 from collections.abc import Callable
 from contextlib import redirect_stderr, redirect_stdout
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -37,6 +38,7 @@ CASES = [tomllib.loads(path.read_text(encoding="utf-8")) for path in shipped_cas
 CASES += [tree | KNOBS | {"claim": [CLAIM, CLAIM]} for tree in CASES if tree["problem"].get("coatings")][:4]
 PUBLISHED = [published_cases()[name] for name in ("jones_1962", "hermanowicz_2021", "ellea1_halfspace_axis")]
 REFUSED, QUICK = 2000, 50
+read_baseline = cache(command.read_baseline)  # a quarter of a second, once
 
 
 def generated(number: int) -> settings:
@@ -63,6 +65,7 @@ def complaint_of(path: Path, monkeypatch: pytest.MonkeyPatch) -> str | None:
         raise Accepted
 
     monkeypatch.setattr(pool._Slot, "start", accept)
+    monkeypatch.setattr(command, "read_baseline", read_baseline)
     said, printed = io.StringIO(), io.StringIO()
     try:
         with redirect_stderr(said), redirect_stdout(printed):

@@ -109,6 +109,14 @@ def test_several_profiles_at_once():
     np.testing.assert_allclose(both[1], stress(ROUGH, COATED, x, x, 0.0), rtol=0, atol=1e-9 * 1e9)
 
 
+def test_points_held_at_a_time_change_no_field(monkeypatch):
+    x, z, layer = R[:6], A * np.array([0.0, 0.2, 0.2, 0.4, 1.0, 1.0]), np.array([0, 0, 0, 1, 2, 2])
+    whole = axisymmetric.stress([HERTZ], COATED, x, x, z, layer)
+    monkeypatch.setattr(axisymmetric, "BLOCK", 1)
+    one_by_one = axisymmetric.stress([HERTZ], COATED, x, x, z, layer)
+    np.testing.assert_allclose(one_by_one, whole, rtol=0, atol=1e-12 * 1e9)
+
+
 @pytest.mark.parametrize("coatings", [(), ((840e9, 0.3, 2e-5),), ((52e9, 0.3, 2e-5), (300e9, 0.2, 1e-5))])
 def test_solution_at_its_own_edge(coatings):
     """The peak of a sliding contact lies on the edge, and the planes agree with the points."""

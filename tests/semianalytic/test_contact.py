@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from semianalytic import contact, convolution, halfspace
+from semianalytic import contact, convolution, halfspace, influence
+from semianalytic.inputs import Body, Numerics
 
 N, D = 65, 2.4 / 65  # Hertz with E* = R = a = 1 on [-1.2, 1.2]^2
 X = (np.arange(N) - N // 2) * D
@@ -44,7 +45,8 @@ def test_gap_and_pressure_exclude_each_other(gap):
     assert np.abs(g[loaded]).max() <= 1e-10
     assert g[~loaded].min() >= -1e-10
     assert found.pressure.sum() * D**2 == pytest.approx(LOAD, rel=1e-12)
-    np.testing.assert_allclose(found.gap, g, atol=1e-12)
+    assert found.load_error < 1e-12
+    np.testing.assert_allclose(found.gap, g, rtol=0, atol=1e-12)
 
 
 def test_sphere_gives_hertz():
@@ -59,7 +61,7 @@ def test_load_and_approach_control_find_the_same_contact():
     by_load = contact_of()
     by_approach = contact_of(approach=by_load.approach)
     # condition of the map from approach to pressure times the tolerance
-    np.testing.assert_allclose(by_approach.pressure, by_load.pressure, atol=1e-6)
+    np.testing.assert_allclose(by_approach.pressure, by_load.pressure, rtol=0, atol=1e-6)
 
 
 def test_start_does_not_matter():
@@ -74,7 +76,7 @@ def test_start_does_not_matter():
         tolerance=1e-10,
         max_iterations=400,
     )
-    np.testing.assert_allclose(again.pressure, found.pressure, atol=1e-6)
+    np.testing.assert_allclose(again.pressure, found.pressure, rtol=0, atol=1e-6)
 
 
 def test_a_useless_preconditioner_costs_iterations_but_no_accuracy():
@@ -90,7 +92,7 @@ def test_a_useless_preconditioner_costs_iterations_but_no_accuracy():
         max_iterations=400,
     )
     assert plain.iterations > 2 * found.iterations
-    np.testing.assert_allclose(plain.pressure, found.pressure, atol=1e-6)
+    np.testing.assert_allclose(plain.pressure, found.pressure, rtol=0, atol=1e-6)
 
 
 def test_a_solution_is_accepted_without_an_iteration():
@@ -128,6 +130,42 @@ def test_iterations_hardly_grow_with_the_grid():
         counts.append(found.iterations)
     # required: 1.3 from 256 to 1024; without a preconditioner it is 2 from 65 to 257
     assert counts[1] <= 1.3 * counts[0] + 1
+
+
+def test_a_contact_narrower_than_a_patch_starts_at_the_lowest_one():
+    total = 1e-3
+    found = contact.solve(
+        A,
+        100 * R2,
+        total=total,
+        start=np.zeros((N, N)),
+        precondition=P,
+        scale=1.0,
+        tolerance=1e-10,
+        max_iterations=0,
+    )
+    assert np.argwhere(found.pressure).tolist() == [[N // 2, N // 2]]
+    assert found.approach == pytest.approx(KERNEL[0, 0] * total, rel=1e-12, abs=0)
+
+
+def test_directions_stay_conjugate_though_the_residual_is_extended():
+    n, d = 33, 2.4 / 33
+    x = (np.arange(n) - n // 2) * d
+    r2 = x[:, None] ** 2 + x**2
+    film = Body(((0.1, 0.4, 0.1),), (1.0, 0.3), 0.0)
+    kernel = influence.surface_coefficients(n, d, film, Numerics(hankel_points=1024))
+    found = contact.solve(
+        convolution.even_convolution(kernel),
+        r2 / 2,
+        approach=1.0,
+        start=np.maximum(1 - r2, 0),
+        precondition=convolution.circulant_inverse(kernel),
+        scale=1.0,
+        tolerance=1e-10,
+        max_iterations=100,
+    )
+    # 9; the formula of Fletcher and Reeves takes P for symmetric, which it is not, and needs 13
+    assert found.iterations <= 11
 
 
 def test_stopping_short_is_an_exception_with_advice():

@@ -123,7 +123,7 @@ def test_compliance_is_the_surface_displacement_of_the_direct_solve(coatings, su
     nu = coatings[0][1]
     for k in (1e-6, 1e-3, 0.1, 1.0, 10.0, 100.0):
         exact = direct_solve(k, coatings, substrate, "normal")(0.0, 0)[4] / (2 * (1 - nu))
-        assert compliance(k, coatings, substrate) == pytest.approx(exact, rel=1e-9, abs=1e-14)
+        assert compliance(k, coatings, substrate) == pytest.approx(exact, rel=1e-9, abs=0)
 
 
 @pytest.mark.parametrize("ratio", [1e-6, 0.01, 0.25, 4.0, 100.0])
@@ -141,9 +141,9 @@ def test_compliance_runs_from_the_substrate_to_the_coating(coatings, substrate):
     E1, nu1, _ = coatings[0]
     E2, nu2 = substrate
     limit = E1 / (1 - nu1**2) * (1 - nu2**2) / E2
-    assert compliance(0.0, coatings, substrate) == pytest.approx(limit, rel=1e-9, abs=1e-14)
+    assert compliance(0.0, coatings, substrate) == pytest.approx(limit, rel=1e-9, abs=0)
     # M is smooth at k = 0: over kh = 1e-6 it moves by less than 1e-3 of its own scale
-    assert compliance(1e-6, coatings, substrate) == pytest.approx(limit, rel=1e-3, abs=1e-6)
+    assert compliance(1e-6, coatings, substrate) == pytest.approx(limit, rel=1e-3, abs=0)
     assert compliance(1e4, coatings, substrate) == 1.0
 
 
@@ -255,4 +255,5 @@ def test_closed_form_keeps_its_digits_at_large_contrast(ratio):
     solid = ((ratio, 0.3, 1.0),), (1.0, 0.25)
     for k in (1e-9, 1e-6, 1e-3, ratio ** (-1 / 3), 0.1, 1.0, 5.0):
         exact = direct_solve(k, *solid, "normal")(0.0, 0)[4] / (2 * 0.7)
-        assert compliance(k, *solid) == pytest.approx(exact, rel=1e-12, abs=1e-14)
+        # 1 + excess is rounded in the last digits of 1.
+        assert compliance(k, *solid) == pytest.approx(exact, rel=1e-12, abs=1e-15)

@@ -1,6 +1,7 @@
-"""First guesses on finer grids against the contact on the coarser one."""
+"""Transfer of heights and of first guesses between grids."""
 
 import numpy as np
+import pytest
 
 from semianalytic.grid import Grid, Window, prolong
 
@@ -28,3 +29,15 @@ def test_carried_over_contact_is_hertz_with_its_edge_between_the_patches():
     # within a patch of the edge 1 % of p0 on average, half of it from taking a rim patch to lie 0.6 d inside
     ring = np.abs(target.radius - 1)[10:150, 10:150] < source.d
     assert np.sqrt(np.mean((start - exact)[ring] ** 2)) < 1e-2 * 2 / np.pi
+
+
+@pytest.mark.parametrize("n", [7, 12, 31])
+def test_heights_on_other_patches_are_linear_between_the_given_centres(n):
+    given, asked = Grid(12, 1 / 6), Grid(n, 2 / n)  # both fill the square of half-width 1
+
+    def plane(x, y):
+        return 1 + 2 * x[:, None] - 3 * y
+
+    held = np.clip(asked.x, given.x[0], given.x[-1])
+    sample = asked.sample(plane(given.x, given.x), 1.0)
+    np.testing.assert_allclose(sample, plane(held, held), rtol=0, atol=1e-14)

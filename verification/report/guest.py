@@ -43,6 +43,7 @@ WORST_FIRST = (
     Outcome.UNSUPPORTED,
 )
 MOST_FIGURES, MOST_DIGITS = 12, 15
+ROUNDING = 1e-12
 MOST_REASONS, MOST_REASONS_LISTED = 2, 20
 GUEST, EXACT = Style("semi"), Style("exact", (), 5.0, 0.35)
 DASHED = ((), DASHES, DOTS, MIXED)
@@ -155,7 +156,7 @@ def _quantities(found: Examined) -> Section:
                 (WORST_FIRST.index(worst), -(gap or 0.0)),
                 row(
                     Cell(quantity, note=QUANTITIES[quantity].meaning),
-                    words("; ".join(why[:MOST_REASONS])),
+                    *([words("; ".join(why[:MOST_REASONS]))] if reasons else []),
                     Cell(digits(gap), gap),
                     outcome_cell(worst),
                     Cell(f"{count[Outcome.AGREES]} of {answered}", count[Outcome.AGREES] / answered),
@@ -168,7 +169,11 @@ def _quantities(found: Examined) -> Section:
     table = Table(
         "The largest difference over all cases and lines with the digits that it leaves; relative to the "
         "value (p0, a, approach), else to the smaller of p_h and p0.",
-        ["quantity", "likely reason", "digits", "worst", "agree", "largest difference", "where"],
+        [
+            "quantity",
+            *(["likely reason"] if reasons else []),
+            *("digits", "worst", "agree", "largest difference", "where"),
+        ],
         [line for _, line in sorted(rows, key=lambda item: item[0])],
     )
     parts = [Part("", [table])]
@@ -200,12 +205,14 @@ def _place(quantity: str, line: str) -> str:
 
 
 def _cases(found: Examined) -> Section:
-    """A row for each case: digits by quantity, time, memory."""
+    """A row for each case with an answer: digits by quantity, time, memory."""
     names = dict.fromkeys(
         c.quantity for r in found.results for c, v in r.verdicts if v.difference is not None
     )
-    rows = []
+    rows: list[Row] = []
     for result in found.results:
+        if all(v.outcome is Outcome.UNSUPPORTED for _, v in result.verdicts):
+            continue
         mine = next((s for s in result.sources if s.source == found.guest.name), None)
         cells = [_digits_cell([v for c, v in result.verdicts if c.quantity == name]) for name in names]
         memory = None if mine is None else mine.diagnostics.get("memory")
@@ -224,7 +231,12 @@ def _cases(found: Examined) -> Section:
         ["case", *names, "time", "memory"],
         rows,
     )
-    return Section("cases", "Cases", [Part("", [table])])
+    lead = (
+        f"{len(rows)} of {len(found.results)} cases; the others are not supported."
+        if len(rows) < len(found.results)
+        else ""
+    )
+    return Section("cases", "Cases", [Part(lead, [table])])
 
 
 def _digits_cell(verdicts: Sequence[Verdict]) -> Cell:
@@ -382,9 +394,10 @@ def _errors(found: Examined, result: CaseResult) -> dict[str, tuple[float, ...]]
 
 
 def _order(levels: Sequence[float], errors: Sequence[float]) -> float | None:
+    """Observed over the last two levels; None where the finest error is rounding."""
     first, last = errors[-2:]
     ratio = max(levels[-1] / levels[-2], levels[-2] / levels[-1])
-    return float(np.log(first / last) / np.log(ratio)) if first > 0 and last > 0 else None
+    return float(np.log(first / last) / np.log(ratio)) if first > 0 and last > ROUNDING else None
 
 
 def _missing(found: Examined) -> Section | None:

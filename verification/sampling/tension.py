@@ -22,7 +22,7 @@ __all__ = ["ENDS", "Search", "Tension", "around_edge", "edge_uncertainty"]
 # Of t: samples close to the edge, where thin films bend, then evenly. REACH: of a, beside 4 bending lengths.
 CLOSE, STEP, REACH = np.geomspace(0.01, 0.5, 20), 0.09, 4.0
 WINDOW, NODES = 3, 33  # samples either side of the largest one, Chebyshev nodes between the outermost
-FIT = 0.3  # of the uncertainty: what the polynomial may leave
+FITS = np.array([0.03, 0.1, 0.3])  # of the uncertainty: what the polynomial may leave
 CLEAR = 0.1  # of the largest sample: by as much it may lie below the maximum that it brackets
 # Of a: the distance from the edge at which the uncertainty of the stress no longer is that of the radius.
 BESIDE = 1e-2
@@ -111,35 +111,47 @@ class Search:
         The error of its place is |error of sigma'| / |sigma''|; that of sigma' is estimated by the
         uncertainty over the distance of two samples, about the size of an element, or, of a solution with
         coarser companions, by the largest change of the slope within that distance. To both twice the slopes
-        of the first two terms left out are added, for those that follow.
+        of the first two terms left out are added, for those that follow. More terms follow the noise of the
+        solution, fewer leave out more: of those that ``FITS`` give, the least uncertain place counts, its
+        distance from the next as part of its uncertainty.
         """
         a = float(self.solution.contact_radius)
         middle, half = (first + last) / 2, abs(last - first) / 2
         s = chebyshev.chebpts1(NODES)
         x = side * _radius(a, middle + half * s)
         sigma, U = stress_with_uncertainty(self.solution, x, 0.0, 0.0, layer=0)
-        usual = 0.0 if U is None else float(np.median(U[0, 0]))
         c = chebyshev.chebfit(s, sigma[0, 0], NODES - 1)
         # The nodes make the terms orthogonal: cut off, the sum of those left out bounds the residual.
         rest = np.cumsum(np.abs(c[::-1]))[::-1]
-        terms = max(int(np.count_nonzero(rest > FIT * usual)), 3)
-        c, left_out = c[:terms], c[terms : terms + 2]
-        roots = chebyshev.chebroots(chebyshev.chebder(c))
-        real = roots[(np.abs(roots.imag) < 1e-6) & (np.abs(roots.real) <= 1)].real
-        at = float(max([*real, s[np.argmax(sigma[0, 0])]], key=lambda place: chebyshev.chebval(place, c)))
-        t = middle + half * at
-        value, place = float(chebyshev.chebval(at, c)), float(side * _radius(a, np.array(t)))
-        if U is None:
-            return Tension(value, place, None, None)
-        near = np.abs(s - at) <= 1 / WINDOW
-        wide = float(U[0, 0, near].max())
-        slope = a * abs(np.sin(t) if t < 0 else np.sinh(t))
-        bend = abs(float(chebyshev.chebval(at, chebyshev.chebder(c, 2)))) / (half * slope) ** 2
-        change = followed(self.solution, lambda one: _slope(_tension(one, x), s, terms))
-        steep = wide * WINDOW if change is None else float(change[near].max())
-        for n, coefficient in enumerate(left_out, start=terms):
-            steep += 2 * abs(coefficient * chebyshev.Chebyshev.basis(n).deriv()(at))
-        return Tension(value, place, wide, steep / (half * slope * bend) if slope * bend else np.inf)
+        usual = 0.0 if U is None else float(np.median(U[0, 0]))
+        numbers = sorted({max(int(np.count_nonzero(rest > fit * usual)), 3) for fit in FITS})
+        change = followed(self.solution, lambda one: _slopes(_tension(one, x), s, numbers))
+
+        def found(terms: int, change: Array | None) -> Tension:
+            kept = c[:terms]
+            roots = chebyshev.chebroots(chebyshev.chebder(kept))
+            real = roots[(np.abs(roots.imag) < 1e-6) & (np.abs(roots.real) <= 1)].real
+            largest = s[np.argmax(sigma[0, 0])]
+            at = float(max([*real, largest], key=lambda place: chebyshev.chebval(place, kept)))
+            t = middle + half * at
+            value, place = float(chebyshev.chebval(at, kept)), float(side * _radius(a, np.array(t)))
+            if U is None:
+                return Tension(value, place, None, None)
+            near = np.abs(s - at) <= 1 / WINDOW
+            wide = float(U[0, 0, near].max())
+            slope = a * abs(np.sin(t) if t < 0 else np.sinh(t))
+            bend = abs(float(chebyshev.chebval(at, chebyshev.chebder(kept, 2)))) / (half * slope) ** 2
+            steep = wide * WINDOW if change is None else float(change[near].max())
+            for n, coefficient in enumerate(c[terms : terms + 2], start=terms):
+                steep += 2 * abs(coefficient * chebyshev.Chebyshev.basis(n).deriv()(at))
+            return Tension(value, place, wide, steep / (half * slope * bend) if slope * bend else np.inf)
+
+        each = [found(terms, None if change is None else change[n]) for n, terms in enumerate(numbers)]
+        best, *others = sorted(each, key=lambda one: one.place_uncertainty or 0.0)
+        if best.place_uncertainty is None or not others:
+            return best
+        apart = abs(best.place - others[0].place)
+        return Tension(best.value, best.place, best.uncertainty, best.place_uncertainty + apart)
 
 
 def around_edge(solution: Solution) -> Array:
@@ -168,10 +180,10 @@ def _radius(a: float, t: Array) -> Array:
     return a * np.where(t < 0, np.cos(np.minimum(t, 0)), np.cosh(np.maximum(t, 0)))
 
 
-def _slope(value: Array, s: Array, terms: int) -> Array:
-    """Slope at the Chebyshev nodes ``s`` of the polynomial of so many ``terms`` through ``value``."""
-    c = chebyshev.chebfit(s, value, s.size - 1)[:terms]
-    return np.asarray(chebyshev.chebval(s, chebyshev.chebder(c)))
+def _slopes(value: Array, s: Array, numbers: list[int]) -> Array:
+    """Slopes at the Chebyshev nodes ``s`` of the polynomials of ``numbers`` of terms through ``value``."""
+    c = chebyshev.chebfit(s, value, s.size - 1)
+    return np.stack([chebyshev.chebval(s, chebyshev.chebder(c[:terms])) for terms in numbers])
 
 
 def _tension(solution: Solution, x: Array) -> Array:

@@ -223,8 +223,8 @@ def test_contact_units_are_the_hertz_scales_of_the_case():
     case = read_published(SHIPPED["coated_sphere_ratio_2"])
     assert isinstance(case.problem, CoatedContact)
     radius = next(item for item in case.columns if item.profile.quantity == "contact_radius")
-    assert radius.profile.value == pytest.approx([0.818478 * case.problem.a_h])
-    assert radius.profile.uncertainty == pytest.approx([0.5e-6 * case.problem.a_h])
+    assert radius.profile.value == pytest.approx([0.818478 * case.problem.a_h], rel=1e-14, abs=0)
+    assert radius.profile.uncertainty == pytest.approx([0.5e-6 * case.problem.a_h], rel=1e-14, abs=0)
 
 
 def test_a_table_is_added_by_two_files_and_no_code(tmp_path):

@@ -206,9 +206,9 @@ def test_published_files_have_units_beside_numbers_in_those_of_the_source(tmp_pa
         parse_published(PUBLISHED.replace("PROBLEM", disc).encode(), tmp_path / "disc.toml").problem
         for disc in (BARE_DISC, UNITS_DISC)
     )
-    assert units.coatings[0] == pytest.approx(bare.coatings[0], rel=1e-15)
+    assert units.coatings[0] == pytest.approx(bare.coatings[0], rel=1e-15, abs=0)
     for name in ("pressure", "load_radius", "substrate"):
-        assert getattr(units, name) == pytest.approx(getattr(bare, name), rel=1e-15)
+        assert getattr(units, name) == pytest.approx(getattr(bare, name), rel=1e-15, abs=0)
 
 
 def test_published_sphere_has_units(tmp_path):

@@ -4,7 +4,6 @@ import json
 from dataclasses import replace
 from xml.etree import ElementTree
 
-import numpy as np
 import pytest
 from synthetic_results import INFO, STEEL, contact, result_of
 from synthetic_study import study
@@ -147,4 +146,4 @@ def test_knobs_survive_the_file_of_the_accuracy_study():
     whole = replace(study(), sweeps=refinements, stated=stated)
     back = study_from_json(json.loads(json.dumps(study_to_json(whole), allow_nan=False)))
     assert back == whole
-    assert np.isclose(back.sweeps[0].estimate("a").uncertainty, 1.25e-5)
+    assert back.sweeps[0].estimate("a").uncertainty == pytest.approx(1.25e-5, rel=1e-5, abs=0)

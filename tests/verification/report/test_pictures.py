@@ -34,7 +34,7 @@ def test_a_raster_keeps_the_values_and_the_jump():
     rows = (np.arange(frame.rows) + 0.5) / frame.rows
     columns = 2 * (np.arange(raster.shape[1]) + 0.5) / raster.shape[1] - 1
     expected = np.add.outer(rows, columns) + np.where(rows > 0.5, 10.0, 0.0)[:, None]
-    np.testing.assert_allclose(raster, expected, atol=1e-9)
+    np.testing.assert_allclose(raster, expected, rtol=0, atol=1e-9)
 
 
 def test_colours_are_those_of_the_scale_and_nan_is_grey():

@@ -65,8 +65,10 @@ def test_a_sphere_without_a_load_is_a_loading_curve(files):
     )
     kappa, old, approach, series = case.columns
     assert kappa.at.coordinate == "a"
-    assert approach.profile.value == pytest.approx(np.array([0.03, 0.6]) * 0.25e-6 / 10e-3)
-    assert approach.profile.uncertainty == pytest.approx(np.full(2, 0.006) * 0.25e-6 / 10e-3)
+    assert approach.profile.value == pytest.approx(np.array([0.03, 0.6]) * 0.25e-6 / 10e-3, rel=1e-14, abs=0)
+    assert approach.profile.uncertainty == pytest.approx(
+        np.full(2, 0.006) * 0.25e-6 / 10e-3, rel=1e-14, abs=0
+    )
     assert old.departs.all()
     assert series.series == (1.0, 0.5)
     assert {claim.line.rsplit(" ", 1)[1] for claim in case.claims} == {"k", "old", "d", "s"}

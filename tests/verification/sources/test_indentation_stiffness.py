@@ -1,4 +1,4 @@
-"""A sphere pressed deeper and deeper: its stiffness is that of a flat punch, whoever solves it."""
+"""A sphere pressed deeper and deeper: its stiffness is that of a flat punch; formulas and limits of it."""
 
 from dataclasses import fields
 
@@ -9,7 +9,15 @@ import fem_reference
 import semianalytic
 from verification.problem.loading import LoadingCurve
 from verification.sources.loading import Loading, LoadingDiagnostics, exact_loading, loading
+from verification.sources.references.effective_modulus import (
+    FORMULAS,
+    I0,
+    I1,
+    perriot_barthel,
+    perriot_barthel_x0,
+)
 from verification.sources.references.flat_punch import pressed
+from verification.sources.references.layer_limits import spring_bed, squeezed_film, thick
 
 LAYER, RIGID = ((1.0, 0.4, 1.0),), (1e9, 0.3)
 CURVE = LoadingCurve(100.0, "contact_radius", (0.4, 1.0), LAYER, RIGID)
@@ -82,7 +90,7 @@ def test_a_point_asked_for_is_reached_from_a_load_that_missed_it():
 def test_the_control_is_what_is_asked_for(control):
     curve = LoadingCurve(100.0, control, (0.01, 0.003), LAYER, RIGID)
     value, _ = exact_loading(curve).quantity(control, np.array([0.003, 0.01]))
-    assert value == pytest.approx([0.003, 0.01], rel=1e-10)
+    assert value == pytest.approx([0.003, 0.01], rel=1e-10, abs=0)
 
 
 @pytest.mark.parametrize("wrong", [{"control": "load"}, {"at": ()}, {"at": (0.1, -1.0)}, {"radius": -1.0}])
@@ -90,3 +98,59 @@ def test_a_curve_without_meaning_is_refused(wrong):
     arguments = {"radius": 1.0, "control": "approach", "at": (0.1,), "coatings": LAYER, "substrate": RIGID}
     with pytest.raises(ValueError, match=r"load|at|approach|radius"):
         LoadingCurve(**(arguments | wrong))
+
+
+@pytest.mark.parametrize("formula", FORMULAS, ids=lambda formula: formula.name)
+def test_formulas_end_at_film_and_substrate(formula):
+    film, base = (3.0, 0.2), (1.0, 0.4)
+    thin, thick_film = formula.modulus(film, base, np.array([1e-7, 1e7]))
+    assert thin == pytest.approx(1.0 / (1 - 0.4**2), rel=1e-5)
+    assert thick_film == pytest.approx(3.0 / (1 - 0.2**2), rel=1e-5)
+    same = formula.modulus(base, base, np.array([0.1, 1.0, 10.0]))
+    # Hay and Crawford's F, fitted to stiff films, stays where there is no film at all.
+    off = 0.02 if formula.name.startswith("Hay") else 1e-12
+    assert same == pytest.approx(1.0 / (1 - 0.4**2), rel=off)
+
+
+def test_perriot_and_barthel_end_at_film_and_substrate():
+    thin, thick_film = perriot_barthel((3.0, 0.3), (1.0, 0.3), np.array([1e-8, 1e8]), 1.2)
+    assert (thin, thick_film) == pytest.approx((1 / 0.91, 3 / 0.91), rel=1e-6)
+    assert perriot_barthel_x0(1.0) == pytest.approx(10**-0.093)
+
+
+@pytest.mark.parametrize("nu", [0.1, 0.3, 0.5])
+def test_gao_chiu_lee_1992_weight_is_the_first_derivative_of_the_exact_stiffness(nu):
+    step = 1e-4
+    for h in (0.3, 1.0, 3.0):
+        up, down = (np.log((1 + s) * pressed(1.0, ((1 + s, nu, h),), (1.0, nu)).kappa) for s in (step, -step))
+        # Central differences leave out the square of the step.
+        assert (up - down) / (2 * step) == pytest.approx(float(I0(np.array(h), nu)), abs=2 * step**2)
+    assert I1(np.array([1e-9, 1e9])) == pytest.approx([0, 1], abs=1e-6)
+
+
+def test_thin_and_thick_limits_are_approached():
+    rigid = (1e9, 0.3)
+    for nu in (0.0, 0.3):
+        off = []
+        for a in (20.0, 40.0):
+            found = pressed(a, ((1.0, nu, 1.0),), rigid)
+            S, W = spring_bed(a, 1.0, nu, 1.0)
+            off.append((2 * a * found.kappa / (1 - nu**2) / S - 1, found.load / W - 1))
+        # The edge of the contact is left out: h/a of the whole, so half as much at twice the radius.
+        assert np.array(off[0]) / np.array(off[1]) == pytest.approx([2, 2], rel=0.05)
+    off = []
+    for a in (25.0, 50.0):
+        found = pressed(a, ((1.0, 0.5, 1.0),), rigid)
+        S, W = squeezed_film(a, 1.0, 1.0)
+        off.append((2 * a * found.kappa / (1 - 0.5**2) / S - 1, found.load / W - 1))
+    ratio = np.array(off[0]) / np.array(off[1])
+    assert np.all((ratio > 1.7) & (ratio < 2.5)), ratio
+    for ratio in (0.25, 4.0):
+        exact = [pressed(a, ((ratio, 0.3, 1.0),), (1.0, 0.3)).kappa for a in (0.05, 0.1)]
+        laws = [thick(a, ((ratio, 0.3, 1.0),), (1.0, 0.3)) for a in (0.05, 0.1)]
+        hertz, first = np.array(
+            [[k / law - 1 for law in pair] for k, pair in zip(exact, laws, strict=True)]
+        ).T
+        assert hertz[1] / hertz[0] == pytest.approx(2, rel=0.15)
+        # With the first correction what is left falls with the third power of a/h.
+        assert first[1] / first[0] == pytest.approx(8, rel=0.15)

@@ -9,6 +9,8 @@ import scipy.linalg
 from verification.cases.table import FOLDER
 from verification.problem.contact import CoatedContact
 from verification.sources.references import integral_equation
+from verification.sources.references.axisymmetric_pressure import AbelPressure
+from verification.sources.references.hankel import HankelField
 from verification.sources.references.hertz import Hertz
 from verification.sources.references.layered import LayeredHalfSpace, _in_plane, _propagator
 
@@ -49,7 +51,7 @@ def test_compliance_meets_the_closed_form_over_ten_decades():
     for E1, nu1, E2, nu2 in [(4, 0.3, 1, 0.3), (0.05, 0.45, 1, 0.2), (100, 0.0, 1, 0.5), (0.01, 0.3, 1, 0.1)]:
         M = LayeredHalfSpace(((E1, nu1, 1.0),), (E2, nu2), k).compliance
         # The propagator's condition number, (k h)^2 up to 1600, times rounding.
-        assert pytest.approx(closed_form_M(k, E1, nu1, E2, nu2), rel=2e-12) == M
+        assert pytest.approx(closed_form_M(k, E1, nu1, E2, nu2), rel=2e-12, abs=0) == M
 
 
 @pytest.mark.parametrize("load", ["normal", "shear", "antiplane"])
@@ -72,7 +74,7 @@ def test_propagator_is_the_matrix_exponential():
 def test_equal_moduli_give_hertz():
     a = BARE.a_h
     exact, hertz = solve(((*STEEL, 0.3 * a), (*STEEL, 0.4 * a))), Hertz(10e-3, 20.0, *STEEL)
-    assert exact.contact_radius == pytest.approx(hertz.contact_radius, rel=1e-11)
+    assert exact.contact_radius == pytest.approx(hertz.contact_radius, rel=1e-11, abs=0)
     x, y, z = np.random.default_rng(1).uniform(-2, 2, (3, 100)) * a
     for depth in (np.abs(z) + 0.02 * a, 0 * z):
         difference = exact.stress(x, y, depth) - hertz.stress(x, y, depth)
@@ -82,7 +84,7 @@ def test_equal_moduli_give_hertz():
 def test_thick_coating_gives_hertz_of_the_coating():
     exact, hertz = solve(((70e9, 0.2, 3000 * BARE.a_h),)), Hertz(10e-3, 20.0, 70e9, 0.2)
     # The substrate is felt as a/h: 1/3000 of the approach, its cube in the radius.
-    assert exact.contact_radius == pytest.approx(hertz.contact_radius, rel=1e-8)
+    assert exact.contact_radius == pytest.approx(hertz.contact_radius, rel=1e-8, abs=0)
     assert exact.approach == pytest.approx(hertz.approach, rel=5e-4)
 
 
@@ -156,6 +158,8 @@ def test_pressure_integrates_to_the_load_and_ends_at_the_edge():
         20.0, rel=1e-12
     )
     assert exact.pressure(1.0000001 * exact.contact_radius) == 0
+    a = exact.contact_radius
+    assert exact.surface_nodes == pytest.approx(a * np.linspace(-2, 2, 401), abs=1e-14 * a)
     assert exact.diagnostics.load_residual < 1e-12
 
 
@@ -180,6 +184,31 @@ def test_stated_uncertainty_brackets_a_finer_solution():
     for name in ("contact_radius", "approach", "peak_pressure"):
         assert abs(getattr(usual, name) - getattr(fine, name)) <= getattr(usual.uncertainty, name)
     assert usual.uncertainty.peak_pressure < 1e-8 * usual.peak_pressure
+
+
+def test_a_thin_coating_is_given_the_nodes_that_it_needs():
+    usual, fine = (
+        integral_equation.solve(
+            radius=10e-3,
+            load=20.0,
+            coatings=((52.5e9, 0.3, 0.05 * BARE.a_h),),
+            substrate=STEEL,
+            nodes=nodes,
+            estimate_uncertainty=False,
+        )
+        for nodes in (32, 64)
+    )
+    assert abs(usual.contact_radius / fine.contact_radius - 1) < 1e-6
+
+
+@pytest.mark.parametrize("depth", [0.0, 0.5])
+def test_integrals_are_cut_where_less_than_exp_of_the_tail_is_left(depth):
+    pressure = AbelPressure(1.0, np.array([1.0, -1.0]) / 3)
+    layers = ((4.0, 0.2, 0.5), (0.5, 0.4, 0.3)), (1.0, 0.3)
+    cut, whole = (HankelField(pressure, *layers, 0.3, tail=tail) for tail in (10.0, 36.0))
+    x = np.array([0.0, 0.5, 1.0, 2.0])
+    left = cut.stress(x, 0.3, depth) - whole.stress(x, 0.3, depth)
+    assert 0 < np.abs(left).max() < 0.2 * np.exp(-10)
 
 
 def test_a_depth_just_below_the_surface_is_refused_before_it_fills_the_memory(sliding):
