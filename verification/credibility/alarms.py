@@ -5,14 +5,12 @@ Both methods and every reference solve each problem.
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 
 from verification.judging.verdict import Outcome
-from verification.running.records import encode, read_stored
+from verification.running.records import RecordFile
 from verification.running.result import CaseResult, RunInfo
-from verification.running.store import write_checked
 from verification.sources.registry import EXACT, METHODS
 
 SCHEMA = "coatcheck-alarms/3"
@@ -121,18 +119,5 @@ def _ratios(results: Sequence[CaseResult], source: str) -> Ratios:
     )
 
 
-def path_in(folder: Path) -> Path:
-    """Path of the record in ``folder``."""
-    return folder / "alarms.json"
-
-
-def write_record(folder: Path, record: AlarmRecord) -> Path:
-    """Store the record in ``folder``, whole or not at all. Raises StoreError."""
-    path = path_in(folder)
-    write_checked(path, {"schema": SCHEMA, **encode(record)})
-    return path
-
-
-def read_record(folder: Path) -> AlarmRecord | None:
-    """The record in ``folder``, None where there is none. Raises StoreError where it is damaged."""
-    return read_stored(AlarmRecord, path_in(folder), READABLE, "false alarms", "measure it again")
+_FILE = RecordFile(AlarmRecord, "alarms.json", READABLE, "false alarms", "measure it again")
+path_in, write_record, read_record = _FILE.path_in, _FILE.write, _FILE.read

@@ -13,8 +13,7 @@ import numpy as np
 
 from verification.problem.arrays import Coatings
 from verification.problem.contact import CoatedContact, Solution, stress_with_uncertainty
-from verification.running.records import encode, read_stored
-from verification.running.store import write_checked
+from verification.running.records import RecordFile
 
 SHIPPED = Path(__file__).parent / "shipped"
 SCHEMA = "coatcheck-enclosures/1"
@@ -119,18 +118,5 @@ def _value(problem: CoatedContact, solution: Solution, bounds: Bounds) -> tuple[
     return getattr(solution, bounds.quantity), U
 
 
-def path_in(folder: Path) -> Path:
-    """Path of the record in ``folder``."""
-    return folder / "enclosures.json"
-
-
-def write_record(folder: Path, record: EnclosureRecord) -> Path:
-    """Store the record in ``folder``, whole or not at all. Raises StoreError."""
-    path = path_in(folder)
-    write_checked(path, {"schema": SCHEMA, **encode(record)})
-    return path
-
-
-def read_record(folder: Path) -> EnclosureRecord | None:
-    """The record in ``folder``, None where there is none. Raises StoreError where it is damaged."""
-    return read_stored(EnclosureRecord, path_in(folder), (SCHEMA,), "enclosures", "make it again")
+_FILE = RecordFile(EnclosureRecord, "enclosures.json", (SCHEMA,), "enclosures", "make it again")
+path_in, write_record, read_record = _FILE.path_in, _FILE.write, _FILE.read

@@ -1,14 +1,13 @@
 """Records as JSON: any frozen dataclass of the project as plain content, with the exact inverse."""
 
-from collections.abc import Collection
-from dataclasses import asdict
+from dataclasses import asdict, dataclass
 from functools import cache
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any, Generic, TypeVar
 
 import numpy as np
 
-from verification.running.store import StoreError, read_checked
+from verification.running.store import StoreError, read_checked, write_checked
 
 T = TypeVar("T")
 
@@ -36,23 +35,6 @@ def decode(kind: type[T], content: Any) -> T:
         ) from None
 
 
-def read_stored(kind: type[T], path: Path, schemas: Collection[str], what: str, remedy: str) -> T | None:
-    """The record of ``kind`` stored at ``path``, None where there is none.
-
-    schemas : that this version reads.   what, remedy : of the message of StoreError, raised where the file is
-    damaged, has another schema, or does not fit ``kind``.
-    """
-    if not path.exists():
-        return None
-    data = read_checked(path)
-    if data.get("schema") not in schemas:
-        raise StoreError(f"{path}: not a record of {what} that this version reads; {remedy}")
-    try:
-        return decode(kind, data)
-    except ValueError as error:
-        raise StoreError(f"{path}: not a record of {what} ({error}); {remedy}") from None
-
-
 @cache
 def _adapter(kind: Any) -> Any:
     from pydantic import TypeAdapter
@@ -76,3 +58,44 @@ def plain(value: Any) -> Any:
     if value is None or isinstance(value, bool | int | float | str):
         return value
     return str(value)
+
+
+@dataclass(frozen=True)
+class RecordFile(Generic[T]):
+    """The checked file ``name`` of a folder, which holds a record of ``kind``.
+
+    schemas : that of what is written, then the others that this version reads.
+    what, remedy : of the message of StoreError.
+    """
+
+    kind: type[T]
+    name: str
+    schemas: tuple[str, ...]
+    what: str
+    remedy: str
+
+    def path_in(self, folder: Path) -> Path:
+        """Path of the record in ``folder``."""
+        return folder / self.name
+
+    def write(self, folder: Path, record: T) -> Path:
+        """Store ``record`` in ``folder``, whole or not at all. Raises StoreError."""
+        path = self.path_in(folder)
+        write_checked(path, {"schema": self.schemas[0], **encode(record)})
+        return path
+
+    def read(self, folder: Path) -> T | None:
+        """The record in ``folder``, None where there is none.
+
+        Raises StoreError where it is damaged, has another schema, or does not fit ``kind``.
+        """
+        path = self.path_in(folder)
+        if not path.exists():
+            return None
+        data = read_checked(path)
+        if data.get("schema") not in self.schemas:
+            raise StoreError(f"{path}: not a record of {self.what} that this version reads; {self.remedy}")
+        try:
+            return decode(self.kind, data)
+        except ValueError as error:
+            raise StoreError(f"{path}: not a record of {self.what} ({error}); {self.remedy}") from None

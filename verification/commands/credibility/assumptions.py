@@ -41,7 +41,7 @@ def assumptions(
     if record:
         require_checkout(records, "--records")
     started, began = datetime.datetime.now(datetime.UTC), time.process_time()
-    entries = tuple(measure(name, place) for name, _ in KNOWN for place in places(name))
+    entries = tuple(measure(name, place) for name in KNOWN for place in places(name))
     info = run_info("coatcheck assumptions", started, 1)
     seconds = round(time.process_time() - began, 1)
     maps = AssumptionMaps(entries, info.started, seconds, info.commit, info.machine, dict(info.versions))
@@ -50,7 +50,7 @@ def assumptions(
         print_json(encode(maps))
     elif not quiet:
         table = named_table("assumption", "quantity", "largest change", "E1/E2", "h/a_h", "nu", "a_h/R", "f")
-        for name, _ in KNOWN:
+        for name in KNOWN:
             of = [entry for entry in entries if entry.assumption == name]
             for i, quantity in enumerate(QUANTITIES):
                 worst = of[int(np.argmax([abs(entry.change[i]) for entry in of]))]

@@ -11,10 +11,10 @@ from verification.problem.contact import CoatedContact
 from verification.sources.assumptions.change import Change, of_goodman, of_sphere
 
 PARABOLA, GOODMAN = "parabola for the sphere", "Goodman's assumption"
-KNOWN: tuple[tuple[str, Callable[[CoatedContact], tuple[Change, Change]]], ...] = (
-    (PARABOLA, of_sphere),
-    (GOODMAN, of_goodman),
-)
+KNOWN: dict[str, Callable[[CoatedContact], tuple[Change, Change]]] = {
+    PARABOLA: of_sphere,
+    GOODMAN: of_goodman,
+}
 
 
 @dataclass(frozen=True)
@@ -53,7 +53,7 @@ def model_error(problem: CoatedContact) -> ModelError:
     """What the assumptions cost at ``problem``, in a few tenths of a second."""
     costs: list[Cost] = []
     missing: list[tuple[str, str]] = []
-    for assumption, change_of in KNOWN:
+    for assumption, change_of in KNOWN.items():
         try:
             change, uncertainty = change_of(problem)
         except ValueError as error:

@@ -5,15 +5,13 @@
     parabola : a_h/R, f, E1/E2, h/a_h at nu = 0.3;   Goodman : f, E1/E2, h/a_h, nu, whatever a/R.
 """
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import astuple, dataclass, fields
 from itertools import product
-from pathlib import Path
 
 from verification.credibility.model.error import GOODMAN, KNOWN, PARABOLA
 from verification.problem.contact import CoatedContact
-from verification.running.records import encode, read_stored
-from verification.running.store import write_checked
+from verification.running.records import RecordFile
 from verification.sources.assumptions.change import Change
 
 SCHEMA = "coatcheck-assumptions/1"
@@ -81,25 +79,11 @@ def places(assumption: str) -> Iterator[Place]:
 
 def measure(assumption: str, place: Place) -> Entry:
     """The entry of a place, rounded. Raises ValueError where the assumption's model has no answer."""
-    of: dict[str, Callable[[CoatedContact], tuple[Change, Change]]] = dict(KNOWN)
     change, uncertainty = (
-        [float(f"{v:.{DIGITS}g}") for v in astuple(one)] for one in of[assumption](place.problem)
+        [float(f"{v:.{DIGITS}g}") for v in astuple(one)] for one in KNOWN[assumption](place.problem)
     )
     return Entry(assumption, place, tuple(change), tuple(uncertainty))
 
 
-def path_in(folder: Path) -> Path:
-    """Path of the maps in ``folder``."""
-    return folder / "assumptions.json"
-
-
-def write_maps(folder: Path, maps: AssumptionMaps) -> Path:
-    """Store the maps in ``folder``, whole or not at all. Raises StoreError."""
-    path = path_in(folder)
-    write_checked(path, {"schema": SCHEMA, **encode(maps)})
-    return path
-
-
-def read_maps(folder: Path) -> AssumptionMaps | None:
-    """The maps in ``folder``, None where there are none. Raises StoreError where they are damaged."""
-    return read_stored(AssumptionMaps, path_in(folder), (SCHEMA,), "maps of the assumptions", "make it again")
+_FILE = RecordFile(AssumptionMaps, "assumptions.json", (SCHEMA,), "maps of the assumptions", "make it again")
+path_in, write_maps, read_maps = _FILE.path_in, _FILE.write, _FILE.read

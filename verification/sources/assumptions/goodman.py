@@ -42,7 +42,7 @@ from verification.problem.arrays import Array
 from verification.problem.contact import CoatedContact, keywords
 from verification.sources.references import integral_equation
 from verification.sources.references.integral_equation import Solid
-from verification.sources.references.layered import LayeredHalfSpace, contact_modulus
+from verification.sources.references.layered import LayeredHalfSpace
 from verification.sources.references.quadrature import gauss_legendre
 
 GRADING = 4  # of the nodes towards the edge, where potentials have a logarithm
@@ -135,15 +135,13 @@ class SlidingExpansion:
     """
 
     def __init__(self, problem: CoatedContact, nodes: int = 200) -> None:
-        solids: tuple[Solid, ...] = ((problem.coatings, problem.substrate),)
-        if problem.ball is not None:
-            solids += ((problem.ball[2], problem.ball[:2]),)
+        solids = integral_equation.solids_of(problem.coatings, problem.substrate, problem.ball)
         self.problem, self.beta = problem, problem.dundurs_beta
         self.exact = integral_equation.solve(**keywords(problem), estimate_uncertainty=False)
         self.a = a = self.exact.contact_radius
-        E_star = 1 / sum(1 / contact_modulus(*solid) for solid in solids)
+        E_star = integral_equation.combined_modulus(solids)
         self.scale = E_star * a**2 / (np.pi * problem.radius)
-        thinnest = min((h for coatings, _ in solids for _, _, h in coatings), default=a)
+        thinnest = integral_equation.thinnest_coating(solids, a)
         self.nodes = _Nodes.graded(int(nodes * (1 + 0.05 * a / thinnest)))
         self.points = np.append(self.nodes.s, 1.0)  # with the edge
         k, weight = integral_equation.kernel_wavenumbers(solids, a, 16, 36.0)
@@ -193,7 +191,7 @@ class SlidingExpansion:
     def _transform(self, psi: Array) -> Array:
         return self.sin[:, :-1] @ (self.nodes.weight * psi)
 
-    @property
+    @cached_property
     def first(self) -> FirstHarmonic:
         """The pressure of the first order, about the centre of the contact."""
         s, weight, far, _ = self.nodes
@@ -210,7 +208,7 @@ class SlidingExpansion:
         integrand = (slope - psi / t) / t**2 * np.sqrt(inner)
         return -self.scale / self.a**2 * r * (integrand @ weight)
 
-    @property
+    @cached_property
     def change(self) -> SlidingChange:
         """Scalars to the order f^2 at the same load."""
         s, weight, far, _ = self.nodes

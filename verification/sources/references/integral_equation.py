@@ -189,9 +189,7 @@ def solve(
     Raises ValueError when no contact radius between 1e-3 and 1e3 of the Hertz radius carries the load, nor
     one below ``gap.widest``.
     """
-    solids: tuple[Solid, ...] = ((coatings, substrate),)
-    if ball is not None:
-        solids += ((ball[2], ball[:2]),)
+    solids = solids_of(coatings, substrate, ball)
     fine = _solve(radius, load, solids, friction, gap, nodes, 16, 36.0)
     if not estimate_uncertainty:
         return fine
@@ -200,6 +198,24 @@ def solve(
 
 
 Solid = tuple[Coatings, tuple[float, float]]
+
+
+def solids_of(
+    coatings: Coatings, substrate: tuple[float, float], ball: Ball | None = None
+) -> tuple[Solid, ...]:
+    """The flat, then an elastic ball."""
+    return ((coatings, substrate),) if ball is None else ((coatings, substrate), (ball[2], ball[:2]))
+
+
+def combined_modulus(solids: tuple[Solid, ...]) -> float:
+    """E* [Pa] of the top layers of the ``solids`` together."""
+    moduli = [contact_modulus(*solid) for solid in solids]
+    return moduli[0] if len(moduli) == 1 else 1 / sum(1 / E for E in moduli)
+
+
+def thinnest_coating(solids: tuple[Solid, ...], default: float) -> float:
+    """Least thickness [m] of all coatings, ``default`` where there is none."""
+    return min((h for coatings, _ in solids for _, _, h in coatings), default=default)
 
 
 def _solve(
@@ -213,8 +229,7 @@ def _solve(
     tail: float,
 ) -> ExactSolution:
     """Contact of the flat with a rigid ball, or of the two ``solids``, flat and ball."""
-    moduli = [contact_modulus(*solid) for solid in solids]
-    E_star = moduli[0] if len(moduli) == 1 else 1 / sum(1 / E for E in moduli)
+    E_star = combined_modulus(solids)
     guess = _radius_guess(radius, load, E_star, solids)
     x_i, w_i = gauss_legendre(_contact_nodes(nodes, guess, solids))
     s, weight = 0.5 * (1 + x_i), 0.5 * w_i
@@ -281,8 +296,7 @@ def _radius_guess(radius: float, load: float, E_star: float, solids: tuple[Solid
 
 def _contact_nodes(nodes: int, a: float, solids: tuple[Solid, ...]) -> int:
     """The kernel varies over the first coating's thickness, so thin ones need nodes in proportion to a/h."""
-    thinnest = min((h for coatings, _ in solids for _, _, h in coatings), default=a)
-    return int(nodes + 3 * a / thinnest * nodes / 80)
+    return int(nodes + 3 * a / thinnest_coating(solids, a) * nodes / 80)
 
 
 def kernel_wavenumbers(solids: tuple[Solid, ...], a: float, panel: int, tail: float) -> tuple[Array, Array]:
