@@ -5,6 +5,7 @@ import re
 import pytest
 
 from fem_reference import NotConverged, solve
+from fem_reference.solver import QUALITY, _size
 
 E = 210e9
 GOOD = {"radius": 1e-2, "load": 20.0, "coatings": (), "substrate": (E, 0.3)}
@@ -95,3 +96,16 @@ def test_shapes_follow_broadcasting(coated):
     assert coated.displacement([0.0, 1e-5], 0.0, 1e-5).shape == (3, 2)
     assert coated.pressure(0.0).shape == ()
     assert coated.pressure([[0.0, 1.0]], [[0.0], [1.0]]).shape == (2, 2)
+
+
+@pytest.mark.parametrize("quality", QUALITY)
+def test_triangles_are_finer_next_to_a_larger_step_of_the_moduli(quality):
+    def size(step, ball=()):
+        return _size(quality, None, [((step * E, 0.3, 1e-5), (E, 0.3)), ball])
+
+    steps = (1.0, 20.0, 200.0)
+    sizes = [size(step) for step in steps]
+    assert sizes == sorted(sizes, reverse=True)
+    assert sizes[2] < sizes[1]
+    assert [size(1 / step) for step in steps] == sizes
+    assert [size(1.0, ((step * E, 0.3, 1e-5), (E, 0.3))) for step in steps] == sizes

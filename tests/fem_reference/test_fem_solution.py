@@ -9,7 +9,7 @@ import pytest
 
 from fem_reference import solve, solve_prescribed
 from fem_reference.contact import solve_at_radius
-from fem_reference.estimate import SAFETY, contact_estimates, estimates
+from fem_reference.estimate import SAFETY, _samples, contact_estimates, estimates
 from fem_reference.levels import ContactLevels
 from fem_reference.state import ElasticState
 
@@ -179,6 +179,19 @@ def test_each_part_of_the_estimate_adds_to_that_of_stress_and_displacement():
     displaced, near = replace(found, radius_error=1e-2 * a)._displaced(at), np.hypot(r - a, z) < 0.3 * a
     assert np.all(displaced[:, ~near] == 0)
     assert np.all(displaced[0, near] > 0)
+
+
+def test_estimate_is_at_least_five_quarters_of_the_change_from_the_companion():
+    # at some places the final mesh is the worse one, and all the change is its error
+    found = solved("sphere").bodies[0].estimates.normal
+    final, companion = found.points.triangles
+    change = np.abs(found.field(final)[1] - found.companion(companion)[1])
+    assert np.all(found._error((final, companion)) >= 1.25 * change)
+    # a vertex of a plane has the stresses of two cells, of which samples next to it see either
+    vertices = found.points.final.contact_vertices
+    cells = _samples(vertices).reshape(vertices.size - 1, -1)
+    assert np.all((vertices[:-1, None] < cells) & (cells < vertices[1:, None]))
+    np.testing.assert_allclose(cells[:, [0, -1]].T, [vertices[:-1], vertices[1:]], rtol=0, atol=1e-6)
 
 
 def test_solutions_are_compared_inside_the_triangles():

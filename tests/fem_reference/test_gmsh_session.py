@@ -25,6 +25,23 @@ def mesh(a=1.0, thicknesses=(0.5,)):
     return meridian_mesh(contact_radius=a, thicknesses=thicknesses, far=500.0, grading=COARSE)
 
 
+def test_triangles_grow_more_slowly_beyond_a_deep_stack():
+    def growth(depth):
+        """Size of triangles a unit of the stretched plane beyond the uniform ones, over theirs."""
+        graded = Grading(size=0.12, edge_rate=0.6, edge_size=1e-3, axis_size=0.3, far_size=1.0, rows=1.0)
+        made = meridian_mesh(contact_radius=1.0, thicknesses=(depth,), far=500.0, grading=graded)
+        corners = np.arcsinh((made.points - [[1.0], [0.0]]) / made.length)[:, made.triangles]
+        side, other = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
+        size, (x, y) = np.sqrt(np.abs(side[0] * other[1] - side[1] * other[0])), corners.mean(axis=1)
+        beyond = np.hypot(x, y) - max(np.arcsinh(3.0), np.arcsinh(depth))
+        clear = y < 0.5 * np.arcsinh(depth)  # of the interface, which has smaller ones
+        before, after = (np.median(size[clear & (np.abs(beyond - at) < 0.25)]) for at in (-0.3, 1.0))
+        return after / before
+
+    assert growth(2.9) > 1.3
+    assert 1.05 < growth(30.0) < 1.25
+
+
 def arguments(thickness):
     return {
         "radius": 1e-2,

@@ -1,6 +1,7 @@
 """The largest tension of the surface: closed forms at the edge, smooth maxima beside it, no zone left out."""
 
 from itertools import chain
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -11,6 +12,7 @@ from verification.judging.claims import standard_claims
 from verification.problem.contact import stress_with_uncertainty
 from verification.problem.profile import lines_of
 from verification.problem.quantity import PEAKS
+from verification.sampling import tension
 from verification.sampling.lines import positions, sample
 from verification.sampling.tension import Search, Tension, edge_uncertainty
 from verification.sources.exact import solve_exactly
@@ -118,3 +120,38 @@ def test_the_uncertainty_at_the_edge_is_beside_it_plus_what_no_change_of_the_rad
     assert edge_uncertainty(value, U, None) == pytest.approx(0.5 - 0.2)
     assert edge_uncertainty(value, U - [0.25, 0, 0, 0, 0], None) == pytest.approx(0.12)
     assert edge_uncertainty(value, U, np.array(0.02)) == pytest.approx(0.14)
+
+
+class Waving:
+    """A maximum of sigma_xx at x = -2 a, with waves on it that the companion has elsewhere."""
+
+    contact_radius, peak_pressure = 1e-4, 1e9
+    uncertainty = SimpleNamespace(contact_radius=1e-12)
+
+    def __init__(self, phase=0.0, coarser=None):
+        self.phase, self.coarser = phase, coarser
+
+    def stress(self, x, y, z, layer=None):
+        r = np.abs(np.asarray(x)) / self.contact_radius
+        sigma = np.zeros((3, 3, *r.shape))
+        sigma[0, 0] = 1e9 * (np.exp(-(((r - 2) / 0.4) ** 2)) + 1e-5 * np.cos(20 * r + self.phase))
+        return sigma
+
+    def stress_uncertainty(self, x, y, z, layer=None):
+        return np.full((3, 3, *np.shape(x)), 2e6)
+
+
+def test_place_of_a_smooth_maximum_is_the_least_uncertain_one_with_its_distance_from_the_next(monkeypatch):
+    solution, problem = Waving(1.0, Waving()), contact()
+    found = largest(solution, problem)
+    single = set()  # two of three fits keep as many terms here
+    for fit in tension.FITS:
+        monkeypatch.setattr(tension, "FITS", np.array([fit]))
+        single.add(largest(solution, problem))
+    best, other = sorted(single, key=lambda one: one.place_uncertainty)
+    assert other.place_uncertainty > 2 * best.place_uncertainty
+    assert found.place == best.place
+    apart = abs(best.place - other.place)
+    assert apart > best.place_uncertainty
+    assert found.place_uncertainty == pytest.approx(best.place_uncertainty + apart, rel=1e-9, abs=0)
+    assert abs(found.place + 2 * solution.contact_radius) < found.place_uncertainty
