@@ -23,9 +23,10 @@ Homogeneous, to the order a/R, a ball on a rigid half-space differs at the same 
 
 the approach by (a/R) ln(R/a) and a/R, for nu = 1/2 by -a/(4R).
 
-Modes as in Lur'e, Three-Dimensional Problems of the Theory of Elasticity (1964); tested by uniform tension and
-by finite elements. Logarithm of the curvature under a force: Sternberg and Rosenthal, J. Appl. Mech. 19 (1952).
-The rest is derived here.
+Modes as in Lur'e, Three-Dimensional Problems of the Theory of Elasticity (1964), tested by uniform tension
+and by finite elements; logarithm at a force on a sphere: Sternberg and Rosenthal, J. Appl. Mech. 19 (1952).
+The rest is derived here. Pressure normal to the undeformed sphere would drag the ball's surface outwards,
+without a reaction on the flat.
 """
 
 from dataclasses import dataclass
