@@ -18,10 +18,11 @@ from skfem import (
 )
 from skfem.helpers import grad
 
-from verification.problem.contact import CoatedContact
-from verification.sources.assumptions import bodies
+import semianalytic
+from verification.problem.contact import CoatedContact, keywords
 from verification.sources.assumptions.ball import ElasticBall
-from verification.sources.assumptions.bodies import change_at, of_half_spaces
+from verification.sources.assumptions.bodies import change_at, of_half_spaces, on_disc
+from verification.sources.assumptions.change import FLOOR
 from verification.sources.references.integral_equation import compliance, kernel_wavenumbers
 from verification.sources.references.quadrature import gauss_legendre
 
@@ -115,11 +116,25 @@ def test_coating_of_the_balls_own_material_changes_nothing():
 def test_uncertainty_contains_finer_quadrature(monkeypatch):
     problem = contact(0.1, (0.5 * E, NU, ()), coating=(4.0, 0.5))
     change, uncertainty = of_half_spaces(problem)
-    monkeypatch.setattr(bodies, "NODES", (130, 130))
+    monkeypatch.setattr("verification.sources.assumptions.bodies.NODES", (130, 130))
     finer, _ = of_half_spaces(problem)
     off = np.abs(np.array(astuple(change)) - astuple(finer))
     assert np.all(off <= astuple(uncertainty))
     assert max(astuple(uncertainty)) < 2e-5
+
+
+@pytest.mark.slow
+def test_semianalytical_contact_confirms_the_disc():
+    problem = contact(0.1, coating=(4.0, 0.5))
+    half, disc = (
+        semianalytic.solve(**keywords(one), gap="sphere", patches=33, estimate_uncertainty=False)
+        for one in (problem, on_disc(problem, R))
+    )
+    change, _ = of_half_spaces(problem)
+    for name in ("contact_radius", "approach", "peak_pressure"):
+        assert getattr(disc, name) / getattr(half, name) - 1 == pytest.approx(getattr(change, name), rel=1e-6)
+    before, after = (one.stress(-one.contact_radius, 0.0, 0.0)[0, 0] for one in (half, disc))
+    assert (after - before) / (FLOOR * half.peak_pressure) == pytest.approx(change.tension, rel=1e-6)
 
 
 def test_coatings_as_thick_as_the_disc_are_refused():

@@ -25,7 +25,7 @@ the approach by (a/R) ln(R/a) and a/R, for nu = 1/2 by -a/(4R).
 
 Modes as in Lur'e, Three-Dimensional Problems of the Theory of Elasticity (1964), tested by uniform tension
 and by finite elements; logarithm at a force on a sphere: Sternberg and Rosenthal, J. Appl. Mech. 19 (1952).
-The rest is derived here. Pressure normal to the undeformed sphere would drag the ball's surface outwards,
+The rest is derived here. Pressure normal to the undeformed sphere would drag the ball's surface inwards,
 without a reaction on the flat.
 """
 
