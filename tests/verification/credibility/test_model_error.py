@@ -20,7 +20,9 @@ def test_friction_dominates_a_small_sliding_contact_and_the_parabola_a_wide_stil
 
 def test_message_states_the_size_and_the_assumption():
     error = model_error(replace(BARE, friction=0.3))
-    assert error.message() == f"the model itself is good to 5.7 % of the tension: {GOODMAN}"
+    assert (
+        error.message() == f"the model itself is good to 5.7 % of the tension at the trailing edge: {GOODMAN}"
+    )
     assert error.message("approach").endswith(f"% of the approach: {GOODMAN}")
 
 

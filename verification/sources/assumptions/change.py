@@ -24,13 +24,13 @@ POINTS = 2 * np.linspace(-1, 1, 161)  # of a line along an interface, x/a
 class Change:
     """Each relative to its value with the assumption, a stress below ``FLOOR`` to that of the peak pressure.
 
-    ``shear`` is None without an interface.
+    None of what a model does not give, as ``shear`` without an interface.
     """
 
-    contact_radius: float
-    approach: float
-    peak_pressure: float
-    tension: float
+    contact_radius: float | None
+    approach: float | None
+    peak_pressure: float | None
+    tension: float | None
     shear: float | None
 
 
