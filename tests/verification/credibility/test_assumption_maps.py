@@ -51,7 +51,7 @@ def test_parabola_costs_the_square_of_the_contact_radius_all_over_the_map(maps):
 BETWEEN = {
     "sphere": Place(0.16, 0.7, 0.3, 0.05, 0.2),
     "goodman": Place(3.0, 1.4, 0.25, friction=0.45),
-    "bodies": Place(0.7, 0.3, width=0.15, ball=0.5),
+    "bodies": Place(0.7, 0.3, width=0.15),
 }
 
 
