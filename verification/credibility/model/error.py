@@ -6,12 +6,12 @@ A fast model is evaluated at the problem; of a slow one the recorded map is read
 from dataclasses import dataclass, fields
 from functools import cache
 
-from verification.credibility.model.assumptions import ASSUMPTIONS, GOODMAN, PARABOLA
+from verification.credibility.model.assumptions import ASSUMPTIONS, GOODMAN, HALF_SPACES, PARABOLA
 from verification.credibility.model.maps import SHIPPED, AssumptionMaps, read_maps
 from verification.problem.contact import CoatedContact
 from verification.sources.assumptions.change import Change
 
-__all__ = ["GOODMAN", "PARABOLA", "Cost", "ModelError", "model_error"]
+__all__ = ["GOODMAN", "HALF_SPACES", "PARABOLA", "Cost", "ModelError", "model_error"]
 
 WORDS = {
     "contact_radius": "contact radius",

@@ -20,7 +20,7 @@ from verification.sources.references.integral_equation import SPHERE
 
 THICKNESS = 1.0  # of the disc with its coatings, over the ball's radius
 RIGID = 1e9  # modulus of the support over that of the disc
-NODES = (80, 60)  # in the contact, fine and coarse; wavenumbers of the ball up to as many over a
+NODES = (80, 60)  # in the contact, fine and coarse
 ROUNDING = 1e-8  # of the root for the contact radius, of the support's modulus
 
 
@@ -45,8 +45,7 @@ def change_at(problem: CoatedContact, thickness: float, nodes: int) -> Change:
     beyond = None
     if problem.ball is not None:
         E, nu, coatings = problem.ball
-        ball = ElasticBall(problem.radius, (coatings, (E, nu)))
-        beyond = partial(ball.beyond_half_space, reach=nodes)
+        beyond = ElasticBall(problem.radius, (coatings, (E, nu))).beyond_half_space
     disc = on_disc(problem, thickness * problem.radius)
     return change_between(solve(**keywords(problem)), solve(**keywords(disc), beyond=beyond))
 
