@@ -124,7 +124,7 @@ def test_contact_of_a_sphere_at_small_strain():
     assert found.contact_radius == pytest.approx(1.0, rel=5e-5)
     assert found.approach == pytest.approx(exact.approach, rel=1e-4)
     assert found.peak_pressure == pytest.approx(exact.peak_pressure, rel=1e-3)
-    assert found.tension == pytest.approx(0.4 * exact.load / (2 * np.pi), abs=1e-3 * exact.peak_pressure)
+    assert found.tension == pytest.approx(0.4 * exact.load / (2 * np.pi), abs=2e-3 * exact.peak_pressure)
 
 
 def test_deformed_contact_lies_on_the_sphere_and_balances_the_load():
