@@ -18,6 +18,7 @@ from verification.sources.references import integral_equation
 from verification.sources.references.integral_equation import SPHERE, ExactSolution
 
 FLOOR = 0.1  # of the peak pressure, to which a smaller stress is compared
+THINNEST = 0.02  # h/a_h; time and memory grow as (a/h)^2 and more
 POINTS = 2 * np.linspace(-1, 1, 81)  # of a line along an interface, x/a
 # Of both solutions of a change; what their quadratures leave, below 1e-6, is common to both.
 RESOLUTION: dict[str, Any] = {"nodes": 40, "panel": 8, "tail": 18.0}
@@ -41,8 +42,10 @@ def of_sphere(problem: CoatedContact) -> tuple[Change, Change]:
     """From the gap r^2/2R to that of a sphere; vanishes as (a/R)^2.
 
     Returns the change, then its uncertainty, which is rounding: zero.
-    Raises ValueError where the contact is wider than 0.9 R, as ``integral_equation`` does.
+    Raises ValueError where the contact is wider than 0.9 R, as ``integral_equation`` does, or a coating
+    thinner than ``THINNEST``.
     """
+    _require_thick(problem)
     solve = partial(integral_equation.solve, **keywords(problem), estimate_uncertainty=False, **RESOLUTION)
     parabola, sphere = solve(), solve(gap=SPHERE)
     value = change_between(parabola, sphere)
@@ -69,11 +72,14 @@ def of_goodman(problem: CoatedContact) -> tuple[Change, Change]:
     Returns the change, then its uncertainty by the terms beyond, with C = f beta: C^2/2 of a stress, C^2/2 of
     a scalar's change, C^2/2 (x/a)^2 of a peak pressure at x. Patches without an expansion have, C up to 0.3,
     0.17 and 0.32 C^2 of a shear and a tension of a bare solid, 0.3 C^2 of its scalars' change.
+
+    Raises ValueError where a coating is thinner than ``THINNEST``.
     """
     f = problem.friction
     if not f:
         nothing = Change(0.0, 0.0, 0.0, 0.0, 0.0 if problem.coatings else None)
         return nothing, nothing
+    _require_thick(problem)
     expansion = SlidingExpansion(problem, nodes=100, solved=RESOLUTION)
     change, exact = expansion.change, expansion.exact
     panel, tail = RESOLUTION["panel"], RESOLUTION["tail"]
@@ -103,6 +109,12 @@ def of_goodman(problem: CoatedContact) -> tuple[Change, Change]:
         shear=None if shear is None else beyond,
     )
     return value, uncertainty
+
+
+def _require_thick(problem: CoatedContact) -> None:
+    coatings = [layer for body in problem.bodies for layer in problem.seen_from(body).coatings]
+    if any(h < THINNEST * problem.a_h for *_, h in coatings):
+        raise ValueError(f"a coating thinner than {THINNEST:g} a_h, its model would need too long")
 
 
 def _tension(exact: ExactSolution) -> float:
