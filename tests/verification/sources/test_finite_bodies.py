@@ -137,9 +137,11 @@ def test_semianalytical_contact_confirms_the_disc():
     assert (after - before) / (FLOOR * half.peak_pressure) == pytest.approx(change.tension, rel=1e-6)
 
 
-def test_coatings_as_thick_as_the_disc_are_refused():
+def test_coatings_as_thick_as_a_body_are_refused():
     with pytest.raises(ValueError, match="make the disc thicker"):
         of_half_spaces(contact(0.1, coating=(2.0, 11.0)))
+    with pytest.raises(ValueError, match="as thick as the ball"):
+        of_half_spaces(contact(0.1, (E, NU, ((E, NU, R),))))
 
 
 # Finite elements of a pressure with phi = (1 - (t/a)^2)^2: the work of the pressure, per radian

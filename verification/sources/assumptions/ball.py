@@ -50,15 +50,29 @@ PANEL, TAIL = (
 
 @dataclass(frozen=True)
 class ElasticBall:
-    """Ball of ``radius`` [m] with its coatings; ``solid`` : those from the surface inwards, then (E, nu)."""
+    """Ball of ``radius`` [m] with its coatings; ``solid`` : those from the surface inwards, then (E, nu).
+
+    Raises ValueError where the coatings are as thick as the ball.
+    """
 
     radius: float
     solid: Solid
 
+    def __post_init__(self) -> None:
+        if self._core <= 0:
+            raise ValueError(
+                f"coatings as thick as the ball of radius = {self.radius:g} m; give thinner ones"
+            )
+
+    @property
+    def _core(self) -> float:
+        """Radius inside the coatings [m]."""
+        return self.radius - sum(h for _, _, h in self.solid[0])
+
     def modes(self, n: Array) -> tuple[Array, Array, Array]:
         """C11, C12/L, C22/L [m/Pa] of the surface at degrees ``n`` >= 2 or 0, also between integers."""
         coatings, (E, nu) = self.solid
-        R = self.radius - sum(h for _, _, h in coatings)
+        R = self._core
         u, t = _regular(n, nu)
         C = (1 + nu) / E * _over(u, t)
         for E, nu, h in reversed(coatings):
