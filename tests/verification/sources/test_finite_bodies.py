@@ -44,7 +44,7 @@ def ball_on_rigid(width, nu):
 
 
 def scalars(problem, thickness=1.0):
-    return np.array(astuple(change_at(problem, thickness, nodes=32))[:3])
+    return np.array(astuple(change_at(problem, thickness, {"nodes": 32}))[:3])
 
 
 @pytest.mark.parametrize("coatings", [(), ((E, NU, 0.1 * R), (E, NU, 0.01 * R))])
@@ -107,8 +107,8 @@ def test_disc_changes_the_approach_in_proportion_and_the_peak_with_the_cube_of_i
 def test_coating_of_the_balls_own_material_changes_nothing():
     x = np.linspace(0.0, 0.1 * R, 9)
     bare, coated = (ElasticBall(R, (layer, (E, NU))) for layer in ((), ((E, NU, 0.05 * R),)))
-    kernel = bare.beyond_half_space(x, 40.0)
-    assert coated.beyond_half_space(x, 40.0) == pytest.approx(kernel, rel=1e-9)
+    kernel = bare.beyond_half_space(x)
+    assert coated.beyond_half_space(x) == pytest.approx(kernel, rel=1e-9)
     assert kernel == pytest.approx(kernel.T, rel=1e-12)
 
 
@@ -116,7 +116,7 @@ def test_coating_of_the_balls_own_material_changes_nothing():
 def test_uncertainty_contains_finer_quadrature(monkeypatch):
     problem = contact(0.1, (0.5 * E, NU, ()), coating=(4.0, 0.5))
     change, uncertainty = of_half_spaces(problem)
-    monkeypatch.setattr("verification.sources.assumptions.bodies.NODES", (130, 130))
+    monkeypatch.setattr("verification.sources.assumptions.bodies.RESOLUTIONS", ({"nodes": 130},) * 2)
     finer, _ = of_half_spaces(problem)
     off = np.abs(np.array(astuple(change)) - astuple(finer))
     assert np.all(off <= astuple(uncertainty))
@@ -137,9 +137,11 @@ def test_semianalytical_contact_confirms_the_disc():
     assert (after - before) / (FLOOR * half.peak_pressure) == pytest.approx(change.tension, rel=1e-6)
 
 
-def test_coatings_as_thick_as_the_disc_are_refused():
+def test_coatings_as_thick_as_a_body_are_refused():
     with pytest.raises(ValueError, match="make the disc thicker"):
         of_half_spaces(contact(0.1, coating=(2.0, 11.0)))
+    with pytest.raises(ValueError, match="as thick as the ball"):
+        of_half_spaces(contact(0.1, (E, NU, ((E, NU, R),))))
 
 
 # Finite elements of a pressure with phi = (1 - (t/a)^2)^2: the work of the pressure, per radian
@@ -158,7 +160,7 @@ def half_space_work():
 def test_finite_elements_of_the_ball_confirm_its_series():
     s, phi, plane = half_space_work()
     ball = ElasticBall(1.0, ((), (1.0, NU)))
-    expected = phi @ ball.beyond_half_space(np.append(s, A), 80.0)[:-1, :-1] @ phi
+    expected = phi @ ball.beyond_half_space(np.append(s, A))[:-1, :-1] @ phi
     h = np.sqrt(0.5)
     mesh = MeshTri(np.array([[0, 1, 0, h], [0, 0, 1, h]]), np.array([[0, 1, 3], [0, 3, 2]]).T)
     mesh = _finer(_on_circle(_on_circle(mesh.refined()).refined()), (A, np.sqrt(1 - A**2)), _on_circle)

@@ -10,11 +10,13 @@ from itertools import product
 
 from verification.credibility.model.place import COORDINATES, Place
 from verification.problem.contact import CoatedContact
+from verification.sources.assumptions.bodies import of_half_spaces
 from verification.sources.assumptions.change import Change, of_goodman, of_sphere
 
 QUANTITIES = tuple(one.name for one in fields(Change))
 SCALARS = ("contact_radius", "approach", "peak_pressure")
 PARABOLA, GOODMAN = "parabola for the sphere", "Goodman's assumption"
+HALF_SPACES = "half-spaces for the ball and a disc as thick as its radius"
 RATIOS = (0.1, 0.25, 0.5, 1.0, 2.0, 4.0, 10.0)  # E1/E2
 THICKNESSES = (0.1, 0.2, 0.5, 1.0, 2.0)  # h/a_h
 WIDTHS = (0.003, 0.03, 0.1, 0.3)  # a_h/R
@@ -83,6 +85,19 @@ ASSUMPTIONS: dict[str, Assumption] = {
         {**LAYERS, "nu": (0.2, 0.3, 0.45), "friction": (0.1, 0.3, 0.6, 1.0)},
         independent_of=("width",),
         rates={"friction": (2.0, 2.0, 2.0, 1.0, 1.0)},
+        direct=True,
+    ),
+    "bodies": Assumption(
+        HALF_SPACES,
+        of_half_spaces,
+        {
+            "ratio": (0.1, 0.5, 1.0, 2.0, 10.0),
+            "thickness": (0.1, 0.5, 2.0),
+            "width": (0.003, 0.03, 0.1, 0.2, 0.3),
+            "ball": (0.0, 0.5),
+        },
+        # at least this one, which the approach has but for a logarithm
+        rates={"width": 1.0},
         direct=True,
     ),
 }

@@ -7,13 +7,19 @@ from collections.abc import Collection, Sequence
 from dataclasses import dataclass, fields
 from functools import cache
 
-from verification.credibility.model.assumptions import ASSUMPTIONS, GOODMAN, PARABOLA, QUANTITIES
+from verification.credibility.model.assumptions import (
+    ASSUMPTIONS,
+    GOODMAN,
+    HALF_SPACES,
+    PARABOLA,
+    QUANTITIES,
+)
 from verification.credibility.model.maps import SHIPPED, AssumptionMaps, read_maps
 from verification.problem.contact import CoatedContact
 from verification.problem.quantity import BALL_PEAKS, PEAKS
 from verification.sources.assumptions.change import Change
 
-__all__ = ["GOODMAN", "PARABOLA", "Cost", "ModelError", "model_error"]
+__all__ = ["GOODMAN", "HALF_SPACES", "PARABOLA", "Cost", "ModelError", "model_error"]
 
 WORDS = {
     "contact_radius": "contact radius",

@@ -50,15 +50,29 @@ PANEL, TAIL = (
 
 @dataclass(frozen=True)
 class ElasticBall:
-    """Ball of ``radius`` [m] with its coatings; ``solid`` : those from the surface inwards, then (E, nu)."""
+    """Ball of ``radius`` [m] with its coatings; ``solid`` : those from the surface inwards, then (E, nu).
+
+    Raises ValueError where the coatings are as thick as the ball.
+    """
 
     radius: float
     solid: Solid
 
+    def __post_init__(self) -> None:
+        if self._core <= 0:
+            raise ValueError(
+                f"coatings as thick as the ball of radius = {self.radius:g} m; give thinner ones"
+            )
+
+    @property
+    def _core(self) -> float:
+        """Radius inside the coatings [m]."""
+        return self.radius - sum(h for _, _, h in self.solid[0])
+
     def modes(self, n: Array) -> tuple[Array, Array, Array]:
         """C11, C12/L, C22/L [m/Pa] of the surface at degrees ``n`` >= 2 or 0, also between integers."""
         coatings, (E, nu) = self.solid
-        R = self.radius - sum(h for _, _, h in coatings)
+        R = self._core
         u, t = _regular(n, nu)
         C = (1 + nu) / E * _over(u, t)
         for E, nu, h in reversed(coatings):
@@ -72,10 +86,10 @@ class ElasticBall:
         L = np.where(n > 0, n * (n + 1), 1.0)
         return self.radius * C[:, 0, 0], self.radius * C[:, 0, 1] / L, self.radius * C[:, 1, 1] / L
 
-    def beyond_half_space(self, x: Array, reach: float) -> Array:
+    def beyond_half_space(self, x: Array) -> Array:
         """Kernel B(x, t) [m/N] of ``integral_equation.solve`` at points ``x`` < R, symmetric.
 
-        reach : wavenumbers up to this over the largest x; the kernel is smoothed over x/reach.
+        Of n points that reach a it has wavenumbers up to n/a, which they resolve; it is smoothed over a/n.
         """
         R, s, a = self.radius, x / self.radius, float(x.max())
         E_star = contact_modulus(*self.solid)
@@ -86,10 +100,10 @@ class ElasticBall:
         B = self._series(n, F[even - 1], F[even + 1], _blend(n) * (2 * n + 1) / R**2)
         # k R = n + 1/2
         first = (SUMMED + 0.5) / R
-        last = max(reach / a, 2 * (INTEGRATED + 0.5) / R)
+        last = max(x.size / a, 2 * (INTEGRATED + 0.5) / R)
         k, weight = wavenumber_panels(last, first, 3 / a, PANEL)
         # without a smooth end, cos(kx) of the last wavenumber is left over
-        weight = weight * _fall(2 * k / last - 1)
+        weight = weight * _end(k, last)
         wave = np.cos(np.outer(k * R, xi)) / np.sqrt(np.cos(xi))
         B -= 2 / E_star * (wave.T * weight) @ wave
         above = k > first
@@ -97,7 +111,7 @@ class ElasticBall:
         # of even n every second one: dn/2 = R dk/2
         weight = weight[above] * (1 - _blend(n)) * k[above]
         B += self._series(n, _waves(xi, n - 1), _waves(xi, n + 1), weight)
-        return B - self._coatings_as_half_space(x)
+        return B - self._coatings_as_half_space(x, last)
 
     def _series(self, n: Array, below: Array, above: Array, weight: Array) -> Array:
         """sum of g C g over degrees ``n``; F_n-1, F_n+1 : ``below``, ``above``, (n, x)."""
@@ -109,11 +123,11 @@ class ElasticBall:
         crossed = (g1.T * C12) @ g2
         return (g1.T * C11) @ g1 + crossed + crossed.T + (g2.T * C22) @ g2
 
-    def _coatings_as_half_space(self, x: Array) -> Array:
+    def _coatings_as_half_space(self, x: Array, last: float) -> Array:
         """2/E1* int (M - 1) cos(kx) cos(kt) dk, which the equation holds already."""
         E_star = contact_modulus(*self.solid)
         k, weight = kernel_wavenumbers((self.solid,), float(x.max()), PANEL, TAIL)
-        wave = np.cos(np.outer(k, x))
+        weight, wave = weight * _end(k, last), np.cos(np.outer(k, x))
         return 2 / E_star * (wave.T * weight * (compliance((self.solid,), E_star, k) - 1)) @ wave
 
 
@@ -155,6 +169,11 @@ def _waves(xi: Array, n: Array) -> Array:
 def _blend(n: Array) -> Array:
     """Share of the sum at degree ``n``, the rest is that of the integral."""
     return _fall((n - SUMMED) / (INTEGRATED - SUMMED))
+
+
+def _end(k: Array, last: float) -> Array:
+    """Share of wavenumber ``k`` in the kernel."""
+    return _fall(2 * k / last - 1)
 
 
 def _fall(x: Array) -> Array:

@@ -18,7 +18,7 @@ from verification.sources.references import integral_equation
 from verification.sources.references.integral_equation import SPHERE, ExactSolution
 
 FLOOR = 0.1  # of the peak pressure, to which a smaller stress is compared
-THINNEST = 0.02  # h/a_h; time and memory grow as (a/h)^2 and more
+THINNEST = 0.01  # h/a_h; time and memory grow as (a/h)^2 and more
 POINTS = 2 * np.linspace(-1, 1, 81)  # of a line along an interface, x/a
 # Of both solutions of a change; what their quadratures leave, below 1e-6, is common to both.
 RESOLUTION: dict[str, Any] = {"nodes": 40, "panel": 8, "tail": 18.0}
