@@ -15,7 +15,7 @@ from typing import Any
 
 from verification.problem.contact import CoatedContact, keywords
 from verification.sources.assumptions.ball import ElasticBall
-from verification.sources.assumptions.change import RESOLUTION, Change, change_between
+from verification.sources.assumptions.change import RESOLUTION, Change, change_between, require_thick
 from verification.sources.references import integral_equation
 from verification.sources.references.integral_equation import SPHERE
 
@@ -31,8 +31,10 @@ def of_half_spaces(problem: CoatedContact, thickness: float = THICKNESS) -> tupl
 
     Returns the change, then its uncertainty: twice its difference from one with nodes and wavenumbers fewer
     by a quarter. The friction of ``problem`` leaves the pressure unchanged in both contacts.
-    Raises ValueError where the coatings are as thick as the disc, and as ``integral_equation`` does.
+    Raises ValueError where the coatings are as thick as the disc, one is thinner than ``THINNEST``, and as
+    ``integral_equation`` does.
     """
+    require_thick(problem)
     fine, coarse = (change_at(problem, thickness, resolution) for resolution in RESOLUTIONS)
     uncertainty: list[Any] = [
         None if one is None else 2 * abs(one - other) + ROUNDING

@@ -45,7 +45,7 @@ def of_sphere(problem: CoatedContact) -> tuple[Change, Change]:
     Raises ValueError where the contact is wider than 0.9 R, as ``integral_equation`` does, or a coating
     thinner than ``THINNEST``.
     """
-    _require_thick(problem)
+    require_thick(problem)
     solve = partial(integral_equation.solve, **keywords(problem), estimate_uncertainty=False, **RESOLUTION)
     parabola, sphere = solve(), solve(gap=SPHERE)
     value = change_between(parabola, sphere)
@@ -79,7 +79,7 @@ def of_goodman(problem: CoatedContact) -> tuple[Change, Change]:
     if not f:
         nothing = Change(0.0, 0.0, 0.0, 0.0, 0.0 if problem.coatings else None)
         return nothing, nothing
-    _require_thick(problem)
+    require_thick(problem)
     expansion = SlidingExpansion(problem, nodes=100, solved=RESOLUTION)
     change, exact = expansion.change, expansion.exact
     panel, tail = RESOLUTION["panel"], RESOLUTION["tail"]
@@ -111,7 +111,8 @@ def of_goodman(problem: CoatedContact) -> tuple[Change, Change]:
     return value, uncertainty
 
 
-def _require_thick(problem: CoatedContact) -> None:
+def require_thick(problem: CoatedContact) -> None:
+    """Raises ValueError where a coating is thinner than ``THINNEST``."""
     coatings = [layer for body in problem.bodies for layer in problem.seen_from(body).coatings]
     if any(h < THINNEST * problem.a_h for *_, h in coatings):
         raise ValueError(f"a coating thinner than {THINNEST:g} a_h, its model would need too long")
