@@ -82,6 +82,15 @@ class TwoSided:
         return all(low <= one.exact[0] and one.exact[1] <= high for (low, high), one in pairs)
 
     @property
+    def compared(self) -> tuple[tuple[tuple[float, float], float, float], ...]:
+        """Bounds, enclosed value, effectivity; of the stiffness, then of the approach."""
+        k, d = self.effectivities
+        return (
+            (self.found.stiffness, self.stiffness.middle, k),
+            (self.found.approach, self.approach.middle, d),
+        )
+
+    @property
     def widths(self) -> tuple[float, float]:
         """Of the bounds of stiffness and approach, relative."""
         k, d = np.ptp(self.found.stiffness), np.ptp(self.found.approach)
