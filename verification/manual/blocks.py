@@ -8,15 +8,16 @@ from collections.abc import Callable, Sequence
 from datetime import datetime
 from pathlib import Path
 
+import numpy as np
+
 from verification.cases.contact import read_case, shipped_cases
 from verification.cases.published import published_cases, read_published
 from verification.credibility import alarms
 from verification.credibility.enclosures import read_record as read_enclosures
 from verification.credibility.faults.campaign import RECORD
 from verification.credibility.faults.record import read_record
-from verification.credibility.model.error import GOODMAN, PARABOLA
-from verification.credibility.model.maps import FRICTION, Place, read_maps
-from verification.credibility.model.maps import QUANTITIES as MAPPED
+from verification.credibility.model.maps import WORDS as WORDS_OF_AXES
+from verification.credibility.model.maps import AssumptionMap, read_maps
 from verification.manual.markdown import symbol, table, text
 from verification.manual.numbers import FOLDER, baseline, largest, pairs
 from verification.manual.tour import solved
@@ -29,7 +30,6 @@ from verification.sources.registry import METHODS, SOURCES
 SOURCE = Path(__file__).parent / "source"
 RECORDS = FOLDER.parents[1] / "credibility" / "shipped"
 FIELDS = ("stress", "pressure", "displacement")
-LEVELS = (0.001, 0.01, 0.05)  # of a relative change by an assumption
 WORDS_OF_MAPS = {
     "contact_radius": "contact radius",
     "approach": "approach",
@@ -242,28 +242,32 @@ def two_sided() -> str:
 
 
 def assumption_costs() -> str:
-    """What each measured assumption costs over the maps: the parabola by a/R, Goodman's assumption by f."""
+    """What each measured assumption costs over its map, by the coordinate that it grows with."""
     maps = read_maps(RECORDS)
     assert maps is not None
-    parabola, goodman = [], []
-    for i, name in enumerate(WORDS_OF_MAPS[quantity] for quantity in MAPPED):
-        cost: dict[str, list[tuple[Place, float]]] = {PARABOLA: [], GOODMAN: []}
-        for entry in maps.entries:
-            cost[entry.assumption].append((entry.place, abs(entry.change[i])))
-        steepest = max(change / place.width**2 for place, change in cost[PARABOLA])
-        limits = [f"{(level / steepest) ** 0.5:.2g}" for level in LEVELS]
-        parabola.append([name, f"{steepest:.2g}", *limits])
-        largest_at = [max(change for place, change in cost[GOODMAN] if place.friction == f) for f in FRICTION]
-        goodman.append([name, *(f"{100 * change:.2g}" for change in largest_at)])
-    head = [f"{100 * level:g} % at $a_h/R$" for level in LEVELS]
+    return "\n\n".join(_costs(one) for one in maps.maps)
+
+
+def _costs(one: AssumptionMap) -> str:
+    """The largest change of each quantity at each value of the axis that drives the change."""
+    axis = next((i for i, axis in enumerate(one.axes) if any(axis.rates)), 0)
+    values = one.axes[axis].values
+    rows = []
+    for quantity, change in zip(one.quantities, np.abs(one.change), strict=True):
+        along = np.moveaxis(change, axis, 0).reshape(len(values), -1)
+        shown = ["–" if np.isnan(some).all() else f"{100 * np.nanmax(some):.2g}" for some in along]
+        rows.append([WORDS_OF_MAPS.get(quantity, quantity), *shown])
+    ranges = ", ".join(
+        f"{WORDS_OF_AXES[axis.name]} {axis.values[0]:g}"
+        + (f" to {axis.values[-1]:g}" if len(axis.values) > 1 else "")
+        for axis in one.axes
+        if axis.name != "ball" or axis.values != (0.0,)
+    )
+    head = [f"{WORDS_OF_AXES[one.axes[axis].name]} = {value:g}" for value in values]
     return (
-        f"Made {_day(maps.started)}, commit {maps.commit or 'unknown'}, on {maps.machine}, "
-        f"in {maps.seconds:.0f} s of one core.\n\n"
-        "Parabola in place of the sphere: the largest relative change over $(a_h/R)^2$, and the contact "
-        "width at which it reaches three levels.\n\n"
-        + table(["quantity", "largest change over $(a_h/R)^2$", *head], parabola, 1)
-        + "\n\nGoodman's assumption: the largest relative change of the maps, in percent.\n\n"
-        + table(["quantity", *(f"$f = {f:g}$" for f in FRICTION)], goodman, 1)
+        f"{one.title[0].upper()}{one.title[1:]}: the largest relative change in percent, over {ranges}. Made "
+        f"{_day(one.started)}, commit {one.commit or 'unknown'}, on {one.machine}, in {one.seconds:.0f} s of "
+        "one core.\n\n" + table(["quantity", *head], rows, 1)
     )
 
 

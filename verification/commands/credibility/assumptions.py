@@ -2,22 +2,25 @@
 
 import datetime
 import time
+from dataclasses import replace
 
 import numpy as np
+from rich.console import Console
 from rich.markup import escape
 
-from verification.commands.common.exits import with_exit_code
+from verification.commands.common.exits import CommandError, with_exit_code
 from verification.commands.common.folders import RECORDS, require_checkout
 from verification.commands.common.options import AsJson, Flag, Quiet, RecordsFolder
-from verification.commands.common.solving import run_info
-from verification.commands.common.terminal import named_table, print_json, print_out
-from verification.credibility.model.error import KNOWN
+from verification.commands.common.solving import progress_bar, run_info
+from verification.commands.common.terminal import did_you_mean, named_table, print_json, print_out
+from verification.credibility.model.assumptions import ASSUMPTIONS
 from verification.credibility.model.maps import (
-    QUANTITIES,
+    WORDS,
+    AssumptionMap,
     AssumptionMaps,
-    Entry,
+    assembled,
     measure,
-    places,
+    read_maps,
     write_maps,
 )
 from verification.running.records import encode
@@ -25,7 +28,7 @@ from verification.running.records import encode
 
 @with_exit_code
 def assumptions(
-    *,
+    *names: str,
     record: Flag = False,
     records: RecordsFolder = RECORDS,
     quiet: Quiet = False,
@@ -33,34 +36,52 @@ def assumptions(
 ) -> int:
     """Measure the cost of each assumption that all sources share, by models that drop it one at a time.
 
-    A few minutes of one core.
-
     Args:
-        record: Store the maps in RECORDS/assumptions.json.
+        names: Assumptions, of sphere, goodman and those of the table; all of them unless given.
+        record: Store the maps in RECORDS/assumptions.json, beside those of the other assumptions.
     """
+    for name in names:
+        if name not in ASSUMPTIONS:
+            raise CommandError(f"{name!r} is no assumption with a model{did_you_mean(name, ASSUMPTIONS)}")
     if record:
         require_checkout(records, "--records")
-    started, began = datetime.datetime.now(datetime.UTC), time.process_time()
-    entries = tuple(measure(name, place) for name in KNOWN for place in places(name))
-    info = run_info("coatcheck assumptions", started, 1)
-    seconds = round(time.process_time() - began, 1)
-    maps = AssumptionMaps(entries, info.started, seconds, info.commit, info.machine, dict(info.versions))
-    stored = write_maps(records, maps) if record else None
+    made = AssumptionMaps(())
+    for name in names or ASSUMPTIONS:
+        new = _measured(name, silent=quiet or as_json)
+        made = made.with_map(new)
+        if record:  # each as soon as it is made
+            stored = write_maps(records, (read_maps(records) or AssumptionMaps(())).with_map(new))
     if as_json:
-        print_json(encode(maps))
+        print_json(encode(made))
     elif not quiet:
-        table = named_table("assumption", "quantity", "largest change", "E1/E2", "h/a_h", "nu", "a_h/R", "f")
-        for name in KNOWN:
-            of = [entry for entry in entries if entry.assumption == name]
-            for i, quantity in enumerate(QUANTITIES):
-                worst = of[int(np.argmax([abs(entry.change[i]) for entry in of]))]
-                table.add_row(escape(name), quantity, f"{worst.change[i]:+.2e}", *_place(worst))
+        table = named_table("assumption", "quantity", "largest change", *WORDS.values())
+        for one in made.maps:
+            for i, quantity in enumerate(one.quantities):
+                table.add_row(one.assumption, quantity, *_worst(one, i))
         print_out(table)
-        if stored is not None:
+        if record:
             print_out(escape(f"recorded: {stored}"))
     return 0
 
 
-def _place(entry: Entry) -> tuple[str, ...]:
-    at = entry.place
-    return tuple(f"{value:g}" for value in (at.ratio, at.thickness, at.nu, at.width, at.friction))
+def _measured(name: str, *, silent: bool) -> AssumptionMap:
+    started, began = datetime.datetime.now(datetime.UTC), time.process_time()
+    places = list(ASSUMPTIONS[name].places())
+    found = []
+    with progress_bar(Console(stderr=True), silent=silent) as bar:
+        task = bar.add_task(name, total=len(places))
+        for place in places:
+            found.append(measure(name, place))
+            bar.update(task, advance=1)
+    info = run_info(f"coatcheck assumptions {name}", started, 1)
+    return assembled(name, found, replace(info, seconds=round(time.process_time() - began, 1)))
+
+
+def _worst(one: AssumptionMap, quantity: int) -> tuple[str, ...]:
+    """The largest change of a quantity with its place, "any" of what it is independent of."""
+    size = np.abs(one.change[quantity])
+    if np.isnan(size).all():
+        return ("-",) * (1 + len(WORDS))
+    where = np.unravel_index(int(np.nanargmax(size)), size.shape)
+    at = {axis.name: f"{axis.values[i]:g}" for axis, i in zip(one.axes, where, strict=True)}
+    return (f"{one.change[quantity][where]:+.2e}", *(at.get(name, "any") for name in WORDS))

@@ -24,13 +24,13 @@ POINTS = 2 * np.linspace(-1, 1, 161)  # of a line along an interface, x/a
 class Change:
     """Each relative to its value with the assumption, a stress below ``FLOOR`` to that of the peak pressure.
 
-    ``shear`` is None without an interface.
+    None of what a model does not give, as ``shear`` without an interface.
     """
 
-    contact_radius: float
-    approach: float
-    peak_pressure: float
-    tension: float
+    contact_radius: float | None
+    approach: float | None
+    peak_pressure: float | None
+    tension: float | None
     shear: float | None
 
 
@@ -42,14 +42,19 @@ def of_sphere(problem: CoatedContact) -> tuple[Change, Change]:
     """
     solve = partial(integral_equation.solve, **keywords(problem), estimate_uncertainty=False)
     parabola, sphere = solve(), solve(gap=SPHERE)
+    value = change_between(parabola, sphere)
+    return value, Change(0.0, 0.0, 0.0, 0.0, None if value.shear is None else 0.0)
+
+
+def change_between(before: ExactSolution, after: ExactSolution) -> Change:
+    """From ``before`` to ``after``, both at the same load; the interface is that of ``before``."""
     scalars = {
-        name: getattr(sphere, name) / getattr(parabola, name) - 1
+        name: getattr(after, name) / getattr(before, name) - 1
         for name in ("contact_radius", "approach", "peak_pressure")
     }
-    before, after, floor = _tension(parabola), _tension(sphere), FLOOR * parabola.peak_pressure
-    shear = _shear_change(_shear(parabola), _shear(sphere), floor)
-    value = Change(**scalars, tension=(after - before) / max(abs(before), floor), shear=shear)
-    return value, Change(0.0, 0.0, 0.0, 0.0, None if shear is None else 0.0)
+    one, other, floor = _tension(before), _tension(after), FLOOR * before.peak_pressure
+    shear = _shear_change(_shear(before), _shear(after), floor)
+    return Change(**scalars, tension=(other - one) / max(abs(one), floor), shear=shear)
 
 
 def of_goodman(problem: CoatedContact) -> tuple[Change, Change]:

@@ -45,6 +45,10 @@ PARABOLA = Gap(lambda x, R: x**2 / R, np.inf)
 SPHERE = Gap(lambda x, R: x * np.arctanh(x / R), 0.9)
 
 
+# Kernel [m/N] at points of the contact, the last of which is its edge; see ``solve``.
+Beyond = Callable[[Array], Array]
+
+
 @dataclass(frozen=True)
 class ExactDiagnostics:
     """Quadrature nodes in the contact and along the wavenumber; load balance of the result."""
@@ -181,19 +185,21 @@ def solve(
     nodes: int = 80,
     estimate_uncertainty: bool = True,
     gap: Gap = PARABOLA,
+    beyond: Beyond | None = None,
 ) -> ExactSolution:
     """Contact of a sphere of ``radius`` [m] under ``load`` [N]; arguments as in CoatedContact.
 
     nodes : Gauss-Legendre points in the contact; more where a coating is thin.
     gap : of the undeformed bodies, PARABOLA or SPHERE.
+    beyond : what the bodies add to half-spaces, B in (E*/pi) int_0^a B(x, t) phi(t) dt on the left side.
     Raises ValueError when no contact radius between 1e-3 and 1e3 of the Hertz radius carries the load, nor
     one below ``gap.widest``.
     """
     solids = solids_of(coatings, substrate, ball)
-    fine = _solve(radius, load, solids, friction, gap, nodes, 16, 36.0)
+    fine = _solve(radius, load, solids, friction, gap, beyond, nodes, 16, 36.0)
     if not estimate_uncertainty:
         return fine
-    coarse = _solve(radius, load, solids, friction, gap, 3 * nodes // 4, 12, 27.0)
+    coarse = _solve(radius, load, solids, friction, gap, beyond, 3 * nodes // 4, 12, 27.0)
     return replace(fine, coarser=coarse)
 
 
@@ -224,6 +230,7 @@ def _solve(
     solids: tuple[Solid, ...],
     friction: float,
     gap: Gap,
+    beyond: Beyond | None,
     nodes: int,
     panel: int,
     tail: float,
@@ -240,6 +247,8 @@ def _solve(
         x = a * s
         cosine = np.cos(k[:, None] * np.append(x, a))
         K = (2 / np.pi) * (cosine.T * kernel) @ cosine
+        if beyond is not None:
+            K += E_star / np.pi * beyond(np.append(x, a))
         A = np.eye(x.size) + K[:-1, :-1] * (a * weight)
         right = (E_star / np.pi) * np.stack([np.ones_like(x), gap.transform(x, radius)], axis=1)
         phi = np.linalg.solve(A, right)

@@ -1,0 +1,241 @@
+"""Ball of finite radius on a disc: patch test, closed forms, rates, limits, finite elements."""
+
+from dataclasses import astuple, replace
+
+import numpy as np
+import pytest
+from skfem import (
+    Basis,
+    BilinearForm,
+    ElementTriP4,
+    ElementVector,
+    FacetBasis,
+    LinearForm,
+    MeshTri,
+    MeshTri2,
+    condense,
+    solve,
+)
+from skfem.helpers import grad
+
+import semianalytic
+from verification.problem.contact import CoatedContact, keywords
+from verification.sources.assumptions.ball import ElasticBall
+from verification.sources.assumptions.bodies import change_at, of_half_spaces, on_disc
+from verification.sources.assumptions.change import FLOOR
+from verification.sources.references.integral_equation import compliance, kernel_wavenumbers
+from verification.sources.references.quadrature import gauss_legendre
+
+E, NU, R = 210e9, 0.3, 10e-3
+RIGID = (1e9 * E, 0.3)
+
+
+def contact(width, ball=None, substrate=(E, NU), coating=None):
+    """a_h/R = ``width``; ``coating`` : E1/E2, h/a_h."""
+    one = CoatedContact(R, 1.0, (), substrate, 0.0, ball)
+    one = replace(one, load=4 / 3 * one.E_star * width**3 * R**2)
+    if coating is None:
+        return one
+    return replace(one, coatings=((coating[0] * substrate[0], NU, coating[1] * one.a_h),))
+
+
+def ball_on_rigid(width, nu):
+    return contact(width, (E, nu, ()), RIGID)
+
+
+def scalars(problem, thickness=1.0):
+    return np.array(astuple(change_at(problem, thickness, nodes=32))[:3])
+
+
+@pytest.mark.parametrize("coatings", [(), ((E, NU, 0.1 * R), (E, NU, 0.01 * R))])
+def test_uniform_tension_is_exact(coatings):
+    ball = ElasticBall(R, (coatings, (E, NU)))
+    C11, C12, C22 = ball.modes(np.array([0.0, 2.0]))
+    # sigma_zz = 1: S = cos^2 = 1/3 P0 + 2/3 P2, T = -sin cos = 1/3 dP2/dtheta
+    assert C11[0] / 3 == pytest.approx((1 - 2 * NU) * R / (3 * E), rel=1e-13)
+    assert C11[1] * 2 / 3 + 6 * C12[1] / 3 == pytest.approx((1 + NU) * R * 2 / (3 * E), rel=1e-13)
+    assert C12[1] * 2 / 3 + 6 * C22[1] / 3 == pytest.approx((1 + NU) * R / (3 * E), rel=1e-13)
+
+
+def test_homogeneous_modes_are_rational_functions_of_the_degree():
+    n = np.array([2.0, 7.3, 40.0, 3000.0])
+    d = (n - 1) * (n**2 + 2 * n * NU + n + NU + 1) * E / (1 + NU) / R
+    C11 = (2 * (1 - NU) * n**2 + n * NU + 2 * NU - 1) / d
+    C12 = (2 * n * NU - n - NU + 2) / d
+    C22 = (2 * (1 - NU) * n**2 + 3 * n * NU - n + NU + 1) / (d * n * (n + 1))
+    for coatings in ((), ((E, NU, 1e-3 * R),)):
+        found = ElasticBall(R, (coatings, (E, NU))).modes(n)
+        assert found == pytest.approx(np.array([C11, C12, C22]), rel=1e-11)
+
+
+def test_coated_ball_under_uniform_pressure_is_lames():
+    # shell 1 around core 2 under p = 1: the interface pressure makes u equal on both sides
+    E1, nu1, E2, nu2, c = 2 * E, 0.2, E, 0.35, 0.8
+    core = (1 - 2 * nu2) / E2
+    inner, outer = (1 - 2 * nu1) / E1, (1 + nu1) / (2 * E1)
+    # u/r of the shell at c under (interface p, outer 1): Timoshenko and Goodier (1970), art. 136
+    hollow = 1 - c**3
+    interface = (inner + outer) / hollow / (core + (inner * c**3 + outer) / hollow)
+    surface = (inner + outer * c**3 - interface * c**3 * (inner + outer)) / hollow
+    found = ElasticBall(1.0, (((E1, nu1, 1 - c),), (E2, nu2))).modes(np.array([0.0]))[0]
+    assert found == pytest.approx(surface, rel=1e-13)
+
+
+def test_ball_changes_radius_and_peak_in_proportion_to_its_closed_form():
+    small, large = (scalars(ball_on_rigid(width, NU)) for width in (1e-3, 1e-2))
+    curvature = (1 - 2 * NU) ** 2 / (1 - NU)
+    assert small[0] / 1e-3 == pytest.approx(curvature / (4 * np.pi), rel=5e-3)
+    assert small[2] / 1e-3 == pytest.approx(-np.pi / 16 * curvature, rel=5e-3)
+    assert np.log10(large / small)[[0, 2]] == pytest.approx(1.0, rel=0.05)
+    # of the approach there is a logarithm: 2/(3 pi) curvature (a/R) ln(R/a)
+    slope = (small[1] / 1e-3 - large[1] / 1e-2) / np.log(10)
+    assert slope == pytest.approx(2 / (3 * np.pi) * curvature, rel=0.05)
+
+
+def test_incompressible_ball_changes_radius_and_peak_with_the_square():
+    small, large = (scalars(ball_on_rigid(width, 0.5)) for width in (3e-3, 3e-2))
+    assert small[1] == pytest.approx(-3e-3 / 4, rel=5e-3)
+    assert np.log10(large / small) == pytest.approx([2.0, 1.0, 2.0], rel=0.05)
+
+
+def test_disc_changes_the_approach_in_proportion_and_the_peak_with_the_cube_of_its_thickness():
+    thick, thin = (scalars(contact(0.1), thickness=t) for t in (10.0, 2.5))
+    assert np.log(thin / thick) / np.log(4) == pytest.approx([3.0, 1.0, 3.0], rel=0.05)
+    assert scalars(contact(0.01), thickness=1e4) == pytest.approx(0.0, abs=1e-6)
+
+
+def test_coating_of_the_balls_own_material_changes_nothing():
+    x = np.linspace(0.0, 0.1 * R, 9)
+    bare, coated = (ElasticBall(R, (layer, (E, NU))) for layer in ((), ((E, NU, 0.05 * R),)))
+    kernel = bare.beyond_half_space(x)
+    assert coated.beyond_half_space(x) == pytest.approx(kernel, rel=1e-9)
+    assert kernel == pytest.approx(kernel.T, rel=1e-12)
+
+
+@pytest.mark.slow
+def test_uncertainty_contains_finer_quadrature(monkeypatch):
+    problem = contact(0.1, (0.5 * E, NU, ()), coating=(4.0, 0.5))
+    change, uncertainty = of_half_spaces(problem)
+    monkeypatch.setattr("verification.sources.assumptions.bodies.NODES", (130, 130))
+    finer, _ = of_half_spaces(problem)
+    off = np.abs(np.array(astuple(change)) - astuple(finer))
+    assert np.all(off <= astuple(uncertainty))
+    assert max(astuple(uncertainty)) < 2e-5
+
+
+@pytest.mark.slow
+def test_semianalytical_contact_confirms_the_disc():
+    problem = contact(0.1, coating=(4.0, 0.5))
+    half, disc = (
+        semianalytic.solve(**keywords(one), gap="sphere", patches=33, estimate_uncertainty=False)
+        for one in (problem, on_disc(problem, R))
+    )
+    change, _ = of_half_spaces(problem)
+    for name in ("contact_radius", "approach", "peak_pressure"):
+        assert getattr(disc, name) / getattr(half, name) - 1 == pytest.approx(getattr(change, name), rel=1e-6)
+    before, after = (one.stress(-one.contact_radius, 0.0, 0.0)[0, 0] for one in (half, disc))
+    assert (after - before) / (FLOOR * half.peak_pressure) == pytest.approx(change.tension, rel=1e-6)
+
+
+def test_coatings_as_thick_as_a_body_are_refused():
+    with pytest.raises(ValueError, match="make the disc thicker"):
+        of_half_spaces(contact(0.1, coating=(2.0, 11.0)))
+    with pytest.raises(ValueError, match="as thick as the ball"):
+        of_half_spaces(contact(0.1, (E, NU, ((E, NU, R),))))
+
+
+# Finite elements of a pressure with phi = (1 - (t/a)^2)^2: the work of the pressure, per radian
+
+A = 0.2
+
+
+def half_space_work():
+    x, w = gauss_legendre(80)
+    s, w = 0.5 * A * (1 + x), 0.5 * A * w
+    phi = (1 - (s / A) ** 2) ** 2
+    return s, w * phi, np.pi * (1 - NU**2) * float(w @ phi**2)
+
+
+@pytest.mark.slow
+def test_finite_elements_of_the_ball_confirm_its_series():
+    s, phi, plane = half_space_work()
+    ball = ElasticBall(1.0, ((), (1.0, NU)))
+    expected = phi @ ball.beyond_half_space(np.append(s, A))[:-1, :-1] @ phi
+    h = np.sqrt(0.5)
+    mesh = MeshTri(np.array([[0, 1, 0, h], [0, 0, 1, h]]), np.array([[0, 1, 3], [0, 3, 2]]).T)
+    mesh = _finer(_on_circle(_on_circle(mesh.refined()).refined()), (A, np.sqrt(1 - A**2)), _on_circle)
+    found = _work(_curved(mesh), lambda x: np.hypot(*x) > 0.999, bonded=False) - plane
+    # of the change itself, 8 % of the work
+    assert found == pytest.approx(expected, rel=1e-5)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("rim", "effect"), [(5.0, 0.0), (3.0, -4.6e-4), (2.0, -2.6e-3), (1.0, -9.9e-2)])
+def test_finite_elements_of_the_disc_confirm_the_layer_away_from_its_rim(rim, effect):
+    s, phi, plane = half_space_work()
+    solids = ((((1.0, NU, 1.0),), (1e9, NU)),)
+    k, weight = kernel_wavenumbers(solids, A, 16, 36.0)
+    M = compliance(solids, 1 / (1 - NU**2), k)
+    layer = 2 * (1 - NU**2) * np.sum(weight * (M - 1) * (np.cos(np.outer(k, s)) @ phi) ** 2)
+    mesh = MeshTri.init_tensor(np.linspace(0, rim, int(2 * rim) + 1), np.linspace(0, 1, 3))
+    found = _work(_finer(mesh, (A, 1.0), lambda one: one), lambda x: x[1] > 1 - 1e-9, bonded=True) - plane
+    # of the change, 12 % of the work
+    assert found / layer - 1 == pytest.approx(effect, abs=2e-5, rel=0.02)
+
+
+def _finer(mesh, edge, place):
+    """Triangles no wider than 0.8 of their distance from the contact edge or the pole."""
+    while True:
+        corners = mesh.p[:, mesh.t]
+        middle, size = corners.mean(axis=1), np.hypot(*(corners - np.roll(corners, 1, axis=1))).max(axis=0)
+        distance = np.min([np.hypot(*(middle - np.reshape(c, (2, 1)))) for c in (edge, (0.0, 1.0))], axis=0)
+        wide = np.flatnonzero(size > 0.8 * np.maximum(distance, 0.02 * A))
+        if not wide.size:
+            return mesh
+        mesh = place(mesh.refined(wide))
+
+
+def _on_circle(mesh):
+    p, edge = mesh.p.copy(), mesh.boundary_nodes()
+    arc = edge[(p[:, edge] > 1e-12).all(axis=0)]
+    p[:, arc] /= np.hypot(*p[:, arc])
+    return MeshTri(p, mesh.t)
+
+
+def _curved(mesh):
+    """Quadratic triangles with the middles of outer edges on the circle."""
+    curved = MeshTri2.from_mesh(mesh)
+    ends = mesh.p[:, mesh.facets[:, mesh.boundary_facets()]]
+    for middle in ends[:, :, (np.abs(np.hypot(*ends) - 1) < 1e-9).all(axis=0)].mean(axis=1).T:
+        node = np.argmin(np.hypot(*(curved.doflocs - middle[:, None])))
+        curved.doflocs[:, node] = middle / np.hypot(*middle)
+    return curved
+
+
+def _work(mesh, surface, bonded):
+    """int p w r dr of the body above z = 0, E = 1, pressed from above; u_z = 0 on z = 0."""
+    element = ElementVector(ElementTriP4())
+    basis = Basis(mesh, element, intorder=10)
+    top = FacetBasis(mesh, element, facets=mesh.facets_satisfying(surface, True), intorder=20)
+    lame, G = NU / ((1 + NU) * (1 - 2 * NU)), 1 / (2 * (1 + NU))
+
+    @BilinearForm
+    def energy(u, v, w):
+        def strain(u):
+            g = grad(u)
+            return g[0][0], g[1][1], u[0] / w.x[0], g[0][1] + g[1][0]
+
+        (*e, shear), (*d, other) = strain(u), strain(v)
+        normal = lame * sum(e) * sum(d) + 2 * G * sum(a * b for a, b in zip(e, d, strict=True))
+        return w.x[0] * (normal + G * shear * other)
+
+    @LinearForm
+    def load(v, w):
+        p = 8 / (3 * A) * np.maximum(1 - (w.x[0] / A) ** 2, 0.0) ** 1.5
+        return -p * v[1] * w.x[0] * np.abs(w.n[1])
+
+    force = load.assemble(top)
+    names = {c: [name for name in basis.elem.dofnames if name.endswith(f"^{c}")] for c in (1, 2)}
+    axis, base = (basis.get_dofs(lambda x, i=i: np.abs(x[i]) < 1e-10) for i in (0, 1))
+    fixed = [axis.all(names[1]), base.all(names[2]), *([base.all(names[1])] if bonded else [])]
+    return force @ solve(*condense(energy.assemble(basis), force, D=np.unique(np.concatenate(fixed))))

@@ -1,0 +1,217 @@
+"""Finite strain: neo-Hookean layers, elements, the contact against closed forms and a second theory."""
+
+from dataclasses import astuple, replace
+from functools import partial
+
+import numpy as np
+import pytest
+
+from verification.problem.contact import CoatedContact, keywords
+from verification.sources.assumptions import neo_hooke
+from verification.sources.assumptions.deformation import SphereContact, State
+from verification.sources.assumptions.meridian import Meridian
+from verification.sources.assumptions.sphere import SphereOnHalfSpace
+from verification.sources.assumptions.strain import COARSE, FINE, Resolution, deformed, of_small_strains
+from verification.sources.references import integral_equation
+from verification.sources.references.integral_equation import SPHERE
+
+STEEL = (210e9, 0.3)
+MU, LAM = (np.array(part) for part in neo_hooke.lame(1.0, 0.3))
+SMALL = Resolution(3, 1.5, 0.05, 10.0)  # a few elements
+
+
+def contact(width, ratio=None, thickness=0.5, nu=0.3):
+    """A contact of a_h/R = ``width``, uncoated without ``ratio``."""
+    E, R = STEEL[0], 1e-3
+    a_h = width * R
+    coatings = () if ratio is None else ((ratio * E, nu, thickness * a_h),)
+    return CoatedContact(R, 4 * a_h**3 * E / (1 - nu**2) / (3 * R), coatings, (E, nu))
+
+
+def grid(resolution, depths=()):
+    return Meridian(depths, resolution.far, resolution.degree, resolution.step, resolution.edge)
+
+
+def gradient(seed=1, size=0.2):
+    return neo_hooke.IDENTITY + size * np.random.default_rng(seed).uniform(-1, 1, 5)
+
+
+def energy(F):
+    J = (F[0] * F[3] - F[1] * F[2]) * F[4]
+    return MU / 2 * (F @ F - 3) - MU * np.log(J) + LAM / 2 * np.log(J) ** 2
+
+
+def slopes(function, x, step=1e-6):
+    return np.stack(
+        [(function(x + h) - function(x - h)) / (2 * step) for h in step * np.eye(x.size)], axis=-1
+    )
+
+
+def test_stress_is_the_slope_of_the_energy():
+    F = gradient()
+    assert neo_hooke.first_piola(F, MU, LAM) == pytest.approx(slopes(energy, F), abs=1e-9)
+
+
+def test_tangent_is_the_slope_of_the_stress():
+    F = gradient()
+    by_slopes = slopes(lambda F: neo_hooke.first_piola(F, MU, LAM), F)
+    assert neo_hooke.tangent(F, MU, LAM) == pytest.approx(by_slopes, abs=1e-8)
+
+
+def test_tangent_without_deformation_is_that_of_hooke():
+    H = gradient() - neo_hooke.IDENTITY
+    assert neo_hooke.tangent(neo_hooke.IDENTITY, MU, LAM) @ H == pytest.approx(neo_hooke.hooke(H, MU, LAM))
+
+
+def test_free_surface_stress_is_that_of_the_solid_with_no_traction():
+    by_r, by_z, hoop, normal = 0.2, 0.3, -0.1, 0.9
+    # dX along the surface to (1 + by_r, by_z), the normal of the stretch that leaves no traction
+    stress = neo_hooke.free_surface_stress(*(np.array([v]) for v in (by_r, by_z, hoop)), MU, LAM)
+    tangent, across = np.array([1 + by_r, by_z]), np.array([-by_z, 1 + by_r])
+    across /= np.linalg.norm(across)
+
+    def sigma(normal):
+        F = np.array([tangent[0], normal * across[0], tangent[1], normal * across[1], 1 + hoop])
+        P, f = neo_hooke.first_piola(F, MU, LAM)[:4].reshape(2, 2), F[:4].reshape(2, 2)
+        return P @ f.T / (np.linalg.det(f) * F[4])
+
+    for _ in range(50):
+        now, step = across @ sigma(normal) @ across, 1e-7
+        normal -= now / ((across @ sigma(normal + step) @ across - now) / step)
+    assert stress[0] == pytest.approx(sigma(normal)[0, 0], rel=1e-6)
+    small = neo_hooke.free_surface_stress(*(1e-7 * np.array([v]) for v in (by_r, by_z, hoop)), MU, LAM)
+    hooke = neo_hooke.free_surface_stress(*(np.array([v]) for v in (by_r, by_z, hoop)), MU, LAM, False)
+    assert small[0] / 1e-7 == pytest.approx(hooke[0], rel=1e-5)
+
+
+@pytest.mark.parametrize("finite", [True, False])
+def test_patch_of_constant_strain_is_exact(finite):
+    mesh = grid(SMALL, (0.7,))
+    model = SphereContact(mesh, 5.0, 0.1, ((1.0, 0.3, 0.7),), (1.0, 0.3), finite)
+    along, down, A = 0.2, -0.15, 1.3
+    r, z = (part.ravel() for part in np.meshgrid(A * mesh.rho, mesh.z, indexing="ij"))
+    f = model.forces(State(A, 0.0, np.stack([along * r, down * z], axis=1).ravel()))
+    F = neo_hooke.IDENTITY + np.array([along, 0, 0, down, along])
+    P = neo_hooke.first_piola(F, MU, LAM) if finite else neo_hooke.hooke(F - neo_hooke.IDENTITY, MU, LAM)
+    f_r, f_z = f.reshape(mesh.rho.size, mesh.z.size, 2).transpose(2, 0, 1)
+    assert abs(f_z[:, 1:-1]).max() < 1e-11 * abs(f_z).max()
+    assert abs(f_r[:-1]).max() < 1e-11 * abs(f_r).max()
+    assert mesh.density(A * mesh.rho, -f_z[:, 0]) == pytest.approx(P[3], rel=1e-7)
+    assert f_r[-1].sum() == pytest.approx(P[0] * A * mesh.rho[-1] * mesh.z[-1])
+
+
+def test_stiffness_is_the_slope_of_the_forces():
+    model = SphereContact(grid(SMALL), 5.0, 0.1, (), (1.0, 0.3), True)
+    rng, size = np.random.default_rng(2), 2 * model.mesh.rho.size * model.mesh.z.size
+    u, direction = (scale * rng.uniform(-1, 1, size) for scale in (1e-3, 1e-6))
+    state = partial(State, 1.1, 0.0)
+    slope = (model.forces(state(u + direction)) - model.forces(state(u - direction))) / 2
+    by_stiffness = model.stiffness(state(u)) @ direction
+    assert abs(by_stiffness - slope).max() < 1e-5 * abs(slope).max()
+
+
+def test_elastic_ball_is_refused():
+    with pytest.raises(ValueError, match="rigid ball"):
+        of_small_strains(replace(contact(0.1), ball=(*STEEL, ())))
+
+
+def test_contact_of_a_sphere_at_small_strain():
+    """Radius to the size of the elements at the edge, approach to the boundary."""
+    exact = SphereOnHalfSpace(5.0, 1.0, 1.0)
+    mesh = grid(Resolution(4, 1.6, 1e-3, 20.0))
+    model = SphereContact(mesh, 5.0, exact.load, (), (0.91, 0.3), False)
+    found = model.results(model.solve())
+    assert found.contact_radius == pytest.approx(1.0, rel=5e-5)
+    assert found.approach == pytest.approx(exact.approach, rel=1e-4)
+    assert found.peak_pressure == pytest.approx(exact.peak_pressure, rel=1e-3)
+    assert found.tension == pytest.approx(0.4 * exact.load / (2 * np.pi), abs=2e-3 * exact.peak_pressure)
+
+
+def test_deformed_contact_lies_on_the_sphere_and_balances_the_load():
+    R, load = 4.0, 0.3
+    model = SphereContact(grid(SMALL, (0.5,)), R, load, ((0.5, 0.3, 0.5),), (1.0, 0.3), True)
+    state = model.solve()
+    r, z = state.A * model.rho + state.u[model.c_r], state.u[model.c_z]
+    assert np.hypot(r, R - state.delta + z) == pytest.approx(R, rel=1e-9)
+    f = model.forces(state)
+    slope = r / np.sqrt(R**2 - r**2)
+    assert f[model.c_r][1:] == pytest.approx((slope * f[model.c_z])[1:], abs=1e-9 * load)  # along the normal
+    assert 2 * np.pi * f[model.c_z].sum() == pytest.approx(load)
+    assert f[model.c_z][-1] == pytest.approx(0.0, abs=1e-9 * load)
+
+
+@pytest.mark.slow
+def test_radius_converges_with_the_elements_at_the_edge():
+    exact = SphereOnHalfSpace(5.0, 1.0, 1.0)
+    errors = []
+    for edge in (1e-2, 1e-3, 1e-4):
+        model = SphereContact(grid(Resolution(5, 1.0, edge, 100.0)), 5.0, exact.load, (), (0.91, 0.3), False)
+        errors.append(model.results(model.solve()).contact_radius - 1)
+    order = np.log10(np.abs(errors[:-1]) / np.abs(errors[1:]))
+    assert order == pytest.approx(1.0, abs=0.1), errors
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("nu", [0.0, 0.3, 0.49])
+@pytest.mark.parametrize("ratio", [0.25, 10.0])
+def test_small_strain_meets_the_exact_coated_contact(ratio, nu):
+    """Stress to 2e-4 of the peak pressure also near incompressibility, so nothing locks."""
+    problem = contact(0.1, ratio, 1.0, nu)
+    exact = integral_equation.solve(**keywords(problem), gap=SPHERE, estimate_uncertainty=False)
+    found, a_h, p_h = deformed(problem, FINE)[0], problem.a_h, problem.E_star
+    assert found.contact_radius * a_h == pytest.approx(exact.contact_radius, rel=3e-5)
+    assert found.approach * a_h == pytest.approx(exact.approach, rel=2e-3)
+    assert found.peak_pressure * p_h == pytest.approx(exact.peak_pressure, rel=1e-4)
+    x = np.linspace(0, 4, 400) * a_h
+    shear = np.abs(exact.stress(x, 0.0, problem.interfaces[0], 0)[0, 2]).max()
+    assert found.shear * p_h == pytest.approx(shear, abs=2e-4 * exact.peak_pressure)
+    tension = exact.stress(-exact.contact_radius, 0.0, 0.0)[0, 0]
+    assert found.tension * p_h == pytest.approx(tension, abs=3e-4 * exact.peak_pressure)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("ratio", [None, 0.25, 4.0])
+def test_cost_is_of_first_order_in_the_width(ratio):
+    widths = 1e-3, 4e-3
+    small, large = (of_small_strains(contact(width, ratio))[0] for width in widths)
+    changes = [pair for pair in zip(astuple(small), astuple(large), strict=True) if None not in pair]
+    for one, other in changes:
+        assert np.log(other / one) / np.log(widths[1] / widths[0]) == pytest.approx(1.0, abs=0.05)
+
+
+def second_order_energy(problem):
+    """Of order strain^3, at the fields of small strain: the change of the energy at the same approach.
+
+    int Psi_3 dV - int p G'(r) u_r dA with Psi_3 = -mu/3 tr H^3 - lambda/2 tr H tr H^2: by the envelope
+    theorem only the fields of the lower order enter.
+    """
+    a, E_star = problem.a_h, problem.E_star
+    coatings = tuple((E / E_star, nu, h / a) for E, nu, h in problem.coatings)
+    substrate = problem.substrate[0] / E_star, problem.substrate[1]
+    R = problem.radius / a
+    mesh = grid(replace(COARSE, edge=COARSE.edge / 2), tuple(z / a for z in problem.interfaces))
+    model = SphereContact(mesh, R, problem.load / (E_star * a**2), coatings, substrate, False)
+    state = model.solve()
+    rr, rz, zr, zz, tt = np.moveaxis(model.gradient(state), -1, 0)
+    H = np.zeros((*rr.shape, 3, 3))
+    H[..., 0, 0], H[..., 0, 1], H[..., 1, 0], H[..., 1, 1], H[..., 2, 2] = rr, rz, zr, zz, tt
+    squares = H @ H
+    tr, tr2, tr3 = (np.trace(part, axis1=-2, axis2=-1) for part in (H, squares, squares @ H))
+    volume = np.sum((-model.mu / 3 * tr3 - model.lam / 2 * tr * tr2) * mesh.weights) * state.A**2
+    r = state.A * model.rho
+    surface = np.sum(model.forces(state)[model.c_z] * r / np.sqrt(R**2 - r**2) * state.u[model.c_r])
+    return 2 * np.pi * (volume - surface) * E_star * a**3, state.delta * a
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("ratio", "nu"), [(None, 0.0), (None, 0.3), (None, 0.49), (0.25, 0.3), (4.0, 0.45)])
+def test_approach_follows_the_second_order_energy(ratio, nu):
+    """At the same load the approach changes by -d(second-order energy)/dW."""
+    problem, step = contact(1e-3, ratio, nu=nu), 0.02
+    above, below = (
+        second_order_energy(replace(problem, load=(1 + by) * problem.load))[0] for by in (step, -step)
+    )
+    _, approach = second_order_energy(problem)
+    expected = -(above - below) / (2 * step * problem.load) / approach
+    change, uncertainty = of_small_strains(problem)
+    assert change.approach == pytest.approx(expected, rel=5e-3, abs=5 * uncertainty.approach)
