@@ -1,4 +1,4 @@
-"""Upper bounds: displacements that are continuous, as prescribed under the contact and zero far away.
+"""Upper bounds: continuous displacements, prescribed under the contact, zero far away.
 
 For the true u under the displacement w of the contact, frictionless, and any other admissible v
 
