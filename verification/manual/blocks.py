@@ -233,7 +233,7 @@ def two_sided() -> str:
         if one.two_sided is not None:
             cells = [f"`{one.name}`"]
             for (low, high), exact, effectivity in one.two_sided.compared:
-                ends = (scientific(1 - low / exact, 1), scientific(high / exact - 1, 1))
+                ends = (scientific(1 - low / exact, 2), scientific(high / exact - 1, 2))
                 cells += [*ends, f"{effectivity:.1f}"]
             rows.append([*cells, f"{one.two_sided.seconds:.0f} s"])
     parts = ["below", "above", "effectivity"]

@@ -11,7 +11,7 @@ from verification.sources.bounds import displacement, stress
 from verification.sources.bounds.approach import approach_bounds, bound
 from verification.sources.bounds.elements import Pieces, Points
 from verification.sources.bounds.energy import virtual_work
-from verification.sources.bounds.half_space import half_space
+from verification.sources.bounds.half_space import RADIAL_POINTS, STEEPEST, half_space
 from verification.sources.references import integral_equation
 
 COARSE = {"degree": 4, "edge": 0.1, "far": 300.0}
@@ -52,6 +52,12 @@ def test_pieces_are_as_smooth_as_stated():
             assert table[numbers[:-1], np.arange(3), 0] == pytest.approx(1.0)
     # every polynomial of the degree: as many independent functions a piece
     assert np.linalg.matrix_rank(Pieces(knots[:2], 5, 1).table(Points.gauss(knots[:2], 8))) == 6
+
+
+def test_radial_points_integrate_polynomials_over_r_to_rounding():
+    # such a quotient is a polynomial, which they integrate exactly, with a multiple of 1/r
+    points = Points.gauss(np.array([1.0, STEEPEST**1.5]), RADIAL_POINTS)
+    assert points.weight @ (1 / points.place) == pytest.approx(1.5 * np.log(STEEPEST), rel=1e-14)
 
 
 def test_any_stress_of_the_unknowns_is_in_equilibrium(phi):
