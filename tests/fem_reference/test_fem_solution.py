@@ -102,9 +102,9 @@ def budget(found):
     return {(quantity, origin): value for quantity, origin, value in found.scalars.budget}
 
 
-def estimated(companion):
+def estimated(companion, residual=0.0):
     """Budget and uncertainty of the stiffness if ``companion`` were the contact on the coarser mesh."""
-    one, s = contact(), solved("sphere")
+    one, s = replace(contact(), residual=residual), solved("sphere")
     states = (ElasticState.of_contact(s.state.solid, one),)
     (found,), stiffness = contact_estimates(
         ContactLevels(one, companion, 3.0, ()), states, s.units, one.load, 0.5
@@ -127,6 +127,17 @@ def test_a_companion_that_agrees_leaves_no_error_of_element_size():
         assert larger == pytest.approx(smaller, rel=1e-6, abs=1e-12 * solved("sphere").approach)
         assert up[1] == pytest.approx(down[1])
         assert max(larger, up[1] - least) > 0
+
+
+def test_forces_out_of_balance_count_as_load():
+    one, s = contact(), solved("sphere")
+    (none, least), (some, stiffness) = estimated(one), estimated(one, residual=1e-3)
+    shares = {"contact_radius": 1 / 2, "approach": 1, "peak_pressure": 1 / 3}
+    for name, share in shares.items():
+        more = some[name, "load balance"] - none[name, "load balance"]
+        assert more == pytest.approx(1e-3 * share * getattr(s, name), rel=1e-3, abs=0)
+    unit = s.units.load / s.units.displacement
+    assert stiffness - least == pytest.approx(1e-3 * one.stiffness * unit, rel=1e-9, abs=0)
 
 
 def test_each_cause_adds_to_the_uncertainty():

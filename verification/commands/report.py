@@ -52,7 +52,7 @@ def report(
             material, whole = stored_material(folder)
             evidence = material.evidence
             if records is not None or not whole:
-                found = gather(RECORDS if records is None else records)
+                found = gather(RECORDS if records is None else records, material.problems)
                 kept = {name: getattr(evidence, name) for name in ("accuracy", "baseline", "formulas")}
                 evidence = replace(found, **kept, self_tests=evidence.self_tests or self_tests())
             if baseline is not None or not whole:

@@ -108,7 +108,8 @@ def run(
         """Self-tests and evidence, neither of which depends on a result."""
         from verification.report.material import gather
 
-        return _self_tested(), gather(records)
+        problems = {case.name: case.problem for case in chosen if isinstance(case, Case)}
+        return _self_tested(), gather(records, problems)
 
     begin, started = time.perf_counter(), datetime.datetime.now(datetime.UTC)
     try:
@@ -142,10 +143,13 @@ def run(
             page = _write_page(results, info, evidence, output)
     except KeyboardInterrupt:
         return _stopped(chosen, output)
+    beyond = _beyond_model(results, evidence)
     if as_json:
-        print_json(_summary(results, page, beside, tests))
+        print_json(_summary(results, page, beside, tests, beyond))
     elif not quiet:
         _print_table(results, page, time.perf_counter() - begin, beside)
+    for name, lines in beyond.items():
+        print_warnings(lines, name, strict=False, silent=quiet or as_json)
     return _code(results, beside, tests)
 
 
@@ -155,6 +159,13 @@ def _write_page(results: Sequence[CaseResult], info: RunInfo, evidence: "Evidenc
     from verification.running.fields import read_planes
 
     return write_report(Material(results, info, evidence, read_planes(output, results)), output)
+
+
+def _beyond_model(results: Sequence[CaseResult], evidence: "Evidence") -> dict[str, tuple[str, ...]]:
+    """Warnings of what the assumptions of the model cost, by case."""
+    from verification.report.material import model_warnings
+
+    return {result.name: model_warnings(result, evidence) for result in results}
 
 
 def _self_tested() -> tuple[SelfTest, ...]:
@@ -207,7 +218,11 @@ def _stopped(chosen: Sequence[Case | PublishedCase], output: Path) -> int:
 
 
 def _summary(
-    results: Sequence[CaseResult], page: Path, beside: Regression, tests: Sequence[SelfTest]
+    results: Sequence[CaseResult],
+    page: Path,
+    beside: Regression,
+    tests: Sequence[SelfTest],
+    beyond: dict[str, tuple[str, ...]],
 ) -> dict[str, object]:
     states = {case.name: case.state for case in beside.cases}
     return {
@@ -219,7 +234,7 @@ def _summary(
             result.name: {
                 "outcome": result.outcome,
                 "baseline": states.get(result.name),
-                "warnings": result.warnings,
+                "warnings": [*result.warnings, *beyond[result.name]],
                 "verdicts": {o: sum(v.outcome is o for _, v in result.verdicts) for o in DECIDED},
                 "invariants": {o: sum(law.outcome is o for law in result.invariants) for o in DECIDED},
             }

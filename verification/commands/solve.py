@@ -17,6 +17,7 @@ from verification.commands.common.exits import EXIT, CommandError, no_result, wi
 from verification.commands.common.options import AsJson, Flag, Strict
 from verification.commands.common.solving import progress_bar, require_gmsh
 from verification.commands.common.terminal import print_json, print_out, print_warnings
+from verification.credibility.model.error import ModelError, model_error
 from verification.desk.answer import Answer, Difference, answer, differences
 from verification.desk.wording import case_text
 from verification.judging.outcome import Outcome
@@ -66,7 +67,9 @@ def solve(
     case = _from_file(file, given) if file is not None else _from_options(*given)
     if plot is not None:
         _require_format(plot)
-    print_warnings(case.warnings, case.name, strict=strict, silent=as_json)
+    beyond = model_error(case.problem)
+    warnings = (*case.warnings, *beyond.warnings(told=case.warnings))
+    print_warnings(warnings, case.name, strict=strict, silent=as_json)
     if check:
         require_gmsh()
     stages = 1 + check + bool(case.layers)
@@ -88,9 +91,9 @@ def solve(
 
         write(first, case.title, plot)
     if as_json:
-        print_json(_content(case, (*case.warnings, *late), first, second, apart, halved))
+        print_json(_content(case, (*warnings, *late), beyond, first, second, apart, halved))
     else:
-        _print(case, first, second, apart, halved)
+        _print(case, beyond, first, second, apart, halved)
     agree = all(difference.within for difference in apart)
     return EXIT[Outcome.AGREES if agree else Outcome.DISAGREES]
 
@@ -143,6 +146,7 @@ def _halved(case: Case, first: Answer) -> tuple[Difference, ...]:
 def _content(
     case: Case,
     warnings: Sequence[str],
+    beyond: ModelError,
     first: Answer,
     second: Answer | None,
     apart: Sequence[Difference],
@@ -156,6 +160,7 @@ def _content(
         "residual_stress": case.residual,
         "case_file": case.text,
         "warnings": list(warnings),
+        "model_error": {"message": beyond.message(), **encode(beyond)},
         "answer": encode(first),
         "check": None if second is None else encode(second),
         "differences": [encode(one) for one in apart],
@@ -165,6 +170,7 @@ def _content(
 
 def _print(
     case: Case,
+    beyond: ModelError,
     first: Answer,
     second: Answer | None,
     apart: Sequence[Difference],
@@ -218,6 +224,7 @@ def _print(
         "",
         f"tension positive, in the plane y = 0, x along sliding, z into each body; {seconds}",
     )
+    print_out(*(escape(line) for line in (beyond.message(), *beyond.notes)))
     if case.residual:
         print_out(
             "with residual stress; the shear of an interface near a free edge of its coating is not covered"

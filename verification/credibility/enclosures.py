@@ -14,6 +14,7 @@ import numpy as np
 from verification.problem.arrays import Coatings
 from verification.problem.contact import CoatedContact, Solution, stress_with_uncertainty
 from verification.running.records import RecordFile
+from verification.sources.bounds.approach import EnergyBounds
 
 SHIPPED = Path(__file__).parent / "shipped"
 SCHEMA = "coatcheck-enclosures/1"
@@ -34,22 +35,26 @@ class Bounds:
     upper: str
 
     @property
+    def exact(self) -> tuple[Fraction, Fraction]:
+        """Lower and upper number as they are written."""
+        return Fraction(Decimal(self.lower)), Fraction(Decimal(self.upper))
+
+    @property
     def middle(self) -> float:
         """The nearest binary number to the middle."""
-        return float((Fraction(Decimal(self.lower)) + Fraction(Decimal(self.upper))) / 2)
+        return float(sum(self.exact) / 2)
 
     @property
     def width(self) -> float:
         """Relative to the middle, rounded to nearest."""
-        return float(Fraction(Decimal(self.upper)) - Fraction(Decimal(self.lower))) / abs(self.middle)
+        return float(self.exact[1] - self.exact[0]) / abs(self.middle)
 
     def distance(self, value: float) -> float:
         """How far ``value`` lies outside, 0 inside; infinite where it is not finite."""
         if not np.isfinite(value):
             return float("inf")
-        exact = Fraction(value)
-        below, above = Fraction(Decimal(self.lower)) - exact, exact - Fraction(Decimal(self.upper))
-        return float(max(below, above, Fraction(0)))
+        lower, upper = self.exact
+        return float(max(lower - Fraction(value), Fraction(value) - upper, Fraction(0)))
 
 
 @dataclass(frozen=True)
@@ -62,10 +67,50 @@ class Ring:
 
 
 @dataclass(frozen=True)
+class TwoSided:
+    """Energy bounds by finite elements at the enclosed contact radius, beside what they have to contain."""
+
+    found: EnergyBounds
+    stiffness: Bounds
+    approach: Bounds
+    seconds: float
+
+    @property
+    def contained(self) -> bool:
+        """Whether both enclosures lie between the energy bounds."""
+        pairs = ((self.found.stiffness, self.stiffness), (self.found.approach, self.approach))
+        return all(low <= one.exact[0] and one.exact[1] <= high for (low, high), one in pairs)
+
+    @property
+    def compared(self) -> tuple[tuple[tuple[float, float], float, float], ...]:
+        """Bounds, enclosed value, effectivity; of the stiffness, then of the approach."""
+        k, d = self.effectivities
+        return (
+            (self.found.stiffness, self.stiffness.middle, k),
+            (self.found.approach, self.approach.middle, d),
+        )
+
+    @property
+    def widths(self) -> tuple[float, float]:
+        """Of the bounds of stiffness and approach, relative."""
+        k, d = np.ptp(self.found.stiffness), np.ptp(self.found.approach)
+        return float(k / self.stiffness.middle), float(d / self.approach.middle)
+
+    @property
+    def effectivities(self) -> tuple[float, float]:
+        """Proven over true error of the displacements alone, of stiffness and approach."""
+        low, high = self.found.stiffness
+        displaced = self.found.displaced
+        proven = max(abs(displaced - end) for end in self.found.approach)
+        return (high - low) / (high - self.stiffness.middle), proven / abs(displaced - self.approach.middle)
+
+
+@dataclass(frozen=True)
 class Enclosure:
     """One problem, a rigid sphere without friction, with its bounds.
 
     profile : bounds of the pressure along the radius, of the problems of published tables.
+    two_sided : bounds by finite elements, of some problems.
     bits, terms : precision and number of basis functions of the proof; 0 where a closed form is enclosed.
     """
 
@@ -79,6 +124,7 @@ class Enclosure:
     bits: int = 0
     terms: int = 0
     profile: tuple[Ring, ...] = ()
+    two_sided: TwoSided | None = None
 
     @property
     def problem(self) -> CoatedContact:

@@ -225,6 +225,22 @@ def enclosures() -> str:
     )
 
 
+def two_sided() -> str:
+    """Energy bounds by finite elements beside the enclosures that they contain."""
+    record = read_enclosures(RECORDS)
+    rows = []
+    for one in record.enclosures if record else ():
+        if one.two_sided is not None:
+            cells = [f"`{one.name}`"]
+            for (low, high), exact, effectivity in one.two_sided.compared:
+                ends = (scientific(1 - low / exact, 2), scientific(high / exact - 1, 2))
+                cells += [*ends, f"{effectivity:.1f}"]
+            rows.append([*cells, f"{one.two_sided.seconds:.0f} s"])
+    parts = ["below", "above", "effectivity"]
+    head = ["problem", *(f"{which}, {part}" for which in ("$k$", r"$\delta$") for part in parts), "time"]
+    return table(head, rows, 1)
+
+
 def assumption_costs() -> str:
     """What each measured assumption costs over its map, by the coordinate that it grows with."""
     maps = read_maps(RECORDS)
@@ -277,6 +293,7 @@ _ALL: Sequence[Callable[[], str]] = (
     history,
     solved,
     enclosures,
+    two_sided,
     assumption_costs,
     more_pages,
 )

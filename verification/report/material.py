@@ -4,9 +4,9 @@ import json
 import shlex
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from datetime import UTC, datetime
-from functools import cached_property
+from functools import cached_property, partial
 from pathlib import Path, PurePath
 from typing import Any, TypeVar
 
@@ -20,9 +20,12 @@ from verification.credibility.faults.campaign import RECORD
 from verification.credibility.faults.record import Record, read_record
 from verification.credibility.independence import Part, parts
 from verification.credibility.manufactured import DesignOrder, design_orders
+from verification.credibility.model.error import ModelError, judged_quantities, model_error
+from verification.credibility.model.maps import AssumptionMaps, read_maps
 from verification.credibility.mutation import record as mutation
 from verification.credibility.mutation.record import MutantRecord
 from verification.credibility.self_tests import SelfTest
+from verification.problem.contact import CoatedContact
 from verification.regression.baseline import Regression
 from verification.report.tables.lookup import slug
 from verification.running.fields import read_planes
@@ -46,6 +49,7 @@ class Evidence:
     accuracy : errors of the methods over resolution.
     formulas : effective-modulus formulas.
     baseline : the change of each number since the baseline.
+    maps : what the assumptions of the model cost.   models : the same of each case, by its name.
     """
 
     orders: tuple[DesignOrder, ...] = ()
@@ -59,10 +63,15 @@ class Evidence:
     formulas: EffectiveStudy | None = None
     mutants: MutantRecord | None = None
     enclosures: EnclosureRecord | None = None
+    maps: AssumptionMaps | None = None
+    models: Mapping[str, ModelError] = field(default_factory=dict)
 
 
-def gather(records: Path) -> Evidence:
-    """Evidence of credibility; faults and false alarms as recorded in the directory ``records``."""
+def gather(records: Path, problems: Mapping[str, CoatedContact] | None = None) -> Evidence:
+    """Evidence of credibility; what is recorded from the directory ``records``.
+
+    problems : the contacts of the run by the name of their case, of which the error of the model is found.
+    """
     failures: list[str] = []
 
     def attempt(what: str, measure: Callable[[], T], otherwise: T) -> T:
@@ -75,6 +84,11 @@ def gather(records: Path) -> Evidence:
 
     mutants = attempt("mutants", lambda: mutation.read_record(records / mutation.RECORD), None)
     enclosed = attempt("enclosures", lambda: enclosures.read_record(records), None)
+    maps = attempt("maps of the assumptions", lambda: read_maps(records), None)
+    models = {
+        name: attempt(f"error of the model, {name}", partial(model_error, problem, maps), ModelError(()))
+        for name, problem in (problems or {}).items()
+    }
     return Evidence(
         attempt("manufactured solutions", design_orders, ()),
         attempt("imports", parts, ()),
@@ -83,6 +97,18 @@ def gather(records: Path) -> Evidence:
         tuple(failures),
         mutants=mutants,
         enclosures=enclosed,
+        maps=maps,
+        models=models,
+    )
+
+
+def model_warnings(result: CaseResult, evidence: Evidence) -> tuple[str, ...]:
+    """A line for each assumption that costs too much of what ``result`` judges, if it is not said yet."""
+    found = evidence.models.get(result.name)
+    if found is None:
+        return ()
+    return found.warnings(
+        judged_quantities({claim.quantity for claim, _ in result.verdicts}), result.warnings
     )
 
 
@@ -99,6 +125,15 @@ class Material:
     def contacts(self) -> list[CaseResult]:
         """The results of cases that are not published sources."""
         return [result for result in self.results if not result.published]
+
+    @property
+    def problems(self) -> dict[str, CoatedContact]:
+        """The problems of ``contacts`` by the names of their cases."""
+        names = {one.name for one in fields(CoatedContact)}
+        return {
+            result.name: decode(CoatedContact, {k: v for k, v in result.problem.items() if k in names})
+            for result in self.contacts
+        }
 
     @cached_property
     def published(self) -> list[CaseResult]:

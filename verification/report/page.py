@@ -13,7 +13,7 @@ import numpy as np
 from markupsafe import Markup
 
 from verification.regression.manifest import manifest_message
-from verification.report.credibility import faults, guests, mutants, self_tests, statement
+from verification.report.credibility import faults, guests, model, mutants, self_tests, statement
 from verification.report.html.templates import rendered
 from verification.report.material import Material
 from verification.report.sections import (
@@ -42,6 +42,7 @@ SECTIONS: tuple[tuple[str, Callable[[Material], Section | None]], ...] = (
     ("Results", effective.family_section),
     ("Results", effective.section),
     ("Evidence", statement.section),
+    ("Evidence", model.section),
     ("Evidence", accuracy.section),
     ("Evidence", invariants.section),
     ("Evidence", refinement.semianalytic_section),

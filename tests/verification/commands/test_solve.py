@@ -68,6 +68,8 @@ def test_table_fits_a_hundred_columns(tmp_path, monkeypatch):
     assert p0.split()[1:3] == ["MPa", "1272.6"]
     (edge,) = [line for line in lines if line.startswith("sigma_xx")]
     assert edge.split()[1:] == ["surface", "706.92", *edge.split()[3:4], "-86.62", "0.00"]
+    (model,) = [line for line in lines if "the model itself" in line]
+    assert model.endswith("good to 4.6 % of the tension at the trailing edge: Goodman's assumption")
 
 
 def test_json_holds_everything_and_the_figure_is_written(tmp_path):
@@ -79,6 +81,9 @@ def test_json_holds_everything_and_the_figure_is_written(tmp_path):
     assert content["problem"]["friction"] == 0.25
     assert content["warnings"] == []
     assert content["check"] is None
+    model = content["model_error"]
+    assert "Goodman's assumption" in model["message"]
+    assert {cost["quantity"] for cost in model["costs"]} > {"peak_pressure", "tension"}
     (course,) = content["answer"]["courses"]
     assert len(course["x"]) == len(course["stress"][0])
     assert parse_case(content["case_file"].encode(), Path("again.toml")).problem.radius == 0.01

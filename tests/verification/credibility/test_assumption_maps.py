@@ -152,7 +152,7 @@ def test_assumption_without_an_answer_is_missing_with_the_reason(slow):
 
 def test_coating_too_thin_for_a_direct_model_is_missing_at_once(slow):
     thin = replace(INSIDE, coatings=((*INSIDE.coatings[0][:2], 1e-4 * INSIDE.a_h),))
-    assert "thinner than 0.02 a_h" in dict(model_error(thin, slow).missing)[PARABOLA]
+    assert "thinner than 0.01 a_h" in dict(model_error(thin, slow).missing)[PARABOLA]
 
 
 def test_uncoated_problem_is_read_without_shear(slow):

@@ -44,7 +44,7 @@ def ball_on_rigid(width, nu):
 
 
 def scalars(problem, thickness=1.0):
-    return np.array(astuple(change_at(problem, thickness, nodes=32))[:3])
+    return np.array(astuple(change_at(problem, thickness, {"nodes": 32}))[:3])
 
 
 @pytest.mark.parametrize("coatings", [(), ((E, NU, 0.1 * R), (E, NU, 0.01 * R))])
@@ -116,7 +116,7 @@ def test_coating_of_the_balls_own_material_changes_nothing():
 def test_uncertainty_contains_finer_quadrature(monkeypatch):
     problem = contact(0.1, (0.5 * E, NU, ()), coating=(4.0, 0.5))
     change, uncertainty = of_half_spaces(problem)
-    monkeypatch.setattr("verification.sources.assumptions.bodies.NODES", (130, 130))
+    monkeypatch.setattr("verification.sources.assumptions.bodies.RESOLUTIONS", ({"nodes": 130},) * 2)
     finer, _ = of_half_spaces(problem)
     off = np.abs(np.array(astuple(change)) - astuple(finer))
     assert np.all(off <= astuple(uncertainty))

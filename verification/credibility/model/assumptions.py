@@ -34,6 +34,7 @@ class Assumption:
     independent_of : coordinates that the change does not depend on.
     rates : exponents with which the change of each quantity vanishes as a coordinate does, one for all or one
         for each of ``QUANTITIES``; the axis excludes 0. The map is read scaled by them, and below its axis.
+    warned : beginning of the warning of implausible input that says the same, which is not repeated.
     direct : whether ``model_error`` evaluates ``change``; of a slow model it reads the map.
 
     Layers of real bodies differ in Poisson's ratio: a map to be read needs an axis of it.
@@ -44,6 +45,7 @@ class Assumption:
     axes: Mapping[str, tuple[float, ...]]
     independent_of: tuple[str, ...] = ()
     rates: Mapping[str, float | tuple[float, ...]] = field(default_factory=dict)
+    warned: str = ""
     direct: bool = False
 
     @property
@@ -74,6 +76,7 @@ ASSUMPTIONS: dict[str, Assumption] = {
         of_sphere,
         {**LAYERS, "width": WIDTHS, "friction": (0.0, 0.3)},
         rates={"width": 2.0},
+        warned="contact radius a_h",
         direct=True,
     ),
     "goodman": Assumption(

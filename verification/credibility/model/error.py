@@ -3,12 +3,20 @@
 A fast model is evaluated at the problem; of a slow one the recorded map is read, see ``assumptions``.
 """
 
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, fields
 from functools import cache
 
-from verification.credibility.model.assumptions import ASSUMPTIONS, GOODMAN, HALF_SPACES, PARABOLA
+from verification.credibility.model.assumptions import (
+    ASSUMPTIONS,
+    GOODMAN,
+    HALF_SPACES,
+    PARABOLA,
+    QUANTITIES,
+)
 from verification.credibility.model.maps import SHIPPED, AssumptionMaps, read_maps
 from verification.problem.contact import CoatedContact
+from verification.problem.quantity import BALL_PEAKS, PEAKS
 from verification.sources.assumptions.change import Change
 
 __all__ = ["GOODMAN", "HALF_SPACES", "PARABOLA", "Cost", "ModelError", "model_error"]
@@ -21,7 +29,7 @@ WORDS = {
 }
 
 
-THINNEST = 0.02  # h/a_h; the exact reference needs memory and time in proportion to (a/h)^2 and more
+LIMIT = 0.05  # of a quantity; a larger cost is warned of
 
 
 @dataclass(frozen=True)
@@ -32,6 +40,11 @@ class Cost:
     quantity: str
     change: float
     uncertainty: float
+
+    @property
+    def name(self) -> str:
+        """The quantity in words."""
+        return WORDS.get(self.quantity, self.quantity)
 
     @property
     def size(self) -> float:
@@ -56,27 +69,42 @@ class ModelError:
         worst = self.largest(quantity)
         if worst is None:
             return "the error of the model was not evaluated"
-        name = WORDS.get(worst.quantity, worst.quantity)
-        return f"the model itself is good to {100 * worst.size:.2g} % of the {name}: {worst.assumption}"
+        return f"the model itself is good to {_percent(worst.size)} of the {worst.name}: {worst.assumption}"
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """A line for each assumption whose cost is not known here."""
+        return tuple(f"not known here: {assumption} ({reason})" for assumption, reason in self.missing)
+
+    def warnings(self, judged: Collection[str] = QUANTITIES, told: Sequence[str] = ()) -> tuple[str, ...]:
+        """A line for each assumption that costs more than ``LIMIT`` of a quantity among ``judged``.
+
+        told : warnings of implausible input, which are not repeated.
+        """
+        found = []
+        for one in ASSUMPTIONS.values():
+            if one.warned and any(line.startswith(one.warned) for line in told):
+                continue
+            of = [cost for cost in self.costs if cost.assumption == one.title and cost.quantity in judged]
+            worst = max(of, key=lambda cost: cost.size, default=None)
+            if worst is not None and worst.size > LIMIT:
+                found.append(f"{one.title} costs {_percent(worst.size)} of the {worst.name}")
+        return tuple(found)
 
 
 def model_error(problem: CoatedContact, maps: AssumptionMaps | None = None) -> ModelError:
-    """What the assumptions cost at ``problem``, in a few tenths of a second of a coating of a_h/10 or more.
+    """What the assumptions cost at ``problem``, in a few tenths of a second.
 
     maps : to read the assumptions in that are not evaluated; those of the package if None.
     """
     maps = _shipped() if maps is None else maps
-    thinnest = min((h for body in problem.bodies for *_, h in problem.seen_from(body).coatings), default=1e9)
     costs: list[Cost] = []
     missing: list[tuple[str, str]] = []
     for name, assumption in ASSUMPTIONS.items():
         try:
-            if not assumption.direct:
-                change, uncertainty = _read(maps, name, problem)
-            elif thinnest < THINNEST * problem.a_h:
-                raise ValueError(f"a coating thinner than {THINNEST:g} a_h; its model would need too long")
-            else:
-                change, uncertainty = assumption.change(problem)
+            change, uncertainty = (
+                assumption.change(problem) if assumption.direct else _read(maps, name, problem)
+            )
         except ValueError as error:
             missing.append((assumption.title, str(error)))
             continue
@@ -86,6 +114,20 @@ def model_error(problem: CoatedContact, maps: AssumptionMaps | None = None) -> M
             if (value := getattr(change, field.name)) is not None
         ]
     return ModelError(tuple(costs), tuple(missing))
+
+
+def judged_quantities(claimed: Collection[str]) -> tuple[str, ...]:
+    """Of ``QUANTITIES`` those that claims on the quantities ``claimed`` judge."""
+    by = {
+        "peak_pressure": ("peak_pressure", "pressure"),
+        "tension": ("sigma_xx", *PEAKS, *BALL_PEAKS),
+        "shear": ("sigma_xz",),
+    }
+    return tuple(name for name in QUANTITIES if any(one in claimed for one in by.get(name, (name,))))
+
+
+def _percent(size: float) -> str:
+    return f"{100 * size:.2g} %" if size >= 1e-6 else "0.0001 %"
 
 
 def _read(maps: AssumptionMaps, name: str, problem: CoatedContact) -> tuple[Change, Change]:

@@ -110,6 +110,64 @@ class AssumptionMap:
         return one, other
 
     @property
+    def driver(self) -> int | None:
+        """Index of the axis along which the change grows; None where no rate is stated."""
+        return next((i for i, axis in enumerate(self.axes) if any(axis.rates)), None)
+
+    @cached_property
+    def largest(self) -> Array:
+        """Largest magnitude with its uncertainty at each value of the ``driver``, (quantities, values)."""
+        assert self.driver is not None
+        size = np.moveaxis(np.abs(self.change) + self.uncertainty, 1 + self.driver, 1)
+        flat = np.where(np.isnan(size), -np.inf, size).reshape(*size.shape[:2], -1).max(axis=-1)
+        return np.where(np.isinf(flat), np.nan, flat)
+
+    def reach(self, quantity: int, level: float) -> float | None:
+        """Value of the ``driver`` up to which the change of a quantity is at most ``level`` all over the map.
+
+        By powers between the values, below the first by its rate; None where it is above the last.
+        """
+        assert self.driver is not None
+        axis, size = self.axes[self.driver], self.largest[quantity]
+        above = np.flatnonzero(size > level)
+        if not above.size:
+            return None
+        i = int(above[0])
+        if i == 0:
+            return float(axis.values[0] * (level / size[0]) ** (1 / axis.rates[quantity]))
+        share = np.log(level / size[i - 1]) / np.log(size[i] / size[i - 1])
+        return float(axis.values[i - 1] * (axis.values[i] / axis.values[i - 1]) ** share)
+
+    def plane(
+        self, across: str, up: str, at: Mapping[str, float], refined: int = 6
+    ) -> tuple[Array, Array, Array]:
+        """Coordinates and changes (quantities, up, across) of the map with the others ``at`` nodes.
+
+        refined : points a step of either axis, linear between the nodes.
+        """
+        names = [axis.name for axis in self.axes]
+        picked = tuple(
+            slice(None) if axis.name in (across, up) else axis.values.index(at[axis.name])
+            for axis in self.axes
+        )
+        table = self.change[(slice(None), *picked)]
+        if names.index(across) < names.index(up):
+            table = np.swapaxes(table, 1, 2)
+        lines = []
+        for name in (across, up):
+            nodes = self.axes[names.index(name)].nodes
+            x = np.interp(np.arange((nodes.size - 1) * refined + 1) / refined, np.arange(nodes.size), nodes)
+            weights = np.zeros((x.size, nodes.size))
+            for row, value in zip(weights, x, strict=True):
+                for i, weight in _linear(nodes, float(value)).items():
+                    row[i] = weight
+            lines.append((x, weights))
+        (x, along), (y, over) = lines
+        held = np.isfinite(table)
+        plane = over @ np.where(held, table, 0.0) @ along.T
+        return x, y, np.where(over @ held @ along.T > 1 - 1e-9, plane, np.nan)
+
+    @property
     def _any_thickness(self) -> float:
         """A thickness of the map, for a problem without a coating."""
         values = next((axis.values for axis in self.axes if axis.name == "thickness"), (1.0,))

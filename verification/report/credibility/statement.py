@@ -23,6 +23,7 @@ from verification.report.credibility.tables import (
     pair_table,
     parameter_table,
     range_table,
+    two_sided_table,
 )
 from verification.report.figures.loglog import draw_histogram
 from verification.report.material import Evidence, Material
@@ -114,7 +115,7 @@ def section(material: Material) -> Section | None:
         ),
         Part(
             f"{_compared(results)} {_enclosed(evidence)}",
-            [pair_table(results)],
+            [pair_table(results), two_sided_table(evidence.enclosures)],
             title="4. Comparison with references and between methods",
         ),
         *manifest_parts(material),

@@ -5,6 +5,7 @@ from collections.abc import Sequence
 
 from verification.cases.random_problems import FRICTION, MOST_COATINGS, POISSON, RATIO, THICKNESS, THINNEST
 from verification.credibility.alarms import AlarmRecord
+from verification.credibility.enclosures import EnclosureRecord
 from verification.credibility.independence import Part
 from verification.credibility.manufactured import DesignOrder
 from verification.judging.verdict import Outcome
@@ -99,6 +100,28 @@ def pair_table(results: Sequence[CaseResult]) -> Table:
         "All comparisons by pair of sources; differences and U as fractions of their scale.",
         ["between", "agree", "largest difference", "largest U"],
         rows,
+    )
+
+
+def two_sided_table(record: EnclosureRecord | None) -> Table:
+    """Energy bounds by finite elements: ends relative to the enclosed values, effectivity."""
+    rows = []
+    for one in record.enclosures if record else ():
+        if (two := one.two_sided) is not None:
+            cells = []
+            for (low, high), exact, effectivity in two.compared:
+                cells += [
+                    number(1 - low / exact),
+                    number(high / exact - 1),
+                    number(effectivity, "{:.1f}".format),
+                ]
+            rows.append(row(one.name, *cells))
+    return Table(
+        "Bounds by finite elements at the enclosed contact radius: distance of either end from the enclosed "
+        "value, relative; effectivity, the proven error of the displacements over the true one.",
+        ["problem", "below", "above", "effectivity", "below", "above", "effectivity"],
+        rows,
+        [("", 1), ("stiffness of a flat punch", 3), ("approach", 3)],
     )
 
 

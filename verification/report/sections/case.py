@@ -2,13 +2,14 @@
 
 from typing import Any
 
+from verification.credibility.model.error import ModelError
 from verification.judging.verdict import Outcome
 from verification.problem.contact import BALL
 from verification.report.figures.fields import pictures
 from verification.report.figures.panels import case_figures
 from verification.report.figures.sketch import sketch
 from verification.report.figures.strips import Item, axis_of, draw_axis, draw_strip, ordered
-from verification.report.material import Material, rerun_command
+from verification.report.material import Material, model_warnings, rerun_command
 from verification.report.sections import invariants, published
 from verification.report.tables.case import (
     budget_table,
@@ -56,6 +57,9 @@ def contents(material: Material, result: CaseResult) -> dict[str, Any]:
         "pictures": pictures(result, material.planes.get(result.name)),
         "figures": case_figures(result),
         "strips": _strips(result, material.anchors[result]),
+        "beyond": model_warnings(result, material.evidence),
+        "maps": material.evidence.maps is not None,
+        "model": _model(material.evidence.models.get(result.name)),
         "files": [
             (line, embedded(line_csv(result, line)), f"{file}-{slug(line)}.csv")
             for line in (*(("contact",) if result.profiles else ()), *lines(result))
@@ -63,6 +67,13 @@ def contents(material: Material, result: CaseResult) -> dict[str, Any]:
         "broken": invariants.invariant_table(broken),
         "invariants": invariants.invariant_table(result.invariants),
     }
+
+
+def _model(found: ModelError | None) -> str:
+    """What the assumptions cost, in sentences."""
+    if found is None:
+        return ""
+    return " ".join(f"{line[0].upper()}{line[1:]}." for line in (found.message(), *found.notes))
 
 
 def summary(result: CaseResult) -> str:

@@ -8,19 +8,21 @@ A rigid ball on a homogeneous disc of thickness t: the approach changes by a/t, 
 (a/t)^3; an elastic ball adds the changes of the order a/R that ``ball`` states.
 """
 
+from collections.abc import Mapping
 from dataclasses import astuple, replace
 from functools import partial
 from typing import Any
 
 from verification.problem.contact import CoatedContact, keywords
 from verification.sources.assumptions.ball import ElasticBall
-from verification.sources.assumptions.change import Change, change_between
+from verification.sources.assumptions.change import RESOLUTION, Change, change_between, require_thick
 from verification.sources.references import integral_equation
 from verification.sources.references.integral_equation import SPHERE
 
 THICKNESS = 1.0  # of the disc with its coatings, over the ball's radius
 RIGID = 1e9  # modulus of the support over that of the disc
-NODES = (80, 60)  # in the contact, fine and coarse
+# Fine and coarse; what the quadratures leave is mostly common to both contacts.
+RESOLUTIONS: tuple[dict[str, Any], ...] = (RESOLUTION, {"nodes": 30, "panel": 6, "tail": 13.5})
 ROUNDING = 1e-8  # of the root for the contact radius, of the support's modulus
 
 
@@ -29,9 +31,11 @@ def of_half_spaces(problem: CoatedContact, thickness: float = THICKNESS) -> tupl
 
     Returns the change, then its uncertainty: twice its difference from one with nodes and wavenumbers fewer
     by a quarter. The friction of ``problem`` leaves the pressure unchanged in both contacts.
-    Raises ValueError where the coatings are as thick as the disc, and as ``integral_equation`` does.
+    Raises ValueError where the coatings are as thick as the disc, one is thinner than ``THINNEST``, and as
+    ``integral_equation`` does.
     """
-    fine, coarse = (change_at(problem, thickness, nodes) for nodes in NODES)
+    require_thick(problem)
+    fine, coarse = (change_at(problem, thickness, resolution) for resolution in RESOLUTIONS)
     uncertainty: list[Any] = [
         None if one is None else 2 * abs(one - other) + ROUNDING
         for one, other in zip(astuple(fine), astuple(coarse), strict=True)
@@ -39,9 +43,9 @@ def of_half_spaces(problem: CoatedContact, thickness: float = THICKNESS) -> tupl
     return fine, Change(*uncertainty)
 
 
-def change_at(problem: CoatedContact, thickness: float, nodes: int) -> Change:
-    """As ``of_half_spaces``, with ``nodes`` in the contact."""
-    solve = partial(integral_equation.solve, gap=SPHERE, nodes=nodes, estimate_uncertainty=False)
+def change_at(problem: CoatedContact, thickness: float, resolution: Mapping[str, Any]) -> Change:
+    """As ``of_half_spaces``, with the numerical parameters ``resolution`` of ``integral_equation.solve``."""
+    solve = partial(integral_equation.solve, gap=SPHERE, estimate_uncertainty=False, **resolution)
     beyond = None
     if problem.ball is not None:
         E, nu, coatings = problem.ball

@@ -6,6 +6,7 @@ surface, largest |sigma_xz| on the first interface.
 
 from dataclasses import dataclass
 from functools import partial
+from typing import Any
 
 import numpy as np
 
@@ -17,7 +18,10 @@ from verification.sources.references import integral_equation
 from verification.sources.references.integral_equation import SPHERE, ExactSolution
 
 FLOOR = 0.1  # of the peak pressure, to which a smaller stress is compared
-POINTS = 2 * np.linspace(-1, 1, 161)  # of a line along an interface, x/a
+THINNEST = 0.01  # h/a_h; time and memory grow as (a/h)^2 and more
+POINTS = 2 * np.linspace(-1, 1, 81)  # of a line along an interface, x/a
+# Of both solutions of a change; what their quadratures leave, below 1e-6, is common to both.
+RESOLUTION: dict[str, Any] = {"nodes": 40, "panel": 8, "tail": 18.0}
 
 
 @dataclass(frozen=True)
@@ -38,9 +42,11 @@ def of_sphere(problem: CoatedContact) -> tuple[Change, Change]:
     """From the gap r^2/2R to that of a sphere; vanishes as (a/R)^2.
 
     Returns the change, then its uncertainty, which is rounding: zero.
-    Raises ValueError where the contact is wider than 0.9 R, as ``integral_equation`` does.
+    Raises ValueError where the contact is wider than 0.9 R, as ``integral_equation`` does, or a coating
+    thinner than ``THINNEST``.
     """
-    solve = partial(integral_equation.solve, **keywords(problem), estimate_uncertainty=False)
+    require_thick(problem)
+    solve = partial(integral_equation.solve, **keywords(problem), estimate_uncertainty=False, **RESOLUTION)
     parabola, sphere = solve(), solve(gap=SPHERE)
     value = change_between(parabola, sphere)
     return value, Change(0.0, 0.0, 0.0, 0.0, None if value.shear is None else 0.0)
@@ -66,13 +72,21 @@ def of_goodman(problem: CoatedContact) -> tuple[Change, Change]:
     Returns the change, then its uncertainty by the terms beyond, with C = f beta: C^2/2 of a stress, C^2/2 of
     a scalar's change, C^2/2 (x/a)^2 of a peak pressure at x. Patches without an expansion have, C up to 0.3,
     0.17 and 0.32 C^2 of a shear and a tension of a bare solid, 0.3 C^2 of its scalars' change.
+
+    Raises ValueError where a coating is thinner than ``THINNEST``.
     """
-    expansion, f = SlidingExpansion(problem), problem.friction
+    f = problem.friction
+    if not f:
+        nothing = Change(0.0, 0.0, 0.0, 0.0, 0.0 if problem.coatings else None)
+        return nothing, nothing
+    require_thick(problem)
+    expansion = SlidingExpansion(problem, nodes=100, solved=RESOLUTION)
     change, exact = expansion.change, expansion.exact
+    panel, tail = RESOLUTION["panel"], RESOLUTION["tail"]
 
     def first(x: Array, z: float, layer: int) -> tuple[Array, Array]:
         by_pressure, by_traction = first_harmonic(
-            expansion.first, problem.coatings, problem.substrate, x, z, layer
+            expansion.first, problem.coatings, problem.substrate, x, z, layer, panel, tail
         )
         return f * by_pressure.xx + f**2 * by_traction.xx, f * by_pressure.xz + f**2 * by_traction.xz
 
@@ -97,6 +111,13 @@ def of_goodman(problem: CoatedContact) -> tuple[Change, Change]:
     return value, uncertainty
 
 
+def require_thick(problem: CoatedContact) -> None:
+    """Raises ValueError where a coating is thinner than ``THINNEST``."""
+    coatings = [layer for body in problem.bodies for layer in problem.seen_from(body).coatings]
+    if any(h < THINNEST * problem.a_h for *_, h in coatings):
+        raise ValueError(f"a coating thinner than {THINNEST:g} a_h, its model would need too long")
+
+
 def _tension(exact: ExactSolution) -> float:
     """sigma_xx [Pa] at x = -a on the surface."""
     return float(exact.stress(-exact.contact_radius, 0.0, 0.0)[0, 0])
@@ -113,5 +134,14 @@ def _shear(exact: ExactSolution) -> Array | None:
 def _shear_change(before: Array | None, after: Array | None, floor: float) -> float | None:
     if before is None or after is None:
         return None
-    one, other = np.abs(before).max(), np.abs(after).max()
+    one, other = _largest(before), _largest(after)
     return float((other - one) / max(one, floor))
+
+
+def _largest(values: Array) -> float:
+    """The largest magnitude of a curve, by the parabola through its largest point and the neighbours."""
+    size = np.abs(values)
+    i = int(np.clip(size.argmax(), 1, size.size - 2))
+    left, middle, right = size[i - 1 : i + 2]
+    bend = 2 * middle - left - right
+    return float(max(middle + (right - left) ** 2 / (8 * bend) if bend > 0 else middle, size.max()))

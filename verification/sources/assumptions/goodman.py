@@ -28,9 +28,10 @@ On uncoated bodies, with C = f beta, all of it is closed:
     peak pressure : (-25/144 + 7/(24 pi^2) + pi^2/128) C^2.
 """
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.polynomial import legendre
@@ -130,21 +131,25 @@ class SlidingExpansion:
     """Terms of the contact of ``problem`` in powers of its friction coefficient.
 
     nodes : quadrature points in the contact, more where a coating is thin.
+    solved : numerical parameters of ``integral_equation.solve``; ``panel``, ``tail`` are those here too.
     Lengths are over the contact radius a, potentials over E* a^2/(pi R).
     Raises ValueError where no contact radius is found.
     """
 
-    def __init__(self, problem: CoatedContact, nodes: int = 200) -> None:
+    def __init__(
+        self, problem: CoatedContact, nodes: int = 200, solved: Mapping[str, Any] | None = None
+    ) -> None:
         solids = integral_equation.solids_of(problem.coatings, problem.substrate, problem.ball)
         self.problem, self.beta = problem, problem.dundurs_beta
-        self.exact = integral_equation.solve(**keywords(problem), estimate_uncertainty=False)
+        solved = {"panel": 16, "tail": 36.0, **(solved or {})}
+        self.exact = integral_equation.solve(**keywords(problem), estimate_uncertainty=False, **solved)
         self.a = a = self.exact.contact_radius
         E_star = integral_equation.combined_modulus(solids)
         self.scale = E_star * a**2 / (np.pi * problem.radius)
         thinnest = integral_equation.thinnest_coating(solids, a)
         self.nodes = _Nodes.graded(int(nodes * (1 + 0.05 * a / thinnest)))
         self.points = np.append(self.nodes.s, 1.0)  # with the edge
-        k, weight = integral_equation.kernel_wavenumbers(solids, a, 16, 36.0)
+        k, weight = integral_equation.kernel_wavenumbers(solids, a, solved["panel"], solved["tail"])
         self.k = k * a
         # M - 1 and N - beta with the weights of k
         self.M = weight * a * (integral_equation.compliance(solids, E_star, k) - 1)

@@ -39,10 +39,13 @@ def first_harmonic(
     x: Array,
     z: float,
     layer: int,
+    nodes: int = 16,
+    tail: float = 36.0,
 ) -> tuple[PlaneStress, PlaneStress]:
     """Stress at depth ``z`` of ``layer`` by p1 cos(theta), then by it as a traction in +x.
 
     x : (n,) [m]; on the surface outside the contact, |x| >= a, where both tractions vanish.
+    nodes, tail : of the quadrature, as of ``HankelField``.
     Raises ValueError for points of the contact on the surface.
     """
     r, side = np.abs(x), np.sign(x)
@@ -57,7 +60,7 @@ def first_harmonic(
         total[2] = (4 + nu) / 4 * I0 - I2 - nu / 4 * I4
     if z > 0 or coatings:
         # of the pressure, this needs no more than its transform and radius
-        field = HankelField(cast(Any, pressure), coatings, substrate, friction=1.0)
+        field = HankelField(cast(Any, pressure), coatings, substrate, 1.0, nodes, tail)
         k, w, (N, A, B) = field.waves(r, z, layer)
         J = bessel(k, r, highest=4)
         A1, A3 = (3 * A.ll + A.tt - 2 * B.lt) / 4, (A.ll - A.tt + 2 * B.lt) / 4

@@ -3,6 +3,7 @@
 With f = d f1 - f2 of ``equation`` and E1* of the first material,
 
     d = f2(1)/f1(1),  approach = d a^2/R,  load = 2 E1* a^3/R (d I1 - I2),  I = int_0^1 f ds            (C1)
+    stiffness of the flat punch = 2 E1* a I1
     p(0) = E1* a/(pi R) [2 - (2/pi) int m kappa Si(kappa) F dkappa]                                      (C2)
     sigma_xx(0, 0, z) = E1* a/(pi R) int A(kappa) kappa F dkappa                                         (C3)
     d load/d a = -2 E1* a^2/R f'(1) I1/f1(1),  f'(1) = -2 + (2/pi) int m kappa sin(kappa) F dkappa       (C4)
@@ -36,11 +37,13 @@ NEAR = 2.0**-30  # relative radius of the ball of radii for which the panels of 
 class Enclosed:
     """Balls in SI of one problem: pressure and sigma_xx on the axis, the pressure at the radii of a profile.
 
+    stiffness : dW/d delta, that of a flat punch of the contact radius.
     interface : sigma_xx on the (upper, lower) side of the first one, None where uncoated.
     """
 
     contact_radius: arb
     approach: arb
+    stiffness: arb
     pressure: arb
     surface: arb
     interface: tuple[arb, arb] | None
@@ -100,7 +103,7 @@ def _hertz(problem: CoatedContact, radii: Sequence[float]) -> Enclosed:
     a = (3 * W * R / (4 * E_star)).root(3)
     p = 2 * E_star * a / (arb.pi() * R)
     profile = tuple(p * (1 - (arb(r) / a) ** 2).nonnegative_part().sqrt() for r in radii)
-    return Enclosed(a, a * a / R, p, -(1 + 2 * nu) / 2 * p, None, profile, ctx.prec)
+    return Enclosed(a, a * a / R, 2 * E_star * a, p, -(1 + 2 * nu) / 2 * p, None, profile, ctx.prec)
 
 
 def _near(problem: CoatedContact, solid: LayeredSolid) -> tuple[arb, int]:
@@ -136,6 +139,7 @@ class _Edge:
     f1: arb
     load: arb
     slope: arb
+    stiffness: arb
 
 
 def _edge(problem: CoatedContact, at: Equation) -> _Edge:
@@ -150,7 +154,7 @@ def _edge(problem: CoatedContact, at: Equation) -> _Edge:
     R, E_star, a = arb(problem.radius), _modulus(problem), at.a
     load = 2 * E_star * a**3 / R * (d * I1 - I2)
     slope = -2 * E_star * a * a / R * (-2 + two_pi * (d * tilt[0] - tilt[1])) * I1 / f1
-    return _Edge(d, f1, load, slope)
+    return _Edge(d, f1, load, slope, 2 * E_star * a * I1)
 
 
 def _quantities(
@@ -177,7 +181,15 @@ def _quantities(
         factor = [k * _ring(k, s, reach) for k in kappa]
         profile.append(scale * (2 * reach - 2 / arb.pi() * of(at.integral(EXCESS, factor, 2))))
     return Enclosed(
-        a, edge.d * a * a / R, p, surface, (interface[0], interface[1]), tuple(profile), ctx.prec, terms
+        a,
+        edge.d * a * a / R,
+        edge.stiffness,
+        p,
+        surface,
+        (interface[0], interface[1]),
+        tuple(profile),
+        ctx.prec,
+        terms,
     )
 
 

@@ -52,8 +52,9 @@ class AbelPressure:
     @cached_property
     def peak(self) -> float:
         """Largest p [Pa]: at r = 0, but on a ring where a stiff film on a soft solid bends like a plate."""
-        # r = a sin(theta): a thin film bends over its own thickness, next to the contact edge
-        theta = np.pi / 2 * np.linspace(0, 1, 1601)
+        # r = a sin(theta): a thin film bends over its own thickness, next to the contact edge; the potential
+        # has less than one extremum a coefficient there
+        theta = np.pi / 2 * np.linspace(0, 1, min(16 * self.c.size, 1600) + 1)
         p = self.pressure(self.a * np.sin(theta))
         best = int(p.argmax())
         if best == 0:

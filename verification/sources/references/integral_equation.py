@@ -183,6 +183,8 @@ def solve(
     friction: float = 0.0,
     ball: Ball | None = None,
     nodes: int = 80,
+    panel: int = 16,
+    tail: float = 36.0,
     estimate_uncertainty: bool = True,
     gap: Gap = PARABOLA,
     beyond: Beyond | None = None,
@@ -190,16 +192,17 @@ def solve(
     """Contact of a sphere of ``radius`` [m] under ``load`` [N]; arguments as in CoatedContact.
 
     nodes : Gauss-Legendre points in the contact; more where a coating is thin.
+    panel, tail : Gauss points a panel of the wavenumbers; exponent at which their integrands are cut.
     gap : of the undeformed bodies, PARABOLA or SPHERE.
     beyond : what the bodies add to half-spaces, B in (E*/pi) int_0^a B(x, t) phi(t) dt on the left side.
     Raises ValueError when no contact radius between 1e-3 and 1e3 of the Hertz radius carries the load, nor
     one below ``gap.widest``.
     """
     solids = solids_of(coatings, substrate, ball)
-    fine = _solve(radius, load, solids, friction, gap, beyond, nodes, 16, 36.0)
+    fine = _solve(radius, load, solids, friction, gap, beyond, nodes, panel, tail)
     if not estimate_uncertainty:
         return fine
-    coarse = _solve(radius, load, solids, friction, gap, beyond, 3 * nodes // 4, 12, 27.0)
+    coarse = _solve(radius, load, solids, friction, gap, beyond, 3 * nodes // 4, 3 * panel // 4, 0.75 * tail)
     return replace(fine, coarser=coarse)
 
 

@@ -1,0 +1,114 @@
+"""Where the model ends: the section of the report, the sentence and the warning on the pages of cases."""
+
+import csv
+import io
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from synthetic_results import INFO, contact, result_of
+
+from verification.commands.common.folders import RECORDS
+from verification.credibility.model.error import LIMIT, Cost, ModelError, judged_quantities
+from verification.credibility.model.maps import read_maps
+from verification.report.credibility.model import LEVELS, section
+from verification.report.material import Evidence, Material, model_warnings
+from verification.report.page import render
+
+RESULT = result_of(contact(), points=5)
+TITLES = ("parabola for the sphere", "Goodman's assumption")
+
+
+@pytest.fixture(scope="module")
+def maps():
+    return read_maps(RECORDS)
+
+
+def section_of(maps):
+    return section(Material([RESULT], INFO, Evidence(maps=maps)))
+
+
+def test_no_record_has_no_section():
+    assert section(Material([RESULT], INFO)) is None
+
+
+def test_section_has_every_assumption_of_the_record(maps):
+    other = replace(maps.maps[0], assumption="other", title="yet another assumption")
+    shown = section_of(maps.with_map(other))
+    heads = [title for title, _ in shown.parts[0].tables[0].groups]
+    for one in (*maps.maps, other):
+        assert any(head.startswith(one.title) for head in heads)
+        assert [part.title.casefold() for part in shown.parts].count(one.title.casefold()) == 1
+        assert one.title in shown.parts[0].text
+    assert "Not measured" not in shown.parts[0].text
+    fewer = section_of(type(maps)(maps.maps[:1]))
+    assert f"Not measured: {maps.maps[1].title}" in fewer.parts[0].text
+
+
+def test_csv_has_the_numbers_of_the_record(maps):
+    for one, part in zip(maps.maps, section_of(maps).parts[1:], strict=True):
+        heads, *rows = csv.reader(io.StringIO(part.gallery.csv))
+        values = np.array(rows, dtype=float)[:, len(one.axes) :]
+        both = np.stack([one.change, one.uncertainty], axis=1).reshape(2 * len(one.quantities), -1)
+        assert pytest.approx(both, rel=1e-4) == values.T
+        assert len(heads) == len(one.axes) + 2 * len(one.quantities)
+
+
+def test_reach_is_where_the_largest_change_has_the_level(maps):
+    sphere = maps.of("sphere")
+    widths = sphere.axes[sphere.driver].values
+    for quantity in range(len(sphere.quantities)):
+        reached = [sphere.reach(quantity, level) for level in LEVELS]
+        found = [value for value in reached if value is not None]
+        assert found == sorted(found)
+        at_node = sphere.reach(quantity, sphere.largest[quantity, 1])
+        assert at_node == pytest.approx(widths[1], rel=1e-9)
+        # a quarter of the change at half of the width
+        tiny = sphere.largest[quantity, 0]
+        assert sphere.reach(quantity, tiny / 4) == pytest.approx(widths[0] / 2)
+        assert sphere.reach(quantity, 1.1 * sphere.largest[quantity, -1]) is None
+
+
+def test_map_with_holes_is_drawn(maps):
+    change = maps.maps[0].change.copy()
+    change[:, 0, 0, ...] = np.nan
+    change[1] = np.nan
+    holed = section_of(type(maps)((replace(maps.maps[0], change=change),)))
+    assert len(holed.parts[1].gallery.panels) == 4
+
+
+def model_of(size, assumption=TITLES[1], quantity="tension"):
+    return Evidence(models={RESULT.name: ModelError((Cost(assumption, quantity, size, 0.0),))})
+
+
+def test_warning_appears_exactly_beyond_the_limit():
+    assert model_warnings(RESULT, model_of(LIMIT)) == ()
+    assert model_warnings(RESULT, model_of(-1.02 * LIMIT)) == (
+        "Goodman's assumption costs 5.1 % of the tension at the trailing edge",
+    )
+    assert model_warnings(RESULT, Evidence()) == ()
+
+
+def test_wide_contact_is_warned_of_once():
+    told = replace(RESULT, warnings=("contact radius a_h = 0.4 R is above 0.1 R: at the contact edge",))
+    assert model_warnings(told, model_of(0.1, TITLES[0])) == ()
+    assert model_warnings(told, model_of(0.1)) != ()
+    assert model_warnings(RESULT, model_of(0.1, TITLES[0])) != ()
+
+
+def test_only_judged_quantities_are_warned_of():
+    assert judged_quantities({"pressure", "approach"}) == ("approach", "peak_pressure")
+    assert judged_quantities({"sigma_xx", "sigma_xz"}) == ("tension", "shear")
+    assert judged_quantities({"u_x", "dW_ddelta"}) == ()
+
+
+def test_page_of_a_case_states_the_error_of_the_model(maps):
+    evidence = replace(model_of(0.1), maps=maps)
+    page = render(Material([RESULT], INFO, evidence))
+    assert "The model itself is good to 10 % of the tension at the trailing edge: Goodman" in page
+    assert "<strong>Beyond the model:</strong> Goodman" in page
+    assert page.count('id="model"') == 1
+    missing = Evidence(models={RESULT.name: ModelError((), (("small strains", "2 coatings"),))})
+    page = render(Material([RESULT], INFO, missing))
+    assert "was not evaluated. Not known here: small strains (2 coatings)." in page
+    assert "Beyond the model" not in page
