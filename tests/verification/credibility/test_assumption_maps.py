@@ -31,7 +31,15 @@ def test_shipped_maps_hold_every_place(maps):
         assert found.change.shape == (len(QUANTITIES), *map(len, assumption.all_axes.values()))
 
 
-@pytest.mark.parametrize(("name", "index"), [("sphere", 150), ("goodman", 220), ("bodies", 40)])
+@pytest.mark.parametrize(
+    ("name", "index"),
+    [
+        ("sphere", 150),
+        ("goodman", 220),
+        ("bodies", 40),
+        pytest.param("strains", 150, marks=pytest.mark.slow),
+    ],
+)
 def test_shipped_entries_are_those_measured_today(maps, name, index):
     place, stored = list(ASSUMPTIONS[name].places())[index], maps.of(name)
     today = measure(name, place)
@@ -145,7 +153,8 @@ BARE = CoatedContact(INSIDE.radius, INSIDE.load, (), INSIDE.substrate)
 
 def test_assumption_without_an_answer_is_missing_with_the_reason(slow):
     missing = dict(model_error(BARE, AssumptionMaps(())).missing)
-    assert missing == {"slowness": "its map was not measured; coatcheck assumptions slow --record makes it"}
+    assert missing["slowness"] == "its map was not measured; coatcheck assumptions slow --record makes it"
+    assert set(missing) == {one.title for one in ASSUMPTIONS.values() if not one.direct}
     wide = replace(BARE, load=1e4 * BARE.load)
     assert dict(model_error(wide, slow).missing)["slowness"].endswith("the map holds 0.01 to 0.3")
 
@@ -162,4 +171,4 @@ def test_uncoated_problem_is_read_without_shear(slow):
 
 def test_map_takes_the_place_of_its_predecessor(slow, maps):
     both = maps.with_map(slow.maps[0]).with_map(slow.maps[0])
-    assert [one.assumption for one in both.maps] == ["sphere", "goodman", "bodies", "slow"]
+    assert [one.assumption for one in both.maps] == ["sphere", "goodman", "bodies", "strains", "slow"]

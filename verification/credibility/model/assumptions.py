@@ -12,11 +12,13 @@ from verification.credibility.model.place import COORDINATES, Place
 from verification.problem.contact import CoatedContact
 from verification.sources.assumptions.bodies import of_half_spaces
 from verification.sources.assumptions.change import Change, of_goodman, of_sphere
+from verification.sources.assumptions.strain import of_small_strains
 
 QUANTITIES = tuple(one.name for one in fields(Change))
 SCALARS = ("contact_radius", "approach", "peak_pressure")
 PARABOLA, GOODMAN = "parabola for the sphere", "Goodman's assumption"
 HALF_SPACES = "half-spaces for the ball and a disc as thick as its radius"
+SMALL_STRAINS = "small strains"
 RATIOS = (0.1, 0.25, 0.5, 1.0, 2.0, 4.0, 10.0)  # E1/E2
 THICKNESSES = (0.1, 0.2, 0.5, 1.0, 2.0)  # h/a_h
 WIDTHS = (0.003, 0.03, 0.1, 0.3)  # a_h/R
@@ -99,5 +101,16 @@ ASSUMPTIONS: dict[str, Assumption] = {
         # at least this one, which the approach has but for a logarithm
         rates={"width": 1.0},
         direct=True,
+    ),
+    "strains": Assumption(
+        SMALL_STRAINS,
+        of_small_strains,
+        {
+            "ratio": (0.1, 0.25, 1.0, 4.0, 10.0),
+            "thickness": (0.1, 0.5, 1.0, 2.0),
+            "nu": (0.2, 0.3, 0.45),
+            "width": (0.03, 0.1, 0.2, 0.3),
+        },
+        rates={"width": 1.0},
     ),
 }
