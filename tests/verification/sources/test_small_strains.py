@@ -11,13 +11,13 @@ from verification.sources.assumptions import neo_hooke
 from verification.sources.assumptions.deformation import SphereContact, State
 from verification.sources.assumptions.meridian import Meridian
 from verification.sources.assumptions.sphere import SphereOnHalfSpace
-from verification.sources.assumptions.strain import COARSE, FINE, Resolution, deformed, of_small_strains
+from verification.sources.assumptions.strain import Resolution, deformed, of_small_strains
 from verification.sources.references import integral_equation
 from verification.sources.references.integral_equation import SPHERE
 
 STEEL = (210e9, 0.3)
 MU, LAM = (np.array(part) for part in neo_hooke.lame(1.0, 0.3))
-SMALL = Resolution(3, 1.5, 0.05, 10.0)  # a few elements
+SMALL, FINER = Resolution(3, 1.5, 0.05, 10.0), Resolution(5, 1.0, 3e-4, 100.0)
 
 
 def contact(width, ratio=None, thickness=0.5, nu=0.3):
@@ -145,7 +145,7 @@ def test_radius_converges_with_the_elements_at_the_edge():
     exact = SphereOnHalfSpace(5.0, 1.0, 1.0)
     errors = []
     for edge in (1e-2, 1e-3, 1e-4):
-        model = SphereContact(grid(Resolution(5, 1.0, edge, 100.0)), 5.0, exact.load, (), (0.91, 0.3), False)
+        model = SphereContact(grid(replace(FINER, edge=edge)), 5.0, exact.load, (), (0.91, 0.3), False)
         errors.append(model.results(model.solve()).contact_radius - 1)
     order = np.log10(np.abs(errors[:-1]) / np.abs(errors[1:]))
     assert order == pytest.approx(1.0, abs=0.1), errors
@@ -158,7 +158,7 @@ def test_small_strain_meets_the_exact_coated_contact(ratio, nu):
     """Stress to 2e-4 of the peak pressure also near incompressibility, so nothing locks."""
     problem = contact(0.1, ratio, 1.0, nu)
     exact = integral_equation.solve(**keywords(problem), gap=SPHERE, estimate_uncertainty=False)
-    found, a_h, p_h = deformed(problem, FINE)[0], problem.a_h, problem.E_star
+    found, a_h, p_h = deformed(problem, FINER)[0], problem.a_h, problem.E_star
     assert found.contact_radius * a_h == pytest.approx(exact.contact_radius, rel=3e-5)
     assert found.approach * a_h == pytest.approx(exact.approach, rel=2e-3)
     assert found.peak_pressure * p_h == pytest.approx(exact.peak_pressure, rel=1e-4)
@@ -189,7 +189,7 @@ def second_order_energy(problem):
     coatings = tuple((E / E_star, nu, h / a) for E, nu, h in problem.coatings)
     substrate = problem.substrate[0] / E_star, problem.substrate[1]
     R = problem.radius / a
-    mesh = grid(replace(COARSE, edge=COARSE.edge / 2), tuple(z / a for z in problem.interfaces))
+    mesh = grid(Resolution(4, 1.0, 5e-4, 50.0), tuple(z / a for z in problem.interfaces))
     model = SphereContact(mesh, R, problem.load / (E_star * a**2), coatings, substrate, False)
     state = model.solve()
     rr, rz, zr, zz, tt = np.moveaxis(model.gradient(state), -1, 0)

@@ -6,7 +6,7 @@ Rectangles of a tensor grid, isoparametric, Lagrange polynomials at Gauss-Lobatt
 
 A is the contact radius, always the end of an element; with A all radii change and no depth does. A high
 degree converges fast where fields are smooth and does not lock near incompressibility; the edge is left to
-elements of the size e. Canuto, Hussaini, Quarteroni and Zang, Spectral Methods (2006), section 2.3.
+elements of the size e. Canuto, Hussaini, Quarteroni and Zang, Spectral Methods (2006).
 """
 
 from typing import Any

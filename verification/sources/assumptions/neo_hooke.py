@@ -2,9 +2,9 @@
 
     Psi = mu/2 (tr C - 3) - mu ln J + lambda/2 (ln J)^2,      P = mu (F - F^-T) + lambda ln(J) F^-T
 
-Bonet and Wood, Nonlinear Continuum Mechanics for Finite Element Analysis, 2nd ed. (2008), eqs. (6.27),
-(6.28); mu and lambda are Lame's. A gradient has the five components of axisymmetry, on the last axis but one
-of the arrays: rr, rz, zr, zz, tt (F_rz = d r / d Z).
+Bonet and Wood, Nonlinear Continuum Mechanics for Finite Element Analysis, 2nd ed. (2008), chapter 6; mu and
+lambda are Lame's. A gradient has the components rr, rz, zr, zz, tt of axisymmetry on its last axis, with
+F_rz = dr/dZ.
 """
 
 import numpy as np

@@ -22,7 +22,7 @@ class Resolution:
     far: float
 
 
-COARSE, FINE = Resolution(4, 1.0, 1e-3, 50.0), Resolution(5, 1.0, 3e-4, 100.0)
+COARSE, FINE = Resolution(3, 1.0, 1e-3, 50.0), Resolution(4, 1.0, 5e-4, 100.0)
 
 
 def deformed(problem: CoatedContact, resolution: Resolution) -> tuple[Deformed, Deformed]:
