@@ -224,7 +224,8 @@ def _print(
         "",
         f"tension positive, in the plane y = 0, x along sliding, z into each body; {seconds}",
     )
-    print_out(*(escape(line) for line in (beyond.message(), *beyond.notes)))
+    head = "the model itself is good to" if beyond.parts else beyond.message()
+    print_out(*map(escape, (head, *(f"  {part}" for part in beyond.parts), *beyond.notes)))
     if case.residual:
         print_out(
             "with residual stress; the shear of an interface near a free edge of its coating is not covered"

@@ -13,6 +13,7 @@ from verification.credibility.model.assumptions import (
     HALF_SPACES,
     PARABOLA,
     QUANTITIES,
+    SCALARS,
 )
 from verification.credibility.model.maps import SHIPPED, AssumptionMaps, read_maps
 from verification.problem.contact import CoatedContact
@@ -59,17 +60,23 @@ class ModelError:
     costs: tuple[Cost, ...]
     missing: tuple[tuple[str, str], ...] = ()
 
-    def largest(self, quantity: str | None = None) -> Cost | None:
-        """The largest cost of ``quantity``, of all of them if None; None where nothing was evaluated."""
-        of = [cost for cost in self.costs if quantity in (None, cost.quantity)]
+    def largest(self, quantities: Collection[str] = QUANTITIES) -> Cost | None:
+        """The largest cost of ``quantities``; None where nothing was evaluated."""
+        of = [cost for cost in self.costs if cost.quantity in quantities]
         return max(of, key=lambda cost: cost.size, default=None)
 
-    def message(self, quantity: str | None = None) -> str:
-        """One sentence: how good the model is, and the assumption that dominates."""
-        worst = self.largest(quantity)
-        if worst is None:
+    @property
+    def parts(self) -> tuple[str, ...]:
+        """The largest cost of scalars and that of stresses, each with the assumption that dominates."""
+        stresses = [name for name in QUANTITIES if name not in SCALARS]
+        worst = (self.largest(SCALARS), self.largest(stresses))
+        return tuple(f"{_percent(one.size)} of the {one.name} ({one.assumption})" for one in worst if one)
+
+    def message(self) -> str:
+        """One sentence: how good the model is."""
+        if not self.parts:
             return "the error of the model was not evaluated"
-        return f"the model itself is good to {_percent(worst.size)} of the {worst.name}: {worst.assumption}"
+        return f"the model itself is good to {' and '.join(self.parts)}"
 
     @property
     def notes(self) -> tuple[str, ...]:

@@ -1,4 +1,4 @@
-"""Maps of what each assumption costs: the record, and its values between the nodes.
+"""Maps of what each assumption costs: the record with its values between the nodes.
 
 ``coatcheck assumptions --record`` makes them, each over the axes that ``assumptions`` states.
 """

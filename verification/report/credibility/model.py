@@ -74,25 +74,23 @@ def _least(values: Sequence[float | None]) -> float | None:
 
 
 def _reaches(maps: Sequence[AssumptionMap]) -> Table:
-    """Where each quantity reaches the levels, an assumption beside the other."""
+    """Where each quantity reaches the levels, an assumption below the other."""
     shown = [one for one in maps if one.driver is not None]
     names = list(dict.fromkeys(one.quantities[i] for one in shown for i in _measured(one)))
     rows = []
-    for name in names:
-        cells: list[Cell] = []
-        for one in shown:
-            found = [i for i in _measured(one) if one.quantities[i] == name]
-            for level in LEVELS:
-                value = one.reach(found[0], level) if found else None
-                cells.append(
-                    number(value, partial(plain, digits=2)) if value or not found else Cell("beyond")
-                )
-        rows.append(row(_name(name), *cells))
+    for one in shown:
+        known = {one.quantities[i]: i for i in _measured(one)}
+        for level in LEVELS:
+            cells: list[Cell] = []
+            for name in names:
+                value = one.reach(known[name], level) if name in known else None
+                beyond = name in known and not value
+                cells.append(Cell("beyond") if beyond else number(value, partial(plain, digits=2)))
+            rows.append(row(one.title, _coordinate(one), _percent(level), *cells))
     return Table(
         "Where dropping an assumption changes a quantity by three levels, for the worst coating.",
-        ["quantity", *[_percent(level) for level in LEVELS] * len(shown)],
+        ["assumption", "by", "level", *map(_name, names)],
         rows,
-        [("", 1), *((f"{one.title}, {_coordinate(one)}", len(LEVELS)) for one in shown)],
     )
 
 
