@@ -60,10 +60,13 @@ BETWEEN = {
     "sphere": Place(0.16, 0.7, 0.3, 0.05, 0.2),
     "goodman": Place(3.0, 1.4, 0.25, friction=0.45),
     "bodies": Place(0.7, 0.3, width=0.15),
+    "strains": Place(6.07, 0.58, 0.318, width=0.152),
 }
 
 
-@pytest.mark.parametrize("name", BETWEEN)
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=[pytest.mark.slow] * (name == "strains")) for name in BETWEEN]
+)
 def test_uncertainty_between_nodes_covers_what_is_measured_there(maps, name):
     problem = BETWEEN[name].problem
     (value, U), (expected, beyond) = (
