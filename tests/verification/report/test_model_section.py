@@ -37,7 +37,7 @@ def test_section_has_every_assumption_of_the_record(maps):
     shown = section_of(maps.with_map(other))
     heads = [line.head.text for line in shown.parts[0].tables[0].rows]
     for one in (*maps.maps, other):
-        assert heads.count(one.title) == len(LEVELS)
+        assert sum(head.startswith(f"{one.title}, ") for head in heads) == 1
         assert [part.title.casefold() for part in shown.parts].count(one.title.casefold()) == 1
         assert one.title in shown.parts[0].text
     assert "Not measured" not in shown.parts[0].text

@@ -24,6 +24,7 @@ COLOUR = "fem"
 ACROSS, UP = "thickness", "ratio"
 WIDTH, HEIGHT = 320, 250
 BOX = (48.0, 5.0, 266.0, 207.5)  # left, top, width, height
+SHORT = {"contact_radius": "a", "approach": "delta", "peak_pressure": "p0"}
 USUAL = {"nu": 0.3}  # coordinate of a panel, where the map has it
 
 
@@ -86,10 +87,12 @@ def _reaches(maps: Sequence[AssumptionMap]) -> Table:
                 value = one.reach(known[name], level) if name in known else None
                 beyond = name in known and not value
                 cells.append(Cell("beyond") if beyond else number(value, partial(plain, digits=2)))
-            rows.append(row(one.title, _coordinate(one), _percent(level), *cells))
+            head = f"{one.title}, {_coordinate(one)}" if level == LEVELS[0] else ""
+            rows.append(row(head, _percent(level), *cells))
     return Table(
-        "Where dropping an assumption changes a quantity by three levels, for the worst coating.",
-        ["assumption", "by", "level", *map(_name, names)],
+        "Where dropping an assumption changes a quantity by three levels, for the worst coating: tension at "
+        "the trailing edge, shear of the first interface.",
+        ["assumption", "level", *(SHORT.get(name, name) for name in names)],
         rows,
     )
 
