@@ -116,6 +116,7 @@ def test_perriot_and_barthel_end_at_film_and_substrate():
     thin, thick_film = perriot_barthel((3.0, 0.3), (1.0, 0.3), np.array([1e-8, 1e8]), 1.2)
     assert (thin, thick_film) == pytest.approx((1 / 0.91, 3 / 0.91), rel=1e-6)
     assert perriot_barthel_x0(1.0) == pytest.approx(10**-0.093)
+    assert [perriot_barthel_x0(ratio) for ratio in (0.1, 10.0)] == pytest.approx([10**-0.835, 10**0.749])
 
 
 @pytest.mark.parametrize("nu", [0.1, 0.3, 0.5])
