@@ -12,12 +12,13 @@ from synthetic_study import study
 from verification.commands import run as command
 from verification.commands.common import solving
 from verification.credibility import accuracy as accuracy_study
-from verification.credibility.accuracy import BARE, COATED, STEEL, AccuracyStudy, from_json, to_json
+from verification.credibility.accuracy import BARE, COATED, AccuracyStudy, from_json, to_json
 from verification.credibility.refinement import QUANTITIES, order_of, refined_grid, refined_mesh, settled
 from verification.judging.invariants.influence import conversion_errors
 from verification.running.pool import Task, run_tasks
 from verification.running.store import StoreError, write_checked
 from verification.sources.methods import solve_semianalytic
+
 
 @pytest.fixture(scope="module")
 def conversions():

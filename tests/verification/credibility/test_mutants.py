@@ -1,5 +1,6 @@
 """Mutants: the set of a small source, trials of a toy, the draw, the record, the command."""
 
+import json
 import os
 from dataclasses import replace
 from pathlib import Path
@@ -9,13 +10,16 @@ from synthetic_results import INFO
 
 from verification.commands.credibility.faults import mutants as command
 from verification.credibility.mutation import record as records
+from verification.credibility.mutation import trial
 from verification.credibility.mutation.record import ROOMS, ROOT, Catch, MutantRecord, Trial, annotated, drawn
 from verification.credibility.mutation.sites import mutants, mutated
 from verification.credibility.mutation.trial import kept_trial, main, try_mutant
 from verification.report.credibility import mutants as page
 from verification.report.material import Evidence, Material
+from verification.running.records import decode, encode
 from verification.running.store import StoreError, read_checked
 
+GUARD = "verification/running/guard.py"
 SMALL = '''"""A module of 3 words."""
 from dataclasses import dataclass
 __all__ = ["f", "g"]
@@ -132,10 +136,24 @@ def test_a_mutant_of_a_toy_is_caught_or_survives_as_known(toy, after, catch, by)
     known = {m.after.strip(): m for m in mutants(TOY, "semianalytic/__init__.py")}
     mutant = known[after] if after else None
     limit = 1 if catch is Catch.TIME else 4  # s of processor time, which an endless loop uses up
-    trial = try_mutant("semianalytic", mutant, toy, limit, toy)
-    assert trial.catch is catch
-    assert by in trial.by
-    assert trial.seconds > 0
+    found = try_mutant("semianalytic", mutant, toy, limit, toy)
+    assert found.catch is catch
+    assert by in found.by
+    assert found.seconds > 0
+
+
+def test_a_trial_sees_no_process_but_its_own(tmp_path):
+    if not trial._namespace():
+        pytest.skip("the system gives unshare(1) no process namespace")
+    found = trial._run(("-c", "import os; print(os.getppid())"), tmp_path, 10, Catch.TESTS)
+    assert found == (Catch.SURVIVED, ["1"])
+
+
+def test_a_mutant_that_may_kill_others_is_not_tried_where_they_are_in_sight(toy, tmp_path, monkeypatch):
+    monkeypatch.setattr(trial, "_namespace", tuple)
+    mutant = next(m for m in mutants((ROOT / GUARD).read_text("utf-8"), GUARD) if "killpg" in m.after)
+    main("running", json.dumps(encode(mutant)), str(toy), "1", str(tmp_path / "trial.json"))
+    assert "unshare" in decode(Trial, read_checked(tmp_path / "trial.json")["trial"]).by
 
 
 def test_a_draw_repeats_and_a_larger_one_adds_to_it():
@@ -221,18 +239,18 @@ def test_a_trial_is_kept_for_the_same_code_and_a_survivor_for_the_same_tests(tmp
         str(tmp_path / "trials" / "control_judging.json"),
     )
     survived = Trial("judging", None, Catch.SURVIVED, seconds=1.0)
-    for trial, code in ((survived, "code, tests"), (replace(survived, catch=Catch.TESTS), "code")):
-        monkeypatch.setattr(f"{module}.try_mutant", lambda *_, found=trial: found)
+    for one, code in ((survived, "code, tests"), (replace(survived, catch=Catch.TESTS), "code")):
+        monkeypatch.setattr(f"{module}.try_mutant", lambda *_, found=one: found)
         monkeypatch.setattr(
             f"{module}.fingerprint", lambda modules: "code" + ", tests" * ("tests" in modules)
         )
         main("judging", "", "clean", "5", path)
         assert read_checked(Path(path))["made_by"] == code
-        assert kept_trial("judging", None, tmp_path) == trial
+        assert kept_trial("judging", None, tmp_path) == one
         assert kept_trial("sampling", None, tmp_path) is None
         monkeypatch.setattr(
             f"{module}.fingerprint", lambda modules: "code" + ", others" * ("tests" in modules)
         )
-        assert (kept_trial("judging", None, tmp_path) == trial) is trial.caught
+        assert (kept_trial("judging", None, tmp_path) == one) is one.caught
         monkeypatch.setattr(f"{module}.fingerprint", lambda modules: "other code")
         assert kept_trial("judging", None, tmp_path) is None

@@ -6,7 +6,7 @@ import semianalytic
 from verification.cases.contact import read_case, shipped_cases
 from verification.credibility.faults.planting import Edit, planted
 from verification.judging.invariants import check
-from verification.judging.invariants.influence import influence_coefficients
+from verification.judging.invariants.influence import conversion_errors, influence_coefficients
 from verification.judging.verdict import Outcome
 from verification.problem.contact import CoatedContact
 
@@ -43,3 +43,14 @@ def test_only_the_method_that_has_coefficients_is_asked():
     }
     assert "influence coefficients" in names["semianalytic"]
     assert "influence coefficients" not in names["other"]
+
+
+def test_accuracy_of_conversions_is_by_distance_over_the_contact_radius():
+    problem = CoatedContact(1e-2, 20.0, (), (210e9, 0.3))
+    found = conversion_errors(problem, patches=5, enlarge=())
+    assert [one.conversion for one in found] == ["split"]
+    # patches 0 to 4 along a row and a diagonal of a grid 2.24 a wide
+    assert found[0].distance == pytest.approx(
+        sorted(2.24 / 5 * k * side for k in (0, 1, 2, 3, 4) for side in (1, 2**0.5) if k or side == 1)
+    )
+    assert 0 < found[0].seconds < 60

@@ -101,6 +101,13 @@ def polar(stress, x, y, z, layer=None, swap=lambda s: s):
     return np.einsum("ai...,bj...,ab...->ij...", turn, turn, swap(s.copy()))
 
 
+def twisted(stress, x, y, z, layer):
+    """A second harmonic of sigma_zz alone."""
+    s = stress(x, y, z, layer)
+    s[2, 2] += 1e-3 * BARE.p_h * np.cos(2 * np.arctan2(y, x))
+    return s
+
+
 def swapped(s):
     s[0, 0], s[1, 1] = s[1, 1].copy(), s[0, 0].copy()
     return s
@@ -142,6 +149,7 @@ def shear_reversed(s):
             },
             "harmonics round the axis",
         ),
+        ({"stress": lambda s, x, y, z, layer=None: twisted(s, x, y, z, layer)}, "harmonics round the axis"),
         (
             {"stress": lambda s, x, y, z, layer=None: s(x, y, z, layer) * (1 + 1e-6 * (layer == 1))},
             "bonded tractions, interface 1",
@@ -206,6 +214,30 @@ def test_uncertainty_blown_up_is_inconclusive_not_agreement():
     found = rows(Changed(exact(), stress_uncertainty=vast))
     assert found["surface pressure"].outcome is Outcome.INCONCLUSIVE
     assert found["harmonics round the axis"].outcome is Outcome.INCONCLUSIVE
+
+
+def test_error_within_the_uncertainties_that_enter_breaks_no_law():
+    size = 1e-6 * BARE.p_h * np.array([[1, 1, 3], [1, 1, 1], [3, 1, 1]])
+
+    def more(field, x, y, z, layer=None):
+        angle = np.arctan2(*np.broadcast_arrays(y, x))
+        return field(x, y, z, layer) + np.multiply.outer(size, (angle >= 0) & (angle < np.pi / 4))
+
+    off = Changed(exact(), stress=more)
+    assert {"surface shear", "mirror in y", "harmonics round the axis"} <= broken(off)
+    found = rows(Changed(exact(), stress=more, stress_uncertainty=more))
+    for name in ("surface shear", "mirror in y", "harmonics round the axis"):
+        assert found[name].outcome is Outcome.AGREES, found[name]
+
+
+def test_load_is_bounded_by_the_change_of_companions_next_to_the_edge():
+    def vast(U, x, y=0.0):
+        return U(x, y) + BARE.p_h * (np.hypot(x, y) > 0.96 * SLIDING.a_h)
+
+    problem = replace(SLIDING, coatings=())
+    found = semianalytic.solve(**keywords(problem), patches=129)
+    row = rows(Changed(found, pressure_uncertainty=vast), problem, "semianalytic")["load balance"]
+    assert row.outcome is Outcome.AGREES
 
 
 def test_law_is_decided_where_the_residual_takes_the_largest_share_of_its_bound():

@@ -4,6 +4,7 @@ The copy also reaches what the code starts in processes of its own. Seconds are 
 mutant seems to hang on a busy machine.
 """
 
+import functools
 import json
 import os
 import resource
@@ -23,7 +24,9 @@ from verification.running.provenance import CODE, fingerprint
 from verification.running.records import decode, encode
 from verification.running.store import StoreError, read_checked, write_checked
 
-KILLED = (-9, -24)  # by the limit of processor time
+KILLED = (128 + 9, 128 + 24)  # by the limit of processor time
+# a mutant of the guard may kill every process that it sees: it sees those that it started
+NAMESPACE = ("unshare", "--user", "--map-root-user", "--pid", "--fork", "--kill-child", "--mount-proc")
 PYTEST = ("-m", "pytest", "-x", "-q", "--tb=line", "--hypothesis-seed=0", "-p", "no:cacheprovider")
 
 
@@ -66,7 +69,10 @@ def main(room: str, mutant: str, clean: str, limit: str, path: str) -> None:
     """Try the ``mutant`` of ``room`` given as JSON, "" for none, and store its trial at ``path``."""
     made_by = _made_by()  # before the source can change
     changed = decode(Mutant, json.loads(mutant)) if mutant else None
-    trial = try_mutant(room, changed, Path(clean), float(limit))
+    if changed and not _namespace() and "kill" in (ROOT / changed.file).read_text("utf-8"):
+        trial = Trial(room, changed, Catch.NOT_TRIED, "may kill other processes: unshare(1) is needed")
+    else:
+        trial = try_mutant(room, changed, Path(clean), float(limit))
     write_checked(Path(path), {"made_by": made_by[trial.caught], "trial": encode(trial)})
 
 
@@ -96,12 +102,23 @@ def try_mutant(room: str, mutant: Mutant | None, clean: Path, limit: float, root
     return Trial(room, mutant, catch, by, change, changed, used.ru_utime + used.ru_stime)
 
 
+@functools.cache
+def _namespace() -> tuple[str, ...]:
+    """Words before a command that give it processes of its own, none where the system has no such thing."""
+    try:
+        subprocess.run((*NAMESPACE, "true"), check=True, capture_output=True)
+    except (OSError, subprocess.CalledProcessError):
+        return ()
+    return NAMESPACE
+
+
 def _run(words: tuple[str, ...], copy: Path, limit: float, failed: Catch) -> tuple[Catch, list[str]]:
     """What a process in ``copy`` found, ``failed`` for exit code 1, with the lines that it printed."""
-    limited = ("sh", "-c", f'ulimit -t {limit:.0f}; exec "$@"', "sh", sys.executable, *words)
+    # the shell survives what is killed in the namespace, and returns its signal
+    limited = ("sh", "-c", f'ulimit -t {limit:.0f}; "$@"; exit $?', "sh", sys.executable, *words)
     env = os.environ | dict.fromkeys(THREAD_VARIABLES, "1") | {"PYTHONPATH": str(copy)}
     done = subprocess.run(
-        limited, cwd=copy, env=env, stdin=subprocess.DEVNULL, capture_output=True, text=True
+        (*_namespace(), *limited), cwd=copy, env=env, stdin=subprocess.DEVNULL, capture_output=True, text=True
     )
     lines = [line for line in (done.stderr + done.stdout).splitlines() if line.strip()] or ["no message"]
     found = {0: Catch.SURVIVED, 1: failed, **dict.fromkeys(KILLED, Catch.TIME)}

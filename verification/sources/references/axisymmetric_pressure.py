@@ -61,7 +61,7 @@ class AbelPressure:
             return float(p[0])
         found = minimize_scalar(
             lambda angle: -float(self.pressure(self.a * np.sin(angle))),
-            bounds=(theta[best - 1], theta[best + 1]),
+            bounds=(theta[best - 1], theta[min(best + 1, theta.size - 1)]),
             method="bounded",
             options={"xatol": 1e-8},
         )
