@@ -166,9 +166,9 @@ def test_pressure_integrates_to_the_load_and_ends_at_the_edge():
 def test_peak_on_a_ring_is_found_between_the_samples():
     s, weight = np.polynomial.legendre.leggauss(40)
     s, weight = (1 + s) / 2, weight / 2
-    # phi = 1 - t^4 is p ~ sqrt(1 - r^2) (1 + 2 r^2), largest at r^2 = 1/2
-    found = AbelPressure.from_nodes(1.0, s, weight, 1 - s**4)
-    assert found.peak == pytest.approx(2**0.5 * found.pressure(0.0), rel=1e-13, abs=0)
+    # phi = 3 (1 - t^4) - (1 - t^2) is p ~ sqrt(1 - r^2) (1 + 4 r^2), largest at r^2 = 7/12
+    found = AbelPressure.from_nodes(1.0, s, weight, 3 * (1 - s**4) - (1 - s**2))
+    assert found.peak == pytest.approx((5 / 12) ** 0.5 * 10 / 3 * found.pressure(0.0), rel=1e-13, abs=0)
 
 
 def test_published_pressure_table_is_met():
