@@ -48,6 +48,8 @@ def main(how: str, path: str) -> None:
             blocks.append(np.ones(1 << 22))
     elif how == "process":
         write_checked(Path(path), {"said": str(os.getpid())})
+    elif how == "threads":
+        write_checked(Path(path), {"said": os.environ["OMP_NUM_THREADS"]})
     elif how == "nothing":
         pass
     else:

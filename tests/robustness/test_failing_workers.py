@@ -65,6 +65,12 @@ def gone(pids: list[int], within: float) -> float:
     return time.monotonic() - begin
 
 
+@pytest.mark.parametrize(("cores", "jobs", "threads"), [(7, 2, "3"), (2, 3, "1")])
+def test_jobs_share_the_cores_and_each_has_one_at_least(cores, jobs, threads, tmp_path, monkeypatch):
+    monkeypatch.setattr(pool, "cores", lambda: cores)
+    assert run_tasks([task("threads", tmp_path)], jobs=jobs, time_limit=300) == [threads]
+
+
 def test_each_death_has_its_reason_and_the_others_finish(tmp_path):
     deaths = [how for how in REASONS if how != "hang"]
     tasks = [task(how, tmp_path) for how in (*deaths, "good")]

@@ -40,6 +40,12 @@ def content(folder: Path) -> dict[str, bytes]:
     return {str(p.relative_to(folder)): p.read_bytes() for p in sorted(folder.rglob("*")) if p.is_file()}
 
 
+def test_worker_is_told_where_to_write_the_fields_that_are_wanted(tmp_path):
+    case = parse_case(QUICK.encode(), Path("one.toml"))
+    plain, wanted = (case_task(case, tmp_path, fields=fields).command for fields in (False, True))
+    assert wanted == (*plain, str(tmp_path))
+
+
 @pytest.fixture(scope="module")
 def stored(tmp_path_factory):
     """Twenty cases with their results as workers leave them, solved once."""

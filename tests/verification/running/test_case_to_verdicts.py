@@ -84,6 +84,7 @@ def judged(case, available):
 def test_sources_that_are_the_same_agree_in_every_claim(case):
     result = run(case, sources())
     assert result.outcome is Outcome.AGREES
+    assert all(0 < source.seconds < 60 for source in result.sources)
     assert len(result.verdicts) == len(case.claims) == 3 * (4 + 2 + 3 + 2 + 4 * 2 + 6 + 9 + 3)
 
 
