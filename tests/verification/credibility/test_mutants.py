@@ -149,6 +149,12 @@ def test_a_trial_sees_no_process_but_its_own(tmp_path):
     assert found == (Catch.SURVIVED, ["1"])
 
 
+def test_a_trial_that_waits_for_ever_ends(tmp_path, monkeypatch):
+    monkeypatch.setattr(trial, "WAITING", 0.3)
+    catch, lines = trial._run(("-c", "import time; time.sleep(60)"), tmp_path, 1, Catch.TESTS)
+    assert (catch, lines) == (Catch.TIME, ["waits without using the processor"])
+
+
 def test_a_mutant_that_may_kill_others_is_not_tried_where_they_are_in_sight(toy, tmp_path, monkeypatch):
     monkeypatch.setattr(trial, "_namespace", tuple)
     mutant = next(m for m in mutants((ROOT / GUARD).read_text("utf-8"), GUARD) if "killpg" in m.after)

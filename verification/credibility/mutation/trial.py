@@ -25,6 +25,7 @@ from verification.running.records import decode, encode
 from verification.running.store import StoreError, read_checked, write_checked
 
 KILLED = (128 + 9, 128 + 24)  # by the limit of processor time
+WAITING = 10  # times that limit of wall time: a mutant that waits for ever uses no processor
 # a mutant of the guard may kill every process that it sees: it sees those that it started
 NAMESPACE = ("unshare", "--user", "--map-root-user", "--pid", "--fork", "--kill-child", "--mount-proc")
 PYTEST = ("-m", "pytest", "-x", "-q", "--tb=line", "--hypothesis-seed=0", "-p", "no:cacheprovider")
@@ -117,9 +118,18 @@ def _run(words: tuple[str, ...], copy: Path, limit: float, failed: Catch) -> tup
     # the shell survives what is killed in the namespace, and returns its signal
     limited = ("sh", "-c", f'ulimit -t {limit:.0f}; "$@"; exit $?', "sh", sys.executable, *words)
     env = os.environ | dict.fromkeys(THREAD_VARIABLES, "1") | {"PYTHONPATH": str(copy)}
-    done = subprocess.run(
-        (*_namespace(), *limited), cwd=copy, env=env, stdin=subprocess.DEVNULL, capture_output=True, text=True
-    )
+    try:
+        done = subprocess.run(
+            (*_namespace(), *limited),
+            cwd=copy,
+            env=env,
+            stdin=subprocess.DEVNULL,
+            capture_output=True,
+            text=True,
+            timeout=WAITING * limit,
+        )
+    except subprocess.TimeoutExpired:
+        return Catch.TIME, ["waits without using the processor"]
     lines = [line for line in (done.stderr + done.stdout).splitlines() if line.strip()] or ["no message"]
     found = {0: Catch.SURVIVED, 1: failed, **dict.fromkeys(KILLED, Catch.TIME)}
     return found.get(done.returncode, Catch.CRASH), lines
