@@ -6,8 +6,9 @@ from pathlib import Path
 import pytest
 from synthetic_results import INFO, contact, result_of
 
+from verification.running.result import to_json
 from verification.running.store import StoreError, locked, read_checked, write_atomically, write_checked
-from verification.running.stored import StoredRun
+from verification.running.stored import StoredRun, confirm
 
 PAYLOAD = {"name": "β-film <script>", "value": [1.0, 1e-300, -0.0, 0.1 + 0.2], "none": None}
 
@@ -16,6 +17,19 @@ def test_what_is_stored_is_read_back(tmp_path):
     write_checked(tmp_path / "a.json", PAYLOAD)
     assert read_checked(tmp_path / "a.json") == PAYLOAD
     assert [path.name for path in tmp_path.iterdir()] == ["a.json"]
+
+
+def test_folders_are_made_where_there_are_none(tmp_path):
+    write_checked(tmp_path / "a" / "b" / "c.json", PAYLOAD)
+    assert read_checked(tmp_path / "a" / "b" / "c.json") == PAYLOAD
+    with locked(tmp_path / "d" / "e"):
+        assert (tmp_path / "d" / "e").is_dir()
+
+
+def test_number_that_is_none_is_not_stored(tmp_path):
+    with pytest.raises(ValueError, match="not JSON compliant"):
+        write_checked(tmp_path / "a.json", {"value": float("nan")})
+    assert not list(tmp_path.iterdir())
 
 
 def test_two_hundred_damaged_files_are_all_noticed(tmp_path):
@@ -58,3 +72,11 @@ def test_a_stored_run_gives_the_result_of_the_case_named():
     assert run.result("first") is first
     assert run.result("second") is second
     assert run.result("third") is None
+
+
+def test_report_of_other_results_than_those_stored_beside_it_is_refused(tmp_path):
+    stored, other = (result_of(contact(), name="one", points=points) for points in (9, 11))
+    write_checked(tmp_path / "cases" / "one.json", to_json(stored))
+    confirm(StoredRun(tmp_path / "report.json", INFO, (stored,)))
+    with pytest.raises(StoreError, match="of another run"):
+        confirm(StoredRun(tmp_path / "report.json", INFO, (other,)))
