@@ -177,7 +177,9 @@ def test_a_method_that_fails_leaves_its_sentence():
         raise ValueError("pressure = 1; not today")
 
     case = read_published(SHIPPED["ellea1_halfspace_axis"])
+    begin = time.perf_counter()
     result = run(case, {"semianalytic": refuses})
+    assert all(0 <= source.seconds <= time.perf_counter() - begin for source in result.sources)
     assert {v.outcome for _, v in result.verdicts} == {Outcome.NO_RESULT}
     reasons = {v.reason for c, v in result.verdicts if "semianalytic" in c.between}
     assert reasons == {"semianalytic: pressure = 1; not today"}
