@@ -5,7 +5,8 @@ import pytest
 
 import semianalytic
 from semianalytic import collocation
-from semianalytic.inputs import Body
+from semianalytic.inputs import Body, undeformed_gap
+from semianalytic.uncertainty import Uncertainty, of_stiffness
 
 R, W = 10e-3, 20.0
 E, NU = 210e9, 0.3
@@ -95,3 +96,29 @@ def test_a_single_point_at_the_edge_has_an_uncertainty():
     assert sigma.shape == U.shape == (3, 3)
     # Johnson (1985) eq. 3.42c: (1 - 2 nu) p0 / 3 in tension at the edge
     assert abs(sigma[0, 0] - (1 - 2 * NU) / 3 * P_H) <= U[0, 0]
+
+
+def test_uncertainty_of_the_stiffness_has_no_sign():
+    fine, middle, coarse = contact((0.25, 0.25, 0.5))
+    S = fine.stiffness
+    middle, coarse = (one._replace(stiffness=S) for one in (middle, coarse))
+    none, up, down = (
+        of_stiffness([fine._replace(stiffness=S * (1 + e)), middle, coarse]) for e in (0.0, 1e-2, -1e-2)
+    )
+    assert up == pytest.approx(down, rel=1e-3)
+    assert up > 2 * none
+
+
+@pytest.mark.parametrize(("staircase", "share"), [(0.0, 1 / 6), (1e-9, 1 / 2)])
+def test_change_that_is_small_by_chance_is_not_trusted(staircase, share):
+    fine = {"contact_radius": 1.0, "approach": 2.0, "peak_pressure": 3.0}
+    coarse = {name: value + 0.06 for name, value in fine.items()}
+    found = Uncertainty.from_levels(fine, fine, coarse, {}, base=coarse, ratio=2.0, staircase=staircase)
+    assert found.peak_pressure == pytest.approx(share * 0.06)
+
+
+def test_gap_of_the_sphere_lies_on_the_sphere():
+    r = R * np.array([0.0, 1e-6, 0.1, 0.6, 1.0])
+    gap = undeformed_gap("sphere", R)(r)
+    assert (R - gap) ** 2 + r**2 == pytest.approx(np.full(5, R**2), rel=1e-15)
+    assert gap[1] == pytest.approx(r[1] ** 2 / (2 * R), rel=1e-11, abs=0)

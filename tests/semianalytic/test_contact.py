@@ -168,6 +168,23 @@ def test_directions_stay_conjugate_though_the_residual_is_extended():
     assert found.iterations <= 11
 
 
+def test_directions_are_conjugate_on_a_fixed_contact_set():
+    # 81 patches, all in contact: in exact arithmetic as many steps as there are distinct eigenvalues, 15
+    n, d = 9, 0.1
+    kernel = halfspace.surface_deflection(n, n, d, d)
+    found = contact.solve(
+        convolution.even_convolution(kernel),
+        np.zeros((n, n)),
+        total=1.0,
+        start=np.ones((n, n)),
+        precondition=np.copy,
+        scale=1.0,
+        tolerance=1e-12,
+        max_iterations=100,
+    )
+    assert found.iterations <= 16
+
+
 def test_stopping_short_is_an_exception_with_advice():
     with pytest.raises(contact.NotConverged, match=r"after 2 iterations .* raise max_iterations"):
         contact_of(max_iterations=2)
