@@ -155,3 +155,19 @@ def test_place_of_a_smooth_maximum_is_the_least_uncertain_one_with_its_distance_
     assert apart > best.place_uncertainty
     assert found.place_uncertainty == pytest.approx(best.place_uncertainty + apart, rel=1e-9, abs=0)
     assert abs(found.place + 2 * solution.contact_radius) < found.place_uncertainty
+
+
+class Shaken(Waving):
+    """Largest at the edge, where alone the companion has the same value."""
+
+    def stress(self, x, y, z, layer=None):
+        s = np.abs(np.asarray(x)) / self.contact_radius - 1
+        sigma = np.zeros((3, 3, *s.shape))
+        sigma[0, 0] = 1e9 * (2 - np.abs(s)) + 1e5 * self.phase * np.sin(1e6 * s)
+        return sigma
+
+
+def test_uncertainty_at_the_edge_is_not_that_of_a_single_point():
+    calm, shaken = (largest(Shaken(0.0, Shaken(phase)), contact()) for phase in (0.0, 1.0))
+    assert calm.place == shaken.place == -Shaken.contact_radius
+    assert shaken.uncertainty > calm.uncertainty + 1e4
