@@ -183,3 +183,19 @@ def test_vanishing_coating_leaves_the_substrate(ratio):
     # the compression of a coating is in proportion to its thickness, felt under the loaded patch
     assert errors[1] == pytest.approx(errors[0] / 10, rel=0.05)
     assert errors[1] < 1e-2 * love[0, 0]
+
+
+def test_remainder_of_the_kernel_is_its_integral_on_both_sides_of_a_tenth_of_the_coating():
+    h = 1e-5
+    coatings, substrate = ((840e9, 0.25, h),), (210e9, 0.3)
+
+    def excess(k):
+        return frf.compliance_excess(k, coatings, substrate)
+
+    c, b = influence.split_image(excess, [h])
+    g, _ = influence._radial(excess, [h], (c, b), 4096)
+    r = h * np.array([0.0, 0.05, 0.099, 0.101])
+    k = np.geomspace(1e-6, 60, 30001) / h
+    R = excess(k) - c * np.exp(-b * k)
+    expected = np.trapezoid(R * k * j0(k * r[:, None]), np.log(k))
+    assert g(r) == pytest.approx(expected, rel=1e-9)
