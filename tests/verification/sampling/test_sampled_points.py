@@ -37,5 +37,5 @@ def test_the_largest_shear_stress_under_hertz_is_that_of_johnson(quantity, share
     assert value / P0 == pytest.approx(share, abs=5e-4)
     sigma = HERTZ.stress(0.0, 0.0, A * np.linspace(0.4, 0.55, 3001))
     dense = share / 0.310 * np.abs(sigma[2, 2] - sigma[0, 0]).max() / 2
-    assert value == pytest.approx(np.full(2, dense), rel=2e-8)  # the samples miss it by 1e-6
+    assert value == pytest.approx(np.full(2, dense), rel=2e-7)  # the samples miss it by 1e-6
     assert uncertainty is None or uncertainty.max() < 1e-9 * P0
