@@ -59,6 +59,8 @@ def test_pressure_integrates_to_the_load(name):
     # the load tolerance of the solver is 2e-7; the quadrature sees a piecewise polynomial, good to 1e-5
     assert np.sum(weight * s.pressure(r)) == pytest.approx(W, rel=1e-5)
     assert s.diagnostics.residual_load < 2e-7
+    # two displacements a node; of fourth order eight nodes a triangle, and those of the rim
+    assert s.diagnostics.dofs == pytest.approx(16 * s.diagnostics.triangles, rel=0.1)
     assert s.diagnostics.residual_equilibrium < 1e-10
 
 

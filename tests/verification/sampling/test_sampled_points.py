@@ -3,10 +3,11 @@
 import numpy as np
 import pytest
 
+import semianalytic
 from verification.problem.contact import CoatedContact
 from verification.problem.points import Points
 from verification.problem.profile import lines_of
-from verification.sampling.lines import positions
+from verification.sampling.lines import edge_of, positions, sample
 from verification.sampling.points import values
 from verification.sources.references.hertz import Hertz
 
@@ -45,3 +46,17 @@ def test_the_largest_shear_stress_lies_between_the_samples():
     largest = np.abs(sigma[2, 2] - sigma[0, 0]).max() / 2
     # the samples miss it by 1.4e-4
     assert values(hertz, "tau_max", Points.origin(1), problem)[0] == pytest.approx(largest, rel=1e-5)
+
+
+def test_pressure_at_its_own_edge_is_known_better_than_the_edge():
+    problem = CoatedContact(10e-3, 20.0, ((840e9, 0.25, 0.3 * A),), STEEL)
+    given = {name: getattr(problem, name) for name in ("radius", "load", "coatings", "substrate")}
+    found = semianalytic.solve(**given, patches=65)
+    surface = next(line for line in lines_of(problem) if line.name == "surface")
+    solutions = {"semianalytic": found}
+    x, edge = positions(problem, [surface], solutions)[surface], edge_of(solutions)
+    profiles = sample(found, "semianalytic", surface, x, problem, edge)
+    stated = next(one.uncertainty for one in profiles if one.quantity == "pressure")
+    at = np.abs(x) == edge
+    assert at.sum() == 1
+    assert (stated[at] < 0.5 * found.pressure_uncertainty(x[at])).all()
