@@ -69,6 +69,15 @@ def test_another_friction_gives_the_solution_of_that_friction(kind):
     assert rest.with_friction(0.25).diagnostics.seconds > rest.diagnostics.seconds
 
 
+def test_uncertainty_of_the_displacement_is_that_of_its_direction():
+    U = solved("sphere", 0.25).displacement_uncertainty
+    r = 0.5 * solved("sphere").contact_radius
+    along, across = U(np.array([r]), np.zeros(1), np.zeros(1)), U(np.zeros(1), np.array([r]), np.zeros(1))
+    # beside the axis of sliding the circumferential displacement is that along x
+    assert 0.1 * along[0] < across[0] < 10 * along[0]
+    assert U(np.array([r]), np.array([r]), np.zeros(1))[0] > 0.7 * across[0]
+
+
 def test_another_friction_needs_no_estimate_and_has_to_be_finite():
     rest = solved("sphere", estimate_uncertainty=False)
     sliding = solved("sphere", 0.25, estimate_uncertainty=False)

@@ -17,7 +17,7 @@ HAMILTON = Hamilton(10e-3, 20.0, *STEEL, 0.25)
 
 
 @pytest.mark.parametrize("friction", [0.0, 0.25])
-@pytest.mark.parametrize("coatings", [(), STACK[:1], STACK])
+@pytest.mark.parametrize("coatings", [(), STACK[:1], STACK, ((100e9, 0.3, oblique.DOWN[4] * A),)])
 def test_oblique_line_visits_every_layer_and_no_interface(coatings, friction):
     problem = CoatedContact(10e-3, 20.0, coatings, STEEL, friction)
     line = line_of("oblique", problem)

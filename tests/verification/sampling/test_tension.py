@@ -118,6 +118,7 @@ def test_no_shipped_claim_leaves_a_zone_out():
 def test_the_uncertainty_at_the_edge_is_beside_it_plus_what_no_change_of_the_radius_explains():
     value, U = np.array([1.0, 0.7, 0.8, 1.1, 0.8]), np.array([0.5, 0.1, 0.12, 0.3, 0.3])
     assert edge_uncertainty(value, U, None) == pytest.approx(0.5 - 0.2)
+    assert edge_uncertainty(value[[0, 1, 2, 4, 3]], U, None) == pytest.approx(0.5 - 0.2)
     assert edge_uncertainty(value, U - [0.25, 0, 0, 0, 0], None) == pytest.approx(0.12)
     assert edge_uncertainty(value, U, np.array(0.02)) == pytest.approx(0.14)
 
@@ -138,7 +139,9 @@ class Waving:
         return sigma
 
     def stress_uncertainty(self, x, y, z, layer=None):
-        return np.full((3, 3, *np.shape(x)), 2e6)
+        U = np.zeros((3, 3, *np.shape(x)))
+        U[0, 0] = 2e6
+        return U
 
 
 def test_place_of_a_smooth_maximum_is_the_least_uncertain_one_with_its_distance_from_the_next(monkeypatch):
@@ -151,6 +154,7 @@ def test_place_of_a_smooth_maximum_is_the_least_uncertain_one_with_its_distance_
     best, other = sorted(single, key=lambda one: one.place_uncertainty)
     assert other.place_uncertainty > 2 * best.place_uncertainty
     assert found.place == best.place
+    assert found.uncertainty == 2e6
     apart = abs(best.place - other.place)
     assert apart > best.place_uncertainty
     assert found.place_uncertainty == pytest.approx(best.place_uncertainty + apart, rel=1e-9, abs=0)
