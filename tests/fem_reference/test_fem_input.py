@@ -109,3 +109,11 @@ def test_triangles_are_finer_next_to_a_larger_step_of_the_moduli(quality):
     assert sizes[2] < sizes[1]
     assert [size(1 / step) for step in steps] == sizes
     assert [size(1.0, ((step * E, 0.3, 1e-5), (E, 0.3))) for step in steps] == sizes
+
+
+@pytest.mark.parametrize("size", [0.08, 0.5])
+def test_sizes_are_taken_from_minutes_to_coarse(size):
+    assert _size("standard", size, ()) == size
+    beyond = size * (0.99 if size < 0.1 else 1.01)
+    with pytest.raises(ValueError, match=r"choose it between 0\.08"):
+        _size("standard", beyond, ())
