@@ -113,7 +113,7 @@ def test_triangles_are_finer_next_to_a_larger_step_of_the_moduli(quality):
 
 @pytest.mark.parametrize("size", [0.08, 0.5])
 def test_sizes_are_taken_from_minutes_to_coarse(size):
-    assert _size("standard", size, ()) == size
+    assert _size(next(iter(QUALITY)), size, ()) == size
     beyond = size * (0.99 if size < 0.1 else 1.01)
     with pytest.raises(ValueError, match=r"choose it between 0\.08"):
-        _size("standard", beyond, ())
+        _size(next(iter(QUALITY)), beyond, ())
