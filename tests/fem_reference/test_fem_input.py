@@ -5,7 +5,7 @@ import re
 import pytest
 
 from fem_reference import NotConverged, solve
-from fem_reference.solver import QUALITY, _size
+from fem_reference.solver import CONTRASTS, QUALITY, _size
 
 E = 210e9
 GOOD = {"radius": 1e-2, "load": 20.0, "coatings": (), "substrate": (E, 0.3)}
@@ -117,3 +117,8 @@ def test_sizes_are_taken_from_minutes_to_coarse(size):
     beyond = size * (0.99 if size < 0.1 else 1.01)
     with pytest.raises(ValueError, match=r"choose it between 0\.08"):
         _size(next(iter(QUALITY)), beyond, ())
+
+
+def test_a_finer_quality_never_has_larger_triangles():
+    for sizes in (QUALITY, *CONTRASTS.values()):
+        assert sizes["fast"] >= sizes["default"] >= sizes["fine"]

@@ -78,6 +78,11 @@ def test_uncertainty_of_the_displacement_is_that_of_its_direction():
     assert U(np.array([r]), np.array([r]), np.zeros(1))[0] > 0.7 * across[0]
 
 
+def test_a_depth_above_the_surface_is_named():
+    with pytest.raises(ValueError, match="z = -2e-06 m is not inside"):
+        solved("sphere").stress(np.zeros(2), np.zeros(2), np.array([1e-6, -2e-6]))
+
+
 def test_another_friction_needs_no_estimate_and_has_to_be_finite():
     rest = solved("sphere", estimate_uncertainty=False)
     sliding = solved("sphere", 0.25, estimate_uncertainty=False)
