@@ -80,7 +80,7 @@ def test_uncertainty_of_the_displacement_is_that_of_its_direction():
 
 def test_a_depth_above_the_surface_is_named():
     with pytest.raises(ValueError, match="z = -2e-06 m is not inside"):
-        solved("sphere").stress(np.zeros(2), np.zeros(2), np.array([1e-6, -2e-6]))
+        solved("sphere").stress(0.0, 0.0, -2e-6)
 
 
 def test_another_friction_needs_no_estimate_and_has_to_be_finite():
