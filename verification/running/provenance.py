@@ -17,6 +17,7 @@ PACKAGES = (
     "ducc0",
     "scikit-fem",
     "gmsh",
+    "mkl",
     "meshio",
     "pyvista",
     "pydantic",
