@@ -94,6 +94,7 @@ class _ContactSet:
         return out
 
     def _mean(self, r: Array, out: Array) -> Array:
+        # mirrored at the rim of the grid, as at the axes of a quarter
         gaussian_filter(r, self.extension, mode="mirror", truncate=3, output=out)
         return out
 
