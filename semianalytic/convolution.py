@@ -36,9 +36,9 @@ def even_convolution(kernel: Array, *, quarter: bool = False, threads: int = 1) 
     """
     nx, ny = kernel.shape
     if quarter:
-        # cosines of half-odd frequency change sign over 2 m patches: what wraps around lands beyond u
+        # cosines of half-odd frequency change sign over 2 mx patches: what wraps around lands beyond u
         mx, my = (int(ducc0.fft.good_size(n, True)) for n in (nx, ny))
-        spectrum = np.zeros((mx, my))
+        spectrum: Array = np.zeros((mx, my))
         spectrum[:nx, :ny] = kernel
         ducc0.fft.dct(spectrum, axes=(0, 1), type=3, nthreads=threads, out=spectrum)
         return _apply_cosines(spectrum / (4 * mx * my), (nx + 1) // 2, (ny + 1) // 2, (3, 2), threads)
