@@ -4,6 +4,7 @@ import ctypes.util
 import hashlib
 import platform
 import subprocess
+from collections.abc import Iterable
 from functools import cache
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
@@ -40,9 +41,9 @@ GMSH_LIBRARIES = {
 }
 
 
-def versions() -> dict[str, str]:
-    """Version of Python and of each package that results depend on."""
-    return {"python": platform.python_version()} | {name: _version(name) for name in PACKAGES}
+def versions(packages: Iterable[str] = PACKAGES) -> dict[str, str]:
+    """Version of Python and of each package, by default of those that results depend on."""
+    return {"python": platform.python_version()} | {name: _version(name) for name in packages}
 
 
 @cache

@@ -4,7 +4,6 @@ import datetime
 import sys
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import ExitStack
-from importlib.metadata import version
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Annotated, get_args
@@ -23,7 +22,7 @@ from verification.commands.common.options import AsJson, Flag
 from verification.commands.common.solving import progress_bar
 from verification.commands.common.terminal import named_table, print_error, print_json, print_out
 from verification.judging.outcome import Outcome
-from verification.running.provenance import commit, machine, versions
+from verification.running.provenance import PACKAGES, commit, machine, versions
 from verification.running.records import encode
 
 Numbers = Annotated[tuple[int, ...], Parameter(consume_multiple=True, negative="")]
@@ -76,7 +75,7 @@ def bench(
     else:
         figures, failed = _measured(parts, against, python, sizes, threads, rounds)
         date = datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds")
-        run = BenchRun(commit(), date, machine(), versions() | _versions(), tuple(figures))
+        run = BenchRun(commit(), date, machine(), versions((*PACKAGES, *PEERS, FASTER)), tuple(figures))
         runs = append(history, run) if history is not None and figures else (run,)
         missed = [figure for figure in figures if figure.missed]
     if plot is not None and runs[-1].figures:
@@ -132,10 +131,6 @@ def _measured(
                 failed = True
                 print_error(str(error))
     return figures, failed
-
-
-def _versions() -> dict[str, str]:
-    return {name: version(name) for name in (*PEERS, FASTER) if find_spec(name)}
 
 
 def _table(figures: Iterable[Figure]) -> Table:
