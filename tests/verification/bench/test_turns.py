@@ -1,12 +1,13 @@
 """Children of the benchmark: in turn, each on the packages of its own commit, failures with their message."""
 
 import subprocess
+from importlib import metadata
 
 import numpy as np
 import pytest
 
 from verification.bench import checkout as places
-from verification.bench import turns
+from verification.bench import child, turns
 from verification.bench.judge import LIMIT, centres, residual
 from verification.bench.peers import SOLVERS
 from verification.bench.turns import Work, in_turn
@@ -47,6 +48,14 @@ def test_a_child_on_another_package_than_its_commit_fails(tmp_path):
     (tmp_path / "fem_reference.py").write_text("raise OSError('no mesh')")
     with pytest.raises(RuntimeError, match="elements failed: OSError: no mesh"):
         in_turn({"elements": Work("elements", (0.0, False), tmp_path)}, 1)
+
+
+def test_a_hidden_distribution_is_not_installed(monkeypatch):
+    monkeypatch.setattr(metadata.Distribution, "from_name", metadata.Distribution.from_name)
+    child.hide("numpy")
+    assert metadata.version("scipy")
+    with pytest.raises(metadata.PackageNotFoundError, match="numpy"):
+        metadata.files("numpy")
 
 
 def test_turns_alternate_and_end_after_long(monkeypatch):

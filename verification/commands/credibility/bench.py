@@ -26,7 +26,7 @@ from verification.running.provenance import PACKAGES, commit, machine, versions
 from verification.running.records import encode
 
 Numbers = Annotated[tuple[int, ...], Parameter(consume_multiple=True, negative="")]
-FASTER = "pypardiso"  # of the extra "fast"
+FASTER = "mkl"  # distribution of the extra "fast"
 SHOWN = 4  # runs in the table of the history
 
 
@@ -118,7 +118,7 @@ def _measured(
             sizes=sizes,
             threads=threads,
             peers=peers,
-            fast=find_spec(FASTER) is not None,
+            fast=versions((FASTER,))[FASTER] != "not installed",
         )
         bar = stack.enter_context(progress_bar(Console(stderr=True)))
         task = bar.add_task("", total=sum(len(group.works) * (rounds + 1) for group in planned))
