@@ -170,7 +170,9 @@ class Discretisation:
         nodes = np.asarray(self.basis.element_dofs).T
         return Stiffness(self.element_stiffness(materials, harmonic), nodes, self.elimination)
 
-    def element_stiffness(self, materials: tuple[tuple[float, float], ...], harmonic: int) -> np.ndarray:
+    def element_stiffness(
+        self, materials: tuple[tuple[float, float], ...], harmonic: int, out: np.ndarray | None = None
+    ) -> np.ndarray:
         """Stiffness of the triangles: virtual work over the angular factor common to all terms.
 
             v^T K u = int eps(v) : D(layer) eps(u) r dr dz
@@ -181,13 +183,13 @@ class Discretisation:
 
             K_if,jg = sum_ab (A_a^T D A_b)_fg int s_ai s_bj r dr dz.
 
-        Returns shape (triangles, size, size), unknowns by node, then field.
+        Returns shape (triangles, size, size), unknowns by node, then field; in ``out`` where that is given.
         """
         A = np.stack(strain_operator(harmonic))
         integrals = reference_integrals(self.order)
         factors = integrals.factors(self.mesh.points, self.triangulation.t)
         size = self.basis.Nbfun * A.shape[2]
-        K = np.empty((len(factors), size, size))
+        K = np.empty((len(factors), size, size)) if out is None else out
         layer = self.mesh.layer
         begins = np.flatnonzero(np.diff(layer, prepend=-1))
         for begin, end in zip(begins, [*begins[1:], layer.size], strict=True):

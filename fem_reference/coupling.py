@@ -84,11 +84,12 @@ class Coupling:
         flat, and the forces out of balance (n, columns).
         """
         sign = np.tile([1.0, -1.0], self.flat.basis.Nbfun)
-        elements = [
-            self.flat.element_stiffness(solids[0].materials, 0),
-            self.ball.element_stiffness(solids[1].materials, 0) * (sign[:, None] * sign),
-        ]
-        K = Stiffness(np.concatenate(elements), self._nodes, self._elimination)
+        elements = np.empty((len(self._nodes), sign.size, sign.size))
+        halves = np.split(elements, [self.flat.mesh.layer.size])
+        for d, solid, half in zip((self.flat, self.ball), solids, halves, strict=True):
+            d.element_stiffness(solid.materials, 0, out=half)
+        halves[1] *= sign[:, None] * sign
+        K = Stiffness(elements, self._nodes, self._elimination)
         sides = ((self.flat, np.arange(2 * self.flat.N), 1.0), (self.ball, self._numbers, -1.0))
         given = np.zeros((int(self._nodes.max()) + 1, far.size))
         fixed = []
@@ -102,14 +103,14 @@ class Coupling:
         apart = np.zeros((2 * self.ball.N, far.size))
         apart[self.ball.N + self.ball.contact] = -jump
         load = np.zeros(given.shape)
-        of_ball = Stiffness(elements[1], np.asarray(self.ball.basis.element_dofs).T, self._elimination)
-        np.subtract.at(load, self._numbers, of_ball @ apart)
+        of_ball = Stiffness(halves[1], np.asarray(self.ball.basis.element_dofs).T, self._elimination)
+        load[self._numbers] = -(of_ball @ apart)
         u = constrained_solve(K, given, np.concatenate(fixed), load)
 
         balance = K @ u - load
         balance[np.concatenate(fixed)] = 0.0
         flat, ball = u[: 2 * self.flat.N], u[self._numbers] + apart
         ball[self.ball.N :] *= -1
-        of_flat = Stiffness(elements[0], np.asarray(self.flat.basis.element_dofs).T, self._elimination)
+        of_flat = Stiffness(halves[0], np.asarray(self.flat.basis.element_dofs).T, self._elimination)
         reaction = (of_flat @ flat)[self.flat.N + self.flat.contact]
         return flat, ball, reaction, balance
