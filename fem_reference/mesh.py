@@ -141,8 +141,8 @@ def meridian_mesh(
     xi = np.array([-np.arcsinh(a / length), 0.0, np.arcsinh((far - a) / length)])
     zeta = np.concatenate([[0.0], np.arcsinh(depths / length), [np.arcsinh(far / length)]])
 
-    own, *all_films = (_films(stack, length) for stack in (thicknesses, *stacks))
-    films = {film: film in own for film in sorted(set().union(*all_films))}
+    bounds = [np.arcsinh(np.cumsum([0.0, *stack]) / length) for stack in stacks]
+    films = sorted({pair for levels in bounds for pair in pairwise(levels.tolist())})
     nodes, triangles, layer = _triangulate(xi, zeta, films, a / length, grading)
     # Vertices meant to lie on the axis, the interfaces or the outer boundary lie there exactly.
     r = a + length * np.sinh(nodes[0])
@@ -162,11 +162,6 @@ def meridian_mesh(
     return MeridianMesh(points, triangles, layer, depths, a, far, length)
 
 
-def _films(thicknesses: tuple[float, ...], length: float) -> list[tuple[float, float]]:
-    """Upper and lower zeta of each coating."""
-    return list(pairwise(np.arcsinh(np.cumsum([0.0, *thicknesses]) / length).tolist()))
-
-
 def _twice_area(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:
     """Signed doubled area of each triangle, positive when counter-clockwise in (r, z)."""
     (r0, z0), (r1, z1), (r2, z2) = (points[:, corner] for corner in triangles)
@@ -174,12 +169,12 @@ def _twice_area(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:
 
 
 def _triangulate(
-    xi: np.ndarray, zeta: np.ndarray, films: dict[tuple[float, float], bool], scale: float, grading: Grading
+    xi: np.ndarray, zeta: np.ndarray, films: list[tuple[float, float]], scale: float, grading: Grading
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Mesh the stretched plane.
 
-    films : upper and lower zeta of the coatings of all bodies, with whether each is this body's own: the
-        others count on the surface and fade below.   scale : a / l, converts ``edge_size`` to units of l
+    films : upper and lower zeta of the coatings of all bodies.   scale : a / l, converts ``edge_size`` to
+    units of l.
     """
     with session("coated half-space") as gmsh:
         geo = gmsh.model.geo
@@ -213,9 +208,8 @@ def _triangulate(
             # p(0) has no neighbours on its other side: finer triangles at the point of first contact
             f"{_literal(grading.axis_size)}+0.3*{origin}",
         ]
-        for (upper, lower), own in films.items():
-            inside = f"Max(0,Max(y-({_literal(lower)}),{_literal(upper)}-y))"
-            away = inside if own else f"({_literal(upper)}+y)"  # the same on the surface
+        for upper, lower in films:
+            away = f"Max(0,Max(y-({_literal(lower)}),{_literal(upper)}-y))"
             row = max((lower - upper) / grading.rows, _LEAST_ROW * grading.size)
             sizes.append(f"{_literal(row)}*{growth}+0.4*{away}")
         field = gmsh.model.mesh.field

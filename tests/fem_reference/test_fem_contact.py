@@ -270,14 +270,6 @@ def test_flat_and_ball_change_places():
     assert complementarity(one) == (0, 0)
 
 
-def test_films_of_the_other_body_refine_the_surface_alone():
-    stacks = ((0.3,), (0.1, 0.1))
-    thick, thin = (coarse(stack, stacks).mesh for stack in stacks)
-    surface, same = (np.sort(mesh.points[0, mesh.points[1] == 0]) for mesh in (thick, thin))
-    np.testing.assert_array_equal(surface, same)
-    assert thick.layer.size < 0.7 * thin.layer.size
-
-
 def test_penetration_and_tension_are_found():
     contact = at_radius(SOFT, HARD)
     p = contact.pressure
