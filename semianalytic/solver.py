@@ -134,6 +134,7 @@ def indent(
     conversion: str = "split",
     hankel_points: int = 4096,
     enlarge: int = 4,
+    edge_correction: bool = True,
     estimate_uncertainty: bool = True,
     threads: int = 1,
 ) -> Solution:
@@ -182,7 +183,7 @@ def indent(
                 raise ValueError("profile(x, y) must return finite heights [m] all over the square")
         return z - z.min()
 
-    indenter = Indenter(gap, load, approach, round=False)
+    indenter = Indenter(gap, load, approach, round=False, edge_correction=edge_correction)
     levels = nested.levels(half_width, indenter, body, numerics, estimate_uncertainty)
     if heights is None and touches_rim(levels[-1].found.pressure):
         raise NotConverged(
