@@ -39,12 +39,12 @@ def levels(
     if indenter.shapes:
         starter = replace(starter, max_iterations=min(QUICK, numerics.max_iterations))
     found: list[Level] = []
+    rough = replace(indenter, edge_correction=False)
     for k, (n, shape) in enumerate(zip(sizes, shapes, strict=True)):
-        used = numerics if k >= len(sizes) - kept else starter
-        sharp = indenter if k >= len(sizes) - kept else replace(indenter, edge_correction=False)
+        used, pressed = (numerics, indenter) if k >= len(sizes) - kept else (starter, rough)
         before, grid = found[-1] if found else None, Grid(n, 2 * half_width / n)
         try:
-            found.append(solve_on(grid, before, sharp, body, used, shape))
+            found.append(solve_on(grid, before, pressed, body, used, shape))
         except NotConverged:
             if not indenter.shapes:
                 raise

@@ -1,10 +1,10 @@
 """Contact edge as a smooth curve between the patches.
 
-At a smooth edge p = K sqrt(s), s the distance from it, so that p^2 is smooth up to the edge, and continued
-beyond it negative. A quadratic fitted to p^2 around every patch near the edge gives the edge to a small share
-of a patch, and p within the patches that it cuts: their mean, and their deflection by parts of a patch.
-Elsewhere p^2 gives the derivatives of p by differences. Everything beyond the value at the centre, which is
-what the patches know of p, is `Edge.deflection_beyond_centres`.
+At a smooth edge p = K sqrt(s), s the distance from it (Johnson 1985, section 5.1): p^2 is smooth up to the
+edge and, continued beyond it, negative. A quadratic fitted to p^2 around every patch near the edge gives the
+edge to a hundredth of a patch and p within the patches that it cuts: their means, and their deflection by
+parts of a patch. Away from the edge p^2 gives the derivatives of p by differences. The patches know p at
+their centres; the deflection due to all the rest is `Edge.deflection_beyond_centres`.
 
 Lengths in this module are in patches.
 """
@@ -24,29 +24,34 @@ __all__ = ["Edge", "fit", "near_influence"]
 Array = NDArray[np.floating]
 Indices = NDArray[np.intp]
 
-DEPTH = 3  # from the edge, within which p is integrated by parts of a patch
+# Share of a patch that is integrated by parts, by its depth in contact, 1 beside an unloaded patch. Without
+# the taper the pressure has a ripple four patches from the edge: 1e-3 of the peak in place of 2e-4.
+TAPER = (1.0, 1.0, 0.75, 0.5, 0.25)
 PARTS = 7  # of a patch a side, odd
 REACH = 5  # within which the quadratic is fitted
 RIM = 0.2  # weight of a patch beside an unloaded one, whose pressure is the least accurate
 NEAR = 4  # within which the deflection is that of the parts, beyond it that of their moments
 MISFIT, SUPPORT = 0.2, 9  # of a smooth edge: largest misfit, least number of patches that are not at the rim
-AT_ONCE = 2**20  # patches looked at in one go
+HALO = max(REACH, len(TAPER))
+AT_ONCE = 2**20  # patches examined together
+CROSS = np.array([[0, 1, 0], [1, 1, 1], [0, 1, 0]], dtype=bool)
 
 
 @dataclass(frozen=True, eq=False)
 class Edge:
     """The patches near the edge and the pressure in them.
 
-    i, j : their indices by rows, (k,).  quadratic : coefficients of p^2 [Pa^2], (k, 6), of 1, x, y, x^2, xy, y^2
-    over ``REACH``, the origin at the patch centre; negative beyond the edge.  mean : of p [Pa], (k,).
-    area : of the whole contact, in patches.  misfit : largest misfit of a quadratic, as a distance in patches
-    by which the edge would be missed.
+    i, j : their indices by rows, (k,).  quadratic : coefficients of p^2 [Pa^2], (k, 6), of 1, x, y, x^2, xy,
+    y^2 over ``REACH``, the origin at the patch centre.  mean : of p [Pa], (k,).  share : integrated by parts,
+    (k,).  area : of the whole contact, in patches.  misfit : largest misfit of a quadratic, as the distance
+    by which it would miss the edge, in patches.
     """
 
     i: Indices
     j: Indices
     quadratic: Array
     mean: Array
+    share: Array
     area: float
     misfit: float
 
@@ -76,20 +81,23 @@ class Edge:
         mean = np.array(p)
         for a, b in _rows(p):
             mean[a:b] += _smooth(p, a, b, self)[0][1:-1]
-        mean[self.i, self.j] = self.mean
+        mean[self.i, self.j] += self.share * (self.mean - p[self.i, self.j])
         return mean
 
     def deflection_beyond_centres(
         self, parts: Array, p: Array, deflection: Callable[[Array], Array], near: Array
     ) -> tuple[Array, float]:
-        """Exact deflection [m] of p less that of constant patches with its values at the centres.
+        """Deflection [m] under p less that of constant patches, and what these miss of the sum of p [Pa].
 
-        And what these miss of the sum of p over the patches [Pa].
+        Constant patches carry the values at the centres. The difference is that of 3 x 3 constant patches
+        with the moments of p up to the second and, within ``NEAR`` of the edge's patches, of their parts.
 
-        parts [Pa] : of the pressure, as from `fit`.  p [Pa] : at the centres.  deflection : of constant patches.  near : `near_influence`.
+        parts [Pa] : as from `fit`.  p [Pa] : at the centres.  deflection : of constant patches.
+        near : `near_influence`.
         """
-        moments, centre = np.zeros_like(p), np.sqrt(np.maximum(self.quadratic[:, 0], 0))
-        missing = float(np.sum(self.mean - centre))
+        moments, parts = np.zeros_like(p), parts * self.share[:, None]
+        centre = self.share * np.sqrt(np.maximum(self.quadratic[:, 0], 0))
+        missing = float(np.sum(self.share * self.mean - centre))
         for a, b in _rows(p):
             bend, mx, my = _smooth(p, a, b, self)
             moments[a:b] = bend[1:-1] + (mx[:-2] - mx[2:]) / 2
@@ -108,50 +116,49 @@ class Edge:
 def fit(p: Array) -> tuple[Edge, Array] | None:
     """Edge of the contact under pressure p [Pa] at the patch centres; None where it is not a smooth curve.
 
-    And the means of p over PARTS x PARTS parts of each of its patches [Pa], (k, PARTS^2).
+    It is one if around every loaded patch beside an unloaded one the quadratic misses p^2, root mean square,
+    by no more than p^2 changes over ``MISFIT`` of a patch, and is supported by ``SUPPORT`` loaded patches
+    with four loaded neighbours; and if the contact keeps off the rim of the grid. A surface rough on the
+    scale of the patches does not pass, nor does a corner of the edge, a slit, a contact a few patches wide.
 
-    It is one if around every patch beside the edge the quadratic misses p^2 by no more than p^2 changes over
-    ``MISFIT`` of a patch (root mean square), and is supported by ``SUPPORT`` loaded patches that are not at
-    the rim of the contact. Neither a rough surface nor a corner of the edge passes.
+    Returns the edge and the means of p over PARTS x PARTS parts of each of its patches [Pa], (k, PARTS^2).
     """
     if touches_rim(p) or touches_rim(p[1:-1, 1:-1]):
         return None
-    found, inside, misfit = [], 0, 0.0
+    found, whole, misfit = [], 0.0, 0.0
+    shares = np.array([1.0, *TAPER, 0.0])
     for a, b in _rows(p):
-        around = _padded(p, a, b, REACH)
+        around = _padded(p, a, b, HALO)
         loaded = around > 0
-        middle = loaded[REACH:-REACH, REACH:-REACH]
-        deep = minimum_filter(loaded, 2 * DEPTH + 1, mode="constant")[REACH:-REACH, REACH:-REACH]
-        beside = maximum_filter(loaded, 3, mode="constant")[REACH:-REACH, REACH:-REACH]
-        i, j = np.nonzero(beside & ~deep)
-        inside += np.count_nonzero(deep)
+        depth = sum(minimum_filter(loaded, 2 * n + 1).astype(np.intp) for n in range(len(TAPER) + 1))
+        share = np.where(maximum_filter(loaded, 3), shares[depth], 0.0)
+        i, j = np.nonzero(share[HALO:-HALO, HALO:-HALO])
+        share = share[i + HALO, j + HALO]
+        deep = depth[i + HALO, j + HALO]
+        whole += np.count_nonzero(loaded[HALO:-HALO, HALO:-HALO]) - float(share[deep > 0].sum())
         if not i.size:
             continue
-        inner = minimum_filter(loaded, footprint=CROSS, mode="constant")
-        # judged at the edge: at loaded patches that have an unloaded one among their eight neighbours
-        at_edge = middle[i, j] & ~minimum_filter(middle, 3, mode="nearest")[i, j]
-        quadratic, missed = _quadratics(around, np.where(inner, 1.0, RIM * loaded), i, j)
-        misfit = max(misfit, float(missed[at_edge].max(initial=0.0)))
+        weight = np.where(minimum_filter(loaded, footprint=CROSS), 1.0, RIM * loaded)
+        quadratic, missed = _quadratics(around, weight, i + HALO, j + HALO)
+        misfit = max(misfit, float(missed[deep == 1].max(initial=0.0)))
         if misfit > MISFIT:
             return None
-        found.append((i + a, j, quadratic))
-    i, j, quadratic = (np.concatenate(parts) for parts in zip(*found, strict=True))
-    parts, share = _parts(quadratic)
-    return Edge(i, j, quadratic, parts.mean(axis=1), inside + float(share.sum()), misfit), parts
-
-
-CROSS = np.array([[0, 1, 0], [1, 1, 1], [0, 1, 0]], dtype=bool)
+        found.append((i + a, j, quadratic, share))
+    i, j, quadratic, share = (np.concatenate(parts) for parts in zip(*found, strict=True))
+    parts, loaded_share = _parts(quadratic)
+    area = whole + float(share @ loaded_share)
+    return Edge(i, j, quadratic, parts.mean(axis=1), share, area, misfit), parts
 
 
 def _quadratics(around: Array, weight: Array, i: Indices, j: Indices) -> tuple[Array, Array]:
     """Quadratics of p^2 around the patches i, j by least squares, and their misfits as distances of the edge.
 
-    around, weight : p and its weight, ``REACH`` patches wider on every side.  Returns coefficients [Pa^2] of
+    around, weight : p and its weight.  Returns coefficients [Pa^2] of
     1, x, y, x^2, xy, y^2 over ``REACH``, the origin at the patch centre, (k, 6), and the misfits in patches,
     (k,), infinite without ``SUPPORT``.
     """
     x, y, V, taper = _neighbourhood()
-    at = (i[:, None] + x + REACH, j[:, None] + y + REACH)
+    at = (i[:, None] + x, j[:, None] + y)
     W, L = weight[at], around[at] ** 2
     supported = np.count_nonzero(W == 1, axis=1) >= SUPPORT
     W *= taper
@@ -182,7 +189,7 @@ def _terms(x: Array | Indices, y: Array | Indices) -> Array:
 
 
 def _parts(quadratic: Array) -> tuple[Array, Array]:
-    """Mean of p over PARTS x PARTS parts of every patch, (k, PARTS^2), and the loaded share of the patch, (k,).
+    """Mean of p over PARTS x PARTS parts of every patch, (k, PARTS^2), and its loaded share, (k,).
 
     Exact for p^2 linear in the direction in which it changes most; two Gauss points across.
     """
@@ -222,7 +229,7 @@ def _stencil() -> dict[tuple[int, int], Array]:
 
 
 def near_influence(of_patch: Array, of_part: Array) -> Array:
-    """Deflection [m/Pa] at the centres around a patch by its parts, less that of the patches of equal moments.
+    """Deflection [m/Pa] at the centres around a patch by its parts, less that of patches of equal moments.
 
     of_patch : influence coefficients of a patch, at least (NEAR + 2, NEAR + 2).  of_part : those of a part,
     at least ((NEAR + 1) PARTS, (NEAR + 1) PARTS).  Returns ((2 NEAR + 1)^2, PARTS^2).
@@ -236,14 +243,15 @@ def near_influence(of_patch: Array, of_part: Array) -> Array:
 
 
 def _smooth(p: Array, a: int, b: int, edge: Edge) -> tuple[Array, Array, Array]:
-    """Beyond the centre value of the patches away from the edge: of the mean, and first moments, [Pa].
+    """Mean beyond the centre value, lap p/24, and first moments, grad p/12, rows a-1 to b+1 [Pa].
 
-    lap p/24 and grad p/12, rows a-1 to b+1; p = sqrt(p^2) is differentiated through p^2.
+    By differences of p^2; of the share of the patches that is not integrated by parts.
     """
     L = _padded(p, a, b, 2)
     inverse = L[1:-1, 2:-2].copy()
     near = (edge.i >= a - 1) & (edge.i < b + 1)
-    inverse[edge.i[near] - (a - 1), edge.j[near]] = 0
+    at, rest = (edge.i[near] - (a - 1), edge.j[near]), 1 - edge.share[near]
+    inverse[at] *= rest > 0
     np.divide(1, inverse, out=inverse, where=inverse > 0)
     L = L[:, 1:-1] ** 2
     middle = L[1:-1, 1:-1]
@@ -251,7 +259,10 @@ def _smooth(p: Array, a: int, b: int, edge: Edge) -> tuple[Array, Array, Array]:
     py = (L[1:-1, 2:] - L[1:-1, :-2]) * inverse / 4
     bend = L[2:, 1:-1] + L[:-2, 1:-1] + L[1:-1, 2:] + L[1:-1, :-2] - 4 * middle
     bend = bend * inverse / 2 - (px * px + py * py) * inverse
-    return bend / 24, px / 12, py / 12
+    moments = bend / 24, px / 12, py / 12
+    for moment in moments:
+        moment[at] *= rest
+    return moments
 
 
 def _padded(p: Array, a: int, b: int, width: int) -> Array:

@@ -277,6 +277,7 @@ def _indented(patches: int, half_width: float, coatings: Coatings, **numerics: A
         substrate=(E_STAR, 0.0),
         patches=patches,
         tolerance=TOLERANCE["semianalytic"],
+        edge_correction=False,  # as the others: patches alone
         estimate_uncertainty=False,
         **numerics,
     )
