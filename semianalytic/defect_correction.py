@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from semianalytic import abel, influence, smooth_edge
 from semianalytic.edge_profile import Profile
-from semianalytic.grid import Grid, Window
+from semianalytic.grid import Grid
 from semianalytic.inputs import Body, Numerics
 from semianalytic.level import Indenter, Level, LevelProblem
 
@@ -37,12 +37,11 @@ def corrected(
 
     gap : [m], on the grid.  before : level to start from.
     """
-    whole = Window(0, grid.n, 0, grid.n)
-    problem = LevelProblem(grid, gap, float(np.ptp(gap)), whole, before, indenter, body, numerics)
+    problem = LevelProblem(grid, gap, float(np.ptp(gap)), grid.window, before, indenter, body, numerics)
     if shape is None:
         return problem.solve(0.0, 0.0)
     on_patches = shape.pressure(grid.radius)
-    missing = shape.load - float(on_patches.sum() * grid.d**2)
+    missing = shape.load - grid.force(on_patches)
     E_star = body.contact_modulus
     exact = abel.deflection(shape.radius, shape.coefficients, E_star, indenter.table, grid.radius)
     level = problem.solve(exact - problem.deflection(on_patches), missing)
@@ -55,15 +54,17 @@ def smoothed(problem: LevelProblem) -> Level:
     The deflection under p beyond the centres is added to the gap, which gives another p: a fixed point, from
     the patches alone by ``ROUNDS`` rounds. A third changes less than the patch size does.
     """
-    level = problem.solve(0.0, 0.0)
-    near = _near_influence(problem)
-    convolutions, defect, missing, edge = level.convolutions, 0.0, 0.0, None
+    level = alone = problem.solve(0.0, 0.0)
+    convolutions, near = alone.convolutions, None
+    defect: Array | float = 0.0
+    missing = 0.0
     for number in range(ROUNDS):
         p = level.found.pressure
         fitted = smooth_edge.fit(p)
         if fitted is None:
-            return problem.solve(0.0, 0.0) if number else level
+            return alone
         edge, parts = fitted
+        near = _near_influence(problem) if near is None else near
         u, beyond = edge.deflection_beyond_centres(parts, p, problem.deflection, near)
         # patches that the edge barely touches would alternate between two rounds
         defect, missing = ((defect + u) / 2, (missing + beyond) / 2) if number else (u, beyond)
