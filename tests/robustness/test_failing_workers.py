@@ -36,7 +36,8 @@ REASONS = {
 
 @pytest.fixture(autouse=True)
 def _planted(monkeypatch):
-    monkeypatch.setenv("PYTHONPATH", os.pathsep.join([str(HERE), str(HERE.parent / "verification")]))
+    places = [str(HERE), str(HERE.parent / "verification"), os.environ.get("PYTHONPATH", "")]
+    monkeypatch.setenv("PYTHONPATH", os.pathsep.join(places))
 
 
 def task(how: str, folder: Path, number: int = 0) -> Task[str]:

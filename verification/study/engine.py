@@ -10,7 +10,7 @@ import json
 import os
 import time
 from collections.abc import Callable, Iterator
-from contextlib import nullcontext
+from contextlib import closing, nullcontext
 from dataclasses import dataclass, field
 from itertools import chain, groupby, takewhile
 from pathlib import Path
@@ -169,8 +169,9 @@ class _Run:
 
     def solve(self, waiting: Iterator[Solve], client: Any, function: Callable[..., Any]) -> None:
         """Submit a bounded number of solves at a time until none is left; store each answer."""
-        for one, found in answers(client, function, self._requests(waiting)):
-            self._take(one, found)
+        with closing(answers(client, function, self._requests(waiting))) as arriving:
+            for one, found in arriving:
+                self._take(one, found)
 
     def _requests(self, waiting: Iterator[Solve]) -> Iterator[tuple[str, dict[str, Any], Solve]]:
         for one in waiting:

@@ -8,8 +8,8 @@ import threading
 import time
 import uuid
 import warnings
-from collections.abc import Callable, Iterable, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
+from contextlib import closing, contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, TypeVar
@@ -32,6 +32,7 @@ DIED = "every worker that it was submitted to was killed, most likely for lack o
 REMEDY = (
     "install the same coatcheck and the same versions of its dependencies on the scheduler and every worker"
 )
+CONTINUE = "what is finished is kept: run the command again, with --resume where it has this option"
 # By name, so that a process without this program can answer too.
 PROBE = "__import__('verification.running.provenance', fromlist=['']).provenance()"
 # With Dask's own setting every freed array is returned to the system, and a third of the time is spent on
@@ -78,10 +79,11 @@ class Cluster:
         with connected(self.address, None) as client:
             self.jobs = max(self.jobs, sum(client.nthreads().values()))
             requests = _requests(tasks, time_limit, started)
-            for group, reply in answers(client, serve, requests, meanwhile):
-                for number, result in self._taken(group, reply):
-                    results[number] = result
-                    finished(tasks[number].name, result)
+            with closing(answers(client, serve, requests, meanwhile)) as arriving:
+                for group, reply in arriving:
+                    for number, result in self._taken(group, reply):
+                        results[number] = result
+                        finished(tasks[number].name, result)
         return [results[number] for number in range(len(tasks))]
 
     def _taken(self, group: Group[T], reply: Reply | Lost) -> Iterator[tuple[int, T]]:
@@ -242,7 +244,7 @@ def answers(
     function: Callable[[Any], Any],
     requests: Iterator[tuple[str, Any, T]],
     meanwhile: Callable[[], object] = lambda: None,
-) -> Iterator[tuple[T, Any]]:
+) -> Generator[tuple[T, Any], None, None]:
     """What ``function`` answers on the workers, as the answers come: each with what its request was for.
 
     requests : key, request, what for. A bounded number is submitted at a time; those that are when the
@@ -302,20 +304,19 @@ class _Workers:
             self.count, self.seen = count, now
         elif now - self.seen > WAIT:
             raise SchedulerError(
-                f"no worker has been left for {WAIT:.0f} s; what is finished is kept, start one with: "
-                "dask worker ADDRESS"
+                f"no worker has been left for {WAIT:.0f} s; start one with: dask worker ADDRESS; {CONTINUE}"
             )
         return self.count
 
 
 def _answer(future: Any) -> Any:
     if future.cancelled():
-        raise SchedulerError("the scheduler is lost; what is finished is kept, the same command continues")
+        raise SchedulerError(f"the scheduler is lost; {CONTINUE}")
     error = future.exception()
     if error is None:
         return future.result()
     if type(error).__name__ == "KilledWorker":
         return Lost(DIED)
-    if isinstance(error, ImportError):
+    if isinstance(error, ImportError | AttributeError):  # of loading the request
         raise SchedulerError(f"a worker cannot load coatcheck ({message_of(error)}); {REMEDY}")
     return Lost(message_of(error))

@@ -111,6 +111,7 @@ class Slot(Generic[T]):
         return self.task
 
     def _launch(self) -> subprocess.Popen[bytes]:
+        self.errors.close()
         self.errors = tempfile.TemporaryFile()  # noqa: SIM115 - lives as long as the process
         self.process = subprocess.Popen(
             [sys.executable, "-m", "verification.running.pool.guard"],
@@ -185,6 +186,11 @@ class Slot(Generic[T]):
         with self.process:  # closes its pipes, waits
             self.process = None
 
+    def close(self) -> None:
+        """As ``stop``, for good."""
+        self.stop()
+        self.errors.close()
+
 
 def _pipe(end: IO[bytes] | None) -> IO[bytes]:
     assert end is not None
@@ -198,8 +204,7 @@ def _ended(slots: list[Slot[T]]) -> Iterator[list[Slot[T]]]:
         yield slots
     finally:
         for slot in slots:
-            slot.stop()
-            slot.errors.close()
+            slot.close()
 
 
 def _identity(path: Path) -> tuple[int, int] | None:

@@ -82,7 +82,7 @@ def _run(tasks: list[Task[Result]], time_limit: float) -> tuple[Result, ...]:
                     raise RuntimeError("stopped, since nobody waits for it any more")
             results.append(found[2])
     except BaseException:
-        slot.stop()
+        slot.close()
         raise
     _idle.append(slot)
     return tuple(results)
