@@ -118,7 +118,7 @@ def test_a_request_that_a_worker_cannot_answer_is_a_reason():
     assert cluster._answer(full) == Lost("OSError: [Errno 28] No space left on device")
     with pytest.raises(SchedulerError, match="the scheduler is lost; what is finished is kept"):
         cluster._answer(Future())
-    with pytest.raises(SchedulerError, match="a worker cannot load coatcheck"):
+    with pytest.raises(SchedulerError, match="a worker lacks this coatcheck"):
         cluster._answer(Future(ModuleNotFoundError("No module named 'verification'")))
     (number, result), *_ = Cluster("")._taken([(7, task("good", Path()))], Lost("why"))
     assert (number, result) == (7, "why")
@@ -148,7 +148,7 @@ def test_workers_of_another_program_are_refused(address, monkeypatch):
 def test_workers_without_the_program_are_refused(address, monkeypatch):
     monkeypatch.setattr(cluster, "PROBE", "__import__('no_such_package')")
     with (
-        pytest.raises(SchedulerError, match=r"cannot load coatcheck \(.*'no_such_package'\); install"),
+        pytest.raises(SchedulerError, match=r"lacks this coatcheck \(.*'no_such_package'\); install"),
         cluster.connected(address, None),
     ):
         pass

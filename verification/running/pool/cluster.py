@@ -225,7 +225,7 @@ def _require_same_program(client: Any) -> None:
         found["scheduler"] = error
     for place, one in found.items():
         if isinstance(one, Exception):
-            raise SchedulerError(f"the {place} cannot load coatcheck ({message_of(one)}); {REMEDY}")
+            raise SchedulerError(f"the {place} lacks this coatcheck ({message_of(one)}); {REMEDY}")
         if differs := one.difference(mine):
             raise SchedulerError(f"the {place} runs another program: {differs}; {REMEDY}")
 
@@ -318,5 +318,5 @@ def _answer(future: Any) -> Any:
     if type(error).__name__ == "KilledWorker":
         return Lost(DIED)
     if isinstance(error, ImportError | AttributeError):  # of loading the request
-        raise SchedulerError(f"a worker cannot load coatcheck ({message_of(error)}); {REMEDY}")
+        raise SchedulerError(f"a worker lacks this coatcheck ({message_of(error)}); {REMEDY}")
     return Lost(message_of(error))
