@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from semianalytic import abel
 from semianalytic.edge_profile import Profile
-from semianalytic.grid import Grid, Window
+from semianalytic.grid import Grid
 from semianalytic.inputs import Body, Numerics
 from semianalytic.level import Indenter, Level, LevelProblem
 
@@ -33,12 +33,11 @@ def corrected(
 
     gap : [m], on the grid.  before : level to start from.
     """
-    whole = Window(0, grid.n, 0, grid.n)
-    problem = LevelProblem(grid, gap, float(np.ptp(gap)), whole, before, indenter, body, numerics)
+    problem = LevelProblem(grid, gap, float(np.ptp(gap)), grid.window, before, indenter, body, numerics)
     if shape is None:
         return problem.solve(0.0, 0.0)
     on_patches = shape.pressure(grid.radius)
-    missing = shape.load - float(on_patches.sum() * grid.d**2)
+    missing = shape.load - grid.force(on_patches)
     E_star = body.contact_modulus
     exact = abel.deflection(shape.radius, shape.coefficients, E_star, indenter.table, grid.radius)
     level = problem.solve(exact - problem.deflection(on_patches), missing)

@@ -1,7 +1,7 @@
 """Contact on one grid of the nested iteration."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -50,7 +50,8 @@ class Level:
     def radius(self) -> float:
         if self.shape is not None:
             return self.shape.radius
-        return float(np.sqrt(np.count_nonzero(self.found.pressure) / np.pi) * self.grid.d)
+        loaded = np.count_nonzero(self.grid.whole(self.found.pressure))
+        return float(np.sqrt(loaded / np.pi) * self.grid.d)
 
     @property
     def staircase(self) -> float:
@@ -60,11 +61,18 @@ class Level:
         """
         if self.shape is not None:
             return 0.0
-        touching = np.pad(self.found.pressure > 0, 1)
+        touching = np.pad(self.grid.whole(self.found.pressure) > 0, 1)
         edges = sum(np.count_nonzero(np.diff(touching, axis=axis)) for axis in (0, 1))
         return float(np.pi / 4 * edges * self.grid.d / 4 * self.grid.d / (2 * np.pi * self.radius))
 
     @property
+    def whole(self) -> "Level":
+        """The same contact on all the patches."""
+        whole, found = self.grid.whole, self.found
+        found = replace(found, pressure=whole(found.pressure), gap=whole(found.gap))
+        return replace(self, grid=replace(self.grid, quarter=False), found=found)
+
+    @cached_property
     def scalars(self) -> dict[str, float]:
         return {
             "contact_radius": self.radius,
@@ -77,8 +85,10 @@ class Level:
         """Of the patches; a ring of highest pressure between their centres is that of the edge profile."""
         peak = float(self.found.pressure.max())
         if isinstance(self.shape, edge_profile.Profile):
-            on_patches = self.shape.pressure(self.grid.radius)
-            peak = self.shape.peak + float((on_patches + self.rest).max() - on_patches.max())
+            peak = self.shape.peak
+            if self.rest.any():
+                on_patches = self.shape.pressure(self.grid.radius)
+                peak += float((on_patches + self.rest).max() - on_patches.max())
         return peak
 
     @cached_property
@@ -132,10 +142,11 @@ class LevelProblem:
     ) -> None:
         self.grid, self.gap, self.depth, self.window, self.before = grid, gap, depth, window, before
         self.indenter, self.body, self.numerics = indenter, body, numerics
-        nx, ny = window.shape
+        nx, ny = (grid.n, grid.n) if grid.quarter else window.shape
         kernel = influence.surface_coefficients(max(nx, ny), grid.d, body, numerics)[:nx, :ny]
-        self.deflection = convolution.even_convolution(kernel, threads=numerics.threads)
-        self.precondition = convolution.circulant_inverse(kernel, threads=numerics.threads)
+        held, threads = grid.quarter, numerics.threads
+        self.deflection = convolution.even_convolution(kernel, quarter=held, threads=threads)
+        self.precondition = convolution.circulant_inverse(kernel, quarter=held, threads=threads)
 
     def solve(self, defect: Array | float, missing: float) -> Level:
         """Contact with ``defect`` [m] added to the gap and ``missing`` [N] of the load not on the patches."""
@@ -154,8 +165,9 @@ class LevelProblem:
             tolerance=self.numerics.tolerance,
             max_iterations=self.numerics.max_iterations,
             extension=_extension(self.body, grid.d),
+            weight=grid.weight,
         )
-        load = float(found.pressure.sum() * grid.d**2) + missing
+        load = grid.force(found.pressure) + missing
         # p = E* k u / 2, k at most that of a checkerboard, sqrt(2) pi / d
         noise = self.numerics.tolerance * scale * self.body.contact_modulus * np.pi / 2**0.5 / grid.d
         return Level(grid, found, None, load, found.convolutions, noise)

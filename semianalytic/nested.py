@@ -38,10 +38,11 @@ def levels(
     starter = replace(numerics, tolerance=max(1e-5, numerics.tolerance))
     if indenter.shapes:
         starter = replace(starter, max_iterations=min(QUICK, numerics.max_iterations))
+    quarter = indenter.round and numerics.patches % 2 == 1
     found: list[Level] = []
     for k, (n, shape) in enumerate(zip(sizes, shapes, strict=True)):
         used = numerics if k >= len(sizes) - kept else starter
-        before, grid = found[-1] if found else None, Grid(n, 2 * half_width / n)
+        before, grid = found[-1] if found else None, Grid(n, 2 * half_width / n, quarter)
         try:
             found.append(solve_on(grid, before, indenter, body, used, shape))
         except NotConverged:
@@ -64,7 +65,7 @@ def solve_on(
     gap = indenter.gap(grid)
     if indenter.round:
         return corrected(grid, gap, before, shape, indenter, body, numerics)
-    whole, depth = Window(0, grid.n, 0, grid.n), float(np.ptp(gap))
+    whole, depth = grid.window, float(np.ptp(gap))
     if before is not None:
         window = window_around(before.found.pressure, before.grid, grid)
         if window.shape != whole.shape:

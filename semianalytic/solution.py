@@ -99,10 +99,11 @@ class Solution:
 
     @classmethod
     def _of_level(cls, level: Level, body: Body, coarser: "Solution | None") -> "Solution":
+        scalars, level = level.scalars, level.whole
         grid, found = level.grid, level.found
         beyond = max(int(np.ceil((2.05 * level.radius - grid.x[-1]) / grid.d)), 0)
         return cls(
-            **level.scalars,
+            **scalars,
             surface_nodes=grid.x[0] + grid.d * np.arange(-beyond, grid.n + beyond),
             diagnostics=Diagnostics(
                 iterations=found.iterations,

@@ -108,7 +108,7 @@ def solve(
             table = abel.layer_table(collocation.compliance_excess(body), depth, a, reach)
             sphere = replace(sphere, table=table)
     levels = nested.levels(half_width, sphere, body, numerics, estimate_uncertainty)
-    if touches_rim(levels[-1].found.pressure):
+    if touches_rim(levels[-1].whole.found.pressure):
         raise NotConverged(f"the contact reaches the rim of the grid, fill = {fill:g}; enlarge it")
     estimate = uncertainty.of_contact(levels, sphere, body, numerics) if estimate_uncertainty else None
     solution = Solution.of_levels(levels, body, estimate, began)
@@ -184,7 +184,7 @@ def indent(
 
     indenter = Indenter(gap, load, approach, round=False)
     levels = nested.levels(half_width, indenter, body, numerics, estimate_uncertainty)
-    if heights is None and touches_rim(levels[-1].found.pressure):
+    if heights is None and touches_rim(levels[-1].whole.found.pressure):
         raise NotConverged(
             f"the contact reaches the rim of the square, half_width = {half_width:g} m; widen it, or give "
             "the profile as an array if it has no surface beyond"

@@ -6,7 +6,7 @@ import numpy as np
 
 from semianalytic.collocation import RoundContact
 from semianalytic.edge_profile import Profile, convergence
-from semianalytic.grid import Grid, odd
+from semianalytic.grid import odd
 from semianalytic.inputs import Body, Numerics
 from semianalytic.level import Indenter, Level
 from semianalytic.nested import solve_on
@@ -82,7 +82,7 @@ def of_contact(levels: list[Level], indenter: Indenter, body: Body, numerics: Nu
     fine, middle, coarse = (level.scalars for level in levels[:-4:-1])
     grid, start = levels[-3].grid, levels[-4] if len(levels) > 3 else None
     looser = replace(numerics, tolerance=min(100 * numerics.tolerance, 1e-2))
-    wider = Grid(odd(WIDER * grid.n), grid.d)
+    wider = replace(grid, n=odd(WIDER * grid.n))
     variations = {
         "conversion": solve_on(grid, start, indenter, body, other_conversion(numerics)).scalars,
         "domain": solve_on(wider, start, indenter, body, numerics).scalars,
