@@ -85,7 +85,10 @@ def default_run(turn: int) -> Prepared:
     def run() -> None:
         with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as folder:
             command = [sys.executable, "-m", "verification.cli", "run", "--output", folder]
-            subprocess.run(command, stdout=subprocess.DEVNULL, check=True)
+            subprocess.run(command, stdout=subprocess.DEVNULL, check=False)
+            # Its verdicts, so its exit code, are those of another machine and of other versions.
+            if not Path(folder, "report.json").exists():
+                raise RuntimeError("coatcheck run wrote no report")
 
     return run
 
