@@ -94,7 +94,8 @@ class _ContactSet:
         return out
 
     def _mean(self, r: Array, out: Array) -> Array:
-        gaussian_filter(r, self.extension, mode="constant", truncate=3, output=out)
+        # mirrored at the rim of the grid, as at the axes of a quarter
+        gaussian_filter(r, self.extension, mode="mirror", truncate=3, output=out)
         return out
 
 
@@ -112,10 +113,20 @@ class _Problem:
     tolerance: float
     max_iterations: int
     extension: float
+    weight: Array
 
     def balanced(self, p: Array) -> Array:
         """Pressure scaled to the load."""
-        return p if self.total is None else p * (self.total / p.sum())
+        return p if self.total is None else p * (self.total / self.sum(p))
+
+    def sum(self, a: Array) -> float:
+        """Sum over all patches."""
+        return float(np.einsum("ij,ij->", a, self.weight))
+
+    def dot(self, a: Array, b: Array) -> float:
+        """Inner product over all patches."""
+        # not by BLAS: its threads keep spinning after such a short sum and slow those of the FFT
+        return float(np.einsum("ij,ij,ij->", a, b, self.weight))
 
 
 @dataclass(slots=True, eq=False)
@@ -178,6 +189,7 @@ def solve(
     tolerance: float,
     max_iterations: int,
     extension: float = EXTENSION,
+    weight: Array | float = 1.0,
 ) -> Contact:
     """Pressure p >= 0 that closes the gap where it acts and leaves it open elsewhere.
 
@@ -186,6 +198,8 @@ def solve(
     start : first guess of p.  precondition : z = P r, approximate inverse of A.
     scale : length to which gap and penetration are relative [m].  tolerance : on each of them, relative.
     extension : patches over which the residual is extended beyond the contact.
+    weight : patches that each entry represents, where the operators and the gap are those of a ``grid.Grid``
+    held as a quarter.
 
     Raises NotConverged after max_iterations, ValueError unless exactly one of total and approach is given.
     """
@@ -196,14 +210,24 @@ def solve(
             "the first guess of the pressure is not finite; look at the influence coefficients"
         )
     problem = _Problem(
-        deflection, gap, total, approach, start, precondition, scale, tolerance, max_iterations, extension
+        deflection,
+        gap,
+        total,
+        approach,
+        start,
+        precondition,
+        scale,
+        tolerance,
+        max_iterations,
+        extension,
+        np.broadcast_to(weight, gap.shape),
     )
     # numbered as by Polonsky and Keer; their last steps come first, for the first guess may be the solution
     state = _first_guess(problem)
     _find_gap(state, problem)  # 1: gap, its preconditioned mean removed
     while not _is_solved(state, problem):  # 7: stopping criterion
         if not _update_set(state, problem):  # 5, 6: tension leaves, overlap enters; balance of the load
-            _find_direction(state)  # 2: conjugate direction
+            _find_direction(state, problem)  # 2: conjugate direction
             _advance(state, problem)  # 3, 4: step length and step
             _choose_preconditioner(state, problem)
         _find_gap(state, problem)  # 1
@@ -258,7 +282,7 @@ def _find_gap(state: _State, problem: _Problem) -> None:
     _find_residual(state, problem)
     _precondition(state, problem, state.r, state.contact.extended(state.r, state.extended), state.z)
     if problem.approach is None:
-        shift = state.shift = float(state.z.sum() / state.P_one.sum())
+        shift = state.shift = problem.sum(state.z) / problem.sum(state.P_one)
         np.subtract(state.g, shift, out=state.g)
         np.multiply(state.g, state.contact.indicator, out=state.r)
         np.subtract(state.z, np.multiply(state.P_one, shift, out=state.work), out=state.z)
@@ -344,10 +368,10 @@ def _update_set(state: _State, problem: _Problem) -> bool:
     return True
 
 
-def _find_direction(state: _State) -> None:
+def _find_direction(state: _State, problem: _Problem) -> None:
     """Step 2: conjugate direction on the contact set, steepest descent after the set has changed."""
-    descent = _dot(state.r, state.z)
-    beta = 0.0 if state.on_set == 0 else max(0.0, descent - _dot(state.last, state.z)) / state.slope
+    descent = problem.dot(state.r, state.z)
+    beta = 0.0 if state.on_set == 0 else max(0.0, descent - problem.dot(state.last, state.z)) / state.slope
     state.slope = descent
     state.step *= beta
     state.step += state.z
@@ -358,7 +382,7 @@ def _advance(state: _State, problem: _Problem) -> None:
     state.history.append((state.residual, state.depth / problem.scale))
     Au = problem.deflection(state.step)
     state.convolutions += 1
-    alpha = _dot(state.r, state.step) / _dot(state.step, Au)
+    alpha = problem.dot(state.r, state.step) / problem.dot(state.step, Au)
     state.p -= np.multiply(state.step, alpha, out=state.work)
     state.u -= np.multiply(Au, alpha, out=state.work)
     state.updated, state.new = True, False
@@ -366,13 +390,8 @@ def _advance(state: _State, problem: _Problem) -> None:
     state.iterations, state.on_set = state.iterations + 1, state.on_set + 1
 
 
-def _dot(a: Array, b: Array) -> float:
-    # not by BLAS: its threads keep spinning after such a short sum and slow those of the FFT
-    return float(np.einsum("ij,ij->", a, b))
-
-
 def _contact(state: _State, problem: _Problem) -> Contact:
-    error = 0.0 if problem.total is None else abs(float(state.p.sum()) / problem.total - 1)
+    error = 0.0 if problem.total is None else abs(problem.sum(state.p) / problem.total - 1)
     return Contact(
         pressure=state.p,
         gap=state.g,

@@ -26,32 +26,43 @@ def good_size(n: int) -> int:
     return 2 * int(ducc0.fft.good_size((n + 1) // 2, False))
 
 
-def even_convolution(kernel: Array, *, threads: int = 1) -> Callable[[Array], Array]:
+def even_convolution(kernel: Array, *, quarter: bool = False, threads: int = 1) -> Callable[[Array], Array]:
     """Linear convolution with a kernel even in both indices.
 
     kernel : K(i, j) for i, j >= 0, shape (nx, ny), the largest offsets between two patches.
-    Returns u(p) for p of shape (nx, ny); u has its shape, units K times p. It reuses its own work memory:
-    concurrent calls need one operator each.
+    quarter : p is even in both indices and held where they are not negative; nx, ny are odd.
+    Returns u(p) for p of shape (nx, ny), of a quarter ((nx + 1) / 2, (ny + 1) / 2); u has its shape, units
+    K times p. It reuses its own work memory: concurrent calls need one operator each.
     """
     nx, ny = kernel.shape
+    if quarter:
+        # cosines of half-odd frequency change sign over 2 mx patches: what wraps around lands beyond u
+        mx, my = (int(ducc0.fft.good_size(n, True)) for n in (nx, ny))
+        spectrum: Array = np.zeros((mx, my))
+        spectrum[:nx, :ny] = kernel
+        ducc0.fft.dct(spectrum, axes=(0, 1), type=3, nthreads=threads, out=spectrum)
+        return _apply_cosines(spectrum / (4 * mx * my), (nx + 1) // 2, (ny + 1) // 2, (3, 2), threads)
     spectrum = _even_spectrum(kernel, good_size(2 * nx - 1), good_size(2 * ny - 1), threads)
     return _apply_even(spectrum, nx, ny, threads)
 
 
-def circulant_inverse(kernel: Array, *, threads: int = 1) -> Callable[[Array], Array]:
+def circulant_inverse(kernel: Array, *, quarter: bool = False, threads: int = 1) -> Callable[[Array], Array]:
     """Inverse of the circular convolution that keeps the near half of the kernel.
 
     Strang's circulant preconditioner (Stud. Appl. Math. 74 (1986) 171-176): offsets up to half the grid,
     wrapped around; about the inverse FRF, and a quarter of the work of the padded convolution.
 
-    kernel : K(i, j) for i, j >= 0, shape (nx, ny).  Returns a function of r, shape (nx, ny).
+    kernel, quarter : as in ``even_convolution``.  Returns a function of r, of the shape of p there.
     """
     nx, ny = kernel.shape
     mx, my = good_size(nx), good_size(ny)
     spectrum = _even_spectrum(kernel[: mx // 2 + 1, : my // 2 + 1], mx, my, threads)
     # truncation can turn eigenvalues negative; true ones do not fall below those of the shortest waves
     floor = 0.5 * np.median(np.abs(spectrum))
-    return _apply_even(1 / np.maximum(spectrum, floor), nx, ny, threads)
+    inverse = 1 / np.maximum(spectrum, floor)
+    if quarter:
+        return _apply_cosines(inverse / (mx * my), (nx + 1) // 2, (ny + 1) // 2, (1, 1), threads)
+    return _apply_even(inverse, nx, ny, threads)
 
 
 def _even_spectrum(kernel: Array, mx: int, my: int, threads: int) -> Array:
@@ -59,6 +70,29 @@ def _even_spectrum(kernel: Array, mx: int, my: int, threads: int) -> Array:
     quadrant = np.zeros((mx // 2 + 1, my // 2 + 1))
     quadrant[: kernel.shape[0], : kernel.shape[1]] = kernel
     return ducc0.fft.dct(quadrant, axes=(0, 1), type=1, nthreads=threads, out=quadrant)
+
+
+def _apply_cosines(
+    spectrum: Array, nx: int, ny: int, types: tuple[int, int], threads: int
+) -> Callable[[Array], Array]:
+    """Multiplication of the cosine transform by ``spectrum``; types : of the transform and of its inverse."""
+    wave = np.empty_like(spectrum)
+    rows = wave[:nx]
+    if wave.size < SHARED:
+        threads = 1
+    there, back = types
+
+    def apply(p: Array) -> Array:
+        wave[:] = 0
+        wave[:nx, :ny] = p
+        ducc0.fft.dct(rows, axes=(1,), type=there, nthreads=threads, out=rows)
+        ducc0.fft.dct(wave, axes=(0,), type=there, nthreads=threads, out=wave)
+        np.multiply(wave, spectrum, out=wave)
+        ducc0.fft.dct(wave, axes=(0,), type=back, nthreads=threads, out=wave)
+        ducc0.fft.dct(rows, axes=(1,), type=back, nthreads=threads, out=rows)
+        return wave[:nx, :ny].copy()
+
+    return apply
 
 
 def _apply_even(spectrum: Array, nx: int, ny: int, threads: int) -> Callable[[Array], Array]:

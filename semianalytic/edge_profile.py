@@ -45,11 +45,10 @@ class Profile:
 
     @property
     def load(self) -> float:
-        """W = pi a^2 int_0^1 sqrt(t) q dt [N], exact by Gauss quadrature in sqrt(t)."""
-        s, w = legendre.leggauss(len(self.coefficients) + 1)
-        s = (1 + s) / 2
-        q = legendre.legval(2 * s**2 - 1, self.coefficients)
-        return float(np.pi * self.radius**2 * np.sum(w * s**2 * q))
+        """W = pi a^2 int_0^1 sqrt(t) q dt [N]; sqrt(t) P_m gives (-1)^(m+1) 2 / ((2m-1) (2m+1) (2m+3))."""
+        m = np.arange(len(self.coefficients))
+        moments = 2 * (-1.0) ** (m + 1) / ((2 * m - 1) * (2 * m + 1) * (2 * m + 3))
+        return float(np.pi * self.radius**2 * np.sum(moments * self.coefficients))
 
 
 @dataclass(frozen=True, eq=False)
@@ -130,5 +129,4 @@ def patch_mean(shape: Profile | Prescribed, x: Array, d: float) -> Array:
         mean[near] *= 1 + (shape.load / d**2 - float(np.sum(number * mean))) / at_rim
     quadrant = np.zeros((c + 1, c + 1))
     quadrant[i, j] = quadrant[j, i] = mean
-    half = np.concatenate([quadrant[:0:-1], quadrant])
-    return np.concatenate([half[:, :0:-1], half], axis=1)
+    return np.pad(quadrant, ((c, 0), (c, 0)), mode="reflect")

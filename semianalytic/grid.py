@@ -2,10 +2,12 @@
 
 Patch centres x_i = (i - (n-1)/2) d; with n odd the origin is a patch centre. Outside the grid no pressure
 acts; the convolution is linear, so the grid, or the window of it in use, only needs a margin for the contact
-to change during the iteration.
+to change during the iteration. Fields even in x and in y are held on a quarter of the grid.
 """
 
 from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,25 +20,58 @@ Array = NDArray[np.floating]
 
 @dataclass(frozen=True)
 class Grid:
-    """n x n square patches of side d [m], centred at the origin."""
+    """n x n square patches of side d [m], centred at the origin.
+
+    quarter : fields are even in x and in y and held on the patches x >= 0, y >= 0 alone; n is odd.
+    """
 
     n: int
     d: float
+    quarter: bool = False
 
     @property
     def x(self) -> Array:
-        """Patch centres along one axis [m], shape (n,)."""
-        return (np.arange(self.n) - (self.n - 1) / 2) * self.d
+        """Centres along one axis of the patches held [m], shape (n,), of a quarter ((n + 1) / 2,)."""
+        x = (np.arange(self.n) - (self.n - 1) / 2) * self.d
+        return x[self.n // 2 :] if self.quarter else x
 
     @property
     def half_width(self) -> float:
         """Half the side of the box [m]."""
         return self.n * self.d / 2
 
-    @property
+    @cached_property
     def radius(self) -> Array:
-        """Distance of the patch centres from the origin [m], shape (n, n)."""
+        """Distance of the patch centres held from the origin [m]."""
         return np.hypot(self.x[:, None], self.x[None, :])
+
+    @property
+    def weight(self) -> Array | float:
+        """Patches that each one held represents: of a quarter 1 at the origin, 2 on the axes, 4 elsewhere."""
+        if not self.quarter:
+            return 1.0
+        w = np.where(self.x > 0, 2.0, 1.0)
+        return np.outer(w, w)
+
+    def force(self, pressure: Array) -> float:
+        """Force of a pressure on the patches [N]."""
+        return float(np.sum(self.weight * pressure) * self.d**2)
+
+    @property
+    def window(self) -> "Window":
+        """All the patches held."""
+        m = len(self.x)
+        return Window(0, m, 0, m)
+
+    def whole(self, field: Array) -> Array:
+        """A field on all n x n patches."""
+        c = self.n // 2
+        return np.pad(field, ((c, 0), (c, 0)), mode="reflect") if self.quarter else field
+
+    def ringed(self, field: NDArray[Any]) -> NDArray[Any]:
+        """A field with one more patch all around: 0 beyond the grid, mirrored at the axes of a quarter."""
+        field = np.pad(field, ((0, 1), (0, 1)))
+        return np.pad(field, ((1, 0), (1, 0)), mode="reflect" if self.quarter else "constant")
 
     def sample(self, heights: Array, half_width: float) -> Array:
         """Heights given on m x m patches that fill the square of ``half_width``, at these patch centres.
@@ -98,13 +133,15 @@ def prolong(pressure: Array, gap: Array, source: Grid, target: Grid, window: Win
     pressure [Pa], gap [m] : on the source.  window : of the target.  E_star [Pa].
     Returns p [Pa] on the window; 0 beyond the source.
     """
-    loaded = np.pad(pressure > 0, 1)
+    loaded = source.ringed(pressure > 0)
     inner = loaded[2:, 1:-1] & loaded[:-2, 1:-1] & loaded[1:-1, 2:] & loaded[1:-1, :-2]
     beside = loaded[:-2] | loaded[1:-1] | loaded[2:]
     beside = beside[:, :-2] | beside[:, 1:-1] | beside[:, 2:]
     loaded = loaded[1:-1, 1:-1]
     # a rim patch lies 0.6 d from the edge on average
-    K2 = float(np.mean(pressure[loaded & ~inner] ** 2)) / (0.6 * source.d)
+    rim = loaded & ~inner
+    weight = np.broadcast_to(source.weight, rim.shape)[rim]
+    K2 = float(np.average(pressure[rim] ** 2, weights=weight)) / (0.6 * source.d)
     level = pressure**2
     # patches not next to a loaded one are never interpolated with one: any value that is not positive serves
     beside &= ~loaded
@@ -132,8 +169,8 @@ def deconvolve(mean: Array) -> Array:
 
 def _linear(values: Array, source: Grid, x: Array) -> Array:
     """Linear interpolation along the first index, from the patch centres of the source to x; 0 beyond it."""
-    at = np.clip((x - source.x[0]) / source.d, 0, source.n - 1)
-    i = np.minimum(at.astype(int), source.n - 2)
+    at = np.clip((x - source.x[0]) / source.d, 0, len(values) - 1)
+    i = np.minimum(at.astype(int), len(values) - 2)
     t = (at - i)[:, None]
     result = values[i] * (1 - t) + values[i + 1] * t
     result[np.abs(x) > source.half_width] = 0

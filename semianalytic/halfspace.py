@@ -46,6 +46,7 @@ __all__ = [
 Array = NDArray[np.floating]
 Field = Callable[[Array, Array, Array, float], tuple[Array, ...]]
 
+BLOCK = 2**15  # entries of a table computed at a time, so that they stay in the cache
 FAR = 25.0  # sides; where the errors of closed form and quadrature cross
 TINY = 1e-100  # floor of squared lengths: real infinities (edges at z = 0) become finite, alike on both sides
 
@@ -107,16 +108,45 @@ def surface_deflection(nx: int, ny: int, dx: float, dy: float, depth: float = 0.
 
         V(i dx, j dy, depth),  i = 0..nx-1, j = 0..ny-1;   u_z = (1-nu)/(2 pi G) V at depth 0
 
-    Love (1929) eq. 4 with every corner value used by the four rectangles that share it, so that the
-    table takes one corner evaluation per entry. Absolute error about 1e-15 of V(0, 0) times nx.
+    Nearer than ``FAR`` sides Love (1929) eq. 4, with every corner value used by the four rectangles that
+    share it. Beyond, 1/rho and its even derivatives of orders 2, 4 times the moments of the rectangle: no
+    cancellation, within 5e-12 of every entry however large the table.
 
     nx, ny : entries.  dx, dy, depth [m].  Returns V [m], shape (nx, ny).
     """
-    X = (np.arange(nx + 1) - 0.5) * dx
-    Y = (np.arange(ny + 1) - 0.5) * dy
+    V = np.empty((nx, ny))
+    reach = np.sqrt(max((FAR * max(dx, dy)) ** 2 - depth**2, 0.0))
+    mx, my = min(int(np.ceil(reach / dx)), nx), min(int(np.ceil(reach / dy)), ny)
+    X, Y = (np.arange(mx + 1) - 0.5) * dx, (np.arange(my + 1) - 0.5) * dy
     corner = _potential_corner(X[:, None], Y[None, :], np.asarray(depth))
     column = corner[1:] - corner[:-1]
-    return column[:, 1:] - column[:, :-1]
+    V[:mx, :my] = column[:, 1:] - column[:, :-1]
+    y = np.arange(ny) * dy
+    rows = max(1, BLOCK // ny)
+    for begin, end, first in ((0, mx, my), (mx, nx, 0)):
+        for i in range(begin, end, rows):
+            x = np.arange(i, min(i + rows, end)) * dx
+            V[i : i + x.size, first:] = _potential_series(x[:, None], y[first:], depth, dx, dy)
+    return V
+
+
+def _potential_series(x: Array, y: Array, z: float, dx: float, dy: float) -> Array:
+    """V to the fourth moments of the rectangle: the mean of a Taylor series of 1/rho, by Horner in rho^-2."""
+    a, b, x2, y2 = dx * dx, dy * dy, x * x, y * y
+    s = 1 / (x2 + (y2 + z * z))
+    sum_ = (105 / 1920 * a * a) * x2 * x2 + (105 / 1920 * b * b) * y2 * y2
+    sum_ += (105 / 576 * a * b * x2) * y2
+    for cx, cy, c in (
+        (-(a / 1920 * 90 + b / 576 * 15) * a, -(b / 1920 * 90 + a / 576 * 15) * b, 0.0),
+        (a / 8, b / 8, (a * a + b * b) * 9 / 1920 + a * b * 3 / 576),
+        (0.0, 0.0, -(a + b) / 24),
+        (0.0, 0.0, 1.0),
+    ):
+        sum_ *= s
+        sum_ += cx * x2 + (cy * y2 + c)
+    sum_ *= np.sqrt(s, out=s)
+    sum_ *= dx * dy
+    return sum_
 
 
 def _over_rectangle(

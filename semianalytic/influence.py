@@ -21,6 +21,7 @@ plain      M/k times the transform of the patch, aliases summed, FFT on an enlar
 
 from collections.abc import Callable, Sequence
 from functools import partial
+from math import isqrt
 
 import ducc0
 import numpy as np
@@ -36,6 +37,7 @@ __all__ = ["plain_coefficients", "remainder_coefficients", "split_image", "surfa
 Array = NDArray[np.floating]
 Response = Callable[[Array], Array]
 
+BLOCK = 2**15  # coefficients computed at a time, so that they stay in the cache
 DIGITS = 1e-11  # tolerance of the quadrature over a patch, relative to the value at its centre
 SMOOTH = 12.0  # patches from the nearest singularity, beyond which finite differences average a patch
 
@@ -54,10 +56,13 @@ def surface_coefficients(n: int, d: float, body: Body, numerics: Numerics) -> Ar
             C = plain_coefficients(n, d, excess, enlarge=numerics.enlarge, threads=numerics.threads)
             K += 1 / (np.pi * one.moduli[0]) * C
         return K
-    K = 1 / (np.pi * body.contact_modulus) * halfspace.surface_deflection(n, n, d, d)
+    K = halfspace.surface_deflection(n, n, d, d)
+    K *= 1 / (np.pi * body.contact_modulus)
     for one in body.pair:
         if one.coatings:
-            K += 1 / (np.pi * one.moduli[0]) * _layer_coefficients(n, d, one, numerics)
+            C = _layer_coefficients(n, d, one, numerics)
+            C *= 1 / (np.pi * one.moduli[0])
+            K += C
     return K
 
 
@@ -65,8 +70,7 @@ def _layer_coefficients(n: int, d: float, body: Body, numerics: Numerics) -> Arr
     """C_ij [m] less Love's rectangle on the first material, shape (n, n)."""
     excess = partial(frf.compliance_excess, **body.layers)
     image = split_image(excess, body.thickness)
-    C = image[0] * halfspace.surface_deflection(n, n, d, d, image[1])
-    C += remainder_coefficients(
+    C = remainder_coefficients(
         n,
         d,
         excess,
@@ -76,6 +80,9 @@ def _layer_coefficients(n: int, d: float, body: Body, numerics: Numerics) -> Arr
         enlarge=numerics.enlarge if numerics.conversion == "split-fft" else 0,
         threads=numerics.threads,
     )
+    of_image = halfspace.surface_deflection(n, n, d, d, image[1])
+    of_image *= image[0]
+    C += of_image
     return C
 
 
@@ -127,8 +134,11 @@ def remainder_coefficients(
 
     g, on_disc = _radial(excess, thickness, image, points)
     near = 2 * thickness[0] / d  # g is singular no nearer than the image of the surface, at depth 2 h
-    table = _octant(g, n + 3, d)
-    mean = d * d * _average(_average(table, n).T, n).T
+    mean = _octant(g, n + 3, d)
+    _average(mean)
+    _average(mean.T)
+    mean = mean[:n, :n]
+    mean *= d * d
     edges = (3.0, SMOOTH) if near < SMOOTH else ()
     inner = 0
     for edge in edges:
@@ -215,16 +225,22 @@ def _radial(
 
 
 def _octant(g: Callable[[Array], Array], n: int, d: float) -> Array:
-    """g at the patch centres, computed for i >= j only."""
+    """g at the patch centres, computed in blocks of rows, in each up to its diagonal."""
     table = np.empty((n, n))
-    i, j = np.tril_indices(n)
-    table[i, j] = g(d * np.hypot(i, j))
-    table[j, i] = table[i, j]
+    i, end = np.arange(n), 0
+    while end < n:
+        begin, end = end, min(n, end + max(1, BLOCK // (end + isqrt(BLOCK))))
+        block = g(d * np.hypot(i[begin:end, None], i[:end]))
+        table[begin:end, :end] = block
+        table[:end, begin:end] = block.T
     return table
 
 
-def _average(table: Array, n: int) -> Array:
-    """Mean over a patch along the first index: (delta/2)/asinh(delta/2) to sixth differences."""
+def _average(table: Array) -> None:
+    """Mean over a patch along the first index, in place: (delta/2)/asinh(delta/2) to sixth differences.
+
+    The last three rows, whose neighbours are not in the table, lose their meaning.
+    """
     weights = np.array([1.0, 0, 0, 0])
     for factor, row in (
         (1 / 24, (-2, 1, 0, 0)),
@@ -232,11 +248,14 @@ def _average(table: Array, n: int) -> Array:
         (367 / 967680, (-20, 15, -6, 1)),
     ):
         weights += factor * np.array(row)
-    rows = np.concatenate([table[3:0:-1], table])
-    mean = weights[0] * rows[3 : n + 3]
-    for j in (1, 2, 3):
-        mean += weights[j] * (rows[3 - j : n + 3 - j] + rows[3 + j : n + 3 + j])
-    return mean
+    n = len(table) - 3
+    columns = max(1, BLOCK // len(table))
+    for begin in range(0, table.shape[1], columns):
+        strip = table[:, begin : begin + columns]
+        rows = np.concatenate([strip[3:0:-1], strip])
+        mean = np.multiply(rows[3 : n + 3], weights[0], out=strip[:n])
+        for j in (1, 2, 3):
+            mean += weights[j] * (rows[3 - j : n + 3 - j] + rows[3 + j : n + 3 + j])
 
 
 def _gauss_block(

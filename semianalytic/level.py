@@ -1,13 +1,13 @@
 """Contact on one grid of the nested iteration."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
-from semianalytic import abel, contact, convolution, edge_profile, influence
+from semianalytic import abel, contact, convolution, edge_profile, influence, smooth_edge
 from semianalytic.grid import Grid, Window, prolong
 from semianalytic.inputs import Body, Numerics
 
@@ -21,7 +21,7 @@ class Indenter:
     """Undeformed gap on a grid, and either the load [N] or the approach [m].
 
     round : axisymmetric with a smooth edge.  shapes : edge profiles of the contact, the finest first.
-    table : of the layers, for their deflection.
+    table : of the layers, for their deflection.  edge_correction : of others, where their edge is smooth.
     """
 
     gap: Callable[[Grid], Array]
@@ -30,11 +30,14 @@ class Indenter:
     round: bool
     shapes: tuple[edge_profile.Profile, ...] = ()
     table: abel.LayerTable | None = None
+    edge_correction: bool = False
 
 
 @dataclass(frozen=True)
 class Level:
-    """A contact on one grid; ``shape`` is the edge profile that corrects it, None for the patches alone.
+    """A contact on one grid; ``shape`` is the edge profile that corrects it, ``edge`` a smooth edge.
+
+    Both are None for the patches alone.
 
     noise : pressure [Pa] that the gap left by the iteration may cause on a patch.
     """
@@ -45,26 +48,40 @@ class Level:
     load: float
     convolutions: int
     noise: float = 0.0
+    edge: smooth_edge.Edge | None = None
 
     @property
     def radius(self) -> float:
         if self.shape is not None:
             return self.shape.radius
-        return float(np.sqrt(np.count_nonzero(self.found.pressure) / np.pi) * self.grid.d)
+        if self.edge is not None:
+            return float(np.sqrt(self.edge.area / np.pi) * self.grid.d)
+        loaded = np.count_nonzero(self.grid.whole(self.found.pressure))
+        return float(np.sqrt(loaded / np.pi) * self.grid.d)
 
     @property
     def staircase(self) -> float:
         """A quarter of a patch all along the edge, as an error of the radius [m]; 0 with an edge profile.
 
+        Of a smooth edge its misfit, in place of a quarter.
+
         The perimeter is that of the staircase times pi/4, its mean over all directions (Cauchy-Crofton).
         """
         if self.shape is not None:
             return 0.0
-        touching = np.pad(self.found.pressure > 0, 1)
+        share = 0.25 if self.edge is None else self.edge.misfit
+        touching = np.pad(self.grid.whole(self.found.pressure) > 0, 1)
         edges = sum(np.count_nonzero(np.diff(touching, axis=axis)) for axis in (0, 1))
-        return float(np.pi / 4 * edges * self.grid.d / 4 * self.grid.d / (2 * np.pi * self.radius))
+        return float(np.pi / 4 * edges * self.grid.d * share * self.grid.d / (2 * np.pi * self.radius))
 
     @property
+    def whole(self) -> "Level":
+        """The same contact on all the patches."""
+        whole, found = self.grid.whole, self.found
+        found = replace(found, pressure=whole(found.pressure), gap=whole(found.gap))
+        return replace(self, grid=replace(self.grid, quarter=False), found=found)
+
+    @cached_property
     def scalars(self) -> dict[str, float]:
         return {
             "contact_radius": self.radius,
@@ -77,8 +94,12 @@ class Level:
         """Of the patches; a ring of highest pressure between their centres is that of the edge profile."""
         peak = float(self.found.pressure.max())
         if isinstance(self.shape, edge_profile.Profile):
-            on_patches = self.shape.pressure(self.grid.radius)
-            peak = self.shape.peak + float((on_patches + self.rest).max() - on_patches.max())
+            peak = self.shape.peak
+            if self.rest.any():
+                on_patches = self.shape.pressure(self.grid.radius)
+                peak += float((on_patches + self.rest).max() - on_patches.max())
+        elif self.edge is not None:
+            peak += _above_highest(self.found.pressure)
         return peak
 
     @cached_property
@@ -109,6 +130,8 @@ class Level:
     def _mean_on(self, grid: Grid) -> Array:
         if isinstance(self.shape, edge_profile.Prescribed):
             return edge_profile.patch_mean(self.shape, grid.x, grid.d)
+        if self.edge is not None:
+            return self.edge.patch_mean(self.found.pressure)
         return self.found.pressure
 
 
@@ -132,13 +155,17 @@ class LevelProblem:
     ) -> None:
         self.grid, self.gap, self.depth, self.window, self.before = grid, gap, depth, window, before
         self.indenter, self.body, self.numerics = indenter, body, numerics
-        nx, ny = window.shape
+        nx, ny = (grid.n, grid.n) if grid.quarter else window.shape
         kernel = influence.surface_coefficients(max(nx, ny), grid.d, body, numerics)[:nx, :ny]
-        self.deflection = convolution.even_convolution(kernel, threads=numerics.threads)
-        self.precondition = convolution.circulant_inverse(kernel, threads=numerics.threads)
+        held, threads = grid.quarter, numerics.threads
+        self.deflection = convolution.even_convolution(kernel, quarter=held, threads=threads)
+        self.precondition = convolution.circulant_inverse(kernel, quarter=held, threads=threads)
 
-    def solve(self, defect: Array | float, missing: float) -> Level:
-        """Contact with ``defect`` [m] added to the gap and ``missing`` [N] of the load not on the patches."""
+    def solve(self, defect: Array | float, missing: float, start: Array | None = None) -> Level:
+        """Contact with ``defect`` [m] added to the gap and ``missing`` [N] of the load not on the patches.
+
+        start : first guess of the pressure [Pa], None for `first_guess`.
+        """
         grid, before, indenter = self.grid, self.before, self.indenter
         scale = indenter.approach or (before.found.approach if before else self.depth)
         # a flat punch has no depth; its approach is this to a factor of order one
@@ -148,19 +175,21 @@ class LevelProblem:
             self.gap + defect,
             total=None if indenter.load is None else (indenter.load - missing) / grid.d**2,
             approach=indenter.approach,
-            start=self._first_guess(),
+            start=self.first_guess() if start is None else start,
             precondition=self.precondition,
             scale=scale,
             tolerance=self.numerics.tolerance,
             max_iterations=self.numerics.max_iterations,
             extension=_extension(self.body, grid.d),
+            weight=grid.weight,
         )
-        load = float(found.pressure.sum() * grid.d**2) + missing
+        load = grid.force(found.pressure) + missing
         # p = E* k u / 2, k at most that of a checkerboard, sqrt(2) pi / d
         noise = self.numerics.tolerance * scale * self.body.contact_modulus * np.pi / 2**0.5 / grid.d
         return Level(grid, found, None, load, found.convolutions, noise)
 
-    def _first_guess(self) -> Array:
+    def first_guess(self) -> Array:
+        """Pressure [Pa] from the level before, or from the gap."""
         before = self.before
         if before is None and self.indenter.shapes:
             return self.indenter.shapes[0].pressure(self.grid.radius)
@@ -169,6 +198,21 @@ class LevelProblem:
             return self.precondition(np.maximum(self.gap.min() + approach - self.gap, 0))
         p, g, E_star = before.found.pressure, before.found.gap, self.body.contact_modulus
         return prolong(p, g, before.grid, self.grid, self.window, E_star)
+
+
+def _above_highest(p: Array) -> float:
+    """Height of a maximum of p between the patch centres above the highest of them, 0 at a tip.
+
+    By differences of second order: g^2/2h per axis, g the slope and -h the second derivative.
+    """
+    i, j = np.unravel_index(int(p.argmax()), p.shape)
+    if not (0 < i < p.shape[0] - 1 and 0 < j < p.shape[1] - 1):
+        return 0.0
+    above = 0.0
+    for low, high in ((p[i - 1, j], p[i + 1, j]), (p[i, j - 1], p[i, j + 1])):
+        if low > 0 and high > 0 and low + high < 2 * p[i, j]:
+            above += float((high - low) ** 2 / (8 * (2 * p[i, j] - low - high)))
+    return above
 
 
 def _extension(body: Body, d: float) -> float:

@@ -21,6 +21,19 @@ def test_convolution_is_the_direct_sum(shape, threads):
     np.testing.assert_allclose(u, direct, rtol=0, atol=1e-11)
 
 
+@pytest.mark.parametrize("build", [convolution.even_convolution, convolution.circulant_inverse])
+@pytest.mark.parametrize("shape", [(9, 9), (33, 21)])
+def test_quarter_is_that_of_the_whole(build, shape):
+    i, j = (np.arange(n) for n in shape)
+    kernel = 1 / (1 + np.hypot(i[:, None], j))
+    c = [n // 2 for n in shape]
+    p = RNG.normal(size=[k + 1 for k in c])
+    whole = build(kernel)(np.pad(p, [(k, 0) for k in c], mode="reflect"))[c[0] :, c[1] :]
+    np.testing.assert_allclose(
+        build(kernel, quarter=True)(p), whole, rtol=0, atol=1e-13 * np.abs(whole).max()
+    )
+
+
 def test_nothing_wraps_around():
     kernel, p = np.ones((16, 16)), np.zeros((16, 16))
     kernel[8:] = 0

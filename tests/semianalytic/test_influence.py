@@ -15,12 +15,9 @@ def by_quadrature(i, j, d, excess, h1):
     nodes, weights = np.polynomial.legendre.leggauss(20 if h1 < 4 * d else 8)
     r = np.hypot((i + nodes[:, None] / 2) * d, (j + nodes[None, :] / 2) * d).ravel()
     k_max = 15 / h1  # exp(-2 k h1) = 1e-13
+    low = min(k_max / 30, 10 / r.max())
     edges = np.concatenate(
-        [
-            [0],
-            np.geomspace(1e-9, 1, 60) * k_max / 30,
-            np.linspace(k_max / 30, k_max, 30 + int(k_max * r.max() / 4)),
-        ]
+        [[0], np.geomspace(1e-9, 1, 60) * low, np.linspace(low, k_max, 30 + int(k_max * r.max() / 4))]
     )
     s, w = np.polynomial.legendre.leggauss(12)
     edges = np.unique(edges)
@@ -60,6 +57,22 @@ def test_split_coefficients_are_the_quadrature(ratio, h, layers):
         # what the issue asks: 1e-7 of the largest coefficient
         assert C[i, j] == pytest.approx(by_quadrature(i, j, d, excess, thickness[0]), abs=1e-7 * largest)
         assert C[j, i] == pytest.approx(C[i, j], rel=1e-13, abs=0)
+
+
+@pytest.mark.parametrize(("ratio", "h"), [(10.0, 5.0), (4.0, 30.0), (0.1, 300.0)])
+def test_far_coefficients_keep_their_digits(ratio, h):
+    """1e-9 of that of the substrate at the same offset; h / d = 5 at 800 is h / d = 50 at 8000."""
+    n, coatings = 801, stack(ratio, h, 1)
+
+    def excess(k):
+        return frf.compliance_excess(k, coatings, SUBSTRATE)
+
+    c, b = influence.split_image(excess, [h])
+    R = influence.remainder_coefficients(n, 1.0, excess, [h], (c, b))
+    substrate = (1 + c) * halfspace.surface_deflection(n, 400, 1.0, 1.0)
+    for i, j in ((0, 0), (51, 0), (256, 113), (800, 341)):
+        rest = by_quadrature(i, j, 1.0, lambda k, c=c, b=b: excess(k) - c * np.exp(-b * k), h)
+        assert R[i, j] == pytest.approx(rest, abs=1e-9 * substrate[i, j])
 
 
 @pytest.mark.parametrize("nu", [0.0, 0.5])
