@@ -69,16 +69,16 @@ def gone(pids: list[int], within: float) -> float:
 
 @pytest.mark.parametrize(("cores", "jobs", "threads"), [(7, 2, "3"), (2, 3, "1")])
 def test_jobs_share_the_cores_and_each_has_one_at_least(cores, jobs, threads, tmp_path, monkeypatch):
-    monkeypatch.setattr(pool, "cores", lambda: cores)
+    monkeypatch.setattr(processes, "cores", lambda: cores)
     assert run_tasks([task("threads", tmp_path)], jobs=jobs, time_limit=300) == [threads]
 
 
 def test_cores_are_those_that_the_process_may_use(monkeypatch):
     monkeypatch.setattr(os, "sched_getaffinity", lambda _: {3}, raising=False)
     monkeypatch.setattr(os, "cpu_count", lambda: 8)
-    assert pool.cores() == 1
+    assert processes.cores() == 1
     monkeypatch.delattr(os, "sched_getaffinity")
-    assert pool.cores() == 8
+    assert processes.cores() == 8
 
 
 def test_each_death_has_its_reason_and_the_others_finish(tmp_path):

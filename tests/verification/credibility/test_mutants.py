@@ -19,7 +19,7 @@ from verification.report.material import Evidence, Material
 from verification.running.records import decode, encode
 from verification.running.store import StoreError, read_checked
 
-GUARD = "verification/running/guard.py"
+GUARD = "verification/running/pool/guard.py"
 SMALL = '''"""A module of 3 words."""
 from dataclasses import dataclass
 __all__ = ["f", "g"]
