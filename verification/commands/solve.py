@@ -14,6 +14,7 @@ from verification.cases.contact import Case, parse_case, read_case, shipped_case
 from verification.cases.plausibility import beyond_limits
 from verification.commands.common.choice import SHIPPED, path_of
 from verification.commands.common.exits import EXIT, CommandError, no_result, with_exit_code
+from verification.commands.common.folders import require_format
 from verification.commands.common.options import AsJson, Flag, Strict
 from verification.commands.common.solving import progress_bar, require_gmsh
 from verification.commands.common.terminal import print_json, print_out, print_warnings
@@ -66,7 +67,7 @@ def solve(
     given = (ball, load, coating, substrate, friction, ball_coating)
     case = _from_file(file, given) if file is not None else _from_options(*given)
     if plot is not None:
-        _require_format(plot)
+        require_format(plot)
     beyond = model_error(case.problem)
     warnings = (*case.warnings, *beyond.warnings(told=case.warnings))
     print_warnings(warnings, case.name, strict=strict, silent=as_json)
@@ -119,13 +120,6 @@ def _from_options(
     except ValueError as error:
         raise CommandError(str(error)) from None
     return parse_case(text.encode("utf-8", errors="replace"), Path("options"))
-
-
-def _require_format(plot: Path) -> None:
-    from verification.report.figures.solved import FORMATS
-
-    if plot.suffix.lower() not in FORMATS:
-        raise CommandError(f"--plot = {plot}; the name has to end in {', '.join(FORMATS)}")
 
 
 def _answer(case: Case, source: str) -> Answer:

@@ -4,6 +4,7 @@ import ctypes.util
 import hashlib
 import platform
 import subprocess
+from collections.abc import Iterable
 from functools import cache
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
@@ -23,6 +24,7 @@ PACKAGES = (
     "matplotlib",
 )
 
+ROOT = Path(__file__).resolve().parents[2]
 CODE = (*(SOURCES[name].package for name in METHODS), "verification")
 
 # Shared libraries that the gmsh wheel opens and pip cannot bring, with the Debian/Ubuntu package of each.
@@ -39,9 +41,9 @@ GMSH_LIBRARIES = {
 }
 
 
-def versions() -> dict[str, str]:
-    """Version of Python and of each package that results depend on."""
-    return {"python": platform.python_version()} | {name: _version(name) for name in PACKAGES}
+def versions(packages: Iterable[str] = PACKAGES) -> dict[str, str]:
+    """Version of Python and of each package, by default of those that results depend on."""
+    return {"python": platform.python_version()} | {name: _version(name) for name in packages}
 
 
 @cache
@@ -53,9 +55,8 @@ def _version(name: str) -> str:
         return "not installed"
 
 
-def commit() -> str | None:
-    """Commit of this source tree, with "+" where it was changed since; None outside a checkout."""
-    here = Path(__file__).resolve().parents[2]
+def commit(here: Path = ROOT) -> str | None:
+    """Commit of the source tree below ``here``, with "+" where it was changed since; None of no checkout."""
     if not (here / ".git").exists():
         return None
 
@@ -77,12 +78,12 @@ def fingerprint(modules: tuple[str, ...] = CODE, packages: tuple[str, ...] = ("p
     Results of equal fingerprints come from the same code; by default that is all of this program. It is read
     once: code that changes later is not the code that this process has loaded.
     """
-    root, known = Path(__file__).resolve().parents[2], versions()
+    known = versions()
     found = hashlib.sha256(repr([(name, known[name]) for name in packages]).encode())
     for module in modules:
-        place = root.joinpath(*module.split("."))
+        place = ROOT.joinpath(*module.split("."))
         for path in sorted(place.rglob("*.py")) or [place.with_suffix(".py")]:
-            found.update(path.relative_to(root).as_posix().encode() + b"\0" + path.read_bytes())
+            found.update(path.relative_to(ROOT).as_posix().encode() + b"\0" + path.read_bytes())
     return found.hexdigest()
 
 

@@ -144,15 +144,12 @@ def layers_kernel(r, coating, substrate):
 
 
 def solve_on_patches(C, n, half_width=1.15, load=4 / 3, layers=None):
-    """Full sliding with C = f beta, E* = R = 1, the contact found patch by patch; no expansion in C.
+    """Full sliding with C = f beta, E* = R = 1 on ``n`` squares each way; no expansion in C.
 
-    The operator is not symmetric, so that it is no energy's gradient and conjugate gradients do not apply:
-    GMRES solves on the active set, which follows the signs of pressure and gap.
     Returns approach, peak pressure, centre of pressure; the patches' x and pressure.
     """
     d = 2 * half_width / n
     x = (np.arange(n) - (n - 1) / 2) * d
-    gap0 = (x[:, None] ** 2 + x**2) / 2
     offset = np.arange(1 - n, n) * d
     normal, sliding = rectangle(offset[:, None], offset[None, :], d)
     if layers is not None:
@@ -160,37 +157,87 @@ def solve_on_patches(C, n, half_width=1.15, load=4 / 3, layers=None):
         by_pressure, by_traction = layers_kernel(r, *layers)
         normal += d**2 * by_pressure
         sliding += d**2 * by_traction * offset[:, None] / np.maximum(r, d / 2)
-    size = fft.next_fast_len(2 * n)
-    kernel = np.zeros((size, size))
-    kernel[: 2 * n - 1, : 2 * n - 1] = normal + C * sliding
-    transform = fft.rfft2(np.roll(kernel, 1 - n, axis=(0, 1)))
+    delta, p = solve_sliding(normal + C * sliding, (x[:, None] ** 2 + x**2) / 2, load / (n * d) ** 2)
+    i, j = np.unravel_index(p.argmax(), p.shape)
+    low, top, high = p[i - 1 : i + 2, j]
+    peak = top - (high - low) ** 2 / (8 * (high - 2 * top + low))
+    return np.array([delta, peak, (p.sum(axis=1) @ x) / p.sum()]), x, p
+
+
+def solve_sliding(kernel, gap0, mean):
+    """Approach and pressures, whose ``mean`` is given. The contact is found patch by patch.
+
+    kernel : displacement by a unit pressure over the distance in patches, (2 n - 1, 2 m - 1).
+    The operator is not symmetric, so that it is no energy's gradient and conjugate gradients do not apply:
+    GMRES solves on the active set, which follows the signs of pressure and gap.
+    """
+    shape = gap0.shape
+    sizes = [fft.next_fast_len(side) for side in kernel.shape]
+    padded = np.zeros(sizes)
+    padded[tuple(slice(side) for side in kernel.shape)] = kernel
+    transform = fft.rfft2(np.roll(padded, [1 - side for side in shape], axis=(0, 1)))
 
     def deflection(p):
-        return fft.irfft2(transform * fft.rfft2(p, (size, size)), (size, size))[:n, :n]
+        return fft.irfft2(transform * fft.rfft2(p, sizes), sizes)[: shape[0], : shape[1]]
 
-    active, p, delta = gap0 < 0.5, np.zeros((n, n)), 0.0
+    active, p, delta = gap0 < 0.5, np.zeros(shape), 0.0
     for _ in range(20):
 
         def apply(v, active=active):
-            p = np.zeros((n, n))
+            p = np.zeros(shape)
             p[active] = v[:-1]
-            return np.append(deflection(p)[active] - v[-1], v[:-1].sum() * d**2)
+            return np.append(deflection(p)[active] - v[-1], p.mean())
 
         count = int(active.sum()) + 1
         equations = LinearOperator((count, count), matvec=apply, dtype=float)
         start = np.append(p[active], delta)
-        solution, failed = gmres(equations, np.append(-gap0[active], load), x0=start, rtol=1e-9, restart=120)
+        solution, failed = gmres(equations, np.append(-gap0[active], mean), x0=start, rtol=1e-9, restart=120)
         assert not failed
-        p, delta = np.zeros((n, n)), solution[-1]
+        p, delta = np.zeros(shape), solution[-1]
         p[active] = solution[:-1]
         found = np.where(active, p > 0, deflection(p) + gap0 - delta < 0)
         if np.array_equal(found, active):
             break
         active = found
-    i, j = np.unravel_index(p.argmax(), p.shape)
-    low, top, high = p[i - 1 : i + 2, j]
-    peak = top - (high - low) ** 2 / (8 * (high - 2 * top + low))
-    return np.array([delta, peak, (p.sum(axis=1) @ x) / p.sum()]), x, p
+    return delta, p
+
+
+@pytest.mark.parametrize("C", [0.2, 0.5, -0.5])
+def test_strips_meet_the_closed_form_of_a_sliding_cylinder(C):
+    """In the plane, at any C = f beta, with lambda = 1/2 - atan(C)/pi and P per length:
+
+        p = E*/(2 R) sin(pi lambda) (a + x)^lambda (a - x)^(1 - lambda),
+        a^2 = P R/[pi E* lambda (1 - lambda)]
+
+    about the centre (2 lambda - 1) a: by Cauchy's theorem for (z + 1)^lambda (z - 1)^(1 - lambda). It is the
+    contact of Johnson, Contact Mechanics (1985), section 8.2, whose equations were not read.
+    """
+    n, half_width, load = 101, 1.5, np.pi / 4
+    d = 2 * half_width / n
+    x, offset = (np.arange(n) - (n - 1) / 2) * d, np.arange(1 - n, n)[:, None] * d
+    ends = offset + d / 2, offset - d / 2
+    normal = -2 / np.pi * np.subtract(*(u * (np.log(np.abs(u)) - 1) for u in ends))
+    sliding = np.subtract(*np.abs(ends))
+    _, p = solve_sliding(normal + C * sliding, x[:, None] ** 2 / 2, load / (n * d))
+    p, exponent = p[:, 0], 0.5 - np.arctan(C) / np.pi
+    a = np.sqrt(load / (np.pi * exponent * (1 - exponent)))
+    centre = (2 * exponent - 1) * a
+    s = (x - centre) / a
+    assert x[p > 0][[0, -1]] == pytest.approx([centre - a, centre + a], abs=d)
+    assert p @ x / p.sum() == pytest.approx(4 / 3 * centre, rel=2e-4)
+    s, inner = s[np.abs(s) < 0.9], p[np.abs(s) < 0.9]
+    closed = a / 2 * np.sin(np.pi * exponent) * (1 + s) ** exponent * (1 - s) ** (1 - exponent)
+    assert inner == pytest.approx(closed, abs=1e-3 * closed.max())
+
+
+@pytest.mark.parametrize("problem", [BARE, coated(4.0, 0.5, nu=0.1)], ids=["bare", "coated"])
+def test_edge_has_the_exponent_of_the_plane(problem):
+    """(1 - r/a)^(atan(f beta cos theta)/pi) to the order f: beta/pi times the logarithm, of the top layer."""
+    expansion = SlidingExpansion(problem)
+    far = np.array([1e-6, 1e-5])
+    r = expansion.a * (1 - far)
+    ratio = expansion.first_pressure(r) / expansion.exact.pressure(r)
+    assert np.diff(ratio) / np.diff(np.log(far)) == pytest.approx(problem.dundurs_beta / np.pi, rel=1e-3)
 
 
 def test_patches_without_an_expansion_confirm_the_change():

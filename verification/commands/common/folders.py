@@ -1,4 +1,4 @@
-"""Directories that the commands read or write."""
+"""Places that the commands read or write."""
 
 from pathlib import Path
 
@@ -32,3 +32,11 @@ def require_checkout(folder: Path, option: str) -> None:
         raise CommandError(
             f"this coatcheck is installed, not a source checkout; name a directory with {option}"
         )
+
+
+def require_format(plot: Path) -> None:
+    """Raises CommandError where the name of a figure does not end in one of its formats."""
+    from verification.report.figures.solved import FORMATS
+
+    if plot.suffix.lower() not in FORMATS:
+        raise CommandError(f"--plot = {plot}; the name has to end in {', '.join(FORMATS)}")

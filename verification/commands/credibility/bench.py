@@ -1,75 +1,184 @@
-"""coatcheck bench: the semi-analytical contact timed beside other codes."""
+"""coatcheck bench: both methods timed over another commit, beside other codes."""
 
-from collections.abc import Sequence
-from dataclasses import asdict
-from typing import Annotated, Any
+import datetime
+import sys
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import ExitStack
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Annotated, get_args
 
 from cyclopts import Parameter
 from rich.console import Console
+from rich.markup import escape
 from rich.table import Table
 
+from verification.bench.checkout import checkout
+from verification.bench.figures import ASKED_SIZES, PEERS, Figure, Other, Part, groups, measure
+from verification.bench.history import BenchRun, append, read
 from verification.commands.common.exits import EXIT, CommandError, with_exit_code
+from verification.commands.common.folders import require_format
 from verification.commands.common.options import AsJson, Flag
-from verification.commands.common.terminal import print_json
-from verification.judging.verdict import Outcome
+from verification.commands.common.solving import progress_bar
+from verification.commands.common.terminal import named_table, print_error, print_json, print_out
+from verification.judging.outcome import Outcome
+from verification.running.provenance import PACKAGES, commit, machine, versions
+from verification.running.records import encode
 
 Numbers = Annotated[tuple[int, ...], Parameter(consume_multiple=True, negative="")]
+FASTER = "mkl"  # distribution of the extra "fast"
+SHOWN = 4  # runs in the table of the history
 
 
 @with_exit_code
 def bench(
-    *,
-    sizes: Annotated[Numbers, Parameter(name=["--sizes", "-N"])] = (128, 256, 512),
+    *parts: Part,
+    against: str | None = None,
+    python: str = sys.executable,
+    sizes: Annotated[Numbers, Parameter(name=["--sizes", "-N"])] = ASKED_SIZES,
     threads: Numbers = (1, 2),
-    repeats: int = 5,
-    coated: Flag = False,
-    plane: Flag = False,
+    rounds: int = 5,
+    history: Path | None = None,
+    plot: Path | None = None,
+    show: Flag = False,
     as_json: AsJson = False,
 ) -> int:
-    """Time the semi-analytical contact beside tamaas and aspher, one test of residuals for all; ratios first.
+    """Time both methods over another commit, the patches beside other codes; print ratios with what is asked.
 
-    tamaas comes with the extra "bench"; aspher is used if it is installed (pip install aspher, which builds
-    it with CMake, a C++17 compiler and Eigen). The full set takes half an hour:
-    coatcheck bench --sizes 128 256 512 1024 2048 --coated --plane
+    All works of a figure are done in turn, each in a process of its own. tamaas comes with the extra "bench",
+    aspher with pip install aspher, which builds it; each is measured where installed, as is the extra "fast".
+    The exit code is 1 where a figure misses what is asked. On idle cores all parts but the last take an hour.
 
     Args:
-        sizes: Patches along a side of the square [-2a, 2a]^2.
-        threads: Numbers of threads to measure with.
-        repeats: Measurements of each; the median counts.
-        coated: Also count the iterations of coated solids on each of the grids.
-        plane: Also time the six stresses of a plane beside six inverse real FFTs.
+        parts: Unless given, all but default-run; solve, stress, elements and default-run need --against.
+        against: The commit to measure over, or a directory with a checkout of it.
+        python: Interpreter for that commit, of an environment with what it needs.
+        sizes: Patches along a side of the square [-2a, 2a]^2, of the part contact.
+        threads: Numbers of threads of the part contact.
+        rounds: Turns of each work after the first, which is not timed; the median counts.
+        history: Add the figures to this file, show them beside those of its last runs.
+        plot: Write the history as FILE.png, FILE.pdf or FILE.svg.
+        show: Measure nothing; show the history.
     """
-    if min(sizes) < 16 or max(sizes) > 4096 or min(threads) < 1 or repeats < 1:
-        raise CommandError("--sizes from 16 to 4096, --threads and --repeats from 1")
-    from verification.bench.contact import coated_ratios, ratios, run_bench, run_coated, run_plane
+    if min(sizes) < 16 or max(sizes) > 4096 or min(threads) < 1 or rounds < 1:
+        raise CommandError("--sizes from 16 to 4096, --threads and --rounds from 1")
+    if show and history is None:
+        raise CommandError("--show shows a file; name it with --history")
+    if plot is not None:
+        require_format(plot)
+    runs = read(history) if history is not None else ()
+    missed: list[Figure] = []
+    failed = False
+    if show:
+        if not runs:
+            raise CommandError(f"{history}: holds no run of coatcheck bench")
+    else:
+        figures, failed = _measured(parts, against, python, sizes, threads, rounds)
+        date = datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds")
+        run = BenchRun(commit(), date, machine(), versions((*PACKAGES, *PEERS, FASTER)), tuple(figures))
+        runs = append(history, run) if history is not None and figures else (run,)
+        missed = [figure for figure in figures if figure.missed]
+    if plot is not None and runs[-1].figures:
+        from verification.report.figures.speed import write
 
-    console = Console(stderr=True)
-    rows = run_bench(sizes=sizes, threads=threads, repeats=repeats, progress=lambda line: console.print(line))
-    found = ratios(rows)
-    layered = run_coated(sizes=sizes) if coated else []
-    planes = run_plane() if plane else []
-    for p in planes:
-        found.append((f"six stresses of a plane / six inverse FFTs, {p.patches} patches", p.ratio))
-        found.append((f"memory of it / the six stresses, {p.patches} patches", p.memory))
-        found.append((f"setting it up / one evaluation, {p.patches} patches", p.setup_seconds / p.seconds))
-    found += coated_ratios(layered)
+        write(runs, plot)
     if as_json:
-        records: dict[str, Sequence[Any]] = {"rows": rows, "coated": layered, "planes": planes}
-        content = {name: [asdict(record) for record in some] for name, some in records.items()}
-        print_json(content | {"ratios": dict(found)})
-        return 0
-    figures = Table("figure", "value", box=None, header_style="bold")
-    for name, value in found:
-        figures.add_row(name, f"{value:.4g}")
-    measured = Table("solver", "N", "threads", "s, median", "gap", "penetration", "load", "judge", box=None)
-    for r in rows:
-        judge = (f"{r.gap:.1e}", f"{r.penetration:.1e}", f"{r.load:.1e}", "meets" if r.passes else "FAILS")
-        measured.add_row(r.solver, str(r.patches), str(r.threads), f"{r.seconds:.3f}", *judge)
-    Console().print(figures, "", measured)
-    if layered:
-        table = Table("N", "E1/E2", "h/a", "iterations", "convolutions", "s", "of it coefficients", box=None)
-        for c in layered:
-            counts = (str(c.iterations), str(c.convolutions), f"{c.seconds:.3f}", f"{c.setup_seconds:.3f}")
-            table.add_row(str(c.patches), f"{c.modulus_ratio:g}", f"{c.thickness:g}", *counts)
-        Console().print("", table)
-    return 0 if all(row.passes for row in rows) else EXIT[Outcome.DISAGREES]
+        print_json([encode(run) for run in (runs if show else runs[-1:])])
+    else:
+        if not show:
+            print_out(_table(figures), _summary(figures, missed))
+        if show or len(runs) > 1:
+            print_out(_past(runs[-SHOWN:]))
+    return EXIT[Outcome.NO_RESULT if failed else Outcome.DISAGREES if missed else Outcome.AGREES]
+
+
+def _measured(
+    parts: Sequence[Part],
+    against: str | None,
+    python: str,
+    sizes: Sequence[int],
+    threads: Sequence[int],
+    rounds: int,
+) -> tuple[list[Figure], bool]:
+    """The figures, and whether a work failed, of which a message is printed."""
+    alone = [part for part in parts if part != "contact"]
+    if alone and against is None:
+        raise CommandError(f"{', '.join(alone)}: measured over another commit; name it with --against")
+    with ExitStack() as stack:
+        other = None
+        if against is not None:
+            try:
+                other = Other(*stack.enter_context(checkout(against)), python)
+            except ValueError as error:
+                raise CommandError(f"--against {against}: {error}") from None
+        peers = [name for name in PEERS if find_spec(name)]
+        planned = groups(
+            parts or get_args(Part)[:-1],  # all but the default run
+            other=other,
+            sizes=sizes,
+            threads=threads,
+            peers=peers,
+            fast=versions((FASTER,))[FASTER] != "not installed",
+        )
+        bar = stack.enter_context(progress_bar(Console(stderr=True)))
+        task = bar.add_task("", total=sum(len(group.works) * (rounds + 1) for group in planned))
+        figures: list[Figure] = []
+        failed = False
+        for group in planned:
+            try:
+                figures += measure(group, rounds, lambda name: bar.update(task, advance=1, description=name))
+            except RuntimeError as error:
+                failed = True
+                print_error(str(error))
+    return figures, failed
+
+
+def _table(figures: Iterable[Figure]) -> Table:
+    table = named_table("ratio", "at most", "median", "lowest", "highest", "turns", "")
+    for figure in _by_over(table, figures):
+        table.add_row(
+            escape(figure.name),
+            _number(figure.asked),
+            _number(figure.median, figure.asked),
+            *(_number(value) for value in (min(figure.ratios), max(figure.ratios))),
+            str(len(figure.ratios)),
+            "[red]missed[/]" if figure.missed else "",
+        )
+    return table
+
+
+def _by_over(table: Table, figures: Iterable[Figure]) -> Iterator[Figure]:
+    """The figures by what they are over, which is a row of the table before each of these sections."""
+    sections: dict[str, list[Figure]] = {}
+    for figure in figures:
+        sections.setdefault(figure.over, []).append(figure)
+    for over, section in sections.items():
+        table.add_row(f"[bold]over {escape(over)}[/]")
+        yield from section
+
+
+def _summary(figures: Sequence[Figure], missed: Sequence[Figure]) -> str:
+    asked = sum(figure.asked is not None for figure in figures)
+    if not asked:
+        return "Nothing is asked of these figures."
+    if not missed:
+        return f"{asked} of {asked} asked figures met."
+    names = "; ".join(f"{figure.name} over {figure.over}" for figure in missed)
+    return f"{len(missed)} of {asked} asked figures missed: {escape(names)}."
+
+
+def _past(runs: Sequence[BenchRun]) -> Table:
+    """Medians of the ``runs``, a column for each."""
+    heads = [f"{run.short}\n{run.date[5:10]}" for run in runs]
+    table = named_table("median ratio", "at most", *map(escape, heads))
+    latest = {(figure.name, figure.over): figure for run in runs for figure in run.figures}
+    for figure in _by_over(table, latest.values()):
+        medians = [_number(run.median(figure), figure.asked) for run in runs]
+        table.add_row(escape(figure.name), _number(figure.asked), *medians)
+    return table
+
+
+def _number(value: float | None, asked: float | None = None) -> str:
+    if value is None:
+        return "-"
+    return f"{value:.3g}" if asked is None or value <= asked else f"[red]{value:.3g}[/]"

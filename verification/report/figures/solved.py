@@ -1,7 +1,7 @@
 """Figure of one answer: stresses along x in MPa over um, on the surface, at each interface."""
 
 import io
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -13,7 +13,7 @@ from verification.desk.stresses import Course
 from verification.problem.contact import FLAT
 from verification.running.store import write_atomically
 
-__all__ = ["FORMATS", "draw", "write"]
+__all__ = ["COLOURS", "FORMATS", "draw", "save", "write"]
 
 FORMATS = (".png", ".pdf", ".svg")
 # Okabe and Ito's colours, distinct for the colour-blind.
@@ -22,7 +22,12 @@ _SETTINGS: Any = {"font.size": 9, "axes.grid": True, "grid.alpha": 0.3, "savefig
 
 
 def write(answer: Answer, title: str, path: Path) -> None:
-    """Write the figure as PNG, PDF or SVG, by the suffix of ``path``; whole or not at all.
+    """Write the figure; see ``save``."""
+    save(lambda: draw(answer, title), path)
+
+
+def save(drawn: Callable[[], Figure], path: Path) -> None:
+    """Write a figure as PNG, PDF or SVG, by the suffix of ``path``; whole or not at all.
 
     Raises ValueError for another suffix.
     """
@@ -31,7 +36,7 @@ def write(answer: Answer, title: str, path: Path) -> None:
         raise ValueError(f"{path}: the name has to end in {', '.join(FORMATS)}")
     content = io.BytesIO()
     with mpl.rc_context(_SETTINGS):
-        draw(answer, title).savefig(content, format=suffix[1:], dpi=200)
+        drawn().savefig(content, format=suffix[1:], dpi=200)
     write_atomically(path, content.getvalue())
 
 

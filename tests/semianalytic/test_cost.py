@@ -1,0 +1,54 @@
+"""Cost of the patches counted without a clock: iterations, convolutions, memory."""
+
+import tracemalloc
+
+import numpy as np
+import pytest
+
+import semianalytic
+from semianalytic import subsurface
+from semianalytic.inputs import Body
+
+
+def diagnostics(patches, ratio, h):
+    """Of a sphere on a coating ``ratio`` times as stiff as its substrate; lengths in contact radii."""
+    return semianalytic.indent(
+        profile=lambda x, y: (x**2 + y**2) / 2,
+        half_width=2 * max(1.0, ratio ** (-1 / 3)),
+        load=4 / 3,
+        coatings=((ratio, 0.0, h),),
+        substrate=(1.0, 0.0),
+        patches=patches,
+        tolerance=8e-7,
+        estimate_uncertainty=False,
+    ).diagnostics
+
+
+def check(patches, ratios, thicknesses):
+    bare = diagnostics(patches, 1.0, thicknesses[0]).iterations
+    found = [diagnostics(patches, ratio, h) for ratio in ratios for h in thicknesses]
+    assert max(one.iterations for one in found) <= 1.5 * bare
+    assert max(one.convolutions for one in found) <= 16
+
+
+def test_coated_solids_take_about_the_iterations_of_the_homogeneous():
+    check(128, (0.1, 10.0), (0.05,))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("patches", [256, 512, 1024])
+def test_coated_solids_take_about_the_iterations_of_the_homogeneous_over_the_range(patches):
+    check(patches, (0.1, 0.25, 0.5, 2.0, 4.0, 10.0), (0.05, 0.1, 0.3, 1.0, 3.0))
+
+
+def test_stresses_of_a_plane_hold_few_arrays_at_a_time():
+    n = 96
+    x = (np.arange(n) - (n - 1) / 2) * (2.2 / n)
+    pressure = np.sqrt(np.maximum(1 - x[:, None] ** 2 - x[None, :] ** 2, 0))
+    body = Body(((4.0, 0.3, 0.3),), (1.0, 0.3), 0.25)
+    plane = subsurface.stress_plane(0.3, 0, grid_x=x, grid_y=x, body=body)
+    tracemalloc.start()
+    result = plane(pressure)
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert 1 < peak / result.nbytes < 10

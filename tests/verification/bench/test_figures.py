@@ -1,0 +1,86 @@
+"""The benchmark's figures: what is measured over what, how ratios are taken, which are missed."""
+
+import pytest
+
+from verification.bench import figures
+from verification.bench.figures import ASKED_SIZES, REFERENCE, Figure, Other, groups, measure
+from verification.bench.turns import HERE, Times
+
+
+def planned(name=REFERENCE, root=HERE, **options):
+    return groups(
+        ("solve", "stress", "elements", "contact", "default-run"),
+        other=Other(name, root, "python"),
+        **options,
+    )
+
+
+def asked(found):
+    return {
+        (group.works[r.work].name, r.work, r.over): r.asked
+        for group in found
+        for r in group.ratios
+        if r.asked
+    }
+
+
+def test_every_ratio_asked_is_measured():
+    found = asked(planned(peers=("tamaas", "aspher"), fast=True))
+    limits = sorted(limit for (work, _, _), limit in found.items() if work != "sphere")
+    assert limits == [0.3, 0.3, 0.3, 0.4, 0.45, 0.5, 0.6]
+    beside = [over for (work, _, over) in found if work == "sphere"]
+    assert {over: beside.count(over) for over in beside} == {
+        "tamaas": 6,
+        "aspher": 6,
+        "convolution": 3,
+        "1 thread": 1,
+    }
+
+
+def test_over_another_commit_nothing_is_asked():
+    assert {over for _, _, over in asked(planned("1234567"))} == {"convolution", "1 thread"}
+    assert all(work == "sphere" for work, _, _ in asked(planned("dfc1d79+")))
+
+
+def test_without_another_commit_the_contact_remains():
+    found = groups(("solve", "elements", "contact"), other=None, sizes=ASKED_SIZES)
+    assert {work.name for group in found for work in group.works.values()} == {"sphere"}
+
+
+def test_both_commits_do_the_same_work(tmp_path):
+    for group in planned(root=tmp_path, fast=True):
+        before = group.works.get(REFERENCE)
+        if before is not None:
+            ours = next(iter(group.works.values()))
+            assert (before.name, before.arguments, before.root) == (ours.name, ours.arguments, tmp_path)
+            assert group.processor
+            assert ours.root == HERE
+
+
+def test_ratios_are_taken_turn_by_turn_of_the_clock_of_the_group(monkeypatch):
+    group, *_ = planned()
+    ours, before = group.works
+    times = {
+        ours: Times((9.0, 9.0, 9.0), (1.0, 4.0, 2.0), 0.0, 0.0),
+        before: Times((1.0, 1.0, 1.0), (2.0, 5.0, 10.0), 0.0, 0.0),
+    }
+    monkeypatch.setattr(figures, "in_turn", lambda works, rounds, progress: times)
+    (figure,) = measure(group, 3)
+    assert figure == Figure(ours, REFERENCE, 0.3, (0.5, 0.8, 0.2))
+    assert figure.median == 0.5
+    assert figure.missed
+    assert not Figure(ours, REFERENCE, 0.5, (0.5,)).missed
+    assert not Figure(ours, "1234567", None, (5.0,)).missed
+
+
+def test_peak_memory_is_counted_and_a_solver_that_misses_the_judge_is_a_figure_missed(monkeypatch):
+    (group,) = groups(("contact",), other=None, sizes=(512,), threads=(2,), peers=("tamaas",))
+    times = {name: Times((1.0,), (2.0,), 16.0 * 512**2, 0.0) for name in group.works}
+    times["tamaas, N = 512, 2 threads"] = Times((4.0,), (1.0,), 0.0, 3e-6)
+    monkeypatch.setattr(figures, "in_turn", lambda works, rounds, progress: times)
+    found = {(figure.name, figure.over): figure for figure in measure(group, 1)}
+    assert found["contact, N = 512, 2 threads", "tamaas"].ratios == (0.25,)
+    assert found["peak memory, contact, N = 512, 2 threads", "N x N doubles"].ratios == (2.0,)
+    residual = found["residual, tamaas, N = 512, 2 threads", "judge"]
+    assert residual.median == pytest.approx(3)
+    assert residual.missed

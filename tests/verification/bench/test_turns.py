@@ -1,0 +1,121 @@
+"""Children of the benchmark: in turn, each on the packages of its own commit, failures with their message."""
+
+import subprocess
+from importlib import metadata
+
+import numpy as np
+import pytest
+
+from verification.bench import checkout as places
+from verification.bench import child, turns
+from verification.bench.judge import LIMIT, centres, residual
+from verification.bench.peers import SOLVERS
+from verification.bench.turns import Work, in_turn
+
+PACKAGE = """
+from pathlib import Path
+def solve(*, coatings, **problem):
+    print("a library's own words")
+    with (Path(__file__).parent / "log").open("a") as log:
+        log.write(f"{coatings[0][0]:.6g} {problem['estimate_uncertainty']}\\n")
+"""
+
+
+@pytest.fixture
+def commit(tmp_path):
+    """A folder with a package of that name, which notes what it is called with."""
+    (tmp_path / "semianalytic").mkdir()
+    (tmp_path / "semianalytic" / "__init__.py").write_text(PACKAGE)
+    return tmp_path
+
+
+def test_a_child_solves_another_problem_in_each_turn(commit):
+    seen = []
+    found = in_turn({"here": Work("solve", (True,), commit)}, 2, progress=seen.append)["here"]
+    assert (commit / "semianalytic" / "log").read_text().split("\n") == [
+        "8.4e+11 True",
+        "8.4084e+11 True",
+        "8.4168e+11 True",
+        "",
+    ]
+    assert seen == ["here"] * 3
+    assert len(found.seconds) == len(found.processor) == 2
+    assert found.residual == 0
+    assert found.of(True) == found.processor
+
+
+def test_a_child_on_another_package_than_its_commit_fails(tmp_path):
+    (tmp_path / "fem_reference.py").write_text("raise OSError('no mesh')")
+    with pytest.raises(RuntimeError, match="elements failed: OSError: no mesh"):
+        in_turn({"elements": Work("elements", (0.0, False), tmp_path)}, 1)
+
+
+def test_a_hidden_distribution_is_not_installed(monkeypatch):
+    monkeypatch.setattr(metadata.Distribution, "from_name", metadata.Distribution.from_name)
+    child.hide("numpy")
+    assert metadata.version("scipy")
+    with pytest.raises(metadata.PackageNotFoundError, match="numpy"):
+        metadata.files("numpy")
+
+
+def test_turns_alternate_and_end_after_long(monkeypatch):
+    seen = []
+
+    class Child:
+        def __init__(self, name, work):
+            self.name = name
+
+        def __enter__(self):
+            return self
+
+        def __exit__(self, *_):
+            seen.append(f"{self.name} ended")
+
+        def answer(self, line):
+            seen.append(f"{self.name}{line}")
+            return {"seconds": 1.0, "processor": 1.0, "peak": 1.0, "residual": 0.0}
+
+    monkeypatch.setattr(turns, "_Child", Child)
+    works = {"A": Work("solve"), "B": Work("solve")}
+    in_turn(works, 2)
+    assert seen == ["A0", "B0", "A1", "B1", "A2", "B2", "Ajudge", "Bjudge", "B ended", "A ended"]
+    assert len(in_turn(works, 5, enough=-1.0)["A"].seconds) == 1
+
+
+def test_a_commit_is_checked_out_aside_and_a_folder_is_used_as_it_is(commit, monkeypatch):
+    def git(*words):
+        return subprocess.run(
+            ["git", "-c", "user.name=n", "-c", "user.email=e", *words],
+            cwd=commit,
+            check=True,
+            capture_output=True,
+            text=True,
+        ).stdout
+
+    git("init", "--quiet")
+    git("add", ".")
+    git("commit", "--quiet", "-m", "first")
+    name = git("rev-parse", "HEAD")[:7]
+    monkeypatch.setattr(places, "HERE", commit)
+    with places.checkout("HEAD") as (found, folder):
+        assert found == name
+        assert (folder / "semianalytic" / "__init__.py").read_text() == PACKAGE
+    assert not folder.exists()
+    with places.checkout(str(commit)) as (found, folder):
+        assert (found, folder) == (name, commit.resolve())
+    with pytest.raises(ValueError, match="neither a checkout nor a commit"), places.checkout("--nothing"):
+        pass
+
+
+def test_judge_accepts_hertz_roughly_and_no_guess():
+    x = centres(128)
+    r2 = x[:, None] ** 2 + x[None, :] ** 2
+    hertz = 2 / np.pi * np.sqrt(np.maximum(1 - r2, 0))
+    # the exact pressure on patches: discretisation of the edge, a few per cent of a patch
+    assert 1e-4 < residual(hertz) < 2e-2
+    assert residual(np.where(r2 < 1, 4 / 3 / np.pi, 0.0)) > 0.1
+    assert residual(1.01 * hertz) > 0.9e-2
+
+
+def test_the_patches_satisfy_the_judge():
+    assert residual(SOLVERS["contact"](64, 1)) <= LIMIT

@@ -1,0 +1,135 @@
+"""Child process of the benchmark: one piece of work, timed whenever its standard input requires it.
+
+It runs as a file, with the packages of any commit on PYTHONPATH, and calls their public functions alone.
+Each turn is a problem of its own, moduli and depths changed by parts in a thousand, so that no cache of one
+turn serves the next. What a turn prepares is not timed. Turn 0 loads what all turns share.
+
+Input: a number of a turn, or "judge", in a line. Output: an object of JSON in a line.
+"""
+
+import json
+import os
+import resource
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Callable
+from importlib import import_module
+from importlib.metadata import Distribution, PackageNotFoundError
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+Prepared = Callable[[], Any]  # what is timed
+
+RADIUS, LOAD, FRICTION = 10e-3, 20.0, 0.3  # m, N
+DEPTHS = 200  # points of the line across depths
+
+
+def public(name: str) -> ModuleType:
+    """A package of the commit that is measured. Raises ImportError where another one is found."""
+    module = import_module(name)
+    if not Path(str(module.__file__)).is_relative_to(os.environ["PYTHONPATH"]):
+        raise ImportError(f"{name} is imported from {module.__file__}, not from {os.environ['PYTHONPATH']}")
+    return module
+
+
+def hide(name: str) -> None:
+    """Make a distribution look as if it were not installed; to be called before a package looks for it."""
+    from_name = Distribution.from_name
+
+    def found(wanted: str) -> Distribution:
+        if wanted == name:
+            raise PackageNotFoundError(name)
+        return from_name(wanted)
+
+    Distribution.from_name = found  # type: ignore[method-assign, assignment]
+
+
+def problem(turn: int) -> dict[str, Any]:
+    """Steel under a coating four times as stiff, about as thick as the contact is wide."""
+    coating = (840e9 * (1 + 1e-3 * turn), 0.3, 85e-6)
+    return {"radius": RADIUS, "load": LOAD, "coatings": (coating,), "substrate": (210e9, 0.3)}
+
+
+def solve(turn: int, uncertainty: bool) -> Prepared:
+    """Semi-analytical solve at its defaults."""
+    semianalytic = public("semianalytic")
+    return lambda: semianalytic.solve(**problem(turn), estimate_uncertainty=uncertainty)
+
+
+def stress(turn: int) -> Prepared:
+    """Stresses with their uncertainty on a line that crosses the depths of coating and substrate."""
+    import numpy as np
+
+    solution = public("semianalytic").solve(**problem(turn), friction=FRICTION)
+    x = np.linspace(-1.5, 1.5, DEPTHS) * solution.contact_radius
+    z = np.linspace(0.01, 2.0 + 1e-3 * turn, DEPTHS) * solution.contact_radius
+    return lambda: solution.stress_with_uncertainty(x, 0.0, z)
+
+
+def elements(turn: int, friction: float, fast: bool) -> Prepared:
+    """Finite elements at their defaults, with the factorisation of the extra "fast" or without it."""
+    if not fast:
+        hide("mkl")
+    fem_reference = public("fem_reference")
+    return lambda: fem_reference.solve(**problem(turn), friction=friction)
+
+
+def default_run(turn: int) -> Prepared:
+    """The command ``coatcheck run`` with its report; nothing in turn 0."""
+    if not turn:
+        return lambda: None
+
+    def run() -> None:
+        with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as folder:
+            command = [sys.executable, "-m", "verification.cli", "run", "--output", folder]
+            subprocess.run(command, stdout=subprocess.DEVNULL, check=False)
+            # Its verdicts, so its exit code, are those of another machine and of other versions.
+            if not Path(folder, "report.json").exists():
+                raise RuntimeError("coatcheck run wrote no report")
+
+    return run
+
+
+def sphere(turn: int, solver: str, patches: int, threads: int) -> Prepared:
+    """A sphere on a homogeneous half-space by one of ``verification.bench.peers``; turn 0 is a small one."""
+    solved = import_module("verification.bench.peers").SOLVERS[solver]
+    return lambda: solved(patches if turn else 64, threads)
+
+
+def judge(result: Any) -> float:
+    """Worst residual of pressures of ``sphere``, 0 of any other result; see ``verification.bench.judge``."""
+    if not hasattr(result, "shape"):
+        return 0.0
+    return float(import_module("verification.bench.judge").residual(result))
+
+
+def processor_seconds() -> float:
+    """Processor time of this process with those that it has started."""
+    usages = map(resource.getrusage, (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN))
+    return sum(usage.ru_utime + usage.ru_stime for usage in usages)
+
+
+def main() -> None:
+    """Answer the lines of standard input; the arguments are the name of a function above and its own."""
+    # What a library prints goes to standard error.
+    answers = os.fdopen(os.dup(1), "w", buffering=1)
+    os.dup2(2, 1)
+    work, arguments = globals()[sys.argv[1]], json.loads(sys.argv[2])
+    result = None
+    for line in sys.stdin:
+        if line.strip() == "judge":
+            answer = {"residual": judge(result)}
+        else:
+            prepared = work(int(line), *arguments)
+            processor, began = processor_seconds(), time.perf_counter()
+            result = prepared()
+            answer = {"seconds": time.perf_counter() - began, "processor": processor_seconds() - processor}
+            answer["peak"] = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024.0  # bytes
+        answers.write(json.dumps(answer) + "\n")
+
+
+if __name__ == "__main__":
+    main()
