@@ -21,6 +21,7 @@ Array = NDArray[np.floating]
 BLOCK = (
     2**15
 )  # numbers of the rows, or the columns, transformed at a time by a thread: they stay in the cache
+WHOLE = 8  # blocks in a transform, up to which it is not divided
 SHARED = 2**18  # points of a transform below which a second thread was measured to give no gain
 
 
@@ -122,8 +123,9 @@ def _apply_even(
         threads = 1
 
     # the columns of 2 nx entries are transformed by strips that stay in the cache, unless all of them do
-    width, height = my // 2 + 1, max(1, BLOCK * threads // my)
-    strip = min(width, max(16, BLOCK * threads // mx))
+    width = my // 2 + 1
+    block = BLOCK * threads if mx * my > WHOLE * BLOCK else mx * my
+    height, strip = max(1, block // my), min(width, max(16, block // mx))
     divided = strip < width
     dtype = np.result_type(spectrum, 1j)
     size = nx * width if divided else mx * width
