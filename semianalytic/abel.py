@@ -102,10 +102,8 @@ def deflection(
     # smooth in r inside, in sqrt(r - a) outside
     u = np.where(
         r <= a,
-        CubicSpline(inner, over_circle(phi.size, inner / a) @ phi)(np.minimum(r, a)),
-        CubicSpline(np.sqrt(outer - a), over_circle(phi.size, outer / a) @ phi)(
-            np.sqrt(np.maximum(r - a, 0))
-        ),
+        CubicSpline(inner, _homogeneous(phi, inner / a))(np.minimum(r, a)),
+        CubicSpline(np.sqrt(outer - a), _homogeneous(phi, outer / a))(np.sqrt(np.maximum(r - a, 0))),
     )
     if table is not None:
         u = u + CubicSpline(table.r, table.matrix @ (a * cosine_transform(phi, table.k * a)))(r)
@@ -140,11 +138,23 @@ def over_circle(terms: int, rho: Array) -> Array:
 
     x' = 1 - x^2, x = rho sin(theta): a polynomial in sin(theta), exact to rounding.
     """
+    y, weight = _on_circle(terms, rho)
+    return np.einsum("rs,rsm->rm", weight, legendre.legvander(2 * y - 1, terms - 1), optimize=True)
+
+
+def _homogeneous(phi: Array, rho: Array) -> Array:
+    """The same of x' sum phi_m P_m(2x' - 1), (rho.size,): the deflection of a homogeneous solid."""
+    y, weight = _on_circle(len(phi), rho)
+    return np.einsum("rs,rs->r", weight, legendre.legval(2 * y - 1, phi))
+
+
+def _on_circle(terms: int, rho: Array) -> tuple[Array, Array]:
+    """Gauss points x' in theta, and weights that contain x', (rho.size, points) each."""
     s, w = gauss_legendre(2 * terms + 16)
     end = np.arcsin(np.minimum(1, 1 / np.maximum(rho, 1e-300)))
     x = rho[:, None] * np.sin(end[:, None] * (1 + s) / 2)
     y = 1 - np.minimum(x, 1) ** 2
-    return np.einsum("rs,rsm,s,r->rm", y, legendre.legvander(2 * y - 1, terms - 1), w, end / 2, optimize=True)
+    return y, y * w * (end[:, None] / 2)
 
 
 def cosine_transform(phi: Array, k: Array) -> Array:

@@ -20,6 +20,7 @@ from math import factorial
 from typing import Any, Literal
 
 import numpy as np
+from numpy.polynomial import polynomial
 from numpy.typing import ArrayLike, NDArray
 
 __all__ = [
@@ -86,7 +87,7 @@ def _one_coating_excess(
     x = np.minimum(k * h, 400.0)  # beyond, th underflows; x^2 th must not become inf * 0
     th, u = np.exp(-2 * x), -np.expm1(-2 * x)
     small = np.minimum(x, 1.0) ** 2
-    series = sum(2.0 ** (2 * n - 1) / factorial(2 * n) * small**n for n in range(2, 13))
+    series = polynomial.polyval(small, [0, 0, *(2.0 ** (2 * n - 1) / factorial(2 * n) for n in range(2, 13))])
     bending = np.where(x < 1, th * series, u**2 / 4 - x**2 * th)  # th (sinh^2 x - x^2)
     denominator = u * (L * th + Q) + L * Q * th**2 + 4 * kap * bending
     return th * (lam * (u + Q * th) + kap * (u + L * th) + 4 * kap * x * (1 + x)) / denominator

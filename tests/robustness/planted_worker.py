@@ -12,8 +12,6 @@ import sys
 import time
 from pathlib import Path
 
-import numpy as np
-
 from verification.running.store import write_checked
 
 
@@ -37,12 +35,16 @@ def main(how: str, path: str) -> None:
         Path(f"{path}.pids").write_text(f"{os.getpid()} {child.pid}\n")
         time.sleep(600)
     elif how == "memory":
+        import numpy as np
+
         np.empty(1 << 46, dtype=np.uint8)
     elif how == "kernel":
         os.kill(os.getpid(), signal.SIGKILL)
     elif how == "greed":
         # A control group that the test has made, so that only this process runs out of memory.
         Path(os.environ["PLANTED_GROUP"], "tasks").write_text(str(os.getpid()))
+        import numpy as np
+
         blocks = []
         while True:
             blocks.append(np.ones(1 << 22))
@@ -52,6 +54,15 @@ def main(how: str, path: str) -> None:
         pass
     else:
         write_checked(Path(path), {"said": how})
+
+
+def copy(given: str, folder: str, path: str) -> None:
+    """Leave the content of the file ``given`` in ``folder`` and in the result."""
+    content = Path(given).read_text()
+    Path(folder).mkdir(parents=True)
+    Path(folder, "more.txt").write_text(content)
+    Path(Path(given).parent, "litter.txt").write_text("at no path of the command")
+    write_checked(Path(path), {"said": content})
 
 
 if __name__ == "__main__":

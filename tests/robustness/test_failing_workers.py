@@ -15,8 +15,9 @@ import pytest
 from quick_case import QUICK
 
 from verification.commands import run as command
-from verification.running import pool
-from verification.running.pool import Task, run_tasks
+from verification.running.pool import processes
+from verification.running.pool.processes import run_tasks
+from verification.running.pool.task import Task
 from verification.running.store import StoreError, read_checked, write_checked
 
 HERE = Path(__file__).parent
@@ -35,7 +36,8 @@ REASONS = {
 
 @pytest.fixture(autouse=True)
 def _planted(monkeypatch):
-    monkeypatch.setenv("PYTHONPATH", os.pathsep.join([str(HERE), str(HERE.parent / "verification")]))
+    places = [str(HERE), str(HERE.parent / "verification"), os.environ.get("PYTHONPATH", "")]
+    monkeypatch.setenv("PYTHONPATH", os.pathsep.join(places))
 
 
 def task(how: str, folder: Path, number: int = 0) -> Task[str]:
@@ -148,7 +150,7 @@ def test_process_that_cannot_be_started_is_a_reason(tmp_path, monkeypatch):
     def refuse(*_, **__):
         raise OSError(12, "Cannot allocate memory")
 
-    monkeypatch.setattr(pool.subprocess, "Popen", refuse)
+    monkeypatch.setattr(processes.subprocess, "Popen", refuse)
     (reason,) = run_tasks([task("good", tmp_path)], jobs=1, time_limit=300)
     assert reason.startswith("its process could not be started (Cannot allocate memory)")
 

@@ -19,7 +19,7 @@ from verification.cases.published import published_cases, read_published
 from verification.commands.common.solving import kept_results
 from verification.running.contact import judge_case, solve_case
 from verification.running.fields import plane_path, write_plane
-from verification.running.pool import run_tasks
+from verification.running.pool.processes import run_tasks
 from verification.running.provenance import fingerprint
 from verification.running.published import failed as printed_failed
 from verification.running.result import from_json, to_json

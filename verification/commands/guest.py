@@ -17,8 +17,8 @@ from verification.cases.contact import Case, read_case, shipped_cases
 from verification.commands.common.choice import SHIPPED, path_of, require_distinct
 from verification.commands.common.exits import EXIT, CommandError, with_exit_code
 from verification.commands.common.folders import PACKAGE
-from verification.commands.common.options import AsJson, Flag, Jobs, Quiet
-from verification.commands.common.solving import run_info, solve, worker_count
+from verification.commands.common.options import AsJson, Flag, Jobs, Quiet, Scheduler
+from verification.commands.common.solving import pool_of, run_info, solve, worker_count
 from verification.commands.common.terminal import (
     STYLE,
     named_table,
@@ -36,7 +36,7 @@ from verification.regression.junit import junit_xml
 from verification.report.guest import badge, summary
 from verification.report.guest import page as render
 from verification.report.tables.numbers import engineering
-from verification.running.pool import Task
+from verification.running.pool.task import Task
 from verification.running.result import CaseResult, RunInfo, to_json
 from verification.running.store import locked, write_atomically
 
@@ -111,6 +111,7 @@ def run(
     *cases: str,
     output: Folder = None,
     jobs: Jobs = None,
+    scheduler: Scheduler = None,
     quiet: Quiet = False,
     as_json: AsJson = False,
 ) -> int:
@@ -127,18 +128,18 @@ def run(
         cases: Names of shipped cases, see coatcheck list, or .toml files; all shipped ones unless given.
         output: Directory of report.html, report.json, junit.xml, badge.svg; GUEST/report unless given.
     """
-    jobs = worker_count(jobs, 1.0)
+    pool = pool_of(jobs, 1.0, scheduler)
     host = read_guest(guest)
     chosen = _chosen(cases)
     folder = output or host.folder / "report"
     begin, started = time.perf_counter(), datetime.datetime.now(datetime.UTC)
 
     def run_tasks(tasks: Sequence[Task[Any]], limit: float) -> list[Any]:
-        return solve(tasks, jobs, limit, quiet or as_json)
+        return solve(tasks, pool, limit, quiet or as_json)
 
     with locked(folder):
-        found = examined(host, chosen, folder, run_tasks, jobs)
-        info = run_info(shlex.join(["coatcheck", "guest", "run", guest, *cases]), started, jobs)
+        found = examined(host, chosen, folder, run_tasks, pool if isinstance(pool, int) else None)
+        info = run_info(shlex.join(["coatcheck", "guest", "run", guest, *cases]), started, pool)
         page = folder / "report.html"
         texts = {
             "junit.xml": junit_xml(found.results, info),

@@ -30,15 +30,16 @@ from verification.commands.common.options import (
     Quiet,
     RecordsFolder,
     Resume,
+    Scheduler,
     Strict,
 )
 from verification.commands.common.solving import (
     kept_results,
     kept_study,
+    pool_of,
     require_gmsh,
     run_info,
     solve,
-    worker_count,
 )
 from verification.commands.common.terminal import (
     STYLE,
@@ -54,7 +55,7 @@ from verification.judging.outcome import DECIDED, Outcome
 from verification.regression.baseline import Regression, State, regression, regression_json
 from verification.regression.manifest import manifest_message
 from verification.regression.record import read_baseline
-from verification.running.pool import Task
+from verification.running.pool.task import Task
 from verification.running.result import CaseResult, RunInfo
 from verification.running.store import StoreError, locked
 from verification.running.tasks import case_task, kept_result, published_task
@@ -72,6 +73,7 @@ def run(
     *cases: str,
     output: Output = Path("reports"),
     jobs: Jobs = None,
+    scheduler: Scheduler = None,
     time_limit: float = 600.0,
     baseline: BaselineFolder = BASELINE,
     records: RecordsFolder = RECORDS,
@@ -96,7 +98,7 @@ def run(
         fields: Also write the fields of each case, for ParaView and coatcheck view, into its folder fields.
         verbose: Print the seconds and iterations of every source as the cases finish.
     """
-    jobs = worker_count(jobs, time_limit)
+    pool = pool_of(jobs, time_limit, scheduler)
     chosen = _choose(cases)
     for case in chosen:
         if isinstance(case, Case):
@@ -121,12 +123,12 @@ def run(
             tasks += [_task(case, output, fields) for case in chosen if case.name not in kept]
             tasks += [accuracy_study.task(output)] if not cases and accuracy is None else []
             tasks += [effective_study.task(output)] if "published" in cases else []
-            solved = solve(tasks, jobs, time_limit, quiet or as_json, verbose=verbose, meanwhile=prepared)
+            solved = solve(tasks, pool, time_limit, quiet or as_json, verbose=verbose, meanwhile=prepared)
             accuracy = next((found for found in solved if isinstance(found, AccuracyStudy)), accuracy)
             formulas = next((found for found in solved if isinstance(found, EffectiveStudy)), None)
             new = {found.name: found for found in solved if isinstance(found, CaseResult)}
             results = [kept.get(case.name) or new[case.name] for case in chosen]
-            info = run_info(shlex.join(["coatcheck", "run", *cases]), started, jobs)
+            info = run_info(shlex.join(["coatcheck", "run", *cases]), started, pool)
             tests, evidence = prepared()
             beside = regression(
                 results,

@@ -16,7 +16,7 @@ from rich.progress import TaskID
 
 from verification.commands.common.choice import path_of
 from verification.commands.common.exits import EXIT, STOPPED, CommandError, with_exit_code
-from verification.commands.common.options import AsJson, Jobs, Output, Quiet, Strict
+from verification.commands.common.options import AsJson, Jobs, Output, Quiet, Scheduler, Strict
 from verification.commands.common.solving import progress_bar, require_gmsh
 from verification.commands.common.terminal import (
     print_error,
@@ -25,8 +25,7 @@ from verification.commands.common.terminal import (
     print_warnings,
 )
 from verification.judging.verdict import Outcome
-from verification.running.pool import cores
-from verification.running.provenance import commit, machine
+from verification.running.provenance import commit, cores, hardware
 from verification.sources.registry import SOURCES
 from verification.study.plan import Study, read_study_file, shipped_studies
 
@@ -46,8 +45,7 @@ class Options:
     output: Output = Path("reports/study")
     """Directory of the table, PLAN.parquet, and of the cache."""
     jobs: Jobs = None
-    scheduler: str | None = None
-    """Address of a running Dask scheduler, in place of a local cluster."""
+    scheduler: Scheduler = None
     limit: int | None = None
     """Only the first so many points."""
     cross_check: bool = True
@@ -103,7 +101,8 @@ def _study(plan: str, options: Options, *, loads: bool) -> int:
     if chosen.cross_check:
         require_gmsh()
 
-    from verification.study.engine import SchedulerError, connected, run_study, table_path
+    from verification.running.pool.cluster import connected
+    from verification.study.engine import run_study, table_path
 
     cluster = partial(connected, options.scheduler, jobs)
     begin = time.perf_counter()
@@ -114,8 +113,6 @@ def _study(plan: str, options: Options, *, loads: bool) -> int:
         with _bars(silent) as (report, drawing):
             came = run_study(chosen, output, cluster, limit=limit, report=report)
             written = _page(chosen, came, time.perf_counter() - begin, options.figures, drawing)
-    except SchedulerError as error:
-        raise CommandError(str(error)) from None
     except KeyboardInterrupt:
         sys.stderr.write(
             f"\ncoatcheck: stopped; solved points are in {table_path(output, chosen)}, "
@@ -170,7 +167,7 @@ def _page(
         ("solves", f"{came.done} done, {came.kept} from the cache"),
         ("duration", f"{seconds:.0f} s"),
         ("commit", commit() or "not in a repository"),
-        ("machine", f"{machine()}, {cores()} cores"),
+        ("machine", hardware()),
     ]
     write = write_study_report if chosen.loads is None else write_load_report
     return write(came.table, chosen, came.table.parent, facts, figures=figures, drawing=drawing)

@@ -12,7 +12,7 @@ from verification.credibility.parameters import Stated, Sweep, study
 from verification.credibility.refinement import Refinement, failure_message, refined_grid, refined_mesh
 from verification.judging.invariants.influence import ConversionError, conversion_errors
 from verification.problem.contact import CoatedContact
-from verification.running.pool import Task
+from verification.running.pool.task import Task
 from verification.running.provenance import commit, versions
 from verification.running.records import decode, encode
 from verification.running.store import StoreError, read_checked, write_checked
@@ -128,7 +128,7 @@ def stored(
 def task(folder: Path) -> Task[AccuracyStudy]:
     """The study as a task beside the cases of a run."""
     path = path_in(folder)
-    command = ("verification.credibility.accuracy:main", str(path))
+    command = ("verification.credibility.accuracy:main", path)
     return Task("accuracy study", command, path, from_json, failed, cost=COST)
 
 

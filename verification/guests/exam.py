@@ -28,7 +28,7 @@ from verification.problem.geometry import layer_at
 from verification.problem.profile import Profile
 from verification.problem.quantity import unit_of
 from verification.running.contact import failed
-from verification.running.pool import Task
+from verification.running.pool.task import Task
 from verification.running.provenance import fingerprint
 from verification.running.records import plain
 from verification.running.result import CaseResult, SourceResult, describe, from_json, to_json
@@ -74,7 +74,7 @@ def exam_path(folder: Path, case: Subject) -> Path:
 def exam_task(case: Subject, folder: Path) -> Task[Exam]:
     """Solving ``case`` exactly; its profiles at the points required of every guest."""
     path = exam_path(folder, case)
-    words = ("verification.guests.exam:prepare", case.stem, case.text, str(path), case.load)
+    words = ("verification.guests.exam:prepare", case.stem, case.text, path, case.load)
     cost = 1.0 + len(case.problem.coatings)
     return Task(case.name, words, path, lambda data: Exam(from_json(data)), partial(_failed, case), cost=cost)
 

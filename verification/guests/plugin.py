@@ -42,7 +42,8 @@ class _GuestFile(pytest.File):
         from verification.cases.contact import read_case, shipped_cases
         from verification.guests.description import read_guest
         from verification.guests.examination import examined
-        from verification.running.pool import cores, run_tasks
+        from verification.running.pool.processes import run_tasks
+        from verification.running.provenance import cores
 
         guest = read_guest(self.path)
         shipped = shipped_cases()

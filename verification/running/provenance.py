@@ -2,9 +2,11 @@
 
 import ctypes.util
 import hashlib
+import os
 import platform
 import subprocess
 from collections.abc import Iterable
+from dataclasses import dataclass
 from functools import cache
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
@@ -85,6 +87,38 @@ def fingerprint(modules: tuple[str, ...] = CODE, packages: tuple[str, ...] = ("p
         for path in sorted(place.rglob("*.py")) or [place.with_suffix(".py")]:
             found.update(path.relative_to(ROOT).as_posix().encode() + b"\0" + path.read_bytes())
     return found.hexdigest()
+
+
+@dataclass(frozen=True)
+class Provenance:
+    """Fingerprint of the program that a process runs, its versions by package, the hardware it runs on."""
+
+    code: str
+    versions: dict[str, str]
+    hardware: str
+
+    def difference(self, here: "Provenance") -> str:
+        """How this program differs from that of ``here``; empty where both are the same."""
+        names = sorted(self.versions.keys() | here.versions.keys())
+        found = [(name, self.versions.get(name), here.versions.get(name)) for name in names]
+        words = [f"{name} {there} there, {mine} here" for name, there, mine in found if there != mine]
+        return "" if self.code == here.code else ", ".join(words) or "other source code of coatcheck"
+
+
+@cache
+def provenance() -> Provenance:
+    """The provenance of this process."""
+    return Provenance(fingerprint(), versions(), hardware())
+
+
+def cores() -> int:
+    """Processors this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+def hardware() -> str:
+    """Machine with its number of processors, as a run records it."""
+    return f"{machine()}, {cores()} cores"
 
 
 def machine() -> str:

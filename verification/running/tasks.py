@@ -13,7 +13,8 @@ from verification.judging.verdict import Outcome
 from verification.running import published
 from verification.running.contact import failed
 from verification.running.fields import plane_path, read_fields, read_plane
-from verification.running.pool import Task, run_tasks
+from verification.running.pool.processes import run_tasks
+from verification.running.pool.task import Task
 from verification.running.provenance import fingerprint
 from verification.running.records import plain
 from verification.running.result import CaseResult, describe, from_json
@@ -31,11 +32,10 @@ def case_task(case: Case, folder: Path, *, fields: bool = False) -> Task[CaseRes
     Cases that differ in friction alone share a process, and so the solution without friction.
     """
     path = result_path(folder, case)
-    words = ["verification.running.worker:contact", case.name, case.text, str(path)]
-    words += [str(plane_path(folder, case.name))] + ([str(folder)] if fields else [])
+    words = ("verification.running.worker:contact", case.name, case.text, path, plane_path(folder, case.name))
     return Task(
         case.name,
-        tuple(words),
+        (*words, folder) if fields else words,
         path,
         partial(_of, case),
         partial(failed, case),
@@ -60,8 +60,9 @@ def cost(case: Case) -> float:
 def published_task(case: PublishedCase, folder: Path) -> Task[CaseResult]:
     """Comparing both methods with the results published in ``case``, its result stored under ``folder``."""
     path = result_path(folder, case)
-    words = ("verification.running.worker:published", str(case.path), str(path))
-    return Task(case.name, words, path, partial(_of, case), partial(published.failed, case), cost=1.0)
+    words = ("verification.running.worker:published", case.path, path)
+    failed = partial(published.failed, case)
+    return Task(case.name, words, path, partial(_of, case), failed, cost=1.0, needs=lambda: (case.path,))
 
 
 def _of(case: Case | PublishedCase, data: dict[str, Any]) -> CaseResult:

@@ -6,45 +6,30 @@ before it is counted, and the table is written whole from the stored answers in 
 that it depends neither on the order of the answers nor on interruptions.
 """
 
-import gc
 import json
-import logging
 import os
-import signal
-import threading
 import time
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager, nullcontext
+from contextlib import closing, nullcontext
 from dataclasses import dataclass, field
-from itertools import chain, groupby, islice, takewhile
+from itertools import chain, groupby, takewhile
 from pathlib import Path
 from statistics import median
 from typing import Any
 
-from verification.running.pool import THREAD_VARIABLES, cores
-from verification.running.result import message_of
+from verification.running.pool.cluster import REMEDY, Lost, answers
+from verification.running.pool.task import SchedulerError
 from verification.running.store import StoreError, locked
 from verification.study.cache import Cache, code_version
 from verification.study.plan import Solve, Study
 from verification.study.point import answer, failed_rows, peak_memory, table_rows
 from verification.study.table import SOURCES, write_table
 
-WINDOW = 3  # solves submitted at a time for each thread of the cluster
-DIED = "every worker that it was submitted to was killed, most likely for lack of memory; use fewer --jobs"
-WAIT = 60.0  # s, for the first worker
 PAUSE = 5.0  # s between two writings of the table
-CONNECT_WITHIN = 5.0  # s, to a scheduler that was named
 USUAL = dict(zip(SOURCES, (0.9, 2.5, 1.0), strict=True))  # s
 SHARE = 0.02  # of the time, at most, is spent on writing the table while it grows
-# With Dask's own setting every freed array is returned to the system, and a third of the time is spent on
-# allocating anew; the memory kept between solves here is bounded too.
-MALLOC = {"MALLOC_ARENA_MAX": 1, "MALLOC_MMAP_THRESHOLD_": 2**25, "MALLOC_TRIM_THRESHOLD_": 2**26}
 
 Report = Callable[[str, int, int], None]  # source, points done, points in all
-
-
-class SchedulerError(Exception):
-    """A cluster that cannot be used; the message says why."""
 
 
 @dataclass
@@ -113,75 +98,6 @@ def table_path(folder: Path, study: Study) -> Path:
     return folder / f"{study.name}.parquet"
 
 
-@contextmanager
-def connected(scheduler: str | None, jobs: int | None) -> Iterator[Any]:
-    """A client of the cluster at ``scheduler``, or of a local one of ``jobs`` processes.
-
-    jobs : all cores unless given.   Raises SchedulerError where there is no scheduler.
-    """
-    import dask
-    from distributed import Client, LocalCluster
-
-    # A client of an earlier study that is collected while a new one starts would wait for it forever.
-    gc.collect()
-    if scheduler is not None:
-        with _silent_logs():
-            try:
-                client = Client(scheduler, timeout=CONNECT_WITHIN, set_as_default=False)
-            except (OSError, ValueError, TimeoutError) as error:
-                message = " ".join(str(error).split())[:200]
-                raise SchedulerError(
-                    f"--scheduler {scheduler}: {message}; start one with: dask scheduler"
-                ) from None
-            with client:
-                yield client
-        return
-    environment = {
-        "distributed.nanny.pre-spawn-environ": MALLOC | dict.fromkeys(THREAD_VARIABLES, 1),
-        # It stores an hour of profiles, 1 MB a solve, and takes a quarter of the time.
-        "distributed.worker.profile.enabled": False,
-        "distributed.admin.log-length": 100,
-        "logging": {"distributed": "critical", "tornado": "critical"},
-    }
-    with _silent_logs(), dask.config.set(environment):
-        with _interrupt_ignored():
-            cluster = LocalCluster(
-                n_workers=jobs or cores(),
-                threads_per_worker=1,
-                processes=True,
-                host="127.0.0.1",
-                dashboard_address="127.0.0.1:0",
-                memory_limit=0,
-                silence_logs=logging.CRITICAL,
-            )
-        with cluster, Client(cluster, set_as_default=False) as client:
-            yield client
-
-
-@contextmanager
-def _interrupt_ignored() -> Iterator[None]:
-    """Processes started here ignore Ctrl-C, which a terminal sends to all; the client acts on it."""
-    if threading.current_thread() is not threading.main_thread():
-        yield
-        return
-    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
-    try:
-        yield
-    finally:
-        signal.signal(signal.SIGINT, before)
-
-
-@contextmanager
-def _silent_logs() -> Iterator[None]:
-    """No log of Dask below "critical": the study reports failures of workers itself."""
-    before = logging.root.manager.disable
-    logging.disable(logging.ERROR)
-    try:
-        yield
-    finally:
-        logging.disable(before)
-
-
 def run_study(
     study: Study,
     folder: Path,
@@ -210,17 +126,6 @@ def run_study(
             finally:
                 run.write_table()
     return run.outcome
-
-
-def _threads(client: Any) -> int:
-    """Number of threads of the cluster, after its first worker has joined."""
-    try:
-        client.wait_for_workers(1, timeout=WAIT)
-    except TimeoutError:
-        raise SchedulerError(
-            f"no worker joined the scheduler within {WAIT:.0f} s; start one with: dask worker ADDRESS"
-        ) from None
-    return sum(client.nthreads().values())
 
 
 class _Run:
@@ -263,51 +168,25 @@ class _Run:
                     yield one
 
     def solve(self, waiting: Iterator[Solve], client: Any, function: Callable[..., Any]) -> None:
-        """Keep a bounded number of solves submitted until none is left; store each answer."""
-        from distributed import as_completed
+        """Submit a bounded number of solves at a time until none is left; store each answer."""
+        with closing(answers(client, function, self._requests(waiting))) as arriving:
+            for one, found in arriving:
+                self._take(one, found)
 
-        threads = _threads(client)
-        pending: dict[Any, Solve] = {}
-
-        def send(one: Solve) -> Any:
+    def _requests(self, waiting: Iterator[Solve]) -> Iterator[tuple[str, dict[str, Any], Solve]]:
+        for one in waiting:
             self._note("sent", one)
-            future = client.submit(function, one.request, key=f"{one.source}-{one.key}", pure=False)
-            pending[future] = one
-            return future
+            yield f"{one.source}-{one.key}", one.request, one
 
-        arriving = as_completed([send(one) for one in islice(waiting, WINDOW * threads)], loop=client.loop)
-        try:
-            for future in arriving:
-                self._take(pending.pop(future), future)
-                future.release()
-                following = next(waiting, None)
-                if following is not None:
-                    arriving.add(send(following))
-                if not pending:
-                    break
-        finally:
-            if pending and client.status == "running":
-                client.cancel(list(pending), force=True)
-
-    def _take(self, one: Solve, future: Any) -> None:
-        if future.cancelled():
-            raise SchedulerError(
-                "the scheduler is lost; the answers are stored, and the same command continues"
-            )
-        error = future.exception()
-        if error is not None:
+    def _take(self, one: Solve, found: dict[str, Any] | Lost) -> None:
+        if isinstance(found, Lost):
             # A solver's failure is an answer; a worker's is not stored, so that the next run solves again.
-            killed = type(error).__name__ == "KilledWorker"
-            self.outcome.lost[one.key] = DIED if killed else message_of(error)
+            self.outcome.lost[one.key] = found.reason
             self._note("lost", one)
             self.count(one)
             return
-        found = future.result()
         if found.get("code", code_version(one.source)) != code_version(one.source):
-            raise SchedulerError(
-                "a worker runs other code than this process; install the same coatcheck and the same "
-                "versions of its dependencies on every worker"
-            )
+            raise SchedulerError(f"a worker runs other code than this process; {REMEDY}")
         self.cache.put(one.key, one.request, found)
         self._note("stored", one, seconds=found["seconds"], memory=found.get("memory", 0))
         self.outcome.done += 1

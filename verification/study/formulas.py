@@ -12,7 +12,7 @@ from scipy.optimize import least_squares, minimize_scalar
 from verification.problem.arrays import Array
 from verification.problem.contact import CoatedContact
 from verification.problem.profile import lines_of
-from verification.running.pool import Task
+from verification.running.pool.task import Task
 from verification.running.records import decode, encode
 from verification.running.result import CaseResult, SourceResult, describe
 from verification.running.store import write_checked
@@ -218,7 +218,7 @@ def _rows(table: Array) -> Rows:
 def task(folder: Path) -> Task[EffectiveStudy]:
     """The study as a task beside the cases of a run."""
     path = folder / "effective-modulus.json"
-    command = ("verification.study.formulas:main", str(path))
+    command = ("verification.study.formulas:main", path)
     return Task("effective moduli", command, path, from_json, _failed)
 
 

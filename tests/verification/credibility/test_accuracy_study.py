@@ -15,7 +15,8 @@ from verification.credibility import accuracy as accuracy_study
 from verification.credibility.accuracy import BARE, COATED, STEEL, AccuracyStudy, from_json, to_json
 from verification.credibility.refinement import QUANTITIES, order_of, refined_grid, refined_mesh, settled
 from verification.judging.invariants.influence import conversion_errors
-from verification.running.pool import Task, run_tasks
+from verification.running.pool.processes import run_tasks
+from verification.running.pool.task import Task
 from verification.running.store import StoreError, write_checked
 from verification.sources.methods import solve_semianalytic
 from verification.sources.references.patch import over_square, surface_coefficient

@@ -19,7 +19,7 @@ from verification.guests.protocol import ProtocolError
 from verification.guests.subjects import subject_of
 from verification.guests.verdicts import judged
 from verification.judging.verdict import Outcome
-from verification.running.pool import run_tasks
+from verification.running.pool.processes import run_tasks
 from verification.running.result import from_json
 from verification.running.store import read_checked
 

@@ -10,9 +10,11 @@ import pytest
 import synthetic_solves
 from synthetic_solves import CRASHING, FAILING, STUDY, made_up
 
+from verification.running.pool import cluster as dask_cluster
+from verification.running.pool.cluster import connected
+from verification.running.pool.task import SchedulerError
 from verification.running.store import StoreError, locked
-from verification.study import engine
-from verification.study.engine import SchedulerError, connected, run_study
+from verification.study.engine import run_study
 from verification.study.plan import parse_study
 from verification.study.point import answer
 from verification.study.table import COLUMNS, read_columns, read_study
@@ -195,7 +197,7 @@ def test_two_runs_into_one_directory_do_not_mix(tmp_path, client):
 
 
 def test_a_scheduler_that_is_not_there_is_one_sentence(monkeypatch):
-    monkeypatch.setattr(engine, "CONNECT_WITHIN", 0.2)
+    monkeypatch.setattr(dask_cluster, "CONNECT_WITHIN", 0.2)
     with (
         pytest.raises(SchedulerError, match="start one with: dask scheduler"),
         connected("tcp://127.0.0.1:9", 1),

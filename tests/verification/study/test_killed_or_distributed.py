@@ -7,13 +7,13 @@ import signal
 import subprocess
 import sys
 import time
-from contextlib import contextmanager
 from functools import partial
 from pathlib import Path
 
 import numpy as np
 import psutil
 import pytest
+from scheduler_by_hand import ENVIRONMENT, hand_started, wait_until
 
 from verification.running.store import read_checked
 from verification.study.table import read_columns
@@ -38,8 +38,6 @@ estimate_uncertainty = false
 """
 SOLVES = 21 + 2 * 3
 KILLS = 10
-BIN = Path(sys.executable).parent
-ENVIRONMENT = os.environ | {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
 
 pytestmark = pytest.mark.slow
 
@@ -92,13 +90,6 @@ def undisturbed(plan, tmp_path_factory):
     return table
 
 
-def wait_until(condition, what, seconds=300):
-    until = time.monotonic() + seconds
-    while not condition():
-        assert time.monotonic() < until, f"not within {seconds} s: {what}"
-        time.sleep(0.05)
-
-
 def over_or_stored(process, output, before):
     """Whether the study ended, or stored something since line ``before`` of its ledger."""
     return process.poll() is not None or bool(keys(ledger(output)[before:], "stored"))
@@ -144,29 +135,6 @@ def test_killed_ten_times_at_random_and_resumed_it_is_the_same_table(plan, undis
     everything = keys(lines, "stored")
     assert len(everything) == len(set(everything)) <= SOLVES
     assert len({path.stem for path in (tmp_path / "cache").rglob("*.json")}) == SOLVES
-
-
-@contextmanager
-def hand_started(folder):
-    """``dask scheduler`` with two ``dask worker``, as a person starts them; its address, the workers."""
-    there = folder / "scheduler.json"
-    quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL, "start_new_session": True}
-    common = ["--scheduler-file", str(there), "--host", "127.0.0.1", "--no-dashboard"]
-    dask = str(BIN / "dask")
-    started = [
-        subprocess.Popen([dask, "scheduler", *common, "--port", "0"], env=ENVIRONMENT, cwd=folder, **quiet)
-    ]
-    try:
-        wait_until(there.exists, "a scheduler", 60)
-        for _ in range(2):
-            words = [dask, "worker", *common, "--nthreads", "1", "--local-directory", str(folder)]
-            started.append(subprocess.Popen(words, env=ENVIRONMENT, cwd=folder, **quiet))
-        yield json.loads(there.read_text())["address"], started[1:]
-    finally:
-        for process in started:
-            if process.poll() is None:
-                os.killpg(process.pid, signal.SIGKILL)
-            process.wait()
 
 
 def test_two_workers_started_by_hand_give_the_same_table(plan, undisturbed, tmp_path):
@@ -221,7 +189,8 @@ def test_memory_stays_flat_over_ten_thousand_points(tmp_path):
         f"sys.path.insert(0, {str(Path(__file__).parents[1])!r})\n"
         "from pathlib import Path\n"
         "from synthetic_solves import made_up\n"
-        "from verification.study.engine import connected, run_study\n"
+        "from verification.running.pool.cluster import connected\n"
+        "from verification.study.engine import run_study\n"
         "from verification.study.plan import read_study_file, shipped_studies\n"
         "if __name__ == '__main__':\n"
         "    study = read_study_file(shipped_studies()['ten_thousand'])\n"

@@ -46,11 +46,12 @@ def with_exit_code(command: Callable[P, int]) -> Callable[P, int]:
     @wraps(command)
     def wrapped(*args: P.args, **options: P.kwargs) -> int:
         from verification.cases.toml import CaseError
+        from verification.running.pool.task import SchedulerError
         from verification.running.store import StoreError
 
         try:
             return command(*args, **options)
-        except (CommandError, CaseError, StoreError, OSError) as error:
+        except (CommandError, CaseError, StoreError, SchedulerError, OSError) as error:
             print_error(str(error))
             return error.code if isinstance(error, CommandError) else BAD_INPUT
 

@@ -2,6 +2,7 @@
 
 import datetime
 from collections.abc import Callable, Sequence
+from functools import partial
 from pathlib import Path
 from typing import TypeVar
 
@@ -26,8 +27,10 @@ from verification.commands.common.exits import CommandError, no_result
 from verification.commands.common.terminal import STYLE, one_line, print_error
 from verification.credibility import accuracy as accuracy_study
 from verification.credibility.accuracy import AccuracyStudy
-from verification.running.pool import Task, cores, run_tasks
-from verification.running.provenance import commit, machine, missing_libraries, versions
+from verification.running.pool.cluster import Cluster
+from verification.running.pool.processes import run_tasks
+from verification.running.pool.task import Task
+from verification.running.provenance import commit, cores, hardware, missing_libraries, versions
 from verification.running.result import CaseResult, RunInfo
 from verification.running.store import StoreError
 from verification.running.tasks import kept_result
@@ -36,6 +39,8 @@ T = TypeVar("T")
 
 NARROW = 60  # columns
 
+Pool = int | Cluster  # so many processes on this machine, or the workers of a scheduler
+
 
 def worker_count(jobs: int | None, time_limit: float) -> int:
     """Processes side by side. Raises CommandError where one of both is not positive."""
@@ -43,6 +48,16 @@ def worker_count(jobs: int | None, time_limit: float) -> int:
     if jobs < 1 or not time_limit > 0:
         raise CommandError(f"--jobs = {jobs}, --time-limit = {time_limit:g}; both must be positive")
     return jobs
+
+
+def pool_of(jobs: int | None, time_limit: float, scheduler: str | None) -> Pool:
+    """Where tasks run. Raises CommandError for a number that is not positive, jobs beside a scheduler."""
+    here = worker_count(jobs, time_limit)
+    if scheduler is None:
+        return here
+    if jobs is not None:
+        raise CommandError(f"--jobs = {jobs}: the workers of --scheduler decide; leave one of both out")
+    return Cluster(scheduler)
 
 
 def require_gmsh() -> None:
@@ -79,7 +94,7 @@ def kept_study(output: Path) -> AccuracyStudy | None:
 
 def solve(
     tasks: Sequence[Task[T]],
-    jobs: int,
+    pool: Pool,
     time_limit: float,
     silent: bool,
     *,
@@ -110,9 +125,9 @@ def solve(
                 if verbose:
                     console.print(escape(_sources(result)), style="dim", highlight=False)
 
-        return run_tasks(
+        run = pool.run if isinstance(pool, Cluster) else partial(run_tasks, jobs=pool)
+        return run(
             tasks,
-            jobs=jobs,
             time_limit=time_limit,
             started=started,
             finished=finished,
@@ -132,15 +147,16 @@ def _sources(result: CaseResult) -> str:
     return "\n".join(lines)
 
 
-def run_info(command: str, started: datetime.datetime, jobs: int) -> RunInfo:
-    """Command, time, commit, machine and versions of the run that ends now."""
+def run_info(command: str, started: datetime.datetime, pool: Pool) -> RunInfo:
+    """Command, time, commit, machines and versions of the run that ends now."""
+    jobs, machines = (pool.jobs, pool.machines) if isinstance(pool, Cluster) else (pool, set())
     return RunInfo(
         command=command,
         started=started.isoformat(timespec="seconds"),
         seconds=(datetime.datetime.now(datetime.UTC) - started).total_seconds(),
         jobs=jobs,
         commit=commit(),
-        machine=f"{machine()}, {cores()} cores",
+        machine=" and ".join(sorted(machines)) or hardware(),
         versions=versions(),
     )
 

@@ -10,8 +10,17 @@ from verification.cases.contact import Case, parse_case
 from verification.cases.random_problems import draw
 from verification.commands.common.exits import CommandError, exit_code, with_exit_code
 from verification.commands.common.folders import RECORDS, require_checkout
-from verification.commands.common.options import AsJson, Flag, Jobs, Output, Quiet, RecordsFolder, Resume
-from verification.commands.common.solving import kept_results, require_gmsh, run_info, solve, worker_count
+from verification.commands.common.options import (
+    AsJson,
+    Flag,
+    Jobs,
+    Output,
+    Quiet,
+    RecordsFolder,
+    Resume,
+    Scheduler,
+)
+from verification.commands.common.solving import kept_results, pool_of, require_gmsh, run_info, solve
 from verification.commands.common.terminal import STYLE, named_table, one_line, print_json, print_out
 from verification.credibility.alarms import AlarmRecord, counted, write_record
 from verification.running.records import plain
@@ -30,6 +39,7 @@ def alarms(
     record: Flag = False,
     records: RecordsFolder = RECORDS,
     jobs: Jobs = None,
+    scheduler: Scheduler = None,
     time_limit: float = 600.0,
     resume: Resume = False,
     quiet: Quiet = False,
@@ -48,7 +58,7 @@ def alarms(
         record: Store the record as RECORDS/alarms.json, for the credibility page of every report.
         time_limit: Seconds one problem may take before it is stopped and counted as alarms.
     """
-    jobs = worker_count(jobs, time_limit)
+    pool = pool_of(jobs, time_limit, scheduler)
     if count < 1 or seed < 0:
         raise CommandError(f"--count = {count}, --seed = {seed}; only the seed may be zero, none negative")
     if record:
@@ -63,9 +73,9 @@ def alarms(
         cases = [_case(seed, number, output) for number in range(count)]
         kept = kept_results(cases, output) if resume else {}
         tasks = [case_task(case, output) for case in cases if case.name not in kept]
-        solved = {r.name: r for r in solve(tasks, jobs, time_limit, quiet or as_json)}
+        solved = {r.name: r for r in solve(tasks, pool, time_limit, quiet or as_json)}
         results = [kept.get(case.name) or solved[case.name] for case in cases]
-        info = run_info(f"coatcheck alarms --count {count} --seed {seed}", started, jobs)
+        info = run_info(f"coatcheck alarms --count {count} --seed {seed}", started, pool)
         page = write_report(Material(results, info), output)
         found = counted(results, seed, info)
         stored = write_record(records, found) if record else None

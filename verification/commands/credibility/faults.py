@@ -11,8 +11,25 @@ from rich.markup import escape
 
 from verification.commands.common.exits import CommandError, no_result, with_exit_code
 from verification.commands.common.folders import RECORDS, require_checkout
-from verification.commands.common.options import AsJson, Flag, Jobs, Output, Quiet, RecordsFolder, Resume
-from verification.commands.common.solving import kept_results, require_gmsh, run_info, solve, worker_count
+from verification.commands.common.options import (
+    AsJson,
+    Flag,
+    Jobs,
+    Output,
+    Quiet,
+    RecordsFolder,
+    Resume,
+    Scheduler,
+)
+from verification.commands.common.solving import (
+    Pool,
+    kept_results,
+    pool_of,
+    require_gmsh,
+    run_info,
+    solve,
+    worker_count,
+)
 from verification.commands.common.terminal import did_you_mean, named_table, print_json, print_out
 from verification.running.store import locked, write_atomically
 from verification.running.tasks import case_task
@@ -34,6 +51,7 @@ def faults(
     record: Flag = False,
     records: RecordsFolder = RECORDS,
     jobs: Jobs = None,
+    scheduler: Scheduler = None,
     time_limit: float = 300.0,
     resume: Resume = False,
     quiet: Quiet = False,
@@ -55,7 +73,7 @@ def faults(
         record: Store the matrix of all faults as RECORDS/faults.json, for the credibility page of a report.
         time_limit: Seconds one fault may take before it is stopped and counted as not tried.
     """
-    jobs = worker_count(jobs, time_limit)
+    pool = pool_of(jobs, time_limit, scheduler)
     from verification.credibility.faults.catalogue import CONTROLS, FAULTS, GROUPS, chosen
 
     if group is not None and (group not in GROUPS or names):
@@ -82,19 +100,19 @@ def faults(
 
     started = datetime.datetime.now(datetime.UTC)
     with locked(output):
-        _solve_clean(wanted, output, jobs, time_limit, resume, quiet or as_json)
+        _solve_clean(wanted, output, pool, time_limit, resume, quiet or as_json)
         kept = {f.name: t for f in wanted if resume and (t := campaign.kept_trial(f, output))}
         # the long ones first, so that no core waits at the end
         order = sorted((f for f in wanted if f.name not in kept), key=campaign.cost, reverse=True)
         trials = [campaign.trial_task(fault, output) for fault in order]
-        fresh = {trial.fault: trial for trial in solve(trials, jobs, time_limit, quiet or as_json)}
-        info = run_info("coatcheck faults", started, jobs)
+        fresh = {trial.fault: trial for trial in solve(trials, pool, time_limit, quiet or as_json)}
+        info = run_info("coatcheck faults", started, pool)
         found = campaign.record_of(
             [kept.get(f.name) or fresh[f.name] for f in wanted],
             started=info.started,
             seconds=info.seconds,
             commit=info.commit,
-            machine=f"{info.machine}, {jobs} jobs",
+            machine=f"{info.machine}, {info.jobs} jobs",
             versions=info.versions,
         )
         write_record(output / campaign.RECORD, found)
@@ -110,7 +128,7 @@ def faults(
 
 
 def _solve_clean(
-    wanted: Sequence["Fault"], output: Path, jobs: int, time_limit: float, resume: bool, silent: bool
+    wanted: Sequence["Fault"], output: Path, pool: Pool, time_limit: float, resume: bool, silent: bool
 ) -> None:
     """Solve the cases of ``wanted`` without a fault; ends the command where that fails."""
     from verification.credibility.faults import campaign
@@ -119,7 +137,7 @@ def _solve_clean(
     cases = campaign.clean_cases(wanted)
     clean = kept_results(cases, folder) if resume else {}
     tasks = [case_task(case, folder) for case in cases if case.name not in clean]
-    if reason := campaign.failed_source([*clean.values(), *solve(tasks, jobs, time_limit, silent)]):
+    if reason := campaign.failed_source([*clean.values(), *solve(tasks, pool, time_limit, silent)]):
         raise no_result(reason)
 
 

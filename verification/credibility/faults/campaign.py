@@ -10,8 +10,8 @@ from verification.cases.contact import Case, read_case, shipped_cases
 from verification.credibility.faults.catalogue import CONTROLS, FAULTS
 from verification.credibility.faults.planting import Fault
 from verification.credibility.faults.record import Record, row_of
-from verification.credibility.faults.trial import Trial, try_fault
-from verification.running.pool import Task
+from verification.credibility.faults.trial import Trial, clean_path, try_fault
+from verification.running.pool.task import Task
 from verification.running.provenance import fingerprint
 from verification.running.records import decode, encode
 from verification.running.result import CaseResult
@@ -48,13 +48,20 @@ def failed_source(clean: Sequence[CaseResult]) -> str:
 
 def trial_task(fault: Fault, output: Path) -> Task[Trial]:
     """The trial of ``fault`` in a process of its own."""
-    path, clean = _path(fault, output), str(clean_folder(output))
-    words = ("verification.credibility.faults.campaign:main", fault.name, clean, str(path))
+    path, clean = _path(fault, output), clean_folder(output)
+    words = ("verification.credibility.faults.campaign:main", fault.name, clean, path)
 
     def failed(reason: str, seconds: float) -> Trial:
         return Trial(fault.name, seconds=seconds, failure=reason)
 
-    return Task(fault.name, words, path, _trial, failed)
+    return Task(
+        fault.name,
+        words,
+        path,
+        _trial,
+        failed,
+        needs=lambda: [clean_path(clean, name) for name in fault.cases],
+    )
 
 
 def kept_trial(fault: Fault, output: Path) -> Trial | None:

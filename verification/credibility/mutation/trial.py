@@ -18,7 +18,8 @@ from verification.credibility.faults.trial import try_fault
 from verification.credibility.mutation.record import ROOMS, ROOT, Catch, Trial
 from verification.credibility.mutation.sites import Mutant, mutated
 from verification.judging.outcome import Outcome
-from verification.running.pool import THREAD_VARIABLES, Task
+from verification.running.pool.processes import THREAD_VARIABLES
+from verification.running.pool.task import Task
 from verification.running.provenance import CODE, fingerprint
 from verification.running.records import decode, encode
 from verification.running.store import StoreError, read_checked, write_checked

@@ -1,5 +1,7 @@
 """A guest asked about one case at every level, as a task of the pool."""
 
+import os
+from collections.abc import Iterator
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -10,7 +12,7 @@ from verification.guests.doors.program import GRACE, Program, Solved, command_of
 from verification.guests.exam import claims_of, exam_path, question_of, read_subject
 from verification.guests.protocol import VERSION, Answer, ProtocolError, Question
 from verification.guests.subjects import Subject
-from verification.running.pool import Task
+from verification.running.pool.task import Task
 from verification.running.records import plain
 from verification.running.result import from_json
 from verification.running.store import StoreError, read_checked, write_checked
@@ -73,19 +75,39 @@ def ask_task(guest: Guest, case: Subject, folder: Path, process: int = 0) -> Tas
 
     process : tasks of one number share a process, and so the program of the guest.
     """
-    path = folder / "answers" / f"{case.name}.json"
+    path, exam = folder / "answers" / f"{case.name}.json", exam_path(folder, case)
     words = (
         "verification.guests.doors.asking:ask",
-        str(guest.folder / "guest.toml"),
+        guest.folder / "guest.toml",
         guest.text,
         case.stem,
         case.text,
         case.load,
-        str(exam_path(folder, case)),
-        str(path),
+        exam,
+        path,
     )
-    cost = 1.0 + len(case.problem.coatings)
-    return Task(case.name, words, path, _read, partial(_none, case), cost=cost, together=process)
+    return Task(
+        case.name,
+        words,
+        path,
+        _read,
+        partial(_none, case),
+        cost=1.0 + len(case.problem.coatings),
+        together=process,
+        needs=lambda: (exam, *_files(guest, folder)),
+    )
+
+
+def _files(guest: Guest, output: Path) -> Iterator[Path]:
+    """The files of ``guest``, hidden ones and results in ``output`` left out."""
+    for place, folders, names in os.walk(guest.folder):
+        here = Path(place)
+        folders[:] = [
+            name
+            for name in folders
+            if not (name.startswith(".") or name == "__pycache__" or here / name == output.resolve())
+        ]
+        yield from (here / name for name in names if (here / name).is_file())
 
 
 def _read(data: dict[str, Any]) -> Replies:

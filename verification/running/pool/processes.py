@@ -10,51 +10,27 @@ import sys
 import tempfile
 import time
 from collections import deque
-from collections.abc import Callable, Hashable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
-from dataclasses import dataclass
 from pathlib import Path
-from typing import IO, Any, Generic, TypeVar
+from typing import IO, Generic, TypeVar
 
-from verification.running.guard import UNWRITABLE
-from verification.running.store import StoreError, read_checked
+from verification.running.pool.guard import UNWRITABLE
+from verification.running.pool.task import Group, Task, in_order
+from verification.running.provenance import cores
+from verification.running.store import StoreError
 
 T = TypeVar("T")
-T_co = TypeVar("T_co", covariant=True)
 
 THREAD_VARIABLES = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "DUCC0_NUM_THREADS")
 # glibc keeps freed memory for the next array. Else the kernel clears each page anew: a tenth of the time.
+# Dask gives its workers the opposite.
 MEMORY_VARIABLES = {
     "MALLOC_MMAP_THRESHOLD_": str(32 * 2**20),
     "MALLOC_TRIM_THRESHOLD_": str(2**30),
     "MALLOC_TOP_PAD_": str(64 * 2**20),
 }
 POLL = 0.05  # s
-
-
-def cores() -> int:
-    """Processors this process may use."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-
-
-@dataclass(frozen=True)
-class Task(Generic[T_co]):
-    """Work for another process: ("MODULE:FUNCTION", WORDS...) leaves a checked file at ``path``.
-
-    read : from what the file holds to the result.
-    failed : the result of a process that left none, from the reason and its seconds.
-    cost : estimate, of any unit; the costliest tasks start first.
-    together : tasks of equal value other than None run one after the other in one process, so that they can
-        share what they compute. Where one fails, the next starts in a process of its own.
-    """
-
-    name: str
-    command: tuple[str, ...]
-    path: Path
-    read: Callable[[dict[str, Any]], T_co]
-    failed: Callable[[str, float], T_co]
-    cost: float = 0.0
-    together: Hashable = None
 
 
 def run_tasks(
@@ -73,13 +49,13 @@ def run_tasks(
     meanwhile : called once, when the first tasks have started.
     """
     threads = max(1, cores() // jobs)
-    waiting = _ordered(tasks)
+    waiting = in_order(tasks)
     results: dict[int, T] = {}
-    with _ended([_Slot[T](threads) for _ in range(min(jobs, len(waiting)))]) as slots:
+    with _ended([Slot[T](threads) for _ in range(min(jobs, len(waiting)))]) as slots:
         _start_idle(slots, waiting, started)
         meanwhile()
         while len(results) < len(tasks):
-            select.select([end for slot in slots if (end := slot.replies) is not None], [], [], POLL)
+            wait_for(slots)
             for slot in slots:
                 if (found := slot.poll(time_limit)) is not None:
                     number, name, result = found
@@ -89,26 +65,19 @@ def run_tasks(
     return [results[number] for number in range(len(tasks))]
 
 
-Group = deque[tuple[int, Task[T]]]  # tasks of one process, each with its number
+def wait_for(slots: "Sequence[Slot[T]]") -> None:
+    """Wait until a process of ``slots`` answers, ``POLL`` seconds at most."""
+    select.select([end for slot in slots if (end := slot.replies) is not None], [], [], POLL)
 
 
-def _ordered(tasks: Sequence[Task[T]]) -> deque[Group[T]]:
-    """Tasks by process, the costliest first: a long one that starts last would be waited for alone."""
-    groups: dict[Hashable, Group[T]] = {}
-    for number, task in enumerate(tasks):
-        key = (number, None) if task.together is None else task.together
-        groups.setdefault(key, deque()).append((number, task))
-    return deque(sorted(groups.values(), key=lambda group: -sum(task.cost for _, task in group)))
-
-
-def _start_idle(slots: list["_Slot[T]"], waiting: deque[Group[T]], started: Callable[[str], None]) -> None:
+def _start_idle(slots: "list[Slot[T]]", waiting: deque[Group[T]], started: Callable[[str], None]) -> None:
     for slot in slots:
         if slot.task is None and (slot.owed or waiting):
             slot.owed = slot.owed or waiting.popleft()
             started(slot.start().name)
 
 
-class _Slot(Generic[T]):
+class Slot(Generic[T]):
     """One of the processes, its ``task`` at work, those still ``owed`` of its group."""
 
     def __init__(self, threads: int) -> None:
@@ -135,21 +104,22 @@ class _Slot(Generic[T]):
             self.errors.truncate()
             request = {"command": self.task.command, "more": bool(self.owed)}
             with suppress(BrokenPipeError):  # it has died, as its end of file will tell
-                _pipe(process.stdin).write(json.dumps(request).encode() + b"\n")
+                _pipe(process.stdin).write(json.dumps(request, default=str).encode() + b"\n")
         except OSError as error:
             self.stop()
             self.refused = f"its process could not be started ({error.strerror}); free memory and space"
         return self.task
 
     def _launch(self) -> subprocess.Popen[bytes]:
+        self.errors.close()
         self.errors = tempfile.TemporaryFile()  # noqa: SIM115 - lives as long as the process
         self.process = subprocess.Popen(
-            [sys.executable, "-m", "verification.running.guard"],
+            [sys.executable, "-m", "verification.running.pool.guard"],
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=self.errors,
             # Tasks run side by side, so each may use its share of the cores, no more.
-            env=MEMORY_VARIABLES | os.environ | dict.fromkeys(THREAD_VARIABLES, str(self.threads)),
+            env=os.environ | MEMORY_VARIABLES | dict.fromkeys(THREAD_VARIABLES, str(self.threads)),
             bufsize=0,
             start_new_session=True,
         )
@@ -181,10 +151,7 @@ class _Slot(Generic[T]):
             return task.failed(f"its process {_death(code, self.errors)}", seconds)
         if _identity(task.path) == self.earlier:
             return task.failed("its process left no result; run the case alone", seconds)
-        try:
-            return task.read(read_checked(task.path))
-        except (StoreError, ValueError, KeyError, TypeError, AttributeError) as error:
-            return task.failed(" ".join(str(error).split()), seconds)
+        return task.result(seconds)
 
     def _code(self) -> int | None:
         """Exit code of the task at work, negative for a signal; None while it runs."""
@@ -219,6 +186,11 @@ class _Slot(Generic[T]):
         with self.process:  # closes its pipes, waits
             self.process = None
 
+    def close(self) -> None:
+        """As ``stop``, for good."""
+        self.stop()
+        self.errors.close()
+
 
 def _pipe(end: IO[bytes] | None) -> IO[bytes]:
     assert end is not None
@@ -226,14 +198,13 @@ def _pipe(end: IO[bytes] | None) -> IO[bytes]:
 
 
 @contextmanager
-def _ended(slots: list[_Slot[T]]) -> Iterator[list[_Slot[T]]]:
+def _ended(slots: list[Slot[T]]) -> Iterator[list[Slot[T]]]:
     """No process outlives the run, however it ends."""
     try:
         yield slots
     finally:
         for slot in slots:
-            slot.stop()
-            slot.errors.close()
+            slot.close()
 
 
 def _identity(path: Path) -> tuple[int, int] | None:

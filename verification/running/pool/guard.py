@@ -1,6 +1,6 @@
 """A process that imports what tasks need once, then forks a child for each task.
 
-python -m verification.running.guard reads a request a line on standard input,
+python -m verification.running.pool.guard reads a request a line on standard input,
 
     {"command": ["MODULE:FUNCTION", WORDS...], "more": BOOL}
 

@@ -1,0 +1,202 @@
+"""Tasks on the workers of a scheduler: as on this machine, and what goes wrong there is one message."""
+
+import datetime
+import os
+import tempfile
+import time
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from test_failing_workers import REASONS, gone, task
+
+from verification.commands.common.exits import CommandError
+from verification.commands.common.solving import pool_of, run_info
+from verification.running.pool import cluster, remote
+from verification.running.pool.cluster import Cluster, Lost
+from verification.running.pool.task import SchedulerError, Task
+from verification.running.provenance import hardware
+from verification.running.store import StoreError, read_checked, write_checked
+
+HERE = Path(__file__).parent
+
+
+@pytest.fixture(scope="module")
+def address():
+    """A scheduler with one worker, within this process."""
+    from distributed import LocalCluster
+
+    with LocalCluster(
+        n_workers=1, threads_per_worker=1, processes=False, dashboard_address="127.0.0.1:0"
+    ) as workers:
+        yield workers.scheduler_address
+    while remote._idle:
+        remote._idle.pop().close()
+
+
+@pytest.fixture(autouse=True)
+def _planted(monkeypatch):
+    places = [str(HERE), str(HERE.parent / "verification"), os.environ.get("PYTHONPATH", "")]
+    monkeypatch.setenv("PYTHONPATH", os.pathsep.join(places))
+
+
+def test_tasks_run_as_on_this_machine(address, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "given.txt").write_text("content")
+    given = Path("given.txt")
+    copied = Task(
+        "copy",
+        ("planted_worker:copy", given, Path("out/beside"), Path("out/copy.json")),
+        Path("out/copy.json"),
+        lambda data: data["said"],
+        lambda reason, _: reason,
+        cost=2.0,
+        needs=lambda: (given,),
+    )
+    pair = [replace(task("process", tmp_path, n), together="one process") for n in range(2)]
+    failing = task("exception", tmp_path)
+    write_checked(failing.path, {"said": "earlier"})
+    order, finished, calls = [], {}, []
+    pool = Cluster(address)
+    found = pool.run(
+        [failing, *pair, copied],
+        time_limit=60.0,
+        started=order.append,
+        finished=finished.__setitem__,
+        meanwhile=lambda: calls.append(None),
+    )
+    reason, first, second, said = found
+    assert said == "content"
+    assert (tmp_path / "out" / "beside" / "more.txt").read_text() == "content"
+    assert given.read_text() == "content"
+    assert first == second != str(os.getpid())
+    assert reason == REASONS["exception"]
+    assert read_checked(failing.path) == {"said": "earlier"}
+    assert order[0] == "copy"
+    assert finished == dict(zip(["exception-0", "process-0", "process-1", "copy"], found, strict=True))
+    assert len(calls) == 1
+    info = run_info("command", datetime.datetime.now(datetime.UTC), pool)
+    assert (info.jobs, info.machine) == (1, hardware())
+
+
+def test_tasks_that_nobody_waits_for_end_with_their_processes(address, tmp_path, monkeypatch):
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+    pids = []
+
+    def stop():
+        while not (said := [path.read_text() for path in tmp_path.rglob("*.pids")]) or not said[0]:
+            time.sleep(0.01)
+        pids.extend(int(pid) for pid in said[0].split())
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        Cluster(address).run([task("hang", tmp_path / "out")], time_limit=60.0, meanwhile=stop)
+    assert len(pids) == 2
+    gone(pids, within=10)
+
+
+class Future:
+    """As one of Dask that ended with ``error``, or was cancelled."""
+
+    def __init__(self, error=None):
+        self.error = error
+
+    def cancelled(self):
+        return self.error is None
+
+    def exception(self):
+        return self.error
+
+
+class KilledWorker(Exception):
+    """As that of Dask."""
+
+
+def test_a_request_that_a_worker_cannot_answer_is_a_reason():
+    assert cluster._answer(Future(KilledWorker())) == Lost(cluster.DIED)
+    full = Future(OSError(28, "No space left on device"))
+    assert cluster._answer(full) == Lost("OSError: [Errno 28] No space left on device")
+    with pytest.raises(SchedulerError, match="the scheduler is lost; what is finished is kept"):
+        cluster._answer(Future())
+    with pytest.raises(SchedulerError, match="a worker lacks this coatcheck"):
+        cluster._answer(Future(ModuleNotFoundError("No module named 'verification'")))
+    (number, result), *_ = Cluster("")._taken([(7, task("good", Path()))], Lost("why"))
+    assert (number, result) == (7, "why")
+
+
+def test_another_program_is_named_by_what_differs():
+    here = cluster.provenance()
+    assert replace(here, hardware="elsewhere").difference(here) == ""
+    assert replace(here, code="0").difference(here) == "other source code of coatcheck"
+    other = replace(here, code="0", versions=here.versions | {"numpy": "1.0"})
+    assert other.difference(here) == f"numpy 1.0 there, {here.versions['numpy']} here"
+    with pytest.raises(SchedulerError, match=r"a worker of tcp://there:1 runs another program: numpy 1\.0 "):
+        list(Cluster("tcp://there:1")._taken([(0, task("good", Path()))], remote.Reply(other)))
+    assert remote.serve(remote.Request((), {}, 1.0, "0")) == remote.Reply(here)
+
+
+def test_workers_of_another_program_are_refused(address, monkeypatch):
+    other = replace(cluster.provenance(), code="0" * 64)
+    monkeypatch.setattr(cluster, "provenance", lambda: other)
+    with (
+        pytest.raises(SchedulerError, match=r"the worker inproc://.*: other source code"),
+        cluster.connected(address, None),
+    ):
+        pass
+
+
+def test_workers_without_the_program_are_refused(address, monkeypatch):
+    monkeypatch.setattr(cluster, "PROBE", "__import__('no_such_package')")
+    with (
+        pytest.raises(SchedulerError, match=r"lacks this coatcheck \(.*'no_such_package'\); install"),
+        cluster.connected(address, None),
+    ):
+        pass
+
+
+def test_files_too_large_to_send_are_refused(tmp_path, monkeypatch):
+    monkeypatch.setattr(cluster, "MAX_BYTES", 10)
+    large = [tmp_path / name for name in "ab"]
+    for path in large:
+        path.write_text("sixsix")
+    with pytest.raises(StoreError, match="to send to a worker"):
+        cluster._contents(large)
+
+
+def test_no_worker_is_one_message(monkeypatch):
+    from distributed import LocalCluster
+
+    monkeypatch.setattr(cluster, "WAIT", 0.05)
+    with (
+        LocalCluster(n_workers=0, processes=False, dashboard_address="127.0.0.1:0") as empty,
+        pytest.raises(SchedulerError, match="no worker joined the scheduler within"),
+        cluster.connected(empty.scheduler_address, None),
+    ):
+        pass
+
+
+def test_workers_that_all_leave_end_the_wait(monkeypatch):
+    monkeypatch.setattr(cluster, "LOOK", 0.0)
+    monkeypatch.setattr(cluster, "WAIT", 0.0)
+
+    class Client:
+        def __init__(self):
+            self.threads = {"one": 2}
+
+        def nthreads(self):
+            return self.threads
+
+    client = Client()
+    workers = cluster._Workers(client)
+    assert workers.threads() == 2
+    client.threads = {}
+    time.sleep(0.001)
+    with pytest.raises(SchedulerError, match="no worker has been left"):
+        workers.threads()
+
+
+def test_jobs_are_of_this_machine():
+    assert pool_of(3, 1.0, None) == 3
+    assert pool_of(None, 1.0, "tcp://there:1") == Cluster("tcp://there:1")
+    with pytest.raises(CommandError, match="--jobs = 3: the workers of --scheduler decide"):
+        pool_of(3, 1.0, "tcp://there:1")

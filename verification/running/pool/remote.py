@@ -1,0 +1,111 @@
+"""Tasks of another machine, run by a worker of a scheduler in processes of their own."""
+
+import tempfile
+from collections import deque
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from verification.running.pool.processes import Slot, wait_for
+from verification.running.pool.task import Task
+from verification.running.provenance import Provenance, provenance
+
+Result = tuple[str, float]  # why there is none, or nothing; seconds
+
+
+@dataclass(frozen=True)
+class Request:
+    """Tasks that share a process, each (name, command, path), with the files that they need.
+
+    files : permissions and content of each, by its path on the machine that asks.
+    code : fingerprint of the program that asks.
+    """
+
+    tasks: tuple[tuple[str, tuple[str | Path, ...], Path], ...]
+    files: dict[Path, tuple[int, bytes]]
+    time_limit: float
+    code: str
+
+
+@dataclass(frozen=True)
+class Reply:
+    """The result of each task, with the ``files`` that they wrote, by their path on the machine that asks.
+
+    Without results where the worker's program is another one.
+    """
+
+    made_by: Provenance
+    results: tuple[Result, ...] = ()
+    files: dict[Path, bytes] = field(default_factory=dict)
+
+
+# Processes between two requests, which have imported what tasks need. They end with the worker.
+_idle: list[Slot[Result]] = []
+
+
+def serve(request: Request) -> Reply:
+    """Run the tasks of ``request`` in a directory of their own, which holds copies of what they need."""
+    mine = provenance()
+    if mine.code != request.code:
+        return Reply(mine)
+    with tempfile.TemporaryDirectory(prefix="coatcheck-", ignore_cleanup_errors=True) as place:
+        root = Path(place)
+        for path, (mode, content) in request.files.items():
+            copy = _within(root, path)
+            copy.parent.mkdir(parents=True, exist_ok=True)
+            copy.write_bytes(content)
+            copy.chmod(mode)
+        results = _run([_local(root, *task) for task in request.tasks], request.time_limit)
+        return Reply(mine, results, _written(root, request))
+
+
+def _within(root: Path, path: Path) -> Path:
+    """Where the file or directory ``path`` of the machine that asks lies below ``root``."""
+    return root / path.relative_to(path.anchor)
+
+
+def _local(root: Path, name: str, command: tuple[str | Path, ...], path: Path) -> Task[Result]:
+    words = tuple(_within(root, word) if isinstance(word, Path) else word for word in command)
+    return Task(name, words, _within(root, path), lambda _: ("", 0.0), lambda *result: result)
+
+
+def _run(tasks: list[Task[Result]], time_limit: float) -> tuple[Result, ...]:
+    """The results of ``tasks`` in one process, until the scheduler no longer wants them."""
+    slot, abandoned, results = _idle.pop() if _idle else Slot[Result](1), _abandoned(), []
+    try:
+        slot.owed = deque(enumerate(tasks))
+        while slot.owed:
+            slot.start()
+            while (found := slot.poll(time_limit)) is None:
+                wait_for([slot])
+                if abandoned():
+                    raise RuntimeError("stopped, since nobody waits for it any more")
+            results.append(found[2])
+    except BaseException:
+        slot.close()
+        raise
+    _idle.append(slot)
+    return tuple(results)
+
+
+def _abandoned() -> Callable[[], bool]:
+    """Whether the scheduler has dropped the task of this thread: its client stopped, or is gone."""
+    from distributed import get_worker
+
+    try:
+        worker = get_worker()
+    except ValueError:  # not a worker's thread
+        return lambda: False
+    tasks, key = worker.state.tasks, worker.get_current_task()
+    return lambda: key not in tasks or tasks[key].state == "cancelled"
+
+
+def _written(root: Path, request: Request) -> dict[Path, bytes]:
+    """New files at the paths in the commands, or below them."""
+    asked = {word for _, command, _ in request.tasks for word in command if isinstance(word, Path)}
+    found = {}
+    for copy in root.rglob("*"):
+        path = Path("/", copy.relative_to(root))
+        if path not in request.files and not asked.isdisjoint((path, *path.parents)) and copy.is_file():
+            found[path] = copy.read_bytes()
+    return found
