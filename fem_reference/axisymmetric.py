@@ -31,7 +31,8 @@ from skfem import (
     asm,
 )
 
-from .dissection import CholeskyFactor, DissectionTree, bisected, unknowns
+from .dissection import bisected, unknowns
+from .factorisation import Elimination, elimination, factorised
 from .integrals import ELEMENTS, reference_integrals
 from .location import Locator
 from .mesh import MeridianMesh
@@ -91,7 +92,7 @@ class Discretisation:
         d = Discretisation(mesh, self.order)
         if mesh.triangles is self.mesh.triangles:
             kept = vars(self)
-            vars(d).update({name: kept[name] for name in ("leaf", "tree") if name in kept})
+            vars(d).update({name: kept[name] for name in ("leaf", "elimination") if name in kept})
         return d
 
     @cached_property
@@ -160,16 +161,18 @@ class Discretisation:
         return bisected(self.triangulation.t, np.stack([xi, zeta, np.hypot(xi, zeta)]))
 
     @cached_property
-    def tree(self) -> DissectionTree:
+    def elimination(self) -> Elimination:
         """Order of elimination of the unknowns of one field."""
-        return DissectionTree.of(np.asarray(self.basis.element_dofs).T, self.leaf)
+        return elimination(np.asarray(self.basis.element_dofs).T, lambda: self.leaf)
 
     def stiffness(self, materials: tuple[tuple[float, float], ...], harmonic: int) -> "Stiffness":
         """Stiffness matrix with its order of elimination, see ``element_stiffness``."""
         nodes = np.asarray(self.basis.element_dofs).T
-        return Stiffness(self.element_stiffness(materials, harmonic), nodes, self.tree)
+        return Stiffness(self.element_stiffness(materials, harmonic), nodes, self.elimination)
 
-    def element_stiffness(self, materials: tuple[tuple[float, float], ...], harmonic: int) -> np.ndarray:
+    def element_stiffness(
+        self, materials: tuple[tuple[float, float], ...], harmonic: int, out: np.ndarray | None = None
+    ) -> np.ndarray:
         """Stiffness of the triangles: virtual work over the angular factor common to all terms.
 
             v^T K u = int eps(v) : D(layer) eps(u) r dr dz
@@ -180,13 +183,13 @@ class Discretisation:
 
             K_if,jg = sum_ab (A_a^T D A_b)_fg int s_ai s_bj r dr dz.
 
-        Returns shape (triangles, size, size), unknowns by node, then field.
+        Returns shape (triangles, size, size), unknowns by node, then field; in ``out`` where that is given.
         """
         A = np.stack(strain_operator(harmonic))
         integrals = reference_integrals(self.order)
         factors = integrals.factors(self.mesh.points, self.triangulation.t)
         size = self.basis.Nbfun * A.shape[2]
-        K = np.empty((len(factors), size, size))
+        K = np.empty((len(factors), size, size)) if out is None else out
         layer = self.mesh.layer
         begins = np.flatnonzero(np.diff(layer, prepend=-1))
         for begin, end in zip(begins, [*begins[1:], layer.size], strict=True):
@@ -223,12 +226,12 @@ class Stiffness:
 
     elements : (triangles, size, size), unknowns by node, then field
     nodes : (triangles, nodes) of one field
-    tree : order of elimination
+    elimination : its order, shared by all matrices on the same triangles
     """
 
     elements: np.ndarray
     nodes: np.ndarray
-    tree: DissectionTree
+    elimination: Elimination
 
     @property
     def fields(self) -> int:
@@ -253,7 +256,7 @@ def constrained_solve(
     """
     held = np.zeros(len(given), dtype=bool)
     held[fixed] = True
-    factor = CholeskyFactor(K.tree, K.elements, held)
+    factor = factorised(K.elimination, K.elements, held)
     u = np.where(held[:, None] if given.ndim == 2 else held, given, 0.0)
     for _ in range(2):  # the second time for the rounding of the factor
         residual = -(K @ u) if load is None else load - K @ u

@@ -15,7 +15,8 @@ from functools import cached_property
 import numpy as np
 
 from .axisymmetric import Discretisation, Stiffness, constrained_solve
-from .dissection import DissectionTree, unknowns
+from .dissection import unknowns
+from .factorisation import Elimination, elimination
 from .scaling import LayeredSolid
 
 __all__ = ["Coupling"]
@@ -41,17 +42,19 @@ class Coupling:
     def moved(self, flat: Discretisation, ball: Discretisation) -> "Coupling":
         """The same coupling on other meshes; those of the same triangles keep the order of elimination."""
         new = Coupling(flat, ball)
-        if "_tree" in vars(self) and all(
+        if "_elimination" in vars(self) and all(
             one.mesh.triangles is two.mesh.triangles for one, two in ((flat, self.flat), (ball, self.ball))
         ):
-            vars(new).update(_tree=self._tree)
+            vars(new).update(_elimination=self._elimination)
         return new
 
     @cached_property
     def _numbers(self) -> np.ndarray:
         """Unknown of the pair for each unknown of the ball, (2 N,): on the contact that of the flat."""
         flat, ball = self.flat, self.ball
-        numbers = 2 * flat.N + np.arange(2 * ball.N)
+        own = np.ones(2 * ball.N, dtype=bool)
+        own[ball.N + ball.contact] = False
+        numbers = 2 * flat.N - 1 + np.cumsum(own)
         numbers[ball.N + ball.contact] = flat.N + flat.contact
         return numbers
 
@@ -62,10 +65,13 @@ class Coupling:
         return np.concatenate([one, self._numbers[two]])
 
     @cached_property
-    def _tree(self) -> DissectionTree:
-        one, two = self.flat.leaf, self.ball.leaf
-        top = max(int(leaf.max()).bit_length() for leaf in (one, two))
-        return DissectionTree.of(self._nodes, np.concatenate([one, two + 2**top]))
+    def _elimination(self) -> Elimination:
+        def leaf() -> np.ndarray:
+            one, two = self.flat.leaf, self.ball.leaf
+            top = max(int(leaf.max()).bit_length() for leaf in (one, two))
+            return np.concatenate([one, two + 2**top])
+
+        return elimination(self._nodes, leaf)
 
     def solve(
         self, solids: Solids, jump: np.ndarray, far: np.ndarray
@@ -78,13 +84,14 @@ class Coupling:
         flat, and the forces out of balance (n, columns).
         """
         sign = np.tile([1.0, -1.0], self.flat.basis.Nbfun)
-        elements = [
-            self.flat.element_stiffness(solids[0].materials, 0),
-            self.ball.element_stiffness(solids[1].materials, 0) * (sign[:, None] * sign),
-        ]
-        K = Stiffness(np.concatenate(elements), self._nodes, self._tree)
+        elements = np.empty((len(self._nodes), sign.size, sign.size))
+        halves = np.split(elements, [self.flat.mesh.layer.size])
+        for d, solid, half in zip((self.flat, self.ball), solids, halves, strict=True):
+            d.element_stiffness(solid.materials, 0, out=half)
+        halves[1] *= sign[:, None] * sign
+        K = Stiffness(elements, self._nodes, self._elimination)
         sides = ((self.flat, np.arange(2 * self.flat.N), 1.0), (self.ball, self._numbers, -1.0))
-        given = np.zeros((2 * (self.flat.N + self.ball.N), far.size))
+        given = np.zeros((int(self._nodes.max()) + 1, far.size))
         fixed = []
         for (d, number, axial), solid in zip(sides, solids, strict=True):
             u_r, u_z = solid.far_displacement(*d.locations[:, d.outer])
@@ -96,14 +103,14 @@ class Coupling:
         apart = np.zeros((2 * self.ball.N, far.size))
         apart[self.ball.N + self.ball.contact] = -jump
         load = np.zeros(given.shape)
-        of_ball = Stiffness(elements[1], np.asarray(self.ball.basis.element_dofs).T, self._tree)
-        np.subtract.at(load, self._numbers, of_ball @ apart)
+        of_ball = Stiffness(halves[1], np.asarray(self.ball.basis.element_dofs).T, self._elimination)
+        load[self._numbers] = -(of_ball @ apart)
         u = constrained_solve(K, given, np.concatenate(fixed), load)
 
         balance = K @ u - load
         balance[np.concatenate(fixed)] = 0.0
         flat, ball = u[: 2 * self.flat.N], u[self._numbers] + apart
         ball[self.ball.N :] *= -1
-        of_flat = Stiffness(elements[0], np.asarray(self.flat.basis.element_dofs).T, self._tree)
+        of_flat = Stiffness(halves[0], np.asarray(self.flat.basis.element_dofs).T, self._elimination)
         reaction = (of_flat @ flat)[self.flat.N + self.flat.contact]
         return flat, ball, reaction, balance

@@ -3,8 +3,8 @@
 For a sphere, an edge profile of the pressure is found by collocation of the exact deflection under it
 (``collocation``). The patches (influence coefficients, DC-FFT, conjugate gradients) then solve the contact on
 the grid, with the error of their deflection measured on the profile (``defect_correction``): they find what
-the profile leaves, and the approach. Any other indenter, and a sphere with ``edge_correction=False``, is
-solved by the patches alone.
+the profile leaves, and the approach. Any other indenter is solved by the patches, corrected where its contact
+has a smooth edge (``smooth_edge``); with ``edge_correction=False`` by the patches alone.
 
 >>> import semianalytic
 >>> steel = (210e9, 0.3)

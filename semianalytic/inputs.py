@@ -14,6 +14,7 @@ __all__ = [
     "check_control",
     "check_finite",
     "check_positive",
+    "check_truth_value",
     "undeformed_gap",
 ]
 
@@ -61,8 +62,7 @@ class Numerics:
                 raise ValueError(f"{name} = {getattr(self, name)}; it must be at least 1")
         if self.hankel_points < 512:
             raise ValueError(f"hankel_points = {self.hankel_points}; give 512 or more, 4096 is the default")
-        if not isinstance(self.edge_correction, bool):
-            raise ValueError(f"edge_correction = {self.edge_correction!r}; give True or False")
+        check_truth_value(edge_correction=self.edge_correction)
 
 
 @dataclass(frozen=True)
@@ -192,6 +192,13 @@ def check_finite(**values: float) -> None:
     for name, value in values.items():
         if not (_is_number(value) and np.isfinite(value)):
             raise ValueError(f"{name} = {value!r}; it has to be a finite number")
+
+
+def check_truth_value(**values: bool) -> None:
+    """Raise ValueError for any value that is neither True nor False."""
+    for name, value in values.items():
+        if not isinstance(value, bool):
+            raise ValueError(f"{name} = {value!r}; give True or False")
 
 
 def check_positive(**values: float) -> None:

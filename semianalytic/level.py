@@ -7,7 +7,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from semianalytic import abel, contact, convolution, edge_profile, influence
+from semianalytic import abel, contact, convolution, edge_profile, influence, smooth_edge
 from semianalytic.grid import Grid, Window, prolong
 from semianalytic.inputs import Body, Numerics
 
@@ -15,13 +15,16 @@ __all__ = ["Indenter", "Level", "LevelProblem"]
 
 Array = NDArray[np.floating]
 
+SINGLE = 2**22  # patches, above which the preconditioner is of single precision,
+LOOSE = 1e-8  # at this tolerance or above: the iterations were measured to be as many; at 1e-12 more
+
 
 @dataclass(frozen=True)
 class Indenter:
     """Undeformed gap on a grid, and either the load [N] or the approach [m].
 
     round : axisymmetric with a smooth edge.  shapes : edge profiles of the contact, the finest first.
-    table : of the layers, for their deflection.
+    table : of the layers, for their deflection.  edge_correction : of others, where their edge is smooth.
     """
 
     gap: Callable[[Grid], Array]
@@ -30,11 +33,14 @@ class Indenter:
     round: bool
     shapes: tuple[edge_profile.Profile, ...] = ()
     table: abel.LayerTable | None = None
+    edge_correction: bool = False
 
 
 @dataclass(frozen=True)
 class Level:
-    """A contact on one grid; ``shape`` is the edge profile that corrects it, None for the patches alone.
+    """A contact on one grid; ``shape`` is the edge profile that corrects it, ``edge`` a smooth edge.
+
+    Both are None for the patches alone.
 
     noise : pressure [Pa] that the gap left by the iteration may cause on a patch.
     """
@@ -45,11 +51,14 @@ class Level:
     load: float
     convolutions: int
     noise: float = 0.0
+    edge: smooth_edge.Edge | None = None
 
     @property
     def radius(self) -> float:
         if self.shape is not None:
             return self.shape.radius
+        if self.edge is not None:
+            return float(np.sqrt(self.edge.area / np.pi) * self.grid.d)
         loaded = np.count_nonzero(self.grid.whole(self.found.pressure))
         return float(np.sqrt(loaded / np.pi) * self.grid.d)
 
@@ -57,13 +66,16 @@ class Level:
     def staircase(self) -> float:
         """A quarter of a patch all along the edge, as an error of the radius [m]; 0 with an edge profile.
 
+        Of a smooth edge its misfit, in place of a quarter.
+
         The perimeter is that of the staircase times pi/4, its mean over all directions (Cauchy-Crofton).
         """
         if self.shape is not None:
             return 0.0
+        share = 0.25 if self.edge is None else self.edge.misfit
         touching = np.pad(self.grid.whole(self.found.pressure) > 0, 1)
         edges = sum(np.count_nonzero(np.diff(touching, axis=axis)) for axis in (0, 1))
-        return float(np.pi / 4 * edges * self.grid.d / 4 * self.grid.d / (2 * np.pi * self.radius))
+        return float(np.pi / 4 * edges * self.grid.d * share * self.grid.d / (2 * np.pi * self.radius))
 
     @property
     def whole(self) -> "Level":
@@ -89,6 +101,8 @@ class Level:
             if self.rest.any():
                 on_patches = self.shape.pressure(self.grid.radius)
                 peak += float((on_patches + self.rest).max() - on_patches.max())
+        elif self.edge is not None:
+            peak += _above_highest(self.found.pressure)
         return peak
 
     @cached_property
@@ -119,6 +133,8 @@ class Level:
     def _mean_on(self, grid: Grid) -> Array:
         if isinstance(self.shape, edge_profile.Prescribed):
             return edge_profile.patch_mean(self.shape, grid.x, grid.d)
+        if self.edge is not None:
+            return self.edge.patch_mean(self.found.pressure)
         return self.found.pressure
 
 
@@ -145,42 +161,84 @@ class LevelProblem:
         nx, ny = (grid.n, grid.n) if grid.quarter else window.shape
         kernel = influence.surface_coefficients(max(nx, ny), grid.d, body, numerics)[:nx, :ny]
         held, threads = grid.quarter, numerics.threads
-        self.deflection = convolution.even_convolution(kernel, quarter=held, threads=threads)
-        self.precondition = convolution.circulant_inverse(kernel, quarter=held, threads=threads)
+        memory: Array | None = None
+        inverse: Array | None = None
+        self.work: Array | None = None
+        if not held:
+            memory, inverse, self.work = _shared_memory(nx, ny, numerics.tolerance >= LOOSE)
+        self.deflection = convolution.even_convolution(kernel, quarter=held, threads=threads, memory=memory)
+        self.precondition = convolution.circulant_inverse(
+            kernel, quarter=held, threads=threads, memory=inverse
+        )
 
-    def solve(self, defect: Array | float, missing: float) -> Level:
-        """Contact with ``defect`` [m] added to the gap and ``missing`` [N] of the load not on the patches."""
+    def solve(self, defect: Array | float, missing: float, start: Array | None = None) -> Level:
+        """Contact with ``defect`` [m] added to the gap and ``missing`` [N] of the load not on the patches.
+
+        start : first guess of the pressure [Pa], None for `first_guess`.
+        """
         grid, before, indenter = self.grid, self.before, self.indenter
         scale = indenter.approach or (before.found.approach if before else self.depth)
         # a flat punch has no depth; its approach is this to a factor of order one
         scale = scale or (indenter.load or 0.0) / (self.body.contact_modulus * grid.half_width)
         found = contact.solve(
             self.deflection,
-            self.gap + defect,
+            self.gap if isinstance(defect, float) else self.gap + defect,
             total=None if indenter.load is None else (indenter.load - missing) / grid.d**2,
             approach=indenter.approach,
-            start=self._first_guess(),
+            start=self.first_guess if start is None else start,
             precondition=self.precondition,
             scale=scale,
             tolerance=self.numerics.tolerance,
             max_iterations=self.numerics.max_iterations,
             extension=_extension(self.body, grid.d),
             weight=grid.weight,
+            work=self.work,
         )
         load = grid.force(found.pressure) + missing
         # p = E* k u / 2, k at most that of a checkerboard, sqrt(2) pi / d
         noise = self.numerics.tolerance * scale * self.body.contact_modulus * np.pi / 2**0.5 / grid.d
         return Level(grid, found, None, load, found.convolutions, noise)
 
-    def _first_guess(self) -> Array:
+    def first_guess(self) -> Array:
+        """Pressure [Pa] from the level before, or from the gap."""
         before = self.before
         if before is None and self.indenter.shapes:
             return self.indenter.shapes[0].pressure(self.grid.radius)
         if before is None:
             approach = self.indenter.approach or 0.25 * self.depth
-            return self.precondition(np.maximum(self.gap.min() + approach - self.gap, 0))
+            p = self.precondition(np.maximum(self.gap.min() + approach - self.gap, 0))
+            return np.array(p, dtype=float)  # not in memory that the iteration uses
         p, g, E_star = before.found.pressure, before.found.gap, self.body.contact_modulus
         return prolong(p, g, before.grid, self.grid, self.window, E_star)
+
+
+def _shared_memory(nx: int, ny: int, loose: bool) -> tuple[Array, Array, Array]:
+    """Memory of the convolution; parts of it for the preconditioner, for the work of the iteration.
+
+    The convolution is never in use together with the others; they are single above ``SINGLE`` patches
+    where the tolerance is ``loose``.
+    """
+    dtype = np.dtype(np.float32 if loose and nx * ny > SINGLE else np.float64)
+    own = 2 * nx * ny
+    size = own + convolution.memory_size(nx, ny, padded=False)
+    memory = np.empty(max(convolution.memory_size(nx, ny, padded=True), size * dtype.itemsize // 8 + 1))
+    rest = memory.view(dtype)
+    return memory, rest[own:size], rest[:own].reshape(2, nx, ny)
+
+
+def _above_highest(p: Array) -> float:
+    """Height of a maximum of p between the patch centres above the highest of them, 0 at a tip.
+
+    By differences of second order: g^2/2h per axis, g the slope and -h the second derivative.
+    """
+    i, j = np.unravel_index(int(p.argmax()), p.shape)
+    if not (0 < i < p.shape[0] - 1 and 0 < j < p.shape[1] - 1):
+        return 0.0
+    above = 0.0
+    for low, high in ((p[i - 1, j], p[i + 1, j]), (p[i, j - 1], p[i, j + 1])):
+        if low > 0 and high > 0 and low + high < 2 * p[i, j]:
+            above += float((high - low) ** 2 / (8 * (2 * p[i, j] - low - high)))
+    return above
 
 
 def _extension(body: Body, d: float) -> float:

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from semianalytic import convolution, influence
 from semianalytic.contact import NotConverged
-from semianalytic.defect_correction import corrected
+from semianalytic.defect_correction import corrected, smoothed
 from semianalytic.edge_profile import Profile
 from semianalytic.grid import Grid, Window, odd, touches_rim, window_around
 from semianalytic.inputs import COARSEST, Body, Numerics
@@ -40,11 +40,12 @@ def levels(
         starter = replace(starter, max_iterations=min(QUICK, numerics.max_iterations))
     quarter = indenter.round and numerics.patches % 2 == 1
     found: list[Level] = []
+    rough = replace(indenter, edge_correction=False)
     for k, (n, shape) in enumerate(zip(sizes, shapes, strict=True)):
-        used = numerics if k >= len(sizes) - kept else starter
+        used, pressed = (numerics, indenter) if k >= len(sizes) - kept else (starter, rough)
         before, grid = found[-1] if found else None, Grid(n, 2 * half_width / n, quarter)
         try:
-            found.append(solve_on(grid, before, indenter, body, used, shape))
+            found.append(solve_on(grid, before, pressed, body, used, shape))
         except NotConverged:
             if not indenter.shapes:
                 raise
@@ -71,14 +72,23 @@ def solve_on(
         if window.shape != whole.shape:
             lowest, gap = _lowest_of_four(gap), gap[window.slices].copy()
             problem = LevelProblem(grid, gap, depth, window, before, indenter, body, numerics)
-            level = problem.solve(0.0, 0.0)
+            level = _solved(problem)
             del problem  # frees the memory of its transforms for those below
-            level = replace(level, found=level.found.embedded(window.slices, grid.n, depth))
+            level = _embedded(level, window, depth)
             if _is_alone(level, lowest, window, body, numerics):
                 return level
             gap = indenter.gap(grid)
     problem = LevelProblem(grid, gap, depth, whole, before, indenter, body, numerics)
-    return problem.solve(0.0, 0.0)
+    return _solved(problem)
+
+
+def _solved(problem: LevelProblem) -> Level:
+    return smoothed(problem) if problem.indenter.edge_correction else problem.solve(0.0, 0.0)
+
+
+def _embedded(level: Level, window: Window, depth: float) -> Level:
+    edge = None if level.edge is None else level.edge.embedded(window.i0, window.j0)
+    return replace(level, found=level.found.embedded(window.slices, level.grid.n, depth), edge=edge)
 
 
 def _lowest_of_four(gap: Array) -> Array:
@@ -104,6 +114,8 @@ def _is_alone(level: Level, lowest: Array, window: Window, body: Body, numerics:
     merged = (rows[:, ::2] + rows[:, 1::2]) / 4
     del rows
     kernel = influence.surface_coefficients(len(lowest), 2 * level.grid.d, body, numerics)
-    g = lowest + convolution.even_convolution(kernel, threads=numerics.threads)(merged) - level.found.approach
+    g = convolution.even_convolution(kernel, threads=numerics.threads)(merged)
+    g += lowest
+    g -= level.found.approach
     g[window.i0 // 2 : -(-window.i1 // 2), window.j0 // 2 : -(-window.j1 // 2)] = np.inf
     return bool(g.min() > 0)

@@ -138,10 +138,14 @@ class Solution:
     def pressure(self, x: ArrayLike, y: ArrayLike = 0.0) -> Array:
         """Contact pressure [Pa], 0 outside; between nodes by interpolation of a quantity smooth at the edge.
 
-        That is p less its edge profile or, where there is none, p^2.
+        That is p less its edge profile or, where there is none, p^2, continued beyond a smooth edge.
         x, y : [m], broadcast.
         """
         shape = self._level.shape
+        if self._level.edge is not None:
+            x, y = np.broadcast_arrays(np.asarray(x, dtype=float), np.asarray(y, dtype=float))
+            s, t = ((v.ravel() - self.nodes[0]) / self.diagnostics.patch_size for v in (x, y))
+            return self._level.edge.pressure(self.patch_pressure, s, t).reshape(x.shape)
         if shape is None:
             square = self.patch_pressure**2
             touched = _at(self.nodes, square, x, y, order=1) > 0  # the cubic may oscillate beyond

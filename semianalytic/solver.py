@@ -24,7 +24,15 @@ from semianalytic import (
 )
 from semianalytic.contact import NotConverged
 from semianalytic.grid import Grid, deconvolve, odd, touches_rim
-from semianalytic.inputs import Body, Numerics, check_control, check_finite, check_positive, undeformed_gap
+from semianalytic.inputs import (
+    Body,
+    Numerics,
+    check_control,
+    check_finite,
+    check_positive,
+    check_truth_value,
+    undeformed_gap,
+)
 from semianalytic.level import Indenter, Level
 from semianalytic.solution import Solution
 from semianalytic.uncertainty import WIDER, Uncertainty
@@ -134,6 +142,7 @@ def indent(
     conversion: str = "split",
     hankel_points: int = 4096,
     enlarge: int = 4,
+    edge_correction: bool = True,
     estimate_uncertainty: bool = True,
     threads: int = 1,
 ) -> Solution:
@@ -145,15 +154,19 @@ def indent(
     other None; the approach counts from the first touch.  ball : of an elastic indenter, a half-space near
     the contact.  The others as in ``solve``.
 
-    An ellipsoid x^2/2A + y^2/2B, a cone, a punch with a round edge, a measured surface are profiles. Their
-    contact is solved by the patches alone: its edge is a staircase, where the pressure is of first order in
-    the patch size; contact_radius is that of the disc with the contact's area.
+    An ellipsoid x^2/2A + y^2/2B, a cone, a punch with a round edge, a measured surface are profiles;
+    contact_radius is that of the disc with the contact's area.
+    edge_correction : the patches, whose edge is a staircase, are corrected for a smooth edge wherever the
+    pressure shows one on them (the rule: ``smooth_edge.fit``): of second order in the patch size, ellipses
+    of axes up to 5 : 1 at 257 patches within 7e-6 in peak pressure, 4e-6 in approach. Where it shows none,
+    under a rough surface, at a corner, or with False: patches alone, of first order at the edge.
 
     Raises ValueError for input without meaning, NotConverged when the iteration stops short.
     """
     began = time.perf_counter()
     check_control(load, approach)
     check_positive(half_width=half_width)
+    check_truth_value(edge_correction=edge_correction)
     body = _body(coatings, substrate, friction, ball)
     heights = None if callable(profile) else np.asarray(profile, dtype=float)
     if heights is not None:
@@ -182,7 +195,7 @@ def indent(
                 raise ValueError("profile(x, y) must return finite heights [m] all over the square")
         return z - z.min()
 
-    indenter = Indenter(gap, load, approach, round=False)
+    indenter = Indenter(gap, load, approach, round=False, edge_correction=edge_correction)
     levels = nested.levels(half_width, indenter, body, numerics, estimate_uncertainty)
     if heights is None and touches_rim(levels[-1].whole.found.pressure):
         raise NotConverged(

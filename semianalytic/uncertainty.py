@@ -50,18 +50,18 @@ class Uncertainty:
         base: dict[str, float],
         ratio: float,
         staircase: float = 0.0,
+        share: float = 1 / 6,
     ) -> "Uncertainty":
         """From the results on three grids, and on that of ``base`` with one other parameter less accurate.
 
         Patch size: the change to the finest grid, of ``ratio`` times the patches a side, times ``safety``; or
-        a sixth of the change before where the last is small by chance, a half of it where the edge is a
-        ``staircase`` [m].
+        that ``share`` of the change before where the last is small by chance.  staircase : error of the edge
+        [m].
         """
         rows = []
         if staircase:  # of the second order in the approach, which is stationary in the contact's area
             second = fine["approach"] * (staircase / fine["contact_radius"]) ** 2
             rows = [("contact_radius", "staircase", staircase), ("approach", "staircase", second)]
-        share = 1 / 2 if staircase else 1 / 6
         for name, value in fine.items():
             last, before = abs(value - middle[name]), abs(middle[name] - coarse[name])
             rows.append((name, "patch size", float(np.maximum(safety(ratio) * last, share * before))))
@@ -89,8 +89,16 @@ def of_contact(levels: list[Level], indenter: Indenter, body: Body, numerics: Nu
         "iteration": solve_on(grid, start, indenter, body, looser).scalars,
     }
     ratio = numerics.patches / levels[-2].grid.n
+    last = levels[-1]
     return Uncertainty.from_levels(
-        fine, middle, coarse, variations, base=coarse, ratio=ratio, staircase=levels[-1].staircase
+        fine,
+        middle,
+        coarse,
+        variations,
+        base=coarse,
+        ratio=ratio,
+        staircase=last.staircase,
+        share=1 / 4 if last.edge else 1 / 2,  # an edge of whole patches changes erratically
     )
 
 

@@ -19,7 +19,7 @@ __all__ = ["SOLVERS"]
 
 
 def contact(patches: int, threads: int) -> FloatArray:
-    """``semianalytic.indent``, without uncertainty."""
+    """``semianalytic.indent`` by patches alone, as the others, without uncertainty."""
     found: FloatArray = (
         import_module("semianalytic")
         .indent(
@@ -30,6 +30,7 @@ def contact(patches: int, threads: int) -> FloatArray:
             substrate=(E_STAR, 0.0),
             patches=patches,
             tolerance=8e-7,
+            edge_correction=False,
             threads=threads,
             estimate_uncertainty=False,
         )

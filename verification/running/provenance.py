@@ -20,6 +20,7 @@ PACKAGES = (
     "ducc0",
     "scikit-fem",
     "gmsh",
+    "mkl",
     "meshio",
     "pyvista",
     "pydantic",

@@ -31,7 +31,7 @@ _SEARCH = (
     "verification.judging.invariants.refinement",
     "verification.running.result",
 )
-_DIGITS = ("python", "numpy", "scipy", "ducc0", "scikit-fem", "gmsh")
+_DIGITS = ("python", "numpy", "scipy", "ducc0", "scikit-fem", "gmsh", "mkl")
 
 
 def solve_key(request: Mapping[str, Any]) -> str:
