@@ -15,8 +15,9 @@ Optim. 13 (2002) 865-888, with inexact inner solves); a stopping criterion on co
 of the change of p.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -34,6 +35,8 @@ ITERATIONS_PER_SET = 3  # after which the set is updated in any case
 PREDICTED_UPDATES = 12  # after these the set follows the signs of p and g in every iteration
 EXTENDED_ITERATIONS = 10  # after these the residual is cut off at the edge, P is symmetric again
 PRECONDITIONED_ITERATIONS = 50  # after these P is dropped: Polonsky and Keer's own iteration
+FADED = 0.1  # share of contact in the mean, below which the extended residual fades
+BLOCK = 2**15  # numbers that stay in the cache
 EXTENSION = 2.0  # patches over which the residual is extended beyond the contact, by default
 
 
@@ -73,27 +76,42 @@ class Contact:
         return replace(self, pressure=pressure, gap=gap)
 
 
+def _blocks(a: NDArray[Any]) -> Iterator[slice]:
+    """Rows of an array in blocks that stay in the cache, so that temporary arrays are small."""
+    rows = max(1, BLOCK // a.shape[1])
+    return (slice(i, i + rows) for i in range(0, len(a), rows))
+
+
+def _subtract(a: Array, b: Array, factor: float) -> None:
+    """a - factor b, in place of a."""
+    for rows in _blocks(a):
+        a[rows] -= b[rows] * factor
+
+
 class _ContactSet:
     """Contact set, with the extension of the residual beyond it by means over ``extension`` patches."""
 
-    def __init__(self, inside: Mask, extension: float) -> None:
+    def __init__(self, inside: Mask, extension: float, dtype: np.dtype[Any]) -> None:
         self.inside, self.extension = inside, extension
-        self.indicator = inside.astype(float)
-        share = self._mean(self.indicator, np.empty_like(self.indicator))
-        # fading where less than a tenth of the mean lies in contact
-        self._weight = (1 - self.indicator) / np.maximum(share, 0.1)
-        share *= self._weight
-        share += self.indicator
-        self.one = share  # unit residual, extended beyond the contact set
+        self._share = self._mean(inside, np.empty(inside.shape, dtype))
+
+    def one(self, rows: slice) -> Array:
+        """Unit residual, extended beyond the contact set."""
+        share = np.minimum(self._share[rows], FADED)
+        share /= FADED
+        share[self.inside[rows]] = 1
+        return share
 
     def extended(self, r: Array, out: Array) -> Array:
         """r, which is 0 outside, in contact; its local mean just outside, 0 far away."""
         self._mean(r, out)
-        out *= self._weight
-        out += r
+        for rows in _blocks(r):
+            out[rows] /= np.maximum(self._share[rows], FADED)
+            out[rows] *= ~self.inside[rows]
+            out[rows] += r[rows]
         return out
 
-    def _mean(self, r: Array, out: Array) -> Array:
+    def _mean(self, r: NDArray[Any], out: Array) -> Array:
         # mirrored at the rim of the grid, as at the axes of a quarter
         gaussian_filter(r, self.extension, mode="mirror", truncate=3, output=out)
         return out
@@ -107,53 +125,58 @@ class _Problem:
     gap: Array
     total: float | None
     approach: float | None
-    start: Array
+    start: Array | Callable[[], Array]
     precondition: Operator
     scale: float
     tolerance: float
     max_iterations: int
     extension: float
-    weight: Array
+    weight: Array | None
 
     def balanced(self, p: Array) -> Array:
-        """Pressure scaled to the load."""
-        return p if self.total is None else p * (self.total / self.sum(p))
+        """Pressure scaled to the load, in place."""
+        if self.total is not None:
+            p *= self.total / self.sum(p)
+        return p
 
     def sum(self, a: Array) -> float:
         """Sum over all patches."""
-        return float(np.einsum("ij,ij->", a, self.weight))
+        return float(a.sum(dtype=float) if self.weight is None else np.einsum("ij,ij->", a, self.weight))
 
     def dot(self, a: Array, b: Array) -> float:
         """Inner product over all patches."""
         # not by BLAS: its threads keep spinning after such a short sum and slow those of the FFT
-        return float(np.einsum("ij,ij,ij->", a, b, self.weight))
+        return float(
+            np.einsum("ij,ij->", a, b, dtype=float)
+            if self.weight is None
+            else np.einsum("ij,ij,ij->", a, b, self.weight)
+        )
 
 
 @dataclass(slots=True, eq=False)
 class _State:
     """One iterate; its arrays are reused in place, since allocating them anew costs as much as the sums.
 
-    p, u, delta : pressure, deflection, approach.  updated : u by recurrence, not by A p.
+    p, g, delta : pressure, gap, approach.  updated : g by recurrence, not from A p.
     contact : the set, P_one : P of the unit residual on it, new : it changed since the last step.
-    g, r, extended, z : gap, gap in contact, its extension, P of that.  shift : last change of delta.
-    step, slope, last : search direction, its (r, z), and r of the iteration before.
-    residual, depth : largest |r| over the scale; penetration [m], ``deep`` its limit.  first : residual at
-    the first iteration on the set.  tension : patches with p < 0.  admissible : no tension, no penetration.
+    extended, z : gap in contact, extended; P of that.  shift : last change of delta.
+    step, slope, last : search direction, its (g, z), and g of the iteration before.
+    residual, depth : largest |g| in contact over the scale; penetration [m], ``deep`` its limit.  first :
+    residual at the first iteration on the set.  tension : patches with p < 0.  admissible : no tension, no
+    penetration.
     iterations, on_set, set_updates, convolutions : counts; on_set those since the last change of the set.
+    What P gives only directs the steps: the arrays from ``extended`` to ``last`` may be of single precision.
     """
 
     p: Array
-    u: Array
+    g: Array
     contact: _ContactSet
     delta: float
-    g: Array = field(init=False)
-    r: Array = field(init=False)
-    last: Array = field(init=False)
-    extended: Array = field(init=False)
-    z: Array = field(init=False)
-    work: Array = field(init=False)
-    step: Array = field(init=False)
+    extended: Array
+    z: Array
     P_one: Array = field(init=False)
+    step: Array = field(init=False)
+    last: Array = field(init=False)
     tension: Mask = field(init=False)
     shift: float = 0.0
     slope: float = 1.0
@@ -167,14 +190,12 @@ class _State:
     iterations: int = 0
     on_set: int = 0
     set_updates: int = 0
-    convolutions: int = 1
+    convolutions: int = 0
     history: list[tuple[float, float]] = field(default_factory=list)
 
     def __post_init__(self) -> None:
-        self.g, self.r, self.last, self.extended, self.z, self.work = (
-            np.empty_like(self.u) for _ in range(6)
-        )
-        self.step = np.zeros_like(self.u)
+        self.last = np.empty_like(self.z)
+        self.step = np.zeros_like(self.z)
 
 
 def solve(
@@ -183,32 +204,30 @@ def solve(
     *,
     total: float | None = None,
     approach: float | None = None,
-    start: Array,
+    start: Array | Callable[[], Array],
     precondition: Operator,
     scale: float,
     tolerance: float,
     max_iterations: int,
     extension: float = EXTENSION,
-    weight: Array | float = 1.0,
+    weight: Array | None = None,
+    work: Array | None = None,
 ) -> Contact:
     """Pressure p >= 0 that closes the gap where it acts and leaves it open elsewhere.
 
-    deflection : u = A p, linear, symmetric, positive.  gap : g0 [m], any shape.
+    deflection : u = A p, linear, symmetric, positive.  gap : g0 [m], (nx, ny).
     total : sum of p over the patches [Pa], for load control; else approach : delta [m].
-    start : first guess of p.  precondition : z = P r, approximate inverse of A.
+    start : first guess of p, or what computes it.  precondition : z = P r, approximate inverse of A.
     scale : length to which gap and penetration are relative [m].  tolerance : on each of them, relative.
     extension : patches over which the residual is extended beyond the contact.
     weight : patches that each entry represents, where the operators and the gap are those of a ``grid.Grid``
     held as a quarter.
+    work : memory (2, nx, ny) that both operators may use, in the precision of the preconditioned residual.
 
     Raises NotConverged after max_iterations, ValueError unless exactly one of total and approach is given.
     """
     if (total is None) == (approach is None):
         raise ValueError("give either total (load control) or approach, not both and not neither")
-    if not np.isfinite(start).all():
-        raise NotConverged(
-            "the first guess of the pressure is not finite; look at the influence coefficients"
-        )
     problem = _Problem(
         deflection,
         gap,
@@ -220,10 +239,10 @@ def solve(
         tolerance,
         max_iterations,
         extension,
-        np.broadcast_to(weight, gap.shape),
+        weight,
     )
     # numbered as by Polonsky and Keer; their last steps come first, for the first guess may be the solution
-    state = _first_guess(problem)
+    state = _first_guess(problem, np.empty((2, *gap.shape)) if work is None else work)
     _find_gap(state, problem)  # 1: gap, its preconditioned mean removed
     while not _is_solved(state, problem):  # 7: stopping criterion
         if not _update_set(state, problem):  # 5, 6: tension leaves, overlap enters; balance of the load
@@ -234,15 +253,25 @@ def solve(
     return _contact(state, problem)
 
 
-def _first_guess(problem: _Problem) -> _State:
-    start = np.maximum(problem.start, 0.0)
-    if not start.any():  # a flat punch, or a contact narrower than a patch
-        start = (problem.gap == problem.gap.min()).astype(float)
-    p = problem.balanced(start)
-    contact = _ContactSet(p > 0, problem.extension)
-    state = _State(p, problem.deflection(p), contact, problem.approach or 0.0)
+def _first_guess(problem: _Problem, work: Array) -> _State:
+    p = _start(problem)
+    contact = _ContactSet(p > 0, problem.extension, work.dtype)
+    state = _State(p, np.empty_like(p), contact, problem.approach or 0.0, *work)
+    _find_gap_of_pressure(state, problem)
     _find_P_one(state, problem)
     return state
+
+
+def _start(problem: _Problem) -> Array:
+    p = problem.start() if callable(problem.start) else problem.start.copy()
+    np.maximum(p, 0.0, out=p)
+    if not np.isfinite(p.sum()):
+        raise NotConverged(
+            "the first guess of the pressure is not finite; look at the influence coefficients"
+        )
+    if not p.any():  # a flat punch, or a contact narrower than a patch
+        p = (problem.gap == problem.gap.min()).astype(float)
+    return problem.balanced(p)
 
 
 def _choose_preconditioner(state: _State, problem: _Problem) -> None:
@@ -251,10 +280,9 @@ def _choose_preconditioner(state: _State, problem: _Problem) -> None:
         return
     if state.iterations == PRECONDITIONED_ITERATIONS:
         # where the preconditioner misleads, the iterate is far from the solution: start from the first guess
-        state.p = problem.balanced(np.maximum(problem.start, 0.0))
-        state.u, state.updated = problem.deflection(state.p), False
-        state.convolutions += 1
-        state.contact = _ContactSet(state.p > 0, problem.extension)
+        state.p = _start(problem)
+        _find_gap_of_pressure(state, problem)
+        state.contact = _ContactSet(state.p > 0, problem.extension, state.z.dtype)
         state.set_updates = PREDICTED_UPDATES
     elif state.iterations != EXTENDED_ITERATIONS:
         return
@@ -262,46 +290,54 @@ def _choose_preconditioner(state: _State, problem: _Problem) -> None:
     state.on_set = 0
 
 
-def _precondition(state: _State, problem: _Problem, r: Array, extended: Array, out: Array) -> Array:
-    """P of the residual r, on the contact set."""
+def _precondition(state: _State, problem: _Problem) -> None:
+    """z = P r on the contact set, of r in place of z, or of its extension."""
     if state.iterations >= PRECONDITIONED_ITERATIONS:
-        out[:] = r
-        return out
-    z = problem.precondition(extended if state.iterations < EXTENDED_ITERATIONS else r)
-    return np.multiply(z, state.contact.indicator, out=out)
+        return
+    z = problem.precondition(state.extended if state.iterations < EXTENDED_ITERATIONS else state.z)
+    np.multiply(z, state.contact.inside, out=state.z)
 
 
 def _find_P_one(state: _State, problem: _Problem) -> None:
     if problem.approach is None:
-        contact = state.contact
-        state.P_one = _precondition(state, problem, contact.indicator, contact.one, np.empty_like(state.u))
+        for rows in _blocks(state.z):
+            state.z[rows], state.extended[rows] = state.contact.inside[rows], state.contact.one(rows)
+        _precondition(state, problem)
+        state.P_one = state.z.copy()
 
 
 def _find_gap(state: _State, problem: _Problem) -> None:
-    """Step 1: gap g, residual r in contact, z = P r, with the delta for which sum z = 0 keeps the load."""
-    _find_residual(state, problem)
-    _precondition(state, problem, state.r, state.contact.extended(state.r, state.extended), state.z)
+    """Step 1: z = P r, r the gap in contact; g with the delta for which sum z = 0 keeps the load."""
+    np.multiply(state.g, state.contact.inside, out=state.z)
+    state.contact.extended(state.z, state.extended)
+    _precondition(state, problem)
     if problem.approach is None:
         shift = state.shift = problem.sum(state.z) / problem.sum(state.P_one)
-        np.subtract(state.g, shift, out=state.g)
-        np.multiply(state.g, state.contact.indicator, out=state.r)
-        np.subtract(state.z, np.multiply(state.P_one, shift, out=state.work), out=state.z)
+        state.g -= shift
+        _subtract(state.z, state.P_one, shift)
         state.delta += shift
     _measure(state, problem)
 
 
-def _find_residual(state: _State, problem: _Problem) -> None:
-    np.add(state.u, problem.gap, out=state.g)
-    np.subtract(state.g, state.delta, out=state.g)
-    np.multiply(state.g, state.contact.indicator, out=state.r)
+def _find_gap_of_pressure(state: _State, problem: _Problem) -> None:
+    np.add(problem.deflection(state.p), problem.gap, out=state.g)
+    state.g -= state.delta
+    state.updated = False
+    state.convolutions += 1
 
 
 def _measure(state: _State, problem: _Problem) -> None:
     """Residual, penetration and tension of the iterate."""
-    state.residual = float(max(state.r.max(), -state.r.min())) / problem.scale
+    largest = []
+    for rows in _blocks(state.g):
+        g = state.g[rows]
+        r = g * state.contact.inside[rows]
+        largest.append((r.max(), -r.min(), np.subtract(r, g, out=r).max()))
+    residual, negative, depth = np.max(largest, axis=0)
+    state.residual = float(np.maximum(residual, negative)) / problem.scale
     if state.on_set == 0:
         state.first = state.residual
-    state.depth = float(np.subtract(state.r, state.g, out=state.work).max())
+    state.depth = float(depth)
     # a margin for patches that enter before the residual is small; then the tolerance alone
     margin = 1.0 if state.residual <= problem.tolerance else 0.5
     state.deep = margin * problem.tolerance * problem.scale
@@ -316,9 +352,8 @@ def _is_solved(state: _State, problem: _Problem) -> bool:
     """
     solved = _within_tolerance(state, problem)
     if solved and state.updated:
-        state.u, state.updated = problem.deflection(state.p), False
-        state.convolutions += 1
-        _find_residual(state, problem)
+        problem.balanced(state.p)
+        _find_gap_of_pressure(state, problem)
         _measure(state, problem)
         if not _within_tolerance(state, problem):
             _find_gap(state, problem)
@@ -351,26 +386,26 @@ def _update_set(state: _State, problem: _Problem) -> bool:
         if not fallen and state.on_set < ITERATIONS_PER_SET:
             return False
         # the set predicted for a vanishing residual: g less its extension outside, p less z inside
-        predicted = state.extended
-        predicted -= np.multiply(state.contact.one, state.shift, out=state.work)
-        np.subtract(state.g, predicted, out=state.work)
-        enter &= state.work < -0.5 * problem.tolerance * problem.scale
-        leave &= state.p < state.z
+        for rows in _blocks(state.g):
+            predicted = state.g[rows] - state.extended[rows] + state.contact.one(rows) * state.shift
+            enter[rows] &= predicted < -0.5 * problem.tolerance * problem.scale
+            leave[rows] &= state.p[rows] < state.z[rows]
     if not (leave.any() or enter.any()):
         return False
-    state.contact = _ContactSet((state.contact.inside & ~leave) | enter, problem.extension)
+    inside = (state.contact.inside & ~leave) | enter
+    state.contact = _ContactSet(inside, problem.extension, state.z.dtype)
     _find_P_one(state, problem)
     state.set_updates, state.on_set, state.new = state.set_updates + 1, 0, True
     if leave.any():
-        state.p = problem.balanced(np.where(leave, 0.0, state.p))
-        state.u, state.updated = problem.deflection(state.p), False
-        state.convolutions += 1
+        state.p[leave] = 0
+        problem.balanced(state.p)
+        _find_gap_of_pressure(state, problem)
     return True
 
 
 def _find_direction(state: _State, problem: _Problem) -> None:
     """Step 2: conjugate direction on the contact set, steepest descent after the set has changed."""
-    descent = problem.dot(state.r, state.z)
+    descent = problem.dot(state.g, state.z)
     beta = 0.0 if state.on_set == 0 else max(0.0, descent - problem.dot(state.last, state.z)) / state.slope
     state.slope = descent
     state.step *= beta
@@ -378,15 +413,15 @@ def _find_direction(state: _State, problem: _Problem) -> None:
 
 
 def _advance(state: _State, problem: _Problem) -> None:
-    """Steps 3 and 4: alpha = (r, t) / (t, A t), then p - alpha t and u - alpha A t."""
+    """Steps 3 and 4: alpha = (g, t) / (t, A t), then p - alpha t and g - alpha A t."""
     state.history.append((state.residual, state.depth / problem.scale))
     Au = problem.deflection(state.step)
     state.convolutions += 1
-    alpha = problem.dot(state.r, state.step) / problem.dot(state.step, Au)
-    state.p -= np.multiply(state.step, alpha, out=state.work)
-    state.u -= np.multiply(Au, alpha, out=state.work)
+    alpha = problem.dot(state.g, state.step) / problem.dot(state.step, Au)
+    state.last[:] = state.g
+    _subtract(state.p, state.step, alpha)
+    _subtract(state.g, Au, alpha)
     state.updated, state.new = True, False
-    state.r, state.last = state.last, state.r
     state.iterations, state.on_set = state.iterations + 1, state.on_set + 1
 
 

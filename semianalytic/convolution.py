@@ -14,10 +14,14 @@ import ducc0
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["circulant_inverse", "even_convolution", "good_size"]
+__all__ = ["circulant_inverse", "even_convolution", "good_size", "memory_size"]
 
 Array = NDArray[np.floating]
 
+BLOCK = (
+    2**15
+)  # numbers of the rows, or the columns, transformed at a time by a thread: they stay in the cache
+WHOLE = 8  # blocks in a transform, up to which it is not divided
 SHARED = 2**18  # points of a transform below which a second thread was measured to give no gain
 
 
@@ -26,13 +30,22 @@ def good_size(n: int) -> int:
     return 2 * int(ducc0.fft.good_size((n + 1) // 2, False))
 
 
-def even_convolution(kernel: Array, *, quarter: bool = False, threads: int = 1) -> Callable[[Array], Array]:
+def memory_size(nx: int, ny: int, *, padded: bool) -> int:
+    """Numbers of work memory that the operators below use: doubled by zeros, as the convolution, or not."""
+    my = good_size(2 * ny - 1 if padded else ny)
+    return 2 * nx * (my // 2 + 1)
+
+
+def even_convolution(
+    kernel: Array, *, quarter: bool = False, threads: int = 1, memory: Array | None = None
+) -> Callable[[Array], Array]:
     """Linear convolution with a kernel even in both indices.
 
     kernel : K(i, j) for i, j >= 0, shape (nx, ny), the largest offsets between two patches.
     quarter : p is even in both indices and held where they are not negative; nx, ny are odd.
     Returns u(p) for p of shape (nx, ny), of a quarter ((nx + 1) / 2, (ny + 1) / 2); u has its shape, units
-    K times p. It reuses its own work memory: concurrent calls need one operator each.
+    K times p. It reuses its work memory: concurrent calls need one operator each.
+    memory : flat, of ``memory_size``, not for a quarter; u is then a part of it, and lost with its next use.
     """
     nx, ny = kernel.shape
     if quarter:
@@ -43,26 +56,31 @@ def even_convolution(kernel: Array, *, quarter: bool = False, threads: int = 1) 
         ducc0.fft.dct(spectrum, axes=(0, 1), type=3, nthreads=threads, out=spectrum)
         return _apply_cosines(spectrum / (4 * mx * my), (nx + 1) // 2, (ny + 1) // 2, (3, 2), threads)
     spectrum = _even_spectrum(kernel, good_size(2 * nx - 1), good_size(2 * ny - 1), threads)
-    return _apply_even(spectrum, nx, ny, threads)
+    return _apply_even(spectrum, nx, ny, threads, memory)
 
 
-def circulant_inverse(kernel: Array, *, quarter: bool = False, threads: int = 1) -> Callable[[Array], Array]:
+def circulant_inverse(
+    kernel: Array, *, quarter: bool = False, threads: int = 1, memory: Array | None = None
+) -> Callable[[Array], Array]:
     """Inverse of the circular convolution that keeps the near half of the kernel.
 
     Strang's circulant preconditioner (Stud. Appl. Math. 74 (1986) 171-176): offsets up to half the grid,
     wrapped around; about the inverse FRF, and a quarter of the work of the padded convolution.
 
-    kernel, quarter : as in ``even_convolution``.  Returns a function of r, of the shape of p there.
+    kernel, quarter, memory : as in ``even_convolution``; the inverse has the precision of the memory.
+    Returns a function of r, of the shape of p there.
     """
     nx, ny = kernel.shape
     mx, my = good_size(nx), good_size(ny)
     spectrum = _even_spectrum(kernel[: mx // 2 + 1, : my // 2 + 1], mx, my, threads)
     # truncation can turn eigenvalues negative; true ones do not fall below those of the shortest waves
     floor = 0.5 * np.median(np.abs(spectrum))
-    inverse = 1 / np.maximum(spectrum, floor)
+    inverse = np.reciprocal(np.maximum(spectrum, floor, out=spectrum), out=spectrum)
     if quarter:
         return _apply_cosines(inverse / (mx * my), (nx + 1) // 2, (ny + 1) // 2, (1, 1), threads)
-    return _apply_even(inverse, nx, ny, threads)
+    return _apply_even(
+        inverse.astype(np.float64 if memory is None else memory.dtype), nx, ny, threads, memory
+    )
 
 
 def _even_spectrum(kernel: Array, mx: int, my: int, threads: int) -> Array:
@@ -95,29 +113,55 @@ def _apply_cosines(
     return apply
 
 
-def _apply_even(spectrum: Array, nx: int, ny: int, threads: int) -> Callable[[Array], Array]:
+def _apply_even(
+    spectrum: Array, nx: int, ny: int, threads: int, memory: Array | None
+) -> Callable[[Array], Array]:
     half = spectrum.shape[0] - 1
     mx, my = 2 * half, 2 * (spectrum.shape[1] - 1)
-    spectrum = spectrum / (mx * my)
+    spectrum /= mx * my
     if mx * my < SHARED:
         threads = 1
 
-    wave = np.empty((mx, my // 2 + 1), dtype=complex)
-    # the real rows share, where they fit, the memory of the rows of zeros
-    idle = wave[nx:].reshape(-1).view(float)
-    rows = (idle if idle.size >= nx * my else np.empty(nx * my))[: nx * my].reshape(nx, my)
+    # the columns of 2 nx entries are transformed by strips that stay in the cache, unless all of them do
+    width = my // 2 + 1
+    block = BLOCK * threads if mx * my > WHOLE * BLOCK else mx * my
+    height, strip = max(1, block // my), min(width, max(16, block // mx))
+    divided = strip < width
+    dtype = np.result_type(spectrum, 1j)
+    size = nx * width if divided else mx * width
+    flat = (
+        np.empty(2 * size, spectrum.dtype) if memory is None or memory.size < 2 * size else memory[: 2 * size]
+    )
+    wave = flat.view(dtype).reshape(-1, width)
+    columns = np.empty((mx, strip), dtype) if divided else wave
+    rows = np.empty((min(height, nx), my), spectrum.dtype)
 
     def apply(p: Array) -> Array:
         """Transform rows, then columns: neither rows of zeros nor unused rows are transformed."""
-        rows[:, :ny] = p
-        rows[:, ny:] = 0
-        ducc0.fft.r2c(rows, axes=(1,), nthreads=threads, out=wave[:nx])
-        wave[nx:] = 0
-        ducc0.fft.c2c(wave, axes=(0,), nthreads=threads, out=wave)
-        wave[: half + 1] *= spectrum
-        wave[half + 1 :] *= spectrum[half - 1 : 0 : -1]
-        ducc0.fft.c2c(wave, axes=(0,), forward=False, nthreads=threads, out=wave)
-        ducc0.fft.c2r(wave[:nx], axes=(1,), lastsize=my, forward=False, nthreads=threads, out=rows)
-        return rows[:, :ny].copy()
+        for i in range(0, nx, height):
+            padded = rows[: min(height, nx - i)]
+            padded[:, :ny] = p[i : i + height]
+            padded[:, ny:] = 0
+            ducc0.fft.r2c(padded, axes=(1,), nthreads=threads, out=wave[i : i + len(padded)])
+        for j in range(0, width, strip):
+            of_strip = slice(j, min(j + strip, width))
+            column, factor = columns[:, : of_strip.stop - j], spectrum[:, of_strip]
+            if divided:
+                column[:nx] = wave[:, of_strip]
+            column[nx:] = 0
+            ducc0.fft.c2c(column, axes=(0,), nthreads=threads, out=column)
+            column[: half + 1] *= factor
+            column[half + 1 :] *= factor[half - 1 : 0 : -1]
+            ducc0.fft.c2c(column, axes=(0,), forward=False, nthreads=threads, out=column)
+            if divided:
+                wave[:, of_strip] = column[:nx]
+        # in given memory the rows of u overwrite those of their transform, twice as long
+        u = np.empty((nx, ny), spectrum.dtype) if memory is None else flat[: nx * ny].reshape(nx, ny)
+        for i in range(0, nx, height):
+            padded = rows[: min(height, nx - i)]
+            of_block = wave[i : i + len(padded)]
+            ducc0.fft.c2r(of_block, axes=(1,), lastsize=my, forward=False, nthreads=threads, out=padded)
+            u[i : i + height] = padded[:, :ny]
+        return u
 
     return apply

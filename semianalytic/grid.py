@@ -17,6 +17,8 @@ __all__ = ["Grid", "Window", "deconvolve", "odd", "prolong", "touches_rim", "win
 
 Array = NDArray[np.floating]
 
+BLOCK = 2**15  # numbers that stay in the cache
+
 
 @dataclass(frozen=True)
 class Grid:
@@ -46,16 +48,17 @@ class Grid:
         return np.hypot(self.x[:, None], self.x[None, :])
 
     @property
-    def weight(self) -> Array | float:
+    def weight(self) -> Array | None:
         """Patches that each one held represents: of a quarter 1 at the origin, 2 on the axes, 4 elsewhere."""
         if not self.quarter:
-            return 1.0
+            return None
         w = np.where(self.x > 0, 2.0, 1.0)
         return np.outer(w, w)
 
     def force(self, pressure: Array) -> float:
         """Force of a pressure on the patches [N]."""
-        return float(np.sum(self.weight * pressure) * self.d**2)
+        w = self.weight
+        return float((pressure.sum() if w is None else np.sum(w * pressure)) * self.d**2)
 
     @property
     def window(self) -> "Window":
@@ -140,7 +143,7 @@ def prolong(pressure: Array, gap: Array, source: Grid, target: Grid, window: Win
     loaded = loaded[1:-1, 1:-1]
     # a rim patch lies 0.6 d from the edge on average
     rim = loaded & ~inner
-    weight = np.broadcast_to(source.weight, rim.shape)[rim]
+    weight = None if source.weight is None else source.weight[rim]
     K2 = float(np.average(pressure[rim] ** 2, weights=weight)) / (0.6 * source.d)
     level = pressure**2
     # patches not next to a loaded one are never interpolated with one: any value that is not positive serves
@@ -148,7 +151,8 @@ def prolong(pressure: Array, gap: Array, source: Grid, target: Grid, window: Win
     level[beside] = -K2 * (np.maximum(gap[beside], 0) * (0.75 * E_star) / np.sqrt(K2)) ** (2 / 3)
     rows, columns = window.slices
     level = _linear(_linear(level, source, target.x[rows]).T, source, target.x[columns]).T
-    return np.sqrt(np.maximum(level, 0))
+    np.maximum(level, 0, out=level)
+    return np.sqrt(level, out=level)
 
 
 def touches_rim(pressure: Array) -> bool:
@@ -172,6 +176,10 @@ def _linear(values: Array, source: Grid, x: Array) -> Array:
     at = np.clip((x - source.x[0]) / source.d, 0, len(values) - 1)
     i = np.minimum(at.astype(int), len(values) - 2)
     t = (at - i)[:, None]
-    result = values[i] * (1 - t) + values[i + 1] * t
+    result = np.empty((len(x), values.shape[1]))
+    rows = max(1, BLOCK // values.shape[1])
+    for k in range(0, len(x), rows):
+        part = slice(k, k + rows)
+        result[part] = values[i[part]] * (1 - t[part]) + values[i[part] + 1] * t[part]
     result[np.abs(x) > source.half_width] = 0
     return result

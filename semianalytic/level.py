@@ -15,6 +15,9 @@ __all__ = ["Indenter", "Level", "LevelProblem"]
 
 Array = NDArray[np.floating]
 
+SINGLE = 2**22  # patches, above which the preconditioner is of single precision,
+LOOSE = 1e-8  # at this tolerance or above: the iterations were measured to be as many; at 1e-12 more
+
 
 @dataclass(frozen=True)
 class Indenter:
@@ -158,8 +161,15 @@ class LevelProblem:
         nx, ny = (grid.n, grid.n) if grid.quarter else window.shape
         kernel = influence.surface_coefficients(max(nx, ny), grid.d, body, numerics)[:nx, :ny]
         held, threads = grid.quarter, numerics.threads
-        self.deflection = convolution.even_convolution(kernel, quarter=held, threads=threads)
-        self.precondition = convolution.circulant_inverse(kernel, quarter=held, threads=threads)
+        memory: Array | None = None
+        inverse: Array | None = None
+        self.work: Array | None = None
+        if not held:
+            memory, inverse, self.work = _shared_memory(nx, ny, numerics.tolerance >= LOOSE)
+        self.deflection = convolution.even_convolution(kernel, quarter=held, threads=threads, memory=memory)
+        self.precondition = convolution.circulant_inverse(
+            kernel, quarter=held, threads=threads, memory=inverse
+        )
 
     def solve(self, defect: Array | float, missing: float, start: Array | None = None) -> Level:
         """Contact with ``defect`` [m] added to the gap and ``missing`` [N] of the load not on the patches.
@@ -172,16 +182,17 @@ class LevelProblem:
         scale = scale or (indenter.load or 0.0) / (self.body.contact_modulus * grid.half_width)
         found = contact.solve(
             self.deflection,
-            self.gap + defect,
+            self.gap if isinstance(defect, float) else self.gap + defect,
             total=None if indenter.load is None else (indenter.load - missing) / grid.d**2,
             approach=indenter.approach,
-            start=self.first_guess() if start is None else start,
+            start=self.first_guess if start is None else start,
             precondition=self.precondition,
             scale=scale,
             tolerance=self.numerics.tolerance,
             max_iterations=self.numerics.max_iterations,
             extension=_extension(self.body, grid.d),
             weight=grid.weight,
+            work=self.work,
         )
         load = grid.force(found.pressure) + missing
         # p = E* k u / 2, k at most that of a checkerboard, sqrt(2) pi / d
@@ -195,9 +206,24 @@ class LevelProblem:
             return self.indenter.shapes[0].pressure(self.grid.radius)
         if before is None:
             approach = self.indenter.approach or 0.25 * self.depth
-            return self.precondition(np.maximum(self.gap.min() + approach - self.gap, 0))
+            p = self.precondition(np.maximum(self.gap.min() + approach - self.gap, 0))
+            return np.array(p, dtype=float)  # not in memory that the iteration uses
         p, g, E_star = before.found.pressure, before.found.gap, self.body.contact_modulus
         return prolong(p, g, before.grid, self.grid, self.window, E_star)
+
+
+def _shared_memory(nx: int, ny: int, loose: bool) -> tuple[Array, Array, Array]:
+    """Memory of the convolution; parts of it for the preconditioner, for the work of the iteration.
+
+    The convolution is never in use together with the others; they are single above ``SINGLE`` patches
+    where the tolerance is ``loose``.
+    """
+    dtype = np.dtype(np.float32 if loose and nx * ny > SINGLE else np.float64)
+    own = 2 * nx * ny
+    size = own + convolution.memory_size(nx, ny, padded=False)
+    memory = np.empty(max(convolution.memory_size(nx, ny, padded=True), size * dtype.itemsize // 8 + 1))
+    rest = memory.view(dtype)
+    return memory, rest[own:size], rest[:own].reshape(2, nx, ny)
 
 
 def _above_highest(p: Array) -> float:

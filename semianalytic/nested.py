@@ -114,6 +114,8 @@ def _is_alone(level: Level, lowest: Array, window: Window, body: Body, numerics:
     merged = (rows[:, ::2] + rows[:, 1::2]) / 4
     del rows
     kernel = influence.surface_coefficients(len(lowest), 2 * level.grid.d, body, numerics)
-    g = lowest + convolution.even_convolution(kernel, threads=numerics.threads)(merged) - level.found.approach
+    g = convolution.even_convolution(kernel, threads=numerics.threads)(merged)
+    g += lowest
+    g -= level.found.approach
     g[window.i0 // 2 : -(-window.i1 // 2), window.j0 // 2 : -(-window.j1 // 2)] = np.inf
     return bool(g.min() > 0)

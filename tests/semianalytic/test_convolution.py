@@ -63,6 +63,19 @@ def test_a_second_thread_changes_no_more_than_rounding():
         np.testing.assert_allclose(two, one, rtol=0, atol=1e-14 * np.abs(one).max())
 
 
+def test_strips_of_columns_and_borrowed_memory_change_no_digit(monkeypatch):
+    kernel, p = RNG.normal(size=(2, 61, 47))
+    for build, padded in ((convolution.even_convolution, True), (convolution.circulant_inverse, False)):
+        whole = build(kernel)(p)
+        with monkeypatch.context() as small:
+            small.setattr(convolution, "BLOCK", 200)
+            np.testing.assert_allclose(build(kernel)(p), whole, rtol=0, atol=1e-14 * np.abs(whole).max())
+            memory = np.empty(convolution.memory_size(61, 47, padded=padded))
+            u = build(kernel, memory=memory)(p)
+        assert np.shares_memory(u, memory)
+        np.testing.assert_allclose(u, whole, rtol=0, atol=1e-14 * np.abs(whole).max())
+
+
 def test_convolution_is_symmetric():
     r = np.hypot(*np.meshgrid(np.arange(21), np.arange(21)))
     A = convolution.even_convolution(1 / (1 + r))

@@ -55,13 +55,13 @@ def test_a_killed_worker_and_a_stopped_run_leave_the_same_bits_as_one_machine(tm
     assert len(here) == 2 * len(CASES)
     with hand_started(tmp_path, workers=3) as (address, workers):
         killed = start(tmp_path / "killed", "--scheduler", address)
-        wait_until(lambda: stored(tmp_path / "killed"), "a finished case")
+        wait_until(lambda: stored(tmp_path / "killed"), "a finished case", 900)
         os.killpg(workers[0].pid, signal.SIGKILL)
         assert "4 cases in" in finish(killed)
         assert stored(tmp_path / "killed") == here
 
         stopped = start(tmp_path / "stopped", "--scheduler", address)
-        wait_until(lambda: list((tmp_path / "stopped" / "cases").glob("*.json")), "a finished case")
+        wait_until(lambda: list((tmp_path / "stopped" / "cases").glob("*.json")), "a finished case", 900)
         stopped.send_signal(signal.SIGINT)
         assert "cases are finished and kept in" in finish(stopped, 130)
         finished = {path: path.stat().st_mtime_ns for path in (tmp_path / "stopped" / "cases").iterdir()}
