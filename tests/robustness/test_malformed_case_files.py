@@ -19,7 +19,7 @@ from verification.cases.contact import shipped_cases
 from verification.cases.published import published_cases, read_published
 from verification.cases.toml import CaseError
 from verification.commands import run as command
-from verification.running import pool
+from verification.running.pool import processes
 from verification.study.plan import read_study_file, shipped_studies
 
 CLAIM = {
@@ -64,7 +64,7 @@ def complaint_of(path: Path, monkeypatch: pytest.MonkeyPatch) -> str | None:
     def accept(*_: object, **__: object) -> None:
         raise Accepted
 
-    monkeypatch.setattr(pool._Slot, "start", accept)
+    monkeypatch.setattr(processes._Slot, "start", accept)
     monkeypatch.setattr(command, "read_baseline", read_baseline)
     said, printed = io.StringIO(), io.StringIO()
     try:
