@@ -64,7 +64,7 @@ def complaint_of(path: Path, monkeypatch: pytest.MonkeyPatch) -> str | None:
     def accept(*_: object, **__: object) -> None:
         raise Accepted
 
-    monkeypatch.setattr(processes._Slot, "start", accept)
+    monkeypatch.setattr(processes.Slot, "start", accept)
     monkeypatch.setattr(command, "read_baseline", read_baseline)
     said, printed = io.StringIO(), io.StringIO()
     try:
