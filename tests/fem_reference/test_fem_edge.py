@@ -117,3 +117,12 @@ def test_the_interface_has_the_traction_of_the_side_with_the_smaller_error():
     expected = np.average(M, weights=E / M**2)
     np.testing.assert_allclose(field._interface_tractions(upper, sides)[0], expected, rtol=1e-13)
     np.testing.assert_allclose(field(at)[1][2], expected, rtol=1e-13)
+
+
+def test_the_smallest_triangle_lies_at_the_contact_edge():
+    mesh = meridian_mesh(contact_radius=1.0, thicknesses=(), far=500.0, grading=Grading.of(0.3))
+    corners = mesh.points[:, mesh.triangles]
+    sides = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=0).min(axis=0)
+    at = sides.argmin()
+    assert 1e-7 <= sides[at] < 1.5e-7
+    assert np.linalg.norm(corners[:, :, at].mean(axis=1) - [1.0, 0.0]) < 1e-6

@@ -83,6 +83,17 @@ def test_a_depth_above_the_surface_is_named():
         solved("sphere").stress(0.0, 0.0, -2e-6)
 
 
+def test_stress_of_the_far_boundary_bounds_that_of_any_strain_of_its_size():
+    state = solved("sphere").state
+    missing, stress, _ = state.truncation(0)
+    rng = np.random.default_rng(1)
+    for modulus, nu in state.solid.materials:
+        # Hooke: sigma = E/(1 + nu) (e + nu/(1 - 2 nu) tr e), of principal strains up to one
+        e = np.vstack([np.ones(3), rng.uniform(-1, 1, (200, 3))])
+        sigma = modulus / (1 + nu) * (e + nu / (1 - 2 * nu) * e.sum(axis=1, keepdims=True))
+        assert np.abs(sigma).max() * missing / state.mesh.far <= stress * (1 + 1e-12)
+
+
 def test_another_friction_needs_no_estimate_and_has_to_be_finite():
     rest = solved("sphere", estimate_uncertainty=False)
     sliding = solved("sphere", 0.25, estimate_uncertainty=False)
