@@ -109,12 +109,12 @@ def test_uncertainty_of_the_stiffness_has_no_sign():
     assert up > 2 * none
 
 
-@pytest.mark.parametrize(("staircase", "share"), [(0.0, 1 / 6), (1e-9, 1 / 2)])
-def test_change_that_is_small_by_chance_is_not_trusted(staircase, share):
+@pytest.mark.parametrize("share", [{}, {"share": 0.5}])
+def test_change_that_is_small_by_chance_is_not_trusted(share):
     fine = {"contact_radius": 1.0, "approach": 2.0, "peak_pressure": 3.0}
     coarse = {name: value + 0.06 for name, value in fine.items()}
-    found = Uncertainty.from_levels(fine, fine, coarse, {}, base=coarse, ratio=2.0, staircase=staircase)
-    assert found.peak_pressure == pytest.approx(share * 0.06)
+    found = Uncertainty.from_levels(fine, fine, coarse, {}, base=coarse, ratio=2.0, **share)
+    assert found.peak_pressure == pytest.approx(share.get("share", 1 / 6) * 0.06)
 
 
 def test_gap_of_the_sphere_lies_on_the_sphere():

@@ -21,6 +21,7 @@ def diagnostics(patches, ratio, h):
         patches=patches,
         tolerance=8e-7,
         estimate_uncertainty=False,
+        edge_correction=False,
     ).diagnostics
 
 
