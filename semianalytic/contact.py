@@ -52,7 +52,8 @@ class Contact:
     pressure [Pa], gap [m] : shape of the undeformed gap.  approach [m].
     gap_inside, penetration_outside : largest |g| where p > 0 and largest -g where p = 0, over the scale
     of the gap.  load_error : relative.  history : (gap, penetration) before each iteration.
-    convolutions : applications of A.
+    convolutions : applications of A.  left : largest change of p [Pa] by a further step, z = P g, A^-1 of the
+    gap left; inf where P was dropped.
     """
 
     pressure: Array
@@ -64,6 +65,7 @@ class Contact:
     iterations: int
     convolutions: int
     history: tuple[tuple[float, float], ...]
+    left: float = 0.0
 
     @classmethod
     def of_load(cls, pressure: Array) -> "Contact":
@@ -432,6 +434,7 @@ def _advance(state: _State, problem: _Problem) -> None:
 
 def _contact(state: _State, problem: _Problem) -> Contact:
     error = 0.0 if problem.total is None else abs(problem.sum(state.p) / problem.total - 1)
+    dropped = state.iterations >= PRECONDITIONED_ITERATIONS
     return Contact(
         pressure=state.p,
         gap=state.g,
@@ -442,4 +445,5 @@ def _contact(state: _State, problem: _Problem) -> Contact:
         iterations=state.iterations,
         convolutions=state.convolutions,
         history=tuple(state.history),
+        left=np.inf if dropped else float(max(state.z.max(), -state.z.min())),
     )

@@ -48,27 +48,24 @@ class Grid:
         """Distance of the patch centres held from the origin [m]."""
         return np.hypot(self.x[:, None], self.x[None, :])
 
-    @property
-    def weight(self) -> Array | None:
+    def weight(self, shape: tuple[int, ...]) -> Array | None:
         """Patches that each one held represents: of a quarter 1 at the origin, 2 on the axes, 4 elsewhere.
 
-        None of a whole grid.
+        shape : of a window, of a quarter one that begins at the axes.  None of a whole grid.
         """
         if not self.quarter:
             return None
         w = np.where(self.x > 0, 2.0, 1.0)
-        return np.outer(w, w)
+        return np.outer(*(w[:m] for m in shape))
 
-    def force(self, pressure: Array, window: "Window | None" = None) -> float:
-        """Force of a pressure on the patches held [N], or on a window of them."""
-        w = self.weight
-        if w is not None and window is not None:
-            w = w[window.slices]
+    def force(self, pressure: Array) -> float:
+        """Force of a pressure on a window of the patches held [N]."""
+        w = self.weight(pressure.shape)
         return float((pressure.sum() if w is None else np.sum(w * pressure)) * self.d**2)
 
     def count(self, marked: NDArray[np.bool_]) -> int:
-        """Patches marked by those held."""
-        w = self.weight
+        """Patches marked by those held on a window."""
+        w = self.weight(marked.shape)
         return int(np.count_nonzero(marked) if w is None else w[marked].sum())
 
     @property
@@ -218,8 +215,9 @@ def prolong(pressure: Array, gap: Array, source: Grid, target: Grid, window: Win
     loaded = loaded[1:-1, 1:-1]
     # a rim patch lies 0.6 d from the edge on average
     rim = loaded & ~inner
-    weight = None if source.weight is None else source.weight[rim]
-    K2 = float(np.average(pressure[rim] ** 2, weights=weight)) / (0.6 * source.d)
+    weight = source.weight(rim.shape)
+    weights = None if weight is None else weight[rim]
+    K2 = float(np.average(pressure[rim] ** 2, weights=weights)) / (0.6 * source.d)
     level = pressure**2
     # patches not next to a loaded one are never interpolated with one: any value that is not positive serves
     beside &= ~loaded

@@ -176,7 +176,7 @@ class LevelProblem:
 
         start : first guess of the pressure [Pa], None for `first_guess`.
         """
-        grid, window, before, indenter = self.grid, self.window, self.before, self.indenter
+        grid, before, indenter = self.grid, self.before, self.indenter
         scale = indenter.approach or (before.found.approach if before else self.depth)
         # a flat punch has no depth; its approach is this to a factor of order one
         scale = scale or (indenter.load or 0.0) / (self.body.contact_modulus * grid.half_width)
@@ -191,11 +191,11 @@ class LevelProblem:
             tolerance=self.numerics.tolerance,
             max_iterations=self.numerics.max_iterations,
             extension=_extension(self.body, grid.d),
-            weight=None if grid.weight is None else grid.weight[window.slices],
+            weight=grid.weight(self.gap.shape),
             mirror="mirror" if grid.n % 2 else "reflect",
             work=self.work,
         )
-        load = grid.force(found.pressure, window) + missing
+        load = grid.force(found.pressure) + missing
         # p = E* k u / 2, k at most that of a checkerboard, sqrt(2) pi / d
         noise = self.numerics.tolerance * scale * self.body.contact_modulus * np.pi / 2**0.5 / grid.d
         return Level(grid, found, None, load, found.convolutions, noise)

@@ -13,7 +13,7 @@ from semianalytic.grid import Grid, Window, odd, touches_rim, window_around
 from semianalytic.inputs import COARSEST, Body, Numerics
 from semianalytic.level import Indenter, Level, LevelProblem
 
-__all__ = ["levels", "solve_on"]
+__all__ = ["is_alone", "levels", "solve_on", "undeformed"]
 
 Array = NDArray[np.floating]
 
@@ -67,7 +67,7 @@ def solve_on(
     """
     if indenter.round:
         return corrected(grid, indenter.gap(grid), before, shape, indenter, body, numerics)
-    grid, gap = _undeformed(replace(grid, quarter=False), indenter)
+    grid, gap = undeformed(replace(grid, quarter=False), indenter)
     whole, depth = grid.window, float(np.ptp(gap))
     if before is not None:
         before = before.whole if grid.quarter < before.grid.quarter else before
@@ -78,14 +78,14 @@ def solve_on(
             level = _solved(problem)
             del problem  # frees the memory of its transforms for those below
             level = _embedded(level, window, depth)
-            if _is_alone(level, lowest, window, body, numerics):
+            if is_alone(level, lowest, window, body, numerics):
                 return level
-            _, gap = _undeformed(replace(grid, quarter=False), indenter)
+            _, gap = undeformed(replace(grid, quarter=False), indenter)
     problem = LevelProblem(grid, gap, depth, whole, before, indenter, body, numerics)
     return _solved(problem)
 
 
-def _undeformed(grid: Grid, indenter: Indenter) -> tuple[Grid, Array]:
+def undeformed(grid: Grid, indenter: Indenter) -> tuple[Grid, Array]:
     """Gap on a whole grid; on a quarter, and that grid, where it is even in x and in y to the last digit."""
     gap = indenter.gap(grid)
     c = (grid.n + 1) // 2
@@ -106,7 +106,7 @@ def _embedded(level: Level, window: Window, depth: float) -> Level:
     return replace(level, found=found, edge=edge)
 
 
-def _is_alone(level: Level, lowest: Array, window: Window, body: Body, numerics: Numerics) -> bool:
+def is_alone(level: Level, lowest: Array, window: Window, body: Body, numerics: Numerics) -> bool:
     """Whether only the window is in contact: its rim is free, and the gap beyond it open.
 
     The deflection beyond is computed on patches of twice the side, which at the distance of the window's
