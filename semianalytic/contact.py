@@ -17,7 +17,7 @@ of the change of p.
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,6 +28,7 @@ __all__ = ["Contact", "NotConverged", "solve"]
 Array = NDArray[np.floating]
 Mask = NDArray[np.bool_]
 Operator = Callable[[Array], Array]
+Mirror = Literal["mirror", "reflect"]
 
 # Limits of the active-set strategy.
 RESIDUAL_FALL = 0.5  # on a fixed contact set, at which the set is updated
@@ -69,9 +70,9 @@ class Contact:
         """A prescribed pressure: no condition to fulfil, no iteration."""
         return cls(pressure, np.zeros_like(pressure), 0.0, 0.0, 0.0, 0.0, 0, 1, ())
 
-    def embedded(self, where: tuple[slice, slice], n: int, open_gap: float) -> "Contact":
-        """The same contact on an n x n grid of which it was a window; the gap beyond becomes ``open_gap``."""
-        pressure, gap = np.zeros((n, n)), np.full((n, n), open_gap)
+    def embedded(self, where: tuple[slice, slice], shape: tuple[int, int], open_gap: float) -> "Contact":
+        """The same contact on a grid of which it was a window; the gap beyond becomes ``open_gap``."""
+        pressure, gap = np.zeros(shape), np.full(shape, open_gap)
         pressure[where], gap[where] = self.pressure, self.gap
         return replace(self, pressure=pressure, gap=gap)
 
@@ -91,8 +92,8 @@ def _subtract(a: Array, b: Array, factor: float) -> None:
 class _ContactSet:
     """Contact set, with the extension of the residual beyond it by means over ``extension`` patches."""
 
-    def __init__(self, inside: Mask, extension: float, dtype: np.dtype[Any]) -> None:
-        self.inside, self.extension = inside, extension
+    def __init__(self, inside: Mask, problem: "_Problem", dtype: np.dtype[Any]) -> None:
+        self.inside, self.extension, self.mirror = inside, problem.extension, problem.mirror
         self._share = self._mean(inside, np.empty(inside.shape, dtype))
 
     def one(self, rows: slice) -> Array:
@@ -113,7 +114,7 @@ class _ContactSet:
 
     def _mean(self, r: NDArray[Any], out: Array) -> Array:
         # mirrored at the rim of the grid, as at the axes of a quarter
-        gaussian_filter(r, self.extension, mode="mirror", truncate=3, output=out)
+        gaussian_filter(r, self.extension, mode=self.mirror, truncate=3, output=out)
         return out
 
 
@@ -132,6 +133,7 @@ class _Problem:
     max_iterations: int
     extension: float
     weight: Array | None
+    mirror: Mirror
 
     def balanced(self, p: Array) -> Array:
         """Pressure scaled to the load, in place."""
@@ -211,6 +213,7 @@ def solve(
     max_iterations: int,
     extension: float = EXTENSION,
     weight: Array | None = None,
+    mirror: Mirror = "mirror",
     work: Array | None = None,
 ) -> Contact:
     """Pressure p >= 0 that closes the gap where it acts and leaves it open elsewhere.
@@ -221,7 +224,8 @@ def solve(
     scale : length to which gap and penetration are relative [m].  tolerance : on each of them, relative.
     extension : patches over which the residual is extended beyond the contact.
     weight : patches that each entry represents, where the operators and the gap are those of a ``grid.Grid``
-    held as a quarter.
+    held as a quarter.  mirror : of fields at the rim and at the axes of a quarter, as in ``scipy.ndimage``:
+    "mirror" about a patch centre, "reflect" about a border.
     work : memory (2, nx, ny) that both operators may use, in the precision of the preconditioned residual.
 
     Raises NotConverged after max_iterations, ValueError unless exactly one of total and approach is given.
@@ -240,6 +244,7 @@ def solve(
         max_iterations,
         extension,
         weight,
+        mirror,
     )
     # numbered as by Polonsky and Keer; their last steps come first, for the first guess may be the solution
     state = _first_guess(problem, np.empty((2, *gap.shape)) if work is None else work)
@@ -255,7 +260,7 @@ def solve(
 
 def _first_guess(problem: _Problem, work: Array) -> _State:
     p = _start(problem)
-    contact = _ContactSet(p > 0, problem.extension, work.dtype)
+    contact = _ContactSet(p > 0, problem, work.dtype)
     state = _State(p, np.empty_like(p), contact, problem.approach or 0.0, *work)
     _find_gap_of_pressure(state, problem)
     _find_P_one(state, problem)
@@ -282,7 +287,7 @@ def _choose_preconditioner(state: _State, problem: _Problem) -> None:
         # where the preconditioner misleads, the iterate is far from the solution: start from the first guess
         state.p = _start(problem)
         _find_gap_of_pressure(state, problem)
-        state.contact = _ContactSet(state.p > 0, problem.extension, state.z.dtype)
+        state.contact = _ContactSet(state.p > 0, problem, state.z.dtype)
         state.set_updates = PREDICTED_UPDATES
     elif state.iterations != EXTENDED_ITERATIONS:
         return
@@ -393,7 +398,7 @@ def _update_set(state: _State, problem: _Problem) -> bool:
     if not (leave.any() or enter.any()):
         return False
     inside = (state.contact.inside & ~leave) | enter
-    state.contact = _ContactSet(inside, problem.extension, state.z.dtype)
+    state.contact = _ContactSet(inside, problem, state.z.dtype)
     _find_P_one(state, problem)
     state.set_updates, state.on_set, state.new = state.set_updates + 1, 0, True
     if leave.any():
