@@ -7,13 +7,16 @@ mutable. Where the standard lacks a function, or NumPy has a faster one, it is h
 
 import sys
 from collections.abc import Iterator
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import gaussian_filter
 
 __all__ = [
+    "AT_ONCE",
+    "BLOCK",
+    "Mirror",
     "blocks",
     "copy",
     "dot",
@@ -29,6 +32,7 @@ __all__ = [
 
 Array = NDArray[np.floating]
 Mask = NDArray[np.bool_]
+Mirror = Literal["mirror", "reflect"]
 
 BLOCK = 2**15  # numbers that stay in the cache
 AT_ONCE = 2**26  # numbers of another library computed at a time: half a gigabyte
@@ -111,10 +115,13 @@ def median(a: Array) -> float:
     return (float(ordered[(n - 1) // 2]) + float(ordered[n // 2])) / 2
 
 
-def gaussian_mean(a: NDArray[Any], sigma: float, out: Array) -> Array:
-    """Means of a weighted by a Gaussian of ``sigma`` entries, cut off at three; mirrored at the rim."""
+def gaussian_mean(a: NDArray[Any], sigma: float, mirror: Mirror, out: Array) -> Array:
+    """Means of a weighted by a Gaussian of ``sigma`` entries, cut off at three.
+
+    mirror : of a at the rim, as in ``scipy.ndimage``: about an entry, or about the border.
+    """
     if isinstance(a, np.ndarray):
-        gaussian_filter(a, sigma, mode="mirror", truncate=3, output=out)
+        gaussian_filter(a, sigma, mode=mirror, truncate=3, output=out)
         return out
     xp = namespace(a)
     reach = int(3 * sigma + 0.5)
@@ -122,9 +129,10 @@ def gaussian_mean(a: NDArray[Any], sigma: float, out: Array) -> Array:
     weight /= weight.sum()
     out[...] = xp.asarray(a, dtype=out.dtype)
     for axis, n in enumerate(a.shape):
-        period = max(2 * (n - 1), 1)
+        period = max(2 * n - 2, 1) if mirror == "mirror" else 2 * n
         at = np.arange(-reach, n + reach) % period
-        wide = xp.take(out, xp.asarray(np.minimum(at, period - at)), axis=axis)
+        at = np.minimum(at, 2 * n - 2 + (mirror == "reflect") - at)
+        wide = xp.take(out, xp.asarray(at), axis=axis)
         out[...] = 0.0
         for k, factor in enumerate(weight.tolist()):
             out += (wide[k : k + n, :] if axis == 0 else wide[:, k : k + n]) * factor

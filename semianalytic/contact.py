@@ -23,7 +23,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from semianalytic import arrays
-from semianalytic.arrays import blocks, namespace
+from semianalytic.arrays import Mirror, blocks, namespace
 
 __all__ = ["Contact", "NotConverged", "solve"]
 
@@ -70,10 +70,10 @@ class Contact:
         """A prescribed pressure: no condition to fulfil, no iteration."""
         return cls(pressure, np.zeros_like(pressure), 0.0, 0.0, 0.0, 0.0, 0, 1, ())
 
-    def embedded(self, where: tuple[slice, slice], n: int, open_gap: float) -> "Contact":
-        """The same contact on an n x n grid of which it was a window; the gap beyond becomes ``open_gap``."""
+    def embedded(self, where: tuple[slice, slice], shape: tuple[int, int], open_gap: float) -> "Contact":
+        """The same contact on a grid of which it was a window; the gap beyond becomes ``open_gap``."""
         xp = namespace(self.pressure)
-        pressure, gap = xp.zeros((n, n)), xp.full((n, n), open_gap)
+        pressure, gap = xp.zeros(shape), xp.full(shape, open_gap)
         pressure[where], gap[where] = self.pressure, self.gap
         return replace(self, pressure=pressure, gap=gap)
 
@@ -81,8 +81,8 @@ class Contact:
 class _ContactSet:
     """Contact set, with the extension of the residual beyond it by means over ``extension`` patches."""
 
-    def __init__(self, inside: Mask, extension: float, dtype: Any) -> None:
-        self.inside, self.extension = inside, extension
+    def __init__(self, inside: Mask, problem: "_Problem", dtype: Any) -> None:
+        self.inside, self.extension, self.mirror = inside, problem.extension, problem.mirror
         self._xp = namespace(inside)
         self._share = self._mean(inside, self._xp.empty(inside.shape, dtype=dtype))
 
@@ -103,7 +103,7 @@ class _ContactSet:
 
     def _mean(self, r: NDArray[Any], out: Array) -> Array:
         # mirrored at the rim of the grid, as at the axes of a quarter
-        return arrays.gaussian_mean(r, self.extension, out)
+        return arrays.gaussian_mean(r, self.extension, self.mirror, out)
 
 
 @dataclass(frozen=True, eq=False)
@@ -121,6 +121,7 @@ class _Problem:
     max_iterations: int
     extension: float
     weight: Array | None
+    mirror: Mirror
 
     def balanced(self, p: Array) -> Array:
         """Pressure scaled to the load, in place."""
@@ -195,6 +196,7 @@ def solve(
     max_iterations: int,
     extension: float = EXTENSION,
     weight: Array | None = None,
+    mirror: Mirror = "mirror",
     work: Array | None = None,
 ) -> Contact:
     """Pressure p >= 0 that closes the gap where it acts and leaves it open elsewhere.
@@ -205,7 +207,8 @@ def solve(
     scale : length to which gap and penetration are relative [m].  tolerance : on each of them, relative.
     extension : patches over which the residual is extended beyond the contact.
     weight : patches that each entry represents, where the operators and the gap are those of a ``grid.Grid``
-    held as a quarter.
+    held as a quarter.  mirror : of fields at the rim and at the axes of a quarter, as in ``scipy.ndimage``:
+    "mirror" about a patch centre, "reflect" about a border.
     work : memory (2, nx, ny) that both operators may use, in the precision of the preconditioned residual.
 
     Raises NotConverged after max_iterations, ValueError unless exactly one of total and approach is given.
@@ -224,6 +227,7 @@ def solve(
         max_iterations,
         extension,
         weight,
+        mirror,
     )
     # numbered as by Polonsky and Keer; their last steps come first, for the first guess may be the solution
     state = _first_guess(problem, work)
@@ -241,7 +245,7 @@ def _first_guess(problem: _Problem, work: Array | None) -> _State:
     p = _start(problem)
     xp = namespace(p)
     work = xp.empty((2, *p.shape)) if work is None else work
-    contact = _ContactSet(p > 0, problem.extension, work.dtype)
+    contact = _ContactSet(p > 0, problem, work.dtype)
     state = _State(p, xp.empty_like(p), contact, problem.approach or 0.0, work[0, ...], work[1, ...])
     _find_gap_of_pressure(state, problem)
     _find_P_one(state, problem)
@@ -269,7 +273,7 @@ def _choose_preconditioner(state: _State, problem: _Problem) -> None:
         # where the preconditioner misleads, the iterate is far from the solution: start from the first guess
         state.p = _start(problem)
         _find_gap_of_pressure(state, problem)
-        state.contact = _ContactSet(state.p > 0, problem.extension, state.z.dtype)
+        state.contact = _ContactSet(state.p > 0, problem, state.z.dtype)
         state.set_updates = PREDICTED_UPDATES
     elif state.iterations != EXTENDED_ITERATIONS:
         return
@@ -387,7 +391,7 @@ def _update_set(state: _State, problem: _Problem) -> bool:
     if not (any_leave or xp.any(enter)):
         return False
     inside = (state.contact.inside & ~leave) | enter
-    state.contact = _ContactSet(inside, problem.extension, state.z.dtype)
+    state.contact = _ContactSet(inside, problem, state.z.dtype)
     _find_P_one(state, problem)
     state.set_updates, state.on_set, state.new = state.set_updates + 1, 0, True
     if any_leave:

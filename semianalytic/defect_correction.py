@@ -59,16 +59,17 @@ def smoothed(problem: LevelProblem) -> Level:
     defect: Array | float = 0.0
     missing = 0.0
     for number in range(ROUNDS):
-        p = level.found.pressure
+        p = problem.grid.whole(level.found.pressure)
         fitted = smooth_edge.fit(p)
         if fitted is None:
             return alone
         edge, parts = fitted
         near = _near_influence(problem) if near is None else near
-        u, beyond = edge.deflection_beyond_centres(parts, p, problem.deflection, near)
+        u, beyond = edge.deflection_beyond_centres(parts, p, problem.deflection_of_whole, near)
+        u = problem.held(u)
         # patches that the edge barely touches would alternate between two rounds
         defect, missing = ((defect + u) / 2, (missing + beyond) / 2) if number else (u, beyond)
-        level = problem.solve(defect, missing * problem.grid.d**2, start=p)
+        level = problem.solve(defect, missing * problem.grid.d**2, start=level.found.pressure)
         convolutions += level.convolutions + 1
     return replace(level, edge=edge, convolutions=convolutions)
 

@@ -105,9 +105,7 @@ def tangential_displacement(
     return u * ((1 + nu) / (2 * np.pi * E))
 
 
-def surface_deflection(
-    nx: int, ny: int, dx: float, dy: float, depth: float = 0.0, xp: Any = np
-) -> Array:
+def surface_deflection(nx: int, ny: int, dx: float, dy: float, depth: float = 0.0, xp: Any = np) -> Array:
     """Potential V of a rectangle at the centres of a grid of rectangles.
 
         V(i dx, j dy, depth),  i = 0..nx-1, j = 0..ny-1;   u_z = (1-nu)/(2 pi G) V at depth 0

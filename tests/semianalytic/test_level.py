@@ -83,7 +83,7 @@ def test_memory_of_a_contact_on_half_of_the_square(monkeypatch):
     n, body = 320, Body((), (1.0, 0.0), 0.0)
 
     def gap(grid):
-        waves = 0.01 * (2 - np.cos(9 * grid.x)[:, None] - np.cos(9 * grid.x))
+        waves = 0.01 * (2 - np.cos(9 * grid.x - 0.1)[:, None] - np.cos(9 * grid.x))
         return waves + np.maximum(np.hypot(grid.x[:, None], grid.x) - 0.6, 0) ** 2
 
     indenter = Indenter(gap, None, 0.01, round=False)
