@@ -1,7 +1,7 @@
 """The convolution of ``convolution`` by the FFT of another array library than NumPy.
 
-The same transforms: rows, then columns, neither rows of zeros nor unused rows, of an even kernel one quadrant of
-its real spectrum. Rows and columns are transformed by strips that bound the work memory.
+The same transforms: rows, then columns, neither rows of zeros nor unused rows, and of an even kernel one
+quadrant of its real spectrum. Rows and columns are transformed by strips, which bounds the work memory.
 """
 
 from collections.abc import Callable
@@ -27,9 +27,9 @@ def even_spectrum(kernel: Array, mx: int, my: int) -> Array:
         wave: Array = xp.fft.hfft(xp.asarray(part, dtype=xp.complex128), n=m, axis=axis)
         return wave[:, : m // 2 + 1] if axis else wave[: m // 2 + 1, :]
 
-    for rows in strips(mx // 2 + 1, my):
+    for rows in strips(mx // 2 + 1, my, xp):
         quadrant[rows, :] = cosines(quadrant[rows, :], my, 1)
-    for columns in strips(my // 2 + 1, mx):
+    for columns in strips(my // 2 + 1, mx, xp):
         quadrant[:, columns] = cosines(quadrant[:, columns], mx, 0)
     return quadrant
 
@@ -49,15 +49,15 @@ def apply_even(spectrum: Array, nx: int, ny: int) -> Callable[[Array], Array]:
 
     def apply(p: Array) -> Array:
         wave = xp.empty((nx, width), dtype=xp.complex128)
-        for rows in strips(nx, my):
+        for rows in strips(nx, my, xp):
             wave[rows, :] = xp.fft.rfft(p[rows, :], n=my, axis=1)
-        for columns in strips(width, mx):
+        for columns in strips(width, mx, xp):
             column = xp.fft.fft(wave[:, columns], n=mx, axis=0)
             column[: half + 1, :] *= spectrum[:, columns]
             column[half + 1 :, :] *= spectrum[half - 1 : 0 : -1, columns]
             wave[:, columns] = xp.fft.ifft(column, axis=0)[:nx, :]
         u: Array = xp.empty((nx, ny))
-        for rows in strips(nx, my):
+        for rows in strips(nx, my, xp):
             u[rows, :] = xp.fft.irfft(wave[rows, :], n=my, axis=1)[:, :ny]
         return u
 

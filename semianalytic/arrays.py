@@ -1,4 +1,4 @@
-"""Arrays of NumPy and of other libraries, for what they do not share.
+"""Array functions that NumPy does not share with other libraries.
 
 The convolution, the kernels and the iteration use functions of the Python array API standard, whose namespace
 is that of their arrays: a GPU computes on arrays of CuPy. Arrays are written in place, so they have to be
@@ -14,9 +14,8 @@ from numpy.typing import NDArray
 from scipy.ndimage import gaussian_filter
 
 __all__ = [
-    "AT_ONCE",
-    "BLOCK",
     "Mirror",
+    "at_once",
     "blocks",
     "copy",
     "dot",
@@ -35,7 +34,7 @@ Mask = NDArray[np.bool_]
 Mirror = Literal["mirror", "reflect"]
 
 BLOCK = 2**15  # numbers that stay in the cache
-AT_ONCE = 2**26  # numbers of another library computed at a time: half a gigabyte
+AT_ONCE = 2**26  # of another library: half a gigabyte
 
 
 def namespace(a: Any) -> Any:
@@ -61,16 +60,20 @@ def copy(a: Array) -> Array:
     return same
 
 
-def strips(count: int, length: int, numbers: int = AT_ONCE) -> Iterator[slice]:
-    """Slices of ``count`` rows or columns of a ``length``, of so many numbers at most."""
-    size = max(1, numbers // max(length, 1))
+def at_once(xp: Any) -> int:
+    """Numbers that a namespace computes at a time: NumPy as many as stay in the cache."""
+    return BLOCK if xp is np else AT_ONCE
+
+
+def strips(count: int, length: int, xp: Any) -> Iterator[slice]:
+    """Slices of ``count`` rows or columns of a ``length``, of ``at_once`` numbers at most."""
+    size = max(1, at_once(xp) // max(length, 1))
     return (slice(i, min(i + size, count)) for i in range(0, count, size))
 
 
 def blocks(a: NDArray[Any]) -> Iterator[tuple[slice, slice]]:
-    """Rows of an array, as many as stay in the cache, so that temporary arrays are small."""
-    numbers = BLOCK if isinstance(a, np.ndarray) else AT_ONCE
-    return ((rows, slice(None)) for rows in strips(a.shape[0], a.shape[1], numbers))
+    """Rows of an array, ``at_once`` numbers at most, so that temporary arrays are small."""
+    return ((rows, slice(None)) for rows in strips(a.shape[0], a.shape[1], namespace(a)))
 
 
 def subtract(a: Array, b: Array, factor: float) -> None:

@@ -36,7 +36,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from semianalytic.arrays import AT_ONCE, BLOCK, namespace
+from semianalytic.arrays import at_once, namespace
 
 __all__ = [
     "normal_displacement",
@@ -125,7 +125,7 @@ def surface_deflection(nx: int, ny: int, dx: float, dy: float, depth: float = 0.
     column = corner[1:, :] - corner[:-1, :]
     V[:mx, :my] = column[:, 1:] - column[:, :-1]
     y = xp.arange(ny, dtype=xp.float64) * dy
-    rows = max(1, (BLOCK if xp is np else AT_ONCE) // ny)
+    rows = max(1, at_once(xp) // ny)
     for begin, end, first in ((0, mx, my), (mx, nx, 0)):
         for i in range(begin, end, rows):
             j = min(i + rows, end)

@@ -31,7 +31,7 @@ from scipy.fft import fht, fhtoffset
 from scipy.interpolate import CubicSpline
 
 from semianalytic import frf, halfspace
-from semianalytic.arrays import AT_ONCE, BLOCK, namespace, strips
+from semianalytic.arrays import at_once, namespace, strips
 from semianalytic.inputs import Body, Numerics
 
 __all__ = ["plain_coefficients", "remainder_coefficients", "split_image", "surface_coefficients"]
@@ -263,7 +263,7 @@ def _octant(g: Callable[[Array], Array], n: int, d: float, xp: Any) -> Array:
     """g at the patch centres, computed in blocks of rows, in each up to its diagonal."""
     table: Array = xp.empty((n, n))
     i, end = xp.arange(n, dtype=xp.float64), 0
-    numbers = BLOCK if xp is np else AT_ONCE
+    numbers = at_once(xp)
     while end < n:
         begin, end = end, min(n, end + max(1, numbers // (end + isqrt(numbers))))
         block = g(d * xp.hypot(i[begin:end, None], i[None, :end]))
@@ -286,7 +286,7 @@ def _average(table: Array) -> Array:
         weights += factor * np.array(row)
     first, *others = weights.tolist()
     xp, n = namespace(table), table.shape[0] - 3
-    for columns in strips(table.shape[1], table.shape[0], BLOCK if xp is np else AT_ONCE):
+    for columns in strips(table.shape[1], table.shape[0], xp):
         strip = table[:, columns]
         rows = xp.concat([strip[3:0:-1, :], strip])
         mean = rows[3 : n + 3, :] * first
