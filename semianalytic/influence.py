@@ -22,6 +22,7 @@ plain      M/k times the transform of the patch, aliases summed, FFT on an enlar
 from collections.abc import Callable, Sequence
 from functools import partial
 from math import isqrt
+from typing import Any
 
 import ducc0
 import numpy as np
@@ -30,6 +31,7 @@ from scipy.fft import fht, fhtoffset
 from scipy.interpolate import CubicSpline
 
 from semianalytic import frf, halfspace
+from semianalytic.arrays import at_once, namespace, strips
 from semianalytic.inputs import Body, Numerics
 
 __all__ = ["plain_coefficients", "remainder_coefficients", "split_image", "surface_coefficients"]
@@ -37,18 +39,20 @@ __all__ = ["plain_coefficients", "remainder_coefficients", "split_image", "surfa
 Array = NDArray[np.floating]
 Response = Callable[[Array], Array]
 
-BLOCK = 2**15  # coefficients computed at a time, so that they stay in the cache
 DIGITS = 1e-11  # tolerance of the quadrature over a patch, relative to the value at its centre
 SMOOTH = 12.0  # patches from the nearest singularity, beyond which finite differences average a patch
 
 
-def surface_coefficients(n: int, d: float, body: Body, numerics: Numerics) -> Array:
+def surface_coefficients(n: int, d: float, body: Body, numerics: Numerics, xp: Any = np) -> Array:
     """Influence coefficients K [m/Pa] of the surface displacement by the conversion of ``numerics``.
 
     The approach of the surfaces is u_z of the flat plus that of an elastic ball: their coefficients add up.
 
-    n : offsets 0..n-1.  d : side of the patches [m].  Returns shape (n, n), even in both indices.
+    n : offsets 0..n-1.  d : side of the patches [m].  xp : namespace of the result, which computes it by the
+    conversion "split"; by another one NumPy does.  Returns shape (n, n), even in both indices.
     """
+    if xp is not np and numerics.conversion != "split":
+        return xp.asarray(surface_coefficients(n, d, body, numerics))
     if numerics.conversion == "plain":
         K: Array = np.zeros((n, n))
         for one in body.pair:
@@ -56,17 +60,17 @@ def surface_coefficients(n: int, d: float, body: Body, numerics: Numerics) -> Ar
             C = plain_coefficients(n, d, excess, enlarge=numerics.enlarge, threads=numerics.threads)
             K += 1 / (np.pi * one.moduli[0]) * C
         return K
-    K = halfspace.surface_deflection(n, n, d, d)
+    K = halfspace.surface_deflection(n, n, d, d, xp=xp)
     K *= 1 / (np.pi * body.contact_modulus)
     for one in body.pair:
         if one.coatings:
-            C = _layer_coefficients(n, d, one, numerics)
+            C = _layer_coefficients(n, d, one, numerics, xp)
             C *= 1 / (np.pi * one.moduli[0])
             K += C
     return K
 
 
-def _layer_coefficients(n: int, d: float, body: Body, numerics: Numerics) -> Array:
+def _layer_coefficients(n: int, d: float, body: Body, numerics: Numerics, xp: Any) -> Array:
     """C_ij [m] less Love's rectangle on the first material, shape (n, n)."""
     excess = partial(frf.compliance_excess, **body.layers)
     image = split_image(excess, body.thickness)
@@ -79,8 +83,9 @@ def _layer_coefficients(n: int, d: float, body: Body, numerics: Numerics) -> Arr
         points=numerics.hankel_points,
         enlarge=numerics.enlarge if numerics.conversion == "split-fft" else 0,
         threads=numerics.threads,
+        xp=xp,
     )
-    of_image = halfspace.surface_deflection(n, n, d, d, image[1])
+    of_image = halfspace.surface_deflection(n, n, d, d, image[1], xp)
     of_image *= image[0]
     C += of_image
     return C
@@ -114,6 +119,7 @@ def remainder_coefficients(
     points: int = 4096,
     enlarge: int = 0,
     threads: int = 1,
+    xp: Any = np,
 ) -> Array:
     """Integral over a patch of the part of g(r) not due to Love's rectangle and its image.
 
@@ -122,7 +128,8 @@ def remainder_coefficients(
     n : offsets 0..n-1.  d : side of the patches [m].  excess, thickness, image : as ``split_image``.
     points : of the logarithmic Hankel grid.
     enlarge : 0 for the Hankel transform; else the factor by which the domain of a two-dimensional FFT
-    exceeds the kernel's (conversion "split-fft").  Returns [m], shape (n, n), even in both indices.
+    exceeds the kernel's (conversion "split-fft", by NumPy).  xp : namespace of the result.
+    Returns [m], shape (n, n), even in both indices.
     """
     c, b = image
     if enlarge:
@@ -134,22 +141,28 @@ def remainder_coefficients(
 
     g, on_disc = _radial(excess, thickness, image, points)
     near = 2 * thickness[0] / d  # g is singular no nearer than the image of the surface, at depth 2 h
-    mean = _octant(g, n + 3, d)
-    _average(mean)
-    _average(mean.T)
-    mean = mean[:n, :n]
+    mean = _average(_average(_octant(g, n + 3, d, xp)).T).T[:n, :n]
     mean *= d * d
-    edges = (3.0, SMOOTH) if near < SMOOTH else ()
-    inner = 0
-    for edge in edges:
+    if near < SMOOTH:
+        corner = _corner(g, on_disc, min(int(SMOOTH), n), d, near)
+        mean[: len(corner), : len(corner)] = xp.asarray(corner)
+    return mean
+
+
+def _corner(g: Response, on_disc: Response, n: int, d: float, near: float) -> Array:
+    """Integrals [m] over the patches next to the loaded one by Gauss quadrature, shape (n, n).
+
+    near : distance to the nearest singularity of g, in patches.
+    """
+    mean, inner = np.empty((n, n)), 0
+    for edge in (3.0, SMOOTH):
         outer = min(int(np.ceil(edge)), n)
         reach = np.hypot(near, max(inner - 1, 0.5))
         _gauss_block(mean, g, d, inner, outer, reach)
         inner = outer
-    if edges:
-        # the loaded patch, which may be far wider than the coating is thick, in polar coordinates
-        s, w = np.polynomial.legendre.leggauss(16)
-        mean[0, 0] = np.pi * np.sum(w * on_disc(d / 2 / np.cos(np.pi / 8 * (1 + s))))
+    # the loaded patch, which may be far wider than the coating is thick, in polar coordinates
+    s, w = np.polynomial.legendre.leggauss(16)
+    mean[0, 0] = np.pi * np.sum(w * on_disc(d / 2 / np.cos(np.pi / 8 * (1 + s))))
     return mean
 
 
@@ -209,12 +222,15 @@ def _radial(
     x = np.log(r[keep])
     spline = CubicSpline(x, A[keep] / r[keep])
     inner = CubicSpline(x, A[keep] * r[keep]).antiderivative()
+    far_g = _of_any_library(spline, float(step))
     m0, m1, m2, m3 = (float(np.sum(R * k ** (2 * j + 1)) * step) for j in range(4))
 
     def g(r: Array) -> Array:
+        xp = namespace(r)
         s = (r / 2) ** 2
         small = m0 - s * (m1 - s * (m2 / 4 - s * m3 / 36))
-        return np.where(r < near, small, spline(np.log(np.clip(r, near, far))) * (r < far))
+        large = xp.where(r < far, far_g(xp.log(xp.clip(r, near, far))), 0.0)
+        return xp.where(r < near, small, large)
 
     def on_disc(r: Array) -> Array:
         s = (np.minimum(r, near) / 2) ** 2
@@ -224,22 +240,42 @@ def _radial(
     return g, on_disc
 
 
-def _octant(g: Callable[[Array], Array], n: int, d: float) -> Array:
+def _of_any_library(spline: CubicSpline, step: float) -> Response:
+    """The spline, whose knots are equidistant by ``step``, of an array of any library."""
+
+    def value(x: Array) -> Array:
+        xp = namespace(x)
+        if xp is np:
+            return spline(x)
+        flat = xp.reshape(x, (-1,))
+        at = xp.floor((flat - float(spline.x[0])) / step)
+        i = xp.asarray(xp.clip(at, 0.0, float(len(spline.x) - 2)), dtype=xp.int64)
+        t = flat - xp.take(xp.asarray(spline.x), i, axis=0)
+        sum_ = xp.zeros_like(t)
+        for coefficients in spline.c:
+            sum_ = sum_ * t + xp.take(xp.asarray(coefficients), i, axis=0)
+        return xp.reshape(sum_, x.shape)
+
+    return value
+
+
+def _octant(g: Callable[[Array], Array], n: int, d: float, xp: Any) -> Array:
     """g at the patch centres, computed in blocks of rows, in each up to its diagonal."""
-    table = np.empty((n, n))
-    i, end = np.arange(n), 0
+    table: Array = xp.empty((n, n))
+    i, end = xp.arange(n, dtype=xp.float64), 0
+    numbers = at_once(xp)
     while end < n:
-        begin, end = end, min(n, end + max(1, BLOCK // (end + isqrt(BLOCK))))
-        block = g(d * np.hypot(i[begin:end, None], i[:end]))
+        begin, end = end, min(n, end + max(1, numbers // (end + isqrt(numbers))))
+        block = g(d * xp.hypot(i[begin:end, None], i[None, :end]))
         table[begin:end, :end] = block
         table[:end, begin:end] = block.T
     return table
 
 
-def _average(table: Array) -> None:
+def _average(table: Array) -> Array:
     """Mean over a patch along the first index, in place: (delta/2)/asinh(delta/2) to sixth differences.
 
-    The last three rows, whose neighbours are not in the table, lose their meaning.
+    The last three rows, whose neighbours are not in the table, lose their meaning. Returns the table.
     """
     weights = np.array([1.0, 0, 0, 0])
     for factor, row in (
@@ -248,14 +284,16 @@ def _average(table: Array) -> None:
         (367 / 967680, (-20, 15, -6, 1)),
     ):
         weights += factor * np.array(row)
-    n = len(table) - 3
-    columns = max(1, BLOCK // len(table))
-    for begin in range(0, table.shape[1], columns):
-        strip = table[:, begin : begin + columns]
-        rows = np.concatenate([strip[3:0:-1], strip])
-        mean = np.multiply(rows[3 : n + 3], weights[0], out=strip[:n])
-        for j in (1, 2, 3):
-            mean += weights[j] * (rows[3 - j : n + 3 - j] + rows[3 + j : n + 3 + j])
+    first, *others = weights.tolist()
+    xp, n = namespace(table), table.shape[0] - 3
+    for columns in strips(table.shape[1], table.shape[0], xp):
+        strip = table[:, columns]
+        rows = xp.concat([strip[3:0:-1, :], strip])
+        mean = rows[3 : n + 3, :] * first
+        for j, weight in enumerate(others, start=1):
+            mean += weight * (rows[3 - j : n + 3 - j, :] + rows[3 + j : n + 3 + j, :])
+        table[:n, columns] = mean
+    return table
 
 
 def _gauss_block(
