@@ -195,7 +195,7 @@ def indent(
             z = np.broadcast_to(z, (grid.n, grid.n))
             if not np.isfinite(z.min()) or not np.isfinite(z.max()):
                 raise ValueError("profile(x, y) must return finite heights [m] all over the square")
-        return z - z.min()
+        return z
 
     indenter = Indenter(gap, load, approach, round=False, edge_correction=edge_correction)
     levels = nested.levels(half_width, indenter, body, numerics, estimate_uncertainty)

@@ -135,7 +135,9 @@ def _of_domain(
         window = Window(first, first + m, first, first + m)
         depth = float(np.ptp(gap))
         found = level.found.embedded(window.slices, box.window.shape, depth)
-        if is_alone(replace(level, grid=box, found=found), box.lowest(gap), window, body, numerics):
+        if is_alone(
+            replace(level, grid=box, found=found), box.lowest(gap - gap.min()), window, body, numerics
+        ):
             if numerics.conversion == "split":
                 return dict.fromkeys(level.scalars, 0.0)
             by_fft = surface_coefficients(wider.n, grid.d, body, numerics)[: grid.n, : grid.n]
