@@ -20,7 +20,7 @@ PARABOLA, GOODMAN = "parabola for the sphere", "Goodman's assumption"
 HALF_SPACES = "half-spaces for the ball and a disc as thick as its radius"
 SMALL_STRAINS = "small strains"
 RATIOS = (0.1, 0.25, 0.5, 1.0, 2.0, 4.0, 10.0)  # E1/E2
-THICKNESSES = (0.1, 0.2, 0.5, 1.0, 2.0)  # h/a_h
+THICKNESSES = (0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0)  # h/a_h
 WIDTHS = (0.003, 0.03, 0.1, 0.3)  # a_h/R
 LAYERS = {"ratio": RATIOS, "thickness": THICKNESSES}
 
@@ -94,7 +94,7 @@ ASSUMPTIONS: dict[str, Assumption] = {
         of_half_spaces,
         {
             "ratio": (0.1, 0.5, 1.0, 2.0, 10.0),
-            "thickness": (0.1, 0.5, 2.0),
+            "thickness": (0.02, 0.1, 0.5, 2.0),
             "width": (0.003, 0.03, 0.1, 0.2, 0.3),
             "ball": (0.0, 0.5),
         },
@@ -107,7 +107,7 @@ ASSUMPTIONS: dict[str, Assumption] = {
         of_small_strains,
         {
             "ratio": (0.1, 0.25, 1.0, 4.0, 10.0),
-            "thickness": (0.1, 0.5, 1.0, 2.0),
+            "thickness": (0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0),
             "nu": (0.2, 0.3, 0.45),
             "width": (0.03, 0.1, 0.2, 0.3),
         },
