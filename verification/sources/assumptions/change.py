@@ -17,6 +17,7 @@ from verification.sources.assumptions.stress import first_harmonic
 from verification.sources.references import integral_equation
 from verification.sources.references.integral_equation import SPHERE, ExactSolution
 
+SCALARS = ("contact_radius", "approach", "peak_pressure")
 FLOOR = 0.1  # of the peak pressure, to which a smaller stress is compared
 THINNEST = 0.01  # h/a_h; time and memory grow as (a/h)^2 and more
 POINTS = 2 * np.linspace(-1, 1, 81)  # of a line along an interface, x/a
@@ -56,10 +57,7 @@ def of_sphere(problem: CoatedContact) -> tuple[Change, Change]:
 
 def change_between(before: ExactSolution, after: ExactSolution) -> Change:
     """From ``before`` to ``after``, both at the same load; the interface is that of ``before``."""
-    scalars = {
-        name: getattr(after, name) / getattr(before, name) - 1
-        for name in ("contact_radius", "approach", "peak_pressure")
-    }
+    scalars = {name: getattr(after, name) / getattr(before, name) - 1 for name in SCALARS}
     one, other, floor = _tension(before), _tension(after), FLOOR * before.peak_pressure
     shear = _shear_change(_shear(before), _shear(after), floor)
     return Change(**scalars, tension=(other - one) / max(abs(one), floor), shear=shear)
