@@ -118,7 +118,7 @@ class ModelError:
 
 
 def model_error(problem: CoatedContact, maps: AssumptionMaps | None = None) -> ModelError:
-    """What the assumptions cost at ``problem``, in a few tenths of a second.
+    """What the assumptions cost at ``problem``, in tenths of a second; in seconds under h < a_h/20.
 
     maps : to read the assumptions in that are not evaluated; those of the package if None.
     """
