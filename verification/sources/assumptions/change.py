@@ -152,8 +152,14 @@ def _shear(exact: ExactSolution) -> Curve | None:
 
 def line_along_interface(a: float, h: float) -> Array:
     """Points [m] that resolve the shear at depth ``h`` of a contact of radius ``a``."""
-    edge = a + h * NEAR if h < THIN * a else np.empty(0)
-    return np.unique(np.concatenate([POINTS * a, edge, -edge]))
+    x = POINTS * a
+    if h >= THIN * a:
+        return x
+    edge = a + h * NEAR
+    # points that nearly coincide would leave the parabola of ``Curve`` to rounding
+    step = edge[1] - edge[0]
+    apart = np.maximum(edge[0] - np.abs(x), np.abs(x) - edge[-1]) > step / 2
+    return np.sort(np.concatenate([x[apart], edge, -edge]))
 
 
 def _shear_change(before: Curve | None, after: Curve | None, floor: float) -> float | None:
