@@ -31,7 +31,7 @@ def test_sphere_changes_every_quantity_as_the_square_of_the_contact_radius():
 
 @pytest.mark.parametrize("ratio", [0.1, 1.0, 10.0])
 def test_shear_of_a_thin_coating_changes_as_the_square_too(ratio):
-    """Its peak lies within h of the edge; a step of a/20 along the interface is off by 6 to 16 % of it."""
+    """Its peak lies within h of the edge, where the points of the line are close to each other."""
     changes = []
     for width in (0.01, 0.1):
         a_h = width * BARE.radius
