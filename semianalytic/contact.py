@@ -427,7 +427,7 @@ def _advance(state: _State, problem: _Problem) -> None:
 
 def _contact(state: _State, problem: _Problem) -> Contact:
     error = 0.0 if problem.total is None else abs(problem.sum(state.p) / problem.total - 1)
-    dropped = state.iterations >= PRECONDITIONED_ITERATIONS
+    xp, dropped = namespace(state.z), state.iterations >= PRECONDITIONED_ITERATIONS
     return Contact(
         pressure=state.p,
         gap=state.g,
@@ -438,5 +438,5 @@ def _contact(state: _State, problem: _Problem) -> Contact:
         iterations=state.iterations,
         convolutions=state.convolutions,
         history=tuple(state.history),
-        left=np.inf if dropped else float(max(state.z.max(), -state.z.min())),
+        left=np.inf if dropped else max(float(xp.max(state.z)), -float(xp.min(state.z))),
     )
