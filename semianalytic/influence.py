@@ -209,13 +209,16 @@ def _radial(
     """g(r) = int R(k) J0(kr) dk and int_0^r g r dr: moments to a tenth of a coating, Hankel grid beyond."""
     c, b = image
     h = thickness[0]  # M - 1 decays as exp(-2 k h): deeper layers give smoother terms
-    low, high = 1e-7 / max(b, sum(thickness)), 1e5 / h
+    low, high = 1e-7 / max(b, sum(thickness)), 1e4 / h
     k = np.geomspace(low, high, points)
     step = np.log(k[1] / k[0])
     R = excess(k) - c * np.exp(-b * k)
     offset = fhtoffset(step, mu=0)
     A = fht(R, step, mu=0, offset=offset)
     r = np.exp(offset) / k[::-1]
+    m0, m1, m2, m3 = (float(np.sum(R * k ** (2 * j + 1)) * step) for j in range(4))
+    # the transform is periodic in log r: one period below, g is m0
+    A -= m0 * np.exp(-points * step) * r
     near = 0.1 * h
     far = 1e6 * max(b, sum(thickness))
     keep = (r > 0.5 * near) & (r < far)
@@ -223,7 +226,6 @@ def _radial(
     spline = CubicSpline(x, A[keep] / r[keep])
     inner = CubicSpline(x, A[keep] * r[keep]).antiderivative()
     far_g = _of_any_library(spline, float(step))
-    m0, m1, m2, m3 = (float(np.sum(R * k ** (2 * j + 1)) * step) for j in range(4))
 
     def g(r: Array) -> Array:
         xp = namespace(r)
