@@ -5,7 +5,10 @@ DC-FFT (Liu, Wang and Liu, Wear 243 (2000) 101-111): the linear convolution
     u_ij = sum_kl K_(i-k, j-l) p_kl
 
 is a circular one on a domain doubled by zeros. Here K is even in both indices, so its transform is
-real, even, and fully held by one quadrant, a cosine transform of the quadrant of K.
+real, even, and fully held by one quadrant, a cosine transform of the quadrant of K. Pressures even in both
+indices need a quarter of the patches, and cosine transforms alone (Martucci, IEEE Trans. Signal Process. 42
+(1994) 1038-1051): of an odd number of patches about the centre of the middle one, of an even number about the
+border of the middle two.
 """
 
 from collections.abc import Callable
@@ -13,6 +16,8 @@ from collections.abc import Callable
 import ducc0
 import numpy as np
 from numpy.typing import NDArray
+
+from semianalytic import array_convolution
 
 __all__ = ["circulant_inverse", "even_convolution", "good_size", "memory_size"]
 
@@ -42,19 +47,24 @@ def even_convolution(
     """Linear convolution with a kernel even in both indices.
 
     kernel : K(i, j) for i, j >= 0, shape (nx, ny), the largest offsets between two patches.
-    quarter : p is even in both indices and held where they are not negative; nx, ny are odd.
-    Returns u(p) for p of shape (nx, ny), of a quarter ((nx + 1) / 2, (ny + 1) / 2); u has its shape, units
+    quarter : p is even about the middle of the nx x ny patches and held on its far side, that included.
+    An array of another library than NumPy is transformed by that; a quarter is of NumPy.
+    Returns u(p) for p of shape (nx, ny), of a quarter ((nx + 1) // 2, (ny + 1) // 2); u has its shape, units
     K times p. It reuses its work memory: concurrent calls need one operator each.
     memory : flat, of ``memory_size``, not for a quarter; u is then a part of it, and lost with its next use.
     """
     nx, ny = kernel.shape
+    if not isinstance(kernel, np.ndarray):
+        of_library = array_convolution.even_spectrum(kernel, good_size(2 * nx - 1), good_size(2 * ny - 1))
+        return array_convolution.apply_even(of_library, nx, ny)
     if quarter:
         # cosines of half-odd frequency change sign over 2 mx patches: what wraps around lands beyond u
         mx, my = (int(ducc0.fft.good_size(n, True)) for n in (nx, ny))
         spectrum: Array = np.zeros((mx, my))
         spectrum[:nx, :ny] = kernel
         ducc0.fft.dct(spectrum, axes=(0, 1), type=3, nthreads=threads, out=spectrum)
-        return _apply_cosines(spectrum / (4 * mx * my), (nx + 1) // 2, (ny + 1) // 2, (3, 2), threads)
+        spectrum /= 4 * mx * my
+        return _apply_cosines(spectrum, nx, ny, ((4, 4), (3, 2)), threads)
     spectrum = _even_spectrum(kernel, good_size(2 * nx - 1), good_size(2 * ny - 1), threads)
     return _apply_even(spectrum, nx, ny, threads, memory)
 
@@ -72,12 +82,17 @@ def circulant_inverse(
     """
     nx, ny = kernel.shape
     mx, my = good_size(nx), good_size(ny)
+    if not isinstance(kernel, np.ndarray):
+        spectrum = array_convolution.even_spectrum(kernel[: mx // 2 + 1, : my // 2 + 1], mx, my)
+        return array_convolution.apply_even(array_convolution.reciprocal(spectrum), nx, ny)
     spectrum = _even_spectrum(kernel[: mx // 2 + 1, : my // 2 + 1], mx, my, threads)
     # truncation can turn eigenvalues negative; true ones do not fall below those of the shortest waves
     floor = 0.5 * np.median(np.abs(spectrum))
     inverse = np.reciprocal(np.maximum(spectrum, floor, out=spectrum), out=spectrum)
     if quarter:
-        return _apply_cosines(inverse / (mx * my), (nx + 1) // 2, (ny + 1) // 2, (1, 1), threads)
+        inverse /= mx * my
+        held = inverse[: mx // 2 + nx % 2, : my // 2 + ny % 2]
+        return _apply_cosines(held, nx, ny, ((2, 3), (1, 1)), threads)
     return _apply_even(
         inverse.astype(np.float64 if memory is None else memory.dtype), nx, ny, threads, memory
     )
@@ -91,24 +106,29 @@ def _even_spectrum(kernel: Array, mx: int, my: int, threads: int) -> Array:
 
 
 def _apply_cosines(
-    spectrum: Array, nx: int, ny: int, types: tuple[int, int], threads: int
+    spectrum: Array, nx: int, ny: int, types: tuple[tuple[int, int], tuple[int, int]], threads: int
 ) -> Callable[[Array], Array]:
-    """Multiplication of the cosine transform by ``spectrum``; types : of the transform and of its inverse."""
-    wave = np.empty_like(spectrum)
-    rows = wave[:nx]
+    """Multiplication of the cosine transform of a quarter of nx x ny patches by ``spectrum``.
+
+    types : of the transform and of its inverse, along an even number of patches and along an odd one.
+    """
+    wave = np.empty_like(spectrum, order="C")
+    mx, my = (nx + 1) // 2, (ny + 1) // 2
+    rows = wave[:mx]
     if wave.size < SHARED:
         threads = 1
-    there, back = types
+    (of_columns, back_columns), (of_rows, back_rows) = types[nx % 2], types[ny % 2]
 
     def apply(p: Array) -> Array:
-        wave[:] = 0
-        wave[:nx, :ny] = p
-        ducc0.fft.dct(rows, axes=(1,), type=there, nthreads=threads, out=rows)
-        ducc0.fft.dct(wave, axes=(0,), type=there, nthreads=threads, out=wave)
+        rows[:, :my] = p
+        rows[:, my:] = 0
+        ducc0.fft.dct(rows, axes=(1,), type=of_rows, nthreads=threads, out=rows)
+        wave[mx:] = 0
+        ducc0.fft.dct(wave, axes=(0,), type=of_columns, nthreads=threads, out=wave)
         np.multiply(wave, spectrum, out=wave)
-        ducc0.fft.dct(wave, axes=(0,), type=back, nthreads=threads, out=wave)
-        ducc0.fft.dct(rows, axes=(1,), type=back, nthreads=threads, out=rows)
-        return wave[:nx, :ny].copy()
+        ducc0.fft.dct(wave, axes=(0,), type=back_columns, nthreads=threads, out=wave)
+        ducc0.fft.dct(rows, axes=(1,), type=back_rows, nthreads=threads, out=rows)
+        return rows[:, :my].copy()
 
     return apply
 

@@ -1,13 +1,14 @@
 """Square surface patches of the contact.
 
-Patch centres x_i = (i - (n-1)/2) d; with n odd the origin is a patch centre. Outside the grid no pressure
-acts; the convolution is linear, so the grid, or the window of it in use, only needs a margin for the contact
-to change during the iteration. Fields even in x and in y are held on a quarter of the grid.
+Patch centres x_i = (i - (n-1)/2) d; with n odd the origin is a patch centre, with n even a corner of four.
+Outside the grid no pressure acts; the convolution is linear, so the grid, or the window of it in use, only
+needs a margin for the contact to change during the iteration. Fields even in x and in y are held on a quarter
+of the grid.
 """
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,7 +25,7 @@ BLOCK = 2**15  # numbers that stay in the cache
 class Grid:
     """n x n square patches of side d [m], centred at the origin.
 
-    quarter : fields are even in x and in y and held on the patches x >= 0, y >= 0 alone; n is odd.
+    quarter : fields are even in x and in y and held on the patches x >= 0, y >= 0 alone.
     """
 
     n: int
@@ -33,7 +34,7 @@ class Grid:
 
     @property
     def x(self) -> Array:
-        """Centres along one axis of the patches held [m], shape (n,), of a quarter ((n + 1) / 2,)."""
+        """Centres along one axis of the patches held [m], shape (n,), of a quarter ((n + 1) // 2,)."""
         x = (np.arange(self.n) - (self.n - 1) / 2) * self.d
         return x[self.n // 2 :] if self.quarter else x
 
@@ -47,18 +48,25 @@ class Grid:
         """Distance of the patch centres held from the origin [m]."""
         return np.hypot(self.x[:, None], self.x[None, :])
 
-    @property
-    def weight(self) -> Array | None:
-        """Patches that each one held represents: of a quarter 1 at the origin, 2 on the axes, 4 elsewhere."""
+    def weight(self, shape: tuple[int, ...]) -> Array | None:
+        """Patches that each one held represents: of a quarter 1 at the origin, 2 on the axes, 4 elsewhere.
+
+        shape : of a window, of a quarter one that begins at the axes.  None of a whole grid.
+        """
         if not self.quarter:
             return None
         w = np.where(self.x > 0, 2.0, 1.0)
-        return np.outer(w, w)
+        return np.outer(*(w[:m] for m in shape))
 
     def force(self, pressure: Array) -> float:
-        """Force of a pressure on the patches [N]."""
-        w = self.weight
+        """Force of a pressure on a window of the patches held [N]."""
+        w = self.weight(pressure.shape)
         return float((pressure.sum() if w is None else np.sum(w * pressure)) * self.d**2)
+
+    def count(self, marked: NDArray[np.bool_]) -> int:
+        """Patches marked by those held on a window."""
+        w = self.weight(marked.shape)
+        return int(np.count_nonzero(marked) if w is None else w[marked].sum())
 
     @property
     def window(self) -> "Window":
@@ -66,15 +74,76 @@ class Grid:
         m = len(self.x)
         return Window(0, m, 0, m)
 
-    def whole(self, field: Array) -> Array:
-        """A field on all n x n patches."""
+    @property
+    def mirror(self) -> Literal["reflect", "symmetric"]:
+        """How ``np.pad`` continues a field held beyond the axes: about a patch centre, or a border."""
+        return "reflect" if self.n % 2 else "symmetric"
+
+    def across(self, window: "Window") -> "Window":
+        """A window on all n x n patches, of one on those held: of a quarter with its mirror images."""
+        if not self.quarter:
+            return window
+        first = self.n // 2 + self.n % 2
+        return Window(first - window.i1, self.n // 2 + window.i1, first - window.j1, self.n // 2 + window.j1)
+
+    def held(self, field: Array) -> Array:
+        """The part that is held of a field on all n x n patches."""
         c = self.n // 2
-        return np.pad(field, ((c, 0), (c, 0)), mode="reflect") if self.quarter else field
+        return field[c:, c:] if self.quarter else field
+
+    def whole(self, field: Array) -> Array:
+        """A field on all n x n patches, of one held on a window that begins at the axes of a quarter."""
+        if not self.quarter:
+            return field
+        mx, my = (m - self.n % 2 for m in field.shape)
+        whole = np.empty((mx + len(field), my + field.shape[1]))
+        whole[mx:, my:] = field
+        whole[mx:, :my] = field[:, ::-1][:, :my]
+        whole[:mx] = whole[::-1][:mx]
+        return whole
 
     def ringed(self, field: NDArray[Any]) -> NDArray[Any]:
         """A field with one more patch all around: 0 beyond the grid, mirrored at the axes of a quarter."""
         field = np.pad(field, ((0, 1), (0, 1)))
-        return np.pad(field, ((1, 0), (1, 0)), mode="reflect" if self.quarter else "constant")
+        return np.pad(field, ((1, 0), (1, 0)), mode=self.mirror if self.quarter else "constant")
+
+    @property
+    def _shared(self) -> int:
+        """1 where patches of twice the side share others with their neighbours: one is at the origin."""
+        return int(self.quarter and self.n % 2)
+
+    def merged(self, p: Array) -> Array:
+        """Pressure of the same load [Pa] on patches of twice the side, those at the origin even as p."""
+        for _ in range(2):
+            if self._shared:
+                p = np.pad(p, ((0, 1 - len(p) % 2), (0, 0)))
+                sides = p[1::2] / 4
+                p = p[::2] / 2
+                p[0] += sides[0]
+                p[1:] += sides[: len(p) - 1]
+                p[: len(sides)] += sides
+            else:
+                p = np.pad(p, ((0, len(p) % 2), (0, 0)))
+                p = (p[::2] + p[1::2]) / 2
+            p = p.T
+        return p
+
+    def lowest(self, gap: Array) -> Array:
+        """Smallest gap on the patches of ``merged``."""
+        for _ in range(2):
+            if self._shared:
+                gap = np.pad(gap, ((1, 2 - len(gap) % 2), (0, 0)), mode="reflect")
+                gap = np.minimum(np.minimum(gap[:-2:2], gap[1:-1:2]), gap[2::2])
+            else:
+                gap = np.pad(gap, ((0, len(gap) % 2), (0, 0)), mode="edge")
+                gap = np.minimum(gap[::2], gap[1::2])
+            gap = gap.T
+        return gap
+
+    def merging(self, window: "Window") -> "Window":
+        """The patches of ``merged`` that have a part of a window."""
+        i1, j1 = (-(-(end + self._shared) // 2) for end in (window.i1, window.j1))
+        return Window(window.i0 // 2, i1, window.j0 // 2, j1)
 
     def sample(self, heights: Array, half_width: float) -> Array:
         """Heights given on m x m patches that fill the square of ``half_width``, at these patch centres.
@@ -119,10 +188,13 @@ def window_around(pressure: Array, source: Grid, target: Grid) -> Window:
     for axis in (1, 0):
         loaded = source.x[np.any(pressure > 0, axis=axis)]
         low, high = loaded[0], loaded[-1]
+        if target.quarter:
+            high = max(-low, high)
+            low = -high
         margin = 0.04 * (high - low) / 2 + 3 * source.d
         first = int(np.floor((low - margin - target.x[0]) / target.d))
         last = int(np.ceil((high + margin - target.x[0]) / target.d))
-        edges += [max(first, 0), min(last, target.n - 1) + 1]
+        edges += [max(first, 0), min(last, len(target.x) - 1) + 1]
     return Window(*edges)
 
 
@@ -143,8 +215,9 @@ def prolong(pressure: Array, gap: Array, source: Grid, target: Grid, window: Win
     loaded = loaded[1:-1, 1:-1]
     # a rim patch lies 0.6 d from the edge on average
     rim = loaded & ~inner
-    weight = None if source.weight is None else source.weight[rim]
-    K2 = float(np.average(pressure[rim] ** 2, weights=weight)) / (0.6 * source.d)
+    weight = source.weight(rim.shape)
+    weights = None if weight is None else weight[rim]
+    K2 = float(np.average(pressure[rim] ** 2, weights=weights)) / (0.6 * source.d)
     level = pressure**2
     # patches not next to a loaded one are never interpolated with one: any value that is not positive serves
     beside &= ~loaded
@@ -155,10 +228,10 @@ def prolong(pressure: Array, gap: Array, source: Grid, target: Grid, window: Win
     return np.sqrt(level, out=level)
 
 
-def touches_rim(pressure: Array) -> bool:
-    """Whether a patch of the outermost ring is loaded."""
-    rim = (pressure[0], pressure[-1], pressure[:, 0], pressure[:, -1])
-    return any(bool(np.any(side > 0)) for side in rim)
+def touches_rim(pressure: Array, quarter: bool = False) -> bool:
+    """Whether a patch of the outermost ring is loaded; two sides of a ``quarter`` belong to it."""
+    rim = (pressure[-1], pressure[:, -1], pressure[0], pressure[:, 0])
+    return any(bool(np.any(side > 0)) for side in rim[: 2 if quarter else 4])
 
 
 def deconvolve(mean: Array) -> Array:

@@ -22,12 +22,14 @@ plain      M/k times the transform of the patch, aliases summed, FFT on an enlar
 
 from collections.abc import Callable
 from math import isqrt
+from typing import Any
 
 import ducc0
 import numpy as np
 from numpy.typing import NDArray
 
 from semianalytic import halfspace
+from semianalytic.arrays import at_once, namespace, strips
 from semianalytic.inputs import Body, Numerics
 from semianalytic.response import Response
 
@@ -36,30 +38,32 @@ __all__ = ["plain_coefficients", "remainder_coefficients", "surface_coefficients
 Array = NDArray[np.floating]
 Function = Callable[[Array], Array]
 
-BLOCK = 2**15  # coefficients computed at a time, so that they stay in the cache
 DIGITS = 1e-11  # tolerance of the quadrature over a patch, relative to the value at its centre
 SMOOTH = 12.0  # patches from the nearest singularity, beyond which finite differences average a patch
 
 
-def surface_coefficients(n: int, d: float, body: Body, numerics: Numerics) -> Array:
+def surface_coefficients(n: int, d: float, body: Body, numerics: Numerics, xp: Any = np) -> Array:
     """Influence coefficients K [m/Pa] of the surface displacement by the conversion of ``numerics``.
 
     With an elastic ball, of the approach of both surfaces: u_z of the flat plus that of the ball.
 
-    n : offsets 0..n-1.  d : side of the patches [m].  Returns shape (n, n), even in both indices.
+    n : offsets 0..n-1.  d : side of the patches [m].  xp : namespace of the result, which computes it by the
+    conversion "split"; by another one NumPy does.  Returns shape (n, n), even in both indices.
     """
+    if xp is not np and numerics.conversion != "split":
+        return xp.asarray(surface_coefficients(n, d, body, numerics))
     both, enlarge, threads = body.response, numerics.enlarge, numerics.threads
     if numerics.conversion == "plain":
         excess = both.excess if both else np.zeros_like
         K = plain_coefficients(n, d, excess, enlarge=enlarge, threads=threads)
     else:
-        K = halfspace.surface_deflection(n, n, d, d)
+        K = halfspace.surface_deflection(n, n, d, d, xp=xp)
         if both:
             enlarge = enlarge if numerics.conversion == "split-fft" else 0
             points = numerics.hankel_points
-            K += remainder_coefficients(n, d, both, points=points, enlarge=enlarge, threads=threads)
+            K += remainder_coefficients(n, d, both, points=points, enlarge=enlarge, threads=threads, xp=xp)
             c, b = both.image
-            of_image = halfspace.surface_deflection(n, n, d, d, b)
+            of_image = halfspace.surface_deflection(n, n, d, d, b, xp)
             of_image *= c
             K += of_image
     K *= 1 / (np.pi * body.contact_modulus)
@@ -74,6 +78,7 @@ def remainder_coefficients(
     points: int = 4096,
     enlarge: int = 0,
     threads: int = 1,
+    xp: Any = np,
 ) -> Array:
     """Integral over a patch of the part of g(r) not due to Love's rectangle and its image.
 
@@ -82,7 +87,8 @@ def remainder_coefficients(
     n : offsets 0..n-1.  d : side of the patches [m].  response : of the surface, with R and its image.
     points : of the logarithmic Hankel grid.
     enlarge : 0 for the Hankel transform; else the factor by which the domain of a two-dimensional FFT
-    exceeds the kernel's (conversion "split-fft").  Returns [m], shape (n, n), even in both indices.
+    exceeds the kernel's (conversion "split-fft", by NumPy).  xp : namespace of the result.
+    Returns [m], shape (n, n), even in both indices.
     """
     if enlarge:
         c, b = response.image
@@ -94,22 +100,28 @@ def remainder_coefficients(
 
     g, on_disc = response.radial(points)
     near = 2 * response.first / d  # g is singular no nearer than the image of the surface, at depth 2 h
-    mean = _octant(g, n + 3, d)
-    _average(mean)
-    _average(mean.T)
-    mean = mean[:n, :n]
+    mean = _average(_average(_octant(g, n + 3, d, xp)).T).T[:n, :n]
     mean *= d * d
-    edges = (3.0, SMOOTH) if near < SMOOTH else ()
-    inner = 0
-    for edge in edges:
+    if near < SMOOTH:
+        corner = _corner(g, on_disc, min(int(SMOOTH), n), d, near)
+        mean[: len(corner), : len(corner)] = xp.asarray(corner)
+    return mean
+
+
+def _corner(g: Function, on_disc: Function, n: int, d: float, near: float) -> Array:
+    """Integrals [m] over the patches next to the loaded one by Gauss quadrature, shape (n, n).
+
+    near : distance to the nearest singularity of g, in patches.
+    """
+    mean, inner = np.empty((n, n)), 0
+    for edge in (3.0, SMOOTH):
         outer = min(int(np.ceil(edge)), n)
         reach = np.hypot(near, max(inner - 1, 0.5))
         _gauss_block(mean, g, d, inner, outer, reach)
         inner = outer
-    if edges:
-        # the loaded patch, which may be far wider than the coating is thick, in polar coordinates
-        s, w = np.polynomial.legendre.leggauss(16)
-        mean[0, 0] = np.pi * np.sum(w * on_disc(d / 2 / np.cos(np.pi / 8 * (1 + s))))
+    # the loaded patch, which may be far wider than the coating is thick, in polar coordinates
+    s, w = np.polynomial.legendre.leggauss(16)
+    mean[0, 0] = np.pi * np.sum(w * on_disc(d / 2 / np.cos(np.pi / 8 * (1 + s))))
     return mean
 
 
@@ -150,22 +162,23 @@ def _by_fft(
     return quadrant[:n, :n] * (2 * np.pi / (m * m))
 
 
-def _octant(g: Callable[[Array], Array], n: int, d: float) -> Array:
+def _octant(g: Callable[[Array], Array], n: int, d: float, xp: Any) -> Array:
     """g at the patch centres, computed in blocks of rows, in each up to its diagonal."""
-    table = np.empty((n, n))
-    i, end = np.arange(n), 0
+    table: Array = xp.empty((n, n))
+    i, end = xp.arange(n, dtype=xp.float64), 0
+    numbers = at_once(xp)
     while end < n:
-        begin, end = end, min(n, end + max(1, BLOCK // (end + isqrt(BLOCK))))
-        block = g(d * np.hypot(i[begin:end, None], i[:end]))
+        begin, end = end, min(n, end + max(1, numbers // (end + isqrt(numbers))))
+        block = g(d * xp.hypot(i[begin:end, None], i[None, :end]))
         table[begin:end, :end] = block
         table[:end, begin:end] = block.T
     return table
 
 
-def _average(table: Array) -> None:
+def _average(table: Array) -> Array:
     """Mean over a patch along the first index, in place: (delta/2)/asinh(delta/2) to sixth differences.
 
-    The last three rows, whose neighbours are not in the table, lose their meaning.
+    The last three rows, whose neighbours are not in the table, lose their meaning. Returns the table.
     """
     weights = np.array([1.0, 0, 0, 0])
     for factor, row in (
@@ -174,14 +187,16 @@ def _average(table: Array) -> None:
         (367 / 967680, (-20, 15, -6, 1)),
     ):
         weights += factor * np.array(row)
-    n = len(table) - 3
-    columns = max(1, BLOCK // len(table))
-    for begin in range(0, table.shape[1], columns):
-        strip = table[:, begin : begin + columns]
-        rows = np.concatenate([strip[3:0:-1], strip])
-        mean = np.multiply(rows[3 : n + 3], weights[0], out=strip[:n])
-        for j in (1, 2, 3):
-            mean += weights[j] * (rows[3 - j : n + 3 - j] + rows[3 + j : n + 3 + j])
+    first, *others = weights.tolist()
+    xp, n = namespace(table), table.shape[0] - 3
+    for columns in strips(table.shape[1], table.shape[0], xp):
+        strip = table[:, columns]
+        rows = xp.concat([strip[3:0:-1, :], strip])
+        mean = rows[3 : n + 3, :] * first
+        for j, weight in enumerate(others, start=1):
+            mean += weight * (rows[3 - j : n + 3 - j, :] + rows[3 + j : n + 3 + j, :])
+        table[:n, columns] = mean
+    return table
 
 
 def _gauss_block(

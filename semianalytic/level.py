@@ -59,7 +59,7 @@ class Level:
             return self.shape.radius
         if self.edge is not None:
             return float(np.sqrt(self.edge.area / np.pi) * self.grid.d)
-        loaded = np.count_nonzero(self.grid.whole(self.found.pressure))
+        loaded = self.grid.count(self.found.pressure > 0)
         return float(np.sqrt(loaded / np.pi) * self.grid.d)
 
     @property
@@ -102,7 +102,7 @@ class Level:
                 on_patches = self.shape.pressure(self.grid.radius)
                 peak += float((on_patches + self.rest).max() - on_patches.max())
         elif self.edge is not None:
-            peak += _above_highest(self.found.pressure)
+            peak += _above_highest(self.grid.whole(self.found.pressure))
         return peak
 
     @cached_property
@@ -158,7 +158,7 @@ class LevelProblem:
     ) -> None:
         self.grid, self.gap, self.depth, self.window, self.before = grid, gap, depth, window, before
         self.indenter, self.body, self.numerics = indenter, body, numerics
-        nx, ny = (grid.n, grid.n) if grid.quarter else window.shape
+        nx, ny = grid.across(window).shape
         kernel = influence.surface_coefficients(max(nx, ny), grid.d, body, numerics)[:nx, :ny]
         held, threads = grid.quarter, numerics.threads
         memory: Array | None = None
@@ -191,13 +191,23 @@ class LevelProblem:
             tolerance=self.numerics.tolerance,
             max_iterations=self.numerics.max_iterations,
             extension=_extension(self.body, grid.d),
-            weight=grid.weight,
+            weight=grid.weight(self.gap.shape),
+            mirror="mirror" if grid.n % 2 else "reflect",
             work=self.work,
         )
         load = grid.force(found.pressure) + missing
         # p = E* k u / 2, k at most that of a checkerboard, sqrt(2) pi / d
         noise = self.numerics.tolerance * scale * self.body.contact_modulus * np.pi / 2**0.5 / grid.d
         return Level(grid, found, None, load, found.convolutions, noise)
+
+    def deflection_of_whole(self, p: Array) -> Array:
+        """u = A p of an even pressure [Pa] on the window and its mirror images."""
+        return self.grid.whole(self.deflection(self.held(p)))
+
+    def held(self, field: Array) -> Array:
+        """The part on the window of an even field on it and its mirror images."""
+        nx, ny = self.window.shape
+        return field[-nx:, -ny:]
 
     def first_guess(self) -> Array:
         """Pressure [Pa] from the level before, or from the gap."""

@@ -13,7 +13,7 @@ from semianalytic.grid import Grid, Window, odd, touches_rim, window_around
 from semianalytic.inputs import COARSEST, Body, Numerics
 from semianalytic.level import Indenter, Level, LevelProblem
 
-__all__ = ["levels", "solve_on"]
+__all__ = ["is_alone", "levels", "solve_on", "undeformed"]
 
 Array = NDArray[np.floating]
 
@@ -38,12 +38,11 @@ def levels(
     starter = replace(numerics, tolerance=max(1e-5, numerics.tolerance))
     if indenter.shapes:
         starter = replace(starter, max_iterations=min(QUICK, numerics.max_iterations))
-    quarter = indenter.round and numerics.patches % 2 == 1
     found: list[Level] = []
     rough = replace(indenter, edge_correction=False)
     for k, (n, shape) in enumerate(zip(sizes, shapes, strict=True)):
         used, pressed = (numerics, indenter) if k >= len(sizes) - kept else (starter, rough)
-        before, grid = found[-1] if found else None, Grid(n, 2 * half_width / n, quarter)
+        before, grid = found[-1] if found else None, Grid(n, 2 * half_width / n, indenter.round)
         try:
             found.append(solve_on(grid, before, pressed, body, used, shape))
         except NotConverged:
@@ -62,24 +61,38 @@ def solve_on(
     numerics: Numerics,
     shape: Profile | None = None,
 ) -> Level:
-    """Contact on a grid: of a sphere corrected by an edge profile, of others on the window they need."""
-    gap = indenter.gap(grid)
+    """Contact on a grid: of a sphere corrected by an edge profile, of others on the window they need.
+
+    Where the gap is even in x and in y, so are all fields, and a quarter of the grid is enough.
+    """
     if indenter.round:
-        return corrected(grid, gap, before, shape, indenter, body, numerics)
+        return corrected(grid, indenter.gap(grid), before, shape, indenter, body, numerics)
+    grid, gap = undeformed(replace(grid, quarter=False), indenter)
     whole, depth = grid.window, float(np.ptp(gap))
     if before is not None:
+        before = before.whole if grid.quarter < before.grid.quarter else before
         window = window_around(before.found.pressure, before.grid, grid)
         if window.shape != whole.shape:
-            lowest, gap = _lowest_of_four(gap), gap[window.slices].copy()
+            lowest, gap = grid.lowest(gap), gap[window.slices].copy()
             problem = LevelProblem(grid, gap, depth, window, before, indenter, body, numerics)
             level = _solved(problem)
             del problem  # frees the memory of its transforms for those below
             level = _embedded(level, window, depth)
-            if _is_alone(level, lowest, window, body, numerics):
+            if is_alone(level, lowest, window, body, numerics):
                 return level
-            gap = indenter.gap(grid)
+            _, gap = undeformed(replace(grid, quarter=False), indenter)
     problem = LevelProblem(grid, gap, depth, whole, before, indenter, body, numerics)
     return _solved(problem)
+
+
+def undeformed(grid: Grid, indenter: Indenter) -> tuple[Grid, Array]:
+    """Gap on a whole grid; on a quarter, and that grid, where it is even in x and in y to the last digit."""
+    gap = indenter.gap(grid)
+    c = (grid.n + 1) // 2
+    if np.array_equal(gap[:c], gap[: -c - 1 : -1]) and np.array_equal(gap[:, :c], gap[:, : -c - 1 : -1]):
+        grid = replace(grid, quarter=True)
+        gap = grid.held(gap).copy()
+    return grid, gap
 
 
 def _solved(problem: LevelProblem) -> Level:
@@ -87,35 +100,26 @@ def _solved(problem: LevelProblem) -> Level:
 
 
 def _embedded(level: Level, window: Window, depth: float) -> Level:
-    edge = None if level.edge is None else level.edge.embedded(window.i0, window.j0)
-    return replace(level, found=level.found.embedded(window.slices, level.grid.n, depth), edge=edge)
+    across = level.grid.across(window)
+    edge = None if level.edge is None else level.edge.embedded(across.i0, across.j0)
+    found = level.found.embedded(window.slices, level.grid.window.shape, depth)
+    return replace(level, found=found, edge=edge)
 
 
-def _lowest_of_four(gap: Array) -> Array:
-    """Smallest gap on patches of twice the side."""
-    if len(gap) % 2:
-        gap = np.pad(gap, (0, 1), mode="edge")
-    rows = np.minimum(gap[::2], gap[1::2])
-    return np.minimum(rows[:, ::2], rows[:, 1::2])
-
-
-def _is_alone(level: Level, lowest: Array, window: Window, body: Body, numerics: Numerics) -> bool:
+def is_alone(level: Level, lowest: Array, window: Window, body: Body, numerics: Numerics) -> bool:
     """Whether only the window is in contact: its rim is free, and the gap beyond it open.
 
     The deflection beyond is computed on patches of twice the side, which at the distance of the window's
-    margin changes it by 1e-3; ``lowest`` is the smallest gap of the four.
+    margin changes it by 1e-3; ``lowest`` is the smallest gap on each.
     """
-    p = level.found.pressure
-    if touches_rim(p[window.slices]):
+    grid, p = level.grid, level.found.pressure
+    if touches_rim(p[window.slices], grid.quarter):
         return False
-    if level.grid.n % 2:
-        p = np.pad(p, (0, 1))
-    rows = p[::2] + p[1::2]
-    merged = (rows[:, ::2] + rows[:, 1::2]) / 4
-    del rows
-    kernel = influence.surface_coefficients(len(lowest), 2 * level.grid.d, body, numerics)
-    g = convolution.even_convolution(kernel, threads=numerics.threads)(merged)
+    merged = grid.merged(p)
+    n = 2 * len(merged) - grid.n % 2 if grid.quarter else len(merged)
+    kernel = influence.surface_coefficients(n, 2 * grid.d, body, numerics)
+    g = convolution.even_convolution(kernel, quarter=grid.quarter, threads=numerics.threads)(merged)
     g += lowest
     g -= level.found.approach
-    g[window.i0 // 2 : -(-window.i1 // 2), window.j0 // 2 : -(-window.j1 // 2)] = np.inf
+    g[grid.merging(window).slices] = np.inf
     return bool(g.min() > 0)

@@ -28,7 +28,8 @@ def test_lock_constraints_and_uv_pin_the_same_versions():
     locked = [
         re.sub(r" \\$", "", line) for line in lock.splitlines() if "==" in line and not line.startswith(" ")
     ]
-    assert locked == PINNED
+    # who installs the lock does not get the 680 MB of the extra "fast"
+    assert locked == [line for line in PINNED if "platform_machine" not in line]
     pyproject = tomllib.loads((ROOT / "pyproject.toml").read_text())
     assert [line.replace("'", '"') for line in pyproject["tool"]["uv"]["constraint-dependencies"]] == [
         line.replace("'", '"') for line in PINNED

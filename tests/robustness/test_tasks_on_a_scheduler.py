@@ -15,6 +15,7 @@ from verification.commands.common.solving import pool_of, run_info
 from verification.running.pool import cluster, remote
 from verification.running.pool.cluster import Cluster, Lost
 from verification.running.pool.task import SchedulerError, Task
+from verification.running.pool.worker import Kept
 from verification.running.provenance import hardware
 from verification.running.store import StoreError, read_checked, write_checked
 
@@ -30,14 +31,29 @@ def address():
         n_workers=1, threads_per_worker=1, processes=False, dashboard_address="127.0.0.1:0"
     ) as workers:
         yield workers.scheduler_address
-    while remote._idle:
-        remote._idle.pop().close()
 
 
 @pytest.fixture(autouse=True)
 def _planted(monkeypatch):
     places = [str(HERE), str(HERE.parent / "verification"), os.environ.get("PYTHONPATH", "")]
     monkeypatch.setenv("PYTHONPATH", os.pathsep.join(places))
+
+
+def test_a_worker_keeps_its_process_for_the_next_run_and_ends_it_with_itself(tmp_path):
+    from distributed import LocalCluster
+
+    with LocalCluster(
+        n_workers=1, threads_per_worker=1, processes=False, dashboard_address="127.0.0.1:0"
+    ) as workers:
+        processes = []
+        for n in range(2):
+            Cluster(workers.scheduler_address).run([task("process", tmp_path, n)], time_limit=60.0)
+            (slot,) = workers.workers[0].plugins[Kept.name].idle
+            processes.append(slot.process)
+        first, second = processes
+        assert first is second
+        assert first.poll() is None
+    assert first.poll() is not None
 
 
 def test_tasks_run_as_on_this_machine(address, tmp_path, monkeypatch):

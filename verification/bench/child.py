@@ -77,14 +77,16 @@ def elements(turn: int, friction: float, fast: bool) -> Prepared:
     return lambda: fem_reference.solve(**problem(turn), friction=friction)
 
 
-def default_run(turn: int) -> Prepared:
-    """The command ``coatcheck run`` with its report; nothing in turn 0."""
+def default_run(turn: int, *cases: str) -> Prepared:
+    """The command ``coatcheck run`` of the shipped ``cases``, with its report; nothing in turn 0."""
     if not turn:
         return lambda: None
+    shipped = Path(os.environ["PYTHONPATH"], "verification", "cases")
+    files = [str(next(shipped.rglob(f"{name}.toml"))) for name in cases]
 
     def run() -> None:
         with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as folder:
-            command = [sys.executable, "-m", "verification.cli", "run", "--output", folder]
+            command = [sys.executable, "-m", "verification.cli", "run", *files, "--output", folder]
             subprocess.run(command, stdout=subprocess.DEVNULL, check=False)
             # Its verdicts, so its exit code, are those of another machine and of other versions.
             if not Path(folder, "report.json").exists():

@@ -12,11 +12,23 @@ from statistics import median
 from typing import Literal
 
 from verification.bench.judge import LIMIT
-from verification.bench.turns import Work, in_turn
+from verification.bench.turns import HERE, Work, in_turn
 
-__all__ = ["ASKED_SIZES", "PEERS", "REFERENCE", "Figure", "Group", "Other", "Part", "groups", "measure"]
+__all__ = [
+    "ASKED_SIZES",
+    "PEERS",
+    "REFERENCE",
+    "ROOMS",
+    "Figure",
+    "Group",
+    "Other",
+    "Part",
+    "groups",
+    "measure",
+]
 
 REFERENCE = "dfc1d79"  # the commit of which the asked ratios speak
+ROOMS = "cf67b33"  # that of the default run: its rooms are today's, its methods those of REFERENCE
 Part = Literal["solve", "stress", "elements", "contact", "default-run"]
 PEERS = ("tamaas", "aspher")
 CONTACT = "contact"  # of the semi-analytical method
@@ -107,14 +119,27 @@ def groups(
     if "contact" in parts:
         found += [_contact(patches, threads, peers) for patches in sizes]
     if other is not None and "default-run" in parts:
-        found.append(_over(other, {"default run": Work("default_run")}))
+        work = Work("default_run", _shared_cases(other.root))
+        found.append(_over(other, {"default run": work}, 0.6, speaks_of=ROOMS))
     return found
 
 
-def _over(other: Other, works: dict[str, Work], *asked: float) -> Group:
-    """The ``works`` over the first of them as the other commit does it; ``asked`` of each over REFERENCE."""
+def _shared_cases(root: Path) -> tuple[str, ...]:
+    """Names of the shipped contacts that this commit and the one at ``root`` both have."""
+    ours, theirs = (
+        {path.stem for path in (one / "verification" / "cases").rglob("[0-9][0-9]_*.toml")}
+        for one in (HERE, root)
+    )
+    return tuple(sorted(ours & theirs))
+
+
+def _over(other: Other, works: dict[str, Work], *asked: float, speaks_of: str = REFERENCE) -> Group:
+    """The ``works`` over the first of them as the other commit does it.
+
+    asked : of each, over the commit that it ``speaks_of`` alone.
+    """
     first = next(iter(works.values()))
-    limits = asked if other.name == REFERENCE else ()
+    limits = asked if other.name == speaks_of else ()
     ratios = tuple(
         Ratio(name, other.name, other.name, limit) for name, limit in zip_longest(works, limits[: len(works)])
     )

@@ -6,7 +6,9 @@ from pathlib import Path
 
 from verification.running.records import decode
 from verification.running.result import CaseResult, RunInfo, from_json, to_json
-from verification.running.store import MAX_BYTES, StoreError, read_bounded, read_checked
+from verification.running.store import StoreError, read_bounded, read_checked
+
+MAX_BYTES = 1_000_000_000  # of all the results of a run: half a megabyte a case, up to 3 with an elastic ball
 
 
 @dataclass(frozen=True, eq=False)

@@ -3,7 +3,7 @@
 import pytest
 
 from verification.bench import figures
-from verification.bench.figures import ASKED_SIZES, REFERENCE, Figure, Other, groups, measure
+from verification.bench.figures import ASKED_SIZES, REFERENCE, ROOMS, Figure, Other, groups, measure
 from verification.bench.turns import HERE, Times
 
 
@@ -35,6 +35,20 @@ def test_every_ratio_asked_is_measured():
         "convolution": 3,
         "1 thread": 1,
     }
+
+
+def test_default_run_is_that_of_the_contacts_that_both_commits_have(tmp_path):
+    cases = tmp_path / "verification" / "cases" / "elsewhere"
+    cases.mkdir(parents=True)
+    for name in ("05_ratio_4", "99_unknown_today"):
+        (cases / f"{name}.toml").touch()
+    *_, group = planned(ROOMS, tmp_path)
+    assert {(work.arguments, work.root) for work in group.works.values()} == {
+        (("05_ratio_4",), HERE),
+        (("05_ratio_4",), tmp_path),
+    }
+    (ratio,) = group.ratios
+    assert (ratio.over, ratio.asked) == (ROOMS, 0.6)
 
 
 def test_over_another_commit_nothing_is_asked():

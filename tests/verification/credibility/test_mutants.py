@@ -16,6 +16,7 @@ from verification.credibility.mutation.sites import mutants, mutated
 from verification.credibility.mutation.trial import kept_trial, main, try_mutant
 from verification.report.credibility import mutants as page
 from verification.report.material import Evidence, Material
+from verification.report.sections.first import worth
 from verification.running.records import decode, encode
 from verification.running.store import StoreError, read_checked
 
@@ -212,6 +213,8 @@ def test_the_section_shows_score_and_survivors(tmp_path):
     assert "the <same> number" in cells
     assert "not read" in cells
     assert page.section(Material([], INFO)) is None
+    (first,) = worth(Material([], INFO, Evidence(mutants=record)))
+    assert (first.value, first.href) == ("1 of 2", f"#{section.anchor}")
 
 
 def test_survivors_on_record_are_of_this_source():

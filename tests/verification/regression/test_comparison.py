@@ -123,6 +123,13 @@ def test_a_run_comes_back_from_its_report(tmp_path):
         assert not compare_runs(run_of(GOOD), found).drifted
 
 
+def test_a_run_of_hundreds_of_cases_is_read(tmp_path):
+    write(tmp_path / "a", GOOD)
+    with (tmp_path / "a" / "report.json").open("a") as file:
+        file.write(" " * 200_000_000)  # as long as the results of 400 cases
+    assert len(read_run(tmp_path / "a").results) == 1
+
+
 def test_the_command_says_it_by_code_by_words_and_as_a_page(tmp_path):
     write(tmp_path / "a", GOOD)
     write(tmp_path / "b", WRONG)

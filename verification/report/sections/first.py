@@ -89,7 +89,7 @@ def headline(results: Sequence[CaseResult]) -> str:
     total = sum(len(result.verdicts) for result in results)
     agreeing = sum(v.outcome is Outcome.AGREES for result in results for _, v in result.verdicts)
     bad = sum(result.outcome is not Outcome.AGREES for result in results)
-    cases = f"{len(results)} case" if len(results) == 1 else f"{len(results)} cases"
+    cases = _counted(len(results), "case")
     if not bad:
         return f"All {total} comparisons of {cases} agree within their numerical uncertainty"
     return f"{bad} of {cases} do not agree: {total - agreeing} of {total} comparisons"
@@ -98,9 +98,15 @@ def headline(results: Sequence[CaseResult]) -> str:
 def asked(results: Sequence[CaseResult]) -> str:
     """What was compared, in one sentence."""
     contacts = sum(not result.published for result in results)
-    texts = [f"{contacts} contacts of a sphere with a coated solid"] if contacts else []
-    texts += [f"{len(results) - contacts} published sources"] if contacts < len(results) else []
-    return f"{' and '.join(texts)}, each solved by independent methods." if texts else ""
+    published = len(results) - contacts
+    texts = [f"{_counted(contacts, 'contact')} of a sphere with a coated solid"] if contacts else []
+    texts += [_counted(published, "published source")] if published else []
+    solved = ", each solved" if len(results) > 1 else ", solved"
+    return f"{' and '.join(texts)}{solved} by independent methods." if texts else ""
+
+
+def _counted(count: int, noun: str) -> str:
+    return f"{count} {noun}" if count == 1 else f"{count} {noun}s"
 
 
 def largest(material: Material) -> list[str]:
@@ -260,6 +266,9 @@ def worth(material: Material) -> list[Worth]:
         if record.controls:
             count = len(record.controls)
             found.append(_share("negative controls left alone", count - len(record.alarms), count, "#faults"))
+    if evidence.mutants is not None:
+        caught, count = evidence.mutants.score()
+        found.append(Worth("mutants detected", f"{caught} of {count}", "#mutants", None))
     if evidence.alarms is not None:
         made = evidence.alarms.comparisons + evidence.alarms.invariants
         value = f"{len(evidence.alarms.alarms)} of {made}"

@@ -77,6 +77,9 @@ class Cluster:
             return []
         results: dict[int, T] = {}
         with connected(self.address, None) as client:
+            from verification.running.pool.worker import Kept
+
+            client.register_plugin(Kept())
             self.jobs = max(self.jobs, sum(client.nthreads().values()))
             requests = _requests(tasks, time_limit, started)
             with closing(answers(client, serve, requests, meanwhile)) as arriving:

@@ -2,7 +2,6 @@
 
 import tempfile
 from collections import deque
-from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -39,10 +38,6 @@ class Reply:
     files: dict[Path, bytes] = field(default_factory=dict)
 
 
-# Processes between two requests, which have imported what tasks need. They end with the worker.
-_idle: list[Slot[Result]] = []
-
-
 def serve(request: Request) -> Reply:
     """Run the tasks of ``request`` in a directory of their own, which holds copies of what they need."""
     mine = provenance()
@@ -71,7 +66,10 @@ def _local(root: Path, name: str, command: tuple[str | Path, ...], path: Path) -
 
 def _run(tasks: list[Task[Result]], time_limit: float) -> tuple[Result, ...]:
     """The results of ``tasks`` in one process, until the scheduler no longer wants them."""
-    slot, abandoned, results = _idle.pop() if _idle else Slot[Result](1), _abandoned(), []
+    from verification.running.pool import worker
+
+    held, abandoned, results = worker.kept(), worker.abandoned(), []
+    slot = held.idle.pop() if held and held.idle else Slot[Result](1)
     try:
         slot.owed = deque(enumerate(tasks))
         while slot.owed:
@@ -84,20 +82,11 @@ def _run(tasks: list[Task[Result]], time_limit: float) -> tuple[Result, ...]:
     except BaseException:
         slot.close()
         raise
-    _idle.append(slot)
+    if held:
+        held.idle.append(slot)
+    else:
+        slot.close()
     return tuple(results)
-
-
-def _abandoned() -> Callable[[], bool]:
-    """Whether the scheduler has dropped the task of this thread: its client stopped, or is gone."""
-    from distributed import get_worker
-
-    try:
-        worker = get_worker()
-    except ValueError:  # not a worker's thread
-        return lambda: False
-    tasks, key = worker.state.tasks, worker.get_current_task()
-    return lambda: key not in tasks or tasks[key].state == "cancelled"
 
 
 def _written(root: Path, request: Request) -> dict[Path, bytes]:
