@@ -113,10 +113,10 @@ def solve(
     half_width = fill * a
     if edge_correction:
         sphere = replace(sphere, shapes=tuple(one.profile for one in found))
-        depth, reach = collocation.reflecting_depth(body), 1.01 * 2**0.5 * half_width
-        if np.isfinite(depth):
-            table = abel.layer_table(collocation.compliance_excess(body), depth, a, reach)
-            sphere = replace(sphere, table=table)
+        both, reach = body.response, 1.01 * 2**0.5 * half_width
+        if both:
+            terms = max(len(one.profile.coefficients) for one in found)
+            sphere = replace(sphere, table=abel.layer_table(both.excess, both.depth, a, reach, terms))
     levels = nested.levels(half_width, sphere, body, numerics, estimate_uncertainty)
     if touches_rim(levels[-1].whole.found.pressure):
         raise NotConverged(f"the contact reaches the rim of the grid, fill = {fill:g}; enlarge it")
