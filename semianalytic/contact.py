@@ -15,20 +15,21 @@ Optim. 13 (2002) 865-888, with inexact inner solves); a stopping criterion on co
 of the change of p.
 """
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import gaussian_filter
+
+from semianalytic import arrays
+from semianalytic.arrays import Mirror, blocks, namespace
 
 __all__ = ["Contact", "NotConverged", "solve"]
 
 Array = NDArray[np.floating]
 Mask = NDArray[np.bool_]
 Operator = Callable[[Array], Array]
-Mirror = Literal["mirror", "reflect"]
 
 # Limits of the active-set strategy.
 RESIDUAL_FALL = 0.5  # on a fixed contact set, at which the set is updated
@@ -37,7 +38,6 @@ PREDICTED_UPDATES = 12  # after these the set follows the signs of p and g in ev
 EXTENDED_ITERATIONS = 10  # after these the residual is cut off at the edge, P is symmetric again
 PRECONDITIONED_ITERATIONS = 50  # after these P is dropped: Polonsky and Keer's own iteration
 FADED = 0.1  # share of contact in the mean, below which the extended residual fades
-BLOCK = 2**15  # numbers that stay in the cache
 EXTENSION = 2.0  # patches over which the residual is extended beyond the contact, by default
 
 
@@ -52,7 +52,8 @@ class Contact:
     pressure [Pa], gap [m] : shape of the undeformed gap.  approach [m].
     gap_inside, penetration_outside : largest |g| where p > 0 and largest -g where p = 0, over the scale
     of the gap.  load_error : relative.  history : (gap, penetration) before each iteration.
-    convolutions : applications of A.
+    convolutions : applications of A.  left : largest change of p [Pa] by a further step, z = P g, A^-1 of the
+    gap left; inf where P was dropped.
     """
 
     pressure: Array
@@ -64,6 +65,7 @@ class Contact:
     iterations: int
     convolutions: int
     history: tuple[tuple[float, float], ...]
+    left: float = 0.0
 
     @classmethod
     def of_load(cls, pressure: Array) -> "Contact":
@@ -72,50 +74,38 @@ class Contact:
 
     def embedded(self, where: tuple[slice, slice], shape: tuple[int, int], open_gap: float) -> "Contact":
         """The same contact on a grid of which it was a window; the gap beyond becomes ``open_gap``."""
-        pressure, gap = np.zeros(shape), np.full(shape, open_gap)
+        xp = namespace(self.pressure)
+        pressure, gap = xp.zeros(shape), xp.full(shape, open_gap)
         pressure[where], gap[where] = self.pressure, self.gap
         return replace(self, pressure=pressure, gap=gap)
-
-
-def _blocks(a: NDArray[Any]) -> Iterator[slice]:
-    """Rows of an array in blocks that stay in the cache, so that temporary arrays are small."""
-    rows = max(1, BLOCK // a.shape[1])
-    return (slice(i, i + rows) for i in range(0, len(a), rows))
-
-
-def _subtract(a: Array, b: Array, factor: float) -> None:
-    """a - factor b, in place of a."""
-    for rows in _blocks(a):
-        a[rows] -= b[rows] * factor
 
 
 class _ContactSet:
     """Contact set, with the extension of the residual beyond it by means over ``extension`` patches."""
 
-    def __init__(self, inside: Mask, problem: "_Problem", dtype: np.dtype[Any]) -> None:
+    def __init__(self, inside: Mask, problem: "_Problem", dtype: Any) -> None:
         self.inside, self.extension, self.mirror = inside, problem.extension, problem.mirror
-        self._share = self._mean(inside, np.empty(inside.shape, dtype))
+        self._xp = namespace(inside)
+        self._share = self._mean(inside, self._xp.empty(inside.shape, dtype=dtype))
 
-    def one(self, rows: slice) -> Array:
+    def one(self, rows: tuple[slice, slice]) -> Array:
         """Unit residual, extended beyond the contact set."""
-        share = np.minimum(self._share[rows], FADED)
+        share: Array = self._xp.minimum(self._share[rows], FADED)
         share /= FADED
-        share[self.inside[rows]] = 1
+        share[self.inside[rows]] = 1.0
         return share
 
     def extended(self, r: Array, out: Array) -> Array:
         """r, which is 0 outside, in contact; its local mean just outside, 0 far away."""
         self._mean(r, out)
-        for rows in _blocks(r):
-            out[rows] /= np.maximum(self._share[rows], FADED)
-            out[rows] *= ~self.inside[rows]
-            out[rows] += r[rows]
+        for rows in blocks(r):
+            out[rows] /= self._xp.maximum(self._share[rows], FADED)
+            out[rows] = self._xp.where(self.inside[rows], r[rows], out[rows])
         return out
 
     def _mean(self, r: NDArray[Any], out: Array) -> Array:
         # mirrored at the rim of the grid, as at the axes of a quarter
-        gaussian_filter(r, self.extension, mode=self.mirror, truncate=3, output=out)
-        return out
+        return arrays.gaussian_mean(r, self.extension, self.mirror, out)
 
 
 @dataclass(frozen=True, eq=False)
@@ -143,16 +133,11 @@ class _Problem:
 
     def sum(self, a: Array) -> float:
         """Sum over all patches."""
-        return float(a.sum(dtype=float) if self.weight is None else np.einsum("ij,ij->", a, self.weight))
+        return arrays.total(a, self.weight)
 
     def dot(self, a: Array, b: Array) -> float:
         """Inner product over all patches."""
-        # not by BLAS: its threads keep spinning after such a short sum and slow those of the FFT
-        return float(
-            np.einsum("ij,ij->", a, b, dtype=float)
-            if self.weight is None
-            else np.einsum("ij,ij,ij->", a, b, self.weight)
-        )
+        return arrays.dot(a, b, self.weight)
 
 
 @dataclass(slots=True, eq=False)
@@ -196,8 +181,8 @@ class _State:
     history: list[tuple[float, float]] = field(default_factory=list)
 
     def __post_init__(self) -> None:
-        self.last = np.empty_like(self.z)
-        self.step = np.zeros_like(self.z)
+        xp = namespace(self.z)
+        self.last, self.step = xp.empty_like(self.z), xp.zeros_like(self.z)
 
 
 def solve(
@@ -247,7 +232,7 @@ def solve(
         mirror,
     )
     # numbered as by Polonsky and Keer; their last steps come first, for the first guess may be the solution
-    state = _first_guess(problem, np.empty((2, *gap.shape)) if work is None else work)
+    state = _first_guess(problem, work)
     _find_gap(state, problem)  # 1: gap, its preconditioned mean removed
     while not _is_solved(state, problem):  # 7: stopping criterion
         if not _update_set(state, problem):  # 5, 6: tension leaves, overlap enters; balance of the load
@@ -258,24 +243,27 @@ def solve(
     return _contact(state, problem)
 
 
-def _first_guess(problem: _Problem, work: Array) -> _State:
+def _first_guess(problem: _Problem, work: Array | None) -> _State:
     p = _start(problem)
+    xp = namespace(p)
+    work = xp.empty((2, *p.shape)) if work is None else work
     contact = _ContactSet(p > 0, problem, work.dtype)
-    state = _State(p, np.empty_like(p), contact, problem.approach or 0.0, *work)
+    state = _State(p, xp.empty_like(p), contact, problem.approach or 0.0, work[0, ...], work[1, ...])
     _find_gap_of_pressure(state, problem)
     _find_P_one(state, problem)
     return state
 
 
 def _start(problem: _Problem) -> Array:
-    p = problem.start() if callable(problem.start) else problem.start.copy()
-    np.maximum(p, 0.0, out=p)
-    if not np.isfinite(p.sum()):
+    p = problem.start() if callable(problem.start) else arrays.copy(problem.start)
+    xp = namespace(p)
+    p[p < 0] = 0.0
+    if not np.isfinite(arrays.total(p)):
         raise NotConverged(
             "the first guess of the pressure is not finite; look at the influence coefficients"
         )
-    if not p.any():  # a flat punch, or a contact narrower than a patch
-        p = (problem.gap == problem.gap.min()).astype(float)
+    if not xp.any(p > 0):  # a flat punch, or a contact narrower than a patch
+        p = xp.asarray(problem.gap == xp.min(problem.gap), dtype=xp.float64)
     return problem.balanced(p)
 
 
@@ -300,32 +288,35 @@ def _precondition(state: _State, problem: _Problem) -> None:
     if state.iterations >= PRECONDITIONED_ITERATIONS:
         return
     z = problem.precondition(state.extended if state.iterations < EXTENDED_ITERATIONS else state.z)
-    np.multiply(z, state.contact.inside, out=state.z)
+    arrays.masked(z, state.contact.inside, out=state.z)
 
 
 def _find_P_one(state: _State, problem: _Problem) -> None:
     if problem.approach is None:
-        for rows in _blocks(state.z):
-            state.z[rows], state.extended[rows] = state.contact.inside[rows], state.contact.one(rows)
+        for rows in blocks(state.z):
+            state.extended[rows] = state.contact.one(rows)
+        state.z[...] = 1.0
+        arrays.masked(state.z, state.contact.inside, out=state.z)
         _precondition(state, problem)
-        state.P_one = state.z.copy()
+        state.P_one = arrays.copy(state.z)
 
 
 def _find_gap(state: _State, problem: _Problem) -> None:
     """Step 1: z = P r, r the gap in contact; g with the delta for which sum z = 0 keeps the load."""
-    np.multiply(state.g, state.contact.inside, out=state.z)
+    arrays.masked(state.g, state.contact.inside, out=state.z)
     state.contact.extended(state.z, state.extended)
     _precondition(state, problem)
     if problem.approach is None:
         shift = state.shift = problem.sum(state.z) / problem.sum(state.P_one)
         state.g -= shift
-        _subtract(state.z, state.P_one, shift)
+        arrays.subtract(state.z, state.P_one, shift)
         state.delta += shift
     _measure(state, problem)
 
 
 def _find_gap_of_pressure(state: _State, problem: _Problem) -> None:
-    np.add(problem.deflection(state.p), problem.gap, out=state.g)
+    state.g[...] = problem.deflection(state.p)
+    state.g += problem.gap
     state.g -= state.delta
     state.updated = False
     state.convolutions += 1
@@ -333,11 +324,14 @@ def _find_gap_of_pressure(state: _State, problem: _Problem) -> None:
 
 def _measure(state: _State, problem: _Problem) -> None:
     """Residual, penetration and tension of the iterate."""
-    largest = []
-    for rows in _blocks(state.g):
+    xp, largest = namespace(state.g), []
+    for rows in blocks(state.g):
         g = state.g[rows]
-        r = g * state.contact.inside[rows]
-        largest.append((r.max(), -r.min(), np.subtract(r, g, out=r).max()))
+        r = xp.empty_like(g)
+        arrays.masked(g, state.contact.inside[rows], out=r)
+        inside = float(xp.max(r)), -float(xp.min(r))
+        r -= g
+        largest.append((*inside, float(xp.max(r))))
     residual, negative, depth = np.max(largest, axis=0)
     state.residual = float(np.maximum(residual, negative)) / problem.scale
     if state.on_set == 0:
@@ -347,7 +341,7 @@ def _measure(state: _State, problem: _Problem) -> None:
     margin = 1.0 if state.residual <= problem.tolerance else 0.5
     state.deep = margin * problem.tolerance * problem.scale
     state.tension = state.p < 0
-    state.admissible = not state.tension.any() and state.depth <= state.deep
+    state.admissible = not xp.any(state.tension) and state.depth <= state.deep
 
 
 def _is_solved(state: _State, problem: _Problem) -> bool:
@@ -383,7 +377,7 @@ def _update_set(state: _State, problem: _Problem) -> bool:
     """
     if state.admissible or state.new:
         return False
-    leave, enter = state.tension, ~state.contact.inside
+    xp, leave, enter = namespace(state.g), state.tension, ~state.contact.inside
     if state.set_updates >= PREDICTED_UPDATES:
         enter &= state.g < -state.deep
     else:
@@ -391,18 +385,19 @@ def _update_set(state: _State, problem: _Problem) -> bool:
         if not fallen and state.on_set < ITERATIONS_PER_SET:
             return False
         # the set predicted for a vanishing residual: g less its extension outside, p less z inside
-        for rows in _blocks(state.g):
+        for rows in blocks(state.g):
             predicted = state.g[rows] - state.extended[rows] + state.contact.one(rows) * state.shift
             enter[rows] &= predicted < -0.5 * problem.tolerance * problem.scale
             leave[rows] &= state.p[rows] < state.z[rows]
-    if not (leave.any() or enter.any()):
+    any_leave = bool(xp.any(leave))
+    if not (any_leave or xp.any(enter)):
         return False
     inside = (state.contact.inside & ~leave) | enter
     state.contact = _ContactSet(inside, problem, state.z.dtype)
     _find_P_one(state, problem)
     state.set_updates, state.on_set, state.new = state.set_updates + 1, 0, True
-    if leave.any():
-        state.p[leave] = 0
+    if any_leave:
+        state.p[leave] = 0.0
         problem.balanced(state.p)
         _find_gap_of_pressure(state, problem)
     return True
@@ -423,15 +418,16 @@ def _advance(state: _State, problem: _Problem) -> None:
     Au = problem.deflection(state.step)
     state.convolutions += 1
     alpha = problem.dot(state.g, state.step) / problem.dot(state.step, Au)
-    state.last[:] = state.g
-    _subtract(state.p, state.step, alpha)
-    _subtract(state.g, Au, alpha)
+    state.last[...] = state.g
+    arrays.subtract(state.p, state.step, alpha)
+    arrays.subtract(state.g, Au, alpha)
     state.updated, state.new = True, False
     state.iterations, state.on_set = state.iterations + 1, state.on_set + 1
 
 
 def _contact(state: _State, problem: _Problem) -> Contact:
     error = 0.0 if problem.total is None else abs(problem.sum(state.p) / problem.total - 1)
+    xp, dropped = namespace(state.z), state.iterations >= PRECONDITIONED_ITERATIONS
     return Contact(
         pressure=state.p,
         gap=state.g,
@@ -442,4 +438,5 @@ def _contact(state: _State, problem: _Problem) -> Contact:
         iterations=state.iterations,
         convolutions=state.convolutions,
         history=tuple(state.history),
+        left=np.inf if dropped else max(float(xp.max(state.z)), -float(xp.min(state.z))),
     )

@@ -12,12 +12,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from semianalytic import abel, influence, smooth_edge
+from semianalytic.arrays import namespace, to_numpy
 from semianalytic.edge_profile import Profile
 from semianalytic.grid import Grid
 from semianalytic.inputs import Body, Numerics
 from semianalytic.level import Indenter, Level, LevelProblem
 
-__all__ = ["corrected", "smoothed"]
+__all__ = ["corrected", "defect", "near_influence", "smoothed"]
 
 Array = NDArray[np.floating]
 
@@ -55,29 +56,47 @@ def smoothed(problem: LevelProblem) -> Level:
     the patches alone by ``ROUNDS`` rounds. A third changes less than the patch size does.
     """
     level = alone = problem.solve(0.0, 0.0)
-    convolutions, near = alone.convolutions, None
-    defect: Array | float = 0.0
+    convolutions, near = alone.convolutions, near_influence(problem.grid.d, problem.body, problem.numerics)
+    total: Array | float = 0.0
     missing = 0.0
     for number in range(ROUNDS):
-        p = problem.grid.whole(level.found.pressure)
-        fitted = smooth_edge.fit(p)
-        if fitted is None:
+        p = level.found.pressure
+        found = defect(problem, p, near)
+        if found is None:
             return alone
-        edge, parts = fitted
-        near = _near_influence(problem) if near is None else near
-        u, beyond = edge.deflection_beyond_centres(parts, p, problem.deflection_of_whole, near)
-        u = problem.held(u)
+        edge, u, beyond = found
         # patches that the edge barely touches would alternate between two rounds
-        defect, missing = ((defect + u) / 2, (missing + beyond) / 2) if number else (u, beyond)
-        level = problem.solve(defect, missing * problem.grid.d**2, start=level.found.pressure)
+        total, missing = ((total + u) / 2, (missing + beyond) / 2) if number else (u, beyond)
+        level = problem.solve(total, missing * problem.grid.d**2, start=p)
         convolutions += level.convolutions + 1
     return replace(level, edge=edge, convolutions=convolutions)
 
 
-def _near_influence(problem: LevelProblem) -> Array:
-    d, near, parts = problem.grid.d, smooth_edge.NEAR, smooth_edge.PARTS
+def defect(problem: LevelProblem, p: Array, near: Array) -> tuple[smooth_edge.Edge, Array, float] | None:
+    """Smooth edge of the pressure p [Pa] on a window, and what patches miss by it; None without such an edge.
+
+    near : `near_influence`.  Returns the edge, deflection [m] and sum of p [Pa] that patches miss.
+    The edge is found by NumPy.
+    """
+    xp, whole = namespace(p), problem.grid.whole(p)
+    fitted = smooth_edge.fit(whole, even=problem.grid.quarter)
+    if fitted is None:
+        return None
+    edge, parts = fitted
+
+    def deflection(moments: Array) -> Array:
+        u: Array = to_numpy(problem.deflection_of_whole(xp.asarray(moments)))
+        return u
+
+    u, missing = edge.deflection_beyond_centres(parts, to_numpy(whole), deflection, near)
+    return edge, xp.asarray(problem.held(u)), missing
+
+
+def near_influence(d: float, body: Body, numerics: Numerics) -> Array:
+    """``smooth_edge.near_influence`` of patches of side d [m]."""
+    near, parts = smooth_edge.NEAR, smooth_edge.PARTS
     of_patch, of_part = (
-        influence.surface_coefficients(n, side, problem.body, problem.numerics)
+        influence.surface_coefficients(n, side, body, numerics)
         for n, side in ((near + 2, d), ((near + 1) * parts, d / parts))
     )
     return smooth_edge.near_influence(of_patch, of_part)

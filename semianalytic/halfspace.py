@@ -31,9 +31,12 @@ K. L. Johnson, Contact Mechanics, Cambridge University Press, 1985, sections 3.2
 """
 
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+
+from semianalytic.arrays import at_once, namespace
 
 __all__ = [
     "normal_displacement",
@@ -46,7 +49,6 @@ __all__ = [
 Array = NDArray[np.floating]
 Field = Callable[[Array, Array, Array, float], tuple[Array, ...]]
 
-BLOCK = 2**15  # entries of a table computed at a time, so that they stay in the cache
 FAR = 25.0  # sides; where the errors of closed form and quadrature cross
 TINY = 1e-100  # floor of squared lengths: real infinities (edges at z = 0) become finite, alike on both sides
 
@@ -103,7 +105,7 @@ def tangential_displacement(
     return u * ((1 + nu) / (2 * np.pi * E))
 
 
-def surface_deflection(nx: int, ny: int, dx: float, dy: float, depth: float = 0.0) -> Array:
+def surface_deflection(nx: int, ny: int, dx: float, dy: float, depth: float = 0.0, xp: Any = np) -> Array:
     """Potential V of a rectangle at the centres of a grid of rectangles.
 
         V(i dx, j dy, depth),  i = 0..nx-1, j = 0..ny-1;   u_z = (1-nu)/(2 pi G) V at depth 0
@@ -112,22 +114,23 @@ def surface_deflection(nx: int, ny: int, dx: float, dy: float, depth: float = 0.
     share it. Beyond, 1/rho and its even derivatives of orders 2, 4 times the moments of the rectangle: no
     cancellation, within 5e-12 of every entry however large the table.
 
-    nx, ny : entries.  dx, dy, depth [m].  Returns V [m], shape (nx, ny).
+    nx, ny : entries.  dx, dy, depth [m].  xp : namespace of the result.  Returns V [m], shape (nx, ny).
     """
-    V = np.empty((nx, ny))
+    V: Array = xp.empty((nx, ny))
     reach = np.sqrt(max((FAR * max(dx, dy)) ** 2 - depth**2, 0.0))
     mx, my = min(int(np.ceil(reach / dx)), nx), min(int(np.ceil(reach / dy)), ny)
-    X = (np.arange(mx + 1) - 0.5) * dx
-    Y = (np.arange(my + 1) - 0.5) * dy
-    corner = _potential_corner(X[:, None], Y[None, :], np.asarray(depth))
-    column = corner[1:] - corner[:-1]
+    X = (xp.arange(mx + 1, dtype=xp.float64) - 0.5) * dx
+    Y = (xp.arange(my + 1, dtype=xp.float64) - 0.5) * dy
+    corner = _potential_corner(X[:, None], Y[None, :], xp.asarray(depth, dtype=xp.float64))
+    column = corner[1:, :] - corner[:-1, :]
     V[:mx, :my] = column[:, 1:] - column[:, :-1]
-    y = np.arange(ny) * dy
-    rows = max(1, BLOCK // ny)
+    y = xp.arange(ny, dtype=xp.float64) * dy
+    rows = max(1, at_once(xp) // ny)
     for begin, end, first in ((0, mx, my), (mx, nx, 0)):
         for i in range(begin, end, rows):
-            x = np.arange(i, min(i + rows, end)) * dx
-            V[i : i + x.size, first:] = _potential_series(x[:, None], y[first:], depth, dx, dy)
+            j = min(i + rows, end)
+            x = xp.arange(i, j, dtype=xp.float64) * dx
+            V[i:j, first:] = _potential_series(x[:, None], y[None, first:], depth, dx, dy)
     return V
 
 
@@ -145,7 +148,7 @@ def _potential_series(x: Array, y: Array, z: float, dx: float, dy: float) -> Arr
     ):
         sum_ *= s
         sum_ += cx * x2 + (cy * y2 + c)
-    sum_ *= np.sqrt(s, out=s)
+    sum_ *= namespace(s).sqrt(s)
     sum_ *= dx * dy
     return sum_
 
@@ -202,14 +205,17 @@ def _tensor(parts: Array) -> Array:
 
 def _lengths(X: Array, Y: Array, z: Array) -> tuple[Array, Array, Array]:
     """rho, X^2 + z^2 and Y^2 + z^2, floored."""
-    sx, sy = np.maximum(X * X + z * z, TINY), np.maximum(Y * Y + z * z, TINY)
-    return np.sqrt(np.maximum(sx + Y * Y, TINY)), sx, sy
+    xp = namespace(X)
+    sx, sy = xp.maximum(X * X + z * z, TINY), xp.maximum(Y * Y + z * z, TINY)
+    return xp.sqrt(xp.maximum(sx + Y * Y, TINY)), sx, sy
 
 
 def _potential_corner(X: Array, Y: Array, z: Array) -> Array:
     """V."""
+    xp = namespace(X)
     rho, sx, sy = _lengths(X, Y, z)
-    return X * np.arcsinh(Y / np.sqrt(sx)) + Y * np.arcsinh(X / np.sqrt(sy)) - z * np.arctan2(X * Y, z * rho)
+    V: Array = X * xp.asinh(Y / xp.sqrt(sx)) + Y * xp.asinh(X / xp.sqrt(sy)) - z * xp.atan2(X * Y, z * rho)
+    return V
 
 
 def _chi_angles(X: Array, Y: Array, z: Array, rho: Array) -> tuple[Array, Array]:

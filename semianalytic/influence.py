@@ -1,9 +1,10 @@
 """Conversion of a frequency response into influence coefficients of the surface displacement.
 
-Under pressure a coated half-space deflects by u_z(k) = (1-nu1)/(G1 k) M(k) p(k). Its influence coefficient
-is the displacement at one patch centre under unit pressure on another patch, the square of side d:
+Under pressure a coated half-space deflects by u_z(k) = 2/(E* k) M(k) p(k), flat and elastic ball together by
+the sum of both (``response``). Their influence coefficient is the displacement at one patch centre under unit
+pressure on another patch, the square of side d:
 
-    K_ij = (1-nu1)/(2 pi G1) C_ij,    C(x, y) = int int_patch g(r),    g(r) = int_0^inf M(k) J0(kr) dk.
+    K_ij = 1/(pi E*) C_ij,    C(x, y) = int int_patch g(r),    g(r) = int_0^inf M(k) J0(kr) dk.
 
 The three conversions from M to C:
 
@@ -19,142 +20,113 @@ plain      M/k times the transform of the patch, aliases summed, FFT on an enlar
            k = 0 and slow to decay; its error is 0.4 % at the loaded patch and more far away.
 """
 
-from collections.abc import Callable, Sequence
-from functools import partial
+from collections.abc import Callable
 from math import isqrt
+from typing import Any
 
 import ducc0
 import numpy as np
 from numpy.typing import NDArray
-from scipy.fft import fht, fhtoffset
-from scipy.interpolate import CubicSpline
 
-from semianalytic import frf, halfspace
+from semianalytic import halfspace
+from semianalytic.arrays import at_once, namespace, strips
 from semianalytic.inputs import Body, Numerics
+from semianalytic.response import Response
 
-__all__ = ["plain_coefficients", "remainder_coefficients", "split_image", "surface_coefficients"]
+__all__ = ["plain_coefficients", "remainder_coefficients", "surface_coefficients"]
 
 Array = NDArray[np.floating]
-Response = Callable[[Array], Array]
+Function = Callable[[Array], Array]
 
-BLOCK = 2**15  # coefficients computed at a time, so that they stay in the cache
 DIGITS = 1e-11  # tolerance of the quadrature over a patch, relative to the value at its centre
 SMOOTH = 12.0  # patches from the nearest singularity, beyond which finite differences average a patch
 
 
-def surface_coefficients(n: int, d: float, body: Body, numerics: Numerics) -> Array:
+def surface_coefficients(n: int, d: float, body: Body, numerics: Numerics, xp: Any = np) -> Array:
     """Influence coefficients K [m/Pa] of the surface displacement by the conversion of ``numerics``.
 
-    The approach of the surfaces is u_z of the flat plus that of an elastic ball: their coefficients add up.
+    With an elastic ball, of the approach of both surfaces: u_z of the flat plus that of the ball.
 
-    n : offsets 0..n-1.  d : side of the patches [m].  Returns shape (n, n), even in both indices.
+    n : offsets 0..n-1.  d : side of the patches [m].  xp : namespace of the result, which computes it by the
+    conversion "split"; by another one NumPy does.  Returns shape (n, n), even in both indices.
     """
+    if xp is not np and numerics.conversion != "split":
+        return xp.asarray(surface_coefficients(n, d, body, numerics))
+    both, enlarge, threads = body.response, numerics.enlarge, numerics.threads
     if numerics.conversion == "plain":
-        K: Array = np.zeros((n, n))
-        for one in body.pair:
-            excess = partial(frf.compliance_excess, **one.layers)
-            C = plain_coefficients(n, d, excess, enlarge=numerics.enlarge, threads=numerics.threads)
-            K += 1 / (np.pi * one.moduli[0]) * C
-        return K
-    K = halfspace.surface_deflection(n, n, d, d)
+        excess = both.excess if both else np.zeros_like
+        K = plain_coefficients(n, d, excess, enlarge=enlarge, threads=threads)
+    else:
+        K = halfspace.surface_deflection(n, n, d, d, xp=xp)
+        if both:
+            enlarge = enlarge if numerics.conversion == "split-fft" else 0
+            points = numerics.hankel_points
+            K += remainder_coefficients(n, d, both, points=points, enlarge=enlarge, threads=threads, xp=xp)
+            c, b = both.image
+            of_image = halfspace.surface_deflection(n, n, d, d, b, xp)
+            of_image *= c
+            K += of_image
     K *= 1 / (np.pi * body.contact_modulus)
-    for one in body.pair:
-        if one.coatings:
-            C = _layer_coefficients(n, d, one, numerics)
-            C *= 1 / (np.pi * one.moduli[0])
-            K += C
     return K
-
-
-def _layer_coefficients(n: int, d: float, body: Body, numerics: Numerics) -> Array:
-    """C_ij [m] less Love's rectangle on the first material, shape (n, n)."""
-    excess = partial(frf.compliance_excess, **body.layers)
-    image = split_image(excess, body.thickness)
-    C = remainder_coefficients(
-        n,
-        d,
-        excess,
-        body.thickness,
-        image,
-        points=numerics.hankel_points,
-        enlarge=numerics.enlarge if numerics.conversion == "split-fft" else 0,
-        threads=numerics.threads,
-    )
-    of_image = halfspace.surface_deflection(n, n, d, d, image[1])
-    of_image *= image[0]
-    C += of_image
-    return C
-
-
-def split_image(excess: Response, thickness: Sequence[float]) -> tuple[float, float]:
-    """Strength c and depth b of the image c exp(-b k) that removes the long range of M(k) - 1.
-
-        c = M(0) - 1,    b = ln 2 / (wavenumber at which half of c is left), but not above the image
-                                      of the surface in the first interface, 2 h1
-
-    excess : M(k) - 1, k [rad/m].  thickness : of the coatings [m].  Returns c [-] and b [m].
-    """
-    total = sum(thickness)
-    k = np.geomspace(1e-8 / total, 40 / thickness[0], 4000)
-    M = excess(k)
-    c = float(M[0])
-    left = np.abs(M) < 0.5 * abs(c)
-    if abs(c) < 1e-12 or not left.any():
-        return c, 2 * total
-    return c, max(float(np.log(2) / k[np.argmax(left)]), 2 * thickness[0])
 
 
 def remainder_coefficients(
     n: int,
     d: float,
-    excess: Response,
-    thickness: Sequence[float],
-    image: tuple[float, float],
+    response: Response,
     *,
     points: int = 4096,
     enlarge: int = 0,
     threads: int = 1,
+    xp: Any = np,
 ) -> Array:
     """Integral over a patch of the part of g(r) not due to Love's rectangle and its image.
 
         C_ij = int int_patch(i, j) int_0^inf R(k) J0(k r) dk,    R = M - 1 - c e^(-b k)
 
-    n : offsets 0..n-1.  d : side of the patches [m].  excess, thickness, image : as ``split_image``.
+    n : offsets 0..n-1.  d : side of the patches [m].  response : of the surface, with R and its image.
     points : of the logarithmic Hankel grid.
     enlarge : 0 for the Hankel transform; else the factor by which the domain of a two-dimensional FFT
-    exceeds the kernel's (conversion "split-fft").  Returns [m], shape (n, n), even in both indices.
+    exceeds the kernel's (conversion "split-fft", by NumPy).  xp : namespace of the result.
+    Returns [m], shape (n, n), even in both indices.
     """
-    c, b = image
     if enlarge:
+        c, b = response.image
 
         def shaped(k: Array) -> Array:
-            return excess(k) - c * np.exp(-b * k)
+            return response.excess(k) - c * np.exp(-b * k)
 
         return _by_fft(n, d, shaped, enlarge, 2, 0.0, threads)
 
-    g, on_disc = _radial(excess, thickness, image, points)
-    near = 2 * thickness[0] / d  # g is singular no nearer than the image of the surface, at depth 2 h
-    mean = _octant(g, n + 3, d)
-    _average(mean)
-    _average(mean.T)
-    mean = mean[:n, :n]
+    g, on_disc = response.radial(points)
+    near = 2 * response.first / d  # g is singular no nearer than the image of the surface, at depth 2 h
+    mean = _average(_average(_octant(g, n + 3, d, xp)).T).T[:n, :n]
     mean *= d * d
-    edges = (3.0, SMOOTH) if near < SMOOTH else ()
-    inner = 0
-    for edge in edges:
+    if near < SMOOTH:
+        corner = _corner(g, on_disc, min(int(SMOOTH), n), d, near)
+        mean[: len(corner), : len(corner)] = xp.asarray(corner)
+    return mean
+
+
+def _corner(g: Function, on_disc: Function, n: int, d: float, near: float) -> Array:
+    """Integrals [m] over the patches next to the loaded one by Gauss quadrature, shape (n, n).
+
+    near : distance to the nearest singularity of g, in patches.
+    """
+    mean, inner = np.empty((n, n)), 0
+    for edge in (3.0, SMOOTH):
         outer = min(int(np.ceil(edge)), n)
         reach = np.hypot(near, max(inner - 1, 0.5))
         _gauss_block(mean, g, d, inner, outer, reach)
         inner = outer
-    if edges:
-        # the loaded patch, which may be far wider than the coating is thick, in polar coordinates
-        s, w = np.polynomial.legendre.leggauss(16)
-        mean[0, 0] = np.pi * np.sum(w * on_disc(d / 2 / np.cos(np.pi / 8 * (1 + s))))
+    # the loaded patch, which may be far wider than the coating is thick, in polar coordinates
+    s, w = np.polynomial.legendre.leggauss(16)
+    mean[0, 0] = np.pi * np.sum(w * on_disc(d / 2 / np.cos(np.pi / 8 * (1 + s))))
     return mean
 
 
 def plain_coefficients(
-    n: int, d: float, excess: Response, *, enlarge: int = 4, aliases: int = 2, threads: int = 1
+    n: int, d: float, excess: Function, *, enlarge: int = 4, aliases: int = 2, threads: int = 1
 ) -> Array:
     """The source paper's conversion: C by FFT of M/k times the transform of the patch shape.
 
@@ -167,7 +139,7 @@ def plain_coefficients(
 
 
 def _by_fft(
-    n: int, d: float, response: Response, enlarge: int, aliases: int, zero: float | None, threads: int
+    n: int, d: float, response: Function, enlarge: int, aliases: int, zero: float | None, threads: int
 ) -> Array:
     half = int(ducc0.fft.good_size(enlarge * n, True))
     m = 2 * half
@@ -190,56 +162,23 @@ def _by_fft(
     return quadrant[:n, :n] * (2 * np.pi / (m * m))
 
 
-def _radial(
-    excess: Response, thickness: Sequence[float], image: tuple[float, float], points: int
-) -> tuple[Response, Response]:
-    """g(r) = int R(k) J0(kr) dk and int_0^r g r dr: moments to a tenth of a coating, Hankel grid beyond."""
-    c, b = image
-    h = thickness[0]  # M - 1 decays as exp(-2 k h): deeper layers give smoother terms
-    low, high = 1e-7 / max(b, sum(thickness)), 1e5 / h
-    k = np.geomspace(low, high, points)
-    step = np.log(k[1] / k[0])
-    R = excess(k) - c * np.exp(-b * k)
-    offset = fhtoffset(step, mu=0)
-    A = fht(R, step, mu=0, offset=offset)
-    r = np.exp(offset) / k[::-1]
-    near = 0.1 * h
-    far = 1e6 * max(b, sum(thickness))
-    keep = (r > 0.5 * near) & (r < far)
-    x = np.log(r[keep])
-    spline = CubicSpline(x, A[keep] / r[keep])
-    inner = CubicSpline(x, A[keep] * r[keep]).antiderivative()
-    m0, m1, m2, m3 = (float(np.sum(R * k ** (2 * j + 1)) * step) for j in range(4))
-
-    def g(r: Array) -> Array:
-        s = (r / 2) ** 2
-        small = m0 - s * (m1 - s * (m2 / 4 - s * m3 / 36))
-        return np.where(r < near, small, spline(np.log(np.clip(r, near, far))) * (r < far))
-
-    def on_disc(r: Array) -> Array:
-        s = (np.minimum(r, near) / 2) ** 2
-        small = 2 * s * (m0 - s * (m1 / 2 - s * (m2 / 12 - s * m3 / 144)))
-        return small + inner(np.log(np.clip(r, near, far))) - inner(np.log(near))
-
-    return g, on_disc
-
-
-def _octant(g: Callable[[Array], Array], n: int, d: float) -> Array:
+def _octant(g: Callable[[Array], Array], n: int, d: float, xp: Any) -> Array:
     """g at the patch centres, computed in blocks of rows, in each up to its diagonal."""
-    table = np.empty((n, n))
-    i, end = np.arange(n), 0
+    table: Array = xp.empty((n, n))
+    i, end = xp.arange(n, dtype=xp.float64), 0
+    numbers = at_once(xp)
     while end < n:
-        begin, end = end, min(n, end + max(1, BLOCK // (end + isqrt(BLOCK))))
-        block = g(d * np.hypot(i[begin:end, None], i[:end]))
+        begin, end = end, min(n, end + max(1, numbers // (end + isqrt(numbers))))
+        block = g(d * xp.hypot(i[begin:end, None], i[None, :end]))
         table[begin:end, :end] = block
         table[:end, begin:end] = block.T
     return table
 
 
-def _average(table: Array) -> None:
+def _average(table: Array) -> Array:
     """Mean over a patch along the first index, in place: (delta/2)/asinh(delta/2) to sixth differences.
 
-    The last three rows, whose neighbours are not in the table, lose their meaning.
+    The last three rows, whose neighbours are not in the table, lose their meaning. Returns the table.
     """
     weights = np.array([1.0, 0, 0, 0])
     for factor, row in (
@@ -248,14 +187,16 @@ def _average(table: Array) -> None:
         (367 / 967680, (-20, 15, -6, 1)),
     ):
         weights += factor * np.array(row)
-    n = len(table) - 3
-    columns = max(1, BLOCK // len(table))
-    for begin in range(0, table.shape[1], columns):
-        strip = table[:, begin : begin + columns]
-        rows = np.concatenate([strip[3:0:-1], strip])
-        mean = np.multiply(rows[3 : n + 3], weights[0], out=strip[:n])
-        for j in (1, 2, 3):
-            mean += weights[j] * (rows[3 - j : n + 3 - j] + rows[3 + j : n + 3 + j])
+    first, *others = weights.tolist()
+    xp, n = namespace(table), table.shape[0] - 3
+    for columns in strips(table.shape[1], table.shape[0], xp):
+        strip = table[:, columns]
+        rows = xp.concat([strip[3:0:-1, :], strip])
+        mean = rows[3 : n + 3, :] * first
+        for j, weight in enumerate(others, start=1):
+            mean += weight * (rows[3 - j : n + 3 - j, :] + rows[3 + j : n + 3 + j, :])
+        table[:n, columns] = mean
+    return table
 
 
 def _gauss_block(

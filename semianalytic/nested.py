@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from semianalytic import convolution, influence
+from semianalytic.arrays import copy, namespace
 from semianalytic.contact import NotConverged
 from semianalytic.defect_correction import corrected, smoothed
 from semianalytic.edge_profile import Profile
@@ -13,7 +14,7 @@ from semianalytic.grid import Grid, Window, odd, touches_rim, window_around
 from semianalytic.inputs import COARSEST, Body, Numerics
 from semianalytic.level import Indenter, Level, LevelProblem
 
-__all__ = ["levels", "solve_on"]
+__all__ = ["is_alone", "levels", "solve_on", "undeformed"]
 
 Array = NDArray[np.floating]
 
@@ -63,31 +64,34 @@ def solve_on(
 ) -> Level:
     """Contact on a grid: of a sphere corrected by an edge profile, of others on the window they need.
 
-    Where the gap is even in x and in y, so are all fields, and a quarter of the grid is enough.
+    Where the gap is even in x and in y, so are all fields, and a quarter of the grid is enough, of NumPy.
     """
     if indenter.round:
         return corrected(grid, indenter.gap(grid), before, shape, indenter, body, numerics)
-    grid, gap = _undeformed(replace(grid, quarter=False), indenter)
-    whole, depth = grid.window, float(np.ptp(gap))
+    grid, gap = undeformed(replace(grid, quarter=False), indenter)
+    xp, whole = namespace(gap), grid.window
+    depth = float(xp.max(gap) - xp.min(gap))
     if before is not None:
         before = before.whole if grid.quarter < before.grid.quarter else before
         window = window_around(before.found.pressure, before.grid, grid)
         if window.shape != whole.shape:
-            lowest, gap = grid.lowest(gap), gap[window.slices].copy()
+            lowest, gap = grid.lowest(gap), copy(gap[window.slices])
             problem = LevelProblem(grid, gap, depth, window, before, indenter, body, numerics)
             level = _solved(problem)
             del problem  # frees the memory of its transforms for those below
             level = _embedded(level, window, depth)
-            if _is_alone(level, lowest, window, body, numerics):
+            if is_alone(level, lowest, window, body, numerics):
                 return level
-            _, gap = _undeformed(replace(grid, quarter=False), indenter)
+            _, gap = undeformed(replace(grid, quarter=False), indenter)
     problem = LevelProblem(grid, gap, depth, whole, before, indenter, body, numerics)
     return _solved(problem)
 
 
-def _undeformed(grid: Grid, indenter: Indenter) -> tuple[Grid, Array]:
+def undeformed(grid: Grid, indenter: Indenter) -> tuple[Grid, Array]:
     """Gap on a whole grid; on a quarter, and that grid, where it is even in x and in y to the last digit."""
     gap = indenter.gap(grid)
+    if not isinstance(gap, np.ndarray):
+        return grid, gap
     c = (grid.n + 1) // 2
     if np.array_equal(gap[:c], gap[: -c - 1 : -1]) and np.array_equal(gap[:, :c], gap[:, : -c - 1 : -1]):
         grid = replace(grid, quarter=True)
@@ -106,7 +110,7 @@ def _embedded(level: Level, window: Window, depth: float) -> Level:
     return replace(level, found=found, edge=edge)
 
 
-def _is_alone(level: Level, lowest: Array, window: Window, body: Body, numerics: Numerics) -> bool:
+def is_alone(level: Level, lowest: Array, window: Window, body: Body, numerics: Numerics) -> bool:
     """Whether only the window is in contact: its rim is free, and the gap beyond it open.
 
     The deflection beyond is computed on patches of twice the side, which at the distance of the window's
@@ -116,10 +120,10 @@ def _is_alone(level: Level, lowest: Array, window: Window, body: Body, numerics:
     if touches_rim(p[window.slices], grid.quarter):
         return False
     merged = grid.merged(p)
-    n = 2 * len(merged) - grid.n % 2 if grid.quarter else len(merged)
-    kernel = influence.surface_coefficients(n, 2 * grid.d, body, numerics)
+    n = 2 * len(merged) - grid.n % 2 if grid.quarter else merged.shape[0]
+    kernel = influence.surface_coefficients(n, 2 * grid.d, body, numerics, namespace(p))
     g = convolution.even_convolution(kernel, quarter=grid.quarter, threads=numerics.threads)(merged)
     g += lowest
     g -= level.found.approach
     g[grid.merging(window).slices] = np.inf
-    return bool(g.min() > 0)
+    return bool(namespace(g).min(g) > 0)

@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import maximum_filter, minimum_filter
 
+from semianalytic.arrays import to_numpy
 from semianalytic.grid import touches_rim
 
 __all__ = ["Edge", "fit", "near_influence"]
@@ -113,8 +114,10 @@ class Edge:
         return u[NEAR:-NEAR, NEAR:-NEAR], missing
 
 
-def fit(p: Array) -> tuple[Edge, Array] | None:
+def fit(p: Array, *, even: bool = False) -> tuple[Edge, Array] | None:
     """Edge of the contact under pressure p [Pa] at the patch centres; None where it is not a smooth curve.
+
+    even : p is even about the middle of the patches along both axes; a quarter of the edge is fitted.
 
     It is one if around every loaded patch beside an unloaded one the quadratic misses p^2, root mean square,
     by no more than p^2 changes over ``MISFIT`` of a patch, and is supported by ``SUPPORT`` loaded patches
@@ -136,6 +139,9 @@ def fit(p: Array) -> tuple[Edge, Array] | None:
         share = share[i + HALO, j + HALO]
         deep = depth[i + HALO, j + HALO]
         whole += np.count_nonzero(loaded[HALO:-HALO, HALO:-HALO]) - float(share[deep > 0].sum())
+        if even:
+            held = (i + a >= p.shape[0] // 2) & (j >= p.shape[1] // 2)
+            i, j, share, deep = i[held], j[held], share[held], deep[held]
         if not i.size:
             continue
         weight = np.where(minimum_filter(loaded, footprint=CROSS), 1.0, RIM * loaded)
@@ -146,8 +152,32 @@ def fit(p: Array) -> tuple[Edge, Array] | None:
         found.append((i + a, j, quadratic, share))
     i, j, quadratic, share = (np.concatenate(parts) for parts in zip(*found, strict=True))
     parts, loaded_share = _parts(quadratic)
+    if even:
+        i, j, quadratic, share, parts, loaded_share = _mirrored(
+            p.shape, i, j, quadratic, share, parts, loaded_share
+        )
     area = whole + float(share @ loaded_share)
     return Edge(i, j, quadratic, parts.mean(axis=1), share, area, misfit), parts
+
+
+def _mirrored(
+    shape: tuple[int, ...], i: Indices, j: Indices, *values: Array
+) -> tuple[Indices, Indices, Array, Array, Array, Array]:
+    """Patches i, j of the far quarter, ``values`` as in `fit`, with their mirror images, by rows."""
+    at = [i, j]
+    quadratic, share, parts, loaded_share = values
+    parts = parts.reshape(-1, PARTS, PARTS)
+    for axis, n in enumerate(shape):
+        image = n - 1 - at[axis]
+        other = image != at[axis]
+        sign = np.where(np.isin(np.arange(6), (1 + axis, 4)), -1.0, 1.0)
+        at = [np.concatenate([k, (image if m == axis else k)[other]]) for m, k in enumerate(at)]
+        quadratic = np.concatenate([quadratic, quadratic[other] * sign])
+        parts = np.concatenate([parts, np.flip(parts[other], axis + 1)])
+        share, loaded_share = (np.concatenate([v, v[other]]) for v in (share, loaded_share))
+    rows = np.lexsort(at[::-1])
+    parts = parts.reshape(-1, PARTS**2)
+    return at[0][rows], at[1][rows], quadratic[rows], share[rows], parts[rows], loaded_share[rows]
 
 
 def _quadratics(around: Array, weight: Array, i: Indices, j: Indices) -> tuple[Array, Array]:
@@ -266,12 +296,12 @@ def _smooth(p: Array, a: int, b: int, edge: Edge) -> tuple[Array, Array, Array]:
 
 
 def _padded(p: Array, a: int, b: int, width: int) -> Array:
-    """Rows a to b of p and ``width`` patches around them, 0 beyond the grid."""
-    low, high = max(a - width, 0), min(b + width, len(p))
-    return np.pad(p[low:high], ((low - a + width, b + width - high), (width, width)))
+    """Rows a to b of p and ``width`` patches around them, 0 beyond the grid; in NumPy."""
+    low, high = max(a - width, 0), min(b + width, p.shape[0])
+    return np.pad(to_numpy(p[low:high, :]), ((low - a + width, b + width - high), (width, width)))
 
 
 def _rows(p: Array) -> Iterator[tuple[int, int]]:
     """Rows of patches, ``AT_ONCE`` patches at a time."""
     step = max(AT_ONCE // p.shape[1], 4 * REACH)
-    return ((a, min(a + step, len(p))) for a in range(0, len(p), step))
+    return ((a, min(a + step, p.shape[0])) for a in range(0, p.shape[0], step))

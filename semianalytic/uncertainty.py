@@ -4,14 +4,17 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from semianalytic import perturbation
+from semianalytic.arrays import namespace
 from semianalytic.collocation import RoundContact
 from semianalytic.edge_profile import Profile, convergence
-from semianalytic.grid import odd
+from semianalytic.grid import Window, odd
+from semianalytic.influence import surface_coefficients
 from semianalytic.inputs import Body, Numerics
 from semianalytic.level import Indenter, Level
-from semianalytic.nested import solve_on
+from semianalytic.nested import is_alone, solve_on, undeformed
 
-__all__ = ["WIDER", "Uncertainty", "of_contact", "of_stiffness", "other_conversion", "safety"]
+__all__ = ["WIDER", "Uncertainty", "change", "of_contact", "of_stiffness", "other_conversion", "safety"]
 
 QUADRATURE = 1e-9  # of the layers' response by Gauss panels
 WIDER = 1.25  # the box that tests the domain over the box in use
@@ -47,12 +50,11 @@ class Uncertainty:
         coarse: dict[str, float],
         variations: dict[str, dict[str, float]],
         *,
-        base: dict[str, float],
         ratio: float,
         staircase: float = 0.0,
         share: float = 1 / 6,
     ) -> "Uncertainty":
-        """From the results on three grids, and on that of ``base`` with one other parameter less accurate.
+        """From the results on three grids, and the changes by one other parameter that is less accurate.
 
         Patch size: the change to the finest grid, of ``ratio`` times the patches a side, times ``safety``; or
         that ``share`` of the change before where the last is small by chance.  staircase : error of the edge
@@ -65,7 +67,7 @@ class Uncertainty:
         for name, value in fine.items():
             last, before = abs(value - middle[name]), abs(middle[name] - coarse[name])
             rows.append((name, "patch size", float(np.maximum(safety(ratio) * last, share * before))))
-            rows += [(name, varied, abs(result[name] - base[name])) for varied, result in variations.items()]
+            rows += [(name, varied, change[name]) for varied, change in variations.items()]
         return cls._of(rows)
 
     @classmethod
@@ -75,31 +77,90 @@ class Uncertainty:
         return cls(**total, budget=tuple(rows))
 
 
+def change(one: dict[str, float], other: dict[str, float]) -> dict[str, float]:
+    """Absolute changes of scalars."""
+    return {name: abs(other[name] - value) for name, value in one.items()}
+
+
 def of_contact(levels: list[Level], indenter: Indenter, body: Body, numerics: Numerics) -> Uncertainty:
     """Refinement study of the last three levels; the other parameters on the coarsest of them."""
     if isinstance(levels[-1].shape, Profile):
         return _of_profiles(levels, numerics)
     fine, middle, coarse = (level.scalars for level in levels[:-4:-1])
-    grid, start = levels[-3].grid, levels[-4] if len(levels) > 3 else None
-    looser = replace(numerics, tolerance=min(100 * numerics.tolerance, 1e-2))
-    wider = replace(grid, n=odd(WIDER * grid.n))
+    last, varied = levels[-1], levels[-3]
     variations = {
-        "conversion": solve_on(grid, start, indenter, body, other_conversion(numerics)).scalars,
-        "domain": solve_on(wider, start, indenter, body, numerics).scalars,
-        "iteration": solve_on(grid, start, indenter, body, looser).scalars,
+        "conversion": _of_conversion(varied, indenter, body, numerics),
+        "domain": _of_domain(varied, levels[-4] if len(levels) > 3 else None, indenter, body, numerics),
+        "iteration": _of_iteration(last, indenter),
     }
-    ratio = numerics.patches / levels[-2].grid.n
-    last = levels[-1]
     return Uncertainty.from_levels(
         fine,
         middle,
         coarse,
         variations,
-        base=coarse,
-        ratio=ratio,
+        ratio=numerics.patches / levels[-2].grid.n,
         staircase=last.staircase,
         share=1 / 4 if last.edge else 1 / 2,  # an edge of whole patches changes erratically
     )
+
+
+def _of_conversion(level: Level, indenter: Indenter, body: Body, numerics: Numerics) -> dict[str, float]:
+    """Changes by `other_conversion`, to the first order: ``perturbation``."""
+    if numerics.conversion == "split" and not any(one.coatings for one in body.pair):  # in closed form
+        return dict.fromkeys(level.scalars, 0.0)
+    n, d, other = level.grid.n, level.grid.d, other_conversion(numerics)
+    xp = namespace(level.found.pressure)
+    change = surface_coefficients(n, d, body, other, xp)
+    change -= surface_coefficients(n, d, body, numerics, xp)
+    return perturbation.of_kernel(level, change, other, indenter, body, numerics)
+
+
+def _of_domain(
+    level: Level, start: Level | None, indenter: Indenter, body: Body, numerics: Numerics
+) -> dict[str, float]:
+    """Changes by a box ``WIDER`` times as wide.
+
+    The convolution is exact on a box of any size, and only influence coefficients by FFT depend on it: where
+    the gap stays open beyond the box, nothing else changes. Where it does not, the contact is solved on the
+    wider box, from ``start``.
+    """
+    grid = level.grid
+    wider = replace(grid, n=odd(WIDER * grid.n))
+    box, gap = (
+        undeformed(replace(wider, quarter=False), indenter)
+        if not indenter.round
+        else (wider, indenter.gap(wider))
+    )
+    level = level if box.quarter else level.whole
+    if box.quarter == level.grid.quarter and (wider.n - grid.n) % 2 == 0:
+        first, m = 0 if box.quarter else (wider.n - grid.n) // 2, len(level.grid.x)
+        window = Window(first, first + m, first, first + m)
+        xp = namespace(gap)
+        depth = float(xp.max(gap) - xp.min(gap))
+        found = level.found.embedded(window.slices, box.window.shape, depth)
+        if is_alone(replace(level, grid=box, found=found), box.lowest(gap), window, body, numerics):
+            if numerics.conversion == "split":
+                return dict.fromkeys(level.scalars, 0.0)
+            by_fft = surface_coefficients(wider.n, grid.d, body, numerics, xp)[: grid.n, : grid.n]
+            by_fft -= surface_coefficients(grid.n, grid.d, body, numerics, xp)
+            return perturbation.of_kernel(level, by_fft, numerics, indenter, body, numerics)
+    return change(level.scalars, solve_on(wider, start, indenter, body, numerics).scalars)
+
+
+def _of_iteration(level: Level, indenter: Indenter) -> dict[str, float]:
+    """Changes by a further step of the iteration.
+
+    The gap g that is left in contact changes the approach by its mean, weighted with the pressure of a flat
+    punch, which is nowhere negative (``perturbation``): by no more than the largest |g|. The pressure changes
+    by A^-1 g, about P g, and the radius by no larger a part.
+    """
+    found = level.found
+    left = min(found.left, level.noise)
+    xp, gap = namespace(found.gap), 0.0
+    if indenter.approach is None:
+        gap = float(xp.max(xp.abs(found.gap[found.pressure > 0])))
+    peak = float(xp.max(found.pressure))
+    return {"contact_radius": level.radius * left / peak, "approach": gap, "peak_pressure": left}
 
 
 def _of_profiles(levels: list[Level], numerics: Numerics) -> Uncertainty:

@@ -113,7 +113,7 @@ def test_uncertainty_of_the_stiffness_has_no_sign():
 def test_change_that_is_small_by_chance_is_not_trusted(share):
     fine = {"contact_radius": 1.0, "approach": 2.0, "peak_pressure": 3.0}
     coarse = {name: value + 0.06 for name, value in fine.items()}
-    found = Uncertainty.from_levels(fine, fine, coarse, {}, base=coarse, ratio=2.0, **share)
+    found = Uncertainty.from_levels(fine, fine, coarse, {}, ratio=2.0, **share)
     assert found.peak_pressure == pytest.approx(share.get("share", 1 / 6) * 0.06)
 
 

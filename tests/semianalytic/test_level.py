@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from semianalytic import convolution, halfspace, level
+from semianalytic import arrays, convolution, level
 from semianalytic.collocation import contact
 from semianalytic.grid import Grid, Window
 from semianalytic.inputs import Body, Numerics
@@ -78,7 +78,7 @@ def test_preconditioner_of_single_precision_finds_the_same_contact(monkeypatch):
 def test_memory_of_a_contact_on_half_of_the_square(monkeypatch):
     """At most 30 bytes a patch above the 24 of pressure, gap and kernel; as of a large grid, in small."""
     monkeypatch.setattr(level, "SINGLE", 0)
-    for module in (convolution, halfspace):
+    for module in (convolution, arrays):
         monkeypatch.setattr(module, "BLOCK", 2**11)
     n, body = 320, Body((), (1.0, 0.0), 0.0)
 

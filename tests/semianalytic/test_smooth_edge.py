@@ -147,6 +147,19 @@ def test_edge_fitted_to_an_exact_pressure_has_its_area_and_load():
     assert edge.misfit < 1e-4
 
 
+@pytest.mark.parametrize("n", [64, 65, 66])
+def test_edge_of_an_even_pressure_is_that_of_its_quarter(n):
+    ellipse = Ellipse(3)
+    x = (np.arange(n) - (n - 1) / 2) * (2.4 * ellipse.a / n)
+    p = ellipse.pressure(x[:, None], x)
+    (edge, parts), (whole, all_parts) = smooth_edge.fit(p, even=True), smooth_edge.fit(p)
+    np.testing.assert_array_equal([edge.i, edge.j, edge.share], [whole.i, whole.j, whole.share])
+    np.testing.assert_allclose(parts, all_parts, rtol=0, atol=1e-9 * P0)
+    np.testing.assert_allclose(edge.quadratic, whole.quadratic, rtol=0, atol=1e-11 * P0**2)
+    assert edge.area == pytest.approx(whole.area, rel=1e-12)
+    assert edge.misfit == pytest.approx(whole.misfit, abs=1e-8)
+
+
 def test_edge_correction_has_to_be_a_truth_value():
     with pytest.raises(ValueError, match="edge_correction = 1;"):
         Ellipse(2).indent(65, edge_correction=1)
