@@ -17,6 +17,7 @@ __all__ = [
     "Mirror",
     "at_once",
     "blocks",
+    "check_namespace",
     "copy",
     "dot",
     "gaussian_mean",
@@ -25,6 +26,7 @@ __all__ = [
     "namespace",
     "strips",
     "subtract",
+    "take_rows",
     "to_numpy",
     "total",
 ]
@@ -34,16 +36,33 @@ Mask = NDArray[np.bool_]
 Mirror = Literal["mirror", "reflect"]
 
 BLOCK = 2**15  # numbers that stay in the cache
+TRANSFORMS = ("rfft", "irfft", "fft", "ifft", "hfft")
 AT_ONCE = 2**26  # of another library: half a gigabyte
 
 
 def namespace(a: Any) -> Any:
-    """The module of functions of an array; of an array that does not name it, its package, as of CuPy."""
-    if isinstance(a, (np.ndarray, np.generic)):
+    """The module of functions for an array: that of NumPy for whatever is no array of another library."""
+    if isinstance(a, np.ndarray):
         return np
     if hasattr(a, "__array_namespace__"):
         return a.__array_namespace__()
-    return sys.modules[type(a).__module__.partition(".")[0]]
+    if hasattr(a, "__cuda_array_interface__"):  # of CuPy, whose arrays do not name it
+        return sys.modules[type(a).__module__.partition(".")[0]]
+    return np
+
+
+def check_namespace(xp: Any) -> None:
+    """Raise ValueError for a namespace without Fourier transforms, or whose arrays cannot be written."""
+    name, numpy = getattr(xp, "__name__", repr(xp)), "give heights of NumPy, which computes without it"
+    lacking = [f"fft.{one}" for one in TRANSFORMS if not hasattr(getattr(xp, "fft", None), one)]
+    if lacking:
+        raise ValueError(f"the array library {name} lacks {', '.join(lacking)}; {numpy}")
+    try:
+        xp.zeros((1, 1), dtype=xp.float64)[0, 0] = 1.0
+    except (AttributeError, TypeError) as error:
+        raise ValueError(
+            f"arrays of {name} of double precision cannot be written ({error}); {numpy}"
+        ) from None
 
 
 def to_numpy(a: Any) -> NDArray[Any]:
@@ -53,11 +72,17 @@ def to_numpy(a: Any) -> NDArray[Any]:
     return a.get() if hasattr(a, "get") else np.array(np.from_dlpack(a))
 
 
-def copy(a: Array) -> Array:
+def copy(a: Array, dtype: Any = None) -> Array:
     """A copy of an array, by rows."""
-    same: Array = namespace(a).empty(a.shape, dtype=a.dtype)
+    same: Array = namespace(a).empty(a.shape, dtype=dtype or a.dtype)
     same[...] = a
     return same
+
+
+def take_rows(a: Array, i: NDArray[np.intp]) -> Array:
+    """The rows i of an array."""
+    xp = namespace(a)
+    return a[i] if xp is np else xp.take(a, xp.asarray(i), axis=0)  # the other one copies a transposed one
 
 
 def at_once(xp: Any) -> int:

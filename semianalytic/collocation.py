@@ -18,18 +18,17 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import j0
 
-from semianalytic import abel, frf
+from semianalytic import abel
 from semianalytic.contact import NotConverged
 from semianalytic.edge_profile import Profile
 from semianalytic.inputs import Body, undeformed_gap
 
-__all__ = ["SHARES", "RoundContact", "compliance_excess", "contact", "reflecting_depth"]
+__all__ = ["SHARES", "RoundContact", "contact"]
 
 Array = NDArray[np.floating]
 
 SHARES = (1.0, 0.8, 0.64)  # of the terms, on a refinement study of them
 MOST = 96  # terms
-NEGLIGIBLE = 1e-12  # of the compliance, below which the layers no longer reflect
 # Step in log a and weights of the central differences of sixth and of fourth order.
 STEP, SIXTH, FOURTH = 0.02, np.array([45.0, -9.0, 1.0]) / 60, np.array([8.0, -1.0, 0.0]) / 12
 
@@ -41,36 +40,6 @@ class RoundContact(NamedTuple):
     approach: float
     stiffness: float
     stiffness_error: float
-
-
-def compliance_excess(body: Body) -> Callable[[Array], Array]:
-    """M(k) - 1 of flat and elastic ball together: M = E* sum M_i/E_i*, 1/E* = sum 1/E_i*."""
-    coated = [one for one in body.pair if one.coatings]
-    shares = [body.contact_modulus / one.moduli[0] for one in coated]
-
-    def excess(k: Array) -> Array:
-        total = np.zeros_like(k)
-        for share, one in zip(shares, coated, strict=True):
-            total += share * frf.compliance_excess(k, **one.layers)
-        return total
-
-    return excess
-
-
-def reflecting_depth(body: Body) -> float:
-    """Depth [m] of the first interface of either body that matters; infinite where both are uncoated."""
-    return min((_reflecting_depth(one) for one in body.pair if one.coatings), default=np.inf)
-
-
-def _reflecting_depth(body: Body) -> float:
-    """Depth [m] of the first interface that matters: exp(-2 k h) is rounding where the response ends.
-
-    The thickness of the first coating where the next material differs; a coating divided into equal parts
-    reflects at the bottom of the last one only. Far below the coatings without a reflection.
-    """
-    k = np.geomspace(1e-2 / sum(body.thickness), 40 / body.thickness[0], 4000)
-    felt = np.flatnonzero(np.abs(frf.compliance_excess(k, **body.layers)) > NEGLIGIBLE)
-    return 14.0 / float(k[felt[-1] if felt.size else 0])
 
 
 def contact(
@@ -86,7 +55,8 @@ def contact(
     radius [m], and load [N] or approach [m], the other None; gap as in `inputs.undeformed_gap`.
     Raises NotConverged where no contact radius is found.
     """
-    excess, E_star, depth = compliance_excess(body), body.contact_modulus, reflecting_depth(body)
+    both, E_star = body.response, body.contact_modulus
+    excess, depth = (both.excess, both.depth) if both else (np.zeros_like, np.inf)
 
     def Hertz(a: float) -> float:
         """Contact radius on a solid as compliant as the layers at the wavelength of a."""
@@ -101,33 +71,50 @@ def contact(
         if abs(a - last) < 1e-6 * a:
             break
 
-    def solved(a: float, share: float) -> RoundContact:
-        terms = share * min(MOST, 6 + 6 * np.sqrt(a / depth))
-        problem = _Collocation(excess, depth, a, max(4, int(terms)))
+    def solved(waves: _Waves, a: float, share: float) -> RoundContact:
+        problem = _Collocation(excess, waves, max(4, int(share * _terms(a / depth))))
         return problem.solve(a, undeformed_gap(gap, radius), load, approach, E_star)
 
     # a film that bends makes the contact far wider than Hertz's, and the terms go by its width
+    waves = _Waves.of(a / depth)
     for _ in range(4):
-        rough, a = a, solved(a, SHARES[-1]).profile.radius
+        rough, a = a, solved(waves, a, SHARES[-1]).profile.radius
         if 0.9 < a / rough < 1.1:
             break
-    return [solved(a, share) for share in shares]
+        waves = _Waves.of(a / depth)
+    return [solved(waves, a, share) for share in shares]
+
+
+def _terms(ratio: float) -> float:
+    """For a contact ``ratio`` times as wide as the depth that reflects."""
+    return float(min(MOST, 6 + 6 * np.sqrt(ratio)))
+
+
+class _Waves(NamedTuple):
+    """k a with quadrature weights times the transforms of every term, (nk,) and (terms, nk)."""
+
+    k: Array
+    transforms: Array
+
+    @classmethod
+    def of(cls, ratio: float) -> "_Waves":
+        """For contacts up to a tenth wider than ``ratio`` times the depth that reflects."""
+        # a may grow in the search
+        k, weight = abel.wavenumbers(2.0, float(np.clip(1.2 * 14 * ratio, 1.0, abel.CYCLES)))
+        return cls(k, weight * abel.cosine_transforms(int(_terms(1.2 * ratio)), k))
 
 
 class _Collocation:
     """The equations at given r/a: what does not depend on a is computed once.
 
-    excess : M(k) - 1 of k [rad/m].  depth : that reflects [m].  a : about the contact radius [m].
+    excess : M(k) - 1 of k [rad/m].  waves : for about the contact radius.
     """
 
-    def __init__(self, excess: Callable[[Array], Array], depth: float, a: float, terms: int) -> None:
-        self.excess, self.terms = excess, terms
+    def __init__(self, excess: Callable[[Array], Array], waves: _Waves, terms: int) -> None:
+        self.excess, self.k, self.outer = excess, waves.k, waves.transforms[:terms]
         s, _ = abel.gauss_legendre(terms + 1)
         self.rho = np.sqrt((1 - s) / 2)
         self.inner = abel.over_circle(terms, self.rho)
-        # a may grow in the search
-        self.k, weight = abel.wavenumbers(2.0, float(np.clip(1.5 * 14 * a / depth, 1.0, abel.CYCLES)))
-        self.outer = weight * abel.cosine_transforms(terms, self.k)
         self.bessel = j0(np.outer(self.rho, self.k))
 
     def solve(

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from semianalytic import abel, influence, smooth_edge
+from semianalytic.arrays import namespace, to_numpy
 from semianalytic.edge_profile import Profile
 from semianalytic.grid import Grid
 from semianalytic.inputs import Body, Numerics
@@ -77,14 +78,20 @@ def defect(problem: LevelProblem, p: Array, near: Array) -> tuple[smooth_edge.Ed
     """Smooth edge of the pressure p [Pa] on a window, and what patches miss by it; None without such an edge.
 
     near : `near_influence`.  Returns the edge, deflection [m] and sum of p [Pa] that patches miss.
+    The edge is found by NumPy.
     """
-    whole = problem.grid.whole(p)
+    xp, whole = namespace(p), problem.grid.whole(p)
     fitted = smooth_edge.fit(whole, even=problem.grid.quarter)
     if fitted is None:
         return None
     edge, parts = fitted
-    u, missing = edge.deflection_beyond_centres(parts, whole, problem.deflection_of_whole, near)
-    return edge, problem.held(u), missing
+
+    def deflection(moments: Array) -> Array:
+        u: Array = to_numpy(problem.deflection_of_whole(xp.asarray(moments)))
+        return u
+
+    u, missing = edge.deflection_beyond_centres(parts, to_numpy(whole), deflection, near)
+    return edge, xp.asarray(problem.held(u)), missing
 
 
 def near_influence(d: float, body: Body, numerics: Numerics) -> Array:

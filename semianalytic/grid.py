@@ -14,11 +14,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import RectBivariateSpline
 
+from semianalytic.arrays import blocks, namespace, strips, take_rows, to_numpy, total
+
 __all__ = ["Grid", "Window", "deconvolve", "odd", "prolong", "touches_rim", "window_around"]
 
 Array = NDArray[np.floating]
-
-BLOCK = 2**15  # numbers that stay in the cache
 
 
 @dataclass(frozen=True)
@@ -61,12 +61,12 @@ class Grid:
     def force(self, pressure: Array) -> float:
         """Force of a pressure on a window of the patches held [N]."""
         w = self.weight(pressure.shape)
-        return float((pressure.sum() if w is None else np.sum(w * pressure)) * self.d**2)
+        return total(pressure if w is None else w * pressure) * self.d**2
 
     def count(self, marked: NDArray[np.bool_]) -> int:
         """Patches marked by those held on a window."""
         w = self.weight(marked.shape)
-        return int(np.count_nonzero(marked) if w is None else w[marked].sum())
+        return int(namespace(marked).count_nonzero(marked) if w is None else w[marked].sum())
 
     @property
     def window(self) -> "Window":
@@ -104,8 +104,14 @@ class Grid:
 
     def ringed(self, field: NDArray[Any]) -> NDArray[Any]:
         """A field with one more patch all around: 0 beyond the grid, mirrored at the axes of a quarter."""
-        field = np.pad(field, ((0, 1), (0, 1)))
-        return np.pad(field, ((1, 0), (1, 0)), mode=self.mirror if self.quarter else "constant")
+        nx, ny = field.shape
+        ringed: NDArray[Any] = namespace(field).zeros((nx + 2, ny + 2), dtype=field.dtype)
+        ringed[1:-1, 1:-1] = field
+        if self.quarter:
+            image = 1 + self.n % 2
+            ringed[0, :] = ringed[image, :]
+            ringed[:, 0] = ringed[:, image]
+        return ringed
 
     @property
     def _shared(self) -> int:
@@ -123,8 +129,8 @@ class Grid:
                 p[1:] += sides[: len(p) - 1]
                 p[: len(sides)] += sides
             else:
-                p = np.pad(p, ((0, len(p) % 2), (0, 0)))
-                p = (p[::2] + p[1::2]) / 2
+                p = _with_even_rows(p, 0.0 * p[-1:, :])
+                p = (p[::2, :] + p[1::2, :]) / 2
             p = p.T
         return p
 
@@ -135,8 +141,8 @@ class Grid:
                 gap = np.pad(gap, ((1, 2 - len(gap) % 2), (0, 0)), mode="reflect")
                 gap = np.minimum(np.minimum(gap[:-2:2], gap[1:-1:2]), gap[2::2])
             else:
-                gap = np.pad(gap, ((0, len(gap) % 2), (0, 0)), mode="edge")
-                gap = np.minimum(gap[::2], gap[1::2])
+                gap = _with_even_rows(gap, gap[-1:, :])
+                gap = namespace(gap).minimum(gap[::2, :], gap[1::2, :])
             gap = gap.T
         return gap
 
@@ -153,7 +159,11 @@ class Grid:
         m = heights.shape[0]
         if m == self.n:
             return heights
-        given = (np.arange(m) - (m - 1) / 2) * (2 * half_width / m)
+        source = Grid(m, 2 * half_width / m)
+        given = source.x
+        if not isinstance(heights, np.ndarray):
+            x = np.clip(self.x, given[0], given[-1])
+            return _linear(_linear(heights, source, x).T, source, x).T
         spline = RectBivariateSpline(given, given, heights, kx=1, ky=1)
         x = np.clip(self.x, given[0], given[-1])
         return spline(x, x)
@@ -186,7 +196,7 @@ def window_around(pressure: Array, source: Grid, target: Grid) -> Window:
     """Patches of the target that the contact on the source may extend to: 4 % and 3 patches beyond it."""
     edges = []
     for axis in (1, 0):
-        loaded = source.x[np.any(pressure > 0, axis=axis)]
+        loaded = source.x[to_numpy(namespace(pressure).any(pressure > 0, axis=axis))]
         low, high = loaded[0], loaded[-1]
         if target.quarter:
             high = max(-low, high)
@@ -208,30 +218,34 @@ def prolong(pressure: Array, gap: Array, source: Grid, target: Grid, window: Win
     pressure [Pa], gap [m] : on the source.  window : of the target.  E_star [Pa].
     Returns p [Pa] on the window; 0 beyond the source.
     """
+    xp = namespace(pressure)
     loaded = source.ringed(pressure > 0)
     inner = loaded[2:, 1:-1] & loaded[:-2, 1:-1] & loaded[1:-1, 2:] & loaded[1:-1, :-2]
-    beside = loaded[:-2] | loaded[1:-1] | loaded[2:]
+    beside = loaded[:-2, :] | loaded[1:-1, :] | loaded[2:, :]
     beside = beside[:, :-2] | beside[:, 1:-1] | beside[:, 2:]
     loaded = loaded[1:-1, 1:-1]
     # a rim patch lies 0.6 d from the edge on average
     rim = loaded & ~inner
     weight = source.weight(rim.shape)
-    weights = None if weight is None else weight[rim]
-    K2 = float(np.average(pressure[rim] ** 2, weights=weights)) / (0.6 * source.d)
-    level = pressure**2
+    squares = pressure[rim] ** 2
+    K2 = float(xp.mean(squares) if weight is None else np.average(squares, weights=weight[rim]))
+    K2 /= 0.6 * source.d
+    level = xp.asarray(pressure, dtype=xp.float64) ** 2
     # patches not next to a loaded one are never interpolated with one: any value that is not positive serves
     beside &= ~loaded
-    level[beside] = -K2 * (np.maximum(gap[beside], 0) * (0.75 * E_star) / np.sqrt(K2)) ** (2 / 3)
+    outside = xp.asarray(gap[beside], dtype=xp.float64)
+    level[beside] = -K2 * (xp.maximum(outside, 0.0) * (0.75 * E_star) / K2**0.5) ** (2 / 3)
     rows, columns = window.slices
-    level = _linear(_linear(level, source, target.x[rows]).T, source, target.x[columns]).T
-    np.maximum(level, 0, out=level)
-    return np.sqrt(level, out=level)
+    level = _linear(_linear(level, source, target.x[rows]).T, source, target.x[columns])
+    for part in blocks(level):
+        level[part] = xp.sqrt(xp.maximum(level[part], 0.0))
+    return level.T
 
 
 def touches_rim(pressure: Array, quarter: bool = False) -> bool:
     """Whether a patch of the outermost ring is loaded; two sides of a ``quarter`` belong to it."""
-    rim = (pressure[-1], pressure[:, -1], pressure[0], pressure[:, 0])
-    return any(bool(np.any(side > 0)) for side in rim[: 2 if quarter else 4])
+    rim = (pressure[-1, :], pressure[:, -1], pressure[0, :], pressure[:, 0])
+    return any(bool(namespace(pressure).any(side > 0)) for side in rim[: 2 if quarter else 4])
 
 
 def deconvolve(mean: Array) -> Array:
@@ -246,13 +260,19 @@ def deconvolve(mean: Array) -> Array:
 
 def _linear(values: Array, source: Grid, x: Array) -> Array:
     """Linear interpolation along the first index, from the patch centres of the source to x; 0 beyond it."""
-    at = np.clip((x - source.x[0]) / source.d, 0, len(values) - 1)
-    i = np.minimum(at.astype(int), len(values) - 2)
+    xp, (n, width) = namespace(values), values.shape
+    at = np.clip((x - source.x[0]) / source.d, 0, n - 1)
+    i = np.minimum(at.astype(int), n - 2)
     t = (at - i)[:, None]
-    result = np.empty((len(x), values.shape[1]))
-    rows = max(1, BLOCK // values.shape[1])
-    for k in range(0, len(x), rows):
-        part = slice(k, k + rows)
-        result[part] = values[i[part]] * (1 - t[part]) + values[i[part] + 1] * t[part]
-    result[np.abs(x) > source.half_width] = 0
+    result: Array = xp.empty((len(x), width))
+    for part in strips(len(x), width, xp):
+        low, high = take_rows(values, i[part]), take_rows(values, i[part] + 1)
+        result[part, :] = low * xp.asarray(1 - t[part]) + high * xp.asarray(t[part])
+    result[: np.searchsorted(x, -source.half_width), :] = 0.0
+    result[np.searchsorted(x, source.half_width, side="right") :, :] = 0.0
     return result
+
+
+def _with_even_rows(a: Array, below: Array) -> Array:
+    """An array of an even number of rows, ``below`` the last one where that is odd."""
+    return namespace(a).concat([a, below]) if a.shape[0] % 2 else a

@@ -1,9 +1,10 @@
 """Conversion of a frequency response into influence coefficients of the surface displacement.
 
-Under pressure a coated half-space deflects by u_z(k) = (1-nu1)/(G1 k) M(k) p(k). Its influence coefficient
-is the displacement at one patch centre under unit pressure on another patch, the square of side d:
+Under pressure a coated half-space deflects by u_z(k) = 2/(E* k) M(k) p(k), flat and elastic ball together by
+the sum of both (``response``). Their influence coefficient is the displacement at one patch centre under unit
+pressure on another patch, the square of side d:
 
-    K_ij = (1-nu1)/(2 pi G1) C_ij,    C(x, y) = int int_patch g(r),    g(r) = int_0^inf M(k) J0(kr) dk.
+    K_ij = 1/(pi E*) C_ij,    C(x, y) = int int_patch g(r),    g(r) = int_0^inf M(k) J0(kr) dk.
 
 The three conversions from M to C:
 
@@ -19,25 +20,23 @@ plain      M/k times the transform of the patch, aliases summed, FFT on an enlar
            k = 0 and slow to decay; its error is 0.4 % at the loaded patch and more far away.
 """
 
-from collections.abc import Callable, Sequence
-from functools import partial
+from collections.abc import Callable
 from math import isqrt
 from typing import Any
 
 import ducc0
 import numpy as np
 from numpy.typing import NDArray
-from scipy.fft import fht, fhtoffset
-from scipy.interpolate import CubicSpline
 
-from semianalytic import frf, halfspace
+from semianalytic import halfspace
 from semianalytic.arrays import at_once, namespace, strips
 from semianalytic.inputs import Body, Numerics
+from semianalytic.response import Response
 
-__all__ = ["plain_coefficients", "remainder_coefficients", "split_image", "surface_coefficients"]
+__all__ = ["plain_coefficients", "remainder_coefficients", "surface_coefficients"]
 
 Array = NDArray[np.floating]
-Response = Callable[[Array], Array]
+Function = Callable[[Array], Array]
 
 DIGITS = 1e-11  # tolerance of the quadrature over a patch, relative to the value at its centre
 SMOOTH = 12.0  # patches from the nearest singularity, beyond which finite differences average a patch
@@ -46,75 +45,35 @@ SMOOTH = 12.0  # patches from the nearest singularity, beyond which finite diffe
 def surface_coefficients(n: int, d: float, body: Body, numerics: Numerics, xp: Any = np) -> Array:
     """Influence coefficients K [m/Pa] of the surface displacement by the conversion of ``numerics``.
 
-    The approach of the surfaces is u_z of the flat plus that of an elastic ball: their coefficients add up.
+    With an elastic ball, of the approach of both surfaces: u_z of the flat plus that of the ball.
 
     n : offsets 0..n-1.  d : side of the patches [m].  xp : namespace of the result, which computes it by the
     conversion "split"; by another one NumPy does.  Returns shape (n, n), even in both indices.
     """
     if xp is not np and numerics.conversion != "split":
         return xp.asarray(surface_coefficients(n, d, body, numerics))
+    both, enlarge, threads = body.response, numerics.enlarge, numerics.threads
     if numerics.conversion == "plain":
-        K: Array = np.zeros((n, n))
-        for one in body.pair:
-            excess = partial(frf.compliance_excess, **one.layers)
-            C = plain_coefficients(n, d, excess, enlarge=numerics.enlarge, threads=numerics.threads)
-            K += 1 / (np.pi * one.moduli[0]) * C
-        return K
-    K = halfspace.surface_deflection(n, n, d, d, xp=xp)
+        excess = both.excess if both else np.zeros_like
+        K = plain_coefficients(n, d, excess, enlarge=enlarge, threads=threads)
+    else:
+        K = halfspace.surface_deflection(n, n, d, d, xp=xp)
+        if both:
+            enlarge = enlarge if numerics.conversion == "split-fft" else 0
+            points = numerics.hankel_points
+            K += remainder_coefficients(n, d, both, points=points, enlarge=enlarge, threads=threads, xp=xp)
+            c, b = both.image
+            of_image = halfspace.surface_deflection(n, n, d, d, b, xp)
+            of_image *= c
+            K += of_image
     K *= 1 / (np.pi * body.contact_modulus)
-    for one in body.pair:
-        if one.coatings:
-            C = _layer_coefficients(n, d, one, numerics, xp)
-            C *= 1 / (np.pi * one.moduli[0])
-            K += C
     return K
-
-
-def _layer_coefficients(n: int, d: float, body: Body, numerics: Numerics, xp: Any) -> Array:
-    """C_ij [m] less Love's rectangle on the first material, shape (n, n)."""
-    excess = partial(frf.compliance_excess, **body.layers)
-    image = split_image(excess, body.thickness)
-    C = remainder_coefficients(
-        n,
-        d,
-        excess,
-        body.thickness,
-        image,
-        points=numerics.hankel_points,
-        enlarge=numerics.enlarge if numerics.conversion == "split-fft" else 0,
-        threads=numerics.threads,
-        xp=xp,
-    )
-    of_image = halfspace.surface_deflection(n, n, d, d, image[1], xp)
-    of_image *= image[0]
-    C += of_image
-    return C
-
-
-def split_image(excess: Response, thickness: Sequence[float]) -> tuple[float, float]:
-    """Strength c and depth b of the image c exp(-b k) that removes the long range of M(k) - 1.
-
-        c = M(0) - 1,    b = ln 2 / (wavenumber at which half of c is left), but not above the image
-                                      of the surface in the first interface, 2 h1
-
-    excess : M(k) - 1, k [rad/m].  thickness : of the coatings [m].  Returns c [-] and b [m].
-    """
-    total = sum(thickness)
-    k = np.geomspace(1e-8 / total, 40 / thickness[0], 4000)
-    M = excess(k)
-    c = float(M[0])
-    left = np.abs(M) < 0.5 * abs(c)
-    if abs(c) < 1e-12 or not left.any():
-        return c, 2 * total
-    return c, max(float(np.log(2) / k[np.argmax(left)]), 2 * thickness[0])
 
 
 def remainder_coefficients(
     n: int,
     d: float,
-    excess: Response,
-    thickness: Sequence[float],
-    image: tuple[float, float],
+    response: Response,
     *,
     points: int = 4096,
     enlarge: int = 0,
@@ -125,22 +84,22 @@ def remainder_coefficients(
 
         C_ij = int int_patch(i, j) int_0^inf R(k) J0(k r) dk,    R = M - 1 - c e^(-b k)
 
-    n : offsets 0..n-1.  d : side of the patches [m].  excess, thickness, image : as ``split_image``.
+    n : offsets 0..n-1.  d : side of the patches [m].  response : of the surface, with R and its image.
     points : of the logarithmic Hankel grid.
     enlarge : 0 for the Hankel transform; else the factor by which the domain of a two-dimensional FFT
     exceeds the kernel's (conversion "split-fft", by NumPy).  xp : namespace of the result.
     Returns [m], shape (n, n), even in both indices.
     """
-    c, b = image
     if enlarge:
+        c, b = response.image
 
         def shaped(k: Array) -> Array:
-            return excess(k) - c * np.exp(-b * k)
+            return response.excess(k) - c * np.exp(-b * k)
 
         return _by_fft(n, d, shaped, enlarge, 2, 0.0, threads)
 
-    g, on_disc = _radial(excess, thickness, image, points)
-    near = 2 * thickness[0] / d  # g is singular no nearer than the image of the surface, at depth 2 h
+    g, on_disc = response.radial(points)
+    near = 2 * response.first / d  # g is singular no nearer than the image of the surface, at depth 2 h
     mean = _average(_average(_octant(g, n + 3, d, xp)).T).T[:n, :n]
     mean *= d * d
     if near < SMOOTH:
@@ -149,7 +108,7 @@ def remainder_coefficients(
     return mean
 
 
-def _corner(g: Response, on_disc: Response, n: int, d: float, near: float) -> Array:
+def _corner(g: Function, on_disc: Function, n: int, d: float, near: float) -> Array:
     """Integrals [m] over the patches next to the loaded one by Gauss quadrature, shape (n, n).
 
     near : distance to the nearest singularity of g, in patches.
@@ -167,7 +126,7 @@ def _corner(g: Response, on_disc: Response, n: int, d: float, near: float) -> Ar
 
 
 def plain_coefficients(
-    n: int, d: float, excess: Response, *, enlarge: int = 4, aliases: int = 2, threads: int = 1
+    n: int, d: float, excess: Function, *, enlarge: int = 4, aliases: int = 2, threads: int = 1
 ) -> Array:
     """The source paper's conversion: C by FFT of M/k times the transform of the patch shape.
 
@@ -180,7 +139,7 @@ def plain_coefficients(
 
 
 def _by_fft(
-    n: int, d: float, response: Response, enlarge: int, aliases: int, zero: float | None, threads: int
+    n: int, d: float, response: Function, enlarge: int, aliases: int, zero: float | None, threads: int
 ) -> Array:
     half = int(ducc0.fft.good_size(enlarge * n, True))
     m = 2 * half
@@ -201,62 +160,6 @@ def _by_fft(
         spectrum[0, 0] += M0 * 4 * np.arcsinh(1.0) / dk
     quadrant = ducc0.fft.dct(spectrum, axes=(0, 1), type=1, nthreads=threads)
     return quadrant[:n, :n] * (2 * np.pi / (m * m))
-
-
-def _radial(
-    excess: Response, thickness: Sequence[float], image: tuple[float, float], points: int
-) -> tuple[Response, Response]:
-    """g(r) = int R(k) J0(kr) dk and int_0^r g r dr: moments to a tenth of a coating, Hankel grid beyond."""
-    c, b = image
-    h = thickness[0]  # M - 1 decays as exp(-2 k h): deeper layers give smoother terms
-    low, high = 1e-7 / max(b, sum(thickness)), 1e5 / h
-    k = np.geomspace(low, high, points)
-    step = np.log(k[1] / k[0])
-    R = excess(k) - c * np.exp(-b * k)
-    offset = fhtoffset(step, mu=0)
-    A = fht(R, step, mu=0, offset=offset)
-    r = np.exp(offset) / k[::-1]
-    near = 0.1 * h
-    far = 1e6 * max(b, sum(thickness))
-    keep = (r > 0.5 * near) & (r < far)
-    x = np.log(r[keep])
-    spline = CubicSpline(x, A[keep] / r[keep])
-    inner = CubicSpline(x, A[keep] * r[keep]).antiderivative()
-    far_g = _of_any_library(spline, float(step))
-    m0, m1, m2, m3 = (float(np.sum(R * k ** (2 * j + 1)) * step) for j in range(4))
-
-    def g(r: Array) -> Array:
-        xp = namespace(r)
-        s = (r / 2) ** 2
-        small = m0 - s * (m1 - s * (m2 / 4 - s * m3 / 36))
-        large = xp.where(r < far, far_g(xp.log(xp.clip(r, near, far))), 0.0)
-        return xp.where(r < near, small, large)
-
-    def on_disc(r: Array) -> Array:
-        s = (np.minimum(r, near) / 2) ** 2
-        small = 2 * s * (m0 - s * (m1 / 2 - s * (m2 / 12 - s * m3 / 144)))
-        return small + inner(np.log(np.clip(r, near, far))) - inner(np.log(near))
-
-    return g, on_disc
-
-
-def _of_any_library(spline: CubicSpline, step: float) -> Response:
-    """The spline, whose knots are equidistant by ``step``, of an array of any library."""
-
-    def value(x: Array) -> Array:
-        xp = namespace(x)
-        if xp is np:
-            return spline(x)
-        flat = xp.reshape(x, (-1,))
-        at = xp.floor((flat - float(spline.x[0])) / step)
-        i = xp.asarray(xp.clip(at, 0.0, float(len(spline.x) - 2)), dtype=xp.int64)
-        t = flat - xp.take(xp.asarray(spline.x), i, axis=0)
-        sum_ = xp.zeros_like(t)
-        for coefficients in spline.c:
-            sum_ = sum_ * t + xp.take(xp.asarray(coefficients), i, axis=0)
-        return xp.reshape(sum_, x.shape)
-
-    return value
 
 
 def _octant(g: Callable[[Array], Array], n: int, d: float, xp: Any) -> Array:

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from semianalytic import abel, contact, convolution, edge_profile, influence, smooth_edge
+from semianalytic.arrays import copy, namespace, to_numpy
 from semianalytic.grid import Grid, Window, prolong
 from semianalytic.inputs import Body, Numerics
 
@@ -74,8 +75,11 @@ class Level:
         if self.shape is not None:
             return 0.0
         share = 0.25 if self.edge is None else self.edge.misfit
-        touching = np.pad(self.grid.whole(self.found.pressure) > 0, 1)
-        edges = sum(np.count_nonzero(np.diff(touching, axis=axis)) for axis in (0, 1))
+        whole, count = self.whole, namespace(self.found.pressure).count_nonzero
+        touching = whole.grid.ringed(whole.found.pressure > 0)
+        edges = int(count(touching[1:, :] ^ touching[:-1, :])) + int(
+            count(touching[:, 1:] ^ touching[:, :-1])
+        )
         return float(np.pi / 4 * edges * self.grid.d * share * self.grid.d / (2 * np.pi * self.radius))
 
     @property
@@ -84,6 +88,15 @@ class Level:
         whole, found = self.grid.whole, self.found
         found = replace(found, pressure=whole(found.pressure), gap=whole(found.gap))
         return replace(self, grid=replace(self.grid, quarter=False), found=found)
+
+    @property
+    def in_numpy(self) -> "Level":
+        """The same contact in arrays of NumPy."""
+        found = self.found
+        if isinstance(found.pressure, np.ndarray):
+            return self
+        found = replace(found, pressure=to_numpy(found.pressure), gap=to_numpy(found.gap))
+        return replace(self, found=found)
 
     @cached_property
     def scalars(self) -> dict[str, float]:
@@ -96,7 +109,7 @@ class Level:
     @property
     def _peak(self) -> float:
         """Of the patches; a ring of highest pressure between their centres is that of the edge profile."""
-        peak = float(self.found.pressure.max())
+        peak = float(namespace(self.found.pressure).max(self.found.pressure))
         if isinstance(self.shape, edge_profile.Profile):
             peak = self.shape.peak
             if self.rest.any():
@@ -161,13 +174,13 @@ class LevelProblem:
     ) -> None:
         self.grid, self.gap, self.depth, self.window, self.before = grid, gap, depth, window, before
         self.indenter, self.body, self.numerics, self.datum = indenter, body, numerics, datum
-        nx, ny = grid.across(window).shape
-        kernel = influence.surface_coefficients(max(nx, ny), grid.d, body, numerics)[:nx, :ny]
+        xp, (nx, ny) = namespace(gap), grid.across(window).shape
+        kernel = influence.surface_coefficients(max(nx, ny), grid.d, body, numerics, xp)[:nx, :ny]
         held, threads = grid.quarter, numerics.threads
         memory: Array | None = None
         inverse: Array | None = None
         self.work: tuple[Array, Array] | None = None
-        if not held:
+        if not held and xp is np:
             memory, inverse, self.work = _shared_memory(nx, ny, numerics.tolerance >= LOOSE)
         self.single = memory is not None and memory.dtype == np.float32
         self.deflection = convolution.even_convolution(kernel, quarter=held, threads=threads, memory=memory)
@@ -222,8 +235,9 @@ class LevelProblem:
             return self.indenter.shapes[0].pressure(self.grid.radius)
         if before is None:
             approach = self.indenter.approach or 0.25 * self.depth
-            p = self.precondition(np.maximum(self.gap.min() + approach - self.gap, 0))
-            return np.array(p, dtype=float)  # not in memory that the iteration uses
+            xp = namespace(self.gap)
+            p = self.precondition(xp.maximum(xp.min(self.gap) + approach - self.gap, 0.0))
+            return copy(p, xp.float64)  # not in memory that the iteration uses
         p, g, E_star = before.found.pressure, before.found.gap, self.body.contact_modulus
         return prolong(p, g, before.grid, self.grid, self.window, E_star)
 
@@ -247,13 +261,14 @@ def _above_highest(p: Array) -> float:
 
     By differences of second order: g^2/2h per axis, g the slope and -h the second derivative.
     """
-    i, j = np.unravel_index(int(p.argmax()), p.shape)
+    i, j = divmod(int(namespace(p).argmax(p)), p.shape[1])
     if not (0 < i < p.shape[0] - 1 and 0 < j < p.shape[1] - 1):
         return 0.0
-    above = 0.0
-    for low, high in ((p[i - 1, j], p[i + 1, j]), (p[i, j - 1], p[i, j + 1])):
-        if low > 0 and high > 0 and low + high < 2 * p[i, j]:
-            above += float((high - low) ** 2 / (8 * (2 * p[i, j] - low - high)))
+    above, around = 0.0, to_numpy(p[i - 1 : i + 2, j - 1 : j + 2])
+    twice = 2 * around[1, 1]
+    for low, _, high in (around[:, 1], around[1, :]):
+        if low > 0 and high > 0 and low + high < twice:
+            above += float((high - low) ** 2 / (8 * (twice - low - high)))
     return above
 
 

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from semianalytic import convolution, influence
+from semianalytic.arrays import copy, namespace
 from semianalytic.contact import NotConverged
 from semianalytic.defect_correction import corrected, smoothed
 from semianalytic.edge_profile import Profile
@@ -67,17 +68,19 @@ def solve_on(
 ) -> Level:
     """Contact on a grid: of a sphere corrected by an edge profile, of others on the window they need.
 
-    Where the gap is even in x and in y, so are all fields, and a quarter of the grid is enough.
+    Where the gap is even in x and in y, so are all fields, and a quarter of the grid is enough, of NumPy.
     """
     if indenter.round:
         return corrected(grid, indenter.gap(grid), before, shape, indenter, body, numerics)
     grid, gap = undeformed(replace(grid, quarter=False), indenter)
-    whole, depth, datum = grid.window, float(np.ptp(gap)), float(gap.min())
+    xp, whole = namespace(gap), grid.window
+    datum = float(xp.min(gap))
+    depth = float(xp.max(gap)) - datum
     if before is not None:
         before = before.whole if grid.quarter < before.grid.quarter else before
         window = window_around(before.found.pressure, before.grid, grid)
         if window.shape != whole.shape:
-            lowest, gap = grid.lowest(gap), gap[window.slices].copy()
+            lowest, gap = grid.lowest(gap), copy(gap[window.slices])
             lowest -= datum
             problem = LevelProblem(grid, gap, depth, window, before, indenter, body, numerics, datum)
             level = _solved(problem)
@@ -93,6 +96,8 @@ def solve_on(
 def undeformed(grid: Grid, indenter: Indenter) -> tuple[Grid, Array]:
     """Gap on a whole grid; on a quarter, and that grid, where it is even in x and in y to the last digit."""
     gap = indenter.gap(grid)
+    if not isinstance(gap, np.ndarray):
+        return grid, gap
     c = (grid.n + 1) // 2
     if np.array_equal(gap[:c], gap[: -c - 1 : -1]) and np.array_equal(gap[:, :c], gap[:, : -c - 1 : -1]):
         grid = replace(grid, quarter=True)
@@ -102,8 +107,8 @@ def undeformed(grid: Grid, indenter: Indenter) -> tuple[Grid, Array]:
 
 def _of_single_precision(level: Level) -> Level:
     """The same as a first guess, in half the memory."""
-    found = level.found
-    pressure, gap = found.pressure.astype(np.float32), found.gap.astype(np.float32)
+    found, xp = level.found, namespace(level.found.pressure)
+    pressure, gap = (xp.asarray(values, dtype=xp.float32) for values in (found.pressure, found.gap))
     return replace(level, found=replace(found, pressure=pressure, gap=gap))
 
 
@@ -128,10 +133,10 @@ def is_alone(level: Level, lowest: Array, window: Window, body: Body, numerics: 
     if touches_rim(p[window.slices], grid.quarter):
         return False
     merged = grid.merged(p)
-    n = 2 * len(merged) - grid.n % 2 if grid.quarter else len(merged)
-    kernel = influence.surface_coefficients(n, 2 * grid.d, body, numerics)
+    n = 2 * len(merged) - grid.n % 2 if grid.quarter else merged.shape[0]
+    kernel = influence.surface_coefficients(n, 2 * grid.d, body, numerics, namespace(p))
     g = convolution.even_convolution(kernel, quarter=grid.quarter, threads=numerics.threads)(merged)
     g += lowest
     g -= level.found.approach
     g[grid.merging(window).slices] = np.inf
-    return bool(g.min() > 0)
+    return bool(namespace(g).min(g) > 0)

@@ -21,7 +21,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from semianalytic import convolution, smooth_edge
+from semianalytic import arrays, convolution, smooth_edge
 from semianalytic.defect_correction import defect, near_influence
 from semianalytic.grid import window_around
 from semianalytic.inputs import Body, Numerics
@@ -45,7 +45,7 @@ def of_kernel(
     """
     grid, found = level.grid, level.found
     window = window_around(found.pressure, grid, grid)
-    p = found.pressure[window.slices].copy()
+    p = arrays.copy(found.pressure[window.slices])
     problem = LevelProblem(grid, p, found.approach, window, level, indenter, body, numerics)
     # the undeformed gap with the correction for a smooth edge, where there is one
     problem.gap = found.gap[window.slices] + found.approach - problem.deflection(p)
@@ -61,7 +61,9 @@ def of_kernel(
         corrected = defect(varied, p, near)
         load += 0.0 if corrected is None else corrected[1]
     inside = load[p > 0]
-    size = float(inside.max() - inside.min()) if indenter.approach is None else float(np.abs(inside).max())
+    xp = arrays.namespace(inside)
+    low, high = float(xp.min(inside)), float(xp.max(inside))
+    size = high - low if indenter.approach is None else max(-low, high)
     if not size:
         return dict.fromkeys(level.scalars, 0.0)
     magnified = max(1.0, SIZE * found.approach / size)

@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import maximum_filter, minimum_filter
 
+from semianalytic.arrays import to_numpy
 from semianalytic.grid import touches_rim
 
 __all__ = ["Edge", "fit", "near_influence"]
@@ -302,9 +303,9 @@ def _smooth(p: Array, a: int, b: int, edge: Edge) -> tuple[Array, Array, Array]:
 
 
 def _padded(p: Array, a: int, b: int, width: int) -> Array:
-    """Rows a to b of p and ``width`` patches around them, 0 beyond the grid."""
-    low, high = max(a - width, 0), min(b + width, len(p))
-    return np.pad(p[low:high], ((low - a + width, b + width - high), (width, width)))
+    """Rows a to b of p and ``width`` patches around them, 0 beyond the grid; in NumPy."""
+    low, high = max(a - width, 0), min(b + width, p.shape[0])
+    return np.pad(to_numpy(p[low:high, :]), ((low - a + width, b + width - high), (width, width)))
 
 
 def _few(patches: Array | Indices) -> Iterator[slice]:
@@ -315,4 +316,4 @@ def _few(patches: Array | Indices) -> Iterator[slice]:
 def _rows(p: Array) -> Iterator[tuple[int, int]]:
     """Rows of patches, ``AT_ONCE`` patches at a time."""
     step = max(AT_ONCE // p.shape[1], 4 * REACH)
-    return ((a, min(a + step, len(p))) for a in range(0, len(p), step))
+    return ((a, min(a + step, p.shape[0])) for a in range(0, p.shape[0], step))

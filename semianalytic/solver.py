@@ -8,6 +8,7 @@ import time
 from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,6 +23,7 @@ from semianalytic import (
     nested,
     uncertainty,
 )
+from semianalytic.arrays import check_namespace, namespace
 from semianalytic.contact import NotConverged
 from semianalytic.grid import Grid, deconvolve, odd, touches_rim
 from semianalytic.inputs import (
@@ -111,10 +113,10 @@ def solve(
     half_width = fill * a
     if edge_correction:
         sphere = replace(sphere, shapes=tuple(one.profile for one in found))
-        depth, reach = collocation.reflecting_depth(body), 1.01 * 2**0.5 * half_width
-        if np.isfinite(depth):
-            table = abel.layer_table(collocation.compliance_excess(body), depth, a, reach)
-            sphere = replace(sphere, table=table)
+        both, reach = body.response, 1.01 * 2**0.5 * half_width
+        if both:
+            terms = max(len(one.profile.coefficients) for one in found)
+            sphere = replace(sphere, table=abel.layer_table(both.excess, both.depth, a, reach, terms))
     levels = nested.levels(half_width, sphere, body, numerics, estimate_uncertainty)
     if touches_rim(levels[-1].whole.found.pressure):
         raise NotConverged(f"the contact reaches the rim of the grid, fill = {fill:g}; enlarge it")
@@ -145,6 +147,7 @@ def indent(
     edge_correction: bool = True,
     estimate_uncertainty: bool = True,
     threads: int = 1,
+    array_namespace: Any = None,
 ) -> Solution:
     """Press an indenter of any shape into a coated half-space, over a fixed square.
 
@@ -163,6 +166,10 @@ def indent(
 
     Heights that are even in x and in y to the last digit are solved on a quarter of the square.
 
+    array_namespace : a module with the functions of the Python array API standard, such as ``cupy``, on whose
+    arrays the contact is solved, on a GPU; z is then called with its arrays. By default that of the heights,
+    NumPy for z(x, y). A smooth edge is fitted by NumPy. The solution's arrays are of NumPy.
+
     Raises ValueError for input without meaning, NotConverged when the iteration stops short.
     """
     began = time.perf_counter()
@@ -170,10 +177,12 @@ def indent(
     check_positive(half_width=half_width)
     check_truth_value(edge_correction=edge_correction)
     body = _body(coatings, substrate, friction, ball)
-    heights = None if callable(profile) else np.asarray(profile, dtype=float)
+    xp = namespace(profile) if array_namespace is None else array_namespace
+    check_namespace(xp)
+    heights = None if callable(profile) else xp.asarray(profile, dtype=xp.float64)
     if heights is not None:
         patches = heights.shape[0]
-        if heights.shape != (patches, patches) or not np.all(np.isfinite(heights)):
+        if heights.shape != (patches, patches) or not xp.all(xp.isfinite(heights)):
             raise ValueError(f"profile of shape {heights.shape}; give finite heights on n x n patches")
     numerics = Numerics(
         patches=patches,
@@ -191,9 +200,10 @@ def indent(
             z = grid.sample(heights, half_width)
         else:
             assert callable(profile)
-            z = np.asarray(profile(grid.x[:, None], grid.x[None, :]), dtype=float)
-            z = np.broadcast_to(z, (grid.n, grid.n))
-            if not np.isfinite(z.min()) or not np.isfinite(z.max()):
+            x = xp.asarray(grid.x)
+            z = xp.asarray(profile(x[:, None], x[None, :]), dtype=xp.float64)
+            z = xp.broadcast_to(z, (grid.n, grid.n))
+            if not np.isfinite(float(xp.min(z))) or not np.isfinite(float(xp.max(z))):
                 raise ValueError("profile(x, y) must return finite heights [m] all over the square")
         return z
 
@@ -205,7 +215,7 @@ def indent(
             "the profile as an array if it has no surface beyond"
         )
     estimate = uncertainty.of_contact(levels, indenter, body, numerics) if estimate_uncertainty else None
-    return Solution.of_levels(levels, body, estimate, began)
+    return Solution.of_levels([level.in_numpy for level in levels[-3:]], body, estimate, began)
 
 
 def solve_prescribed(

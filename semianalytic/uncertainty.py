@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from semianalytic import perturbation
+from semianalytic.arrays import namespace
 from semianalytic.collocation import RoundContact
 from semianalytic.edge_profile import Profile, convergence
 from semianalytic.grid import Window, odd
@@ -108,8 +109,9 @@ def _of_conversion(level: Level, indenter: Indenter, body: Body, numerics: Numer
     if numerics.conversion == "split" and not any(one.coatings for one in body.pair):  # in closed form
         return dict.fromkeys(level.scalars, 0.0)
     n, d, other = level.grid.n, level.grid.d, other_conversion(numerics)
-    change = surface_coefficients(n, d, body, other)
-    change -= surface_coefficients(n, d, body, numerics)
+    xp = namespace(level.found.pressure)
+    change = surface_coefficients(n, d, body, other, xp)
+    change -= surface_coefficients(n, d, body, numerics, xp)
     return perturbation.of_kernel(level, change, other, indenter, body, numerics)
 
 
@@ -133,15 +135,16 @@ def _of_domain(
     if box.quarter == level.grid.quarter and (wider.n - grid.n) % 2 == 0:
         first, m = 0 if box.quarter else (wider.n - grid.n) // 2, len(level.grid.x)
         window = Window(first, first + m, first, first + m)
-        depth = float(np.ptp(gap))
+        xp = namespace(gap)
+        depth = float(xp.max(gap) - xp.min(gap))
         found = level.found.embedded(window.slices, box.window.shape, depth)
         if is_alone(
-            replace(level, grid=box, found=found), box.lowest(gap - gap.min()), window, body, numerics
+            replace(level, grid=box, found=found), box.lowest(gap - xp.min(gap)), window, body, numerics
         ):
             if numerics.conversion == "split":
                 return dict.fromkeys(level.scalars, 0.0)
-            by_fft = surface_coefficients(wider.n, grid.d, body, numerics)[: grid.n, : grid.n]
-            by_fft -= surface_coefficients(grid.n, grid.d, body, numerics)
+            by_fft = surface_coefficients(wider.n, grid.d, body, numerics, xp)[: grid.n, : grid.n]
+            by_fft -= surface_coefficients(grid.n, grid.d, body, numerics, xp)
             return perturbation.of_kernel(level, by_fft, numerics, indenter, body, numerics)
     return change(level.scalars, solve_on(wider, start, indenter, body, numerics).scalars)
 
@@ -155,8 +158,10 @@ def _of_iteration(level: Level, indenter: Indenter) -> dict[str, float]:
     """
     found = level.found
     left = min(found.left, level.noise)
-    gap = float(np.abs(found.gap[found.pressure > 0]).max()) if indenter.approach is None else 0.0
-    peak = float(found.pressure.max())
+    xp, gap = namespace(found.gap), 0.0
+    if indenter.approach is None:
+        gap = float(xp.max(xp.abs(found.gap[found.pressure > 0])))
+    peak = float(xp.max(found.pressure))
     return {"contact_radius": level.radius * left / peak, "approach": gap, "peak_pressure": left}
 
 

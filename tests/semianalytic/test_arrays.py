@@ -1,9 +1,12 @@
-"""Kernels, convolution and iteration on arrays of another library: array-api-strict, the standard alone."""
+"""Contacts on arrays of another library: array-api-strict, which has the functions of the standard alone."""
+
+from types import SimpleNamespace
 
 import array_api_strict as strict
 import numpy as np
 import pytest
 
+import semianalytic
 from semianalytic import arrays, contact, convolution, influence
 from semianalytic.arrays import to_numpy
 from semianalytic.inputs import Body, Numerics
@@ -12,13 +15,24 @@ COATED = Body(((420e9, 0.25, 5e-6), (100e9, 0.3, 1e-6)), (210e9, 0.3), 0.0)
 N, D = 40, 1e-6
 
 
+@pytest.fixture(autouse=True)
+def _no_implicit_conversion(monkeypatch):
+    """Its arrays, like those on a GPU, become arrays of NumPy only where that is asked for."""
+
+    def refused(*_, **__):
+        raise TypeError("implicit conversion to an array of NumPy")
+
+    for name in ("__array__", "__buffer__"):
+        monkeypatch.setattr(type(strict.zeros(1)), name, refused, raising=False)
+
+
 @pytest.fixture(scope="module")
 def kernel():
     return influence.surface_coefficients(N, D, COATED, Numerics())
 
 
 @pytest.mark.parametrize("d", [1e-7, 1e-6, 1e-4])
-@pytest.mark.parametrize("at_once", [arrays.AT_ONCE, 300])
+@pytest.mark.parametrize("at_once", [arrays.AT_ONCE, 900])
 def test_coefficients_are_those_of_numpy_however_they_are_divided(d, at_once, monkeypatch):
     monkeypatch.setattr(arrays, "AT_ONCE", at_once)
     ours = influence.surface_coefficients(N, d, COATED, Numerics())
@@ -28,11 +42,11 @@ def test_coefficients_are_those_of_numpy_however_they_are_divided(d, at_once, mo
 
 def test_coefficients_of_another_conversion_are_computed_by_numpy_and_moved():
     numerics = Numerics(conversion="split-fft")
-    moved = influence.surface_coefficients(N, D, COATED, numerics, strict)
-    assert np.array_equal(to_numpy(moved), influence.surface_coefficients(N, D, COATED, numerics))
+    moved = influence.surface_coefficients(9, D, COATED, numerics, strict)
+    assert np.array_equal(to_numpy(moved), influence.surface_coefficients(9, D, COATED, numerics))
 
 
-@pytest.mark.parametrize("at_once", [arrays.AT_ONCE, 300])
+@pytest.mark.parametrize("at_once", [arrays.AT_ONCE, 900])
 @pytest.mark.parametrize("operator", [convolution.even_convolution, convolution.circulant_inverse])
 def test_convolution_is_that_of_numpy_however_it_is_divided(operator, at_once, kernel, monkeypatch):
     monkeypatch.setattr(arrays, "AT_ONCE", at_once)
@@ -58,7 +72,7 @@ def test_median_is_that_of_numpy(n):
     assert arrays.median(strict.asarray(a)) == np.median(a)
 
 
-@pytest.mark.parametrize("at_once", [arrays.AT_ONCE, 300])
+@pytest.mark.parametrize("at_once", [arrays.AT_ONCE, 900])
 @pytest.mark.parametrize("control", [{"total": 3e12}, {"approach": 3e-7}])
 def test_iteration_takes_the_steps_of_numpy(control, at_once, kernel, monkeypatch):
     monkeypatch.setattr(arrays, "AT_ONCE", at_once)
@@ -84,3 +98,83 @@ def test_iteration_takes_the_steps_of_numpy(control, at_once, kernel, monkeypatc
     assert theirs.convolutions == ours.convolutions
     assert theirs.approach == pytest.approx(ours.approach, rel=1e-10)
     assert to_numpy(theirs.pressure) == pytest.approx(ours.pressure, abs=1e-10 * ours.pressure.max())
+
+
+def rough(n):
+    """Heights [m] on n x n patches with slopes of many wavelengths."""
+    k = np.hypot(*np.meshgrid(np.fft.fftfreq(n), np.fft.fftfreq(n)))
+    noise = np.fft.fft2(np.random.default_rng(1).standard_normal((n, n)))
+    z = np.fft.ifft2(noise / (k**2 + 1e-3) ** 0.9).real
+    return 2e-8 * z / z.std()
+
+
+def ellipsoid(x, y):
+    return ((x - 2e-7) ** 2 / 2 + y**2) / 1e-2
+
+
+PRESSED = {"half_width": 1e-4, "load": 5.0, "coatings": ((420e9, 0.25, 5e-6),), "substrate": (210e9, 0.3)}
+QUICK = {"estimate_uncertainty": False}
+INDENTERS = {
+    "rough surface": {"profile": rough(64)},
+    "rough surface at a given approach": {
+        "profile": rough(64),
+        "load": None,
+        "approach": 5e-8,
+        "estimate_uncertainty": False,
+    },
+    "smooth edge": {"profile": ellipsoid, "patches": 80, "ball": (600e9, 0.2, ())},
+    "window of the square": {"profile": ellipsoid, "patches": 201, "half_width": 5e-4},
+    "patches alone": {"profile": ellipsoid, "patches": 65, "edge_correction": False},
+}
+
+
+@pytest.mark.parametrize("name", INDENTERS)
+def test_contact_is_that_of_numpy(name):
+    given = PRESSED | INDENTERS[name]
+    ours, theirs = (semianalytic.indent(**given, array_namespace=xp) for xp in (None, strict))
+    assert theirs.diagnostics.iterations == ours.diagnostics.iterations
+    assert theirs.diagnostics.convolutions == ours.diagnostics.convolutions
+    assert type(theirs.patch_pressure) is np.ndarray
+    assert theirs.patch_pressure == pytest.approx(ours.patch_pressure, abs=1e-10 * ours.peak_pressure)
+    for quantity in ("contact_radius", "approach", "peak_pressure"):
+        value = getattr(ours, quantity)
+        assert getattr(theirs, quantity) == pytest.approx(value, rel=1e-12)
+        if ours.uncertainty:
+            estimate = getattr(ours.uncertainty, quantity)
+            assert getattr(theirs.uncertainty, quantity) == pytest.approx(
+                estimate, rel=1e-6, abs=1e-13 * value
+            )
+
+
+def test_heights_choose_the_library_that_computes(monkeypatch):
+    used = []
+    monkeypatch.setattr(
+        arrays, "dot", lambda a, b, w=None, dot=arrays.dot: used.append(type(a)) or dot(a, b, w)
+    )
+    given = PRESSED | QUICK
+    theirs = semianalytic.indent(profile=strict.asarray(rough(33)), **given)
+    assert set(used) == {type(strict.zeros(1))}
+    used.clear()
+    ours = semianalytic.indent(profile=rough(33), **given)
+    assert set(used) == {np.ndarray}
+    assert theirs.approach == pytest.approx(ours.approach, rel=1e-12)
+
+
+def unwritable(*_, **__):
+    return ()  # a tuple raises TypeError where an entry is set
+
+
+@pytest.mark.parametrize(
+    ("library", "message"),
+    [
+        (SimpleNamespace(__name__="bare"), "the array library bare lacks fft.rfft, fft.irfft"),
+        (
+            SimpleNamespace(__name__="fixed", fft=strict.fft, zeros=unwritable, float64=float),
+            "arrays of fixed of double precision cannot be written",
+        ),
+        (SimpleNamespace(__name__="short", fft=strict.fft, zeros=np.zeros), "float64"),
+    ],
+)
+def test_a_library_that_lacks_what_is_needed_is_refused(library, message):
+    with pytest.raises(ValueError, match=message):
+        semianalytic.indent(profile=rough(33), **PRESSED, array_namespace=library)

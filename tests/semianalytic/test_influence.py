@@ -1,10 +1,14 @@
 """Influence coefficients of the coated solid against direct quadrature of their definition."""
 
+import pickle
+
 import numpy as np
 import pytest
 from scipy.special import j0, sici
 
 from semianalytic import frf, halfspace, influence
+from semianalytic.inputs import Body, Numerics
+from semianalytic.response import Response, compliance_excess, response
 
 SUBSTRATE = (210e9, 0.3)
 PLACES = [(0, 0), (1, 0), (2, 2), (6, 3), (13, 2), (30, 11)]
@@ -25,6 +29,12 @@ def by_quadrature(i, j, d, excess, h1):
     k, wk = (edges[:-1, None] + half * (1 + s)).ravel(), (half * w).ravel()
     g = j0(np.outer(r, k)) @ (wk * excess(k))
     return d * d / 4 * np.sum(np.outer(weights, weights).ravel() * g)
+
+
+def of_layers(n, d, layers):
+    """Coefficients less Love's rectangle on the first material."""
+    c, b = layers.image
+    return c * halfspace.surface_deflection(n, n, d, d, b) + influence.remainder_coefficients(n, d, layers)
 
 
 def stack(ratio, h, layers):
@@ -49,9 +59,7 @@ def test_split_coefficients_are_the_quadrature(ratio, h, layers):
         return frf.compliance_excess(k, coatings, SUBSTRATE)
 
     n = 40
-    image = influence.split_image(excess, thickness)
-    C = image[0] * halfspace.surface_deflection(n, n, d, d, image[1])
-    C += influence.remainder_coefficients(n, d, excess, thickness, image)
+    C = of_layers(n, d, Response(excess, thickness[0], sum(thickness)))
     largest = abs(halfspace.surface_deflection(1, 1, d, d)[0, 0] + C[0, 0])
     for i, j in PLACES:
         # what the issue asks: 1e-7 of the largest coefficient
@@ -59,7 +67,7 @@ def test_split_coefficients_are_the_quadrature(ratio, h, layers):
         assert C[j, i] == pytest.approx(C[i, j], rel=1e-13, abs=0)
 
 
-@pytest.mark.parametrize(("ratio", "h"), [(10.0, 5.0), (4.0, 30.0), (0.1, 300.0)])
+@pytest.mark.parametrize(("ratio", "h"), [(10.0, 5.0), (4.0, 30.0), (0.1, 300.0), (0.1, 0.2)])
 def test_far_coefficients_keep_their_digits(ratio, h):
     """1e-9 of that of the substrate at the same offset; h / d = 5 at 800 is h / d = 50 at 8000."""
     n, coatings = 801, stack(ratio, h, 1)
@@ -67,8 +75,9 @@ def test_far_coefficients_keep_their_digits(ratio, h):
     def excess(k):
         return frf.compliance_excess(k, coatings, SUBSTRATE)
 
-    c, b = influence.split_image(excess, [h])
-    R = influence.remainder_coefficients(n, 1.0, excess, [h], (c, b))
+    film = Response(excess, h, h)
+    c, b = film.image
+    R = influence.remainder_coefficients(n, 1.0, film)
     substrate = (1 + c) * halfspace.surface_deflection(n, 400, 1.0, 1.0)
     for i, j in ((0, 0), (51, 0), (256, 113), (800, 341)):
         rest = by_quadrature(i, j, 1.0, lambda k, c=c, b=b: excess(k) - c * np.exp(-b * k), h)
@@ -83,9 +92,7 @@ def test_split_coefficients_are_the_quadrature_at_both_ends_of_poissons_ratio(ra
     def excess(k):
         return frf.compliance_excess(k, coatings, substrate)
 
-    image = influence.split_image(excess, [3.0])
-    C = image[0] * halfspace.surface_deflection(40, 40, 1.0, 1.0, image[1])
-    C += influence.remainder_coefficients(40, 1.0, excess, [3.0], image)
+    C = of_layers(40, 1.0, Response(excess, 3.0, 3.0))
     largest = abs(halfspace.surface_deflection(1, 1, 1.0, 1.0)[0, 0] + C[0, 0])
     for i, j in PLACES:
         assert C[i, j] == pytest.approx(by_quadrature(i, j, 1.0, excess, 3.0), abs=1e-7 * largest)
@@ -93,32 +100,26 @@ def test_split_coefficients_are_the_quadrature_at_both_ends_of_poissons_ratio(ra
 
 def test_halving_the_hankel_grid_moves_nothing():
     coatings = stack(4.0, 3.0, 1)
-    thickness = [c[2] for c in coatings]
 
     def excess(k):
         return frf.compliance_excess(k, coatings, SUBSTRATE)
 
-    image = influence.split_image(excess, thickness)
-    fine, coarse = (
-        influence.remainder_coefficients(64, 1.0, excess, thickness, image, points=points)
-        for points in (4096, 2048)
-    )
+    film = Response(excess, 3.0, 3.0)
+    fine, coarse = (influence.remainder_coefficients(64, 1.0, film, points=points) for points in (4096, 2048))
     # cubic splines through 90 points a decade e-fold: 1e-8 of the largest
     np.testing.assert_allclose(coarse, fine, rtol=0, atol=1e-8 * np.abs(fine).max())
 
 
 def test_fft_conversion_approaches_the_split_as_the_domain_grows():
     coatings = stack(4.0, 6.0, 1)
-    thickness = [c[2] for c in coatings]
 
     def excess(k):
         return frf.compliance_excess(k, coatings, SUBSTRATE)
 
-    image = influence.split_image(excess, thickness)
-    exact = influence.remainder_coefficients(32, 1.0, excess, thickness, image)
+    film = Response(excess, 6.0, 6.0)
+    exact = influence.remainder_coefficients(32, 1.0, film)
     errors = [
-        np.abs(influence.remainder_coefficients(32, 1.0, excess, thickness, image, enlarge=e) - exact).max()
-        for e in (2, 4, 8)
+        np.abs(influence.remainder_coefficients(32, 1.0, film, enlarge=e) - exact).max() for e in (2, 4, 8)
     ]
     love = halfspace.surface_deflection(1, 1, 1.0, 1.0)[0, 0]
     assert errors[2] < errors[1] < errors[0]
@@ -171,10 +172,7 @@ def test_stiffer_coating_deflects_less_under_the_load():
         def excess(k, coatings=coatings):
             return frf.compliance_excess(k, coatings, SUBSTRATE)
 
-        image = influence.split_image(excess, [h])
-        C = halfspace.surface_deflection(32, 32, d, d)
-        C += image[0] * halfspace.surface_deflection(32, 32, d, d, image[1])
-        C += influence.remainder_coefficients(32, d, excess, [h], image)
+        C = halfspace.surface_deflection(32, 32, d, d) + of_layers(32, d, Response(excess, h, h))
         totals.append(C[0, 0] / ratio)
     assert totals[0] > totals[1] > totals[2]
 
@@ -189,9 +187,7 @@ def test_vanishing_coating_leaves_the_substrate(ratio):
         def excess(k, coatings=coatings):
             return frf.compliance_excess(k, coatings, SUBSTRATE)
 
-        image = influence.split_image(excess, [h])
-        C = love + image[0] * halfspace.surface_deflection(8, 8, 1.0, 1.0, image[1])
-        C += influence.remainder_coefficients(8, 1.0, excess, [h], image)
+        C = love + of_layers(8, 1.0, Response(excess, h, h))
         errors.append(np.abs(C / ratio - love).max())
     # the compression of a coating is in proportion to its thickness, felt under the loaded patch
     assert errors[1] == pytest.approx(errors[0] / 10, rel=0.05)
@@ -205,10 +201,51 @@ def test_remainder_of_the_kernel_is_its_integral_on_both_sides_of_a_tenth_of_the
     def excess(k):
         return frf.compliance_excess(k, coatings, substrate)
 
-    c, b = influence.split_image(excess, [h])
-    g, _ = influence._radial(excess, [h], (c, b), 4096)
+    film = Response(excess, h, h)
+    (c, b), (g, _) = film.image, film.radial(4096)
     r = h * np.array([0.0, 0.05, 0.099, 0.101])
     k = np.geomspace(1e-6, 60, 30001) / h
     R = excess(k) - c * np.exp(-b * k)
     expected = np.trapezoid(R * k * j0(k * r[:, None]), np.log(k))
     assert g(r) == pytest.approx(expected, rel=1e-9)
+
+
+BALLS = {
+    "alike": (630e9, 0.22, ((259e9, 0.22, 2.0), (279e9, 0.21, 1.0))),
+    "far thinner": (630e9, 0.22, ((200e9, 0.4, 3e-3),)),
+    "far thicker": (70e9, 0.22, ((700e9, 0.2, 3e3),)),
+    # 1/E* of the substrates outweighs what the coatings change: no long range is left
+    "opposite": (4 * 210e9, 0.3, ((210e9, 0.3, 3.0),)),
+}
+
+
+@pytest.mark.parametrize("ball", BALLS.values(), ids=list(BALLS))
+@pytest.mark.parametrize("conversion", ["split", "plain"])
+def test_coefficients_of_two_bodies_are_the_sum_of_each(ball, conversion):
+    """Each transform is within 1e-9 of that of its first material; the plain conversion to the samples."""
+    flat, numerics = ((4 * 210e9, 0.3, 3.0),), Numerics(conversion=conversion)
+    both = Body(flat, SUBSTRATE, 0.0, Body(ball[2], ball[:2], 0.0))
+    found, one, other = (
+        influence.surface_coefficients(48, 1.0, body, numerics)
+        for body in (both, Body(flat, SUBSTRATE, 0.0), Body(ball[2], ball[:2], 0.0))
+    )
+    np.testing.assert_allclose(found, one + other, rtol=1e-8 if conversion == "split" else 1e-11)
+
+
+@pytest.mark.parametrize("ratio", [1e-6, 0.1, 10.0, 1e6])
+def test_sampled_response_is_that_of_the_layers(ratio):
+    bodies = [
+        (0.3, {"coatings": ((ratio, 0.3, 1.0),), "substrate": (1.0, 0.3)}),
+        (0.7, {"coatings": ((1.0, 0.4, 0.01), (2.0, 0.2, 0.02)), "substrate": (3.0, 0.3)}),
+    ]
+    k = np.geomspace(1e-9, 1e5, 3333)
+    exact = compliance_excess(bodies, k)
+    # quintic splines through 2000 points
+    np.testing.assert_array_less(np.abs(response(bodies).excess(k) - exact), 1e-12 * (1 + np.abs(exact)))
+
+
+def test_response_is_found_once_and_not_pickled():
+    body = Body(((4e11, 0.3, 1e-6),), SUBSTRATE, 0.0)
+    assert body.response is body.response
+    assert body.response.radial(1024) is body.response.radial(1024)
+    assert "response" not in vars(pickle.loads(pickle.dumps(body)))

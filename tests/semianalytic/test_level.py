@@ -126,6 +126,7 @@ def test_memory_of_a_contact_all_over_the_square(small):
 @pytest.mark.slow
 def test_memory_of_a_contact_with_a_smooth_edge(small):
     """Of many patches, since those at the edge need more."""
+
     def gap(grid):
         x, y = grid.x[:, None], grid.x
         return x**2 + y**2 + 0.1 * x * y

@@ -12,7 +12,9 @@ from verification.problem.contact import CoatedContact
 
 POOR = {
     "a domain too small": Edit(
-        "semianalytic.influence:_radial", "low, high = 1e-7 / max(b, sum(thickness))", "low, high = 0.05 / h"
+        "semianalytic.response:Response._transformed",
+        "low, high = 1e-7 / max(b, self.total)",
+        "low, high = 0.05 / h",
     ),
     "a prefactor 1 % off": Edit(
         "semianalytic.frf:_one_coating_excess", "return th * (", "return 1.01 * th * ("

@@ -45,6 +45,7 @@ def conversion_errors(
     diagonal, out to the corner.
     """
     from semianalytic import frf, halfspace, influence
+    from semianalytic.response import Response
 
     a = solve_exactly(problem, {"estimate_uncertainty": False}).contact_radius
     n, d = patches, 2.24 * a / patches
@@ -62,13 +63,15 @@ def conversion_errors(
     def excess(k: FloatArray) -> FloatArray:
         return frf.compliance_excess(k, problem.coatings, problem.substrate)
 
+    layers = Response(excess, thickness[0] if thickness else 0.0, sum(thickness))
+
     def split(wide: int) -> FloatArray:
         C = halfspace.surface_deflection(n, n, d, d)
         if not problem.coatings:
             return C
-        image = influence.split_image(excess, thickness)
-        C = C + image[0] * halfspace.surface_deflection(n, n, d, d, image[1])
-        return C + influence.remainder_coefficients(n, d, excess, thickness, image, enlarge=wide)
+        c, b = layers.image
+        C = C + c * halfspace.surface_deflection(n, n, d, d, b)
+        return C + influence.remainder_coefficients(n, d, layers, enlarge=wide)
 
     def plain(wide: int, aliases: int) -> FloatArray:
         return influence.plain_coefficients(n, d, excess, enlarge=wide, aliases=aliases)
