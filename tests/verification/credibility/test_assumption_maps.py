@@ -55,15 +55,16 @@ def test_parabola_costs_the_square_of_the_contact_radius_all_over_the_map(maps):
     assert np.log10(wide / narrow) == pytest.approx(np.full(wide.shape, 2.0), rel=0.05)
 
 
-# Of 60 random places of each map 95 and 93 % of the values of a quantity are covered, of most all.
+# Of 60 random places of each map 95 and 93 % of the values of a quantity are covered, of most all; of 40 with
+# h < a_h/5 of the map of small strains all, with at most 0.75 of the uncertainty.
 BETWEEN = [
     ("sphere", Place(0.16, 0.7, 0.3, 0.05, 0.2)),
     ("goodman", Place(3.0, 1.4, 0.25, friction=0.45)),
     ("bodies", Place(0.7, 0.3, width=0.15)),
     ("strains", Place(6.07, 0.58, 0.318, width=0.152)),
     ("strains", Place(6.07, 0.031, 0.25, width=0.06)),
-    ("strains", Place(0.16, 0.014, 0.35, width=0.2)),
-    ("strains", Place(2.5, 0.15, 0.4, width=0.05)),
+    ("strains", Place(0.16, 0.014, 0.3, width=0.15)),
+    ("strains", Place(3.5, 0.15, 0.3, width=0.05)),
 ]
 
 
