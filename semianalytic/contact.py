@@ -83,14 +83,22 @@ class Contact:
 class _ContactSet:
     """Contact set, with the extension of the residual beyond it by means over ``extension`` patches."""
 
-    def __init__(self, inside: Mask, problem: "_Problem", dtype: Any) -> None:
-        self.inside, self.extension, self.mirror = inside, problem.extension, problem.mirror
-        self._xp = namespace(inside)
-        self._share = self._mean(inside, self._xp.empty(inside.shape, dtype=dtype))
+    def __init__(self, inside: Mask, problem: "_Problem", work: Array) -> None:
+        self.extension, self.mirror = problem.extension, problem.mirror
+        self._xp, self._dtype = namespace(inside), work.dtype
+        # what P gives only directs the steps: a thousandth is enough where these are of single precision
+        single = isinstance(work, np.ndarray) and work.dtype == np.float32
+        self._share = self._xp.empty(inside.shape, dtype=np.float16 if single else work.dtype)
+        self.update(inside, work)
+
+    def update(self, inside: Mask, work: Array) -> None:
+        """Another contact set, in the same memory.  work : shape and precision of the residual."""
+        self.inside = inside
+        self._share[...] = self._mean(inside, work)
 
     def one(self, rows: tuple[slice, slice]) -> Array:
         """Unit residual, extended beyond the contact set."""
-        share: Array = self._xp.minimum(self._share[rows], FADED)
+        share: Array = self._xp.asarray(self._xp.minimum(self._share[rows], FADED), dtype=self._dtype)
         share /= FADED
         share[self.inside[rows]] = 1.0
         return share
@@ -113,6 +121,7 @@ class _Problem:
     """The arguments of ``solve``."""
 
     deflection: Operator
+    deflection_into: Callable[[Array, Array], object] | None
     gap: Array
     total: float | None
     approach: float | None
@@ -149,8 +158,8 @@ class _State:
     extended, z : gap in contact, extended; P of that.  shift : last change of delta.
     step, slope, last : search direction, its (g, z), and g of the iteration before.
     residual, depth : largest |g| in contact over the scale; penetration [m], ``deep`` its limit.  first :
-    residual at the first iteration on the set.  tension : patches with p < 0.  admissible : no tension, no
-    penetration.
+    residual at the first iteration on the set.  left : largest |z| when the iteration stopped.
+    tension : patches with p < 0.  admissible : no tension, no penetration.
     iterations, on_set, set_updates, convolutions : counts; on_set those since the last change of the set.
     What P gives only directs the steps: the arrays from ``extended`` to ``last`` may be of single precision.
     """
@@ -169,6 +178,7 @@ class _State:
     slope: float = 1.0
     residual: float = 0.0
     first: float = 0.0
+    left: float = 0.0
     depth: float = 0.0
     deep: float = 0.0
     updated: bool = False
@@ -182,7 +192,8 @@ class _State:
 
     def __post_init__(self) -> None:
         xp = namespace(self.z)
-        self.last, self.step = xp.empty_like(self.z), xp.zeros_like(self.z)
+        self.last, self.step, self.P_one = xp.empty_like(self.z), xp.zeros_like(self.z), xp.empty_like(self.z)
+        self.tension = xp.empty_like(self.contact.inside)
 
 
 def solve(
@@ -199,7 +210,8 @@ def solve(
     extension: float = EXTENSION,
     weight: Array | None = None,
     mirror: Mirror = "mirror",
-    work: Array | None = None,
+    work: tuple[Array, Array] | None = None,
+    deflection_into: Callable[[Array, Array], object] | None = None,
 ) -> Contact:
     """Pressure p >= 0 that closes the gap where it acts and leaves it open elsewhere.
 
@@ -211,7 +223,9 @@ def solve(
     weight : patches that each entry represents, where the operators and the gap are those of a ``grid.Grid``
     held as a quarter.  mirror : of fields at the rim and at the axes of a quarter, as in ``scipy.ndimage``:
     "mirror" about a patch centre, "reflect" about a border.
-    work : memory (2, nx, ny) that both operators may use, in the precision of the preconditioned residual.
+    work : for the residual and for what P makes of it, memory (nx, ny) that both operators may use, in the
+    precision of the search direction; P may take its argument from where it returns its value.
+    deflection_into : writes A p into a given array, where ``deflection`` has the precision of the steps.
 
     Raises NotConverged after max_iterations, ValueError unless exactly one of total and approach is given.
     """
@@ -219,6 +233,7 @@ def solve(
         raise ValueError("give either total (load control) or approach, not both and not neither")
     problem = _Problem(
         deflection,
+        deflection_into,
         gap,
         total,
         approach,
@@ -243,12 +258,12 @@ def solve(
     return _contact(state, problem)
 
 
-def _first_guess(problem: _Problem, work: Array | None) -> _State:
+def _first_guess(problem: _Problem, work: tuple[Array, Array] | None) -> _State:
     p = _start(problem)
     xp = namespace(p)
-    work = xp.empty((2, *p.shape)) if work is None else work
-    contact = _ContactSet(p > 0, problem, work.dtype)
-    state = _State(p, xp.empty_like(p), contact, problem.approach or 0.0, work[0, ...], work[1, ...])
+    extended, z = (xp.empty(p.shape), xp.empty(p.shape)) if work is None else work
+    contact = _ContactSet(p > 0, problem, extended)
+    state = _State(p, xp.empty_like(p), contact, problem.approach or 0.0, extended, z)
     _find_gap_of_pressure(state, problem)
     _find_P_one(state, problem)
     return state
@@ -275,7 +290,7 @@ def _choose_preconditioner(state: _State, problem: _Problem) -> None:
         # where the preconditioner misleads, the iterate is far from the solution: start from the first guess
         state.p = _start(problem)
         _find_gap_of_pressure(state, problem)
-        state.contact = _ContactSet(state.p > 0, problem, state.z.dtype)
+        state.contact.update(state.p > 0, state.extended)
         state.set_updates = PREDICTED_UPDATES
     elif state.iterations != EXTENDED_ITERATIONS:
         return
@@ -298,7 +313,7 @@ def _find_P_one(state: _State, problem: _Problem) -> None:
         state.z[...] = 1.0
         arrays.masked(state.z, state.contact.inside, out=state.z)
         _precondition(state, problem)
-        state.P_one = arrays.copy(state.z)
+        state.P_one[...] = state.z
 
 
 def _find_gap(state: _State, problem: _Problem) -> None:
@@ -315,7 +330,10 @@ def _find_gap(state: _State, problem: _Problem) -> None:
 
 
 def _find_gap_of_pressure(state: _State, problem: _Problem) -> None:
-    state.g[...] = problem.deflection(state.p)
+    if problem.deflection_into is None:
+        state.g[...] = problem.deflection(state.p)
+    else:
+        problem.deflection_into(state.p, state.g)
     state.g += problem.gap
     state.g -= state.delta
     state.updated = False
@@ -332,6 +350,7 @@ def _measure(state: _State, problem: _Problem) -> None:
         inside = float(xp.max(r)), -float(xp.min(r))
         r -= g
         largest.append((*inside, float(xp.max(r))))
+        state.tension[rows] = state.p[rows] < 0
     residual, negative, depth = np.max(largest, axis=0)
     state.residual = float(np.maximum(residual, negative)) / problem.scale
     if state.on_set == 0:
@@ -340,7 +359,6 @@ def _measure(state: _State, problem: _Problem) -> None:
     # a margin for patches that enter before the residual is small; then the tolerance alone
     margin = 1.0 if state.residual <= problem.tolerance else 0.5
     state.deep = margin * problem.tolerance * problem.scale
-    state.tension = state.p < 0
     state.admissible = not xp.any(state.tension) and state.depth <= state.deep
 
 
@@ -350,13 +368,15 @@ def _is_solved(state: _State, problem: _Problem) -> bool:
     Raises NotConverged when they do not and the iterations are used up.
     """
     solved = _within_tolerance(state, problem)
+    if solved:
+        state.left = _largest(state.z)
     if solved and state.updated:
         problem.balanced(state.p)
         _find_gap_of_pressure(state, problem)
         _measure(state, problem)
         if not _within_tolerance(state, problem):
             _find_gap(state, problem)
-            solved = _within_tolerance(state, problem)
+            solved, state.left = _within_tolerance(state, problem), _largest(state.z)
     if not solved and state.iterations >= problem.max_iterations:
         raise NotConverged(
             f"gap in contact {state.residual:.1e} and penetration {state.depth / problem.scale:.1e} of the "
@@ -377,7 +397,7 @@ def _update_set(state: _State, problem: _Problem) -> bool:
     """
     if state.admissible or state.new:
         return False
-    xp, leave, enter = namespace(state.g), state.tension, ~state.contact.inside
+    xp, leave, enter = namespace(state.g), state.tension, ~state.contact.inside  # p < 0 in contact alone
     if state.set_updates >= PREDICTED_UPDATES:
         enter &= state.g < -state.deep
     else:
@@ -392,8 +412,9 @@ def _update_set(state: _State, problem: _Problem) -> bool:
     any_leave = bool(xp.any(leave))
     if not (any_leave or xp.any(enter)):
         return False
-    inside = (state.contact.inside & ~leave) | enter
-    state.contact = _ContactSet(inside, problem, state.z.dtype)
+    enter |= state.contact.inside
+    enter ^= leave
+    state.contact.update(enter, state.extended)
     _find_P_one(state, problem)
     state.set_updates, state.on_set, state.new = state.set_updates + 1, 0, True
     if any_leave:
@@ -427,7 +448,6 @@ def _advance(state: _State, problem: _Problem) -> None:
 
 def _contact(state: _State, problem: _Problem) -> Contact:
     error = 0.0 if problem.total is None else abs(problem.sum(state.p) / problem.total - 1)
-    xp, dropped = namespace(state.z), state.iterations >= PRECONDITIONED_ITERATIONS
     return Contact(
         pressure=state.p,
         gap=state.g,
@@ -438,5 +458,10 @@ def _contact(state: _State, problem: _Problem) -> Contact:
         iterations=state.iterations,
         convolutions=state.convolutions,
         history=tuple(state.history),
-        left=np.inf if dropped else max(float(xp.max(state.z)), -float(xp.min(state.z))),
+        left=np.inf if state.iterations >= PRECONDITIONED_ITERATIONS else state.left,
     )
+
+
+def _largest(a: Array) -> float:
+    xp = namespace(a)
+    return max(float(xp.max(a)), -float(xp.min(a)))

@@ -17,7 +17,7 @@ import ducc0
 import numpy as np
 from numpy.typing import NDArray
 
-from semianalytic import array_convolution
+from semianalytic import array_convolution, halved_convolution
 
 __all__ = ["circulant_inverse", "even_convolution", "good_size", "memory_size"]
 
@@ -35,15 +35,20 @@ def good_size(n: int) -> int:
     return 2 * int(ducc0.fft.good_size((n + 1) // 2, False))
 
 
-def memory_size(nx: int, ny: int, *, padded: bool) -> int:
-    """Numbers of work memory that the operators below use: doubled by zeros, as the convolution, or not."""
+def memory_size(nx: int, ny: int, *, padded: bool, single: bool = False) -> int:
+    """Numbers of work memory that the operators below use: doubled by zeros, as the convolution, or not.
+
+    single : of single precision, of the convolution.
+    """
+    if single and padded:
+        return halved_convolution.memory_size(nx, 2 * good_size(ny))
     my = good_size(2 * ny - 1 if padded else ny)
     return 2 * nx * (my // 2 + 1)
 
 
 def even_convolution(
     kernel: Array, *, quarter: bool = False, threads: int = 1, memory: Array | None = None
-) -> Callable[[Array], Array]:
+) -> Callable[..., Array]:
     """Linear convolution with a kernel even in both indices.
 
     kernel : K(i, j) for i, j >= 0, shape (nx, ny), the largest offsets between two patches.
@@ -52,6 +57,7 @@ def even_convolution(
     Returns u(p) for p of shape (nx, ny), of a quarter ((nx + 1) // 2, (ny + 1) // 2); u has its shape, units
     K times p. It reuses its work memory: concurrent calls need one operator each.
     memory : flat, of ``memory_size``, not for a quarter; u is then a part of it, and lost with its next use.
+    In memory of single precision p may be of either; u(p, out) of double: ``halved_convolution``.
     """
     nx, ny = kernel.shape
     if not isinstance(kernel, np.ndarray):
@@ -65,6 +71,9 @@ def even_convolution(
         ducc0.fft.dct(spectrum, axes=(0, 1), type=3, nthreads=threads, out=spectrum)
         spectrum /= 4 * mx * my
         return _apply_cosines(spectrum, nx, ny, ((4, 4), (3, 2)), threads)
+    if memory is not None and memory.dtype == np.float32:
+        spectrum = _even_spectrum(kernel, good_size(2 * nx - 1), 2 * good_size(ny), threads)
+        return halved_convolution.apply_even(spectrum, nx, ny, threads, memory)
     spectrum = _even_spectrum(kernel, good_size(2 * nx - 1), good_size(2 * ny - 1), threads)
     return _apply_even(spectrum, nx, ny, threads, memory)
 
@@ -158,7 +167,8 @@ def _apply_even(
 
     def apply(p: Array) -> Array:
         """Transform rows, then columns: neither rows of zeros nor unused rows are transformed."""
-        for i in range(0, nx, height):
+        # p may be where the rows of its transform begin, which are longer: the last rows first
+        for i in range(0, nx, height)[::-1]:
             padded = rows[: min(height, nx - i)]
             padded[:, :ny] = p[i : i + height]
             padded[:, ny:] = 0

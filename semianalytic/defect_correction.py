@@ -55,19 +55,21 @@ def smoothed(problem: LevelProblem) -> Level:
     The deflection under p beyond the centres is added to the gap, which gives another p: a fixed point, from
     the patches alone by ``ROUNDS`` rounds. A third changes less than the patch size does.
     """
-    level = alone = problem.solve(0.0, 0.0)
-    convolutions, near = alone.convolutions, near_influence(problem.grid.d, problem.body, problem.numerics)
-    total: Array | float = 0.0
+    level, gap = problem.solve(0.0, 0.0), problem.gap
+    convolutions, near = level.convolutions, near_influence(problem.grid.d, problem.body, problem.numerics)
     missing = 0.0
     for number in range(ROUNDS):
         p = level.found.pressure
         found = defect(problem, p, near)
         if found is None:
-            return alone
+            problem.gap = gap
+            return problem.solve(0.0, 0.0) if number else level
         edge, u, beyond = found
+        u += gap
         # patches that the edge barely touches would alternate between two rounds
-        total, missing = ((total + u) / 2, (missing + beyond) / 2) if number else (u, beyond)
-        level = problem.solve(total, missing * problem.grid.d**2, start=p)
+        problem.gap, missing = ((problem.gap + u) / 2, (missing + beyond) / 2) if number else (u, beyond)
+        del level, found, u  # large
+        level = problem.solve(0.0, missing * problem.grid.d**2, start=p)
         convolutions += level.convolutions + 1
     return replace(level, edge=edge, convolutions=convolutions)
 

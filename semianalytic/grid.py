@@ -230,10 +230,11 @@ def prolong(pressure: Array, gap: Array, source: Grid, target: Grid, window: Win
     squares = pressure[rim] ** 2
     K2 = float(xp.mean(squares) if weight is None else np.average(squares, weights=weight[rim]))
     K2 /= 0.6 * source.d
-    level = pressure**2
+    level = xp.asarray(pressure, dtype=xp.float64) ** 2
     # patches not next to a loaded one are never interpolated with one: any value that is not positive serves
     beside &= ~loaded
-    level[beside] = -K2 * (xp.maximum(gap[beside], 0.0) * (0.75 * E_star) / K2**0.5) ** (2 / 3)
+    outside = xp.asarray(gap[beside], dtype=xp.float64)
+    level[beside] = -K2 * (xp.maximum(outside, 0.0) * (0.75 * E_star) / K2**0.5) ** (2 / 3)
     rows, columns = window.slices
     level = _linear(_linear(level, source, target.x[rows]).T, source, target.x[columns])
     for part in blocks(level):

@@ -16,7 +16,7 @@ __all__ = ["Indenter", "Level", "LevelProblem"]
 
 Array = NDArray[np.floating]
 
-SINGLE = 2**22  # patches, above which the preconditioner is of single precision,
+SINGLE = 2**20  # patches, above which preconditioner and steps are of single precision,
 LOOSE = 1e-8  # at this tolerance or above: the iterations were measured to be as many; at 1e-12 more
 
 
@@ -26,6 +26,7 @@ class Indenter:
 
     round : axisymmetric with a smooth edge.  shapes : edge profiles of the contact, the finest first.
     table : of the layers, for their deflection.  edge_correction : of others, where their edge is smooth.
+    Their gap may be above any level; the approach counts from its lowest point.
     """
 
     gap: Callable[[Grid], Array]
@@ -154,8 +155,9 @@ class Level:
 class LevelProblem:
     """Contact problem of the indenter on a window of the grid.
 
-    gap [m] : on the window.  depth [m] : the largest gap on the grid.  before : level that gives the first
-    guess, None for one from the gap.  deflection : u = A p on the window.
+    gap [m] : on the window, above the level ``datum``.  depth [m] : the largest on the grid above that.
+    before : level that gives the first guess, None for one from the gap.  deflection : u = A p on the window.
+    single : the steps are of single precision, as is u of them.
     """
 
     def __init__(
@@ -168,17 +170,19 @@ class LevelProblem:
         indenter: Indenter,
         body: Body,
         numerics: Numerics,
+        datum: float = 0.0,
     ) -> None:
         self.grid, self.gap, self.depth, self.window, self.before = grid, gap, depth, window, before
-        self.indenter, self.body, self.numerics = indenter, body, numerics
+        self.indenter, self.body, self.numerics, self.datum = indenter, body, numerics, datum
         xp, (nx, ny) = namespace(gap), grid.across(window).shape
         kernel = influence.surface_coefficients(max(nx, ny), grid.d, body, numerics, xp)[:nx, :ny]
         held, threads = grid.quarter, numerics.threads
         memory: Array | None = None
         inverse: Array | None = None
-        self.work: Array | None = None
+        self.work: tuple[Array, Array] | None = None
         if not held and xp is np:
             memory, inverse, self.work = _shared_memory(nx, ny, numerics.tolerance >= LOOSE)
+        self.single = memory is not None and memory.dtype == np.float32
         self.deflection = convolution.even_convolution(kernel, quarter=held, threads=threads, memory=memory)
         self.precondition = convolution.circulant_inverse(
             kernel, quarter=held, threads=threads, memory=inverse
@@ -197,7 +201,7 @@ class LevelProblem:
             self.deflection,
             self.gap if isinstance(defect, float) else self.gap + defect,
             total=None if indenter.load is None else (indenter.load - missing) / grid.d**2,
-            approach=indenter.approach,
+            approach=None if indenter.approach is None else indenter.approach + self.datum,
             start=self.first_guess if start is None else start,
             precondition=self.precondition,
             scale=scale,
@@ -207,7 +211,9 @@ class LevelProblem:
             weight=grid.weight(self.gap.shape),
             mirror="mirror" if grid.n % 2 else "reflect",
             work=self.work,
+            deflection_into=self.deflection if self.single else None,
         )
+        found = replace(found, approach=found.approach - self.datum)
         load = grid.force(found.pressure) + missing
         # p = E* k u / 2, k at most that of a checkerboard, sqrt(2) pi / d
         noise = self.numerics.tolerance * scale * self.body.contact_modulus * np.pi / 2**0.5 / grid.d
@@ -236,18 +242,18 @@ class LevelProblem:
         return prolong(p, g, before.grid, self.grid, self.window, E_star)
 
 
-def _shared_memory(nx: int, ny: int, loose: bool) -> tuple[Array, Array, Array]:
+def _shared_memory(nx: int, ny: int, loose: bool) -> tuple[Array, Array, tuple[Array, Array]]:
     """Memory of the convolution; parts of it for the preconditioner, for the work of the iteration.
 
-    The convolution is never in use together with the others; they are single above ``SINGLE`` patches
-    where the tolerance is ``loose``.
+    The convolution is never in use together with the others. All are single above ``SINGLE`` patches where
+    the tolerance is ``loose``. The preconditioner takes and returns the second part of the work.
     """
-    dtype = np.dtype(np.float32 if loose and nx * ny > SINGLE else np.float64)
-    own = 2 * nx * ny
+    single, own = loose and nx * ny > SINGLE, nx * ny
     size = own + convolution.memory_size(nx, ny, padded=False)
-    memory = np.empty(max(convolution.memory_size(nx, ny, padded=True), size * dtype.itemsize // 8 + 1))
-    rest = memory.view(dtype)
-    return memory, rest[own:size], rest[:own].reshape(2, nx, ny)
+    padded = convolution.memory_size(nx, ny, padded=True, single=single)
+    memory: Array = np.empty(max(padded, size), np.float32 if single else np.float64)
+    inverse = memory[own:size]
+    return memory, inverse, (memory[:own].reshape(nx, ny), inverse[:own].reshape(nx, ny))
 
 
 def _above_highest(p: Array) -> float:

@@ -46,6 +46,10 @@ def levels(
         before, grid = found[-1] if found else None, Grid(n, 2 * half_width / n, indenter.round)
         try:
             found.append(solve_on(grid, before, pressed, body, used, shape))
+            if k < len(sizes) - kept and not indenter.shapes:
+                found[-1] = _of_single_precision(found[-1])
+            if not estimate_uncertainty:
+                del found[:-1]
         except NotConverged:
             if not indenter.shapes:
                 raise
@@ -70,20 +74,22 @@ def solve_on(
         return corrected(grid, indenter.gap(grid), before, shape, indenter, body, numerics)
     grid, gap = undeformed(replace(grid, quarter=False), indenter)
     xp, whole = namespace(gap), grid.window
-    depth = float(xp.max(gap) - xp.min(gap))
+    datum = float(xp.min(gap))
+    depth = float(xp.max(gap)) - datum
     if before is not None:
         before = before.whole if grid.quarter < before.grid.quarter else before
         window = window_around(before.found.pressure, before.grid, grid)
         if window.shape != whole.shape:
             lowest, gap = grid.lowest(gap), copy(gap[window.slices])
-            problem = LevelProblem(grid, gap, depth, window, before, indenter, body, numerics)
+            lowest -= datum
+            problem = LevelProblem(grid, gap, depth, window, before, indenter, body, numerics, datum)
             level = _solved(problem)
             del problem  # frees the memory of its transforms for those below
             level = _embedded(level, window, depth)
             if is_alone(level, lowest, window, body, numerics):
                 return level
             _, gap = undeformed(replace(grid, quarter=False), indenter)
-    problem = LevelProblem(grid, gap, depth, whole, before, indenter, body, numerics)
+    problem = LevelProblem(grid, gap, depth, whole, before, indenter, body, numerics, datum)
     return _solved(problem)
 
 
@@ -97,6 +103,13 @@ def undeformed(grid: Grid, indenter: Indenter) -> tuple[Grid, Array]:
         grid = replace(grid, quarter=True)
         gap = grid.held(gap).copy()
     return grid, gap
+
+
+def _of_single_precision(level: Level) -> Level:
+    """The same as a first guess, in half the memory."""
+    found, xp = level.found, namespace(level.found.pressure)
+    pressure, gap = (xp.asarray(values, dtype=xp.float32) for values in (found.pressure, found.gap))
+    return replace(level, found=replace(found, pressure=pressure, gap=gap))
 
 
 def _solved(problem: LevelProblem) -> Level:

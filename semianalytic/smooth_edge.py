@@ -34,7 +34,8 @@ RIM = 0.2  # weight of a patch beside an unloaded one, whose pressure is the lea
 NEAR = 4  # within which the deflection is that of the parts, beyond it that of their moments
 MISFIT, SUPPORT = 0.2, 9  # of a smooth edge: largest misfit, least number of patches that are not at the rim
 HALO = max(REACH, len(TAPER))
-AT_ONCE = 2**20  # patches examined together
+AT_ONCE = 2**18  # patches examined together,
+AT_EDGE = 2**13  # of them near the edge
 CROSS = np.array([[0, 1, 0], [1, 1, 1], [0, 1, 0]], dtype=bool)
 
 
@@ -109,8 +110,12 @@ class Edge:
             moments[self.i + di, self.j + dj] += parts @ weight
         moments[self.i, self.j] -= centre
         u = np.pad(deflection(moments), NEAR)
-        for offset, at_offset in zip(np.ndindex(2 * NEAR + 1, 2 * NEAR + 1), near @ parts.T, strict=True):
-            u[self.i + offset[0], self.j + offset[1]] += at_offset
+        for k in _few(parts):
+            i, j = self.i[k], self.j[k]
+            for (di, dj), at_offset in zip(
+                np.ndindex(2 * NEAR + 1, 2 * NEAR + 1), near @ parts[k].T, strict=True
+            ):
+                u[i + di, j + dj] += at_offset
         return u[NEAR:-NEAR, NEAR:-NEAR], missing
 
 
@@ -145,13 +150,15 @@ def fit(p: Array, *, even: bool = False) -> tuple[Edge, Array] | None:
         if not i.size:
             continue
         weight = np.where(minimum_filter(loaded, footprint=CROSS), 1.0, RIM * loaded)
-        quadratic, missed = _quadratics(around, weight, i + HALO, j + HALO)
+        fits = [_quadratics(around, weight, i[k] + HALO, j[k] + HALO) for k in _few(i)]
+        quadratic, missed = (np.concatenate(values) for values in zip(*fits, strict=True))
         misfit = max(misfit, float(missed[deep == 1].max(initial=0.0)))
         if misfit > MISFIT:
             return None
         found.append((i + a, j, quadratic, share))
     i, j, quadratic, share = (np.concatenate(parts) for parts in zip(*found, strict=True))
-    parts, loaded_share = _parts(quadratic)
+    means = [_parts(quadratic[k]) for k in _few(i)]
+    parts, loaded_share = (np.concatenate(values) for values in zip(*means, strict=True))
     if even:
         i, j, quadratic, share, parts, loaded_share = _mirrored(
             p.shape, i, j, quadratic, share, parts, loaded_share
@@ -299,6 +306,11 @@ def _padded(p: Array, a: int, b: int, width: int) -> Array:
     """Rows a to b of p and ``width`` patches around them, 0 beyond the grid; in NumPy."""
     low, high = max(a - width, 0), min(b + width, p.shape[0])
     return np.pad(to_numpy(p[low:high, :]), ((low - a + width, b + width - high), (width, width)))
+
+
+def _few(patches: Array | Indices) -> Iterator[slice]:
+    """Patches near the edge, ``AT_EDGE`` at a time."""
+    return (slice(k, k + AT_EDGE) for k in range(0, len(patches), AT_EDGE))
 
 
 def _rows(p: Array) -> Iterator[tuple[int, int]]:

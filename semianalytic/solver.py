@@ -205,7 +205,7 @@ def indent(
             z = xp.broadcast_to(z, (grid.n, grid.n))
             if not np.isfinite(float(xp.min(z))) or not np.isfinite(float(xp.max(z))):
                 raise ValueError("profile(x, y) must return finite heights [m] all over the square")
-        return z - xp.min(z)
+        return z
 
     indenter = Indenter(gap, load, approach, round=False, edge_correction=edge_correction)
     levels = nested.levels(half_width, indenter, body, numerics, estimate_uncertainty)

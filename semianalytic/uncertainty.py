@@ -138,7 +138,9 @@ def _of_domain(
         xp = namespace(gap)
         depth = float(xp.max(gap) - xp.min(gap))
         found = level.found.embedded(window.slices, box.window.shape, depth)
-        if is_alone(replace(level, grid=box, found=found), box.lowest(gap), window, body, numerics):
+        if is_alone(
+            replace(level, grid=box, found=found), box.lowest(gap - xp.min(gap)), window, body, numerics
+        ):
             if numerics.conversion == "split":
                 return dict.fromkeys(level.scalars, 0.0)
             by_fft = surface_coefficients(wider.n, grid.d, body, numerics, xp)[: grid.n, : grid.n]

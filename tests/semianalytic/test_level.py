@@ -6,12 +6,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from semianalytic import arrays, convolution, level
+from semianalytic import arrays, convolution, halved_convolution, level, smooth_edge
 from semianalytic.collocation import contact
 from semianalytic.grid import Grid, Window
 from semianalytic.inputs import Body, Numerics
 from semianalytic.level import Indenter, LevelProblem
-from semianalytic.nested import solve_on
+from semianalytic.nested import levels, solve_on
 
 
 def test_noise_bounds_the_pressure_of_a_checkerboard():
@@ -64,7 +64,7 @@ def test_preconditioner_of_single_precision_finds_the_same_contact(monkeypatch):
     for patches in (level.SINGLE, 0):
         monkeypatch.setattr(level, "SINGLE", patches)
         problem = LevelProblem(grid, gap, float(gap.max()), grid.window, None, indenter, body, Numerics())
-        assert problem.work.dtype == (np.float64 if patches else np.float32)
+        assert problem.single == (patches == 0)
         found.append(problem.solve(0.0, 0.0).found)
     double, single = found
     assert double.iterations > 8
@@ -75,23 +75,63 @@ def test_preconditioner_of_single_precision_finds_the_same_contact(monkeypatch):
     np.testing.assert_allclose(single.pressure, double.pressure, rtol=0, atol=1e-6 * double.pressure.max())
 
 
-def test_memory_of_a_contact_on_half_of_the_square(monkeypatch):
-    """At most 30 bytes a patch above the 24 of pressure, gap and kernel; as of a large grid, in small."""
+@pytest.fixture
+def small(monkeypatch):
+    """Memory in small as of a large grid."""
     monkeypatch.setattr(level, "SINGLE", 0)
-    for module in (convolution, arrays):
+    for module in (convolution, halved_convolution, arrays):
         monkeypatch.setattr(module, "BLOCK", 2**11)
-    n, body = 320, Body((), (1.0, 0.0), 0.0)
+    monkeypatch.setattr(smooth_edge, "AT_ONCE", 2**12)
+    monkeypatch.setattr(smooth_edge, "AT_EDGE", 2**7)
 
-    def gap(grid):
-        waves = 0.01 * (2 - np.cos(9 * grid.x - 0.1)[:, None] - np.cos(9 * grid.x))
-        return waves + np.maximum(np.hypot(grid.x[:, None], grid.x) - 0.6, 0) ** 2
 
-    indenter = Indenter(gap, None, 0.01, round=False)
-    before = solve_on(Grid(n // 2, 4 / n), None, indenter, body, Numerics(tolerance=1e-4))
+def memory_of(indenter, n, **numerics):
+    """Bytes a patch at the peak, and the contact."""
     tracemalloc.start()
-    found = solve_on(Grid(n, 2 / n), before, indenter, body, Numerics(tolerance=1e-4)).found
+    given = Numerics(patches=n, edge_correction=False, tolerance=1e-4, **numerics)
+    found = levels(1.0, indenter, Body((), (1.0, 0.0), 0.0), given, False)[-1]
     memory = tracemalloc.get_traced_memory()[1] / n**2
     tracemalloc.stop()
-    loaded = np.flatnonzero(found.pressure.any(axis=0))
+    return memory, found
+
+
+def waves(grid, k):
+    return 0.01 * (2 - np.cos(k * grid.x - 0.1)[:, None] - np.cos(k * grid.x))
+
+
+def test_memory_of_a_contact_on_half_of_the_square(small):
+    """At most 30 bytes a patch above the 24 of pressure, gap and kernel."""
+
+    def gap(grid):
+        return waves(grid, 9) + np.maximum(np.hypot(grid.x[:, None], grid.x) - 0.6, 0) ** 2
+
+    n = 320
+    memory, found = memory_of(Indenter(gap, None, 0.01, round=False), n)
+    loaded = np.flatnonzero(found.found.pressure.any(axis=0))
     assert 0.6 < (loaded[-1] - loaded[0]) / n < 0.75  # its window is half of the square
+    assert memory < 24 + 25
+
+
+@pytest.mark.slow
+def test_memory_of_a_contact_all_over_the_square(small):
+    """Strips of columns are a larger part of it than of 2048 x 2048 patches, where 29 bytes were measured."""
+    n = 640
+    heights = {grid: waves(Grid(grid, 2 / grid), 2 * np.pi) for grid in (41, 81, 161, 321, n)}
+    memory, found = memory_of(Indenter(lambda grid: heights[grid.n], None, 0.01, round=False), n)
+    assert found.found.pressure[0].any()
+    assert found.found.pressure[:, -1].any()
+    assert memory < 24 + 36
+
+
+@pytest.mark.slow
+def test_memory_of_a_contact_with_a_smooth_edge(small):
+    """Of many patches, since those at the edge need more."""
+
+    def gap(grid):
+        x, y = grid.x[:, None], grid.x
+        return x**2 + y**2 + 0.1 * x * y
+
+    n = 1200
+    memory, found = memory_of(Indenter(gap, 0.6, None, round=False, edge_correction=True), n)
+    assert found.edge is not None
     assert memory < 24 + 30

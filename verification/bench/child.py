@@ -25,6 +25,7 @@ Prepared = Callable[[], Any]  # what is timed
 
 RADIUS, LOAD, FRICTION = 10e-3, 20.0, 0.3  # m, N
 DEPTHS = 200  # points of the line across depths
+JUDGED = 4096  # patches a side of the largest sphere that the judge has memory for
 
 
 def public(name: str) -> ModuleType:
@@ -101,8 +102,18 @@ def sphere(turn: int, solver: str, patches: int, threads: int) -> Prepared:
     return lambda: solved(patches if turn else 64, threads)
 
 
+def library(turn: int, name: str, patches: int, threads: int) -> Prepared:
+    """The sphere on arrays of a library; turn 0 is a small one, and one above ``JUDGED`` is not judged."""
+    solved = import_module("verification.bench.peers").uneven
+    if not turn:
+        return lambda: solved(64, threads, name)
+    return lambda: (
+        solved(patches, threads, name) if patches <= JUDGED else solved(patches, threads, name).size
+    )
+
+
 def judge(result: Any) -> float:
-    """Worst residual of pressures of ``sphere``, 0 of any other result; see ``verification.bench.judge``."""
+    """Worst residual of pressures of a sphere, 0 of any other result; see ``verification.bench.judge``."""
     if not hasattr(result, "shape"):
         return 0.0
     return float(import_module("verification.bench.judge").residual(result))

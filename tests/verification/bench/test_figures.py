@@ -1,8 +1,11 @@
 """The benchmark's figures: what is measured over what, how ratios are taken, which are missed."""
 
+import re
+
 import pytest
 
 from verification.bench import figures
+from verification.bench.device import not_measured
 from verification.bench.figures import ASKED_SIZES, REFERENCE, ROOMS, Figure, Other, groups, measure
 from verification.bench.turns import HERE, Times
 
@@ -98,3 +101,34 @@ def test_peak_memory_is_counted_and_a_solver_that_misses_the_judge_is_a_figure_m
     residual = found["residual, tamaas, N = 512, 2 threads", "judge"]
     assert residual.median == pytest.approx(3)
     assert residual.missed
+
+
+def test_an_array_library_is_measured_over_two_threads_of_numpy():
+    assert [len(group.works) for group in groups(("gpu",), other=None)] == [2, 2, 2]
+    (group,) = groups(("gpu",), other=None, sizes=(48,), library="array_api_strict")
+    ratio, *residuals = measure(group, 1)
+    assert (ratio.name, ratio.over) == ("array_api_strict, N = 48", "numpy, 2 threads")
+    assert ratio.asked is None
+    assert ratio.median > 0
+    assert not residuals  # both meet the judge
+
+
+@pytest.mark.parametrize(
+    ("module", "reason"),
+    [
+        (None, "is not installed"),
+        ("raise ImportError('libcudart')", r"cannot be imported \(libcudart\)"),
+        (
+            "from numpy import sum\ndef ones(shape): raise RuntimeError('no driver')",
+            r"finds no device that computes \(no driver\)",
+        ),
+        ("from numpy import ones, sum", None),
+    ],
+)
+def test_a_device_that_does_not_compute_is_named_with_the_reason(module, reason, tmp_path, monkeypatch):
+    name = f"device_library_{tmp_path.name}".replace("-", "_")
+    if module is not None:
+        (tmp_path / f"{name}.py").write_text(module)
+    monkeypatch.syspath_prepend(tmp_path)
+    found = not_measured(name)
+    assert found is None if reason is None else re.fullmatch(f"{name} {reason}", found)

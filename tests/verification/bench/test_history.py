@@ -73,6 +73,8 @@ def test_the_history_is_shown_as_table_and_figure(kept, capsys, monkeypatch):
         (("--show",), "name it with --history"),
         (("--plot", "bench.txt"), "has to end in"),
         (("--rounds", 0), "--rounds from 1"),
+        (("--sizes", 8192), "--sizes from 16 to 4096"),
+        (("gpu", "--sizes", 32768), "--sizes from 16 to 16384"),
         (("--against", "no such commit"), "--against no such commit: neither"),
         (("--history", "none.jsonl", "--show"), "holds no run"),
     ],
@@ -102,3 +104,19 @@ def test_missed_figures_are_named_in_the_end_and_a_failure_keeps_the_rest(monkey
         "contact",
     ]
     assert len(read(path)) == 1
+
+
+def test_the_part_gpu_is_left_out_with_a_line_where_no_device_computes(monkeypatch, capsys):
+    from verification.commands.credibility import bench
+
+    monkeypatch.setattr(bench, "not_measured", lambda: "cupy is not installed")
+    monkeypatch.setattr(bench, "measure", lambda group, rounds, progress: [solve(0.2)])
+    assert command("gpu") == 0
+    out, err = capsys.readouterr()
+    assert out == ""
+    assert err == "coatcheck: the part gpu is not measured: cupy is not installed\n"
+    monkeypatch.setattr(bench, "not_measured", lambda: None)
+    assert command("gpu", "--sizes", 16384) == 0
+    out, err = capsys.readouterr()
+    assert "solve with uncertainty" in out
+    assert "not measured" not in err

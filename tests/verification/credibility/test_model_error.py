@@ -46,6 +46,22 @@ def test_uncertainty_counts_in_the_comparison_of_costs():
     assert ModelError(()).message() == "the error of the model was not evaluated"
 
 
+def test_assumption_that_dominates_nowhere_is_named_with_its_largest_cost():
+    costs = Cost(GOODMAN, "tension", 0.05, 0.0), Cost(HALF_SPACES, "approach", 0.01, 0.0)
+    less = Cost(SMALL_STRAINS, "approach", 0.001, 0.001), Cost(SMALL_STRAINS, "shear", -0.004, 0.0)
+    nothing = Cost(PARABOLA, "approach", 1e-9, 0.0)
+    assert ModelError((*costs, *less, nothing), ((PARABOLA, "why"),)).notes == (
+        "less: 0.4 % of the shear of the first interface (small strains)",
+        "not known here: parabola for the sphere (why)",
+    )
+
+
+def test_stresses_that_a_model_without_friction_does_not_have_are_missing():
+    still, sliding = (dict(model_error(replace(BARE, friction=f)).missing) for f in (0.0, 0.3))
+    assert f"{SMALL_STRAINS}, of the stresses" in sliding
+    assert not still
+
+
 @pytest.mark.parametrize("friction", [0.0, 0.5])
 def test_terms_beyond_the_expansion_vanish_without_friction(friction):
     costs = model_error(replace(BARE, friction=friction)).costs

@@ -7,7 +7,14 @@ import pytest
 
 import semianalytic
 from verification.problem.contact import CoatedContact, keywords
-from verification.sources.assumptions.change import of_goodman, of_sphere
+from verification.sources.assumptions.change import (
+    RESOLUTION,
+    Curve,
+    line_along_interface,
+    of_goodman,
+    of_sphere,
+)
+from verification.sources.references import integral_equation
 
 E, NU = 210e9, 0.3
 BARE = CoatedContact(10e-3, 20.0, (), (E, NU))
@@ -20,6 +27,27 @@ def test_sphere_changes_every_quantity_as_the_square_of_the_contact_radius():
     wide = replace(wide, coatings=((4 * E, 0.25, 0.5 * wide.a_h),))
     small, large = (np.array(astuple(of_sphere(one)[0])) for one in (COATED, wide))
     assert np.log10(large / small) == pytest.approx(2.0, rel=0.05)
+
+
+@pytest.mark.parametrize("ratio", [0.1, 1.0, 10.0])
+def test_shear_of_a_thin_coating_changes_as_the_square_too(ratio):
+    """Its peak lies within h of the edge, where the points of the line are close to each other."""
+    changes = []
+    for width in (0.01, 0.1):
+        a_h = width * BARE.radius
+        load = 4 / 3 * BARE.E_star * a_h**3 / BARE.radius
+        changes.append(of_sphere(replace(BARE, load=load, coatings=((ratio * E, NU, 0.1 * a_h),)))[0].shear)
+    assert np.log10(changes[1] / changes[0]) == pytest.approx(2.0, abs=0.005)
+
+
+@pytest.mark.parametrize("ratio", [0.1, 1.0, 10.0])
+def test_shear_of_a_thin_coating_is_that_of_a_fine_line(ratio):
+    coating = (ratio * E, NU, 0.05 * BARE.a_h)
+    exact = integral_equation.solve(**keywords(replace(BARE, coatings=(coating,))), **RESOLUTION)
+    a, h = exact.contact_radius, coating[2]
+    line = Curve(x := line_along_interface(a, h), exact.stress(x, 0.0, h, 0)[0, 2])
+    fine = exact.stress(a + h * np.linspace(-2, 1, 601), 0.0, h, 0)[0, 2]
+    assert line.largest == pytest.approx(np.abs(fine).max(), rel=5e-4)
 
 
 def test_uncoated_trailing_tension_of_the_sphere_is_that_of_the_pressure_at_the_edge():

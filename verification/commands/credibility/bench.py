@@ -14,7 +14,8 @@ from rich.markup import escape
 from rich.table import Table
 
 from verification.bench.checkout import checkout
-from verification.bench.figures import ASKED_SIZES, PEERS, Figure, Other, Part, groups, measure
+from verification.bench.device import LIBRARY, not_measured
+from verification.bench.figures import PEERS, Figure, Other, Part, groups, measure
 from verification.bench.history import BenchRun, append, read
 from verification.commands.common.exits import EXIT, CommandError, with_exit_code
 from verification.commands.common.folders import require_format
@@ -35,7 +36,7 @@ def bench(
     *parts: Part,
     against: str | None = None,
     python: str = sys.executable,
-    sizes: Annotated[Numbers, Parameter(name=["--sizes", "-N"])] = ASKED_SIZES,
+    sizes: Annotated[Numbers, Parameter(name=["--sizes", "-N"])] = (),
     threads: Numbers = (1, 2),
     rounds: int = 5,
     history: Path | None = None,
@@ -47,21 +48,24 @@ def bench(
 
     All works of a figure are done in turn, each in a process of its own. tamaas comes with the extra "bench",
     aspher with pip install aspher, which builds it; each is measured where installed, as is the extra "fast".
+    The part gpu is left out, in a line, where CuPy is not installed or finds no device.
     The exit code is 1 where a figure misses what is asked. On idle cores all parts but the last take an hour.
 
     Args:
         parts: Unless given, all but default-run; solve, stress, elements and default-run need --against.
         against: The commit to measure over, or a directory with a checkout of it.
         python: Interpreter for that commit, of an environment with what it needs.
-        sizes: Patches along a side of the square [-2a, 2a]^2, of the part contact.
+        sizes: Patches along a side of the square [-2a, 2a]^2; unless given 512, 1024, 2048 of the contact,
+            4096, 8192, 16384 on the GPU.
         threads: Numbers of threads of the part contact.
         rounds: Turns of each work after the first, which is not timed; the median counts.
         history: Add the figures to this file, show them beside those of its last runs.
         plot: Write the history as FILE.png, FILE.pdf or FILE.svg.
         show: Measure nothing; show the history.
     """
-    if min(sizes) < 16 or max(sizes) > 4096 or min(threads) < 1 or rounds < 1:
-        raise CommandError("--sizes from 16 to 4096, --threads and --rounds from 1")
+    most = 16384 if parts == ("gpu",) else 4096
+    if min(sizes, default=16) < 16 or max(sizes, default=16) > most or min(threads) < 1 or rounds < 1:
+        raise CommandError(f"--sizes from 16 to {most}, --threads and --rounds from 1")
     if show and history is None:
         raise CommandError("--show shows a file; name it with --history")
     if plot is not None:
@@ -75,7 +79,9 @@ def bench(
     else:
         figures, failed = _measured(parts, against, python, sizes, threads, rounds)
         date = datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds")
-        run = BenchRun(commit(), date, machine(), versions((*PACKAGES, *PEERS, FASTER)), tuple(figures))
+        run = BenchRun(
+            commit(), date, machine(), versions((*PACKAGES, *PEERS, FASTER, LIBRARY)), tuple(figures)
+        )
         runs = append(history, run) if history is not None and figures else (run,)
         missed = [figure for figure in figures if figure.missed]
     if plot is not None and runs[-1].figures:
@@ -85,7 +91,7 @@ def bench(
     if as_json:
         print_json([encode(run) for run in (runs if show else runs[-1:])])
     else:
-        if not show:
+        if not show and figures:
             print_out(_table(figures), _summary(figures, missed))
         if show or len(runs) > 1:
             print_out(_past(runs[-SHOWN:]))
@@ -101,7 +107,7 @@ def _measured(
     rounds: int,
 ) -> tuple[list[Figure], bool]:
     """The figures, and whether a work failed, of which a message is printed."""
-    alone = [part for part in parts if part != "contact"]
+    alone = [part for part in parts if part not in ("contact", "gpu")]
     if alone and against is None:
         raise CommandError(f"{', '.join(alone)}: measured over another commit; name it with --against")
     with ExitStack() as stack:
@@ -112,8 +118,13 @@ def _measured(
             except ValueError as error:
                 raise CommandError(f"--against {against}: {error}") from None
         peers = [name for name in PEERS if find_spec(name)]
+        chosen = list(parts or get_args(Part)[:-1])  # all but the default run
+        reason = not_measured() if "gpu" in chosen else None
+        if reason is not None:
+            chosen.remove("gpu")
+            print_error(f"the part gpu is not measured: {reason}")
         planned = groups(
-            parts or get_args(Part)[:-1],  # all but the default run
+            chosen,
             other=other,
             sizes=sizes,
             threads=threads,

@@ -12,17 +12,18 @@ from verification.credibility.model.place import COORDINATES, Place
 from verification.problem.contact import CoatedContact
 from verification.sources.assumptions.bodies import of_half_spaces
 from verification.sources.assumptions.change import Change, of_goodman, of_sphere
+from verification.sources.assumptions.pair import of_pair
 from verification.sources.assumptions.strain import of_small_strains
 
 QUANTITIES = tuple(one.name for one in fields(Change))
-SCALARS = ("contact_radius", "approach", "peak_pressure")
 PARABOLA, GOODMAN = "parabola for the sphere", "Goodman's assumption"
 HALF_SPACES = "half-spaces for the ball and a disc as thick as its radius"
 SMALL_STRAINS = "small strains"
 RATIOS = (0.1, 0.25, 0.5, 1.0, 2.0, 4.0, 10.0)  # E1/E2
-THICKNESSES = (0.1, 0.2, 0.5, 1.0, 2.0)  # h/a_h
+THICKNESSES = (0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0)  # h/a_h
 WIDTHS = (0.003, 0.03, 0.1, 0.3)  # a_h/R
 LAYERS = {"ratio": RATIOS, "thickness": THICKNESSES}
+Reading = Callable[[CoatedContact], tuple[Change, Change]]
 
 
 @dataclass(frozen=True)
@@ -38,6 +39,7 @@ class Assumption:
         for each of ``QUANTITIES``; the axis excludes 0. The map is read scaled by them, and below its axis.
     warned : beginning of the warning of implausible input that says the same, which is not repeated.
     direct : whether ``model_error`` evaluates ``change``; of a slow model it reads the map.
+    read : change of a problem by that of others, which the map holds; where the map alone is not enough.
 
     Layers of real bodies differ in Poisson's ratio: a map to be read needs an axis of it.
     """
@@ -49,6 +51,7 @@ class Assumption:
     rates: Mapping[str, float | tuple[float, ...]] = field(default_factory=dict)
     warned: str = ""
     direct: bool = False
+    read: Callable[[CoatedContact, Reading], tuple[Change, Change]] = lambda problem, at: at(problem)
 
     @property
     def all_axes(self) -> dict[str, tuple[float, ...]]:
@@ -94,7 +97,7 @@ ASSUMPTIONS: dict[str, Assumption] = {
         of_half_spaces,
         {
             "ratio": (0.1, 0.5, 1.0, 2.0, 10.0),
-            "thickness": (0.1, 0.5, 2.0),
+            "thickness": (0.02, 0.1, 0.5, 2.0),
             "width": (0.003, 0.03, 0.1, 0.2, 0.3),
             "ball": (0.0, 0.5),
         },
@@ -112,5 +115,6 @@ ASSUMPTIONS: dict[str, Assumption] = {
             "width": (0.03, 0.1, 0.2, 0.3),
         },
         rates={"width": 1.0},
+        read=of_pair,
     ),
 }

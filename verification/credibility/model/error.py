@@ -13,12 +13,11 @@ from verification.credibility.model.assumptions import (
     HALF_SPACES,
     PARABOLA,
     QUANTITIES,
-    SCALARS,
 )
 from verification.credibility.model.maps import SHIPPED, AssumptionMaps, read_maps
 from verification.problem.contact import CoatedContact
 from verification.problem.quantity import BALL_PEAKS, PEAKS
-from verification.sources.assumptions.change import Change
+from verification.sources.assumptions.change import SCALARS, Change
 
 __all__ = ["GOODMAN", "HALF_SPACES", "PARABOLA", "Cost", "ModelError", "model_error"]
 
@@ -31,6 +30,7 @@ WORDS = {
 
 
 LIMIT = 0.05  # of a quantity; a larger cost is warned of
+LEAST = 1e-6  # of a quantity; a smaller cost is not named
 
 
 @dataclass(frozen=True)
@@ -52,6 +52,11 @@ class Cost:
         """Magnitude of the change and its uncertainty together."""
         return abs(self.change) + self.uncertainty
 
+    @property
+    def words(self) -> str:
+        """Size, quantity and assumption."""
+        return f"{_percent(self.size)} of the {self.name} ({self.assumption})"
+
 
 @dataclass(frozen=True)
 class ModelError:
@@ -66,11 +71,23 @@ class ModelError:
         return max(of, key=lambda cost: cost.size, default=None)
 
     @property
-    def parts(self) -> tuple[str, ...]:
-        """The largest cost of scalars and that of stresses, each with the assumption that dominates."""
+    def dominating(self) -> tuple[Cost, ...]:
+        """The largest cost of scalars and that of stresses."""
         stresses = [name for name in QUANTITIES if name not in SCALARS]
-        worst = (self.largest(SCALARS), self.largest(stresses))
-        return tuple(f"{_percent(one.size)} of the {one.name} ({one.assumption})" for one in worst if one)
+        return tuple(one for one in (self.largest(SCALARS), self.largest(stresses)) if one)
+
+    @property
+    def parts(self) -> tuple[str, ...]:
+        """The dominating costs, each with its assumption."""
+        return tuple(one.words for one in self.dominating)
+
+    @property
+    def lesser(self) -> tuple[Cost, ...]:
+        """The largest cost of each assumption that dominates nowhere."""
+        named = {one.assumption for one in self.dominating}
+        others = dict.fromkeys(one.assumption for one in self.costs if one.assumption not in named)
+        worst = (max((c for c in self.costs if c.assumption == a), key=lambda c: c.size) for a in others)
+        return tuple(one for one in worst if one.size >= LEAST)
 
     def message(self) -> str:
         """One sentence: how good the model is."""
@@ -80,8 +97,9 @@ class ModelError:
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """A line for each assumption whose cost is not known here."""
-        return tuple(f"not known here: {assumption} ({reason})" for assumption, reason in self.missing)
+        """A line for each assumption that dominates nowhere, for each whose cost is not known here."""
+        unknown = (f"not known here: {assumption} ({reason})" for assumption, reason in self.missing)
+        return (*(f"less: {one.words}" for one in self.lesser), *unknown)
 
     def warnings(self, judged: Collection[str] = QUANTITIES, told: Sequence[str] = ()) -> tuple[str, ...]:
         """A line for each assumption that costs more than ``LIMIT`` of a quantity among ``judged``.
@@ -100,7 +118,7 @@ class ModelError:
 
 
 def model_error(problem: CoatedContact, maps: AssumptionMaps | None = None) -> ModelError:
-    """What the assumptions cost at ``problem``, in a few tenths of a second.
+    """What the assumptions cost at ``problem``, in tenths of a second; in seconds under h < a_h/20.
 
     maps : to read the assumptions in that are not evaluated; those of the package if None.
     """
@@ -115,6 +133,10 @@ def model_error(problem: CoatedContact, maps: AssumptionMaps | None = None) -> M
         except ValueError as error:
             missing.append((assumption.title, str(error)))
             continue
+        if change.tension is None:
+            missing.append(
+                (f"{assumption.title}, of the stresses", "its model has a rigid ball, no friction")
+            )
         costs += [
             Cost(assumption.title, field.name, value, getattr(uncertainty, field.name))
             for field in fields(change)
@@ -134,14 +156,14 @@ def judged_quantities(claimed: Collection[str]) -> tuple[str, ...]:
 
 
 def _percent(size: float) -> str:
-    return f"{100 * size:.2g} %" if size >= 1e-6 else "0.0001 %"
+    return f"{100 * size:.2g} %" if size >= LEAST else "0.0001 %"
 
 
 def _read(maps: AssumptionMaps, name: str, problem: CoatedContact) -> tuple[Change, Change]:
     found = maps.of(name)
     if found is None:
         raise ValueError(f"its map was not measured; coatcheck assumptions {name} --record makes it")
-    return found.at(problem)
+    return ASSUMPTIONS[name].read(problem, found.at)
 
 
 @cache

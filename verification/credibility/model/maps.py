@@ -11,13 +11,13 @@ from pathlib import Path
 
 import numpy as np
 
-from verification.credibility.model.assumptions import ASSUMPTIONS, QUANTITIES, SCALARS
+from verification.credibility.model.assumptions import ASSUMPTIONS, QUANTITIES
 from verification.credibility.model.place import LOGARITHMIC, Place, coordinate, places_of
 from verification.problem.arrays import Array
 from verification.problem.contact import CoatedContact
 from verification.running.records import RecordFile
 from verification.running.result import RunInfo
-from verification.sources.assumptions.change import Change
+from verification.sources.assumptions.change import SCALARS, Change
 
 SHIPPED = Path(__file__).parents[1] / "shipped"
 SCHEMA = "coatcheck-assumptions/2"

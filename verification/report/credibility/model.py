@@ -7,7 +7,7 @@ from itertools import pairwise, product
 import numpy as np
 from markupsafe import Markup
 
-from verification.credibility.model.assumptions import ASSUMPTIONS, SCALARS
+from verification.credibility.model.assumptions import ASSUMPTIONS
 from verification.credibility.model.error import WORDS as NAMES
 from verification.credibility.model.maps import WORDS, AssumptionMap
 from verification.problem.arrays import Array
@@ -16,6 +16,7 @@ from verification.report.material import Material
 from verification.report.tables.cells import Cell, Gallery, Panel, Part, Section, Table, number, row
 from verification.report.tables.csv import written
 from verification.report.tables.numbers import plain
+from verification.sources.assumptions.change import SCALARS
 
 ANCHOR = "model"
 LEVELS = (0.001, 0.01, 0.05)
@@ -25,6 +26,7 @@ ACROSS, UP = "thickness", "ratio"
 WIDTH, HEIGHT = 320, 250
 BOX = (48.0, 5.0, 266.0, 207.5)  # left, top, width, height
 SHORT = {"contact_radius": "a", "approach": "delta", "peak_pressure": "p0"}
+THICKNESSES = (0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2)  # ticks
 USUAL = {"nu": 0.3}  # coordinate of a panel, where the map has it
 
 
@@ -163,7 +165,7 @@ def _draw(x: Array, y: Array, plane: Array, label: str) -> Markup:
     for level in LEVELS:
         if size.min() < level < size.max():
             axes.contour(x, y, size, level, _percent(level))
-    axes.ticks(_ticks((0.1, 0.2, 0.5, 1, 2), x), _ticks((0.1, 0.25, 1, 4, 10), y), WORDS[ACROSS])
+    axes.ticks(_ticks(THICKNESSES, x), _ticks((0.1, 0.25, 1, 4, 10), y), WORDS[ACROSS])
     axes.text(x[0], y[-1], WORDS[UP], by=(4, 13))
     return drawing(WIDTH, HEIGHT, f"{label} over {WORDS[ACROSS]} and {WORDS[UP]}", axes)
 

@@ -6,7 +6,7 @@ surface, largest |sigma_xz| on the first interface.
 
 from dataclasses import dataclass
 from functools import partial
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -17,9 +17,12 @@ from verification.sources.assumptions.stress import first_harmonic
 from verification.sources.references import integral_equation
 from verification.sources.references.integral_equation import SPHERE, ExactSolution
 
+SCALARS = ("contact_radius", "approach", "peak_pressure")
 FLOOR = 0.1  # of the peak pressure, to which a smaller stress is compared
 THINNEST = 0.01  # h/a_h; time and memory grow as (a/h)^2 and more
 POINTS = 2 * np.linspace(-1, 1, 81)  # of a line along an interface, x/a
+NEAR = np.linspace(-1.5, 0.5, 21)  # (|x| - a)/h, where the shear of a thin coating is largest
+THIN = 0.5  # h/a, below which ``NEAR`` is finer than ``POINTS``
 # Of both solutions of a change; what their quadratures leave, below 1e-6, is common to both.
 RESOLUTION: dict[str, Any] = {"nodes": 40, "panel": 8, "tail": 18.0}
 
@@ -54,10 +57,7 @@ def of_sphere(problem: CoatedContact) -> tuple[Change, Change]:
 
 def change_between(before: ExactSolution, after: ExactSolution) -> Change:
     """From ``before`` to ``after``, both at the same load; the interface is that of ``before``."""
-    scalars = {
-        name: getattr(after, name) / getattr(before, name) - 1
-        for name in ("contact_radius", "approach", "peak_pressure")
-    }
+    scalars = {name: getattr(after, name) / getattr(before, name) - 1 for name in SCALARS}
     one, other, floor = _tension(before), _tension(after), FLOOR * before.peak_pressure
     shear = _shear_change(_shear(before), _shear(after), floor)
     return Change(**scalars, tension=(other - one) / max(abs(one), floor), shear=shear)
@@ -93,10 +93,9 @@ def of_goodman(problem: CoatedContact) -> tuple[Change, Change]:
     edge = np.array([-exact.contact_radius])
     floor = FLOOR * exact.peak_pressure
     tension = float(first(edge, 0.0, 0)[0][0]) / max(abs(_tension(exact)), floor)
-    shear = _shear(exact)
-    coupled = None
+    shear, coupled = _shear(exact), None
     if shear is not None:
-        coupled = shear + first(POINTS * exact.contact_radius, problem.interfaces[0], 0)[1]
+        coupled = Curve(shear.x, shear.values + first(shear.x, problem.interfaces[0], 0)[1])
     peak, place = expansion.peak_change(f)
     beyond = (f * problem.dundurs_beta) ** 2 / 2
     radius, approach = f**2 * change.contact_radius, f**2 * change.approach
@@ -123,25 +122,47 @@ def _tension(exact: ExactSolution) -> float:
     return float(exact.stress(-exact.contact_radius, 0.0, 0.0)[0, 0])
 
 
-def _shear(exact: ExactSolution) -> Array | None:
+class Curve(NamedTuple):
+    """``values`` at ``x``, ascending."""
+
+    x: Array
+    values: Array
+
+    @property
+    def largest(self) -> float:
+        """The largest magnitude, by the parabola through its point and the neighbours."""
+        size = np.abs(self.values)
+        i = int(np.clip(size.argmax(), 1, size.size - 2))
+        (left, middle, right), at = size[i - 1 : i + 2], self.x[i - 1 : i + 2]
+        rise, fall = (middle - left) / (at[1] - at[0]), (right - middle) / (at[2] - at[1])
+        bend = (fall - rise) / (at[2] - at[0])
+        if bend >= 0:
+            return float(size.max())
+        return float(max(middle - (rise + bend * (at[1] - at[0])) ** 2 / (4 * bend), size.max()))
+
+
+def _shear(exact: ExactSolution) -> Curve | None:
     """sigma_xz [Pa] along the first interface of the flat."""
     coatings = exact.fields[0].coatings
     if not coatings:
         return None
-    return exact.stress(POINTS * exact.contact_radius, 0.0, coatings[0][2], 0)[0, 2]
+    x = line_along_interface(exact.contact_radius, h := coatings[0][2])
+    return Curve(x, exact.stress(x, 0.0, h, 0)[0, 2])
 
 
-def _shear_change(before: Array | None, after: Array | None, floor: float) -> float | None:
+def line_along_interface(a: float, h: float) -> Array:
+    """Points [m] that resolve the shear at depth ``h`` of a contact of radius ``a``."""
+    x = POINTS * a
+    if h >= THIN * a:
+        return x
+    edge = a + h * NEAR
+    # points that nearly coincide would leave the parabola of ``Curve`` to rounding
+    step = edge[1] - edge[0]
+    apart = np.maximum(edge[0] - np.abs(x), np.abs(x) - edge[-1]) > step / 2
+    return np.sort(np.concatenate([x[apart], edge, -edge]))
+
+
+def _shear_change(before: Curve | None, after: Curve | None, floor: float) -> float | None:
     if before is None or after is None:
         return None
-    one, other = _largest(before), _largest(after)
-    return float((other - one) / max(one, floor))
-
-
-def _largest(values: Array) -> float:
-    """The largest magnitude of a curve, by the parabola through its largest point and the neighbours."""
-    size = np.abs(values)
-    i = int(np.clip(size.argmax(), 1, size.size - 2))
-    left, middle, right = size[i - 1 : i + 2]
-    bend = 2 * middle - left - right
-    return float(max(middle + (right - left) ** 2 / (8 * bend) if bend > 0 else middle, size.max()))
+    return float((after.largest - before.largest) / max(before.largest, floor))

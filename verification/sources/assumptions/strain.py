@@ -10,6 +10,7 @@ from verification.problem.contact import CoatedContact
 from verification.sources.assumptions.change import FLOOR, Change
 from verification.sources.assumptions.deformation import Deformed, SphereContact
 from verification.sources.assumptions.meridian import Meridian
+from verification.sources.assumptions.pair import of_pair
 
 
 @dataclass(frozen=True)
@@ -65,8 +66,13 @@ def of_small_strains(problem: CoatedContact) -> tuple[Change, Change]:
 
     Radius and stresses are those of the deformed solid, the shear that along the deformed first interface.
     Returns the change, then its uncertainty: the difference from a coarser mesh in half the solid.
-    Raises ValueError as ``deformed`` does.
+    Of an elastic ball as ``of_pair``.
+    Raises ValueError for a coated ball, and where there is no equilibrium.
     """
+    return of_pair(problem, _of_rigid_ball)
+
+
+def _of_rigid_ball(problem: CoatedContact) -> tuple[Change, Change]:
     coarse, fine = (_change(*deformed(problem, one)) for one in (COARSE, FINE))
 
     def apart(one: float | None, other: float | None) -> float | None:
