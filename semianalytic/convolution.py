@@ -68,7 +68,7 @@ def even_convolution(
         mx, my = (int(ducc0.fft.good_size(n, True)) for n in (nx, ny))
         spectrum: Array = np.zeros((mx, my))
         spectrum[:nx, :ny] = kernel
-        ducc0.fft.dct(spectrum, axes=(0, 1), type=3, nthreads=threads, out=spectrum)
+        ducc0.fft.dct(spectrum, axes=(0, 1), type=3, nthreads=_worth(threads, mx * my), out=spectrum)
         spectrum /= 4 * mx * my
         return _apply_cosines(spectrum, nx, ny, ((4, 4), (3, 2)), threads)
     if memory is not None and memory.dtype == np.float32:
@@ -111,7 +111,13 @@ def _even_spectrum(kernel: Array, mx: int, my: int, threads: int) -> Array:
     """Transform of the even kernel on a periodic mx x my grid, one quadrant of it."""
     quadrant = np.zeros((mx // 2 + 1, my // 2 + 1))
     quadrant[: kernel.shape[0], : kernel.shape[1]] = kernel
+    threads = _worth(threads, quadrant.size)
     return ducc0.fft.dct(quadrant, axes=(0, 1), type=1, nthreads=threads, out=quadrant)
+
+
+def _worth(threads: int, size: int) -> int:
+    """Threads for a transform of this size."""
+    return threads if size >= SHARED else 1
 
 
 def _apply_cosines(
@@ -124,8 +130,7 @@ def _apply_cosines(
     wave = np.empty_like(spectrum, order="C")
     mx, my = (nx + 1) // 2, (ny + 1) // 2
     rows = wave[:mx]
-    if wave.size < SHARED:
-        threads = 1
+    threads = _worth(threads, wave.size)
     (of_columns, back_columns), (of_rows, back_rows) = types[nx % 2], types[ny % 2]
 
     def apply(p: Array) -> Array:
@@ -148,8 +153,7 @@ def _apply_even(
     half = spectrum.shape[0] - 1
     mx, my = 2 * half, 2 * (spectrum.shape[1] - 1)
     spectrum /= mx * my
-    if mx * my < SHARED:
-        threads = 1
+    threads = _worth(threads, mx * my)
 
     # the columns of 2 nx entries are transformed by strips that stay in the cache, unless all of them do
     width = my // 2 + 1

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from fem_reference import factorisation, solve
+from fem_reference import dissection, factorisation, solve
 from fem_reference.axisymmetric import Discretisation
 from fem_reference.dissection import CholeskyFactor, DissectionTree
 from fem_reference.factorisation import BlockPattern, PardisoFactor, pardiso_library
@@ -49,6 +49,22 @@ def test_blocks_are_those_of_the_matrix(harmonic):
     by_field = found.transpose(1, 0, 3, 2).reshape(dense.shape)
     np.testing.assert_allclose(by_field, dense, rtol=0, atol=1e-13 * np.abs(dense).max())
     np.testing.assert_array_equal(np.repeat(np.arange(d.N), np.diff(pattern.begins)), pattern.rows)
+
+
+@pytest.mark.parametrize("triangles", [1, 6, 17, 2**12])
+@pytest.mark.parametrize("harmonic", [0, 1])
+def test_parts_eliminated_one_after_the_other_give_the_same_factor(harmonic, triangles, monkeypatch):
+    monkeypatch.setattr(dissection, "_BRANCH", triangles)
+    d, K, held = problem(harmonic)
+    load = np.where(held[:, None], 0.0, np.random.default_rng(1).normal(size=(held.size, 3)))
+    tree = DissectionTree.of(K.nodes, d.leaf)
+    assert (len(tree.branches) == 1) == (triangles >= d.mesh.layer.size)
+    dense = K @ np.eye(held.size)
+    dense[held] = dense[:, held] = 0.0
+    dense[held, held] = 1.0
+    expected = np.linalg.solve(dense, load)
+    found = CholeskyFactor(tree, K.elements, held).solve(load)
+    np.testing.assert_allclose(found, expected, rtol=0, atol=1e-11 * np.abs(expected).max())
 
 
 @needs_mkl

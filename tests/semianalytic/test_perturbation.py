@@ -99,6 +99,24 @@ def test_change_of_the_approach_is_the_mean_over_a_flat_punch(seed):
     assert q.min() > 0  # so that the gap the iteration leaves moves the approach by no more than its largest
 
 
+def test_change_of_a_smooth_edge_is_about_that_of_solving_again():
+    """Within a factor of two in pressure: the correction changes once more with the pressure."""
+    body, numerics = Body((), SUBSTRATE, 0.0), replace(PLAIN, tolerance=1e-8)
+    grid = Grid(49, 2 / 49)
+    indenter = Indenter(
+        lambda grid: np.add.outer(grid.x**2, 1.5 * grid.x**2), 0.15, None, round=False, edge_correction=True
+    )
+    level, again = (solve_on(grid, None, indenter, body, one) for one in (numerics, SPLIT))
+    K, K_other = coefficients(49, grid.d, body, numerics, SPLIT)
+    found = perturbation.of_kernel(level, K_other - K, SPLIT, indenter, body, numerics)
+    expected = uncertainty.change(level.scalars, again.scalars)
+    assert level.edge is not None
+    assert again.edge is not None
+    assert found["approach"] == pytest.approx(expected["approach"], rel=0.1)
+    for name in ("peak_pressure", "contact_radius"):
+        assert 0.5 < found[name] / expected[name] < 2
+
+
 def test_change_is_magnified_out_of_the_noise_and_in_proportion():
     body, indenter = problem(1)
     n = 49
@@ -150,6 +168,7 @@ def test_contact_beyond_the_box_counts_in_the_domain():
 
 def test_kernel_by_fft_depends_on_its_domain():
     body, indenter = problem(2)
+    indenter = replace(indenter, load=0.1, approach=None)
     numerics = replace(PLAIN, patches=65)
     found = levels(1.0, indenter, body, numerics, True)
     rows = uncertainty.of_contact(found, indenter, body, numerics).budget

@@ -478,60 +478,6 @@ def test_ellipsoid_turned_by_a_right_angle_is_the_same_contact():
     assert s.pressure(0.0, 1.2 * A_H) > 0 == s.pressure(1.2 * A_H, 0.0)
 
 
-@pytest.mark.parametrize("patches", [66, 65, 68])
-@pytest.mark.parametrize("E", [None, 840e9])
-@pytest.mark.parametrize(("curved", "edge"), [(1, False), (3, False), (3, True)])
-def test_even_indenter_is_solved_on_a_quarter_as_on_the_whole(patches, curved, E, edge):
-    """The last digit of a height off the axes keeps the other from being even.
-
-    Of a smooth edge along a diagonal rounding decides how its patches are divided: not of an ellipse.
-    """
-
-    def solved(last_digit):
-        return semianalytic.indent(
-            profile=lambda x, y: (x**2 + y**2 / curved) / (2 * R) * np.where(x + y > 0, last_digit, 1),
-            half_width=2 * A_H,
-            load=W,
-            coatings=((E, 0.3, 0.4 * A_H),) if E else (),
-            substrate=STEEL,
-            patches=patches,
-            edge_correction=edge,
-            estimate_uncertainty=False,
-        )
-
-    quarter, whole = solved(1), solved(1 + 2**-52)
-    np.testing.assert_array_equal(quarter.patch_pressure, quarter.patch_pressure[::-1, ::-1])
-    assert not np.array_equal(whole.patch_pressure, whole.patch_pressure[::-1])
-    assert quarter.diagnostics.iterations == whole.diagnostics.iterations
-    for name in ("approach", "peak_pressure", "contact_radius"):
-        assert getattr(quarter, name) == pytest.approx(getattr(whole, name), rel=1e-12)
-    atol = 1e-12 * whole.peak_pressure
-    np.testing.assert_allclose(quarter.patch_pressure, whole.patch_pressure, rtol=0, atol=atol)
-
-
-def test_contacts_beyond_the_window_of_a_quarter_are_found():
-    """A ring so narrow that the coarser grids, 33 and 65 patches a side, have no patch in it."""
-    tip, d = 0.3, 2 / 130
-    ring = 50.5 * d
-
-    def profile(x, y):
-        spot = (np.abs(np.abs(x) - ring) < 0.1 * d) & (np.abs(np.abs(y) - ring) < 0.1 * d)
-        return np.where(spot, 0.0, (x**2 + y**2) / (2 * tip))
-
-    s = semianalytic.indent(
-        profile=profile,
-        half_width=1.0,
-        load=None,
-        approach=0.1,
-        coatings=(),
-        substrate=(1.0, 0.0),
-        patches=130,
-        estimate_uncertainty=False,
-    )
-    assert s.pressure(ring, ring) > 0
-    assert s.diagnostics.penetration_outside < 1e-8
-
-
 def test_flat_punch_has_the_stiffness_of_its_radius():
     a = 1e-4
     edge = 1e-2 * a

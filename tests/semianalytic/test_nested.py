@@ -1,0 +1,110 @@
+"""Nested iteration of ``indent``: quarter and window of the plane, levels of the heights, what falls back."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import semianalytic
+from semianalytic import nested, smooth_edge
+
+R, W = 10e-3, 20.0
+STEEL = (210e9, 0.3)
+E_STAR = STEEL[0] / (1 - STEEL[1] ** 2)
+A_H = (0.75 * W * R / E_STAR) ** (1 / 3)
+P_H = 1.5 * W / (np.pi * A_H**2)
+
+
+def indent(profile, **options):
+    given = {"load": W, "coatings": (), "substrate": STEEL, "patches": 129, "estimate_uncertainty": False}
+    return semianalytic.indent(profile=profile, half_width=2 * A_H, **given | options)
+
+
+def ellipsoid(x, y):
+    return (x**2 + 1.1 * y**2) / (2 * R)
+
+
+@pytest.mark.parametrize("patches", [66, 65, 68])
+@pytest.mark.parametrize("E", [None, 840e9])
+@pytest.mark.parametrize(("curved", "edge"), [(1, False), (3, False), (3, True)])
+def test_even_indenter_is_solved_on_a_quarter_as_on_the_whole(patches, curved, E, edge):
+    """The last digit of a height off the axes keeps the other from being even.
+
+    Of a smooth edge along a diagonal rounding decides how its patches are divided: not of an ellipse.
+    """
+
+    def solved(last_digit):
+        return indent(
+            lambda x, y: (x**2 + y**2 / curved) / (2 * R) * np.where(x + y > 0, last_digit, 1),
+            coatings=((E, 0.3, 0.4 * A_H),) if E else (),
+            patches=patches,
+            edge_correction=edge,
+        )
+
+    quarter, whole = solved(1), solved(1 + 2**-52)
+    np.testing.assert_array_equal(quarter.patch_pressure, quarter.patch_pressure[::-1, ::-1])
+    assert not np.array_equal(whole.patch_pressure, whole.patch_pressure[::-1])
+    assert quarter.diagnostics.iterations == whole.diagnostics.iterations
+    for name in ("approach", "peak_pressure", "contact_radius"):
+        assert getattr(quarter, name) == pytest.approx(getattr(whole, name), rel=1e-12)
+    atol = 1e-12 * whole.peak_pressure
+    np.testing.assert_allclose(quarter.patch_pressure, whole.patch_pressure, rtol=0, atol=atol)
+
+
+@pytest.mark.parametrize("control", [{"load": W}, {"load": None, "approach": A_H**2 / R}])
+def test_heights_count_from_any_level(control):
+    s, raised = (
+        indent(lambda x, y, z=z: z + (x**2 + 1.1 * y**2 + 0.1 * x * y) / (2 * R), **control)
+        for z in (0.0, 3 * A_H)
+    )
+    assert raised.approach == pytest.approx(s.approach, rel=1e-8)
+    assert raised.diagnostics.load == pytest.approx(s.diagnostics.load, rel=1e-6)
+    np.testing.assert_allclose(raised.patch_pressure, s.patch_pressure, rtol=0, atol=1e-4 * P_H)
+
+
+def test_contact_that_reaches_the_rim_of_its_window_is_solved_on_the_whole_square(monkeypatch):
+    expected, window_around = indent(ellipsoid), nested.window_around
+
+    def small(*given):
+        window = window_around(*given)
+        return replace(window, i1=window.i1 - 10)
+
+    monkeypatch.setattr(nested, "window_around", small)
+    assert indent(ellipsoid).approach == pytest.approx(expected.approach, rel=1e-7)
+
+
+def test_edge_that_is_lost_in_the_second_round_is_left_to_the_patches(monkeypatch):
+    expected, fit, calls = indent(ellipsoid, edge_correction=False), smooth_edge.fit, []
+
+    def once(*given, **options):
+        calls.append(None)
+        return fit(*given, **options) if len(calls) < 2 else None
+
+    monkeypatch.setattr(smooth_edge, "fit", once)
+    found = indent(ellipsoid)
+    assert len(calls) == 2
+    np.testing.assert_array_equal(found.patch_pressure, expected.patch_pressure)
+
+
+@pytest.mark.parametrize("level", [0.0, 1.0])
+def test_contacts_beyond_the_window_of_a_quarter_are_found(level):
+    """A ring so narrow that the coarser grids, 33 and 65 patches a side, have no patch in it."""
+    tip, d = 0.3, 2 / 130
+    ring = 50.5 * d
+
+    def profile(x, y):
+        spot = (np.abs(np.abs(x) - ring) < 0.1 * d) & (np.abs(np.abs(y) - ring) < 0.1 * d)
+        return level + np.where(spot, 0.0, (x**2 + y**2) / (2 * tip))
+
+    s = semianalytic.indent(
+        profile=profile,
+        half_width=1.0,
+        load=None,
+        approach=0.1,
+        coatings=(),
+        substrate=(1.0, 0.0),
+        patches=130,
+        estimate_uncertainty=False,
+    )
+    assert s.pressure(ring, ring) > 0
+    assert s.diagnostics.penetration_outside < 1e-8
