@@ -37,7 +37,7 @@ def test_shipped_maps_hold_every_place(maps):
         ("sphere", 150),
         ("goodman", 220),
         ("bodies", 60),
-        pytest.param("strains", 150, marks=pytest.mark.slow),
+        pytest.param("strains", 20, marks=pytest.mark.slow),
     ],
 )
 def test_shipped_entries_are_those_measured_today(maps, name, index):
@@ -55,12 +55,16 @@ def test_parabola_costs_the_square_of_the_contact_radius_all_over_the_map(maps):
     assert np.log10(wide / narrow) == pytest.approx(np.full(wide.shape, 2.0), rel=0.05)
 
 
-# Of 60 random places of each map 95 and 93 % of the values of a quantity are covered, of most all.
+# Of 60 random places of each map 95 and 93 % of the values of a quantity are covered, of most all; of 40 with
+# h < a_h/5 of the map of small strains all, with at most 0.75 of the uncertainty.
 BETWEEN = [
     ("sphere", Place(0.16, 0.7, 0.3, 0.05, 0.2)),
     ("goodman", Place(3.0, 1.4, 0.25, friction=0.45)),
     ("bodies", Place(0.7, 0.3, width=0.15)),
     ("strains", Place(6.07, 0.58, 0.318, width=0.152)),
+    ("strains", Place(6.07, 0.031, 0.25, width=0.06)),
+    ("strains", Place(0.16, 0.014, 0.3, width=0.15)),
+    ("strains", Place(3.5, 0.15, 0.3, width=0.05)),
 ]
 
 
@@ -127,11 +131,11 @@ def test_two_poissons_ratios_are_read_at_both_with_half_of_the_range_as_uncertai
     assert U.approach == pytest.approx(abs(high.approach - low.approach) / 2, rel=1e-3)
 
 
-def test_hard_film_is_on_the_map(maps):
-    """A film, steel on steel, sliding; finite elements at this place have 0.00130 of the peak pressure."""
-    film = CoatedContact(10e-3, 20.0, ((180e9, 0.2, 2e-5),), (210e9, 0.3), 0.15, (210e9, 0.3, ()))
+def test_hard_film_of_two_micrometres_is_on_the_map(maps):
+    """Steel on steel, sliding; finite elements at this place have 0.00101 of the peak pressure."""
+    film = CoatedContact(10e-3, 20.0, ((180e9, 0.2, 2e-6),), (210e9, 0.3), 0.15, (210e9, 0.3, ()))
     change, U = ASSUMPTIONS["strains"].read(film, maps.of("strains").at)
-    assert change.peak_pressure == pytest.approx(0.00130, abs=U.peak_pressure)
+    assert change.peak_pressure == pytest.approx(0.00101, abs=U.peak_pressure)
     assert 0 < U.peak_pressure < change.peak_pressure
 
 

@@ -110,7 +110,7 @@ ASSUMPTIONS: dict[str, Assumption] = {
         of_small_strains,
         {
             "ratio": (0.1, 0.25, 1.0, 4.0, 10.0),
-            "thickness": (0.1, 0.5, 1.0, 2.0),
+            "thickness": (0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0),
             "nu": (0.2, 0.3, 0.45),
             "width": (0.03, 0.1, 0.2, 0.3),
         },

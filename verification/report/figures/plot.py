@@ -151,7 +151,8 @@ class Axes:
         for value, text in y:
             ((_, v),) = self.place(0.0, value)
             self._grid.append(f"M{left:.1f} {v:.1f}h{width:.1f}")
-            self._write(left - 3, v + 4, text, "end")
+            # at the corner both labels meet
+            self._write(left - 3, min(v + 4, bottom), text, "end")
         self._write(left + width / 2, bottom + 23, label, "middle")
 
     def _write(self, u: float, v: float, text: str, anchor: str, colour: str = "ink") -> None:
