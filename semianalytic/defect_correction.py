@@ -18,9 +18,10 @@ from semianalytic.grid import Grid
 from semianalytic.inputs import Body, Numerics
 from semianalytic.level import Indenter, Level, LevelProblem
 
-__all__ = ["corrected", "defect", "near_influence", "smoothed"]
+__all__ = ["corrected", "defect", "fit", "near_influence", "smoothed"]
 
 Array = NDArray[np.floating]
+Fitted = tuple[smooth_edge.Edge, Array]
 
 ROUNDS = 2  # of the correction by a smooth edge
 
@@ -60,38 +61,40 @@ def smoothed(problem: LevelProblem) -> Level:
     missing = 0.0
     for number in range(ROUNDS):
         p = level.found.pressure
-        found = defect(problem, p, near)
-        if found is None:
+        fitted = fit(problem, p)
+        if fitted is None:
             problem.gap = gap
             return problem.solve(0.0, 0.0) if number else level
-        edge, u, beyond = found
+        del level  # large, as are the others
+        u, beyond = defect(problem, p, fitted, near)
+        edge = fitted[0]
         u += gap
         # patches that the edge barely touches would alternate between two rounds
         problem.gap, missing = ((problem.gap + u) / 2, (missing + beyond) / 2) if number else (u, beyond)
-        del level, found, u  # large
+        del fitted, u
         level = problem.solve(0.0, missing * problem.grid.d**2, start=p)
         convolutions += level.convolutions + 1
     return replace(level, edge=edge, convolutions=convolutions)
 
 
-def defect(problem: LevelProblem, p: Array, near: Array) -> tuple[smooth_edge.Edge, Array, float] | None:
-    """Smooth edge of the pressure p [Pa] on a window, and what patches miss by it; None without such an edge.
+def fit(problem: LevelProblem, p: Array) -> Fitted | None:
+    """Smooth edge of the pressure p [Pa] on a window, by NumPy; None where it has none."""
+    return smooth_edge.fit(problem.grid.whole(p), even=problem.grid.quarter)
 
-    near : `near_influence`.  Returns the edge, deflection [m] and sum of p [Pa] that patches miss.
-    The edge is found by NumPy.
+
+def defect(problem: LevelProblem, p: Array, fitted: Fitted, near: Array) -> tuple[Array, float]:
+    """Deflection [m] and sum of p [Pa] that constant patches miss at a smooth edge of p [Pa] on a window.
+
+    fitted : as from `fit`, its parts are overwritten.  near : `near_influence`.
     """
-    xp, whole = namespace(p), problem.grid.whole(p)
-    fitted = smooth_edge.fit(whole, even=problem.grid.quarter)
-    if fitted is None:
-        return None
-    edge, parts = fitted
+    xp, (edge, parts) = namespace(p), fitted
 
     def deflection(moments: Array) -> Array:
         u: Array = to_numpy(problem.deflection_of_whole(xp.asarray(moments)))
         return u
 
-    u, missing = edge.deflection_beyond_centres(parts, to_numpy(whole), deflection, near)
-    return edge, xp.asarray(problem.held(u)), missing
+    u, missing = edge.deflection_beyond_centres(parts, to_numpy(problem.grid.whole(p)), deflection, near)
+    return xp.asarray(problem.held(u)), missing
 
 
 def near_influence(d: float, body: Body, numerics: Numerics) -> Array:

@@ -21,8 +21,8 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from semianalytic import arrays, convolution, smooth_edge
-from semianalytic.defect_correction import defect, near_influence
+from semianalytic import arrays, convolution
+from semianalytic.defect_correction import defect, fit, near_influence
 from semianalytic.grid import window_around
 from semianalytic.inputs import Body, Numerics
 from semianalytic.level import Indenter, Level, LevelProblem
@@ -49,17 +49,17 @@ def of_kernel(
     problem = LevelProblem(grid, p, found.approach, window, level, indenter, body, numerics)
     # the undeformed gap with the correction for a smooth edge, where there is one
     problem.gap = found.gap[window.slices] + found.approach - problem.deflection(p)
-    before = _fitted(replace(level, found=replace(found, pressure=p, gap=problem.gap)), level)
+    fitted = None if level.edge is None else fit(problem, p)
+    before = replace(level, found=replace(found, pressure=p, gap=problem.gap), edge=fitted and fitted[0])
     varied = copy(problem)
     nx, ny = grid.across(window).shape
     varied.deflection = convolution.even_convolution(
         change[:nx, :ny], quarter=grid.quarter, threads=numerics.threads
     )
     load = varied.deflection(p)
-    if before.edge is not None:
+    if fitted is not None:
         near = near_influence(grid.d, body, other) - near_influence(grid.d, body, numerics)
-        corrected = defect(varied, p, near)
-        load += 0.0 if corrected is None else corrected[1]
+        load += defect(varied, p, fitted, near)[0]
     inside = load[p > 0]
     xp = arrays.namespace(inside)
     low, high = float(xp.min(inside)), float(xp.max(inside))
@@ -68,13 +68,7 @@ def of_kernel(
         return dict.fromkeys(level.scalars, 0.0)
     magnified = max(1.0, SIZE * found.approach / size)
     problem.numerics = replace(numerics, tolerance=min(ACCURACY * magnified * size / found.approach, 0.1))
-    after = _fitted(problem.solve(magnified * load, level.load - grid.force(p), start=p), before)
+    after = problem.solve(magnified * load, level.load - grid.force(p), start=p)
+    fitted = fitted and fit(problem, after.found.pressure)
+    after = replace(after, edge=fitted and fitted[0])
     return {name: abs(value - before.scalars[name]) / magnified for name, value in after.scalars.items()}
-
-
-def _fitted(level: Level, like: Level) -> Level:
-    """With a smooth edge of its own where there is one on the level ``like`` it."""
-    fitted = None
-    if like.edge is not None:
-        fitted = smooth_edge.fit(level.grid.whole(level.found.pressure), even=level.grid.quarter)
-    return replace(level, edge=None if fitted is None else fitted[0])

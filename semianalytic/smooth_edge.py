@@ -94,10 +94,11 @@ class Edge:
         Constant patches carry the values at the centres. The difference is that of 3 x 3 constant patches
         with the moments of p up to the second and, within ``NEAR`` of the edge's patches, of their parts.
 
-        parts [Pa] : as from `fit`.  p [Pa] : at the centres.  deflection : of constant patches.
+        parts [Pa] : as from `fit`, overwritten.  p [Pa] : at the centres.  deflection : of constant patches.
         near : `near_influence`.
         """
-        moments, parts = np.zeros_like(p), parts * self.share[:, None]
+        moments = np.zeros_like(p)
+        parts *= self.share[:, None]
         centre = self.share * np.sqrt(np.maximum(self.quadratic[:, 0], 0))
         missing = float(np.sum(self.share * self.mean - centre))
         for a, b in _rows(p):
@@ -109,7 +110,9 @@ class Edge:
         for (di, dj), weight in _stencil().items():
             moments[self.i + di, self.j + dj] += parts @ weight
         moments[self.i, self.j] -= centre
-        u = np.pad(deflection(moments), NEAR)
+        u = deflection(moments)
+        del moments
+        u = np.pad(u, NEAR)
         for k in _few(parts):
             i, j = self.i[k], self.j[k]
             for (di, dj), at_offset in zip(
