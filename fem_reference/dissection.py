@@ -201,24 +201,27 @@ class CholeskyFactor:
         Raises numpy.linalg.LinAlgError where the matrix is not positive definite.
         """
         self._fields = held.size // tree.nodes
-        self._steps: list[tuple[np.ndarray, int, np.ndarray, np.ndarray]] = []
+        self._steps: list[tuple[tuple[int, int, int], np.ndarray, np.ndarray, np.ndarray]] = []
         below: list[np.ndarray] = []
         for levels in tree.branches:
             below += self._eliminated(tree, levels, [elements], held)
         self._eliminated(tree, tree.trunk, below, None)
+        # level by level, so that sums have the same order with any number of branches
+        self._steps.sort(key=lambda step: step[0])
 
     def _eliminated(
         self, tree: DissectionTree, levels: _Levels, below: list[np.ndarray], held: np.ndarray | None
     ) -> list[np.ndarray]:
         """What the parts of the last of the ``levels`` pass on; ``held`` where the first is of triangles."""
-        for groups in levels:
+        first = 0 if held is not None else len(tree.branches[0])
+        for height, groups in enumerate(levels, start=first):
             condensed = []
             for group in groups:
                 numbers = unknowns(group.nodes, self._fields, tree.nodes)
                 large = held is None and 2 * numbers.shape[1] ** 2 > _BLOCK
                 eliminate = self._one_by_one if large else self._together
                 R, W, S = eliminate(group, below, None if held is None else held[numbers])
-                self._steps.append((numbers, group.pivots * self._fields, R, W))
+                self._steps.append(((height, group.pivots, numbers.shape[1]), numbers, R, W))
                 condensed.append(S)
             below, held = condensed, None
         return below
@@ -271,12 +274,14 @@ class CholeskyFactor:
         """Solution for ``load``, (unknowns,) or (unknowns, columns), whose entries at ``held`` are zero."""
         x = np.array(load, dtype=float).reshape(len(load), -1)
         columns = np.arange(x.shape[1])
-        for numbers, p, R, W in self._steps:
+        for _, numbers, R, W in self._steps:
+            p = R.shape[1]
             y = R @ x[numbers[:, :p]]
             x[numbers[:, :p]] = y
             at = numbers[:, p:, None] * columns.size + columns
             np.subtract.at(x.reshape(-1), at.ravel(), (W @ y).ravel())
-        for numbers, p, R, W in reversed(self._steps):
+        for _, numbers, R, W in reversed(self._steps):
+            p = R.shape[1]
             y = x[numbers[:, :p]] - W.transpose(0, 2, 1) @ x[numbers[:, p:]]
             x[numbers[:, :p]] = R.transpose(0, 2, 1) @ y
         return x.reshape(load.shape)

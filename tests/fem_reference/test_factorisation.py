@@ -51,12 +51,13 @@ def test_blocks_are_those_of_the_matrix(harmonic):
     np.testing.assert_array_equal(np.repeat(np.arange(d.N), np.diff(pattern.begins)), pattern.rows)
 
 
-@pytest.mark.parametrize("triangles", [1, 6, 17, 2**12])
+@pytest.mark.parametrize("triangles", [17, 2**12])
 @pytest.mark.parametrize("harmonic", [0, 1])
-def test_parts_eliminated_one_after_the_other_give_the_same_factor(harmonic, triangles, monkeypatch):
-    monkeypatch.setattr(dissection, "_BRANCH", triangles)
+def test_parts_eliminated_one_after_the_other_give_the_same_bits(harmonic, triangles, monkeypatch):
     d, K, held = problem(harmonic)
     load = np.where(held[:, None], 0.0, np.random.default_rng(1).normal(size=(held.size, 3)))
+    at_once = CholeskyFactor(DissectionTree.of(K.nodes, d.leaf), K.elements, held).solve(load)
+    monkeypatch.setattr(dissection, "_BRANCH", triangles)
     tree = DissectionTree.of(K.nodes, d.leaf)
     assert (len(tree.branches) == 1) == (triangles >= d.mesh.layer.size)
     dense = K @ np.eye(held.size)
@@ -64,6 +65,7 @@ def test_parts_eliminated_one_after_the_other_give_the_same_factor(harmonic, tri
     dense[held, held] = 1.0
     expected = np.linalg.solve(dense, load)
     found = CholeskyFactor(tree, K.elements, held).solve(load)
+    np.testing.assert_array_equal(found, at_once)
     np.testing.assert_allclose(found, expected, rtol=0, atol=1e-11 * np.abs(expected).max())
 
 
