@@ -7,11 +7,12 @@ mutable. Where the standard lacks a function, or NumPy has a faster one, it is h
 
 import sys
 from collections.abc import Iterator
+from functools import lru_cache
 from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import gaussian_filter
+from scipy.ndimage import correlate1d
 
 __all__ = [
     "Mirror",
@@ -143,18 +144,24 @@ def median(a: Array) -> float:
     return (float(ordered[(n - 1) // 2]) + float(ordered[n // 2])) / 2
 
 
+@lru_cache
+def _gaussian(sigma: float) -> Array:
+    reach = int(3 * sigma + 0.5)
+    weight = np.exp(-0.5 * (np.arange(-reach, reach + 1) / sigma) ** 2)
+    return np.asarray(weight / weight.sum())
+
+
 def gaussian_mean(a: NDArray[Any], sigma: float, mirror: Mirror, out: Array) -> Array:
     """Means of a weighted by a Gaussian of ``sigma`` entries, cut off at three.
 
     mirror : of a at the rim, as in ``scipy.ndimage``: about an entry, or about the border.
     """
+    weight = _gaussian(sigma)
     if isinstance(a, np.ndarray):
-        gaussian_filter(a, sigma, mode=mirror, truncate=3, output=out)
+        correlate1d(a, weight, axis=0, output=out, mode=mirror)
+        correlate1d(out, weight, axis=1, output=out, mode=mirror)
         return out
-    xp = namespace(a)
-    reach = int(3 * sigma + 0.5)
-    weight = np.exp(-0.5 * (np.arange(-reach, reach + 1) / sigma) ** 2)
-    weight /= weight.sum()
+    xp, reach = namespace(a), weight.size // 2
     out[...] = xp.asarray(a, dtype=out.dtype)
     for axis, n in enumerate(a.shape):
         period = max(2 * n - 2, 1) if mirror == "mirror" else 2 * n

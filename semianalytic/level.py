@@ -26,7 +26,8 @@ class Indenter:
 
     round : axisymmetric with a smooth edge.  shapes : edge profiles of the contact, the finest first.
     table : of the layers, for their deflection.  edge_correction : of others, where their edge is smooth.
-    Their gap may be above any level; the approach counts from its lowest point.
+    Their gap may be above any level; the approach counts from its lowest point, of the patches or, given x
+    and y [m] on a grid, of what ``between`` them is [m].
     """
 
     gap: Callable[[Grid], Array]
@@ -36,6 +37,7 @@ class Indenter:
     shapes: tuple[edge_profile.Profile, ...] = ()
     table: abel.LayerTable | None = None
     edge_correction: bool = False
+    between: Callable[[Array, Array], Array] | None = None
 
 
 @dataclass(frozen=True)
@@ -259,17 +261,19 @@ def _shared_memory(nx: int, ny: int, loose: bool) -> tuple[Array, Array, tuple[A
 def _above_highest(p: Array) -> float:
     """Height of a maximum of p between the patch centres above the highest of them, 0 at a tip.
 
-    By differences of second order: g^2/2h per axis, g the slope and -h the second derivative.
+    By differences of second order: g . H^-1 g / 2, g the slope and -H the second derivatives.
     """
     i, j = divmod(int(namespace(p).argmax(p)), p.shape[1])
-    if not (0 < i < p.shape[0] - 1 and 0 < j < p.shape[1] - 1):
+    q = to_numpy(p[max(i - 1, 0) : i + 2, max(j - 1, 0) : j + 2])
+    if q.shape != (3, 3) or not (q > 0).all():
         return 0.0
-    above, around = 0.0, to_numpy(p[i - 1 : i + 2, j - 1 : j + 2])
-    twice = 2 * around[1, 1]
-    for low, _, high in (around[:, 1], around[1, :]):
-        if low > 0 and high > 0 and low + high < twice:
-            above += float((high - low) ** 2 / (8 * (twice - low - high)))
-    return above
+    slope = np.array([q[2, 1] - q[0, 1], q[1, 2] - q[1, 0]]) / 2
+    cross = (q[2, 0] + q[0, 2] - q[0, 0] - q[2, 2]) / 4
+    curvature, axes = np.linalg.eigh(
+        [[2 * q[1, 1] - q[0, 1] - q[2, 1], cross], [cross, 2 * q[1, 1] - q[1, 0] - q[1, 2]]]
+    )
+    curved = curvature > 1e-9 * curvature[1]  # not along a ridge
+    return float(np.sum((slope @ axes)[curved] ** 2 / (2 * curvature[curved])))
 
 
 def _extension(body: Body, d: float) -> float:

@@ -14,7 +14,7 @@ from semianalytic.grid import Grid, Window, odd, touches_rim, window_around
 from semianalytic.inputs import COARSEST, Body, Numerics
 from semianalytic.level import Indenter, Level, LevelProblem
 
-__all__ = ["is_alone", "levels", "solve_on", "undeformed"]
+__all__ = ["is_alone", "levels", "lowest_point", "solve_on", "undeformed"]
 
 Array = NDArray[np.floating]
 
@@ -74,7 +74,7 @@ def solve_on(
         return corrected(grid, indenter.gap(grid), before, shape, indenter, body, numerics)
     grid, gap = undeformed(replace(grid, quarter=False), indenter)
     xp, whole = namespace(gap), grid.window
-    datum = float(xp.min(gap))
+    datum = lowest_point(grid, gap, indenter)
     depth = float(xp.max(gap)) - datum
     if before is not None:
         before = before.whole if grid.quarter < before.grid.quarter else before
@@ -103,6 +103,17 @@ def undeformed(grid: Grid, indenter: Indenter) -> tuple[Grid, Array]:
         grid = replace(grid, quarter=True)
         gap = grid.held(gap).copy()
     return grid, gap
+
+
+def lowest_point(grid: Grid, gap: Array, indenter: Indenter) -> float:
+    """Lowest gap on the patches and, where it is known between them, on a mesh of half a patch beside it."""
+    xp = namespace(gap)
+    if indenter.between is None:
+        return float(xp.min(gap))
+    i, j = divmod(int(xp.argmin(gap)), gap.shape[1])
+    beside = np.array([-0.5, 0.0, 0.5]) * grid.d
+    z = indenter.between(xp.asarray(grid.x[i] + beside), xp.asarray(grid.x[j] + beside))
+    return min(float(xp.min(gap)), float(xp.min(z)))
 
 
 def _of_single_precision(level: Level) -> Level:

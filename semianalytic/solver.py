@@ -195,19 +195,23 @@ def indent(
         threads=threads,
     )
 
+    def on_mesh(x: Array, y: Array) -> Array:
+        assert callable(profile)
+        z: Array = xp.asarray(profile(x[:, None], y[None, :]), dtype=xp.float64)
+        return z
+
     def gap(grid: Grid) -> Array:
         if heights is not None:
             z = grid.sample(heights, half_width)
         else:
-            assert callable(profile)
             x = xp.asarray(grid.x)
-            z = xp.asarray(profile(x[:, None], x[None, :]), dtype=xp.float64)
-            z = xp.broadcast_to(z, (grid.n, grid.n))
+            z = xp.broadcast_to(on_mesh(x, x), (grid.n, grid.n))
             if not np.isfinite(float(xp.min(z))) or not np.isfinite(float(xp.max(z))):
                 raise ValueError("profile(x, y) must return finite heights [m] all over the square")
         return z
 
-    indenter = Indenter(gap, load, approach, round=False, edge_correction=edge_correction)
+    between = on_mesh if heights is None else None
+    indenter = Indenter(gap, load, approach, False, edge_correction=edge_correction, between=between)
     levels = nested.levels(half_width, indenter, body, numerics, estimate_uncertainty)
     if heights is None and touches_rim(levels[-1].whole.found.pressure):
         raise NotConverged(

@@ -12,7 +12,7 @@ from semianalytic.grid import Window, odd
 from semianalytic.influence import surface_coefficients
 from semianalytic.inputs import Body, Numerics
 from semianalytic.level import Indenter, Level
-from semianalytic.nested import is_alone, solve_on, undeformed
+from semianalytic.nested import is_alone, lowest_point, solve_on, undeformed
 
 __all__ = ["WIDER", "Uncertainty", "change", "of_contact", "of_stiffness", "other_conversion", "safety"]
 
@@ -136,11 +136,10 @@ def _of_domain(
         first, m = 0 if box.quarter else (wider.n - grid.n) // 2, len(level.grid.x)
         window = Window(first, first + m, first, first + m)
         xp = namespace(gap)
-        depth = float(xp.max(gap) - xp.min(gap))
+        datum = lowest_point(box, gap, indenter)
+        depth = float(xp.max(gap)) - datum
         found = level.found.embedded(window.slices, box.window.shape, depth)
-        if is_alone(
-            replace(level, grid=box, found=found), box.lowest(gap - xp.min(gap)), window, body, numerics
-        ):
+        if is_alone(replace(level, grid=box, found=found), box.lowest(gap - datum), window, body, numerics):
             if numerics.conversion == "split":
                 return dict.fromkeys(level.scalars, 0.0)
             by_fft = surface_coefficients(wider.n, grid.d, body, numerics, xp)[: grid.n, : grid.n]

@@ -64,6 +64,15 @@ def test_ellipse_of_257_patches_within_1e_5():
     assert ellipse.semi_axes(s) == pytest.approx((ellipse.a, ellipse.b), rel=1e-3)
 
 
+def test_approach_and_peak_are_those_between_the_patches():
+    """An even number of patches has none at the tip, and four beside the peak."""
+    ellipse = Ellipse(3, 30)
+    for patches in (96, 97):
+        s = ellipse.indent(patches)
+        assert s.approach == pytest.approx(ellipse.approach, rel=4e-5)
+        assert s.peak_pressure == pytest.approx(P0, rel=4e-5)
+
+
 def test_ellipse_converges_with_second_order():
     ellipse = Ellipse(2, 30)
     errors = [
@@ -73,10 +82,11 @@ def test_ellipse_converges_with_second_order():
     assert np.all(np.log2(np.divide(*errors)) > 1.9)
 
 
-def test_uncertainty_covers_the_ellipse_and_is_far_below_that_of_the_staircase():
-    ellipse = Ellipse(2, 70)
+@pytest.mark.parametrize(("patches", "degrees"), [(113, 70), (84, 25)])
+def test_uncertainty_covers_the_ellipse_and_is_far_below_that_of_the_staircase(patches, degrees):
+    ellipse = Ellipse(2, degrees)
     corrected, staircase = (
-        ellipse.indent(113, estimate_uncertainty=True, edge_correction=edge) for edge in (True, False)
+        ellipse.indent(patches, estimate_uncertainty=True, edge_correction=edge) for edge in (True, False)
     )
     exact = {"peak_pressure": P0, "approach": ellipse.approach, "contact_radius": 1e-4}
     for name, value in exact.items():
