@@ -62,6 +62,20 @@ def test_heights_count_from_any_level(control):
     np.testing.assert_allclose(raised.patch_pressure, s.patch_pressure, rtol=0, atol=1e-4 * P_H)
 
 
+@pytest.mark.parametrize("n", [33, 34])
+def test_lowest_point_between_the_patches_is_found(n):
+    grid, tip = nested.Grid(n, 0.1), (0.523, -0.241)
+
+    def between(x, y):
+        return 7 + np.add.outer((x - tip[0]) ** 2, 2 * (y - tip[1]) ** 2)
+
+    indenter = nested.Indenter(lambda grid: between(grid.x, grid.x), 1.0, None, round=False)
+    gap = indenter.gap(grid)
+    assert nested.lowest_point(grid, gap, indenter) == gap.min() > 7 + 1e-4
+    found = nested.lowest_point(grid, gap, replace(indenter, between=between))
+    assert 7 <= found < 7 + 1e-5
+
+
 def test_contact_that_reaches_the_rim_of_its_window_is_solved_on_the_whole_square(monkeypatch):
     expected, window_around = indent(ellipsoid), nested.window_around
 
