@@ -23,14 +23,19 @@ HERE = Path(__file__).parent
 
 
 @pytest.fixture(scope="module")
-def address():
-    """A scheduler with one worker, within this process."""
+def worker():
+    """One worker of a scheduler, within this process."""
     from distributed import LocalCluster
 
     with LocalCluster(
         n_workers=1, threads_per_worker=1, processes=False, dashboard_address="127.0.0.1:0"
     ) as workers:
-        yield workers.scheduler_address
+        yield workers.workers[0]
+
+
+@pytest.fixture
+def address(worker):
+    return worker.scheduler.address
 
 
 @pytest.fixture(autouse=True)
@@ -39,21 +44,18 @@ def _planted(monkeypatch):
     monkeypatch.setenv("PYTHONPATH", os.pathsep.join(places))
 
 
-def test_a_worker_keeps_its_process_for_the_next_run_and_ends_it_with_itself(tmp_path):
-    from distributed import LocalCluster
-
-    with LocalCluster(
-        n_workers=1, threads_per_worker=1, processes=False, dashboard_address="127.0.0.1:0"
-    ) as workers:
-        processes = []
-        for n in range(2):
-            Cluster(workers.scheduler_address).run([task("process", tmp_path, n)], time_limit=60.0)
-            (slot,) = workers.workers[0].plugins[Kept.name].idle
-            processes.append(slot.process)
-        first, second = processes
-        assert first is second
-        assert first.poll() is None
+def test_a_worker_keeps_its_process_for_the_next_run_and_ends_it_with_itself(worker, address, tmp_path):
+    kept, processes = [], []
+    for n in range(2):
+        Cluster(address).run([task("process", tmp_path, n)], time_limit=60.0)
+        kept.append(worker.plugins[Kept.name])
+        processes += [slot.process for slot in kept[-1].idle]
+    first, second = processes
+    assert first is second
+    assert first.poll() is None
+    kept[-1].teardown(worker)
     assert first.poll() is not None
+    assert kept[-1].idle == []
 
 
 def test_tasks_run_as_on_this_machine(address, tmp_path, monkeypatch):
