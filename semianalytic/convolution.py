@@ -27,7 +27,7 @@ BLOCK = (
     2**15
 )  # numbers of the rows, or the columns, transformed at a time by a thread: they stay in the cache
 WHOLE = 8  # blocks in a transform, up to which it is not divided
-SHARED = 2**18  # points of a transform below which a second thread was measured to give no gain
+SHARED = 3 * 2**17  # points of a transform below which a second thread was measured to give no gain
 
 
 def good_size(n: int) -> int:

@@ -126,11 +126,15 @@ def surface_deflection(nx: int, ny: int, dx: float, dy: float, depth: float = 0.
     V[:mx, :my] = column[:, 1:] - column[:, :-1]
     y = xp.arange(ny, dtype=xp.float64) * dy
     rows = max(1, at_once(xp) // ny)
+    symmetric = nx == ny and dx == dy
     for begin, end, first in ((0, mx, my), (mx, nx, 0)):
         for i in range(begin, end, rows):
             j = min(i + rows, end)
             x = xp.arange(i, j, dtype=xp.float64) * dx
-            V[i:j, first:] = _potential_series(x[:, None], y[None, first:], depth, dx, dy)
+            left = max(first, i) if symmetric else first
+            V[i:j, left:] = _potential_series(x[:, None], y[None, left:], depth, dx, dy)
+            if symmetric and i >= mx:
+                V[i:j, :i] = V[:i, i:j].T
     return V
 
 

@@ -18,6 +18,7 @@ __all__ = ["is_alone", "levels", "lowest_point", "solve_on", "undeformed"]
 
 Array = NDArray[np.floating]
 
+STRIDE = 8**0.5  # of grids that only give the start: the iterations are as many as by halves
 HALVINGS = 6  # of steps to the lowest point between the patches, off by 1e-4 of the height over a patch
 QUICK = 60  # iterations, more than a contact takes that the patches resolve
 
@@ -25,19 +26,22 @@ QUICK = 60  # iterations, more than a contact takes that the patches resolve
 def levels(
     half_width: float, indenter: Indenter, body: Body, numerics: Numerics, estimate_uncertainty: bool
 ) -> list[Level]:
-    """Contacts on .., N/4, N/2 and N patches a side, the last ones each with an edge profile of its own.
+    """Contacts on N/4, N/2 and N patches a side for an uncertainty, else on N; each with its edge profile.
 
-    The first ones, without, give the start. Where they do not converge quickly, under films a thousand times
-    stiffer than what lies below, the start is the edge profile.
+    Those on coarser grids before them, without, give the start. Where they do not converge quickly, under
+    films a thousand times stiffer than what lies below, the start is the edge profile.
     """
-    sizes = [numerics.patches]
-    while sizes[0] > 2 * COARSEST or len(sizes) < 3:
-        sizes.insert(0, odd(sizes[0] / 2))
-    shapes: list[Profile | None] = [None] * len(sizes)
     kept = 3 if estimate_uncertainty else 1
+    sizes = [numerics.patches]
+    while len(sizes) < kept:
+        sizes.insert(0, odd(sizes[0] / 2))
+    stride = 2.0 if indenter.shapes else STRIDE
+    while sizes[0] > 2 * COARSEST:
+        sizes.insert(0, odd(sizes[0] / stride))
+    shapes: list[Profile | None] = [None] * len(sizes)
     for k, profile in enumerate(indenter.shapes[:kept]):
         shapes[-1 - k] = profile
-    starter = replace(numerics, tolerance=max(1e-5, numerics.tolerance))
+    starter = replace(numerics, tolerance=max(1e-4, numerics.tolerance))
     if indenter.shapes:
         starter = replace(starter, max_iterations=min(QUICK, numerics.max_iterations))
     found: list[Level] = []

@@ -99,8 +99,10 @@ class Solution:
 
     @classmethod
     def _of_level(cls, level: Level, body: Body, coarser: "Solution | None") -> "Solution":
-        scalars, level = level.scalars, level.whole
-        grid, found = level.grid, level.found
+        scalars, found = level.scalars, level.found
+        grid = replace(level.grid, quarter=False)
+        found = replace(found, pressure=level.grid.whole(found.pressure), gap=np.empty((0, 0)))  # no gap
+        level = replace(level, grid=grid, found=found)
         beyond = max(int(np.ceil((2.05 * level.radius - grid.x[-1]) / grid.d)), 0)
         return cls(
             **scalars,

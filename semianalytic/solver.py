@@ -118,7 +118,7 @@ def solve(
             terms = max(len(one.profile.coefficients) for one in found)
             sphere = replace(sphere, table=abel.layer_table(both.excess, both.depth, a, reach, terms))
     levels = nested.levels(half_width, sphere, body, numerics, estimate_uncertainty)
-    if touches_rim(levels[-1].whole.found.pressure):
+    if touches_rim(levels[-1].found.pressure, levels[-1].grid.quarter):
         raise NotConverged(f"the contact reaches the rim of the grid, fill = {fill:g}; enlarge it")
     estimate = uncertainty.of_contact(levels, sphere, body, numerics) if estimate_uncertainty else None
     solution = Solution.of_levels(levels, body, estimate, began)
@@ -213,7 +213,7 @@ def indent(
     between = on_mesh if heights is None else None
     indenter = Indenter(gap, load, approach, False, edge_correction=edge_correction, between=between)
     levels = nested.levels(half_width, indenter, body, numerics, estimate_uncertainty)
-    if heights is None and touches_rim(levels[-1].whole.found.pressure):
+    if heights is None and touches_rim(levels[-1].found.pressure, levels[-1].grid.quarter):
         raise NotConverged(
             f"the contact reaches the rim of the square, half_width = {half_width:g} m; widen it, or give "
             "the profile as an array if it has no surface beyond"

@@ -60,7 +60,7 @@ def test_a_later_call_leaves_what_an_earlier_one_returned():
 
 
 def test_a_second_thread_changes_no_more_than_rounding():
-    n = 260  # so that the transforms are large enough to be shared between threads
+    n = 320  # so that the transforms are large enough to be shared between threads
     assert convolution.good_size(2 * n - 1) ** 2 > convolution.SHARED
     kernel, p = RNG.normal(size=(2, n, n))
     for build in (convolution.even_convolution, convolution.circulant_inverse):
