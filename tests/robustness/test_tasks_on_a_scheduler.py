@@ -2,20 +2,20 @@
 
 import datetime
 import os
-import tempfile
 import time
 from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from test_failing_workers import REASONS, gone, task
+from planted_worker import end_kept_processes, kept_processes
+from scheduler_by_hand import hand_started, wait_until
+from test_failing_workers import REASONS, alive, gone, task
 
 from verification.commands.common.exits import CommandError
 from verification.commands.common.solving import pool_of, run_info
 from verification.running.pool import cluster, remote
 from verification.running.pool.cluster import Cluster, Lost
 from verification.running.pool.task import SchedulerError, Task
-from verification.running.pool.worker import Kept
 from verification.running.provenance import hardware
 from verification.running.store import StoreError, read_checked, write_checked
 
@@ -23,39 +23,29 @@ HERE = Path(__file__).parent
 
 
 @pytest.fixture(scope="module")
-def worker():
-    """One worker of a scheduler, within this process."""
-    from distributed import LocalCluster
-
-    with LocalCluster(
-        n_workers=1, threads_per_worker=1, processes=False, dashboard_address="127.0.0.1:0"
-    ) as workers:
-        yield workers.workers[0]
-
-
-@pytest.fixture
-def address(worker):
-    return worker.scheduler.address
-
-
-@pytest.fixture(autouse=True)
-def _planted(monkeypatch):
+def address(tmp_path_factory):
+    """Of a scheduler with one worker, in processes of their own."""
+    folder = tmp_path_factory.mktemp("worker")
     places = [str(HERE), str(HERE.parent / "verification"), os.environ.get("PYTHONPATH", "")]
-    monkeypatch.setenv("PYTHONPATH", os.pathsep.join(places))
+    with hand_started(folder, 1, PYTHONPATH=os.pathsep.join(places)) as (address, _):
+        yield address
 
 
-def test_a_worker_keeps_its_process_for_the_next_run_and_ends_it_with_itself(worker, address, tmp_path):
-    kept, processes = [], []
-    for n in range(2):
-        Cluster(address).run([task("process", tmp_path, n)], time_limit=60.0)
-        kept.append(worker.plugins[Kept.name])
-        processes += [slot.process for slot in kept[-1].idle]
-    first, second = processes
-    assert first is second
-    assert first.poll() is None
-    kept[-1].teardown(worker)
-    assert first.poll() is not None
-    assert kept[-1].idle == []
+def test_a_worker_keeps_its_process_for_the_next_run_and_ends_it_with_itself(address, tmp_path):
+    from distributed import Client
+
+    kept = []
+    with Client(address, set_as_default=False) as client:
+        for n in range(2):
+            Cluster(address).run([task("process", tmp_path, n)], time_limit=60.0)
+            kept += client.run(kept_processes).values()
+        first, second = kept
+        assert len(first) == 1
+        assert second == first
+        assert alive(first[0])
+        client.run(end_kept_processes)
+        gone(first, within=10)
+        assert list(client.run(kept_processes).values()) == [[]]
 
 
 def test_tasks_run_as_on_this_machine(address, tmp_path, monkeypatch):
@@ -97,14 +87,15 @@ def test_tasks_run_as_on_this_machine(address, tmp_path, monkeypatch):
     assert (info.jobs, info.machine) == (1, hardware())
 
 
-def test_tasks_that_nobody_waits_for_end_with_their_processes(address, tmp_path, monkeypatch):
-    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+def test_tasks_that_nobody_waits_for_end_with_their_processes(address, tmp_path):
     pids = []
 
+    def said():
+        return [int(pid) for path in tmp_path.rglob("*.pids") for pid in path.read_text().split()]
+
     def stop():
-        while not (said := [path.read_text() for path in tmp_path.rglob("*.pids")]) or not said[0]:
-            time.sleep(0.01)
-        pids.extend(int(pid) for pid in said[0].split())
+        wait_until(said, "the processes of a task", 60)
+        pids.extend(said())
         raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
@@ -157,7 +148,7 @@ def test_workers_of_another_program_are_refused(address, monkeypatch):
     other = replace(cluster.provenance(), code="0" * 64)
     monkeypatch.setattr(cluster, "provenance", lambda: other)
     with (
-        pytest.raises(SchedulerError, match=r"the worker inproc://.*: other source code"),
+        pytest.raises(SchedulerError, match=r"the worker tcp://.*: other source code"),
         cluster.connected(address, None),
     ):
         pass

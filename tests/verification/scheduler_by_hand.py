@@ -21,21 +21,25 @@ def wait_until(condition, what, seconds=300):
 
 
 @contextmanager
-def hand_started(folder, workers=2):
-    """``dask scheduler`` with ``dask worker``, as a person starts them; its address, the workers."""
+def hand_started(folder, workers=2, **variables):
+    """``dask scheduler`` with ``dask worker``, as a person starts them; its address, the workers.
+
+    variables : of their environment, beside those of this process.
+    """
+    environment = ENVIRONMENT | variables
     there = folder / "scheduler.json"
     quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL, "start_new_session": True}
     common = ["--scheduler-file", str(there), "--host", "127.0.0.1", "--no-dashboard"]
     dask = str(BIN / "dask")
     started = [
-        subprocess.Popen([dask, "scheduler", *common, "--port", "0"], env=ENVIRONMENT, cwd=folder, **quiet)
+        subprocess.Popen([dask, "scheduler", *common, "--port", "0"], env=environment, cwd=folder, **quiet)
     ]
     try:
         wait_until(there.exists, "a scheduler", 60)
         for _ in range(workers):
             words = [dask, "worker", *common, "--nworkers", "1", "--nthreads", "1"]
             words += ["--local-directory", str(folder)]
-            started.append(subprocess.Popen(words, env=ENVIRONMENT, cwd=folder, **quiet))
+            started.append(subprocess.Popen(words, env=environment, cwd=folder, **quiet))
         yield json.loads(there.read_text())["address"], started[1:]
     finally:
         for process in started:
