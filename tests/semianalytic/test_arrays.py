@@ -18,7 +18,7 @@ N, D = 40, 1e-6
 
 @pytest.fixture(autouse=True)
 def _no_implicit_conversion(monkeypatch):
-    """Its arrays, like those on a GPU, become arrays of NumPy only where that is asked for."""
+    """Its arrays, like those on a GPU, become arrays of NumPy only where the code converts them."""
 
     def refused(*_, **__):
         raise TypeError("implicit conversion to an array of NumPy")

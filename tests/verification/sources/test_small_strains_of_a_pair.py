@@ -46,7 +46,7 @@ def test_problem_that_a_body_has_no_answer_for_has_none():
 
 
 def test_very_stiff_ball_is_rigid():
-    """And no contact of almost no strain is asked for."""
+    """The contact of the ball alone, almost without strain, is not solved."""
     asked = []
     stiff = replace(PAIR, ball=(1e6 * PAIR.ball[0], 0.3, ()))
     expected = of_rigid(replace(stiff, ball=None))[0]
