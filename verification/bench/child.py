@@ -88,7 +88,8 @@ def default_run(turn: int, *cases: str) -> Prepared:
     def run() -> None:
         with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as folder:
             command = [sys.executable, "-m", "verification.cli", "run", *files, "--output", folder]
-            subprocess.run(command, stdout=subprocess.DEVNULL, check=False)
+            # Elsewhere than in a checkout, whose packages would come before those on PYTHONPATH.
+            subprocess.run(command, stdout=subprocess.DEVNULL, check=False, cwd=folder)
             # Its verdicts, so its exit code, are those of another machine and of other versions.
             if not Path(folder, "report.json").exists():
                 raise RuntimeError("coatcheck run wrote no report")

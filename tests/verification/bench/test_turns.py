@@ -50,6 +50,24 @@ def test_a_child_on_another_package_than_its_commit_fails(tmp_path):
         in_turn({"elements": Work("elements", (0.0, False), tmp_path)}, 1)
 
 
+RUN = """
+import sys
+from pathlib import Path
+Path(__file__).with_name("log").write_text(sys.argv[2])
+Path(sys.argv[-1], "report.json").touch()
+"""
+
+
+def test_the_default_run_is_that_of_its_commit_wherever_the_benchmark_is_started(tmp_path, monkeypatch):
+    case = tmp_path / "verification" / "cases" / "contact" / "01_case.toml"
+    case.parent.mkdir(parents=True)
+    case.touch()
+    (tmp_path / "verification" / "cli.py").write_text(RUN)
+    monkeypatch.chdir(turns.HERE)  # where another program of the same name lies
+    in_turn({"there": Work("default_run", ("01_case",), tmp_path)}, 1)
+    assert (tmp_path / "verification" / "log").read_text() == str(case)
+
+
 def test_a_hidden_distribution_is_not_installed(monkeypatch):
     monkeypatch.setattr(metadata.Distribution, "from_name", metadata.Distribution.from_name)
     child.hide("numpy")
