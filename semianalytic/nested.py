@@ -18,7 +18,7 @@ __all__ = ["is_alone", "levels", "lowest_point", "solve_on", "undeformed"]
 
 Array = NDArray[np.floating]
 
-STRIDE = 8**0.5  # of grids that only give the start: the iterations are as many as by halves
+STRIDE = 2.5  # of grids that only give the start: iterations on the next one are about as many as by halves
 HALVINGS = 6  # of steps to the lowest point between the patches, off by 1e-4 of the height over a patch
 QUICK = 60  # iterations, more than a contact takes that the patches resolve
 
@@ -36,7 +36,7 @@ def levels(
     while len(sizes) < kept:
         sizes.insert(0, odd(sizes[0] / 2))
     stride = 2.0 if indenter.shapes else STRIDE
-    while sizes[0] > 2 * COARSEST:
+    while sizes[0] > 3 * COARSEST:
         sizes.insert(0, odd(sizes[0] / stride))
     shapes: list[Profile | None] = [None] * len(sizes)
     for k, profile in enumerate(indenter.shapes[:kept]):

@@ -101,7 +101,8 @@ class Solution:
     def _of_level(cls, level: Level, body: Body, coarser: "Solution | None") -> "Solution":
         scalars, found = level.scalars, level.found
         grid = replace(level.grid, quarter=False)
-        found = replace(found, pressure=level.grid.whole(found.pressure), gap=np.empty((0, 0)))  # no gap
+        # the gap has served the iteration; kept, it would be as large as the pressure
+        found = replace(found, pressure=level.grid.whole(found.pressure), gap=np.empty((0, 0)))
         level = replace(level, grid=grid, found=found)
         beyond = max(int(np.ceil((2.05 * level.radius - grid.x[-1]) / grid.d)), 0)
         return cls(
