@@ -242,9 +242,9 @@ def prolong(pressure: Array, gap: Array, source: Grid, target: Grid, window: Win
     return level.T
 
 
-def touches_rim(pressure: Array, quarter: bool = False) -> bool:
-    """Whether a patch of the outermost ring is loaded; two sides of a ``quarter`` belong to it."""
-    rim = (pressure[-1, :], pressure[:, -1], pressure[0, :], pressure[:, 0])
+def touches_rim(pressure: Array, quarter: bool = False, rings: int = 1) -> bool:
+    """Whether a patch of the outermost ``rings`` is loaded; two sides of a ``quarter`` belong to them."""
+    rim = (pressure[-rings:, :], pressure[:, -rings:], pressure[:rings, :], pressure[:, :rings])
     return any(bool(namespace(pressure).any(side > 0)) for side in rim[: 2 if quarter else 4])
 
 

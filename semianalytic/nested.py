@@ -18,7 +18,7 @@ __all__ = ["is_alone", "levels", "lowest_point", "solve_on", "undeformed"]
 
 Array = NDArray[np.floating]
 
-STRIDE = 2.5  # of grids that only give the start: iterations on the next one are about as many as by halves
+STRIDE = 2.8  # of grids that only give the start: iterations on the next one are about as many as by halves
 HALVINGS = 6  # of steps to the lowest point between the patches, off by 1e-4 of the height over a patch
 QUICK = 60  # iterations, more than a contact takes that the patches resolve
 
@@ -36,12 +36,12 @@ def levels(
     while len(sizes) < kept:
         sizes.insert(0, odd(sizes[0] / 2))
     stride = 2.0 if indenter.shapes else STRIDE
-    while sizes[0] > 3 * COARSEST:
+    while sizes[0] > 2 * COARSEST:
         sizes.insert(0, odd(sizes[0] / stride))
     shapes: list[Profile | None] = [None] * len(sizes)
     for k, profile in enumerate(indenter.shapes[:kept]):
         shapes[-1 - k] = profile
-    starter = replace(numerics, tolerance=max(1e-4, numerics.tolerance))
+    starter = replace(numerics, tolerance=max(3e-4, numerics.tolerance))
     if indenter.shapes:
         starter = replace(starter, max_iterations=min(QUICK, numerics.max_iterations))
     found: list[Level] = []
@@ -150,7 +150,8 @@ def is_alone(level: Level, lowest: Array, window: Window, body: Body, numerics: 
     margin changes it by 1e-3; ``lowest`` is the smallest gap on each.
     """
     grid, p = level.grid, level.found.pressure
-    if touches_rim(p[window.slices], grid.quarter):
+    # two rings: a smooth edge lies up to a patch beyond the last loaded one
+    if touches_rim(p[window.slices], grid.quarter, rings=2):
         return False
     merged = grid.merged(p)
     n = 2 * len(merged) - grid.n % 2 if grid.quarter else merged.shape[0]

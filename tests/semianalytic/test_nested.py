@@ -77,14 +77,16 @@ def test_lowest_point_between_the_patches_is_found(n):
 
 
 def test_contact_that_reaches_the_rim_of_its_window_is_solved_on_the_whole_square(monkeypatch):
+    """Also where the window ends with the last loaded patch, and its edge lies just beyond."""
     expected, window_around = indent(ellipsoid), nested.window_around
+    for cut in (9, 10, 11, 20):
 
-    def small(*given):
-        window = window_around(*given)
-        return replace(window, i1=window.i1 - 10)
+        def small(*given, cut=cut):
+            window = window_around(*given)
+            return replace(window, i1=window.i1 - cut)
 
-    monkeypatch.setattr(nested, "window_around", small)
-    assert indent(ellipsoid).approach == pytest.approx(expected.approach, rel=1e-7)
+        monkeypatch.setattr(nested, "window_around", small)
+        assert indent(ellipsoid).approach == pytest.approx(expected.approach, rel=1e-7)
 
 
 def test_edge_that_is_lost_in_the_second_round_is_left_to_the_patches(monkeypatch):
