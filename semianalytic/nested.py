@@ -45,7 +45,7 @@ def levels(
     if indenter.shapes:
         starter = replace(starter, max_iterations=min(QUICK, numerics.max_iterations))
     found: list[Level] = []
-    rough = replace(indenter, edge_correction=False)
+    rough = replace(indenter, edge_correction=False, between=None)
     for k, (n, shape) in enumerate(zip(sizes, shapes, strict=True)):
         used, pressed = (numerics, indenter) if k >= len(sizes) - kept else (starter, rough)
         before, grid = found[-1] if found else None, Grid(n, 2 * half_width / n, indenter.round)
@@ -104,7 +104,8 @@ def undeformed(grid: Grid, indenter: Indenter) -> tuple[Grid, Array]:
     if not isinstance(gap, np.ndarray):
         return grid, gap
     c = (grid.n + 1) // 2
-    if np.array_equal(gap[:c], gap[: -c - 1 : -1]) and np.array_equal(gap[:, :c], gap[:, : -c - 1 : -1]):
+    rows = gap[:c]
+    if np.array_equal(rows, gap[: -c - 1 : -1]) and np.array_equal(rows[:, :c], rows[:, : -c - 1 : -1]):
         grid = replace(grid, quarter=True)
         gap = grid.held(gap).copy()
     return grid, gap
