@@ -2,7 +2,9 @@
 
 It runs as a file, with the packages of any commit on PYTHONPATH, and calls their public functions alone.
 Each turn is a problem of its own, moduli and depths changed by parts in a thousand, so that no cache of one
-turn serves the next. What a turn prepares is not timed. Turn 0 loads what all turns share.
+turn serves the next. What a turn prepares is not timed. Turn 0 loads what all turns share. A sphere, of which
+no solver keeps anything, is solved again and again for ``SHORT`` seconds, and the quickest counts: the first
+few hundredths of a second after another process measure the caches of the machine.
 
 Input: a number of a turn, or "judge", in a line. Output: an object of JSON in a line.
 """
@@ -25,6 +27,7 @@ Prepared = Callable[[], Any]  # what is timed
 
 RADIUS, LOAD, FRICTION = 10e-3, 20.0, 0.3  # m, N
 DEPTHS = 200  # points of the line across depths
+SHORT = 0.25  # s
 JUDGED = 4096  # patches a side of the largest sphere that the judge has memory for
 
 
@@ -126,6 +129,19 @@ def processor_seconds() -> float:
     return sum(usage.ru_utime + usage.ru_stime for usage in usages)
 
 
+def timed(prepared: Prepared, enough: float) -> tuple[Any, dict[str, float]]:
+    """The last result, and the seconds of the quickest of the calls begun within ``enough`` seconds."""
+    found: list[dict[str, float]] = []
+    first = time.perf_counter()
+    while not found or time.perf_counter() - first < enough:
+        result = None  # the memory of the last one
+        processor, began = processor_seconds(), time.perf_counter()
+        result = prepared()
+        seconds = time.perf_counter() - began
+        found.append({"seconds": seconds, "processor": processor_seconds() - processor})
+    return result, min(found, key=lambda one: one["seconds"])
+
+
 def main() -> None:
     """Answer the lines of standard input; the arguments are the name of a function above and its own."""
     # What a library prints goes to standard error.
@@ -137,10 +153,7 @@ def main() -> None:
         if line.strip() == "judge":
             answer = {"residual": judge(result)}
         else:
-            prepared = work(int(line), *arguments)
-            processor, began = processor_seconds(), time.perf_counter()
-            result = prepared()
-            answer = {"seconds": time.perf_counter() - began, "processor": processor_seconds() - processor}
+            result, answer = timed(work(int(line), *arguments), SHORT if work is sphere else 0.0)
             answer["peak"] = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024.0  # bytes
         answers.write(json.dumps(answer) + "\n")
 

@@ -68,6 +68,21 @@ def test_the_default_run_is_that_of_its_commit_wherever_the_benchmark_is_started
     assert (tmp_path / "verification" / "log").read_text() == str(case)
 
 
+@pytest.mark.parametrize(("enough", "calls"), [(0.0, 1), (8.0, 3)])
+def test_the_quickest_of_the_calls_begun_in_a_short_time_counts(enough, calls, monkeypatch):
+    lasting, now = [5.0, 1.0, 7.0], [0.0]
+    results = iter(range(3))
+
+    def work():
+        now[0] += lasting[k := next(results)]
+        return k
+
+    monkeypatch.setattr(child.time, "perf_counter", lambda: now[0])
+    result, answer = child.timed(work, enough)
+    assert result == calls - 1
+    assert answer["seconds"] == min(lasting[:calls])
+
+
 def test_a_hidden_distribution_is_not_installed(monkeypatch):
     monkeypatch.setattr(metadata.Distribution, "from_name", metadata.Distribution.from_name)
     child.hide("numpy")
