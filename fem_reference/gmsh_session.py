@@ -5,9 +5,10 @@ module can be imported only where certain system libraries exist. All use of it 
 which admits one thread at a time and restores the models and options of the caller.
 """
 
+import signal
 import threading
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from types import ModuleType
 from typing import Any
 
@@ -51,6 +52,13 @@ def _load() -> ModuleType:
     return gmsh
 
 
+def _ignore_broken_pipes() -> None:
+    """As Python does: after gmsh a write to a closed pipe ends the process. In the main thread only."""
+    if hasattr(signal, "SIGPIPE") and signal.getsignal(signal.SIGPIPE) == signal.SIG_IGN:
+        with suppress(ValueError):
+            signal.signal(signal.SIGPIPE, signal.SIG_IGN)
+
+
 @contextmanager
 def session(name: str) -> Iterator[Any]:
     """A gmsh with one fresh model called ``name``, silent, with defaults of its own.
@@ -82,3 +90,4 @@ def session(name: str) -> Iterator[Any]:
                     gmsh.option.setNumber(option, value)
             else:
                 gmsh.finalize()
+                _ignore_broken_pipes()

@@ -118,6 +118,7 @@ def test_a_running_session_of_the_caller_survives():
         assert len(gmsh.model.getEntities(3)) == 1
     finally:
         gmsh.finalize()
+        signal.signal(signal.SIGPIPE, signal.SIG_IGN)  # as it was before gmsh
 
 
 def test_a_failing_mesh_leaves_nothing_behind():
@@ -219,3 +220,20 @@ def test_numpy_scalars_are_as_good_as_floats():
         "substrate": tuple(np.array([210e9, 0.3])),
     }
     assert solve(**scalars).peak_pressure == quick(7e-5).peak_pressure
+
+
+def test_a_write_to_a_closed_pipe_is_an_error_as_before():
+    program = """
+import os
+from fem_reference.gmsh_session import session
+with session("one"):
+    pass
+end, begin = os.pipe()
+os.close(end)
+try:
+    os.write(begin, b"x")
+except BrokenPipeError:
+    print("seen")
+"""
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stdout) == (0, "seen\n"), done.stderr
