@@ -5,10 +5,11 @@ module can be imported only where certain system libraries exist. All use of it 
 which admits one thread at a time and restores the models and options of the caller.
 """
 
+import ctypes
 import signal
 import threading
 from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from types import ModuleType
 from typing import Any
 
@@ -52,11 +53,21 @@ def _load() -> ModuleType:
     return gmsh
 
 
-def _ignore_broken_pipes() -> None:
-    """As Python does: after gmsh a write to a closed pipe ends the process. In the main thread only."""
-    if hasattr(signal, "SIGPIPE") and signal.getsignal(signal.SIGPIPE) == signal.SIG_IGN:
-        with suppress(ValueError):
-            signal.signal(signal.SIGPIPE, signal.SIG_IGN)
+def _start(gmsh: ModuleType) -> None:
+    """gmsh without signal handlers or configuration files, the answer to a closed pipe as it was before.
+
+    gmsh resets that to its default, by which a write to a closed pipe ends the process. It is put back by
+    the C library, since Python does so in the main thread alone.
+    """
+    pipe = getattr(signal, "SIGPIPE", None)
+    if pipe is None:
+        gmsh.initialize([], readConfigFiles=False, interruptible=False)
+        return
+    answer = ctypes.CDLL(None).signal
+    answer.argtypes, answer.restype = (ctypes.c_int, ctypes.c_void_p), ctypes.c_void_p
+    before = answer(pipe, int(signal.SIG_IGN))
+    gmsh.initialize([], readConfigFiles=False, interruptible=False)
+    answer(pipe, before)
 
 
 @contextmanager
@@ -72,7 +83,7 @@ def session(name: str) -> Iterator[Any]:
         gmsh = _load()
         running = bool(gmsh.isInitialized())
         if not running:
-            gmsh.initialize([], readConfigFiles=False, interruptible=False)
+            _start(gmsh)
         before = {option: gmsh.option.getNumber(option) for option in _OPTIONS}
         current = gmsh.model.getCurrent() if running else None
         try:
@@ -90,4 +101,3 @@ def session(name: str) -> Iterator[Any]:
                     gmsh.option.setNumber(option, value)
             else:
                 gmsh.finalize()
-                _ignore_broken_pipes()
