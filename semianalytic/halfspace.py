@@ -133,7 +133,7 @@ def surface_deflection(nx: int, ny: int, dx: float, dy: float, depth: float = 0.
             x = xp.arange(i, j, dtype=xp.float64) * dx
             left = max(first, i) if symmetric else first
             V[i:j, left:] = _potential_series(x[:, None], y[None, left:], depth, dx, dy)
-            if symmetric and i >= mx:
+            if symmetric and i >= mx:  # V(x, y) = V(y, x)
                 V[i:j, :i] = V[:i, i:j].T
     return V
 

@@ -77,8 +77,8 @@ class Level:
         if self.shape is not None:
             return 0.0
         share = 0.25 if self.edge is None else self.edge.misfit
-        whole, count = self.whole, namespace(self.found.pressure).count_nonzero
-        touching = whole.grid.ringed(whole.found.pressure > 0)
+        whole, count = self.grid.whole(self.found.pressure), namespace(self.found.pressure).count_nonzero
+        touching = replace(self.grid, quarter=False).ringed(whole > 0)
         edges = int(count(touching[1:, :] ^ touching[:-1, :])) + int(
             count(touching[:, 1:] ^ touching[:, :-1])
         )

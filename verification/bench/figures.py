@@ -59,8 +59,8 @@ class Figure:
 
     @property
     def missed(self) -> bool:
-        """Whether the median, to three digits as it is printed, is above what is asked."""
-        return self.asked is not None and float(f"{self.median:.3g}") > self.asked
+        """Whether the median is above what is asked."""
+        return self.asked is not None and self.median > self.asked
 
 
 @dataclass(frozen=True)

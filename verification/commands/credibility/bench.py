@@ -192,5 +192,4 @@ def _past(runs: Sequence[BenchRun]) -> Table:
 def _number(value: float | None, asked: float | None = None) -> str:
     if value is None:
         return "-"
-    shown = f"{value:.3g}"
-    return shown if asked is None or float(shown) <= asked else f"[red]{shown}[/]"
+    return f"{value:.3g}" if asked is None or value <= asked else f"[red]{value:.3g}[/]"
