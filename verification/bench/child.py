@@ -4,9 +4,11 @@ It runs as a file, with the packages of any commit on PYTHONPATH, and calls thei
 Each turn is a problem of its own, moduli and depths changed by parts in a thousand, so that no cache of one
 turn serves the next. What a turn prepares is not timed. Turn 0 loads what all turns share. A sphere, of which
 no solver keeps anything, is solved again and again for ``SHORT`` seconds, and the quickest counts: the first
-few hundredths of a second after another process measure the caches of the machine.
+few hundredths of a second after another process measure the caches of the machine. Works that may be equal,
+on one thread and on two, are told apart in one process: two processes differ by a hundredth of themselves.
 
-Input: a number of a turn, or "judge", in a line. Output: an object of JSON in a line.
+Input: a number of a turn, or "judge", in a line. Output: an object of JSON in a line; where a work measures
+a ratio itself, with that.
 """
 
 import json
@@ -20,6 +22,7 @@ from collections.abc import Callable
 from importlib import import_module
 from importlib.metadata import Distribution, PackageNotFoundError
 from pathlib import Path
+from statistics import median
 from types import ModuleType
 from typing import Any
 
@@ -28,6 +31,7 @@ Prepared = Callable[[], Any]  # what is timed
 RADIUS, LOAD, FRICTION = 10e-3, 20.0, 0.3  # m, N
 DEPTHS = 200  # points of the line across depths
 SHORT = 0.25  # s
+LONG = 10.0  # s, in which equal spheres of N = 512 differ by up to 0.5 %
 JUDGED = 4096  # patches a side of the largest sphere that the judge has memory for
 
 
@@ -106,6 +110,27 @@ def sphere(turn: int, solver: str, patches: int, threads: int) -> Prepared:
     return lambda: solved(patches if turn else 64, threads)
 
 
+def more_threads(turn: int, patches: int, few: int, many: int) -> Prepared:
+    """Seconds of ``contact`` on ``many`` threads over those on ``few``, the median of ``LONG`` seconds."""
+    solved = import_module("verification.bench.peers").SOLVERS["contact"]
+
+    def seconds(threads: int) -> float:
+        began = time.perf_counter()
+        solved(patches, threads)
+        return time.perf_counter() - began
+
+    def ratio() -> float:
+        found: list[float] = []
+        first = time.perf_counter()
+        while not found or (turn and time.perf_counter() - first < LONG):
+            # in this order what drifts changes both alike
+            a, b, c, d = (seconds(threads) for threads in (few, many, many, few))
+            found.append((b + c) / (a + d))
+        return median(found)
+
+    return ratio
+
+
 def library(turn: int, name: str, patches: int, threads: int) -> Prepared:
     """The sphere on arrays of a library; turn 0 is a small one, and one above ``JUDGED`` is not judged."""
     solved = import_module("verification.bench.peers").uneven
@@ -154,6 +179,8 @@ def main() -> None:
             answer = {"residual": judge(result)}
         else:
             result, answer = timed(work(int(line), *arguments), SHORT if work is sphere else 0.0)
+            if isinstance(result, float):
+                answer["ratio"] = result
             answer["peak"] = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024.0  # bytes
         answers.write(json.dumps(answer) + "\n")
 

@@ -45,12 +45,14 @@ class Times:
 
     growth : of the peak resident set by the first turn [bytes].
     residual : of the last result, by the judge; 0 where it has none to judge.
+    ratios : of a work that measures them itself.
     """
 
     seconds: tuple[float, ...]
     processor: tuple[float, ...]
     growth: float
     residual: float
+    ratios: tuple[float, ...] = ()
 
     def of(self, processor: bool) -> tuple[float, ...]:
         """Processor seconds or wall seconds."""
@@ -86,6 +88,7 @@ def in_turn(
             tuple(answer["processor"] for answer in timed),
             timed[0]["peak"] - first["peak"],
             residuals[name],
+            tuple(answer["ratio"] for answer in timed if "ratio" in answer),
         )
         for name, (first, *timed) in answers.items()
     }

@@ -29,15 +29,16 @@ def asked(found):
 
 def test_every_ratio_asked_is_measured():
     found = asked(planned(peers=("tamaas", "aspher"), fast=True))
-    limits = sorted(limit for (work, _, _), limit in found.items() if work != "sphere")
+    beside_others = ("sphere", "more_threads")
+    limits = sorted(limit for (work, _, _), limit in found.items() if work not in beside_others)
     assert limits == [0.3, 0.3, 0.3, 0.4, 0.45, 0.5, 0.6]
     beside = [over for (work, _, over) in found if work == "sphere"]
     assert {over: beside.count(over) for over in beside} == {
         "tamaas": 6,
         "aspher": 6,
         "convolution": 3,
-        "1 thread": 1,
     }
+    assert [limit for (work, _, _), limit in found.items() if work == "more_threads"] == [1.0, 1.0, 1.0]
 
 
 def test_default_run_is_that_of_the_contacts_that_both_commits_have(tmp_path):
@@ -56,12 +57,15 @@ def test_default_run_is_that_of_the_contacts_that_both_commits_have(tmp_path):
 
 def test_over_another_commit_nothing_is_asked():
     assert {over for _, _, over in asked(planned("1234567"))} == {"convolution", "1 thread"}
-    assert all(work == "sphere" for work, _, _ in asked(planned("dfc1d79+")))
+    assert {work for work, _, _ in asked(planned("dfc1d79+"))} == {"sphere", "more_threads"}
 
 
 def test_without_another_commit_the_contact_remains():
     found = groups(("solve", "elements", "contact"), other=None, sizes=ASKED_SIZES)
-    assert {work.name for group in found for work in group.works.values()} == {"sphere"}
+    assert {work.name for group in found for work in group.works.values()} == {
+        "sphere",
+        "more_threads",
+    }
 
 
 def test_both_commits_do_the_same_work(tmp_path):
@@ -88,6 +92,21 @@ def test_ratios_are_taken_turn_by_turn_of_the_clock_of_the_group(monkeypatch):
     assert figure.missed
     assert not Figure(ours, REFERENCE, 0.5, (0.5,)).missed
     assert not Figure(ours, "1234567", None, (5.0,)).missed
+
+
+def test_of_works_that_may_be_equal_a_cost_is_missed_where_every_turn_shows_it(monkeypatch):
+    (group,) = groups(("contact",), other=None, sizes=(512,))
+
+    def missed(*ratios):
+        times = {name: Times((1.0,), (1.0,), 0.0, 0.0) for name in group.works}
+        times["N = 512, 2 threads, in one process"] = Times((1.0,), (1.0,), 0.0, 0.0, ratios)
+        monkeypatch.setattr(figures, "in_turn", lambda works, rounds, progress: times)
+        (figure,) = (one for one in measure(group, 1) if one.over == "1 thread")
+        assert figure.ratios == ratios
+        return figure.missed
+
+    assert missed(1.01, 1.02, 1.001)
+    assert not missed(1.01, 1.02, 0.999)
 
 
 def test_peak_memory_is_counted_and_a_solver_that_misses_the_judge_is_a_figure_missed(monkeypatch):

@@ -2,6 +2,7 @@
 
 import subprocess
 from importlib import metadata
+from itertools import count
 
 import numpy as np
 import pytest
@@ -138,6 +139,22 @@ def test_a_commit_is_checked_out_aside_and_a_folder_is_used_as_it_is(commit, mon
         assert (found, folder) == (name, commit.resolve())
     with pytest.raises(ValueError, match="neither a checkout nor a commit"), places.checkout("--nothing"):
         pass
+
+
+def test_a_second_thread_is_measured_in_one_process(monkeypatch):
+    """By a solver that takes half as long again on two threads, and longer each time."""
+    clock, calls = [0.0], count()
+
+    def solved(patches, threads):
+        clock[0] += {1: 1.0, 2: 1.5}[threads] * (1 + 0.01 * next(calls))
+
+    monkeypatch.setitem(SOLVERS, "contact", solved)
+    monkeypatch.setattr(child.time, "perf_counter", lambda: clock[0])
+    assert child.more_threads(1, 512, 1, 2)() == pytest.approx(1.5)
+    taken = clock[0]
+    assert taken > child.LONG
+    child.more_threads(0, 512, 1, 2)()
+    assert clock[0] - taken < child.LONG
 
 
 def test_judge_accepts_hertz_roughly_and_no_guess():
