@@ -3,6 +3,7 @@
 import math
 from collections.abc import Sequence
 from pathlib import Path
+from textwrap import wrap
 from typing import Annotated, Any
 
 from cyclopts import Parameter
@@ -20,6 +21,7 @@ from verification.commands.common.solving import progress_bar, require_gmsh
 from verification.commands.common.terminal import print_json, print_out, print_warnings
 from verification.credibility.model.error import ModelError, model_error
 from verification.desk.answer import Answer, Difference, answer, differences
+from verification.desk.summary import summary
 from verification.desk.wording import case_text
 from verification.judging.outcome import Outcome
 from verification.problem.contact import BALL, FLAT
@@ -29,6 +31,7 @@ from verification.running.result import describe, message_of
 from verification.sources.registry import METHODS
 
 METHOD, SECOND = METHODS
+COLUMNS = 100  # of the summary
 DIGITS = 5  # of a value, unless its uncertainty ends before
 
 
@@ -211,6 +214,8 @@ def _print(
     print_out(
         f"[bold]{escape(case.title)}[/]",
         *(escape(line) for line in _given(case)),
+        "",
+        *map(escape, wrap(summary(case.problem, first), COLUMNS)),
         "",
         numbers,
         "",

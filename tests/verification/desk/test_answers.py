@@ -9,6 +9,7 @@ from scipy.optimize import minimize_scalar
 from verification.cases.graded import Course, moduli
 from verification.desk.answer import answer, differences
 from verification.desk.stresses import first_principal
+from verification.desk.summary import summary
 from verification.problem.contact import CoatedContact
 from verification.problem.quantity import von_mises
 from verification.sources.registry import EXACT, METHODS, solvers
@@ -140,6 +141,20 @@ def test_courses_pass_through_the_largest_tensions(solved):
         largest = at(found, "sigma_xx", course.where).value
         assert course.stress[0].max() == pytest.approx(largest, rel=0.03)
         assert course.stress[0].max() <= largest * (1 + 1e-5)
+
+
+def test_summary_names_the_layer_the_place_and_the_side_of_the_largest_tension(solved):
+    bare, sliding, elastic, layered = (summary(problem, found) for problem, found in solved.items())
+    assert bare.startswith("Largest tension 170 MPa in the substrate, at its surface, 1.00 a from the axis; ")
+    assert bare.endswith("; von Mises stress up to 789 MPa in the substrate.")
+    assert "in the substrate, at its surface, 1.00 a behind the axis;" in sliding
+    assert "of the ball, at its surface, 1.00 a ahead of the axis;" in elastic
+    base = at(solved[LAYERED], "sigma_xx", "base of coating 1").value
+    shear = at(solved[LAYERED], "|sigma_xz|", "interface 2").value
+    assert f"; {base / 1e6:.0f} MPa at the base of coating 1; interface 2 sheared by" in layered
+    assert f"sheared by {shear / 1e6:.0f} MPa;" in layered
+    squeezed = replace(solved[BARE], extremes=tuple(replace(e, value=0.0) for e in solved[BARE].extremes))
+    assert summary(BARE, squeezed).startswith("No tension; ")
 
 
 def test_differences_are_by_key_with_both_uncertainties(solved):
