@@ -29,7 +29,7 @@ __all__ = [
     "measure",
 ]
 
-REFERENCE = "dfc1d79"  # the commit of which the asked ratios speak
+REFERENCE = "dfc1d79"  # the commit over which ratios are asked
 ROOMS = "cf67b33"  # that of the default run: its rooms are today's, its methods those of REFERENCE
 Part = Literal["solve", "stress", "elements", "contact", "gpu", "default-run"]
 PEERS = ("tamaas", "aspher")
@@ -131,7 +131,7 @@ def groups(
         found += [_on_device(patches, library) for patches in sizes or DEVICE_SIZES]
     if other is not None and "default-run" in parts:
         work = Work("default_run", _shared_cases(other.root))
-        found.append(_over(other, {"default run": work}, 0.6, speaks_of=ROOMS))
+        found.append(_over(other, {"default run": work}, 0.6, asked_over=ROOMS))
     return found
 
 
@@ -144,13 +144,13 @@ def _shared_cases(root: Path) -> tuple[str, ...]:
     return tuple(sorted(ours & theirs))
 
 
-def _over(other: Other, works: dict[str, Work], *asked: float, speaks_of: str = REFERENCE) -> Group:
+def _over(other: Other, works: dict[str, Work], *asked: float, asked_over: str = REFERENCE) -> Group:
     """The ``works`` over the first of them as the other commit does it.
 
-    asked : of each, over the commit that it ``speaks_of`` alone.
+    asked : of each, over the commit ``asked_over`` alone.
     """
     first = next(iter(works.values()))
-    limits = asked if other.name == speaks_of else ()
+    limits = asked if other.name == asked_over else ()
     ratios = tuple(
         Ratio(name, other.name, other.name, limit) for name, limit in zip_longest(works, limits[: len(works)])
     )

@@ -71,17 +71,13 @@ class Program:
         """The answer to ``question``. Raises ProtocolError with what the program did instead."""
         begin = time.monotonic()
         line = question.model_dump_json().encode() + b"\n"
-        # In a thread, since a program may write before it reads all of the question.
-        threading.Thread(target=self._write, args=(line,), daemon=True).start()
+        assert self.process.stdin is not None
+        # In a thread, since a program may write before it reads all of the question; to a descriptor of its
+        # own, since ``end`` may close the other one meanwhile.
+        pipe = os.dup(self.process.stdin.fileno())
+        threading.Thread(target=_write, args=(pipe, line), daemon=True).start()
         content = self._answer_line(begin + time_limit, time_limit)
         return Solved(parse_answer(content, question), time.monotonic() - begin, self._memory())
-
-    def _write(self, line: bytes) -> None:
-        assert self.process.stdin is not None
-        rest = memoryview(line)
-        with suppress(OSError, ValueError):  # it has ended, as its end of file will tell
-            while rest:
-                rest = rest[os.write(self.process.stdin.fileno(), rest) :]
 
     def _answer_line(self, until: float, time_limit: float) -> bytes:
         """The next line that begins with the token, without it; what lies before is dropped as it comes."""
@@ -141,6 +137,15 @@ def command_of(guest: Guest) -> tuple[str, ...]:
     if guest.callable is not None:
         return (sys.executable, "-m", "verification.guests.doors.serve", guest.callable)
     return guest.command
+
+
+def _write(pipe: int, line: bytes) -> None:
+    """Write to a descriptor and close it."""
+    rest = memoryview(line)
+    with suppress(OSError):  # the program has ended, as its end of file will tell
+        while rest:
+            rest = rest[os.write(pipe, rest) :]
+    os.close(pipe)
 
 
 def _resolved(command: tuple[str, ...], folder: Path) -> list[str]:
