@@ -31,7 +31,7 @@ from verification.running.result import describe, message_of
 from verification.sources.registry import METHODS
 
 METHOD, SECOND = METHODS
-COLUMNS = 100  # of the summary
+COLUMNS = 79  # of the summary
 DIGITS = 5  # of a value, unless its uncertainty ends before
 
 
