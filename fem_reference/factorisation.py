@@ -1,8 +1,9 @@
 """Factorisation of a stiffness matrix: nested dissection, or Pardiso where the extra ``fast`` is installed.
 
 Pardiso is that of Intel's oneMKL, in the wheel ``mkl``: a supernodal Cholesky factorisation in an order of
-nested dissection by METIS, on one thread. It is given the pattern of the nodes, whose unknowns are dense
-blocks, so that the analysis of the pattern is as short for three fields as for one.
+minimum degree, on one thread. (Its nested dissection takes three times as long to find an order that saves a
+tenth of the factorisation.) It is given the pattern of the nodes, whose unknowns are dense blocks, so that
+its analysis is as short for three fields as for one.
 O. Schenk and K. Gaertner, Future Gener. Comput. Syst. 20 (2004) 475-487.
 """
 
@@ -22,6 +23,7 @@ __all__ = ["Elimination", "Factor", "elimination", "factorised", "pardiso_librar
 
 _SEQUENTIAL, _LP64 = 1, 0  # of oneMKL: no threads, integers of 32 bits
 _POSITIVE_DEFINITE = 2
+_MINIMUM_DEGREE = 0
 _ANALYSE, _FACTORISE, _SOLVE, _RELEASE = 11, 22, 33, -1
 _NOT_POSITIVE = -4
 
@@ -63,7 +65,9 @@ class BlockPattern:
         """Blocks (blocks, fields, fields), with the rows and columns ``held`` those of the unit matrix."""
         fields = held.size // self.nodes
         k = elements.shape[1] // fields
-        split = elements.reshape(-1, k, fields, k, fields).transpose(0, 1, 3, 2, 4)
+        # each row of a block moved as one item: half of the time of its numbers one by one
+        rows = elements.view(f"V{elements.itemsize * fields}").reshape(-1, k, fields, k)
+        split = np.ascontiguousarray(rows.swapaxes(2, 3)).view(elements.dtype)
         blocks = (self.sums @ split.reshape(-1, fields**2)).reshape(-1, fields, fields)
         kept = 1.0 - held.reshape(fields, self.nodes).T
         partly = kept.min(axis=1) == 0
@@ -86,8 +90,9 @@ class PardisoFactor:
         self._handle, self._settings = np.zeros(64, dtype=np.int64), np.zeros(64, dtype=np.int32)
         known = pattern.order is not None
         self._order = pattern.order if known else np.zeros(pattern.nodes, dtype=np.int32)
-        settings = {1: 1, 2: 2, 5: 1 if known else 2, 35: 1, 37: self._fields}
-        for number, value in settings.items():  # as numbered in oneMKL's manual: iparm(1), ...
+        # as numbered in oneMKL's manual, iparm(1), ...: 2 kind of order, 5 whether it is given or returned
+        settings = {1: 1, 2: _MINIMUM_DEGREE, 5: 1 if known else 2, 35: 1, 37: self._fields}
+        for number, value in settings.items():
             self._settings[number - 1] = value
         weakref.finalize(self, _call, library, self._handle, self._settings, _RELEASE, pattern.nodes)
         self._run(_ANALYSE)
