@@ -1,10 +1,9 @@
 """DC-FFT against direct summation."""
 
-import ducc0
 import numpy as np
 import pytest
 
-from semianalytic import convolution, halved_convolution, indent
+from semianalytic import convolution, halved_convolution
 
 RNG = np.random.default_rng(7)
 
@@ -67,40 +66,6 @@ def test_a_second_thread_changes_no_more_than_rounding():
     for build in (convolution.even_convolution, convolution.circulant_inverse):
         one, two = build(kernel, threads=1)(p), build(kernel, threads=2)(p)
         np.testing.assert_allclose(two, one, rtol=0, atol=1e-14 * np.abs(one).max())
-
-
-def test_a_second_thread_is_not_used_where_it_costs_time(monkeypatch):
-    """Of a contact on 512 patches a side no transform is large enough; of 2048 some are."""
-    used = set()
-    for name in ("dct", "r2c", "c2c", "c2r"):
-        transform = getattr(ducc0.fft, name)
-
-        def counted(*arrays, nthreads, transform=transform, **options):
-            used.add(nthreads)
-            return transform(*arrays, nthreads=nthreads, **options)
-
-        monkeypatch.setattr(ducc0.fft, name, counted)
-
-    def pressure(patches, threads):
-        used.clear()
-        return indent(
-            profile=lambda x, y: (x**2 + y**2) / 2,
-            half_width=2.0,
-            load=4 / 3,
-            coatings=(),
-            substrate=(1.0, 0.0),
-            patches=patches,
-            tolerance=1e-6,
-            edge_correction=False,
-            estimate_uncertainty=False,
-            threads=threads,
-        ).patch_pressure
-
-    two = pressure(512, 2)
-    assert used == {1}
-    np.testing.assert_array_equal(two, pressure(512, 1))
-    pressure(2048, 2)
-    assert used == {1, 2}
 
 
 def test_strips_of_columns_and_borrowed_memory_change_no_digit(monkeypatch):

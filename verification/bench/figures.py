@@ -74,7 +74,6 @@ class Ratio:
     to: str | None
     over: str
     asked: float | None = None
-    may_be_equal: bool = False
 
 
 @dataclass(frozen=True)
@@ -179,7 +178,7 @@ def _contact(patches: int, threads: Sequence[int], peers: Sequence[str]) -> Grou
             works[itself] = Work("more_threads", (patches, threads[0], count), threads=max(threads))
             asked = 1.0 if (threads[0], count) == (1, 2) else None
             fewer = names[threads[0]].partition(", ")[2]
-            ratios.append(Ratio(itself, None, fewer, asked, may_be_equal=True))
+            ratios.append(Ratio(itself, None, fewer, asked))
     return Group(works, tuple(ratios), processor=False)
 
 
@@ -206,7 +205,7 @@ def measure(group: Group, rounds: int, progress: Callable[[str], None] = lambda 
         if ratio.to is not None:
             seconds = (times[name].of(group.processor) for name in (ratio.work, ratio.to))
             values = tuple(one / other for one, other in zip(*seconds, strict=True))
-        found.append(Figure(ratio.work, ratio.over, ratio.asked, values, ratio.may_be_equal))
+        found.append(Figure(ratio.work, ratio.over, ratio.asked, values, may_be_equal=ratio.to is None))
     for name, taken in times.items():
         work = group.works[name]
         if name.startswith(CONTACT) and taken.growth:

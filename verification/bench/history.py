@@ -27,10 +27,15 @@ class BenchRun:
         name = self.commit or "-"
         return name[:7] + "+" * name.endswith("+")
 
-    def median(self, figure: Figure) -> float | None:
-        """The median of the figure of that name over the same; None where it was not measured."""
-        key = (figure.name, figure.over)
-        return next((one.median for one in self.figures if (one.name, one.over) == key), None)
+    def figure(self, like: Figure) -> Figure | None:
+        """The figure of that name over the same; None where it was not measured."""
+        key = (like.name, like.over)
+        return next((one for one in self.figures if (one.name, one.over) == key), None)
+
+    def median(self, like: Figure) -> float | None:
+        """The median of ``figure``."""
+        found = self.figure(like)
+        return None if found is None else found.median
 
 
 def read(path: Path) -> tuple[BenchRun, ...]:

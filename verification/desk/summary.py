@@ -1,7 +1,5 @@
 """The answer to one problem in one sentence: largest tension, shear of an interface, von Mises stress."""
 
-import math
-
 import numpy as np
 
 from verification.desk.answer import Answer
@@ -19,25 +17,25 @@ def summary(problem: CoatedContact, found: Answer) -> str:
     The tension is the largest sigma_1 of all layers; that of a coating comes with the largest sigma_xx at the
     base of a coating, which cracks from there too.
     """
+
+    def largest(quantity: str, where: str = "") -> Extreme | None:
+        those = (at for at in found.extremes if at.quantity == quantity and at.where.startswith(where))
+        return max(those, key=lambda at: at.value, default=None)
+
     a = found.numbers["contact_radius"][0]
-    tension = _largest(found, "sigma_1")
+    tension, base = largest("sigma_1"), largest("sigma_xx", "base of")
+    shear, von_mises = largest("|sigma_xz|"), largest("von_mises")
     parts = ["No tension"]
-    if tension.value > 0:
-        parts = [f"Largest tension {_mpa(tension)} in {_layer(tension)}, {_place(tension, a, problem)}"]
-    bases = [at for at in found.extremes if at.where.startswith("base of") and at.value > 0]
-    if bases:
-        base = max(bases, key=lambda at: at.value)
+    if tension and tension.value > 0:
+        place = _place(tension, a, sliding=problem.friction > 0)
+        parts = [f"Largest tension {_mpa(tension)} in {_layer(tension)}, {place}"]
+    if base and base.value > 0:
         parts.append(f"{_mpa(base)} at the {_layer(base)}")
-    if problem.coatings or (problem.ball and problem.ball[2]):
-        shear = _largest(found, "|sigma_xz|")
+    if shear:
         parts.append(f"{_layer(shear)} sheared by {_mpa(shear)}")
-    von_mises = _largest(found, "von_mises")
-    parts.append(f"von Mises stress up to {_mpa(von_mises)} in {_layer(von_mises)}")
+    if von_mises:
+        parts.append(f"von Mises stress up to {_mpa(von_mises)} in {_layer(von_mises)}")
     return f"{'; '.join(parts)}."
-
-
-def _largest(found: Answer, quantity: str) -> Extreme:
-    return max((at for at in found.extremes if at.quantity == quantity), key=lambda at: at.value)
 
 
 def _mpa(at: Extreme) -> str:
@@ -45,15 +43,13 @@ def _mpa(at: Extreme) -> str:
 
 
 def _layer(at: Extreme) -> str:
-    name = at.where if at.where.startswith(("base", "interface")) else f"the {at.where}"
-    return name.replace("the coating", "coating") + ("" if at.body == FLAT else f" of the {at.body}")
+    name = "the substrate" if at.where == "substrate" else at.where
+    return name if at.body == FLAT else f"{name} of the {at.body}"
 
 
-def _place(at: Extreme, a: float, problem: CoatedContact) -> str:
+def _place(at: Extreme, a: float, *, sliding: bool) -> str:
     depth = "at its surface" if at.z == 0 else f"at z = {at.z * 1e6:.3g} um"
-    if math.isnan(at.x) or abs(at.x) < ON_AXIS * a:
+    if abs(at.x) < ON_AXIS * a:
         return f"{depth} on the axis"
-    distance = f"{abs(at.x) / a:.2f} a"
-    if problem.friction == 0:
-        return f"{depth}, {distance} from the axis"
-    return f"{depth}, {distance} {'behind' if at.x < 0 else 'ahead of'} the axis"
+    side = ("behind" if at.x < 0 else "ahead of") if sliding else "from"
+    return f"{depth}, {abs(at.x) / a:.2f} a {side} the axis"

@@ -4,6 +4,7 @@ import subprocess
 from importlib import metadata
 from itertools import count
 
+import ducc0
 import numpy as np
 import pytest
 
@@ -155,6 +156,25 @@ def test_a_second_thread_is_measured_in_one_process(monkeypatch):
     assert taken > child.LONG
     child.more_threads(0, 512, 1, 2)()
     assert clock[0] - taken < child.LONG
+
+
+def test_a_second_thread_is_not_used_where_it_costs_time(monkeypatch):
+    """Of a contact on 512 patches a side no transform is large enough; of 2048 some are."""
+    used = set()
+    for name in ("dct", "r2c", "c2c", "c2r"):
+        transform = getattr(ducc0.fft, name)
+
+        def counted(*arrays, nthreads, transform=transform, **options):
+            used.add(nthreads)
+            return transform(*arrays, nthreads=nthreads, **options)
+
+        monkeypatch.setattr(ducc0.fft, name, counted)
+
+    two = SOLVERS["contact"](512, 2)
+    assert used == {1}
+    np.testing.assert_array_equal(two, SOLVERS["contact"](512, 1))
+    SOLVERS["contact"](2048, 2)
+    assert used == {1, 2}
 
 
 def test_judge_accepts_hertz_roughly_and_no_guess():

@@ -150,7 +150,7 @@ def _table(figures: Iterable[Figure]) -> Table:
         table.add_row(
             escape(figure.name),
             _number(figure.asked),
-            _number(figure.median, figure.asked),
+            _median(figure),
             *(_number(value) for value in (min(figure.ratios), max(figure.ratios))),
             str(len(figure.ratios)),
             "[red]missed[/]" if figure.missed else "",
@@ -184,12 +184,15 @@ def _past(runs: Sequence[BenchRun]) -> Table:
     table = named_table("median ratio", "at most", *map(escape, heads))
     latest = {(figure.name, figure.over): figure for run in runs for figure in run.figures}
     for figure in _by_over(table, latest.values()):
-        medians = [_number(run.median(figure), figure.asked) for run in runs]
+        medians = [_median(run.figure(figure)) for run in runs]
         table.add_row(escape(figure.name), _number(figure.asked), *medians)
     return table
 
 
-def _number(value: float | None, asked: float | None = None) -> str:
-    if value is None:
-        return "-"
-    return f"{value:.3g}" if asked is None or value <= asked else f"[red]{value:.3g}[/]"
+def _median(figure: Figure | None) -> str:
+    shown = _number(None if figure is None else figure.median)
+    return f"[red]{shown}[/]" if figure is not None and figure.missed else shown
+
+
+def _number(value: float | None) -> str:
+    return "-" if value is None else f"{value:.3g}"
