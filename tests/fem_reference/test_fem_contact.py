@@ -98,6 +98,8 @@ def test_equal_moduli_give_hertz():
     assert s.contact_radius == pytest.approx(A_H, rel=1e-6)
     assert s.peak_pressure == pytest.approx(P_H, rel=1e-5)
     assert s.approach == pytest.approx(A_H**2 / R, rel=1e-6, abs=0)
+    # d W / d approach is that of a flat punch, Johnson (1985) section 3.4
+    assert s.stiffness == pytest.approx(2 * E_STAR * A_H, rel=1e-6, abs=0)
     assert s.units.length == pytest.approx(A_H, rel=1e-14, abs=0)
     z = np.linspace(0, 3, 61) * A_H
     t = z / A_H

@@ -8,9 +8,10 @@ import pytest
 
 from semianalytic import arrays, convolution, halved_convolution, level, smooth_edge
 from semianalytic.collocation import contact
+from semianalytic.contact import Contact
 from semianalytic.grid import Grid, Window
 from semianalytic.inputs import Body, Numerics
-from semianalytic.level import Indenter, LevelProblem
+from semianalytic.level import Indenter, Level, LevelProblem
 from semianalytic.nested import levels, solve_on
 
 
@@ -27,6 +28,15 @@ def test_noise_bounds_the_pressure_of_a_checkerboard():
     noise = problem.solve(0.0, 0.0).noise
     # patches of constant pressure also hold harmonics of it: a third more at their centres
     assert p <= noise < 1.5 * p
+
+
+@pytest.mark.parametrize("quarter", [False, True])
+def test_staircase_of_a_disc_is_a_quarter_of_a_patch_of_its_radius(quarter):
+    grid = Grid(401, 1 / 150, quarter)
+    disc = Contact.of_load(np.where(grid.radius < 1, 1.0, 0.0))
+    found = Level(grid, disc, None, np.pi, 0)
+    assert found.radius == pytest.approx(1, rel=1e-3)
+    assert found.staircase == pytest.approx(grid.d / 4, rel=1e-2)
 
 
 @pytest.mark.parametrize(("E", "load", "approach"), [(0.2, 2e-3, None), (5.0, None, 0.05)])
