@@ -12,10 +12,10 @@ ON_AXIS = 5e-3  # of a place from the axis, over a
 
 
 def summary(problem: CoatedContact, found: Answer) -> str:
-    """Where both bodies are pulled, sheared and yield the most, three digits in MPa.
+    """Where the coatings are pulled and sheared and both bodies yield the most, three digits in MPa.
 
-    The tension is the largest sigma_1 of all layers; that of a coating comes with the largest sigma_xx at the
-    base of a coating, which cracks from there too.
+    The tension is the largest sigma_1 of the coatings, without any of both bodies; with it the largest sigma_xx
+    at the base of a coating, which cracks from there too.
     """
 
     def largest(quantity: str, where: str = "") -> Extreme | None:
@@ -23,12 +23,13 @@ def summary(problem: CoatedContact, found: Answer) -> str:
         return max(those, key=lambda at: at.value, default=None)
 
     a = found.numbers["contact_radius"][0]
-    tension, base = largest("sigma_1"), largest("sigma_xx", "base of")
+    coating, base = largest("sigma_1", "coating"), largest("sigma_xx", "base of")
+    tension, pulled = coating or largest("sigma_1"), "tension of a coating" if coating else "tension"
     shear, von_mises = largest("|sigma_xz|"), largest("von_mises")
-    parts = ["No tension"]
+    parts = [f"No {pulled}"]
     if tension and tension.value > 0:
         place = _place(tension, a, sliding=problem.friction > 0)
-        parts = [f"Largest tension {_mpa(tension)} in {_layer(tension)}, {place}"]
+        parts = [f"Largest {pulled} {_mpa(tension)} in {_layer(tension)}, {place}"]
     if base and base.value > 0:
         parts.append(f"{_mpa(base)} at the {_layer(base)}")
     if shear:

@@ -153,6 +153,8 @@ def test_summary_names_the_layer_the_place_and_the_side_of_the_largest_tension(s
     shear = at(solved[LAYERED], "|sigma_xz|", "interface 2").value
     assert f"; {base / 1e6:.0f} MPa at the base of coating 1; interface 2 sheared by" in layered
     assert f"sheared by {shear / 1e6:.0f} MPa;" in layered
+    assert layered.startswith("Largest tension of a coating ")
+    assert "in coating 1, at its surface, 1.00 a behind the axis;" in layered
     squeezed = replace(solved[BARE], extremes=tuple(replace(e, value=0.0) for e in solved[BARE].extremes))
     assert summary(BARE, squeezed).startswith("No tension; ")
 
