@@ -14,8 +14,8 @@ ON_AXIS = 5e-3  # of a place from the axis, over a
 def summary(problem: CoatedContact, found: Answer) -> str:
     """Where the coatings are pulled and sheared and both bodies yield the most, three digits in MPa.
 
-    The tension is the largest sigma_1 of the coatings, without any of both bodies; with it the largest sigma_xx
-    at the base of a coating, which cracks from there too.
+    The tension is the largest sigma_1 of the coatings, without any of both bodies; with it the largest
+    sigma_xx at the base of a coating, which cracks from there too.
     """
 
     def largest(quantity: str, where: str = "") -> Extreme | None:
