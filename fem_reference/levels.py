@@ -15,7 +15,15 @@ from .mesh import EDGE_SIZE, Grading, MeridianMesh, Meshes, meridian_mesh
 from .radius_search import find_contact_radius
 from .scaling import LayeredSolid, first_radius
 
-__all__ = ["COMPANION", "ContactLevels", "NotConverged", "companion_grading", "mesh_at", "solve_levels"]
+__all__ = [
+    "COMPANION",
+    "ContactLevels",
+    "NotConverged",
+    "companion_grading",
+    "final_grading",
+    "mesh_at",
+    "solve_levels",
+]
 
 _COARSE = 0.5
 _ROUGH_SOLVES = 8
@@ -71,7 +79,7 @@ def solve_levels(
     levels = [_Level("rough", Grading.of(0.6), 2, 0.02), _Level("coarse", Grading.of(_COARSE), order, 1e-3)]
     if with_companion:
         levels.append(_Level("companion", companion_grading(size), order, tolerance))
-    levels.append(_Level("final", Grading.of(size), order, tolerance))
+    levels.append(_Level("final", final_grading(size), order, tolerance))
     start = first_radius(solids, load), 3.0
     a, slope = start
     history: list[tuple[str, float, float]] = []
@@ -105,13 +113,18 @@ def solve_levels(
     return ContactLevels(found["final"], found.get("companion"), slope, tuple(history))
 
 
-def companion_grading(size: float) -> Grading:
-    """The companion of ``Grading.of(size)``: coarser everywhere, with larger triangles at the edge.
+def final_grading(size: float) -> Grading:
+    """Sizes of the final mesh: the largest leave room for a companion coarser by its factor."""
+    return Grading.of(size).limited(1 / COMPANION)
 
-    In thin coatings too: two meshes that are alike there would differ by less than their error.
+
+def companion_grading(size: float) -> Grading:
+    """The companion of ``final_grading(size)``: coarser everywhere, with larger triangles at the edge.
+
+    Far away and in thin coatings too: two meshes that are alike there differ by less than their error.
     """
-    final = Grading.of(size)
-    return Grading.of(COMPANION * size, edge_size=4 * EDGE_SIZE, rows=final.rows / COMPANION)
+    rows = final_grading(size).rows / COMPANION
+    return Grading.of(COMPANION * size, edge_size=4 * EDGE_SIZE, rows=rows).limited(1.0)
 
 
 def mesh_at(solid: LayeredSolid, grading: Grading, contact_radius: float) -> MeridianMesh:

