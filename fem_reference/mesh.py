@@ -30,8 +30,8 @@ _NEAR, _GROWTH = 3.0, 0.4
 # Films buried at many times their thickness are left to flat triangles: the least size for the sake of a
 # coating over the usual one.
 _LEAST_ROW = 0.25
-# Larger sizes at the edge, far away and in coatings save no time. A film of one row of triangles high as this
-# or more misses parts in 1e5 of its bending.
+# The largest sizes at the edge, far away and in coatings. A film of one row of triangles as high as the last
+# makes the contact too stiff by up to 1e-5.
 _LARGEST_AT_EDGE, _LARGEST_FAR, _LARGEST_IN_FILM = 0.6, 0.7, 0.47
 
 

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from fem_reference import solve
+from fem_reference.solver import QUALITY
 from verification.sources.references import integral_equation
 
 R, W, E = 10e-3, 20.0, 210e9
@@ -106,7 +107,7 @@ def test_fast_level_knows_how_far_it_is_off():
         assert np.all(error <= s.stress_uncertainty(*place) + exact.stress_uncertainty(*place) + 1e-12 * p_h)
 
 
-FAST = 0.27  # the size of quality "fast"
+FAST = QUALITY["fast"]
 HARDEST = [(4.0, 0.25, (0.45, 0.2)), (4.0, 1.2, (0.45, 0.2)), (0.5, 0.8, (0.25, 0.3))]
 COARSE = [
     pytest.param(*problem, size, marks=() if problem in HARDEST and size == FAST else pytest.mark.slow)

@@ -1,7 +1,7 @@
 """A solution as a plain object: pickled, sliding with another friction, the parts of its uncertainty."""
 
 import pickle
-from dataclasses import replace
+from dataclasses import asdict, replace
 from functools import lru_cache
 
 import numpy as np
@@ -10,7 +10,7 @@ import pytest
 from fem_reference import solve, solve_prescribed
 from fem_reference.contact import solve_at_radius
 from fem_reference.estimate import SAFETY, _samples, contact_estimates, estimates
-from fem_reference.levels import ContactLevels
+from fem_reference.levels import COMPANION, ContactLevels, companion_grading, final_grading
 from fem_reference.state import ElasticState
 
 R, W, E, NU = 10e-3, 20.0, 210e9, 0.3
@@ -215,6 +215,15 @@ def test_each_part_of_the_estimate_adds_to_that_of_stress_and_displacement():
     displaced, near = replace(found, radius_error=1e-2 * a)._displaced(at), np.hypot(r - a, z) < 0.3 * a
     assert np.all(displaced[:, ~near] == 0)
     assert np.all(displaced[0, near] > 0)
+
+
+@pytest.mark.parametrize("size", [0.08, 0.12, 0.18, 0.27, 0.5])
+def test_the_companion_is_coarser_everywhere_by_one_factor(size):
+    final, companion = asdict(final_grading(size)), asdict(companion_grading(size))
+    assert final.pop("rows") / companion.pop("rows") == pytest.approx(COMPANION)
+    assert companion.pop("edge_size") > final.pop("edge_size")
+    for name in final:
+        assert companion[name] / final[name] == pytest.approx(COMPANION), name
 
 
 def test_estimate_is_at_least_five_quarters_of_the_change_from_the_companion():
