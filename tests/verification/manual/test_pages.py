@@ -66,6 +66,7 @@ def test_every_block_of_the_manual_has_content():
 
 
 @pytest.mark.slow
+@pytest.mark.filterwarnings("ignore:.*Check CHANGES for Sphinx API modifications")  # of MyST by Sphinx
 def test_the_manual_builds_without_a_warning_and_loads_nothing(tmp_path):
     pytest.importorskip("sphinx")
     first = build.build(tmp_path / "manual")
