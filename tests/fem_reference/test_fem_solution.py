@@ -154,6 +154,21 @@ def test_a_companion_that_agrees_leaves_no_error_of_element_size():
         assert max(larger, up[1] - least) > 0
 
 
+def test_a_change_from_the_companion_counts_by_roaches_factor_more_on_coarse_triangles():
+    one, s = contact(), solved("sphere")
+    _, least = estimated(one)
+    # Roache (1994) eq. 9 for two meshes of ratio 1.4 and order 2, times 0.5 / 0.18 at size 0.5
+    factor, change = 3 / (1.4**2 - 1) * 0.5 / 0.18, 1e-3
+    softer, _ = estimated(replace(one, approach=one.approach * (1 + change)))
+    assert softer["approach", "element size"] == pytest.approx(factor * change * s.approach, rel=1e-6, abs=0)
+    # with the load the radius at one load: a ~ W^(1/3) here
+    larger, _ = estimated(replace(one, load=one.load * (1 + change) ** 3))
+    radius = factor * change / (1 + change) * s.contact_radius
+    assert larger["contact_radius", "element size"] == pytest.approx(radius, rel=1e-6, abs=0)
+    _, stiffer = estimated(replace(one, stiffness=one.stiffness * (1 + change)))
+    assert stiffer - least == pytest.approx(factor * change * s.stiffness, rel=1e-6, abs=0)
+
+
 def test_forces_out_of_balance_count_as_load():
     one, s = contact(), solved("sphere")
     (none, least), (some, stiffness) = estimated(one), estimated(one, residual=1e-3)
