@@ -62,10 +62,10 @@ class Grading:
     def of(cls, size: float, edge_size: float = EDGE_SIZE, rows: float = 2.8) -> "Grading":
         """All sizes from one; the fan at the edge and the far field need less fine triangles."""
         edge_rate, far = min(1.4 * size, _LARGEST_AT_EDGE), min(2.7 * size, _LARGEST_FAR)
-        return cls(size, edge_rate, edge_size, 0.65 * size, far, film_size=far, rows=rows)
+        return cls(size, edge_rate, edge_size, 0.65 * size, far_size=far, film_size=far, rows=rows)
 
     def limited(self, share: float) -> "Grading":
-        """With no size above this ``share`` of the largest ones of use at the edge, far away, in coatings."""
+        """With sizes at the edge, far away and in the coatings within this ``share`` of the largest ones."""
         return replace(
             self,
             edge_rate=min(self.edge_rate, _LARGEST_AT_EDGE * share),
