@@ -1,20 +1,18 @@
-"""Fields of a contact: exact for its edge profile, by patches for the remainder of p."""
+"""Fields of a contact: ring by ring under its smooth edge, by patches for the rest of the pressure."""
 
 from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from semianalytic import axisymmetric, subsurface
-from semianalytic.edge_profile import Prescribed, Profile
+from semianalytic import patch_field, subsurface
 from semianalytic.inputs import Body
 from semianalytic.level import Level
+from semianalytic.rings import rings_of
 
 __all__ = ["displacement", "displacement_plane", "stress", "stress_of_uncertain_edge", "stress_plane"]
 
 Array = NDArray[np.floating]
-
-FINE = 8  # patches; stresses of a prescribed pressure nearer to the surface use patches of half the side
 
 
 def stress(
@@ -25,97 +23,78 @@ def stress(
     z: ArrayLike,
     layer: int | None,
 ) -> Array:
-    """Stress tensor [Pa] of each level at points [m], broadcast; shape (len(levels), 3, 3) + points."""
-    x, y, z, where = np.broadcast_arrays(x, y, z, body.layer_of(z, layer))
-    result = np.zeros((len(levels), 3, 3, *z.shape))
-    kept: subsurface.Tables = {}  # a point force does not depend on the grid
-    for number, (out, level) in enumerate(zip(result, levels, strict=True)):
-        small = isinstance(level.shape, Profile)
-        if small and (number > 0 or not level.rest.any()):
-            continue  # the rest of a companion is the error of its profile, which the difference shall show
-        fine = (z < FINE * level.grid.d) & isinstance(level.shape, Prescribed)
-        for part, (patches, p) in ((fine, level.finer), (~fine, (level.grid, _on_patches(level)))):
-            if part.any():
-                points = x[part], y[part], z[part], where[part]
-                out[..., part] = subsurface.stress(
-                    *points,
-                    grid_x=patches.x,
-                    grid_y=patches.x,
-                    pressure=p,
-                    kept=kept,
-                    body=body,
-                    few_depths=small,
-                )
-    profiles = {i: level.shape for i, level in enumerate(levels) if isinstance(level.shape, Profile)}
-    if profiles:
-        everywhere = tuple(np.asarray(v).ravel() for v in (x, y, z, where))
-        exact = axisymmetric.stress(list(profiles.values()), body, *everywhere)
-        for i, components in zip(profiles, exact, strict=True):
-            result[i] += subsurface.tensor(components).reshape(3, 3, *z.shape)
-    return result
+    """Stress tensor [Pa] of each level at points [m], broadcast; shape (len(levels), 3, 3) + points.
+
+    Coarser levels are sampled at the same distance from their edge, over their radius.
+    """
+    points = _points(body, x, y, z, layer)
+    out = np.zeros((len(levels), 6, points[0].size))
+    of_rings: subsurface.Tables = {}  # a point force does not depend on the grid
+    of_patches: patch_field.Tables = {}
+    for number, (total, level) in enumerate(zip(out, levels, strict=True)):
+        at = _scaled(points, level, levels[0])
+        smooth = level.smooth(number)
+        if smooth is not None:
+            total += subsurface.stress(*at, pressure=smooth, body=body, kept=of_rings)
+        rough = level.mean if smooth is None else level.rest
+        if rough is not None:
+            few = smooth is not None
+            total += patch_field.stress(*at, grid_x=level.nodes, pressure=level.grid.whole(rough), body=body, kept=of_patches, few_depths=few)
+    shape = np.broadcast_shapes(*(np.shape(v) for v in (x, y, z)))
+    return np.array([patch_field.tensor(one) for one in out]).reshape(len(levels), 3, 3, *shape)
 
 
 def stress_of_uncertain_edge(
-    level: Level, body: Body, shift: float, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None
+    level: Level, body: Body, shift: float, x: Array, y: Array, z: Array, layer: int | None
 ) -> Array:
-    """Largest change of a stress [Pa] when the edge profile widens or narrows by ``shift`` [m].
+    """Largest change of a stress [Pa] when a smooth edge widens or narrows by ``shift`` [m], (n,)."""
+    points, kept = _points(body, x, y, z, layer), {}
+    assert level.shape is not None
+    moved = [rings_of(level.shape.widened(s)) for s in (0.0, -shift, shift)]
+    here, *others = (subsurface.stress(*points, pressure=one, body=body, kept=kept) for one in moved)
+    return np.max([np.abs(other - here).max(axis=0) for other in others], axis=0)
 
-    Returns the shape of the points.
-    """
-    x, y, z, where = np.broadcast_arrays(x, y, z, body.layer_of(z, layer))
-    shape = level.shape
-    assert isinstance(shape, Profile)
-    points = tuple(np.asarray(v).ravel() for v in (x, y, z, where))
-    moved = [Profile(shape.radius + s, shape.coefficients) for s in (0.0, -shift, shift)]
-    here, *others = axisymmetric.stress(moved, body, *points)
-    return np.max([np.abs(other - here).max(axis=0) for other in others], axis=0).reshape(z.shape)
+
+def displacement(levels: Sequence[Level], body: Body, x: ArrayLike, y: ArrayLike, z: ArrayLike) -> Array:
+    """Displacement [m] of each level at points [m], broadcast; shape (len(levels), 3) + points."""
+    points = _points(body, x, y, z, None)
+    out = np.zeros((len(levels), 3, points[0].size))
+    kept: subsurface.Tables = {}
+    for number, (total, level) in enumerate(zip(out, levels, strict=True)):
+        smooth = level.smooth(number)
+        if smooth is not None:
+            total += subsurface.displacement(*points, pressure=smooth, body=body, kept=kept)
+        rough = level.mean if smooth is None else level.rest
+        if rough is not None:
+            total += patch_field.displacement(*points, grid_x=level.nodes, pressure=level.grid.whole(rough), body=body)
+    return out.reshape(len(levels), 3, *np.broadcast_shapes(*(np.shape(v) for v in (x, y, z))))
 
 
 def stress_plane(level: Level, body: Body, z: float, layer: int | None) -> Array:
     """Stress tensor [Pa] below every patch centre at depth z [m]; shape (3, 3, n, n)."""
-    x, number = level.grid.x, int(body.layer_of(z, layer))
-    plane = subsurface.stress_plane(z, number, grid_x=x, grid_y=x, body=body)
-    components = plane(_on_patches(level))
-    if isinstance(level.shape, Profile):
-        components += axisymmetric.stress([level.shape], body, *_plane(x, z, number))[0].reshape(
-            components.shape
-        )
-    return subsurface.tensor(components)
+    number = int(body.layer_of(z, layer))
+    plane = patch_field.stress_plane(z, number, grid_x=level.nodes, body=body)
+    return patch_field.tensor(plane(level.grid.whole(level.mean)))
 
 
 def displacement_plane(level: Level, body: Body, z: float) -> Array:
     """Displacement [m] below every patch centre at depth z [m]; shape (3, n, n)."""
-    x, number = level.grid.x, int(body.layer_of(z, None))
-    components = subsurface.displacement_plane(z, number, grid_x=x, grid_y=x, body=body)(_on_patches(level))
-    if isinstance(level.shape, Profile):
-        components += axisymmetric.displacement([level.shape], body, *_plane(x, z, number))[0].reshape(
-            components.shape
-        )
-    return components
+    number = int(body.layer_of(z, None))
+    return patch_field.displacement_plane(z, number, grid_x=level.nodes, body=body)(level.grid.whole(level.mean))
 
 
-def displacement(levels: Sequence[Level], body: Body, x: ArrayLike, y: ArrayLike, z: ArrayLike) -> Array:
-    """Displacement [m] of each level at points [m], broadcast; shape (len(levels), 3) + points.
-
-    Companions of a level with an edge profile have the same rest on the patches.
-    """
-    x, y, z, where = np.broadcast_arrays(x, y, z, body.layer_of(z, None))
-    patches, p = levels[0].grid.x, _on_patches(levels[0])
-    u = np.zeros((len(levels), 3, *np.shape(z)))
-    if p.any():
-        u[:] = subsurface.displacement(x, y, z, where, grid_x=patches, grid_y=patches, pressure=p, body=body)
-    profiles = [level.shape for level in levels if isinstance(level.shape, Profile)]
-    if profiles:
-        points = tuple(np.asarray(v).ravel() for v in (x, y, z, where))
-        u += axisymmetric.displacement(profiles, body, *points).reshape(u.shape)
-    return u
+def _points(
+    body: Body, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None
+) -> tuple[Array, Array, Array, NDArray[np.intp]]:
+    """The points one after the other, with their layers."""
+    x, y, z, where = np.broadcast_arrays(*(np.asarray(v, dtype=float) for v in (x, y, z)), body.layer_of(z, layer))
+    return x.ravel(), y.ravel(), z.ravel(), where.ravel()
 
 
-def _on_patches(level: Level) -> Array:
-    """The pressure [Pa] that the patches carry: all of it without an edge profile."""
-    return level.rest if isinstance(level.shape, Profile) else level.mean
-
-
-def _plane(x: Array, z: float, layer: int) -> tuple[Array, Array, Array, Array]:
-    X, Y = (v.ravel() for v in np.meshgrid(x, x, indexing="ij"))
-    return X, Y, np.full(X.size, z), np.full(X.size, layer)
+def _scaled(points: tuple[Array, Array, Array, NDArray[np.intp]], level: Level, first: Level):  # noqa: ANN202
+    """The points at the same x/a and y/a of another level with a smooth edge."""
+    if level.shape is None or first.shape is None or level is first:
+        return points
+    x, y, z, where = points
+    ratio = level.shape.radius / first.shape.radius
+    return x * ratio, y * ratio, z, where

@@ -16,7 +16,7 @@ from scipy.interpolate import RectBivariateSpline
 
 from semianalytic.arrays import blocks, namespace, strips, take_rows, to_numpy, total
 
-__all__ = ["Grid", "Window", "deconvolve", "odd", "prolong", "touches_rim", "window_around"]
+__all__ = ["Grid", "Window", "odd", "prolong", "touches_rim", "window_around"]
 
 Array = NDArray[np.floating]
 
@@ -85,6 +85,12 @@ class Grid:
             return window
         first = self.n // 2 + self.n % 2
         return Window(first - window.i1, self.n // 2 + window.i1, first - window.j1, self.n // 2 + window.j1)
+
+    def whole_centres(self, window: "Window") -> tuple[Array, Array]:
+        """x and y [m] of the patches of a field made ``whole``."""
+        across, grid = self.across(window), Grid(self.n, self.d)
+        rows, columns = across.slices
+        return grid.x[rows], grid.x[columns]
 
     def held(self, field: Array) -> Array:
         """The part that is held of a field on all n x n patches."""
@@ -246,16 +252,6 @@ def touches_rim(pressure: Array, quarter: bool = False, rings: int = 1) -> bool:
     """Whether a patch of the outermost ``rings`` is loaded; two sides of a ``quarter`` belong to them."""
     rim = (pressure[-rings:, :], pressure[:, -rings:], pressure[:rings, :], pressure[:, :rings])
     return any(bool(namespace(pressure).any(side > 0)) for side in rim[: 2 if quarter else 4])
-
-
-def deconvolve(mean: Array) -> Array:
-    """Constant patches equivalent to a pressure of these patch means: p - (d^2/12) laplacian(p).
-
-    The means lack the second moment of the pressure in the patch, d^2/24, and constant patches once more.
-    """
-    q = np.pad(mean, 1)
-    around = q[2:, 1:-1] + q[:-2, 1:-1] + q[1:-1, 2:] + q[1:-1, :-2]
-    return mean - (around - 4 * mean) / 12
 
 
 def _linear(values: Array, source: Grid, x: Array) -> Array:

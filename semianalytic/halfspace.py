@@ -41,6 +41,8 @@ from semianalytic.arrays import at_once, namespace
 __all__ = [
     "normal_displacement",
     "normal_stress",
+    "point_displacement",
+    "point_stress",
     "surface_deflection",
     "tangential_displacement",
     "tangential_stress",
@@ -103,6 +105,29 @@ def tangential_displacement(
     """
     u = _over_rectangle(_tangential_displacement_corner, _tangential_displacement_point, x, y, z, dx, dy, nu)
     return u * ((1 + nu) / (2 * np.pi * E))
+
+
+def point_stress(x: Array, y: Array, z: Array, nu: float, *, tangential: bool = True) -> Array:
+    """Stress xx, yy, zz, xy, xz, yz of a normal and of a tangential unit force at the origin [1/m^2], (2, 6, n).
+
+    Johnson (1985) eqs. 3.19 and 3.77.  x, y, z : [m], not the origin.  tangential : 0 in its place if False.
+    """
+    return _points(_normal_stress_point, _tangential_stress_point, x, y, z, nu, tangential) / (2 * np.pi)
+
+
+def point_displacement(
+    x: Array, y: Array, z: Array, E: float, nu: float, *, tangential: bool = True
+) -> Array:
+    """Displacement of the same forces [m/N], (2, 3, n). Johnson (1985) eqs. 3.18 and 3.76."""
+    u = _points(_normal_displacement_point, _tangential_displacement_point, x, y, z, nu, tangential)
+    return u * ((1 + nu) / (2 * np.pi * E))
+
+
+def _points(
+    normal: Field, shear: Field, x: Array, y: Array, z: Array, nu: float, tangential: bool
+) -> Array:
+    of_normal = np.array(normal(x, y, z, nu))
+    return np.array([of_normal, shear(x, y, z, nu) if tangential else np.zeros_like(of_normal)])
 
 
 def surface_deflection(nx: int, ny: int, dx: float, dy: float, depth: float = 0.0, xp: Any = np) -> Array:

@@ -7,16 +7,22 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from semianalytic import abel, contact, convolution, edge_profile, influence, smooth_edge
+from semianalytic import contact, convolution, influence, prescribed, smooth_edge
 from semianalytic.arrays import copy, namespace, to_numpy
+from semianalytic.edge_shape import Shape
 from semianalytic.grid import Grid, Window, prolong
 from semianalytic.inputs import Body, Numerics
+from semianalytic.prescribed import Prescribed
+from semianalytic.rings import Disc, RingPressure, rings_of
+from semianalytic.smooth_edge import EdgePatches
 
 __all__ = ["Indenter", "Level", "LevelProblem"]
 
 Array = NDArray[np.floating]
 
 SINGLE = 2**20  # patches, above which preconditioner and steps are of single precision,
+SMOOTH = 0.1  # error of the radius at a smooth edge, over d^2/a: observed at most 0.05
+RIPPLE = 3e-4  # of the peak pressure
 LOOSE = 1e-8  # at this tolerance or above: the iterations were measured to be as many; at 1e-12 more
 
 
@@ -24,9 +30,8 @@ LOOSE = 1e-8  # at this tolerance or above: the iterations were measured to be a
 class Indenter:
     """Undeformed gap on a grid, and either the load [N] or the approach [m].
 
-    round : axisymmetric with a smooth edge.  shapes : edge profiles of the contact, the finest first.
-    table : of the layers, for their deflection.  edge_correction : of others, where their edge is smooth.
-    Their gap may be above any level; the approach counts from its lowest point, of the patches or, given x
+    round : the gap depends on the distance from the origin alone.  edge_correction : where the edge is smooth.
+    The gap may be above any level; the approach counts from its lowest point, of the patches or, given x
     and y [m] on a grid, of what ``between`` them is [m].
     """
 
@@ -34,55 +39,54 @@ class Indenter:
     load: float | None
     approach: float | None
     round: bool
-    shapes: tuple[edge_profile.Profile, ...] = ()
-    table: abel.LayerTable | None = None
     edge_correction: bool = False
     between: Callable[[Array, Array], Array] | None = None
 
 
 @dataclass(frozen=True)
 class Level:
-    """A contact on one grid; ``shape`` is the edge profile that corrects it, ``edge`` a smooth edge.
+    """A contact on one grid; ``shape`` and the ``edge`` patches where its edge is a smooth curve.
 
-    Both are None for the patches alone.
+    Both are None for the patches alone, and under a ``given`` pressure.
 
     noise : pressure [Pa] that the gap left by the iteration may cause on a patch.
     """
 
     grid: Grid
     found: contact.Contact
-    shape: edge_profile.Profile | edge_profile.Prescribed | None
     load: float
     convolutions: int
     noise: float = 0.0
-    edge: smooth_edge.Edge | None = None
+    shape: Shape | None = None
+    edge: EdgePatches | None = None
+    given: Prescribed | None = None
 
     @property
     def radius(self) -> float:
+        """Contact radius [m]: of the disc with the contact's area."""
         if self.shape is not None:
             return self.shape.radius
-        if self.edge is not None:
-            return float(np.sqrt(self.edge.area / np.pi) * self.grid.d)
+        if self.given is not None:
+            return self.given.radius
         loaded = self.grid.count(self.found.pressure > 0)
         return float(np.sqrt(loaded / np.pi) * self.grid.d)
 
     @property
     def staircase(self) -> float:
-        """A quarter of a patch all along the edge, as an error of the radius [m]; 0 with an edge profile.
+        """Error of the radius [m] from the patches at the edge: a tenth of a patch squared of a smooth one.
 
-        Of a smooth edge its misfit, in place of a quarter.
-
-        The perimeter is that of the staircase times pi/4, its mean over all directions (Cauchy-Crofton).
+        Of patches alone a quarter of a patch all along the edge, whose length is that of the staircase times
+        pi/4, its mean over all directions (Cauchy-Crofton).
         """
+        d = self.grid.d
         if self.shape is not None:
-            return 0.0
-        share = 0.25 if self.edge is None else self.edge.misfit
+            return SMOOTH * d * d / min(self.shape.axes)
         whole, count = self.grid.whole(self.found.pressure), namespace(self.found.pressure).count_nonzero
         touching = replace(self.grid, quarter=False).ringed(whole > 0)
         edges = int(count(touching[1:, :] ^ touching[:-1, :])) + int(
             count(touching[:, 1:] ^ touching[:, :-1])
         )
-        return float(np.pi / 4 * edges * self.grid.d * share * self.grid.d / (2 * np.pi * self.radius))
+        return float(np.pi / 4 * edges * d * 0.25 * d / (2 * np.pi * self.radius))
 
     @property
     def whole(self) -> "Level":
@@ -110,48 +114,45 @@ class Level:
 
     @property
     def _peak(self) -> float:
-        """Of the patches; a ring of highest pressure between their centres is that of the edge profile."""
+        """Of the patches, continued between their centres."""
         peak = float(namespace(self.found.pressure).max(self.found.pressure))
-        if isinstance(self.shape, edge_profile.Profile):
-            peak = self.shape.peak
-            if self.rest.any():
-                on_patches = self.shape.pressure(self.grid.radius)
-                peak += float((on_patches + self.rest).max() - on_patches.max())
-        elif self.edge is not None:
+        if self.shape is not None:
             peak += _above_highest(self.grid.whole(self.found.pressure))
         return peak
 
     @cached_property
     def mean(self) -> Array:
         """Pressure averaged over the patches [Pa], those the edge cuts included: the whole load."""
-        return self._mean_on(self.grid)
+        if self.given is not None:
+            return prescribed.patch_mean(self.given, self.grid.x, self.grid.d)
+        if self.edge is None:
+            return self.found.pressure
+        return smooth_edge.patch_mean(self.edge, self.found.pressure, self.grid)
+
+    @property
+    def nodes(self) -> Array:
+        """Centres of all patches along one axis [m], (n,)."""
+        return replace(self.grid, quarter=False).x
+
+    def smooth(self, coarser: int = 0) -> RingPressure | None:
+        """The pressure with a smooth edge, on rings of fewer points where ``coarser``; None of patches alone."""
+        if self.given is not None:
+            return Disc(self.given.radius, self.given.of_square, 24 - 4 * coarser, 10 - coarser)
+        return None if self.shape is None else rings_of(self.shape, coarser)
 
     @cached_property
-    def finer(self) -> tuple[Grid, Array]:
-        """A grid of half the patch size, and a prescribed pressure averaged over its patches."""
-        grid = Grid(2 * self.grid.n - 1, self.grid.d / 2)
-        return grid, self._mean_on(grid)
+    def rest(self) -> Array | None:
+        """Pressure of the patches less that of the shape [Pa], inside; None where it is their own error.
 
-    @cached_property
-    def rest(self) -> Array:
-        """Pressure at the patch centres less its edge profile [Pa].
-
-        Zero within a patch of the edge, where the profile is the better of the two, and everywhere if the
-        iteration does not resolve it.
+        That is a ripple of some 1e-4 of the peak where smooth patches and parts meet (``smooth_edge``).
         """
-        assert isinstance(self.shape, edge_profile.Profile)
-        r = self.grid.radius
-        rest = self.found.pressure - self.shape.pressure(r)
-        rest = np.where(r < self.shape.radius - self.grid.d, rest, 0.0)
-        # in this order NaN is passed on
-        return np.zeros_like(rest) if np.abs(rest).max() <= self.noise else rest
-
-    def _mean_on(self, grid: Grid) -> Array:
-        if isinstance(self.shape, edge_profile.Prescribed):
-            return edge_profile.patch_mean(self.shape, grid.x, grid.d)
-        if self.edge is not None:
-            return self.edge.patch_mean(self.found.pressure)
-        return self.found.pressure
+        if self.shape is None or self.edge is None:
+            return None
+        x = self.grid.x
+        rest = self.found.pressure - self.shape.pressure(x[:, None], x[None, :])
+        rest[self.edge.i, self.edge.j] *= 1 - self.edge.share
+        rest[self.found.pressure <= 0] = 0.0
+        return rest if np.abs(rest).max() > RIPPLE * self.found.pressure.max() else None
 
 
 class LevelProblem:
@@ -219,22 +220,17 @@ class LevelProblem:
         load = grid.force(found.pressure) + missing
         # p = E* k u / 2, k at most that of a checkerboard, sqrt(2) pi / d
         noise = self.numerics.tolerance * scale * self.body.contact_modulus * np.pi / 2**0.5 / grid.d
-        return Level(grid, found, None, load, found.convolutions, noise)
+        return Level(grid, found, load, found.convolutions, noise)
 
-    def deflection_of_whole(self, p: Array) -> Array:
-        """u = A p of an even pressure [Pa] on the window and its mirror images."""
-        return self.grid.whole(self.deflection(self.held(p)))
-
-    def held(self, field: Array) -> Array:
-        """The part on the window of an even field on it and its mirror images."""
-        nx, ny = self.window.shape
-        return field[-nx:, -ny:]
+    @property
+    def centres(self) -> tuple[Array, Array]:
+        """x and y of the patches of the window [m], (nx, 1) and (1, ny)."""
+        rows, columns = self.window.slices
+        return self.grid.x[rows][:, None], self.grid.x[columns][None, :]
 
     def first_guess(self) -> Array:
         """Pressure [Pa] from the level before, or from the gap."""
         before = self.before
-        if before is None and self.indenter.shapes:
-            return self.indenter.shapes[0].pressure(self.grid.radius)
         if before is None:
             approach = self.indenter.approach or 0.25 * self.depth
             xp = namespace(self.gap)

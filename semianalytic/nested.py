@@ -7,81 +7,59 @@ from numpy.typing import NDArray
 
 from semianalytic import convolution, influence
 from semianalytic.arrays import copy, namespace, to_numpy
-from semianalytic.contact import NotConverged
-from semianalytic.defect_correction import corrected, smoothed
-from semianalytic.edge_profile import Profile
+from semianalytic.edge_correction import corrected
 from semianalytic.grid import Grid, Window, odd, touches_rim, window_around
 from semianalytic.inputs import COARSEST, Body, Numerics
 from semianalytic.level import Indenter, Level, LevelProblem
 
-__all__ = ["is_alone", "levels", "lowest_point", "solve_on", "undeformed"]
+__all__ = ["levels", "solve_on"]
 
 Array = NDArray[np.floating]
 
 STRIDE = 2.8  # of grids that only give the start: iterations on the next one are about as many as by halves
 HALVINGS = 6  # of steps to the lowest point between the patches, off by 1e-4 of the height over a patch
-QUICK = 60  # iterations, more than a contact takes that the patches resolve
+REFINED = (2.0, 1.4, 1.0)  # of the patches a side, over those of the grids of a refinement study; of patches alone
+HALVED = (4.0, 2.0, 1.0)
 
 
 def levels(
     half_width: float, indenter: Indenter, body: Body, numerics: Numerics, estimate_uncertainty: bool
 ) -> list[Level]:
-    """Contacts on N/4, N/2 and N patches a side for an uncertainty, else on N; each with its edge profile.
+    """Contacts on the three grids of a refinement study, or on the last alone: N/2, N/1.4, N patches a side.
 
-    Those on coarser grids before them, without, give the start. Where they do not converge quickly, under
-    films a thousand times stiffer than what lies below, the start is the edge profile.
+    Each starts from the one before, with the shape of its edge; the first from coarser grids of patches alone.
     """
-    kept = 3 if estimate_uncertainty else 1
-    sizes = [numerics.patches]
-    while len(sizes) < kept:
-        sizes.insert(0, odd(sizes[0] / 2))
-    stride = 2.0 if indenter.shapes else STRIDE
+    ratios = REFINED if indenter.edge_correction else HALVED
+    if not estimate_uncertainty:
+        ratios = (2.0, 1.0) if indenter.edge_correction else (1.0,)
+    sizes = [odd(numerics.patches / ratio) for ratio in ratios[:-1]] + [numerics.patches]
+    kept = len(sizes)
     while sizes[0] > 2 * COARSEST:
-        sizes.insert(0, odd(sizes[0] / stride))
-    shapes: list[Profile | None] = [None] * len(sizes)
-    for k, profile in enumerate(indenter.shapes[:kept]):
-        shapes[-1 - k] = profile
+        sizes.insert(0, odd(sizes[0] / STRIDE))
     starter = replace(numerics, tolerance=max(3e-4, numerics.tolerance))
-    if indenter.shapes:
-        starter = replace(starter, max_iterations=min(QUICK, numerics.max_iterations))
     found: list[Level] = []
     rough = replace(indenter, edge_correction=False, between=None)
-    for k, (n, shape) in enumerate(zip(sizes, shapes, strict=True)):
+    for k, n in enumerate(sizes):
         used, pressed = (numerics, indenter) if k >= len(sizes) - kept else (starter, rough)
         before, grid = found[-1] if found else None, Grid(n, 2 * half_width / n, indenter.round)
-        try:
-            found.append(solve_on(grid, before, pressed, body, used, shape))
-            if k < len(sizes) - kept and not indenter.shapes:
-                found[-1] = _of_single_precision(found[-1])
-            if not estimate_uncertainty:
-                del found[:-1]
-        except NotConverged:
-            if not indenter.shapes:
-                raise
-            if shape is not None:
-                found.append(solve_on(grid, None, indenter, body, used, shape))
+        found.append(solve_on(grid, before, pressed, body, used))
+        if k < len(sizes) - kept:
+            found[-1] = _of_single_precision(found[-1])
+        if not estimate_uncertainty:
+            del found[:-1]
     return found
 
 
-def solve_on(
-    grid: Grid,
-    before: Level | None,
-    indenter: Indenter,
-    body: Body,
-    numerics: Numerics,
-    shape: Profile | None = None,
-) -> Level:
-    """Contact on a grid: of a sphere corrected by an edge profile, of others on the window they need.
+def solve_on(grid: Grid, before: Level | None, indenter: Indenter, body: Body, numerics: Numerics) -> Level:
+    """Contact on a grid, on the window that it needs.
 
     Where the gap is even in x and in y, so are all fields, and a quarter of the grid is enough, of NumPy.
     """
-    if indenter.round:
-        return corrected(grid, indenter.gap(grid), before, shape, indenter, body, numerics)
     grid, gap = undeformed(replace(grid, quarter=False), indenter)
     xp, whole = namespace(gap), grid.window
     datum = lowest_point(grid, gap, indenter)
     depth = float(xp.max(gap)) - datum
-    if before is not None:
+    if before is not None and not indenter.round:
         before = before.whole if grid.quarter < before.grid.quarter else before
         window = window_around(before.found.pressure, before.grid, grid)
         if window.shape != whole.shape:
@@ -100,6 +78,9 @@ def solve_on(
 
 def undeformed(grid: Grid, indenter: Indenter) -> tuple[Grid, Array]:
     """Gap on a whole grid; on a quarter, and that grid, where it is even in x and in y to the last digit."""
+    if indenter.round:
+        grid = replace(grid, quarter=True)
+        return grid, indenter.gap(grid)
     gap = indenter.gap(grid)
     if not isinstance(gap, np.ndarray):
         return grid, gap
@@ -134,12 +115,14 @@ def _of_single_precision(level: Level) -> Level:
 
 
 def _solved(problem: LevelProblem) -> Level:
-    return smoothed(problem) if problem.indenter.edge_correction else problem.solve(0.0, 0.0)
+    if not problem.indenter.edge_correction:
+        return problem.solve(0.0, 0.0)
+    before = problem.before
+    return corrected(problem, None if before is None else before.shape)
 
 
 def _embedded(level: Level, window: Window, depth: float) -> Level:
-    across = level.grid.across(window)
-    edge = None if level.edge is None else level.edge.embedded(across.i0, across.j0)
+    edge = None if level.edge is None else level.edge.embedded(window.i0, window.j0)
     found = level.found.embedded(window.slices, level.grid.window.shape, depth)
     return replace(level, found=found, edge=edge)
 

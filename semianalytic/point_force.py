@@ -22,12 +22,14 @@ Every radial function is tabulated once per depth over asinh(r / L), which resol
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
+from . import halfspace
 from .frf import Load, displacement_frf, stress_frf
 from .hankel import NEAR, LogGrid, hankel, log_grid, near_axis
 from .inputs import Body
@@ -39,6 +41,8 @@ __all__ = [
     "displacement_below",
     "displacement_columns",
     "displacement_from_lines",
+    "half_space_displacement",
+    "half_space_stress",
     "stress_below",
     "stress_columns",
     "stress_from_lines",
@@ -58,7 +62,7 @@ class PointForce:
     radial: CubicSpline
     scale: float
     friction: float
-    combine: Callable[[Array, Array, Array, float], Array]
+    combine: Callable[[Array, Array, float], Array]
 
     def __call__(self, x: Array, y: Array) -> Array:
         """Components at offsets (x, y) [m] from the force; (6 or 3,) + shape of ``x``.
@@ -68,7 +72,7 @@ class PointForce:
         r = np.hypot(x, y)
         table = self.radial(np.arcsinh(r / self.scale))
         r = np.maximum(r, np.finfo(float).tiny)  # on the axis the harmonics m > 0 vanish by their tables
-        return self.combine(np.moveaxis(table, -1, 0), x / r, y / r, self.friction)
+        return self.combine(np.moveaxis(table, -1, 0), directions(x / r, y / r), self.friction)
 
 
 def stress_below(z: Array, layer: int, scale: float, body: Body, *, excess: bool = False) -> list[PointForce]:
@@ -135,26 +139,36 @@ def stress_from_lines(field: Field, reach: Array, friction: float) -> PointForce
     field(x, y) : xx, yy, zz, xy, xz, yz below a normal and below a tangential unit force, (2, 6, n).
     reach : radii [m] of the table, increasing; the first is the unit of its scale.
     """
-    zero = np.zeros_like(reach)
-    (xx, yy, zz, _, xz, _), (xx_t, yy_t, zz_t, _, xz_t, _) = field(reach, zero)
-    _, (_, _, _, xy_90, xz_90, _) = field(zero, reach)
-    columns = [zz, (xx + yy) / 2, -xz, (yy - xx) / 2]
-    if friction:
-        E_less_G, E_plus_G = yy_t - xx_t, -2 * xy_90
-        columns += [-zz_t, -(xx_t + yy_t) / 2, -xz_t - xz_90, xz_t - xz_90]
-        columns += [(E_plus_G + E_less_G) / 2, (E_plus_G - E_less_G) / 2]
-    return _outer(columns, reach, friction, combine_stress)
+    return _outer(stress_columns_of_lines(field, reach, friction), reach, friction, combine_stress)
 
 
 def displacement_from_lines(field: Field, reach: Array, friction: float) -> PointForce:
     """As `stress_from_lines`, from the displacements (2, 3, n)."""
+    return _outer(displacement_columns_of_lines(field, reach, friction), reach, friction, combine_displacement)
+
+
+def stress_columns_of_lines(field: Field, reach: Array, friction: float) -> list[Array]:
+    """Radial functions at ``reach`` from the stress on the two axes, as in `stress_from_lines`."""
+    zero = np.zeros_like(reach)
+    (xx, yy, zz, _, xz, _), (xx_t, yy_t, zz_t, _, xz_t, _) = field(reach, zero)
+    columns = [zz, (xx + yy) / 2, -xz, (yy - xx) / 2]
+    if friction:
+        _, (_, _, _, xy_90, xz_90, _) = field(zero, reach)
+        E_less_G, E_plus_G = yy_t - xx_t, -2 * xy_90
+        columns += [-zz_t, -(xx_t + yy_t) / 2, -xz_t - xz_90, xz_t - xz_90]
+        columns += [(E_plus_G + E_less_G) / 2, (E_plus_G - E_less_G) / 2]
+    return columns
+
+
+def displacement_columns_of_lines(field: Field, reach: Array, friction: float) -> list[Array]:
+    """The same of the displacement."""
     zero = np.zeros_like(reach)
     (ux, _, uz), (ux_t, _, uz_t) = field(reach, zero)
-    _, (ux_90, _, _) = field(zero, reach)
     columns = [uz, -ux]
     if friction:
+        _, (ux_90, _, _) = field(zero, reach)
         columns += [-uz_t, -ux_t - ux_90, ux_t - ux_90]
-    return _outer(columns, reach, friction, combine_displacement)
+    return columns
 
 
 def _outer(columns: list[Array], reach: Array, friction: float, combine: Callable) -> PointForce:
@@ -184,28 +198,50 @@ def _radial(F: Array, order: int, scale: float, grid: LogGrid, *, over_k: bool =
     return np.concatenate([inner, outer], axis=1)
 
 
-def combine_stress(table: Array, c: Array, s: Array, f: float) -> Array:
-    """xx, yy, zz, xy, xz, yz from the radial functions and the direction (c, s)."""
+def directions(c: Array, s: Array) -> Array:
+    """Harmonics 1, cos t, sin t, .. cos 3t, sin 3t of the direction (c, s), (7,) + shape of ``c``."""
+    c2, s2 = c * c - s * s, 2 * c * s
+    return np.stack([np.ones_like(c), c, s, c2, s2, c * c2 - s * s2, s * c2 + c * s2])
+
+
+def combine_stress(table: Array, harmonics: Array, f: float) -> Array:
+    """xx, yy, zz, xy, xz, yz from the radial functions and the harmonics of the direction."""
     Z, S, T, D = table[:4]
-    cos2, sin2 = c * c - s * s, 2 * c * s
-    mean, half, zz, xy = S, -cos2 * D, Z, -sin2 * D
-    xz, yz = -c * T, -s * T
+    one, c1, s1, c2, s2, c3, s3 = harmonics
+    mean, half, zz, xy = S * one, -D * c2, Z * one, -D * s2
+    xz, yz = -T * c1, -T * s1
     if f:
         Z1, S1, A0, B2, E1, G3 = f * table[4:]
-        cos3, sin3 = c * cos2 - s * sin2, s * cos2 + c * sin2
-        mean, zz = mean - c * S1, zz - c * Z1
-        half = half - (c * E1 - cos3 * G3) / 2
-        xy = xy - (s * E1 - sin3 * G3) / 2
-        xz, yz = xz - (A0 - cos2 * B2) / 2, yz + sin2 * B2 / 2
+        mean, zz = mean - S1 * c1, zz - Z1 * c1
+        half = half - (E1 * c1 - G3 * c3) / 2
+        xy = xy - (E1 * s1 - G3 * s3) / 2
+        xz, yz = xz - (A0 * one - B2 * c2) / 2, yz + B2 * s2 / 2
     return np.stack([mean + half, mean - half, zz, xy, xz, yz])
 
 
-def combine_displacement(table: Array, c: Array, s: Array, f: float) -> Array:
-    """x, y, z from the radial functions and the direction (c, s)."""
+def combine_displacement(table: Array, harmonics: Array, f: float) -> Array:
+    """x, y, z from the radial functions and the harmonics of the direction."""
     W, U = table[:2]
-    ux, uy, uz = -c * U, -s * U, W
+    one, c1, s1, c2, s2, *_ = harmonics
+    ux, uy, uz = -U * c1, -U * s1, W * one
     if f:
         W1, A0, B2 = f * table[2:]
-        ux = ux - (A0 - (c * c - s * s) * B2) / 2
-        uy, uz = uy + c * s * B2, uz - c * W1
+        ux = ux - (A0 * one - B2 * c2) / 2
+        uy, uz = uy + B2 * s2 / 2, uz - W1 * c1
     return np.stack([ux, uy, uz])
+
+
+def half_space_stress(r: Array, z: Array, nu: float, friction: float) -> Array:
+    """Radial functions of a point force on a homogeneous half-space [1/m^2], (4 or 10, n), at r > 0, z >= 0 [m]."""
+    return _half_space(partial(halfspace.point_stress, nu=nu), stress_columns_of_lines, r, z, friction)
+
+
+def half_space_displacement(r: Array, z: Array, E: float, nu: float, friction: float) -> Array:
+    """The same of the displacement [m/N], (2 or 5, n)."""
+    return _half_space(
+        partial(halfspace.point_displacement, E=E, nu=nu), displacement_columns_of_lines, r, z, friction
+    )
+
+
+def _half_space(field: Callable[..., Array], columns: Callable, r: Array, z: Array, friction: float) -> Array:
+    return np.array(columns(lambda x, y: field(x, y, z, tangential=bool(friction)), r, friction))

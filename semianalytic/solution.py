@@ -16,21 +16,22 @@ from scipy.interpolate import RectBivariateSpline
 from scipy.ndimage import maximum_filter
 
 from semianalytic import fields
-from semianalytic.edge_profile import Profile, convergence
 from semianalytic.inputs import Body, check_finite
 from semianalytic.level import Level
-from semianalytic.uncertainty import Uncertainty, safety
+from semianalytic.uncertainty import SMOOTH, Uncertainty, safety
 
 __all__ = ["Diagnostics", "Solution"]
 
 Array = NDArray[np.floating]
 
-# error of the stress of a given pressure, over its peak, against Hankel quadrature: above 4 patches, below
+# error of the stress below patches, over the peak pressure, against Hankel quadrature: above 4 patches, below
 EVALUATION = (5e-6, 5e-7)
+RINGS = 2e-8  # likewise on rings
 NEAR = 8.0  # patches from the edge, within which the error of its radius is felt
-EXACT = 1e-9  # that of an edge profile, relative to the peak pressure and to the stress
-# likewise of a pressure: its response to the gap the iteration leaves, in proportion to the patches
-RESOLUTION = 1e-7
+# what the refinement of a smooth edge does not show: of the root mean square of the change of the pressure, and of
+# the peak pressure; felt to a depth of some patches
+FLOOR, REACH = (1.0, 2e-6), 8.0
+RESOLUTION = 1e-7  # of the pressure of patches: its response to the gap the iteration leaves
 
 
 @dataclass(frozen=True)
@@ -100,10 +101,9 @@ class Solution:
     @classmethod
     def _of_level(cls, level: Level, body: Body, coarser: "Solution | None") -> "Solution":
         scalars, found = level.scalars, level.found
-        grid = replace(level.grid, quarter=False)
+        grid, pressure = replace(level.grid, quarter=False), level.grid.whole(found.pressure)
         # the gap has served the iteration; kept, it would be as large as the pressure
-        found = replace(found, pressure=level.grid.whole(found.pressure), gap=np.empty((0, 0)))
-        level = replace(level, grid=grid, found=found)
+        level = replace(level, found=replace(found, gap=np.empty((0, 0))))
         beyond = max(int(np.ceil((2.05 * level.radius - grid.x[-1]) / grid.d)), 0)
         return cls(
             **scalars,
@@ -115,7 +115,7 @@ class Solution:
                 penetration_outside=found.penetration_outside,
                 load_error=found.load_error,
                 load=level.load,
-                patches=int(np.count_nonzero(found.pressure)),
+                patches=int(np.count_nonzero(pressure)),
                 patches_per_side=grid.n,
                 patch_size=grid.d,
                 seconds=0.0,
@@ -123,7 +123,7 @@ class Solution:
             ),
             uncertainty=None,
             nodes=grid.x,
-            patch_pressure=found.pressure,
+            patch_pressure=pressure,
             coarser=coarser,
             _level=level,
             _body=body,
@@ -139,25 +139,20 @@ class Solution:
         return replace(self, coarser=coarser, _body=self._body.with_friction(float(friction)))
 
     def pressure(self, x: ArrayLike, y: ArrayLike = 0.0) -> Array:
-        """Contact pressure [Pa], 0 outside; between nodes by interpolation of a quantity smooth at the edge.
+        """Contact pressure [Pa], 0 outside; x, y : [m], broadcast.
 
-        That is p less its edge profile or, where there is none, p^2, continued beyond a smooth edge.
-        x, y : [m], broadcast.
+        With a smooth edge that of its shape, fitted to the patches; of patches alone interpolated between them
+        by p^2.
         """
-        shape = self._level.shape
-        if self._level.edge is not None:
-            x, y = np.broadcast_arrays(np.asarray(x, dtype=float), np.asarray(y, dtype=float))
-            s, t = ((v.ravel() - self.nodes[0]) / self.diagnostics.patch_size for v in (x, y))
-            return self._level.edge.pressure(self.patch_pressure, s, t).reshape(x.shape)
-        if shape is None:
+        smooth = self._level.smooth()
+        if smooth is None:
             square = self.patch_pressure**2
             touched = _at(self.nodes, square, x, y, order=1) > 0  # the cubic may oscillate beyond
             return np.sqrt(np.maximum(np.where(touched, _at(self.nodes, square, x, y), 0), 0))
-        value = shape.pressure(np.hypot(x, y))
-        if isinstance(shape, Profile) and not self._level.rest.any():
+        value = smooth.pressure(x, y)
+        if self._level.rest is None:
             return np.maximum(value, 0)
-        rest = self.patch_pressure - shape.pressure(np.hypot(self.nodes[:, None], self.nodes[None, :]))
-        return np.maximum(value + _at(self.nodes, rest, x, y, order=1), 0)
+        return np.maximum(value + _at(self.nodes, self._level.grid.whole(self._level.rest), x, y, order=1), 0)
 
     def stress(
         self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None, body: str = "flat"
@@ -196,74 +191,74 @@ class Solution:
     ) -> tuple[Array, Array]:
         """Displacement and its uncertainty [m], shape (3,) + points each.
 
-        With an edge profile from its coarser companions, as that of the stress, the largest of the components
-        for each alike; else the uncertainty of the approach everywhere.
+        With a smooth edge from its coarser companions, the largest of the components for each alike; else the
+        uncertainty of the approach everywhere.
         Raises ValueError where no uncertainty was estimated.
         """
         self._companion()
         assert self.uncertainty is not None
-        if not isinstance(self._level.shape, Profile):
+        if self._level.smooth() is None:
             u = self.displacement(x, y, z, body)
             return u, np.full(u.shape, self.uncertainty.approach)
-        levels = [self._level, *(replace(self._level, shape=shape) for shape in self._studied[1:])]
-        u, second, third = fields.displacement(levels, self._body.named(body), x, y, z)
+        u, second, third = fields.displacement(self._levels, self._body.named(body), x, y, z)
         last, before = (np.abs(one - other).max(axis=0) for one, other in ((u, second), (second, third)))
-        total = self._convergence * np.maximum(last, self._convergence * before) + EXACT * self.approach
+        factor, share = SMOOTH
+        total = np.maximum(factor * last, share * before) + RINGS * self.approach
         return u, np.broadcast_to(total, u.shape).copy()
 
     def displacement_uncertainty(self, x: ArrayLike, y: ArrayLike, z: ArrayLike, body: str = "flat") -> Array:
         """The second part of ``displacement_with_uncertainty``."""
         return self.displacement_with_uncertainty(x, y, z, body)[1]
 
-    def pressure_uncertainty(self, x: ArrayLike, y: ArrayLike = 0.0) -> Array:
-        """Uncertainty of the pressure [Pa] from the coarser companion.
+    def pressure_uncertainty(self, x: ArrayLike, y: ArrayLike = 0.0, *, own_edge: bool = False) -> Array:
+        """Uncertainty of the pressure [Pa] from the coarser companions.
 
-        With an edge profile as that of the stress. Else the largest difference of the two within two patches
-        of the coarser, times ``safety``, or a sixth of that of the next two; plus the changes of the peak by
+        With a smooth edge as that of the stress. Of patches alone the largest difference from the companion within
+        two of its patches, times ``safety``, or a sixth of that of the next two; plus the changes of the peak by
         the other numerical parameters, twice, since they were varied on half the patches and the pressure
         due to a gap is proportional to the patches; plus ``RESOLUTION`` of the peak; twice the sum.
+        own_edge : as in ``stress_with_uncertainty``.
         Raises ValueError where no uncertainty was estimated.
         """
         coarser, floor = self._companion()
-        if isinstance(self._level.shape, Profile):
-            return self._profile_uncertainty(x, y)
+        if self._level.shape is not None:
+            return self._smooth_uncertainty(x, y, own_edge)
         i, j = self.nodes[:, None], self.nodes[None, :]
         second = coarser.pressure(i, j)
         ratio = len(self.nodes) / len(coarser.nodes)
-        difference = safety(ratio) * np.abs(self.patch_pressure - second)
+        difference = safety(ratio) * np.abs(self.pressure(i, j) - second)
         if coarser.coarser is not None:
             difference = np.maximum(difference, np.abs(second - coarser.coarser.pressure(i, j)) / 6)
-        reach = 2 * int(np.ceil(ratio if self._level.shape is not None else 2 * ratio)) + 1
+        reach = 2 * int(np.ceil(2 * ratio)) + 1
         widened = maximum_filter(difference, size=reach, mode="nearest")
         total = _at(self.nodes, widened, x, y, order=1) + (2 * floor + RESOLUTION) * self.peak_pressure
         return 2 * total
 
-    def _profile_uncertainty(self, x: ArrayLike, y: ArrayLike) -> Array:
-        """Uncertainty of the pressure [Pa] from the coarser edge profiles, as that of the stress."""
-        shapes = self._studied
+    def _smooth_uncertainty(self, x: ArrayLike, y: ArrayLike, own_edge: bool) -> Array:
+        """Uncertainty of the pressure [Pa] of a smooth edge: of its shape at the same x/a, and of its radius."""
         assert self.uncertainty is not None
-        fine, second, third = shapes
-        r, rate = np.hypot(x, y), self._convergence
-        p = fine.pressure(r)
-        change = np.abs(p - second.pressure(r))
-        change = rate * np.maximum(change, rate * np.abs(second.pressure(r) - third.pressure(r)))
+        shapes = [level.shape for level in self._levels if level.shape is not None]
+        fine = shapes[0]
+        p, second, third = (
+            one.pressure(np.asarray(x) * one.radius / fine.radius, np.asarray(y) * one.radius / fine.radius)
+            for one in shapes
+        )
+        factor, share = SMOOTH
+        total = np.maximum(factor * np.abs(p - second), share * np.abs(second - third))
+        _, floor = self._companion()
+        total = total + self._floor + floor * self.peak_pressure
+        if own_edge:
+            return total
         shift = self.uncertainty.contact_radius
-        moved = np.abs([fine.pressure(r + s) - p for s in (-shift, shift)]).max(axis=0)
-        rest = float(np.abs(self._level.rest).max())
-        return np.maximum(change, moved) + EXACT * self.peak_pressure + rest
+        moved = [np.abs(fine.widened(s).pressure(x, y) - p) for s in (-shift, shift)]
+        return np.maximum(total, np.max(moved, axis=0))
 
     @cached_property
-    def _convergence(self) -> float:
-        """Factor by which the last refinement reduced the error of the edge profile."""
-        return convergence(*self._studied)
-
-    @property
-    def _studied(self) -> list[Profile]:
-        """The edge profiles of the refinement study, the finest first."""
+    def _levels(self) -> list[Level]:
+        """The levels of the refinement study, the finest first."""
         coarser, _ = self._companion()
         assert coarser.coarser is not None
-        shapes = [one._level.shape for one in (self, coarser, coarser.coarser)]
-        return [shape for shape in shapes if isinstance(shape, Profile)]
+        return [one._level for one in (self, coarser, coarser.coarser)]
 
     def stress_uncertainty(
         self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None, body: str = "flat"
@@ -275,30 +270,39 @@ class Solution:
         return self.stress_with_uncertainty(x, y, z, layer, body)[1]
 
     def stress_with_uncertainty(
-        self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None, body: str = "flat"
+        self,
+        x: ArrayLike,
+        y: ArrayLike,
+        z: ArrayLike,
+        layer: int | None = None,
+        body: str = "flat",
+        *,
+        own_edge: bool = False,
     ) -> tuple[Array, Array]:
         """Stress and its uncertainty [Pa], shape (3, 3) + points each, the latter from coarser companions.
 
         The largest difference over the six components, for every component alike, of this level and the next,
-        or of the next and the one after. With an edge profile both are reduced by the observed convergence;
-        the change by the uncertain radius counts where it is larger; plus ``EXACT`` of the peak pressure and
-        of the stress. Without, times ``safety``, or a third; plus the changes of the peak pressure by other
-        numerical parameters, and the error of the evaluation, ``EVALUATION`` of it.
+        or of the next and the one after, at the same x/a of each. With a smooth edge twice that, or once; plus
+        ``FLOOR`` of the peak pressure; or the change by the uncertain radius near the edge, where that is larger,
+        unless ``own_edge``: the points are meant relative to the edge, as x/a. Of patches alone times
+        ``safety``, or a third, plus the error of the evaluation, ``EVALUATION`` of the peak pressure. Both with
+        the changes of the peak pressure by the other numerical parameters.
         Raises ValueError where no uncertainty was estimated.
         """
         coarser, floor = self._companion()
-        levels = [self._level, coarser._level]
-        if coarser.coarser is not None:
-            levels.append(coarser.coarser._level)
         solid = self._body.named(body)
-        sigma, second, *third = fields.stress(levels, solid, x, y, z, layer)
+        sigma, second, *third = fields.stress(self._levels, solid, x, y, z, layer)
         change = np.abs(sigma - second).max(axis=(0, 1))
         before = np.abs(second - third[0]).max(axis=(0, 1)) if third else np.zeros_like(change)
-        if isinstance(self._level.shape, Profile):
-            rate = self._convergence
-            floor = EXACT * (self.peak_pressure + np.abs(sigma).max(axis=(0, 1)))
-            total = rate * np.maximum(change, rate * before)
-            total = np.maximum(total, self._uncertain_edge(solid, x, y, z, layer)) + floor
+        if self._level.smooth() is not None:
+            factor, share = SMOOTH
+            total = np.maximum(factor * change, share * before)
+            if self._level.shape is not None:
+                shallow = 1 / (1 + np.asarray(z) / (REACH * self.diagnostics.patch_size))
+                total = total + self._floor * shallow + floor * self.peak_pressure
+                if not own_edge:
+                    total = np.maximum(total, self._uncertain_edge(solid, x, y, z, layer))
+            total = total + RINGS * self.peak_pressure
         else:
             change = np.maximum(safety(len(self.nodes) / len(coarser.nodes)) * change, before / 3)
             total = change + floor * self.peak_pressure
@@ -306,23 +310,34 @@ class Solution:
             total += np.where(shallow, *EVALUATION) * self.peak_pressure
         return sigma, np.broadcast_to(total, (3, 3, *change.shape)).copy()
 
+    @cached_property
+    def _floor(self) -> float:
+        """Error of a smooth pressure [Pa] wherever the refinement shows less by chance."""
+        shapes = [level.shape for level in self._levels[:2] if level.shape is not None]
+        s = np.linspace(-1, 1, 201)
+        s, angle = np.sqrt(np.abs(s)), np.pi * (s > 0) / 4
+        p = [
+            one.pressure(one.centre[0] + one.axes[0] * s * np.cos(angle), one.centre[1] + one.axes[1] * s * np.sin(angle))
+            for one in shapes
+        ]
+        share, least = FLOOR
+        return share * float(np.sqrt(np.mean((p[0] - p[1]) ** 2))) + least * self.peak_pressure
+
     def _uncertain_edge(
         self, solid: Body, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None
     ) -> Array:
-        """Change of the stress [Pa] by the uncertain radius, within ``NEAR`` patches of the edge.
-
-        Plus what the rest of the pressure may reach in the patch next to the edge, where it is left out: a
-        ring of that width.
-        """
+        """Change of the stress [Pa] by the uncertain radius, within ``NEAR`` patches of the edge."""
         assert self.uncertainty is not None
+        shape = self._level.shape
+        assert shape is not None
         shift = self.uncertainty.contact_radius
         x, y, z = np.broadcast_arrays(*(np.asarray(v, dtype=float) for v in (x, y, z)))
-        distance = np.hypot(np.hypot(x, y) - self.contact_radius, z)
-        d = self.diagnostics.patch_size
-        near = distance < NEAR * d + shift
-        change = np.array(4 * np.abs(self._level.rest).max() * d / (d + distance))  # of a single point too
+        t, s2, _ = shape.polynomials(x, y)
+        distance = np.hypot(np.abs(t) / (1 + np.sqrt(s2)) * min(shape.axes), z)
+        near = distance < NEAR * self.diagnostics.patch_size + shift
+        change = np.zeros(x.shape)
         if near.any():
-            change[near] += fields.stress_of_uncertain_edge(
+            change[near] = fields.stress_of_uncertain_edge(
                 self._level, solid, shift, x[near], y[near], z[near], layer
             )
         return change

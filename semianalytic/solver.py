@@ -13,19 +13,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from semianalytic import (
-    abel,
-    collocation,
-    contact,
-    convolution,
-    edge_profile,
-    influence,
-    nested,
-    uncertainty,
-)
+from semianalytic import contact, convolution, influence, nested, prescribed, uncertainty
 from semianalytic.arrays import check_namespace, namespace
 from semianalytic.contact import NotConverged
-from semianalytic.grid import Grid, deconvolve, odd, touches_rim
+from semianalytic.grid import Grid, odd, touches_rim
 from semianalytic.inputs import (
     Body,
     Numerics,
@@ -47,6 +38,8 @@ Substrate = tuple[float, float]
 Ball = tuple[float, float, Coatings]
 
 LARGEST = 0.9  # contact radius over that of the sphere
+ROUGH, ROOMY = 49, 1.5  # patches a side of the grid that finds the contact radius, and its half-width over that
+STEPS = 0.08, 0.16  # of the load, to the neighbouring contacts that give the stiffness
 
 
 def solve(
@@ -59,7 +52,7 @@ def solve(
     ball: Ball | None = None,
     approach: float | None = None,
     patches: int = 257,
-    tolerance: float = 1e-8,
+    tolerance: float = 1e-9,
     max_iterations: int = 600,
     conversion: str = "split",
     hankel_points: int = 4096,
@@ -101,31 +94,99 @@ def solve(
         threads=threads,
     )
     undeformed = undeformed_gap(gap, radius)
-    sphere = Indenter(lambda grid: undeformed(grid.radius), load, approach, round=True)
-    shares = collocation.SHARES if estimate_uncertainty else collocation.SHARES[:1]
-    found = collocation.contact(radius, load, approach, body, shares, gap)
-    a = found[0].profile.radius
-    if a > LARGEST * radius:
-        raise ValueError(
-            f"contact radius a = {a:g} m is {a / radius:.2g} of the sphere's radius; the parabolic gap and "
-            f"small strains hold below {LARGEST:g}, and well below 0.1"
-        )
-    half_width = fill * a
-    if edge_correction:
-        sphere = replace(sphere, shapes=tuple(one.profile for one in found))
-        both, reach = body.response, 1.01 * 2**0.5 * half_width
-        if both:
-            terms = max(len(one.profile.coefficients) for one in found)
-            sphere = replace(sphere, table=abel.layer_table(both.excess, both.depth, a, reach, terms))
+    sphere = Indenter(
+        lambda grid: undeformed(grid.radius), load, approach, round=True, edge_correction=edge_correction
+    )
+    half_width = fill * _contact_radius(radius, sphere, body, numerics)
     levels = nested.levels(half_width, sphere, body, numerics, estimate_uncertainty)
     if touches_rim(levels[-1].found.pressure, levels[-1].grid.quarter):
         raise NotConverged(f"the contact reaches the rim of the grid, fill = {fill:g}; enlarge it")
     estimate = uncertainty.of_contact(levels, sphere, body, numerics) if estimate_uncertainty else None
-    solution = Solution.of_levels(levels, body, estimate, began)
-    if not edge_correction:
+    solution = Solution.of_levels(levels[-3:], body, estimate, began)
+    if levels[-1].shape is None:
         return solution
-    error = uncertainty.of_stiffness(found) if estimate_uncertainty else None
-    return replace(solution, stiffness=found[0].stiffness, stiffness_uncertainty=error)
+    stiffness, error = _stiffness(radius, levels, sphere, body, numerics)
+    if estimate is None:
+        return replace(solution, stiffness=stiffness)
+    # those of the approaches, over the largest of their differences
+    error += stiffness * estimate.approach / solution.approach / float(np.log1p(STEPS[-1]))
+    return replace(solution, stiffness=stiffness, stiffness_uncertainty=error)
+
+
+def _contact_radius(radius: float, sphere: Indenter, body: Body, numerics: Numerics) -> float:
+    """Contact radius [m] to a few per cent, on a coarse grid of patches alone."""
+    a = _hertz_radius(radius, sphere.load, sphere.approach, body)
+    coarse = replace(numerics, tolerance=max(1e-3, numerics.tolerance), edge_correction=False)
+    pressed = replace(sphere, edge_correction=False)
+    for _ in range(20):
+        grid = Grid(ROUGH, 2 * ROOMY * a / ROUGH)
+        level = nested.solve_on(grid, None, pressed, body, coarse)
+        found = level.radius
+        if found > LARGEST * radius:
+            raise ValueError(
+                f"contact radius a = {found:g} m is {found / radius:.2g} of the sphere's radius; the parabolic "
+                f"gap and small strains hold below {LARGEST:g}, and well below 0.1"
+            )
+        if touches_rim(level.found.pressure, level.grid.quarter):
+            a = 2 * a
+        elif found < 0.5 * a:
+            a = found
+        else:
+            return found
+    raise NotConverged(f"no contact radius near {a:g} m carries the load; check the moduli")
+
+
+def _hertz_radius(radius: float, load: float | None, approach: float | None, body: Body) -> float:
+    """Hertz's contact radius [m] on a solid as compliant as the layers at the wavelength of the contact."""
+    if load is None:
+        return float((radius * (approach or 0.0)) ** 0.5)
+    both, a = body.response, radius
+    for _ in range(200):
+        M = 1 + float(both.excess(np.array([2 / a]))[0]) if both else 1.0
+        if not M > 0:
+            raise NotConverged(f"the layers' compliance is {M:g} of the first one's; check the moduli")
+        a, last = (a * a * 0.75 * load * radius * M / body.contact_modulus) ** 0.2, a
+        if abs(a - last) < 1e-12 * a:
+            break
+    return a
+
+
+def _stiffness(
+    radius: float, levels: list[Level], indenter: Indenter, body: Body, numerics: Numerics
+) -> tuple[float, float]:
+    """d load / d approach [N/m] and its uncertainty, from contacts at two neighbouring loads.
+
+    d ln W / d ln delta by central differences, which Hertz's contact makes exact. The patches grow with the
+    contact, so that its edge cuts them alike and their errors cancel.
+    """
+    level, fine = next(one for one in levels if one.shape), levels[-1]
+    here = _hertz_radius(radius, level.load, None, body)
+    slopes = []
+    for step in STEPS:
+        beside = []
+        for factor in (1 + step, 1 / (1 + step)):
+            size = level.grid.d * _hertz_radius(radius, level.load * factor, None, body) / here
+            pressed = replace(indenter, load=level.load * factor, approach=None)
+            start = _stretched(level, size, factor)
+            beside.append(nested.solve_on(replace(level.grid, d=size), start, pressed, body, numerics))
+        ends = np.log([(one.load, one.found.approach) for one in beside])
+        slopes.append(float(np.divide(*(ends[0] - ends[1]))))
+    slope = slopes[0] + (slopes[0] - slopes[1]) * STEPS[0] ** 2 / (STEPS[1] ** 2 - STEPS[0] ** 2)
+    stiffness = slope * fine.load / fine.found.approach
+    error = abs(slope - slopes[0]) / slope + abs(fine.found.approach / level.found.approach - 1)
+    return stiffness, stiffness * error
+
+
+def _stretched(level: Level, size: float, factor: float) -> Level:
+    """A level at ``factor`` times its load on patches of another size [m], to start from."""
+    assert level.shape is not None
+    ratio = size / level.grid.d
+    A, B = (axis * ratio for axis in level.shape.axes)
+    shape = replace(level.shape, axes=(A, B), coefficients=level.shape.coefficients * (factor / ratio**2))
+    found = replace(
+        level.found, pressure=level.found.pressure * (factor / ratio**2), gap=level.found.gap * ratio**2
+    )
+    return replace(level, grid=replace(level.grid, d=size), found=found, shape=shape)
 
 
 def indent(
@@ -191,7 +252,7 @@ def indent(
         conversion=conversion,
         hankel_points=hankel_points,
         enlarge=enlarge,
-        edge_correction=False,
+        edge_correction=False,  # the patches may be even in number
         threads=threads,
     )
 
@@ -252,7 +313,7 @@ def solve_prescribed(
     if not callable(pressure):
         check_finite(pressure=pressure)
         pressure = partial(_uniform, float(pressure))
-    shape = edge_profile.Prescribed(load_radius, pressure)
+    shape = prescribed.Prescribed(load_radius, pressure)
 
     def level(n: int, wider: float, numerics: Numerics) -> Level:
         return _loaded(Grid(odd(wider * n), 2.04 * load_radius / n), shape, body, numerics)
@@ -269,7 +330,7 @@ def solve_prescribed(
             ("domain", level(sizes[1], WIDER, numerics)),
         )
     }
-    estimate = Uncertainty.from_levels(fine, half, quarter, variations, ratio=2.0)
+    estimate = Uncertainty.from_levels(fine, half, quarter, variations, factor=1.0, share=1 / 6)
     return Solution.of_levels(levels, body, estimate, began)
 
 
@@ -277,13 +338,13 @@ def _uniform(value: float, r: Array) -> Array:
     return np.full(np.shape(r), value)
 
 
-def _loaded(grid: Grid, shape: edge_profile.Prescribed, body: Body, numerics: Numerics) -> Level:
+def _loaded(grid: Grid, shape: prescribed.Prescribed, body: Body, numerics: Numerics) -> Level:
     """Deflection under a prescribed pressure, as a contact without iteration."""
     kernel = influence.surface_coefficients(grid.n, grid.d, body, numerics)
     deflection = convolution.even_convolution(kernel, threads=numerics.threads)
     found = contact.Contact.of_load(shape.pressure(grid.radius))
-    level = Level(grid, found, shape, shape.load, 1)
-    u = deflection(deconvolve(level.mean))
+    level = Level(grid, found, shape.load, 1, given=shape)
+    u = deflection(prescribed.deconvolve(level.mean))
     centre = float(u[grid.n // 2, grid.n // 2])
     return replace(level, found=replace(found, gap=u - centre, approach=centre))
 

@@ -1,355 +1,192 @@
-"""Stress below a loaded grid.
+"""Stress and displacement below a pressure with a smooth edge, ring by ring.
 
-The pressure between patch centres is the cubic convolution of its values there, q = f p. At a depth z the
-field is then a discrete convolution of the nodal forces with the influence of one node, found in one of two
-ways (d the patch, L the length over which the response of the solid decays, exp(-k L)):
+    sigma(x, y, z) = int p G dA = sum over rings rho around (x, y) of  G_m(rho, z) P_m(rho) rho d rho,
 
-- z >= 3 d. A node is a point force, tabulated for the layered solid: the lattice sum of a function of scale z
-  differs from an integral by its aliases, exp(-2 pi z/d). Deeper down the forces are first gathered on
-  lattices of spacing up to z/12.
-- z < 3 d. In the first coating (or the uncoated solid) the closed forms of the homogeneous half-space of
-  that material, and the rest of the response, which is smooth on the scale 2h - z >= h, from tables. In a
-  deeper layer the whole response from tables of scale z >= h.
-
-Patches of constant pressure would suffice below, but not near the surface: the steps of p change sigma_xx of
-a sliding load by p' d even at the patch centres. With p continuous the field is smooth enough to be computed
-below patch centres only, with cubic interpolation between them.
+G_m the influence of a normal and of a tangential point force f (``point_force``), P_m the harmonics of p on the
+ring (``rings``), q = f p in +x. In the first layer G is the closed form of the half-space of its material plus the
+reflection of what lies below; deeper down, the response of the layers. Both come from tables over rho, one a depth;
+where many depths share a layer, from those of a few Chebyshev depths. At z = 0 the closed form leaves the local
+terms sigma_zz = -p, sigma_xz = -q, (sigma_xx + sigma_yy)/2 = -(1 + 2 nu) p/2 (Johnson 1985, section 3.4).
 
 "Stress analysis of elastic coated solids in point contact", eqs. 1-4. Axes: z down; tension positive; SI.
+Rough pressures, and planes of many points: ``patch_field``.
 """
 
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable
+from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
-from scipy.fft import irfft2, next_fast_len, rfft2
+from numpy.typing import NDArray
 
-from . import halfspace
-from .inputs import Body
-from .interpolation_kernel import near_influence
-from .nodal_convolution import (
-    Influence,
-    Lattice,
-    at_points,
-    between_sites,
-    influence_table,
-    nodal_forces,
-    samples,
-)
-from .point_force import (
+from semianalytic.inputs import Body
+from semianalytic.point_force import (
     PointForce,
+    combine_displacement,
+    combine_stress,
     displacement_below,
-    displacement_from_lines,
+    half_space_displacement,
+    half_space_stress,
     stress_below,
-    stress_from_lines,
 )
+from semianalytic.rings import RingPressure
 
-__all__ = ["FieldPlane", "displacement", "displacement_plane", "stress", "stress_plane", "tensor"]
+__all__ = ["Tables", "displacement", "stress"]
 
 Array = NDArray[Any]
-Field = Callable[..., Array]
-Tables = dict[tuple[bytes, int, float, bool], list[PointForce]]
+Tables = dict[tuple[bytes, int, float, int], list[PointForce]]
 
-SHALLOW = 3.0  # patches; above this depth a node is not yet a point force: aliases exp(-6 pi) = 7e-9
-COARSE = 12.0  # depth over lattice spacing; interpolation through ten sites then errs by 1e-8 of p_h
-CHEBYSHEV = 10  # shallow depths; more than these are interpolated, to 1e-6 three patches from the edge
-KEPT = 64  # depths of which point-force tables are kept, half a megabyte each
-SIX = ((0, 1, 2, 0, 0, 1), (0, 1, 2, 1, 2, 2))  # xx, yy, zz, xy, xz, yz
-
-
-def stress(
-    x: ArrayLike,
-    y: ArrayLike,
-    z: ArrayLike,
-    layer: ArrayLike,
-    *,
-    grid_x: Array,
-    grid_y: Array,
-    pressure: Array,
-    body: Body,
-    kept: Tables | None = None,
-    few_depths: bool = False,
-) -> Array:
-    """Stress at points (x, y, z) of the layers named, under pressure p with traction q = f p in +x.
-
-    x, y, z : points [m], broadcast.  layer : integers, which pick the side of an interface, broadcast.
-    pressure : mean of p over each patch [Pa], (nx, ny), centred at grid_x, grid_y [m], which are uniform.
-    kept : point-force tables of other calls for the same solid; those of this call are added.
-    few_depths : interpolate between depths below three patches too, to 1e-3 of the largest stress.
-    Returns sigma[i, j, ...] [Pa], shape (3, 3) + points.
-    """
-    response = _stress_response(body)
-    if kept is not None:
-        response = replace(response, below=partial(_kept, kept, response.below))
-    return tensor(_evaluate(x, y, z, layer, nodal_forces(grid_x, grid_y, pressure), response, few_depths))
-
-
-def tensor(components: Array) -> Array:
-    """xx, yy, zz, xy, xz, yz as a symmetric tensor, shape (3, 3, ...)."""
-    xx, yy, zz, xy, xz, yz = components
-    return np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
-
-
-def displacement(
-    x: ArrayLike,
-    y: ArrayLike,
-    z: ArrayLike,
-    layer: ArrayLike,
-    *,
-    grid_x: Array,
-    grid_y: Array,
-    pressure: Array,
-    body: Body,
-) -> Array:
-    """Displacement at points (x, y, z); arguments as in `stress`.
-
-    Returns u[i, ...] [m], shape (3,) + points; u_z into the solid.
-    """
-    response = _displacement_response(body)
-    return _evaluate(x, y, z, layer, nodal_forces(grid_x, grid_y, pressure), response)
-
-
-@dataclass(frozen=True, eq=False)
-class FieldPlane:
-    """Six stresses or three displacements at one depth below every patch centre, for any pressure.
-
-    spectrum : transformed influence of a node, (6 or 3, mx, my/2 + 1).  size : (mx, my).  shape : (nx, ny).
-    """
-
-    spectrum: Array
-    size: tuple[int, int]
-    shape: tuple[int, int]
-    area: float
-
-    def __call__(self, pressure: Array, *, threads: int = 1) -> Array:
-        """Stresses xx, yy, zz, xy, xz, yz [Pa] or u_x, u_y, u_z [m], (n, nx, ny), by n + 1 FFTs.
-
-        pressure : [Pa], (nx, ny).
-        """
-        if pressure.shape != self.shape:
-            raise ValueError(f"pressure has shape {pressure.shape}; this plane was set up for {self.shape}")
-        nx, ny = self.shape
-        force = rfft2(samples(pressure) * self.area, self.size, workers=threads)
-        out = np.empty((len(self.spectrum), nx, ny))
-        for component, part in zip(out, self.spectrum, strict=True):
-            component[:] = irfft2(part * force, self.size, workers=threads)[
-                nx + 1 : 2 * nx + 1, ny + 1 : 2 * ny + 1
-            ]
-        return out
-
-
-def stress_plane(
-    z: float,
-    layer: int,
-    *,
-    grid_x: Array,
-    grid_y: Array,
-    body: Body,
-) -> FieldPlane:
-    """Set up the convolution for all patch centres at depth z [m]; arguments as in `stress`."""
-    return _plane(z, layer, grid_x, grid_y, _stress_response(body))
-
-
-def displacement_plane(
-    z: float,
-    layer: int,
-    *,
-    grid_x: Array,
-    grid_y: Array,
-    body: Body,
-) -> FieldPlane:
-    """Set up the convolution for all patch centres at depth z [m]; arguments as in `displacement`."""
-    return _plane(z, layer, grid_x, grid_y, _displacement_response(body))
-
-
-def _plane(z: float, layer: int, grid_x: Array, grid_y: Array, response: "_Response") -> FieldPlane:
-    nx, ny = len(grid_x), len(grid_y)
-    unit = nodal_forces(grid_x, grid_y, np.ones((nx, ny)))
-    ((_, shallow, point),) = _tables(np.array([float(z)]), layer, max(unit.dx, unit.dy), response)
-    influence = _near(point, layer == 0, z, unit, response) if shallow else _as_points(point, unit)
-    # forces reach one patch beyond the grid, see `samples`
-    table = influence_table(influence, np.arange(-nx, nx + 1), np.arange(-ny, ny + 1), response.odd_in_y)
-    size = (next_fast_len(2 * nx + 1, real=True), next_fast_len(2 * ny + 1, real=True))
-    return FieldPlane(rfft2(table, size), size, (nx, ny), unit.dx * unit.dy)
+PAIRS = 200_000  # points times rings held at a time
+DEPTHS = 10  # Chebyshev depths within an octave of the reach, 3e-10 of the field; fewer depths are taken as they are
+KEPT = 64  # depths of which tables are kept, half a megabyte each
 
 
 @dataclass(frozen=True, eq=False)
 class _Response:
-    """Response of the solid to unit forces, in stress or in displacement.
+    """Stress or displacement of a unit force: closed(rho, z) of the half-space of the first material, (columns, n);
+    below(z, layer, scale, excess=) the tables of the layers; combine(table, harmonics, friction) the components."""
 
-    below(z, layer, scale, excess=) : point-force tables at depths z.
-    closed(X, Y, z, dx, dy) : field of unit forces on a rectangle, normal then tangential, (2, n, ...).
-    from_lines : point-force table of the same away from the force.  odd_in_y : components odd in y.
-    """
-
-    body: Body
-    below: Callable[..., list[PointForce]]
-    closed: Field
-    from_lines: Callable[..., PointForce]
     components: int
-    odd_in_y: tuple[int, ...]
+    closed: Callable[[Array, Array], Array]
+    below: Callable[..., list[PointForce]]
+    combine: Callable[[Array, Array, float], Array]
 
 
-def _stress_response(body: Body) -> _Response:
-    rectangle = halfspace.normal_stress, halfspace.tangential_stress
-    return _Response(
-        body,
-        partial(stress_below, body=body),
-        partial(_closed, rectangle, body.friction, body.materials[0][1:2], SIX),
-        stress_from_lines,
-        components=6,
-        odd_in_y=(3, 5),
+def stress(
+    x: Array, y: Array, z: Array, layer: Array, *, pressure: RingPressure, body: Body, kept: Tables | None = None
+) -> Array:
+    """Stress xx, yy, zz, xy, xz, yz [Pa] at points x, y, z [m] of the layers named, (n,) each; (6, n).
+
+    layer : picks the side of an interface.  kept : tables of other calls for the same body; new ones are added.
+    """
+    nu, f = body.materials[0][1], body.friction
+    response = _Response(6, partial(_stress, nu, f), partial(stress_below, body=body), combine_stress)
+    total = _summed(x, y, z, layer, pressure, body, response, {} if kept is None else kept)
+    p = np.where((z == 0) & (layer == 0), pressure.pressure(x, y), 0.0)
+    local = np.array([-(1 + 2 * nu) / 2, -(1 + 2 * nu) / 2, -1.0, 0.0, -f, 0.0])
+    return total + local[:, None] * p
+
+
+def displacement(
+    x: Array, y: Array, z: Array, layer: Array, *, pressure: RingPressure, body: Body, kept: Tables | None = None
+) -> Array:
+    """Displacement u_x, u_y, u_z [m], (3, n); arguments as in `stress`."""
+    E, nu, f = *body.materials[0][:2], body.friction
+    response = _Response(
+        3, partial(_displacement, E, nu, f), partial(displacement_below, body=body), combine_displacement
     )
+    return _summed(x, y, z, layer, pressure, body, response, {} if kept is None else kept)
 
 
-def _displacement_response(body: Body) -> _Response:
-    rectangle = halfspace.normal_displacement, halfspace.tangential_displacement
-    return _Response(
-        body,
-        partial(displacement_below, body=body),
-        partial(_closed, rectangle, body.friction, body.materials[0][:2], (...,)),
-        displacement_from_lines,
-        components=3,
-        odd_in_y=(1,),
-    )
+def _stress(nu: float, f: float, rho: Array, z: Array) -> Array:
+    return half_space_stress(rho, z, nu, f)
 
 
-def _closed(rectangle, friction, moduli, components, X, Y, z: float, dx: float, dy: float) -> Array:
-    """Fields of unit forces on a rectangle of the uncoated solid, normal and tangential, (2, n, ...)."""
-    used = rectangle if friction else rectangle[:1]
-    fields = [field(X, Y, z, dx, dy, *moduli)[components] / (dx * dy) for field in used]
-    return np.array(fields if friction else [*fields, np.zeros_like(fields[0])])
+def _displacement(E: float, nu: float, f: float, rho: Array, z: Array) -> Array:
+    return half_space_displacement(rho, z, E, nu, f)
 
 
-def _evaluate(x, y, z, layer, fine: Lattice, response: _Response, few_depths: bool = False) -> Array:
-    """Field components (n,) + points, layer by layer and depth by depth."""
-    x, y, z, layer = np.broadcast_arrays(*(np.asarray(v) for v in (x, y, z, layer)))
-    shape = z.shape
-    x, y, z, layer = (v.ravel() for v in (x, y, z, layer))
-    lattices = [fine]
-    while max(lattices[-1].force.shape) > 24:
-        lattices.append(lattices[-1].coarser())
-    shallow = z < SHALLOW * max(fine.dx, fine.dy)
+def _summed(x, y, z, layer, pressure: RingPressure, body: Body, response: _Response, kept: Tables) -> Array:
+    """Components (n,) + points: the sum over the rings around each point."""
+    feet, foot = np.unique(np.stack([x, y]), axis=1, return_inverse=True)
+    foot = foot.ravel()
+    first = body.thickness[0] if body.coatings else np.inf
+    scale = np.full(feet.shape[1], first)
+    np.minimum.at(scale, foot[z > 0], z[z > 0])
+    rings = pressure.rings(feet[0], feet[1], scale)
+    begin = np.searchsorted(rings.foot, np.arange(feet.shape[1] + 1))
+    count = np.diff(begin)[foot]
     out = np.zeros((response.components, z.size))
     for number in np.unique(layer):
-        for here in (
-            np.flatnonzero((layer == number) & shallow),
-            np.flatnonzero((layer == number) & ~shallow),
-        ):
-            depths, which = np.unique(z[here], return_inverse=True)
-            near = bool(shallow[here].any())
-            if (near or few_depths) and depths.size > CHEBYSHEV:
-                depths, weights = _between_depths(z[here] if near else np.log(z[here]))
-                depths = depths if near else np.exp(depths)
-                points, at = np.unique(np.stack([x[here], y[here]]), axis=1, return_inverse=True)
-                for i, field in enumerate(_fields(depths, int(number), lattices, response)):
-                    out[:, here] += weights[:, i] * field(*points)[:, at.ravel()]
+        members = np.flatnonzero(layer == number)
+        members = members[np.argsort(z[members], kind="stable")]
+        tables = _Tables.of(z[members], int(number), body, response, kept)
+        ends = np.cumsum(count[members])
+        start = 0
+        while start < members.size:
+            held = ends[start - 1] if start else 0
+            stop = max(start + 1, int(np.searchsorted(ends, held + PAIRS, side="right")))
+            some = members[start:stop]
+            which = np.repeat(np.arange(some.size), count[some])
+            ring = np.arange(which.size) + np.repeat(begin[foot[some]] - (ends[start:stop] - count[some] - held), count[some])
+            depth = z[some][which]
+            rho = rings.radius[ring]
+            table = tables(rho, depth) if tables else 0.0
+            if number == 0:
+                table = table + response.closed(rho, depth)
+            parts = response.combine(table, rings.harmonics[:, ring] * rings.weight[ring], body.friction)
+            out[:, some] = [np.bincount(which, part, minlength=some.size) for part in parts]
+            start = stop
+    return out
+
+
+@dataclass(frozen=True, eq=False)
+class _Tables:
+    """Radial functions of the layers at any depth between those of ``groups``: (least depth, nodes, tables)."""
+
+    groups: list[tuple[float, Array, list[PointForce]]]
+    between: list[bool]
+    logarithm: bool
+
+    @classmethod
+    def of(cls, z: Array, layer: int, body: Body, response: _Response, kept: Tables) -> "_Tables | None":
+        """For the depths z [m], ascending, of one layer; None of an uncoated body."""
+        if not body.coatings:
+            return None
+        reach = 2 * body.thickness[0] - z if layer == 0 else z
+        octave = np.floor(np.log2(reach) + 1e-9)
+        groups, between = [], []
+        for power in dict.fromkeys(octave):
+            depths = np.unique(z[octave == power])
+            between.append(depths.size > DEPTHS)
+            if between[-1]:
+                depths = _chebyshev(depths[0], depths[-1], layer > 0)
+            key = (depths.tobytes(), layer, float(power), response.components)
+            if key not in kept:
+                if depths.size + sum(len(tables) for tables in kept.values()) > KEPT:
+                    kept.clear()
+                kept[key] = response.below(depths, layer, 2.0**power, excess=layer == 0)
+            groups.append((float(z[octave == power][0]), depths, kept[key]))
+        return cls(groups, between, layer > 0)
+
+    def __call__(self, rho: Array, z: Array) -> Array:
+        """(columns, n) at rho, z [m]."""
+        lows = [low for low, *_ in self.groups]
+        which = np.searchsorted(lows, z, side="right") - 1
+        out: Array | None = None
+        for k, (_, depths, tables) in enumerate(self.groups):
+            here = np.flatnonzero(which == k)
+            if not here.size:
+                continue
+            if out is None:
+                out = np.zeros((tables[0].radial.c.shape[-1], rho.size))
+            s = np.arcsinh(rho[here] / tables[0].scale)
+            if self.between[k]:
+                at = (np.log(depths), np.log(z[here])) if self.logarithm else (depths, z[here])
+                for w, table in zip(_weights(*at), tables, strict=True):
+                    out[:, here] += w * table.radial(s).T
             else:
-                for i, field in enumerate(_fields(depths, int(number), lattices, response)):
-                    at = here[which == i]
-                    out[:, at] = field(x[at], y[at])
-    return out.reshape(response.components, *shape)
+                nearest = np.clip(np.searchsorted(depths, z[here] * (1 - 1e-12)), 0, len(tables) - 1)
+                for i, table in enumerate(tables):
+                    at = nearest == i
+                    out[:, here[at]] = table.radial(s[at]).T
+        assert out is not None
+        return out
 
 
-def _between_depths(z: Array) -> tuple[Array, Array]:
-    """Chebyshev depths over the range of ``z``, and weights (k, depths) that interpolate to each of ``z``."""
-    theta = np.pi * np.arange(CHEBYSHEV) / (CHEBYSHEV - 1)
-    low, high = z.min(), z.max()
-    s = (2 * z - low - high) / (high - low)
-    # cardinal functions as sums of T_m(s) T_m(s_i), first and last terms halved
-    m = np.arange(CHEBYSHEV)
-    ends = np.where((m == 0) | (m == CHEBYSHEV - 1), 0.5, 1.0)
-    T = np.cos(m * np.arccos(np.clip(s, -1, 1))[:, None]) * ends
-    weights = 2 / (CHEBYSHEV - 1) * T @ np.cos(np.outer(m, theta)) * ends
-    return (low + high + (high - low) * np.cos(theta)) / 2, weights
+def _chebyshev(low: float, high: float, in_logarithm: bool) -> Array:
+    """Depths at the Chebyshev nodes of [low, high], ends included, or of its logarithm."""
+    t = (1 - np.cos(np.pi * np.arange(DEPTHS) / (DEPTHS - 1))) / 2
+    return low * (high / low) ** t if in_logarithm else low + (high - low) * t
 
 
-def _fields(
-    depths: Array, layer: int, lattices: list[Lattice], response: _Response
-) -> Iterator[Callable[..., Array]]:
-    """For each depth of one layer, the field as a function of x and y, (k,) -> (components, k)."""
-    fine = lattices[0]
-    d = max(fine.dx, fine.dy)
-    for z, shallow, table in _tables(depths, layer, d, response):
-        if shallow:
-            influence = _near(table, layer == 0, z, fine, response)
-            yield partial(
-                between_sites, lattice=fine, influence=influence, odd_in_y=response.odd_in_y, order=4
-            )
-        else:
-            level = int(np.clip(np.log2(max(z / (COARSE * d), 1)), 0, len(lattices) - 1))
-            assert table is not None
-            yield partial(
-                at_points, lattice=lattices[level], kernel=table, odd_in_y=response.odd_in_y, order=10
-            )
-
-
-def _tables(
-    depths: Array, layer: int, d: float, response: _Response
-) -> Iterator[tuple[float, bool, PointForce | None]]:
-    """Each depth, whether it is shallow, and its point-force table; those of a run share their wavenumbers.
-
-    Shallow in the first layer, the tables hold the difference to the homogeneous solid: None if uncoated.
-    """
-    coatings = response.body.coatings
-    keys = []
-    for z in depths:
-        shallow = bool(z < SHALLOW * d)
-        reach = z
-        if shallow and layer == 0:
-            reach = 2 * coatings[0][2] - z if coatings else d
-        keys.append((2.0 ** np.floor(np.log2(reach)), shallow))
-    start = 0
-    while start < len(keys):
-        scale, shallow = keys[start]
-        stop = start + 1
-        while stop < min(len(keys), start + 64) and keys[stop] == keys[start]:
-            stop += 1
-        run = depths[start:stop]
-        excess = shallow and layer == 0
-        tables: Sequence[PointForce | None] = [None] * run.size
-        if coatings or not excess:
-            tables = response.below(run, layer, scale, excess=excess)
-        for z, table in zip(run, tables, strict=True):
-            yield float(z), shallow, table
-        start = stop
-
-
-def _kept(
-    kept: Tables, below: Callable[..., list[PointForce]], z: Array, layer: int, scale: float, *, excess: bool
-) -> list[PointForce]:
-    """Point-force tables from ``kept``, or by ``below`` and then kept, for at most ``KEPT`` depths in all."""
-    key = (z.tobytes(), layer, scale, excess)
-    if key not in kept:
-        if z.size + sum(len(tables) for tables in kept.values()) > KEPT:
-            kept.clear()
-        kept[key] = below(z, layer, scale, excess=excess)
-    return kept[key]
-
-
-def _near(
-    table: PointForce | None, first: bool, z: float, lattice: Lattice, response: _Response
-) -> Influence:
-    """Influence of a node of the grid at a shallow depth."""
-    dx, dy = lattice.dx, lattice.dy
-
-    def rectangle(X: Array, Y: Array) -> Array:
-        normal, tangential = response.closed(X, Y, z, dx, dy)
-        return normal + response.body.friction * tangential
-
-    if not first:
-        return near_influence(None, None, table, dx, dy, z, response.odd_in_y)
-    # a rectangle of d/50 is a point from some patches on
-    reach = 6 * max(dx, dy) * np.exp(np.arange(0, 8.5, 0.02))
-    outside = response.from_lines(
-        partial(response.closed, z=z, dx=dx / 50, dy=dy / 50), reach, response.body.friction
-    )
-    return near_influence(rectangle, outside, table, dx, dy, z, response.odd_in_y)
-
-
-def _as_points(table: PointForce | None, lattice: Lattice) -> Influence:
-    assert table is not None
-    return lambda m, n: table(m * lattice.dx, n * lattice.dy)
+def _weights(nodes: Array, x: Array) -> Array:
+    """Barycentric weights (nodes, n) of the polynomial through Chebyshev ``nodes``, ends included, at x."""
+    w = (-1.0) ** np.arange(nodes.size)
+    w[[0, -1]] /= 2
+    difference = x - nodes[:, None]
+    exact = np.abs(difference) < 1e-14 * (nodes[-1] - nodes[0])
+    terms = w[:, None] / np.where(exact, 1.0, difference)
+    terms = np.where(exact.any(axis=0), exact, terms)
+    return terms / terms.sum(axis=0)

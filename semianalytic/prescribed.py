@@ -1,54 +1,15 @@
-"""Axisymmetric pressure profile that vanishes like a square root at the contact edge.
-
-    p(r) = sqrt(t) q(t),   t = 1 - (r/a)^2,   q = sum_m b_m P_m(2t - 1)
-
-is the pressure of a smooth indenter; the polynomial q is smooth where p is not.
-"""
+"""Prescribed pressure on a disc, on patches and as a function of the distance from the axis."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 from numpy.polynomial import legendre
 from numpy.typing import ArrayLike, NDArray
 
-__all__ = ["Prescribed", "Profile", "convergence", "patch_mean"]
+__all__ = ["Prescribed", "deconvolve", "patch_mean"]
 
 Array = NDArray[np.floating]
-
-
-@dataclass(frozen=True, eq=False)
-class Profile:
-    """radius : a [m].  coefficients : b_m [Pa], shape (M,)."""
-
-    radius: float
-    coefficients: Array
-
-    def pressure(self, r: ArrayLike) -> Array:
-        """p(r) [Pa], 0 outside; shape of ``r`` [m]."""
-        t = np.maximum(1 - (np.asarray(r, dtype=float) / self.radius) ** 2, 0)
-        return np.sqrt(t) * legendre.legval(2 * t - 1, self.coefficients)
-
-    @cached_property
-    def peak(self) -> float:
-        """Largest p [Pa], off the axis where a stiff film bends: the best of a grid, then of a finer one."""
-        low, high = 0.0, 1.0
-        for _ in range(2):
-            s = np.linspace(low, high, 1001)
-            p = self.pressure(self.radius * s)
-            best = int(p.argmax())
-            if best in (0, s.size - 1):
-                break
-            low, high = s[best - 1], s[best + 1]
-        return float(p[best])
-
-    @property
-    def load(self) -> float:
-        """W = pi a^2 int_0^1 sqrt(t) q dt [N]; sqrt(t) P_m gives (-1)^(m+1) 2 / ((2m-1) (2m+1) (2m+3))."""
-        m = np.arange(len(self.coefficients))
-        moments = 2 * (-1.0) ** (m + 1) / ((2 * m - 1) * (2 * m + 1) * (2 * m + 3))
-        return float(np.pi * self.radius**2 * np.sum(moments * self.coefficients))
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,6 +31,10 @@ class Prescribed:
         value[inside] = self.function(r[inside])
         return value
 
+    def of_square(self, square: Array) -> Array:
+        """p [Pa] of the square of r [m^2]."""
+        return self.pressure(np.sqrt(square))
+
     @property
     def load(self) -> float:
         s, w = legendre.leggauss(200)
@@ -81,19 +46,7 @@ class Prescribed:
         return float(2 * np.pi * self.radius * np.sum(w * p * r * t))
 
 
-def convergence(fine: Profile, middle: Profile, coarse: Profile) -> float:
-    """Factor by which the error falls from the middle to the fine profile, as observed: at most 1.
-
-    The largest differences of the pressure, over the same r/a. Of a geometric convergence at terms in the
-    same ratio, the error of the fine one is below this factor times its difference from the middle one.
-    """
-    s = 1 - np.linspace(0, 1, 400) ** 2
-    p = [shape.pressure(shape.radius * s) for shape in (fine, middle, coarse)]
-    last, before = np.abs(p[0] - p[1]).max(), np.abs(p[1] - p[2]).max()
-    return float(last / before) if last < before else 1.0
-
-
-def patch_mean(shape: Profile | Prescribed, x: Array, d: float) -> Array:
+def patch_mean(shape: Prescribed, x: Array, d: float) -> Array:
     """Mean of an axisymmetric pressure over square patches of side d centred at (x_i, x_j), shape (n, n).
 
     Gauss points; near the rim along lines that end at it, crowded there for the square root. The remaining
@@ -130,3 +83,13 @@ def patch_mean(shape: Profile | Prescribed, x: Array, d: float) -> Array:
     quadrant = np.zeros((c + 1, c + 1))
     quadrant[i, j] = quadrant[j, i] = mean
     return np.pad(quadrant, ((c, 0), (c, 0)), mode="reflect")
+
+
+def deconvolve(mean: Array) -> Array:
+    """Constant patches equivalent to a pressure of these patch means: p - (d^2/12) laplacian(p).
+
+    The means lack the second moment of the pressure in the patch, d^2/24, and constant patches once more.
+    """
+    q = np.pad(mean, 1)
+    around = q[2:, 1:-1] + q[:-2, 1:-1] + q[1:-1, 2:] + q[1:-1, :-2]
+    return mean - (around - 4 * mean) / 12

@@ -1,0 +1,214 @@
+"""Pressure of a contact with a smooth closed edge, fitted to the pressures of the patches.
+
+    f = sqrt(t) q,   t = 1 - s^2 + 2 sum_n c_n H_n,   q = sum_n H_n sum_m b_mn P_m(2t - 1),
+
+with s^2 = u^2 + v^2, u = (x - x0)/A, v = (y - y0)/B and the harmonic polynomials H_n = Re (u + iv)^n, for n < 0
+Im (u + iv)^-n; s^2 takes the place of H_0 in t. The edge is t = 0: a circle for n = 0 alone, an ellipse where
+A and B differ. Under a smooth indenter q is smooth where p is not (Johnson 1985, section 5.1).
+
+The coefficients are those that fit the pressures of the patches in the energy norm: with the columns
+phi = df/db, df/dc at the patch centres and e the patches' pressure less f,
+
+    (phi' K phi) x = phi' K e,
+
+K the influence coefficients. Fitted point by point, f would extrapolate over the last patch.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+from numpy.polynomial import legendre
+from numpy.typing import ArrayLike, NDArray
+
+__all__ = ["EVEN", "FULL", "ROUND", "Shape", "fitted", "start"]
+
+Array = NDArray[np.floating]
+
+ROUND = (0,)  # harmonics of a contact that is round,
+EVEN = (0, 2, 4, 6)  # even in x and in y,
+FULL = (0, 1, -1, 2, -2, 3, -3, 4, -4, 6, -6)  # any
+DAMPING = 0.8  # of a fit: undamped, the rounds of fit and contact oscillate
+BLUNT = 0.7  # patches from the edge, nearer than which the column of the edge, infinite there, is constant
+SLACK = 0.15  # patches by which the edge may pass the centre of a loaded or of an unloaded patch
+ANGLES = 256  # at which a contour that is no ellipse is sampled
+
+
+@dataclass(frozen=True, eq=False)
+class Shape:
+    """centre (x0, y0), axes (A, B) [m].  harmonics : n, (k,).  contour : c, (k,).  coefficients : b [Pa], (M, k)."""
+
+    centre: tuple[float, float]
+    axes: tuple[float, float]
+    harmonics: tuple[int, ...]
+    contour: Array
+    coefficients: Array
+
+    @property
+    def round(self) -> bool:
+        """Whether f depends on the distance from the origin alone."""
+        return self.harmonics == ROUND and self.axes[0] == self.axes[1] and self.centre == (0.0, 0.0)
+
+    @cached_property
+    def radius(self) -> float:
+        """Of the disc of the same area [m]; the contact radius of a round contact."""
+        area = self.axes[0] * self.axes[1]
+        if self.contour.any():
+            area *= float(np.mean(self.reach(2 * np.pi * np.arange(ANGLES) / ANGLES) ** 2))
+        return float(np.sqrt(area))
+
+    def reach(self, angle: Array) -> Array:
+        """s of the edge in the direction ``angle`` of u + iv: t along a ray is nearly 1 - (s/reach)^2."""
+        reach: Array = np.ones(np.shape(angle))
+        for _ in range(20 if self.contour.any() else 0):
+            t = self._in_frame(reach * np.cos(angle), reach * np.sin(angle))[0]
+            reach = reach / np.sqrt(np.maximum(1 - t, 0.25))
+        return reach
+
+    def _in_frame(self, u: Array, v: Array) -> tuple[Array, Array, Array]:
+        s2 = u * u + v * v
+        t = 1 - s2
+        if self.harmonics == ROUND:
+            return t, s2, np.ones((1, *s2.shape))
+        H = np.empty((len(self.harmonics), *s2.shape))
+        power = {0: np.ones(s2.shape, dtype=complex)}
+        for n in range(1, max(map(abs, self.harmonics)) + 1):
+            power[n] = power[n - 1] * (u + 1j * v)
+        for k, (n, c) in enumerate(zip(self.harmonics, self.contour, strict=True)):
+            H[k] = power[n].real if n >= 0 else power[-n].imag
+            t = t + 2 * c * H[k]
+        return t, s2, H
+
+    def polynomials(self, x: ArrayLike, y: ArrayLike) -> tuple[Array, Array, Array]:
+        """t, s^2 and H_n, (k,) + points, at x, y [m], broadcast."""
+        (x0, y0), (A, B) = self.centre, self.axes
+        return self._in_frame((np.asarray(x, dtype=float) - x0) / A, (np.asarray(y, dtype=float) - y0) / B)
+
+    def pressure(self, x: ArrayLike, y: ArrayLike = 0.0) -> Array:
+        """f [Pa], 0 outside the edge; shape of x, y [m], broadcast."""
+        t, _, H = self.polynomials(x, y)
+        return np.sqrt(np.maximum(t, 0)) * self._smooth(np.clip(t, 0, 1), H)
+
+    def at_distance(self, square: Array) -> Array:
+        """f [Pa] of a round contact at the distances whose squares are given [m^2]."""
+        t = np.clip(1 - square / self.axes[0] ** 2, 0, 1)
+        return np.sqrt(t) * legendre.legval(2 * t - 1, self.coefficients[:, 0])
+
+    def square(self, x: Array, y: Array) -> Array:
+        """f^2 = t q^2 [Pa^2], continued beyond the edge, where it is negative."""
+        t, _, H = self.polynomials(x, y)
+        return t * self._smooth(t, H) ** 2
+
+    def _smooth(self, t: Array, H: Array) -> Array:
+        """q [Pa]."""
+        total = np.zeros(t.shape)
+        for h, b in zip(H, self.coefficients.T, strict=True):
+            total += h * legendre.legval(2 * t - 1, b)
+        return total
+
+    def columns(self, x: Array, y: Array, blunt: float) -> Array:
+        """df/db, then df/dc, ((M + 1) k,) + points; 0 outside.  blunt : t below which 1/sqrt(t) is constant."""
+        t, s2, H = self.polynomials(x, y)
+        inside, M = t > 0, len(self.coefficients)
+        t = np.clip(t, 0, 1)
+        root = np.sqrt(t)
+        P = np.moveaxis(legendre.legvander(2 * t - 1, M - 1), -1, 0)
+        of_b = (root * inside) * P[:, None] * H
+        slope = legendre.legder(self.coefficients) if M > 1 else 0 * self.coefficients
+        q = np.einsum("mk,mxy,kxy->xy", self.coefficients, P, H, optimize=True)
+        dq = 2 * np.einsum("mk,mxy,kxy->xy", slope, P[: len(slope)], H, optimize=True)
+        of_t = np.where(inside, q / (2 * np.sqrt(np.maximum(t, blunt))) + root * dq, 0.0)
+        of_c = [2 * of_t * (s2 if n == 0 else h) for n, h in zip(self.harmonics, H, strict=True)]
+        return np.concatenate([of_b.reshape(-1, *t.shape), of_c])
+
+    def changed(self, x: Array) -> "Shape":
+        """The shape with its coefficients changed by x, ((M + 1) k,); c_0, c_2, c_1 become axes and centre."""
+        k = len(self.harmonics)
+        by = dict(zip(self.harmonics, x[-k:], strict=True))
+        c0, c2 = by.get(0, 0.0), by.get(2, 0.0)
+        A, B = (w / float(np.sqrt(1 - 2 * c)) for w, c in zip(self.axes, (c0 + c2, c0 - c2), strict=True))
+        centre = self.centre[0] + A * by.get(1, 0.0), self.centre[1] + B * by.get(-1, 0.0)
+        kept = [n not in (0, 1, -1, 2) for n in self.harmonics]
+        contour = self.contour + np.where(kept, x[-k:], 0.0)
+        return replace(self, centre=centre, axes=(A, B), contour=contour, coefficients=self.coefficients + x[:-k].reshape(-1, k))
+
+    def widened(self, shift: float) -> "Shape":
+        """The same with an edge ``shift`` [m] farther out."""
+        A, B = self.axes
+        return replace(self, axes=(A + shift, B + shift))
+
+    def with_terms(self, terms: int) -> "Shape":
+        """The same with as many polynomials, those that it lacks with coefficients of zero."""
+        b = np.zeros((terms, len(self.harmonics)))
+        held = min(terms, len(self.coefficients))
+        b[:held] = self.coefficients[:held]
+        return replace(self, coefficients=b)
+
+
+def start(pressure: Array, x: Array, y: Array, harmonics: tuple[int, ...], terms: int, area: float) -> Shape:
+    """Shape of the loaded patches' moments: an ellipse, Hertz's pressure.
+
+    pressure [Pa] : of all patches, centres x, y [m], (nx, ny).  area : of a patch [m^2].
+    """
+    loaded = pressure > 0
+    count = np.count_nonzero(loaded)
+    x, y = (np.broadcast_to(v, loaded.shape)[loaded] for v in (x, y))
+    x0, y0 = (float(v.mean()) if 1 in harmonics else 0.0 for v in (x, y))
+    A, B = (2 * float(np.sqrt(np.mean((v - v0) ** 2))) for v, v0 in ((x, x0), (y, y0)))
+    if harmonics == ROUND:
+        A = B = float(np.sqrt(count * area / np.pi))
+    b = np.zeros((terms, len(harmonics)))
+    b[0, 0] = 1.5 * float(pressure[loaded].mean())
+    return Shape((x0, y0), (A, B), harmonics, np.zeros(len(harmonics)), b)
+
+
+def fitted(
+    shape: Shape,
+    pressure: Array,
+    x: Array,
+    y: Array,
+    deflection: Callable[[Array], Array],
+    weight: Array | None,
+    patch: float,
+    *,
+    fixed_edge: bool = False,
+) -> tuple[Shape, float]:
+    """The shape nearer to the patches' pressure in the energy norm, and by how far its edge moved [m].
+
+    pressure [Pa] : of the patches at centres x, y [m], (nx, ny).  deflection : K p.  weight : patches that each
+    one represents.  patch [m] : the side.  fixed_edge : change the coefficients b alone.
+    """
+    k, across = len(shape.harmonics), min(shape.axes)
+    columns = shape.columns(x, y, 2 * BLUNT * patch / across / 2)
+    if fixed_edge:
+        columns = columns[:-k]
+    left = (pressure - shape.pressure(x, y)).ravel()
+    deflected = np.array([deflection(column) for column in columns]).reshape(len(columns), -1)
+    if weight is not None:
+        deflected *= weight.ravel()
+    normal = deflected @ columns.reshape(len(columns), -1).T
+    scale = 1 / np.sqrt(np.diag(normal))
+    scaled = (normal + normal.T) / 2 * np.outer(scale, scale)
+    found = np.linalg.lstsq(scaled, deflected @ left * scale, rcond=1e-14)[0] * scale
+    if fixed_edge:
+        return shape.changed(np.concatenate([found, np.zeros(k)])), np.inf
+    found *= DAMPING
+    # no farther than a patch at a time
+    moved = float(np.abs(found[-k:]).sum()) * across
+    found[-k:] *= min(1.0, patch / moved) if moved else 1.0
+    shape = _between_centres(shape.changed(found), pressure > 0, x, y, patch)
+    return shape, moved
+
+
+def _between_centres(shape: Shape, loaded: NDArray[np.bool_], x: Array, y: Array, patch: float) -> Shape:
+    """The shape with its edge outside the centres of loaded patches and inside those of unloaded ones."""
+    t = shape.polynomials(x, y)[0]
+    slack = 2 * SLACK * patch / min(shape.axes)
+    low, high = float(t[loaded].min()), float(t[~loaded].max(initial=-np.inf))
+    change = np.zeros((len(shape.coefficients) + 1) * len(shape.harmonics))
+    if low < -slack:
+        change[-len(shape.harmonics)] = (-slack - low) / 2
+    elif high > slack:
+        change[-len(shape.harmonics)] = (slack - high) / 2
+    return shape.changed(change) if change.any() else shape

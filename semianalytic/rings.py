@@ -1,0 +1,349 @@
+"""Pressure on rings around a point, by angular harmonics.
+
+The field at depth z below a point is the pressure p times the influence of a point force, a few harmonics of the
+direction psi from the force to the point (``point_force``), summed over the contact. Ring by ring,
+
+    int p G_m(rho, z) cos(m psi) dA = int_0^inf G_m(rho, z) P_m(rho) rho d rho,    P_m = int p cos(m psi) d psi,
+
+and the P_m of one point serve every depth below it. Where a ring crosses the edge of the contact p falls to zero
+like a square root. Each arc inside is integrated from the crossing, or from where the ring passes nearest to the
+edge, by Gauss points in mu, with beta the angle from the middle of the gap outside and delta half its width,
+
+    beta = delta cosh(mu) on a ring that crosses the edge,    beta = delta sinh(mu) on one that misses it.
+
+Panels of rho shrink towards the radii at which a ring touches the edge, and to the scale of the depth. Against
+closed forms: 1e-8 of the peak pressure, at the edge itself too.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from semianalytic.edge_shape import Shape
+
+__all__ = ["Disc", "RingPressure", "Rings", "SmoothContour", "rings_of"]
+
+Array = NDArray[np.floating]
+Step = Callable[[float], float]
+
+LEAST = 1e-9  # distance from the edge, over the width of the contact, below which a point lies on it
+AROUND = 128  # angles at which a contour that is no circle is sampled,
+RING = 48  # and a ring around a point
+AT_ONCE = 400_000  # points of the pressure held at a time
+
+
+@dataclass(frozen=True, eq=False)
+class Rings:
+    """foot : index of the point each ring surrounds, (n,), ascending.  radius : rho [m].  weight : rho d rho [m^2].
+
+    harmonics : P_m [Pa] with 1, cos psi, sin psi, .. cos 3 psi, sin 3 psi, (7, n).
+    """
+
+    foot: NDArray[np.intp]
+    radius: Array
+    weight: Array
+    harmonics: Array
+
+
+class RingPressure(Protocol):
+    """A pressure with a smooth edge."""
+
+    def pressure(self, x: ArrayLike, y: ArrayLike) -> Array:
+        """p [Pa], 0 outside."""
+
+    def rings(self, x: Array, y: Array, scale: Array) -> Rings:
+        """Rings around points x, y [m], (n,), below which fields change over depths from ``scale`` [m]."""
+
+
+def rings_of(shape: Shape, coarser: int = 0) -> "RingPressure":
+    """The pressure of a shape, by fewer points where ``coarser``."""
+    terms = len(shape.coefficients)
+    angular, radial = 16 + terms - 2 * coarser, 8 + terms // 4 - coarser
+    if shape.round:
+        return Disc(shape.axes[0], shape.at_distance, angular, radial)
+    return SmoothContour(shape, angular, radial)
+
+
+@dataclass(frozen=True, eq=False)
+class Disc:
+    """Round pressure: ``of_square``, p of r^2, on a disc of ``radius`` [m]; Gauss points on an arc, on a panel."""
+
+    radius: float
+    of_square: Callable[[Array], Array]
+    angular: int = 20
+    radial: int = 8
+
+    def pressure(self, x: ArrayLike, y: ArrayLike) -> Array:
+        """p [Pa], 0 outside."""
+        square = np.asarray(x, dtype=float) ** 2 + np.asarray(y, dtype=float) ** 2
+        return np.where(square < self.radius**2, self.of_square(square), 0.0)
+
+    def rings(self, x: Array, y: Array, scale: Array) -> Rings:
+        """As in `RingPressure`."""
+        r0, a = np.hypot(x, y), self.radius
+        # points at the same distance from the axis share their rings
+        r, same = np.unique(r0, return_inverse=True)
+        least = np.full(r.size, np.inf)
+        np.minimum.at(least, same, scale)
+        marks = [([abs(a - one), a + one], one < a) for one in r]
+        of_distance = self._around(r, _panels(marks, least, self.radial))
+        return _turned(of_distance, same, np.arctan2(y, x))
+
+    def _around(self, r0: Array, panels: tuple[NDArray[np.intp], Array, Array]) -> Rings:
+        """Rings around points on the x axis, at x = r0."""
+        foot, radius, weight = panels
+        harmonics = np.zeros((7, foot.size))
+        s, w = _gauss(self.angular)
+        for begin in range(0, foot.size, AT_ONCE // self.angular):
+            part = slice(begin, begin + AT_ONCE // self.angular)
+            r, rho = r0[foot[part]], radius[part]
+            # the direction -x inwards; kappa = cos of the crossing from there
+            product = 2 * r * rho
+            kappa = np.full(rho.shape, -1e3)
+            np.divide(r * r + rho * rho - self.radius**2, product, out=kappa, where=product > 0)
+            crossing = kappa > -1
+            delta = np.where(
+                crossing, np.pi - np.arccos(np.clip(kappa, -1, 1)), np.arccosh(np.maximum(-kappa, 1.0))
+            )
+            beta, slope = _from_gap(delta, np.full(rho.shape, np.pi), crossing, s)
+            cosine = np.cos(beta)
+            square = (r - rho)[:, None] ** 2 + 2 * product[:, None] * np.cos(beta / 2) ** 2
+            p = self.of_square(np.minimum(square, self.radius**2)) * (2 * slope * w)
+            p[kappa >= 1] = 0
+            twice = 2 * cosine**2 - 1
+            harmonics[0, part] = p.sum(axis=1)
+            harmonics[1, part] = -(p * cosine).sum(axis=1)
+            harmonics[3, part] = (p * twice).sum(axis=1)
+            harmonics[5, part] = -(p * cosine * (2 * twice - 1)).sum(axis=1)
+        return Rings(foot, radius, weight, harmonics)
+
+
+@dataclass(frozen=True, eq=False)
+class SmoothContour:
+    """Pressure of a shape whose edge is no circle around the origin."""
+
+    shape: Shape
+    angular: int = 20
+    radial: int = 8
+
+    def pressure(self, x: ArrayLike, y: ArrayLike) -> Array:
+        """p [Pa], 0 outside."""
+        return self.shape.pressure(x, y)
+
+    def rings(self, x: Array, y: Array, scale: Array) -> Rings:
+        """As in `RingPressure`."""
+        inside = self.shape.polynomials(x, y)[0] > 0
+        marks = list(zip(self._touching(x, y), inside.tolist(), strict=True))
+        foot, radius, weight = _panels(marks, scale, self.radial)
+        harmonics = np.empty((7, foot.size))
+        step = AT_ONCE // (8 * self.angular)
+        for begin in range(0, foot.size, step):
+            part = slice(begin, begin + step)
+            harmonics[:, part] = self._harmonics(x[foot[part]], y[foot[part]], radius[part])
+        return Rings(foot, radius, weight, harmonics)
+
+    def _touching(self, x: Array, y: Array) -> list[list[float]]:
+        """Distances at which rings around each point touch the edge: extrema along it, ascending."""
+        (x0, y0), (A, B), h = self.shape.centre, self.shape.axes, 1e-3
+
+        def square(of: NDArray[np.intp], angle: Array) -> Array:
+            reach = self.shape.reach(angle)
+            found: Array = (x0 + A * reach * np.cos(angle) - x[of]) ** 2 + (y0 + B * reach * np.sin(angle) - y[of]) ** 2
+            return found
+
+        point, k = (v.ravel() for v in np.indices((x.size, AROUND)))
+        sampled = square(point, 2 * np.pi * k / AROUND).reshape(x.size, AROUND)
+        before, after = np.roll(sampled, 1, axis=1), np.roll(sampled, -1, axis=1)
+        extreme = (sampled - before) * (after - sampled) <= 0
+        extreme[~extreme.any(axis=1), :1] = True  # the centre of a circle
+        point, k = np.nonzero(extreme)
+        angle = 2 * np.pi * k / AROUND
+        for _ in range(4):
+            low, here, high = (square(point, angle + shift) for shift in (-h, 0.0, h))
+            slope, bend = (high - low) / (2 * h), (high - 2 * here + low) / h**2
+            flat = np.abs(bend) < 1e-6 * here
+            step = np.where(flat, 0.0, -slope / np.where(flat, 1.0, bend))
+            angle = angle + np.clip(step, -np.pi / AROUND, np.pi / AROUND)
+        # where two extrema are about to arise, the harmonics change as fast as beside one
+        bend = after - 2 * sampled + before
+        point_of_arising, k = np.nonzero(bend * np.roll(bend, -1, axis=1) < 0)
+        share = bend[point_of_arising, k] / (bend - np.roll(bend, -1, axis=1))[point_of_arising, k]
+        distance = np.sqrt(
+            np.concatenate([square(point, angle), square(point_of_arising, 2 * np.pi * (k + share) / AROUND)])
+        )
+        point = np.concatenate([point, point_of_arising])
+        order = np.lexsort((distance, point))
+        point, distance = point[order], distance[order]
+        begin = np.searchsorted(point, np.arange(x.size + 1))
+        touches = [distance[i:j].tolist() for i, j in zip(begin[:-1], begin[1:], strict=True)]
+        return [[one[0], *(d for d in one[1:-1] if d > 1.001 * one[0] and d < 0.999 * one[-1]), one[-1] + 1e-15] for one in touches]
+
+    def _harmonics(self, x: Array, y: Array, rho: Array) -> Array:
+        def t(ring: NDArray[np.intp], phi: Array) -> Array:
+            shift = (...,) + (None,) * (phi.ndim - 1)
+            u = x[ring][shift] + rho[ring][shift] * np.cos(phi)
+            value: Array = self.shape.polynomials(u, y[ring][shift] + rho[ring][shift] * np.sin(phi))[0]
+            return value
+
+        everywhere = np.arange(rho.size)
+        sampled = t(everywhere, np.broadcast_to(2 * np.pi * np.arange(RING) / RING, (rho.size, RING)))
+        ring, low, high, curvature = _segments(sampled, t)
+        t_low, t_high = t(ring, low), t(ring, high)
+        kept = t_high > 0
+        ring, low, high, curvature = ring[kept], low[kept], high[kept], curvature[kept]
+        t_low, t_high = t_low[kept], t_high[kept]
+        crossing = t_low < 0
+        inner, outer = np.zeros(ring.size), np.ones(ring.size)
+        for _ in range(50):  # bisection: the share of the segment at which t changes sign
+            middle = (inner + outer) / 2
+            positive = t(ring, low + middle * (high - low)) > 0
+            inner, outer = np.where(positive, inner, middle), np.where(positive, middle, outer)
+        width = np.abs(high - low)
+        missed = np.sqrt(np.maximum(2 * t_low, 0) / np.maximum(curvature, 1e-300))
+        delta = np.where(crossing, outer * width, missed)
+        s, w = _gauss(self.angular)
+        beta, slope = _from_gap(delta, width, crossing, s)
+        phi = low[:, None] + np.sign(high - low)[:, None] * beta
+        u = x[ring][:, None] + rho[ring][:, None] * np.cos(phi)
+        p = self.shape.pressure(u, y[ring][:, None] + rho[ring][:, None] * np.sin(phi)) * (slope * w)
+        out = np.empty((7, rho.size))
+        for m in range(4):
+            for at, wave in ((2 * m - 1, np.cos), (2 * m, np.sin)):
+                if at >= 0:
+                    value = (-1) ** m * (p * (wave(m * phi) if m else 1.0)).sum(axis=1)
+                    out[at] = np.bincount(ring, value, minlength=rho.size)
+        return out
+
+
+def _turned(rings: Rings, same: NDArray[np.intp], angle: Array) -> Rings:
+    """The rings around points on the x axis as those around points ``same`` in the direction ``angle``."""
+    begin = np.searchsorted(rings.foot, np.arange(same.max(initial=0) + 2))
+    count = np.diff(begin)[same]
+    foot = np.repeat(np.arange(same.size), count)
+    at = np.arange(foot.size) + np.repeat(begin[same] - (np.cumsum(count) - count), count)
+    harmonics = rings.harmonics[:, at]
+    for m in (1, 2, 3):
+        even = harmonics[2 * m - 1].copy()
+        harmonics[2 * m - 1] = even * np.cos(m * angle)[foot]
+        harmonics[2 * m] = even * np.sin(m * angle)[foot]
+    return Rings(foot, rings.radius[at], rings.weight[at], harmonics)
+
+
+def _from_gap(delta: Array, width: Array, crossing: NDArray[np.bool_], s: Array) -> tuple[Array, Array]:
+    """beta and d beta/ds at s in [0, 1] of arcs from the edge of a gap to ``width`` from its middle, (n, nodes)."""
+    delta = np.clip(delta, 1e-12, np.where(crossing, width, 4.0))
+    ratio = width / delta
+    top = np.where(crossing, np.arccosh(np.maximum(ratio, 1)), np.arcsinh(ratio))[:, None]
+    mu = top * s
+    c, h = np.cosh(mu), np.sinh(mu)
+    of_gap = crossing[:, None]
+    return delta[:, None] * np.where(of_gap, c, h), delta[:, None] * top * np.where(of_gap, h, c)
+
+
+def _segments(
+    sampled: Array, t: Callable[[NDArray[np.intp], Array], Array]
+) -> tuple[NDArray[np.intp], Array, Array, Array]:
+    """Arcs from each minimum of t on a ring to the maxima beside it: ring, both angles, t'' at the minimum.
+
+    sampled : t at equal angles from 0, (rings, RING).
+    """
+    before, after = np.roll(sampled, 1, axis=1), np.roll(sampled, -1, axis=1)
+    lows, highs = (sampled < before) & (sampled <= after), (sampled > before) & (sampled >= after)
+    flat = ~lows.any(axis=1) | ~highs.any(axis=1)
+    lows[flat], highs[flat] = False, False
+    lows[flat, 0] = highs[flat, RING // 2] = True
+    ring, k = np.nonzero(lows | highs)
+    phi, low = 2 * np.pi * k / RING, lows[ring, k]
+    h = 1e-3
+    for _ in range(3):
+        minus, here, plus = (t(ring, phi + shift) for shift in (-h, 0.0, h))
+        slope, curvature = (plus - minus) / (2 * h), (plus - 2 * here + minus) / h**2
+        good = np.where(low, curvature, -curvature) > 1e-12 * np.abs(sampled).max()
+        change = np.where(good, -slope / np.where(good, curvature, 1.0), 0.0)
+        phi = phi + np.clip(change, -np.pi / RING, np.pi / RING)
+    # neighbours along a ring, the last one and the first
+    first = np.searchsorted(ring, ring)
+    last = np.searchsorted(ring, ring, side="right") - 1
+    index = np.arange(ring.size)
+    following = np.where(index == last, first, index + 1)
+    ahead = np.where(index == last, phi[following] + 2 * np.pi, phi[following])
+    use = low != low[following]
+    at_low, at_high = np.where(low, index, following)[use], np.where(low, following, index)[use]
+    start, end = phi[use], ahead[use]
+    low_first = low[use]
+    del at_high
+    return (
+        ring[use],
+        np.where(low_first, start, end),
+        np.where(low_first, end, start),
+        np.maximum(curvature[at_low], 0.0),
+    )
+
+
+def _panels(
+    marks: list[tuple[list[float], bool]], scale: Array, nodes: int
+) -> tuple[NDArray[np.intp], Array, Array]:
+    """Gauss points on the rings of each point: its index, rho, weight rho d rho, (n,) each.
+
+    marks : radii at which rings touch the edge, ascending, and whether the point is inside.
+    """
+    foot, radius, weight = [], [], []
+    for k, ((touches, inside), depth) in enumerate(zip(marks, scale, strict=True)):
+        rho, measure = _graded(touches, inside, float(depth), nodes)
+        foot.append(np.full(rho.size, k))
+        radius.append(rho)
+        weight.append(measure * rho)
+    return np.concatenate(foot), np.concatenate(radius), np.concatenate(weight)
+
+
+def _graded(touches: list[float], inside: bool, scale: float, nodes: int) -> tuple[Array, Array]:
+    """Gauss points and weights of rho up to the last touching ring, from the first or, inside, from 0."""
+    s, w = _gauss(nodes)
+    crowded, slope = s**4, 4 * s**3 * w
+    points: list[Array] = []
+    weights: list[Array] = []
+
+    def plain(a: float, b: float, longest: Step) -> None:
+        while a < b * (1 - 1e-12):
+            step = longest(a)
+            step = b - a if step > 0.7 * (b - a) else step
+            points.append(a + step * s)
+            weights.append(step * w)
+            a += step
+
+    first, last = touches[0], touches[-1]
+    least = max(first, LEAST * last)
+    if inside and first > 0:
+        near = 0.75 * first
+        plain(0.0, near, lambda rho: min(np.hypot(rho, scale), 0.75 * (first - rho)))
+        points.append(first - (first - near) * crowded[::-1])
+        weights.append((first - near) * slope[::-1])
+    bounds = [first, *touches[1:-1], last]
+    for low, high in zip(bounds[:-1], bounds[1:], strict=True):
+        if high <= low:
+            continue
+        to = high if high == last else (low + high) / 2
+        begin = min(0.5 * least, (to - low) / 2, scale if low == 0 else np.inf)
+        points.append(low + begin * crowded)
+        weights.append(begin * slope)
+        plain(low + begin, to, lambda rho, low=low: min(np.hypot(rho, scale), 1.5 * (rho - low)))
+        if to < high:
+            end = min(0.5 * least, (high - to) / 2)
+            mirrored = len(points)
+            plain(0.0, high - end - to, lambda rho, high=high, to=to, end=end: min(np.hypot(to, scale), max(0.6 * (high - to - rho), end)))
+            for n in range(mirrored, len(points)):
+                points[n] = points[n] + to
+            points.append(high - end * crowded[::-1])
+            weights.append(end * slope[::-1])
+    return np.concatenate(points), np.concatenate(weights)
+
+
+@lru_cache
+def _gauss(nodes: int) -> tuple[Array, Array]:
+    """Gauss-Legendre points and weights on [0, 1]."""
+    s, w = np.polynomial.legendre.leggauss(nodes)
+    return (1 + s) / 2, w / 2
