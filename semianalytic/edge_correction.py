@@ -7,13 +7,14 @@ fifth to a tenth of the error.
 """
 
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
 
 from semianalytic import edge_shape, influence, smooth_edge
 from semianalytic.arrays import namespace, to_numpy
-from semianalytic.edge_shape import Shape
+from semianalytic.edge_shape import Shape, Step
 from semianalytic.inputs import Body, Numerics
 from semianalytic.level import Level, LevelProblem
 
@@ -23,7 +24,8 @@ Array = NDArray[np.floating]
 
 ROUNDS = 8  # at most
 STILL = 5e-4  # of a patch: a smaller movement of the edge in a round leaves less than a ten-thousandth
-MISFIT = 0.35  # patches by which the pressures near a smooth edge may miss f
+MISFIT, COARSE_MISFIT = 0.3, 2.0  # patches by which the pressures near a smooth edge may miss f; in the first rounds
+OUTER_TERMS = 6  # polynomials of a pressure that is fitted near the edge alone
 NARROW = 5  # patches between centre and edge, below which the edge is not resolved
 FEW, MOST = 3, 60  # polynomials
 
@@ -33,41 +35,63 @@ def corrected(problem: LevelProblem, start: Shape | None) -> Level:
 
     start : shape on a coarser grid, None for that of the patches alone.
     """
-    grid, gap, x, y = problem.grid, problem.gap, *problem.centres
-    near, weight = _near_influence(problem), grid.weight(problem.gap.shape)
-    convolutions = 0
-    if start is None:
-        level = problem.solve(0.0, 0.0)
-        p, shape = to_numpy(level.found.pressure), _start(problem, to_numpy(level.found.pressure))
-        convolutions = level.convolutions
-    else:
-        shape = start.with_terms(_terms(problem, start.axes))
-        p = shape.pressure(x, y)  # smoother than the interpolated pressure of the patches
+    gap = problem.gap
+    if start is not None:
+        terms = OUTER_TERMS if start.outside else _terms(problem, start.axes)
+        level = _rounds(problem, gap, start.with_terms(terms), None)
+        if level is not None:
+            return level
+    problem.gap = gap
+    alone = problem.solve(0.0, 0.0)
+    p = to_numpy(alone.found.pressure)
+    shape = _start(problem, p)
     if shape is None:
-        return level
+        return alone
+    # all of the pressure or, where its inside is not smooth, what is near the edge
+    for first in (shape, replace(shape.with_terms(OUTER_TERMS), outside=True)):
+        level = _rounds(problem, gap, first, p)
+        if level is not None:
+            return replace(level, convolutions=level.convolutions + alone.convolutions)
+    problem.gap = gap
+    return alone
+
+
+def _rounds(problem: LevelProblem, gap: Array, shape: Shape, p: Array | None) -> Level | None:
+    """Rounds of fit and contact from a shape; None where the edge that they find is not that of the patches.
+
+    p : pressure of the patches alone [Pa], to which the shape is fitted first; None for a shape that is fitted.
+    """
+    grid, (x, y), xp = problem.grid, problem.centres, namespace(gap)
+    near, weight, convolutions = _near_influence(problem), grid.weight(gap.shape), 0
+    step: Step | None = None
 
     def deflection(field: Array) -> Array:
-        xp = namespace(problem.gap)
         return np.array(to_numpy(problem.deflection(xp.asarray(field))))  # its own memory is used again
 
-    if start is None:
+    fit = partial(edge_shape.fitted, x=x, y=y, deflection=deflection, weight=weight, patch=grid.d)
+    if p is None and shape.outside:
+        p = to_numpy(problem.first_guess())
+    elif p is None:
+        p = shape.pressure(x, y)  # smoother than the interpolated pressure of the patches
+    else:
         for fixed in (True, False, False, False):
-            shape, _ = edge_shape.fitted(shape, p, x, y, deflection, weight, grid.d, fixed_edge=fixed)
+            shape, _ = fit(shape, p, fixed_edge=fixed)
     for _ in range(ROUNDS):
         edge = smooth_edge.edge_patches(shape, p, grid, problem.window)
+        if not edge.misfit < COARSE_MISFIT:
+            return None
         u, missing = smooth_edge.beyond_centres(edge, p, grid, deflection, near)
-        xp = namespace(gap)
         problem.gap = gap + xp.asarray(u)
         level = problem.solve(0.0, missing, start=xp.asarray(p))
         convolutions += level.convolutions + 1
         p = to_numpy(level.found.pressure)
-        shape, moved = edge_shape.fitted(shape, p, x, y, deflection, weight, grid.d)
+        shape, step = fit(shape, p, before=step)
+        moved = float(np.abs(step.change[-len(shape.harmonics) :]).sum()) * min(shape.axes)
         if moved < STILL * grid.d:
             break
     edge = smooth_edge.edge_patches(shape, p, grid, problem.window)
     if not edge.misfit < MISFIT or min(shape.axes) < NARROW * grid.d:
-        problem.gap = gap
-        return problem.solve(0.0, 0.0)
+        return None
     return replace(level, shape=shape, edge=edge, convolutions=convolutions)
 
 

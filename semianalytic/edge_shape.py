@@ -22,14 +22,15 @@ import numpy as np
 from numpy.polynomial import legendre
 from numpy.typing import ArrayLike, NDArray
 
-__all__ = ["EVEN", "FULL", "ROUND", "Shape", "fitted", "start"]
+__all__ = ["EVEN", "FULL", "ROUND", "Shape", "Step", "fitted", "start"]
 
 Array = NDArray[np.floating]
 
 ROUND = (0,)  # harmonics of a contact that is round,
 EVEN = (0, 2, 4, 6)  # even in x and in y,
 FULL = (0, 1, -1, 2, -2, 3, -3, 4, -4, 6, -6)  # any
-DAMPING = 0.8  # of a fit: undamped, the rounds of fit and contact oscillate
+DAMPING = 0.8  # share of the first step of a fit
+FADED = 0.3, 0.65  # t over which a pressure fitted near the edge alone fades towards the inside; so does its fit
 BLUNT = 0.7  # patches from the edge, nearer than which the column of the edge, infinite there, is constant
 SLACK = 0.15  # patches by which the edge may pass the centre of a loaded or of an unloaded patch
 ANGLES = 256  # at which a contour that is no ellipse is sampled
@@ -37,13 +38,17 @@ ANGLES = 256  # at which a contour that is no ellipse is sampled
 
 @dataclass(frozen=True, eq=False)
 class Shape:
-    """centre (x0, y0), axes (A, B) [m].  harmonics : n, (k,).  contour : c, (k,).  coefficients : b [Pa], (M, k)."""
+    """centre (x0, y0), axes (A, B) [m].  harmonics : n, (k,).  contour : c, (k,).  coefficients : b [Pa], (M, k).
+
+    outside : f is fitted near the edge alone, where the pressure inside is not smooth, and fades to zero inside.
+    """
 
     centre: tuple[float, float]
     axes: tuple[float, float]
     harmonics: tuple[int, ...]
     contour: Array
     coefficients: Array
+    outside: bool = False
 
     @property
     def round(self) -> bool:
@@ -88,12 +93,19 @@ class Shape:
     def pressure(self, x: ArrayLike, y: ArrayLike = 0.0) -> Array:
         """f [Pa], 0 outside the edge; shape of x, y [m], broadcast."""
         t, _, H = self.polynomials(x, y)
-        return np.sqrt(np.maximum(t, 0)) * self._smooth(np.clip(t, 0, 1), H)
+        t = np.clip(t, 0, 1)
+        return self._faded(t, np.sqrt(t) * self._smooth(t, H))
+
+    def _faded(self, t: Array, f: Array) -> Array:
+        if not self.outside:
+            return f
+        s = np.clip((FADED[1] - t) / (FADED[1] - FADED[0]), 0, 1)
+        return f * s**3 * (10 - s * (15 - 6 * s))
 
     def at_distance(self, square: Array) -> Array:
         """f [Pa] of a round contact at the distances whose squares are given [m^2]."""
         t = np.clip(1 - square / self.axes[0] ** 2, 0, 1)
-        return np.sqrt(t) * legendre.legval(2 * t - 1, self.coefficients[:, 0])
+        return self._faded(t, np.sqrt(t) * legendre.legval(2 * t - 1, self.coefficients[:, 0]))
 
     def square(self, x: Array, y: Array) -> Array:
         """f^2 = t q^2 [Pa^2], continued beyond the edge, where it is negative."""
@@ -155,12 +167,30 @@ def start(pressure: Array, x: Array, y: Array, harmonics: tuple[int, ...], terms
     count = np.count_nonzero(loaded)
     x, y = (np.broadcast_to(v, loaded.shape)[loaded] for v in (x, y))
     x0, y0 = (float(v.mean()) if 1 in harmonics else 0.0 for v in (x, y))
-    A, B = (2 * float(np.sqrt(np.mean((v - v0) ** 2))) for v, v0 in ((x, x0), (y, y0)))
+    u, v = x - x0, y - y0
+    A, B = 2 * float(np.sqrt(np.mean(u * u))), 2 * float(np.sqrt(np.mean(v * v)))
+    contour = np.zeros(len(harmonics))
     if harmonics == ROUND:
         A = B = float(np.sqrt(count * area / np.pi))
+    elif -2 in harmonics:  # an ellipse whose axes are turned
+        r = 4 * float(np.mean(u * v)) / (A * B)
+        A, B = A * float(np.sqrt(1 - r * r)), B * float(np.sqrt(1 - r * r))
+        contour[harmonics.index(-2)] = r / 2
     b = np.zeros((terms, len(harmonics)))
     b[0, 0] = 1.5 * float(pressure[loaded].mean())
-    return Shape((x0, y0), (A, B), harmonics, np.zeros(len(harmonics)), b)
+    return Shape((x0, y0), (A, B), harmonics, contour, b)
+
+
+@dataclass(frozen=True, eq=False)
+class Step:
+    """A change of the coefficients, ((M + 1) k,), and the same in the energy norm, where it is of order one.
+
+    share : of it that was taken.
+    """
+
+    change: Array
+    scaled: Array
+    share: float = DAMPING
 
 
 def fitted(
@@ -172,33 +202,47 @@ def fitted(
     weight: Array | None,
     patch: float,
     *,
+    before: Step | None = None,
     fixed_edge: bool = False,
-) -> tuple[Shape, float]:
-    """The shape nearer to the patches' pressure in the energy norm, and by how far its edge moved [m].
+) -> tuple[Shape, Step]:
+    """The shape nearer to the patches' pressure in the energy norm, and the step to it.
+
+    The step is relaxed: rounds of fit and contact would oscillate. Its share is Aitken's, from the step before
+    (Irons and Tuck, Int. J. Numer. Meth. Engng 1 (1969) 275-277).
 
     pressure [Pa] : of the patches at centres x, y [m], (nx, ny).  deflection : K p.  weight : patches that each
     one represents.  patch [m] : the side.  fixed_edge : change the coefficients b alone.
     """
     k, across = len(shape.harmonics), min(shape.axes)
-    columns = shape.columns(x, y, 2 * BLUNT * patch / across / 2)
+    columns = shape.columns(x, y, BLUNT * patch / across)
     if fixed_edge:
         columns = columns[:-k]
-    left = (pressure - shape.pressure(x, y)).ravel()
+    left = pressure - replace(shape, outside=False).pressure(x, y)
+    if shape.outside:
+        window = np.clip((FADED[1] - shape.polynomials(x, y)[0]) / (FADED[1] - FADED[0]), 0, 1)
+        columns, left = columns * window, left * window
     deflected = np.array([deflection(column) for column in columns]).reshape(len(columns), -1)
     if weight is not None:
         deflected *= weight.ravel()
     normal = deflected @ columns.reshape(len(columns), -1).T
-    scale = 1 / np.sqrt(np.diag(normal))
-    scaled = (normal + normal.T) / 2 * np.outer(scale, scale)
-    found = np.linalg.lstsq(scaled, deflected @ left * scale, rcond=1e-14)[0] * scale
+    size = np.sqrt(np.diag(normal))
+    scaled = np.linalg.lstsq(
+        (normal + normal.T) / 2 / np.outer(size, size), deflected @ left.ravel() / size, rcond=1e-14
+    )[0]
+    change = scaled / size
     if fixed_edge:
-        return shape.changed(np.concatenate([found, np.zeros(k)])), np.inf
-    found *= DAMPING
+        return shape.changed(np.concatenate([change, np.zeros(k)])), Step(change, scaled)
+    share = DAMPING
+    if before is not None and before.scaled.size == scaled.size:
+        difference = scaled - before.scaled
+        share = -before.share * float(before.scaled @ difference) / float(difference @ difference)
+        share = float(np.clip(share, 0.25, 1.0))
     # no farther than a patch at a time
-    moved = float(np.abs(found[-k:]).sum()) * across
-    found[-k:] *= min(1.0, patch / moved) if moved else 1.0
-    shape = _between_centres(shape.changed(found), pressure > 0, x, y, patch)
-    return shape, moved
+    moved = share * float(np.abs(change[-k:]).sum()) * across
+    taken = share * change
+    taken[-k:] *= min(1.0, patch / moved) if moved else 1.0
+    shape = _between_centres(shape.changed(taken), pressure > 0, x, y, patch)
+    return shape, Step(change, scaled, share)
 
 
 def _between_centres(shape: Shape, loaded: NDArray[np.bool_], x: Array, y: Array, patch: float) -> Shape:

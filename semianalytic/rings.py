@@ -62,7 +62,8 @@ class RingPressure(Protocol):
 def rings_of(shape: Shape, coarser: int = 0) -> "RingPressure":
     """The pressure of a shape, by fewer points where ``coarser``."""
     terms = len(shape.coefficients)
-    angular, radial = 16 + terms - 2 * coarser, 8 + terms // 4 - coarser
+    more = 12 if shape.outside else 0
+    angular, radial = 16 + more + terms - 2 * coarser, 8 + more + terms // 4 - coarser
     if shape.round:
         return Disc(shape.axes[0], shape.at_distance, angular, radial)
     return SmoothContour(shape, angular, radial)

@@ -144,15 +144,20 @@ class Solution:
         With a smooth edge that of its shape, fitted to the patches; of patches alone interpolated between them
         by p^2.
         """
-        smooth = self._level.smooth()
-        if smooth is None:
-            square = self.patch_pressure**2
-            touched = _at(self.nodes, square, x, y, order=1) > 0  # the cubic may oscillate beyond
-            return np.sqrt(np.maximum(np.where(touched, _at(self.nodes, square, x, y), 0), 0))
+        if self._level.smooth() is not None:
+            return self._smooth_pressure(self._level, x, y)
+        square = self.patch_pressure**2
+        touched = _at(self.nodes, square, x, y, order=1) > 0  # the cubic may oscillate beyond
+        return np.sqrt(np.maximum(np.where(touched, _at(self.nodes, square, x, y), 0), 0))
+
+    @staticmethod
+    def _smooth_pressure(level: Level, x: ArrayLike, y: ArrayLike) -> Array:
+        smooth = level.smooth()
+        assert smooth is not None
         value = smooth.pressure(x, y)
-        if self._level.rest is None:
-            return np.maximum(value, 0)
-        return np.maximum(value + _at(self.nodes, self._level.grid.whole(self._level.rest), x, y, order=1), 0)
+        if level.rest is not None:
+            value = value + _at(level.nodes, level.grid.whole(level.rest), x, y)
+        return np.maximum(value, 0)
 
     def stress(
         self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None, body: str = "flat"
@@ -237,11 +242,11 @@ class Solution:
     def _smooth_uncertainty(self, x: ArrayLike, y: ArrayLike, own_edge: bool) -> Array:
         """Uncertainty of the pressure [Pa] of a smooth edge: of its shape at the same x/a, and of its radius."""
         assert self.uncertainty is not None
-        shapes = [level.shape for level in self._levels if level.shape is not None]
-        fine = shapes[0]
+        fine = self._level.shape
+        assert fine is not None
         p, second, third = (
-            one.pressure(np.asarray(x) * one.radius / fine.radius, np.asarray(y) * one.radius / fine.radius)
-            for one in shapes
+            self._smooth_pressure(level, np.asarray(x) * level.radius / fine.radius, np.asarray(y) * level.radius / fine.radius)
+            for level in self._levels
         )
         factor, share = SMOOTH
         total = np.maximum(factor * np.abs(p - second), share * np.abs(second - third))
