@@ -23,6 +23,7 @@ __all__ = ["corrected"]
 Array = NDArray[np.floating]
 
 ROUNDS = 8  # at most
+HELD = 2  # rounds from patches alone in which the edge is held
 STILL = 5e-4  # of a patch: a smaller movement of the edge in a round leaves less than a ten-thousandth
 MISFIT, COARSE_MISFIT = 0.3, 2.0  # patches by which the pressures near a smooth edge may miss f; in the first rounds
 OUTER_TERMS = 6  # polynomials of a pressure that is fitted near the edge alone
@@ -48,7 +49,8 @@ def corrected(problem: LevelProblem, start: Shape | None) -> Level:
     if shape is None:
         return alone
     # all of the pressure or, where its inside is not smooth, what is near the edge
-    for first in (shape, replace(shape.with_terms(OUTER_TERMS), outside=True)):
+    outside = () if problem.indenter.round else (replace(shape.with_terms(OUTER_TERMS), outside=True),)
+    for first in (shape, *outside):
         level = _rounds(problem, gap, first, p)
         if level is not None:
             return replace(level, convolutions=level.convolutions + alone.convolutions)
@@ -69,22 +71,26 @@ def _rounds(problem: LevelProblem, gap: Array, shape: Shape, p: Array | None) ->
         return np.array(to_numpy(problem.deflection(xp.asarray(field))))  # its own memory is used again
 
     fit = partial(edge_shape.fitted, x=x, y=y, deflection=deflection, weight=weight, patch=grid.d)
-    if p is None and shape.outside:
-        p = to_numpy(problem.first_guess())
-    elif p is None:
-        p = shape.pressure(x, y)  # smoother than the interpolated pressure of the patches
-    else:
-        for fixed in (True, False, False, False):
-            shape, _ = fit(shape, p, fixed_edge=fixed)
-    for _ in range(ROUNDS):
+    fresh = p is not None
+    if p is None:  # f is smoother than the interpolated pressure of the patches
+        p = to_numpy(problem.first_guess()) if shape.outside else shape.pressure(x, y)
+    for number in range(ROUNDS):
+        # the patches alone know the radius better than the shape of their pressure near the edge
+        if fresh and number < HELD:
+            shape, _ = fit(shape, p, fixed_edge=True)
+        elif fresh and number == HELD:
+            for _ in range(2):
+                shape, _ = fit(shape, p)
         edge = smooth_edge.edge_patches(shape, p, grid, problem.window)
-        if not edge.misfit < COARSE_MISFIT:
+        if not edge.misfit < COARSE_MISFIT and number >= HELD:
             return None
         u, missing = smooth_edge.beyond_centres(edge, p, grid, deflection, near)
         problem.gap = gap + xp.asarray(u)
         level = problem.solve(0.0, missing, start=xp.asarray(p))
         convolutions += level.convolutions + 1
         p = to_numpy(level.found.pressure)
+        if fresh and number < HELD:
+            continue
         shape, step = fit(shape, p, before=step)
         moved = float(np.abs(step.change[-len(shape.harmonics) :]).sum()) * min(shape.axes)
         if moved < STILL * grid.d:
@@ -120,13 +126,14 @@ def _terms(problem: LevelProblem, axes: tuple[float, float]) -> int:
     """Polynomials of q: its singularities lie 2 h beyond the edge, h the depth of what reflects.
 
     Of an analytic function the error falls as exp(-c M sqrt(h/a)): Boyd, Chebyshev and Fourier Spectral Methods
-    (2001), section 2. More than the patches resolve would fit their errors, ten times as large at the edge.
+    (2001), section 2. More than the patches resolve would fit their errors, ten times as large at the edge: the
+    last polynomial changes sign a quarter of a patch from the edge, t = (1.2/M)^2, or further away.
     """
     both, d, a = problem.body.response, problem.grid.d, min(axes)
     depth = both.depth if both else np.inf
     terms = 0.6 * (6 + 6 * np.sqrt(a / depth))
     most = 12.0 if depth < 2 * d else MOST
-    return int(max(FEW, min(terms, most, a / (4 * d))))
+    return int(max(FEW, min(terms, most, a / (4 * d), 1.7 * np.sqrt(a / d))))
 
 
 def _near_influence(problem: LevelProblem) -> Array:

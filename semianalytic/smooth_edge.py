@@ -41,7 +41,7 @@ class EdgePatches:
 
     i, j : indices, (k,).  centre : f at the centres [Pa], (k,).  parts : means of f over PARTS x PARTS parts [Pa],
     (k, PARTS^2).  share : integrated by parts, (k,).  misfit : largest distance by which the patches' pressure
-    misses f near the edge, in patches.
+    misses f near the edge, in patches where f^2 is steepest.
     """
 
     i: Indices
@@ -82,7 +82,7 @@ def edge_patches(shape: Shape, p: Array, grid: Grid, window: Window) -> EdgePatc
     slope = np.hypot(quadratic[:, 1], quadratic[:, 2])
     held = p[i, j]
     at_edge = (depth[i, j] >= 1) & (depth[i, j] <= 2)
-    missed = np.abs(held**2 - c)[at_edge] / np.maximum(slope[at_edge], np.finfo(float).tiny)
+    missed = np.abs(held**2 - c)[at_edge] / slope[at_edge].max(initial=np.finfo(float).tiny)
     centre = np.sqrt(np.maximum(c, 0))
     return EdgePatches(i, j, centre, _parts(quadratic, depth[i, j] < NEARLY), share, float(missed.max(initial=0.0)))
 

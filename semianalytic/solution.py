@@ -13,7 +13,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.interpolate import RectBivariateSpline
-from scipy.ndimage import maximum_filter
+from scipy.ndimage import distance_transform_cdt, maximum_filter
 
 from semianalytic import fields
 from semianalytic.inputs import Body, check_finite
@@ -237,7 +237,15 @@ class Solution:
         reach = 2 * int(np.ceil(2 * ratio)) + 1
         widened = maximum_filter(difference, size=reach, mode="nearest")
         total = _at(self.nodes, widened, x, y, order=1) + (2 * floor + RESOLUTION) * self.peak_pressure
-        return 2 * total
+        return 2 * total + self._rim(x, y, 0.0)
+
+    def _rim(self, x: ArrayLike, y: ArrayLike, z: ArrayLike) -> Array:
+        """Error [Pa] that a staircase makes of an edge: the highest pressure beside it, felt over a patch."""
+        d, loaded = self.diagnostics.patch_size, np.pad(self.patch_pressure > 0, 1)
+        inside, outside = (distance_transform_cdt(marks, metric="chessboard") for marks in (loaded, ~loaded))
+        highest = float(self.patch_pressure[inside[1:-1, 1:-1] == 1].max(initial=0.0))
+        away = _at(self.nodes, (np.maximum(inside, outside) - 1.0)[1:-1, 1:-1], x, y, order=1) * d
+        return highest * d / (d + np.hypot(away, z))
 
     def _smooth_uncertainty(self, x: ArrayLike, y: ArrayLike, own_edge: bool) -> Array:
         """Uncertainty of the pressure [Pa] of a smooth edge: of its shape at the same x/a, and of its radius."""
@@ -313,6 +321,7 @@ class Solution:
             total = change + floor * self.peak_pressure
             shallow = np.asarray(z) < 4 * self.diagnostics.patch_size
             total += np.where(shallow, *EVALUATION) * self.peak_pressure
+            total += self._rim(x, y, z)
         return sigma, np.broadcast_to(total, (3, 3, *change.shape)).copy()
 
     @cached_property

@@ -39,6 +39,7 @@ Ball = tuple[float, float, Coatings]
 
 LARGEST = 0.9  # contact radius over that of the sphere
 ROUGH, ROOMY = 49, 1.5  # patches a side of the grid that finds the contact radius, and its half-width over that
+FINER, LARGEST_GRID = 1.4, 725  # patches a side of the next grid over the last; of the last for ``accuracy``
 STEPS = 0.08, 0.16  # of the load, to the neighbouring contacts that give the stiffness
 
 
@@ -62,6 +63,7 @@ def solve(
     estimate_uncertainty: bool = True,
     threads: int = 1,
     gap: str = "parabola",
+    accuracy: float | None = 1e-5,
 ) -> Solution:
     """Press a sphere of ``radius`` [m] with ``load`` [N] on a coated half-space.
 
@@ -71,8 +73,10 @@ def solve(
     approach : delta [m], of distant points of both bodies, instead of the load, which then is None.
     patches : per side of the finest grid, odd. The other numerics: ``inputs.Numerics``; the conversions:
     ``influence``.
-    edge_correction : by the edge profile, which gives contact radius and stresses; the patches find what it
-    leaves, whatever their conversion, and the approach. False : patches alone, whose edge is a staircase.
+    edge_correction : for the square root of the pressure at the edge (``edge_correction``). False : constant
+    patches alone, whose edge is a staircase.
+    accuracy : relative uncertainty of contact radius, approach and peak pressure, for which the patches are
+    refined beyond ``patches`` to at most 725 a side; the solution states what it reached. None : no refinement.
     gap : "parabola" r^2/2R or "sphere" R - sqrt(R^2 - r^2).
 
     Raises ValueError for input without meaning and for a contact as wide as the sphere, NotConverged when the
@@ -102,6 +106,13 @@ def solve(
     if touches_rim(levels[-1].found.pressure, levels[-1].grid.quarter):
         raise NotConverged(f"the contact reaches the rim of the grid, fill = {fill:g}; enlarge it")
     estimate = uncertainty.of_contact(levels, sphere, body, numerics) if estimate_uncertainty else None
+    while estimate and accuracy and levels[-1].shape and estimate.relative_to(levels[-1].scalars) > accuracy:
+        n = odd(FINER * levels[-1].grid.n)
+        if n > LARGEST_GRID:
+            break
+        grid = replace(levels[-1].grid, n=n, d=2 * half_width / n)
+        levels.append(nested.solve_on(grid, levels[-1], sphere, body, numerics))
+        estimate = uncertainty.of_contact(levels, sphere, body, numerics)
     solution = Solution.of_levels(levels[-3:], body, estimate, began)
     if levels[-1].shape is None:
         return solution

@@ -13,7 +13,7 @@ from semianalytic.level import Indenter, Level
 __all__ = ["WIDER", "Uncertainty", "change", "of_contact", "other_conversion", "safety"]
 
 WIDER = 1.25  # the box that tests the domain over the box in use
-SMOOTH = (2.0, 1.0)  # times the last change, or the one before, of a contact with a smooth edge
+SMOOTH = (2.0, 0.5)  # times the last change, or the one before, of a contact with a smooth edge
 PATCHES = 1 / 2  # of the change before, of patches alone, whose edge changes erratically
 
 
@@ -63,6 +63,10 @@ class Uncertainty:
             rows.append((name, "patch size", float(found)))
             rows += [(name, varied, change[name]) for varied, change in variations.items()]
         return cls._of(rows)
+
+    def relative_to(self, scalars: dict[str, float]) -> float:
+        """The largest uncertainty over its scalar."""
+        return max(getattr(self, name) / value for name, value in scalars.items())
 
     @classmethod
     def _of(cls, rows: list[tuple[str, str, float]]) -> "Uncertainty":
