@@ -4,10 +4,10 @@ import functools
 
 import pytest
 
-from verification.cases.contact import read_case, shipped_cases
+from verification.cases.case_file import read_case, shipped_cases
 from verification.judging.verdict import Outcome
-from verification.running.contact import run
-from verification.running.result import CaseResult
+from verification.running.case_result import CaseResult
+from verification.running.contact_run import run
 
 CASES = {name: read_case(path) for name, path in shipped_cases().items()}
 

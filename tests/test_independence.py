@@ -10,7 +10,7 @@ import pytest
 
 import fem_reference
 import semianalytic
-from verification.problem.contact import CoatedContact
+from verification.problem.coated_contact import CoatedContact
 from verification.sources.references import integral_equation
 
 ROOT = Path(__file__).resolve().parent.parent

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from fem_reference.axisymmetric import Discretisation, constrained_solve
-from verification.credibility.manufactured import (
+from verification.credibility.manufactured_solutions import (
     MATERIALS,
     boundary,
     design_orders,

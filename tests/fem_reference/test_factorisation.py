@@ -7,7 +7,7 @@ from fem_reference import dissection, factorisation, solve
 from fem_reference.axisymmetric import Discretisation
 from fem_reference.dissection import CholeskyFactor, DissectionTree
 from fem_reference.factorisation import BlockPattern, PardisoFactor, pardiso_library
-from verification.credibility.manufactured import MATERIALS, unit_square
+from verification.credibility.manufactured_solutions import MATERIALS, unit_square
 
 needs_mkl = pytest.mark.skipif(
     pardiso_library() is None, reason="Pardiso is not compared: the wheel mkl is missing (extra fast)"

@@ -21,7 +21,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
-from verification.running.store import PART, StoreError, read_checked
+from verification.running.checked_files import PART, StoreError, read_checked
 
 __all__ = ["disturbed", "largest_difference", "main", "resumed"]
 

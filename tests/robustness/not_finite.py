@@ -17,12 +17,12 @@ from typing import Any
 import numpy as np
 import scipy.sparse as sp
 
-from verification.cases.contact import Case, parse_case
-from verification.judging.claims import standard_claims
+from verification.cases.case_file import Case, parse_case
+from verification.judging.standard_claims import standard_claims
 from verification.judging.verdict import Outcome
-from verification.running.contact import run
-from verification.running.result import CaseResult
-from verification.sources.registry import solvers
+from verification.running.case_result import CaseResult
+from verification.running.contact_run import run
+from verification.sources.source_registry import solvers
 
 __all__ = ["BAD", "PLACES", "Place", "clean", "outcome_of", "planted"]
 

@@ -12,7 +12,7 @@ import sys
 import time
 from pathlib import Path
 
-from verification.running.store import write_checked
+from verification.running.checked_files import write_checked
 
 
 def main(how: str, path: str) -> None:

@@ -12,8 +12,8 @@ from pathlib import Path
 
 from kill_default_run import largest_difference
 
-from verification.cases.contact import read_case, shipped_cases
-from verification.running.tasks import run_cases
+from verification.cases.case_file import read_case, shipped_cases
+from verification.running.case_tasks import run_cases
 
 __all__ = ["LIMIT", "main", "repeated"]
 

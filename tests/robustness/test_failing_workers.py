@@ -9,16 +9,18 @@ import sys
 import time
 from collections import Counter
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
+import planted_worker
 import pytest
 from quick_case import QUICK
 
 from verification.commands import run as command
-from verification.running.pool import processes
-from verification.running.pool.processes import run_tasks
-from verification.running.pool.task import Task
-from verification.running.store import StoreError, read_checked, write_checked
+from verification.running.checked_files import StoreError, read_checked, write_checked
+from verification.running.pool import process_pool
+from verification.running.pool.pool_task import Task
+from verification.running.pool.process_pool import run_tasks
 
 HERE = Path(__file__).parent
 # What a process dies of, and how the reason must read.
@@ -44,7 +46,7 @@ def task(how: str, folder: Path, number: int = 0) -> Task[str]:
     path = folder / f"{how}-{number}.json"
     return Task(
         path.stem,
-        ("planted_worker:main", how, str(path)),
+        partial(planted_worker.main, how, path),
         path,
         lambda data: data["said"],
         lambda reason, _: reason,
@@ -69,16 +71,16 @@ def gone(pids: list[int], within: float) -> float:
 
 @pytest.mark.parametrize(("cores", "jobs", "threads"), [(7, 2, "3"), (2, 3, "1")])
 def test_jobs_share_the_cores_and_each_has_one_at_least(cores, jobs, threads, tmp_path, monkeypatch):
-    monkeypatch.setattr(processes, "cores", lambda: cores)
+    monkeypatch.setattr(process_pool, "cores", lambda: cores)
     assert run_tasks([task("threads", tmp_path)], jobs=jobs, time_limit=300) == [threads]
 
 
 def test_cores_are_those_that_the_process_may_use(monkeypatch):
     monkeypatch.setattr(os, "sched_getaffinity", lambda _: {3}, raising=False)
     monkeypatch.setattr(os, "cpu_count", lambda: 8)
-    assert processes.cores() == 1
+    assert process_pool.cores() == 1
     monkeypatch.delattr(os, "sched_getaffinity")
-    assert processes.cores() == 8
+    assert process_pool.cores() == 8
 
 
 def test_each_death_has_its_reason_and_the_others_finish(tmp_path):
@@ -124,7 +126,7 @@ def test_worker_that_cannot_write_ends_the_run_with_one_sentence(tmp_path):
     write_checked(tmp_path / "good-0.json", {"said": "earlier"})
     (tmp_path / "file").write_text("in the way")
     blocked = Task(
-        "x", ("planted_worker:main", "good", str(tmp_path / "file" / "x.json")), tmp_path / "x", str, str
+        "x", partial(planted_worker.main, "good", tmp_path / "file" / "x.json"), tmp_path / "x", str, str
     )
     with pytest.raises(StoreError, match=r"file/x\.json: cannot be written"):
         run_tasks([blocked], jobs=1, time_limit=300)
@@ -164,7 +166,7 @@ def test_process_that_cannot_be_started_is_a_reason(tmp_path, monkeypatch):
     def refuse(*_, **__):
         raise OSError(12, "Cannot allocate memory")
 
-    monkeypatch.setattr(processes.subprocess, "Popen", refuse)
+    monkeypatch.setattr(process_pool.subprocess, "Popen", refuse)
     (reason,) = run_tasks([task("good", tmp_path)], jobs=1, time_limit=300)
     assert reason.startswith("its process could not be started (Cannot allocate memory)")
 
@@ -219,8 +221,8 @@ def test_every_death_ten_times_in_a_run_that_still_writes_its_report(tmp_path, m
     def planted(case, folder, **keywords):
         task = solving(case, folder, **keywords)
         how = names.get(case.name)
-        words = ("planted_worker:main", how, str(task.path))
-        return task if how is None else replace(task, command=words, together=None)
+        work = partial(planted_worker.main, how, task.path)
+        return task if how is None else replace(task, work=work, together=None)
 
     monkeypatch.setattr(command, "case_task", planted)
     files = [str(tmp_path / f"{name}.toml") for name in ("quick", *names)]

@@ -11,7 +11,7 @@ import pytest
 from kill_default_run import disturbed, largest_difference, resumed
 from repetitions import LIMIT, repeated
 
-from verification.running.store import write_checked
+from verification.running.checked_files import write_checked
 
 QUICK = """
 title = "Quick"
@@ -94,7 +94,7 @@ def test_comparison_of_runs_sees_a_changed_number_and_a_changed_verdict(tmp_path
 LOSER = """
 import subprocess, sys, time
 from pathlib import Path
-from verification.running.store import write_checked
+from verification.running.checked_files import write_checked
 write_checked(Path(sys.argv[1]) / "cases" / "a.json", {"outcome": "AGREES", "value": time.time()})
 subprocess.Popen(["sleep", "30"], start_new_session=True)
 (Path(sys.argv[1]) / "report.json").write_text("{}")

@@ -15,12 +15,12 @@ from hypothesis import HealthCheck, Phase, given, settings
 from hypothesis import strategies as st
 from malformed import dump, garbled, malformed
 
-from verification.cases.contact import shipped_cases
-from verification.cases.published import published_cases, read_published
-from verification.cases.toml import CaseError
+from verification.cases.case_file import shipped_cases
+from verification.cases.published_file import published_cases, read_published
+from verification.cases.toml_file import CaseError
 from verification.commands import run as command
-from verification.running.pool import processes
-from verification.study.plan import read_study_file, shipped_studies
+from verification.running.pool import process_pool
+from verification.study.study_plan import read_study_file, shipped_studies
 
 CLAIM = {
     "quantity": "sigma_xx",
@@ -64,7 +64,7 @@ def complaint_of(path: Path, monkeypatch: pytest.MonkeyPatch) -> str | None:
     def accept(*_: object, **__: object) -> None:
         raise Accepted
 
-    monkeypatch.setattr(processes.Slot, "start", accept)
+    monkeypatch.setattr(process_pool.Slot, "start", accept)
     monkeypatch.setattr(command, "read_baseline", read_baseline)
     said, printed = io.StringIO(), io.StringIO()
     try:

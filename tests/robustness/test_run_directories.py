@@ -9,22 +9,19 @@ import subprocess
 import sys
 from collections.abc import Iterator
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 import pytest
 from quick_case import COMMAND, QUICK, coatcheck, coatcheck_process
 
-from verification.cases.contact import parse_case
-from verification.cases.published import published_cases, read_published
-from verification.commands.common.solving import kept_results
-from verification.running import worker
-from verification.running.contact import judge_case, solve_case
-from verification.running.fields import plane_path, write_plane
-from verification.running.pool.processes import run_tasks
-from verification.running.provenance import fingerprint
-from verification.running.published import failed as printed_failed
-from verification.running.result import from_json, to_json
-from verification.running.store import (
+from verification.cases.case_file import parse_case
+from verification.cases.published_file import published_cases, read_published
+from verification.commands.common.task_progress import kept_results
+from verification.running import case_worker
+from verification.running.case_result import from_json, to_json
+from verification.running.case_tasks import case_task, kept_result, result_path
+from verification.running.checked_files import (
     PART,
     StoreError,
     locked,
@@ -33,8 +30,12 @@ from verification.running.store import (
     write_atomically,
     write_checked,
 )
-from verification.running.tasks import case_task, kept_result, result_path
-from verification.sampling.plane import sample_plane
+from verification.running.contact_run import judge_case, solve_case
+from verification.running.pool.process_pool import run_tasks
+from verification.running.provenance import fingerprint
+from verification.running.published_run import failed as printed_failed
+from verification.running.stored_fields import plane_path, write_plane
+from verification.sampling.stress_plane import sample_plane
 
 
 def content(folder: Path) -> dict[str, bytes]:
@@ -43,10 +44,10 @@ def content(folder: Path) -> dict[str, bytes]:
 
 def test_worker_writes_the_fields_where_they_are_wanted(tmp_path, monkeypatch):
     written = []
-    monkeypatch.setattr(worker, "write_fields", lambda case, solutions, folder: written.append(folder))
+    monkeypatch.setattr(case_worker, "write_fields", lambda case, solutions, folder: written.append(folder))
     case = parse_case(QUICK.encode(), Path("one.toml"))
     for fields in (False, True):
-        worker.contact(*case_task(case, tmp_path, fields=fields).command[1:])
+        case_task(case, tmp_path, fields=fields).work()
     assert written == [tmp_path]
 
 
@@ -81,7 +82,7 @@ def test_two_hundred_damaged_files_are_named_and_computed_again(tmp_path, stored
     rng = random.Random(20261121)
     # Workers that need not compute: what they would leave is known.
     tasks = [
-        replace(task, command=("shutil:copyfile", str(origin / "cases" / task.path.name), str(task.path)))
+        replace(task, work=partial(shutil.copyfile, origin / "cases" / task.path.name, task.path))
         for task in (case_task(c, folder) for c in cases)
     ]
     count = 0

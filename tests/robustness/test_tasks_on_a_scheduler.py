@@ -4,20 +4,22 @@ import datetime
 import os
 import time
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
+import planted_worker
 import pytest
 from planted_worker import end_kept_processes, kept_processes
 from scheduler_by_hand import hand_started, wait_until
 from test_failing_workers import REASONS, alive, gone, task
 
-from verification.commands.common.exits import CommandError
-from verification.commands.common.solving import pool_of, run_info
-from verification.running.pool import cluster, remote
-from verification.running.pool.cluster import Cluster, Lost
-from verification.running.pool.task import SchedulerError, Task
+from verification.commands.common.exit_codes import CommandError
+from verification.commands.common.task_progress import pool_of, run_info
+from verification.running.checked_files import StoreError, read_checked, write_checked
+from verification.running.pool import dask_cluster, remote_tasks
+from verification.running.pool.dask_cluster import Cluster, Lost
+from verification.running.pool.pool_task import SchedulerError, Task
 from verification.running.provenance import hardware
-from verification.running.store import StoreError, read_checked, write_checked
 
 HERE = Path(__file__).parent
 
@@ -54,7 +56,7 @@ def test_tasks_run_as_on_this_machine(address, tmp_path, monkeypatch):
     given = Path("given.txt")
     copied = Task(
         "copy",
-        ("planted_worker:copy", given, Path("out/beside"), Path("out/copy.json")),
+        partial(planted_worker.copy, given, Path("out/beside"), Path("out/copy.json")),
         Path("out/copy.json"),
         lambda data: data["said"],
         lambda reason, _: reason,
@@ -122,71 +124,71 @@ class KilledWorker(Exception):
 
 
 def test_a_request_that_a_worker_cannot_answer_is_a_reason():
-    assert cluster._answer(Future(KilledWorker())) == Lost(cluster.DIED)
+    assert dask_cluster._answer(Future(KilledWorker())) == Lost(dask_cluster.DIED)
     full = Future(OSError(28, "No space left on device"))
-    assert cluster._answer(full) == Lost("OSError: [Errno 28] No space left on device")
+    assert dask_cluster._answer(full) == Lost("OSError: [Errno 28] No space left on device")
     with pytest.raises(SchedulerError, match="the scheduler is lost; what is finished is kept"):
-        cluster._answer(Future())
+        dask_cluster._answer(Future())
     with pytest.raises(SchedulerError, match="a worker lacks this coatcheck"):
-        cluster._answer(Future(ModuleNotFoundError("No module named 'verification'")))
+        dask_cluster._answer(Future(ModuleNotFoundError("No module named 'verification'")))
     (number, result), *_ = Cluster("")._taken([(7, task("good", Path()))], Lost("why"))
     assert (number, result) == (7, "why")
 
 
 def test_another_program_is_named_by_what_differs():
-    here = cluster.provenance()
+    here = dask_cluster.provenance()
     assert replace(here, hardware="elsewhere").difference(here) == ""
     assert replace(here, code="0").difference(here) == "other source code of coatcheck"
     other = replace(here, code="0", versions=here.versions | {"numpy": "1.0"})
     assert other.difference(here) == f"numpy 1.0 there, {here.versions['numpy']} here"
     with pytest.raises(SchedulerError, match=r"a worker of tcp://there:1 runs another program: numpy 1\.0 "):
-        list(Cluster("tcp://there:1")._taken([(0, task("good", Path()))], remote.Reply(other)))
-    assert remote.serve(remote.Request((), {}, 1.0, "0")) == remote.Reply(here)
+        list(Cluster("tcp://there:1")._taken([(0, task("good", Path()))], remote_tasks.Reply(other)))
+    assert remote_tasks.serve(remote_tasks.Request((), {}, 1.0, "0")) == remote_tasks.Reply(here)
 
 
 def test_workers_of_another_program_are_refused(address, monkeypatch):
-    other = replace(cluster.provenance(), code="0" * 64)
-    monkeypatch.setattr(cluster, "provenance", lambda: other)
+    other = replace(dask_cluster.provenance(), code="0" * 64)
+    monkeypatch.setattr(dask_cluster, "provenance", lambda: other)
     with (
         pytest.raises(SchedulerError, match=r"the worker tcp://.*: other source code"),
-        cluster.connected(address, None),
+        dask_cluster.connected(address, None),
     ):
         pass
 
 
 def test_workers_without_the_program_are_refused(address, monkeypatch):
-    monkeypatch.setattr(cluster, "PROBE", "__import__('no_such_package')")
+    monkeypatch.setattr(dask_cluster, "PROBE", "__import__('no_such_package')")
     with (
         pytest.raises(SchedulerError, match=r"lacks this coatcheck \(.*'no_such_package'\); install"),
-        cluster.connected(address, None),
+        dask_cluster.connected(address, None),
     ):
         pass
 
 
 def test_files_too_large_to_send_are_refused(tmp_path, monkeypatch):
-    monkeypatch.setattr(cluster, "MAX_BYTES", 10)
+    monkeypatch.setattr(dask_cluster, "MAX_BYTES", 10)
     large = [tmp_path / name for name in "ab"]
     for path in large:
         path.write_text("sixsix")
     with pytest.raises(StoreError, match="to send to a worker"):
-        cluster._contents(large)
+        dask_cluster._contents(large)
 
 
 def test_no_worker_is_one_message(monkeypatch):
     from distributed import LocalCluster
 
-    monkeypatch.setattr(cluster, "WAIT", 0.05)
+    monkeypatch.setattr(dask_cluster, "WAIT", 0.05)
     with (
         LocalCluster(n_workers=0, processes=False, dashboard_address="127.0.0.1:0") as empty,
         pytest.raises(SchedulerError, match="no worker joined the scheduler within"),
-        cluster.connected(empty.scheduler_address, None),
+        dask_cluster.connected(empty.scheduler_address, None),
     ):
         pass
 
 
 def test_workers_that_all_leave_end_the_wait(monkeypatch):
-    monkeypatch.setattr(cluster, "LOOK", 0.0)
-    monkeypatch.setattr(cluster, "WAIT", 0.0)
+    monkeypatch.setattr(dask_cluster, "LOOK", 0.0)
+    monkeypatch.setattr(dask_cluster, "WAIT", 0.0)
 
     class Client:
         def __init__(self):
@@ -196,7 +198,7 @@ def test_workers_that_all_leave_end_the_wait(monkeypatch):
             return self.threads
 
     client = Client()
-    workers = cluster._Workers(client)
+    workers = dask_cluster._Workers(client)
     assert workers.threads() == 2
     client.threads = {}
     time.sleep(0.001)

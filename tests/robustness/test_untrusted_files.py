@@ -11,19 +11,19 @@ from pathlib import Path
 import pytest
 from quick_case import QUICK, coatcheck
 
-from verification.cases.contact import parse_case, read_case
-from verification.cases.published import is_published
-from verification.cases.toml import CaseError
+from verification.cases.case_file import parse_case, read_case
+from verification.cases.published_file import is_published
+from verification.cases.toml_file import CaseError
 from verification.commands.common.terminal import one_line
 from verification.judging.verdict import Outcome, Verdict
-from verification.report.material import Material
-from verification.report.page import render
-from verification.running.contact import failed
-from verification.running.fields import fields_path, plane_path
-from verification.running.result import RunInfo, SourceResult
-from verification.running.store import StoreError
-from verification.running.stored import read_run
-from verification.running.tasks import result_path
+from verification.report.report_material import Material
+from verification.report.report_page import render
+from verification.running.case_result import RunInfo, SourceResult
+from verification.running.case_tasks import result_path
+from verification.running.checked_files import StoreError
+from verification.running.contact_run import failed
+from verification.running.stored_fields import fields_path, plane_path
+from verification.running.stored_run import read_run
 
 HOUSE = Path(__file__).parents[2]
 PACKAGES = ("semianalytic", "fem_reference", "verification")
@@ -32,7 +32,7 @@ SOURCES = sorted(path for package in PACKAGES for path in (HOUSE / package).rglo
 UNSAFE = {"pickle", "cPickle", "dill", "cloudpickle", "joblib", "marshal", "shelve", "yaml", "xmlrpc"}
 CODE = {"eval", "exec", "compile", "__import__"}
 # A planted fault is made from this program's own source and catalogue; no file is read for it.
-PLANTED = "verification/credibility/faults/planting.py"
+PLANTED = "verification/credibility/faults/fault_planting.py"
 SCRIPT = "<script>alert(1)</script><img src=x onerror=alert(1)>{{ 7 * 7 }}{% raw %}]]></style>"
 
 

@@ -15,11 +15,11 @@ sys.path.insert(0, str(Path(__file__).parent))
 def _measured_once():
     """Each of these has tests of its own, which call it by its own name."""
     from verification.commands import report, run
-    from verification.report import material
+    from verification.report import report_material
 
     with (
-        mock.patch.object(material, "design_orders", cache(material.design_orders)),
-        mock.patch.object(material, "parts", cache(material.parts)),
+        mock.patch.object(report_material, "design_orders", cache(report_material.design_orders)),
+        mock.patch.object(report_material, "parts", cache(report_material.parts)),
         mock.patch.object(run, "self_tests", cache(run.self_tests)),
         mock.patch.object(report, "self_tests", cache(report.self_tests)),
     ):

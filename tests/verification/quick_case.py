@@ -4,15 +4,14 @@ import contextlib
 import io
 import subprocess
 import sys
-from importlib import import_module
 from pathlib import Path
 from unittest import mock
 
 import pytest
 
 from verification.cli import main
-from verification.commands.common import solving
-from verification.running.store import read_checked
+from verification.commands.common import task_progress
+from verification.running.checked_files import read_checked
 
 QUICK = """
 title = "Quick"
@@ -38,8 +37,7 @@ def solved_here(
     results = []
     for task in tasks:
         started(task.name)
-        module, _, function = task.command[0].partition(":")
-        getattr(import_module(module), function)(*task.command[1:])
+        task.work()
         results.append(task.read(read_checked(task.path)))
         finished(task.name, results[-1])
     return results
@@ -53,7 +51,7 @@ def coatcheck(*words: str, cwd: Path) -> subprocess.CompletedProcess[str]:
         contextlib.redirect_stdout(out),
         contextlib.redirect_stderr(err),
         mock.patch.object(sys, "argv", ["coatcheck", *words]),
-        mock.patch.object(solving, "run_tasks", solved_here),
+        mock.patch.object(task_progress, "run_tasks", solved_here),
         pytest.raises(SystemExit) as ended,
     ):
         main()

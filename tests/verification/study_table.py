@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from verification.study.plan import parse_study
-from verification.study.quantities import QUANTITIES
-from verification.study.table import SCALARS, write_table
+from verification.study.largest_stresses import QUANTITIES
+from verification.study.study_plan import parse_study
+from verification.study.study_table import SCALARS, write_table
 
 TEXT = """
 title = "Made of formulas"

@@ -6,10 +6,10 @@ from typing import Any
 
 import numpy as np
 
-from verification.judging.claims import standard_claims
+from verification.judging.standard_claims import standard_claims
 from verification.judging.verdict import Outcome, Verdict
-from verification.problem.contact import CoatedContact
-from verification.problem.profile import Line, Profile, lines_of, oblique_lines
+from verification.problem.coated_contact import CoatedContact
+from verification.problem.line_profile import Line, Profile, lines_of, oblique_lines
 from verification.problem.quantity import (
     DISPLACEMENTS,
     IN_PLANE,
@@ -19,9 +19,9 @@ from verification.problem.quantity import (
     SLOPES,
     STRESSES,
 )
-from verification.running.contact import decide
-from verification.running.result import CaseResult, RunInfo, SourceResult
-from verification.sources.registry import CLOSED, SOURCES
+from verification.running.case_result import CaseResult, RunInfo, SourceResult
+from verification.running.contact_run import decide
+from verification.sources.source_registry import CLOSED, SOURCES
 
 STEEL = (210e9, 0.3)
 INFO = RunInfo(

@@ -5,7 +5,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from verification.sources.references.hertz import Hertz
-from verification.study.cache import code_version
+from verification.study.solve_cache import code_version
 
 FAILING = 7e-5  # m; a coating of this thickness has no solution here
 CRASHING = 9e-5  # m; this one takes its worker's task with it

@@ -1,8 +1,8 @@
 """A study of accuracy made up from power laws, for tests of the report."""
 
-from verification.credibility.accuracy import CORRECTED, PLAIN, STAIRCASE, AccuracyStudy
-from verification.credibility.refinement import QUANTITIES, Level, Refinement
-from verification.judging.invariants.influence import ConversionError
+from verification.credibility.accuracy_study import CORRECTED, PLAIN, STAIRCASE, AccuracyStudy
+from verification.credibility.refinement_studies import QUANTITIES, Level, Refinement
+from verification.judging.invariants.influence_error import ConversionError
 
 PATCHES = (33, 65, 129, 257)
 

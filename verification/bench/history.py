@@ -5,8 +5,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from verification.bench.figures import Figure
-from verification.running.records import decode, encode
-from verification.running.store import MAX_BYTES, StoreError, read_bounded, write_atomically
+from verification.running.checked_files import MAX_BYTES, StoreError, read_bounded, write_atomically
+from verification.running.json_records import decode, encode
 
 __all__ = ["BenchRun", "append", "read"]
 

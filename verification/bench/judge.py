@@ -7,7 +7,7 @@ approach) and load have to be met within ``LIMIT``.
 import numpy as np
 from scipy.fft import irfft2, next_fast_len, rfft2
 
-from verification.problem.arrays import FloatArray
+from verification.problem.array_types import FloatArray
 
 __all__ = ["E_STAR", "LIMIT", "RADIUS", "A", "W", "centres", "gap", "residual"]
 

@@ -6,8 +6,8 @@ names that unit: E = 210 is meant in GPa.
 
 from collections.abc import Iterator, Mapping
 
-from verification.cases.units import InSI
-from verification.problem.contact import BALL, CoatedContact
+from verification.cases.unit_numbers import InSI
+from verification.problem.coated_contact import BALL, CoatedContact
 
 __all__ = ["beyond_limits", "likely_slips", "residual_warnings", "warnings_of"]
 

@@ -8,17 +8,17 @@ from pathlib import Path
 
 from rich.markup import escape
 
-from verification.cases.contact import shipped_cases
-from verification.commands.common.exits import CommandError, with_exit_code
-from verification.commands.common.folders import BASELINE, require_checkout
-from verification.commands.common.options import AsJson, BaselineFolder, Quiet
+from verification.cases.case_file import shipped_cases
+from verification.commands.common.exit_codes import CommandError, with_exit_code
+from verification.commands.common.known_folders import BASELINE, require_checkout
+from verification.commands.common.shared_options import AsJson, BaselineFolder, Quiet
 from verification.commands.common.terminal import named_table, print_json, print_out
 from verification.credibility.self_tests import self_tests
 from verification.judging.verdict import Outcome
-from verification.regression.baseline import Baseline, Update, updated
-from verification.regression.record import path_in, read_baseline, write_baseline
-from verification.running.store import locked
-from verification.running.stored import StoredRun, confirm, read_run
+from verification.regression.baseline_change import Baseline, Update, updated
+from verification.regression.baseline_file import path_in, read_baseline, write_baseline
+from verification.running.checked_files import locked
+from verification.running.stored_run import StoredRun, confirm, read_run
 
 
 @with_exit_code

@@ -5,16 +5,16 @@ from pathlib import Path
 
 from rich.markup import escape
 
-from verification.commands.common.exits import DRIFTED, EXIT, CommandError, with_exit_code
-from verification.commands.common.folders import nearest_run
-from verification.commands.common.options import AsJson, Output, Quiet
+from verification.commands.common.exit_codes import DRIFTED, EXIT, CommandError, with_exit_code
+from verification.commands.common.known_folders import nearest_run
+from verification.commands.common.shared_options import AsJson, Output, Quiet
 from verification.commands.common.terminal import STYLE, named_table, one_line, print_json, print_out
 from verification.judging.verdict import Outcome
-from verification.regression.comparison import RunComparison, compare_runs
-from verification.regression.drift import State
-from verification.running.records import plain
-from verification.running.store import StoreError, write_atomically
-from verification.running.stored import read_run
+from verification.regression.number_drift import State
+from verification.regression.run_comparison import RunComparison, compare_runs
+from verification.running.checked_files import StoreError, write_atomically
+from verification.running.json_records import plain
+from verification.running.stored_run import read_run
 
 MOST_SHOWN = 8
 
@@ -35,7 +35,7 @@ def compare(
     try:
         found = compare_runs(read_run(first), read_run(second))
         if output is not None:
-            from verification.report.runs.comparison import comparison_page
+            from verification.regression.comparison_page import comparison_page
 
             write_atomically(output, comparison_page(found).encode("utf-8", errors="replace"))
     except StoreError as error:
@@ -70,6 +70,6 @@ def _print(found: RunComparison) -> None:
         print_out(f"... with {more} more, which --output or --json shows")
     for name, then, now in found.versions:
         print_out(escape(f"{name}: {one_line(then)} to {one_line(now)}"))
-    from verification.report.runs.comparison import comparison_message
+    from verification.regression.comparison_page import comparison_message
 
     print_out(comparison_message(found))

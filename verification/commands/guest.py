@@ -13,12 +13,12 @@ import numpy as np
 from cyclopts import Parameter
 from rich.markup import escape
 
-from verification.cases.contact import Case, read_case, shipped_cases
-from verification.commands.common.choice import SHIPPED, path_of, require_distinct
-from verification.commands.common.exits import EXIT, CommandError, with_exit_code
-from verification.commands.common.folders import PACKAGE
-from verification.commands.common.options import AsJson, Flag, Jobs, Quiet, Scheduler
-from verification.commands.common.solving import pool_of, run_info, solve, worker_count
+from verification.cases.case_file import Case, read_case, shipped_cases
+from verification.commands.common.exit_codes import EXIT, CommandError, with_exit_code
+from verification.commands.common.known_folders import PACKAGE
+from verification.commands.common.named_files import SHIPPED, path_of, require_distinct
+from verification.commands.common.shared_options import AsJson, Flag, Jobs, Quiet, Scheduler
+from verification.commands.common.task_progress import pool_of, run_info, solve, worker_count
 from verification.commands.common.terminal import (
     STYLE,
     named_table,
@@ -26,19 +26,19 @@ from verification.commands.common.terminal import (
     print_json,
     print_out,
 )
-from verification.guests.description import FILE, Guest, parse_guest, read_guest
-from verification.guests.diagnosis import slips
+from verification.guests.exam_subjects import REFERENCE
 from verification.guests.examination import Examined, examined, outcome_counts, packed_cases
-from verification.guests.subjects import REFERENCE
+from verification.guests.guest_description import FILE, Guest, parse_guest, read_guest
+from verification.guests.pages.guest_page import badge, summary
+from verification.guests.pages.guest_page import page as render
+from verification.guests.slip_diagnosis import slips
 from verification.judging.outcome import Outcome
+from verification.page.number_text import engineering
 from verification.problem.quantity import unit_of
-from verification.regression.junit import junit_xml
-from verification.report.guest import badge, summary
-from verification.report.guest import page as render
-from verification.report.tables.numbers import engineering
-from verification.running.pool.task import Task
-from verification.running.result import CaseResult, RunInfo, to_json
-from verification.running.store import locked, write_atomically
+from verification.regression.junit_xml import junit_xml
+from verification.running.case_result import CaseResult, RunInfo, to_json
+from verification.running.checked_files import locked, write_atomically
+from verification.running.pool.pool_task import Task
 
 Folder = Annotated[Path | None, Parameter(name=["--output", "-o"])]
 UNCOATED, COATED = ("01_uncoated_steel", "13_uncoated_sliding"), ("05_ratio_4", "14_ratio_4_sliding")

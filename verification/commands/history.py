@@ -5,15 +5,15 @@ from pathlib import Path
 
 from rich.markup import escape
 
-from verification.commands.common.exits import CommandError, with_exit_code
-from verification.commands.common.folders import BASELINE
-from verification.commands.common.options import AsJson, BaselineFolder, Output, Quiet
+from verification.commands.common.exit_codes import CommandError, with_exit_code
+from verification.commands.common.known_folders import BASELINE
+from verification.commands.common.shared_options import AsJson, BaselineFolder, Output, Quiet
 from verification.commands.common.terminal import named_table, print_json, print_out
-from verification.regression.history import PastRun, history, reports_in
-from verification.regression.record import read_baseline
-from verification.running.records import plain
-from verification.running.store import StoreError, write_atomically
-from verification.running.stored import read_run
+from verification.regression.baseline_file import read_baseline
+from verification.regression.run_history import PastRun, history, reports_in
+from verification.running.checked_files import StoreError, write_atomically
+from verification.running.json_records import plain
+from verification.running.stored_run import read_run
 
 
 @with_exit_code
@@ -43,7 +43,7 @@ def past(
     try:
         runs = history(map(read_run, reports), read_baseline(baseline))
         if output is not None:
-            from verification.report.runs.history import history_page
+            from verification.regression.history_page import history_page
 
             write_atomically(output, history_page(runs).encode("utf-8", errors="replace"))
     except StoreError as error:
@@ -71,6 +71,6 @@ def _print(runs: tuple[PastRun, ...]) -> None:
             escape(run.path),
         )
     print_out(table)
-    from verification.report.runs.history import history_message
+    from verification.regression.history_page import history_message
 
     print_out(history_message(runs))

@@ -6,14 +6,14 @@ from typing import Annotated, Literal
 
 from cyclopts import Parameter
 
-from verification.commands.common.exits import CommandError, exit_code, no_result, with_exit_code
-from verification.commands.common.folders import BASELINE, RECORDS, nearest_run, within_package
-from verification.commands.common.options import AsJson, Flag, Quiet
+from verification.commands.common.exit_codes import CommandError, exit_code, no_result, with_exit_code
+from verification.commands.common.known_folders import BASELINE, RECORDS, nearest_run, within_package
+from verification.commands.common.shared_options import AsJson, Flag, Quiet
 from verification.commands.common.terminal import print_files
 from verification.credibility.self_tests import self_tests
-from verification.regression.baseline import regression
-from verification.regression.record import read_baseline
-from verification.running.store import locked
+from verification.regression.baseline_change import regression
+from verification.regression.baseline_file import read_baseline
+from verification.running.checked_files import locked
 
 
 @with_exit_code
@@ -39,9 +39,9 @@ def report(
         records: Directory of credibility records to show instead of those stored with the run.
         time_limit: Seconds that each of two prints may take.
     """
-    from verification.report.material import gather, stored_material
-    from verification.report.pdf import NoBrowser, printed
-    from verification.report.write import write_report
+    from verification.page.pdf_file import NoBrowser, printed
+    from verification.report.report_files import write_report
+    from verification.report.report_material import gather, stored_material
 
     if not (folder / "cases").is_dir():
         raise CommandError(

@@ -16,12 +16,12 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Column, Table
 
-from verification.cases.contact import Case, read_case, shipped_cases
-from verification.cases.published import PublishedCase, is_published, published_cases, read_published
-from verification.commands.common.choice import SHIPPED, path_of, require_distinct
-from verification.commands.common.exits import STOPPED, run_code, with_exit_code
-from verification.commands.common.folders import BASELINE, RECORDS, within_package
-from verification.commands.common.options import (
+from verification.cases.case_file import Case, read_case, shipped_cases
+from verification.cases.published_file import PublishedCase, is_published, published_cases, read_published
+from verification.commands.common.exit_codes import STOPPED, run_code, with_exit_code
+from verification.commands.common.known_folders import BASELINE, RECORDS, within_package
+from verification.commands.common.named_files import SHIPPED, path_of, require_distinct
+from verification.commands.common.shared_options import (
     AsJson,
     BaselineFolder,
     Flag,
@@ -33,7 +33,7 @@ from verification.commands.common.options import (
     Scheduler,
     Strict,
 )
-from verification.commands.common.solving import (
+from verification.commands.common.task_progress import (
     kept_results,
     kept_study,
     pool_of,
@@ -48,22 +48,22 @@ from verification.commands.common.terminal import (
     print_json,
     print_warnings,
 )
-from verification.credibility import accuracy as accuracy_study
-from verification.credibility.accuracy import AccuracyStudy
+from verification.credibility import accuracy_study as accuracy_study
+from verification.credibility.accuracy_study import AccuracyStudy
 from verification.credibility.self_tests import SelfTest, self_tests
 from verification.judging.outcome import DECIDED, Outcome
-from verification.regression.baseline import Regression, State, regression, regression_json
+from verification.regression.baseline_change import Regression, State, regression, regression_json
+from verification.regression.baseline_file import read_baseline
 from verification.regression.manifest import manifest_message
-from verification.regression.record import read_baseline
-from verification.running.pool.task import Task
-from verification.running.result import CaseResult, RunInfo
-from verification.running.store import StoreError, locked
-from verification.running.tasks import case_task, kept_result, published_task
-from verification.study import formulas as effective_study
-from verification.study.formulas import EffectiveStudy
+from verification.running.case_result import CaseResult, RunInfo
+from verification.running.case_tasks import case_task, kept_result, published_task
+from verification.running.checked_files import StoreError, locked
+from verification.running.pool.pool_task import Task
+from verification.study import formula_errors as effective_study
+from verification.study.formula_errors import EffectiveStudy
 
 if TYPE_CHECKING:
-    from verification.report.material import Evidence
+    from verification.report.report_material import Evidence
 
 NARROW = 80  # columns
 
@@ -108,7 +108,7 @@ def run(
     @cache
     def prepared() -> tuple[tuple[SelfTest, ...], "Evidence"]:
         """Self-tests and evidence, neither of which depends on a result."""
-        from verification.report.material import gather
+        from verification.report.report_material import gather
 
         problems = {case.name: case.problem for case in chosen if isinstance(case, Case)}
         return _self_tested(), gather(records, problems)
@@ -156,16 +156,16 @@ def run(
 
 
 def _write_page(results: Sequence[CaseResult], info: RunInfo, evidence: "Evidence", output: Path) -> Path:
-    from verification.report.material import Material
-    from verification.report.write import write_report
-    from verification.running.fields import read_planes
+    from verification.report.report_files import write_report
+    from verification.report.report_material import Material
+    from verification.running.stored_fields import read_planes
 
     return write_report(Material(results, info, evidence, read_planes(output, results)), output)
 
 
 def _beyond_model(results: Sequence[CaseResult], evidence: "Evidence") -> dict[str, tuple[str, ...]]:
     """Warnings of what the assumptions of the model cost, by case."""
-    from verification.report.material import model_warnings
+    from verification.report.report_material import model_warnings
 
     return {result.name: model_warnings(result, evidence) for result in results}
 
@@ -279,8 +279,8 @@ def _print_table(results: Sequence[CaseResult], page: Path, seconds: float, besi
     laws = [law for result in results for law in result.invariants]
     if laws:
         say(f"{sum(law.outcome is Outcome.AGREES for law in laws)} of {len(laws)} invariants hold")
-    from verification.report.sections.baseline import baseline_message
-    from verification.report.sections.published import published_message
+    from verification.regression.baseline_section import baseline_message
+    from verification.report.sections.published_section import published_message
 
     if published := [result for result in results if result.published]:
         say(published_message(published))

@@ -11,24 +11,24 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
-from verification.cases.contact import Case, parse_case, read_case, shipped_cases
+from verification.cases.case_file import Case, parse_case, read_case, shipped_cases
 from verification.cases.plausibility import beyond_limits
-from verification.commands.common.choice import SHIPPED, path_of
-from verification.commands.common.exits import EXIT, CommandError, no_result, with_exit_code
-from verification.commands.common.folders import require_format
-from verification.commands.common.options import AsJson, Flag, Strict
-from verification.commands.common.solving import progress_bar, require_gmsh
+from verification.commands.common.exit_codes import EXIT, CommandError, no_result, with_exit_code
+from verification.commands.common.known_folders import require_format
+from verification.commands.common.named_files import SHIPPED, path_of
+from verification.commands.common.shared_options import AsJson, Flag, Strict
+from verification.commands.common.task_progress import progress_bar, require_gmsh
 from verification.commands.common.terminal import print_json, print_out, print_warnings
-from verification.credibility.model.error import ModelError, model_error
-from verification.desk.answer import Answer, Difference, answer, differences
-from verification.desk.summary import summary
-from verification.desk.wording import case_text
+from verification.credibility.model.model_error import ModelError, model_error
+from verification.desk.answer_summary import summary
+from verification.desk.case_wording import case_text
+from verification.desk.contact_answer import Answer, Difference, answer, differences
 from verification.judging.outcome import Outcome
-from verification.problem.contact import BALL, FLAT
+from verification.problem.coated_contact import BALL, FLAT
 from verification.problem.quantity import QUANTITIES
-from verification.running.records import encode
-from verification.running.result import describe, message_of
-from verification.sources.registry import METHODS
+from verification.running.case_result import describe, message_of
+from verification.running.json_records import encode
+from verification.sources.source_registry import METHODS
 
 METHOD, SECOND = METHODS
 COLUMNS = 79  # of the summary
@@ -91,7 +91,7 @@ def solve(
     print_warnings(late, case.name, strict=strict, silent=as_json)
     apart = differences(first, second) if second is not None else ()
     if plot is not None:
-        from verification.report.figures.solved import write
+        from verification.desk.answer_figure import write
 
         write(first, case.title, plot)
     if as_json:

@@ -14,10 +14,10 @@ from rich.console import Console
 from rich.markup import escape
 from rich.progress import TaskID
 
-from verification.commands.common.choice import path_of
-from verification.commands.common.exits import EXIT, STOPPED, CommandError, with_exit_code
-from verification.commands.common.options import AsJson, Jobs, Output, Quiet, Scheduler, Strict
-from verification.commands.common.solving import progress_bar, require_gmsh
+from verification.commands.common.exit_codes import EXIT, STOPPED, CommandError, with_exit_code
+from verification.commands.common.named_files import path_of
+from verification.commands.common.shared_options import AsJson, Jobs, Output, Quiet, Scheduler, Strict
+from verification.commands.common.task_progress import progress_bar, require_gmsh
 from verification.commands.common.terminal import (
     print_error,
     print_json,
@@ -26,12 +26,12 @@ from verification.commands.common.terminal import (
 )
 from verification.judging.verdict import Outcome
 from verification.running.provenance import commit, cores, hardware
-from verification.sources.registry import SOURCES
-from verification.study.plan import Study, read_study_file, shipped_studies
+from verification.sources.source_registry import SOURCES
+from verification.study.study_plan import Study, read_study_file, shipped_studies
 
 if TYPE_CHECKING:
-    from verification.report.study.page import Written
-    from verification.study.engine import Outcome as StudyOutcome
+    from verification.study.pages.thickness_page import Written
+    from verification.study.study_engine import Outcome as StudyOutcome
 
 LABELS = {name: source.label for name, source in SOURCES.items()}
 FIGURE_GROUPS = 5
@@ -101,8 +101,8 @@ def _study(plan: str, options: Options, *, loads: bool) -> int:
     if chosen.cross_check:
         require_gmsh()
 
-    from verification.running.pool.cluster import connected
-    from verification.study.engine import run_study, table_path
+    from verification.running.pool.dask_cluster import connected
+    from verification.study.study_engine import run_study, table_path
 
     cluster = partial(connected, options.scheduler, jobs)
     begin = time.perf_counter()
@@ -138,7 +138,7 @@ def _study(plan: str, options: Options, *, loads: bool) -> int:
 
 def _forecast(chosen: Study, output: Path, jobs: int | None, limit: int | None) -> str:
     """The stages of the study with the time they take, before the first of them starts."""
-    from verification.study.engine import forecast
+    from verification.study.study_engine import forecast
 
     processes = jobs or cores()
     parts, seconds = [], 0.0
@@ -160,8 +160,8 @@ def _page(
     figures: bool,
     drawing: Callable[[str], None],
 ) -> "Written":
-    from verification.report.study.load import write_load_report
-    from verification.report.study.page import write_study_report
+    from verification.study.pages.load_page import write_load_report
+    from verification.study.pages.thickness_page import write_study_report
 
     facts = [
         ("solves", f"{came.done} done, {came.kept} from the cache"),

@@ -9,13 +9,13 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
-from verification.cases.contact import shipped_cases
-from verification.commands.common.exits import CommandError, no_result, with_exit_code
-from verification.commands.common.options import Output
+from verification.cases.case_file import shipped_cases
+from verification.commands.common.exit_codes import CommandError, no_result, with_exit_code
+from verification.commands.common.shared_options import Output
 from verification.commands.common.terminal import did_you_mean
 from verification.problem.quantity import STRESSES
-from verification.running.fields import read_fields
-from verification.running.store import StoreError, write_atomically
+from verification.running.checked_files import StoreError, write_atomically
+from verification.running.stored_fields import read_fields
 
 QUANTITIES = ("von_mises", *STRESSES)
 
@@ -52,7 +52,7 @@ def view(
         stored = [path.stem for path in (output / "fields").glob("*.json")]
         near = "" if case in (cases := shipped_cases()) else did_you_mean(case, [*stored, *cases])
         raise CommandError(f"{error}; fields are written by: coatcheck run {case} --fields{near}") from None
-    viewer = [sys.executable, "-m", "verification.report.figures.viewer"]
+    viewer = [sys.executable, "-m", "verification.desk.field_viewer"]
     words = [*viewer, str(output), case, f"{quantity} [Pa]"]
     if screenshot is not None:
         _picture(words, screenshot, time_limit)

@@ -7,17 +7,17 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
-from verification.cases.contact import Case
-from verification.guests.description import Guest
-from verification.guests.doors.asking import ask_task, end_programs
-from verification.guests.doors.files import pack
-from verification.guests.doors.program import Solved
-from verification.guests.exam import claims_of, exam_task, kept_exam, question_of
-from verification.guests.subjects import Subject, subjects_of
-from verification.guests.verdicts import judged, refused
+from verification.cases.case_file import Case
+from verification.guests.case_exam import claims_of, exam_task, kept_exam, question_of
+from verification.guests.doors.ask_guest import ask_task, end_programs
+from verification.guests.doors.file_door import pack
+from verification.guests.doors.program_door import Solved
+from verification.guests.exam_subjects import Subject, subjects_of
+from verification.guests.guest_description import Guest
+from verification.guests.guest_verdicts import judged, refused
 from verification.judging.verdict import Claim, Outcome, Verdict
-from verification.running.result import CaseResult
-from verification.running.store import StoreError
+from verification.running.case_result import CaseResult
+from verification.running.checked_files import StoreError
 
 Solve = Callable[[Sequence[Any], float], list[Any]]  # tasks and their time limit [s]
 EXACT_LIMIT = 300.0  # s of the exact reference of a case

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from verification.judging.outcome import Outcome
-from verification.problem.profile import Profile
+from verification.problem.line_profile import Profile
 
 
 @dataclass(frozen=True)

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from verification.problem.arrays import Array
+from verification.problem.array_types import Array
 
 
 @dataclass(frozen=True)

@@ -10,8 +10,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from verification.judging.verdict import Judged, Outcome
-from verification.regression.drift import FACTOR
-from verification.running.result import CaseResult
+from verification.regression.number_drift import FACTOR
+from verification.running.case_result import CaseResult
 
 # A scale follows the solved p0, a position the solved a: what changes them by less changes no coverage.
 TOLERANCE = 1e-3

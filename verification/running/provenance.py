@@ -11,7 +11,7 @@ from functools import cache
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
-from verification.sources.registry import METHODS, SOURCES
+from verification.sources.source_registry import METHODS, SOURCES
 
 PACKAGES = (
     "coatcheck",

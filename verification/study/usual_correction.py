@@ -12,8 +12,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from verification.problem.contact import CoatedContact
-from verification.sources.exact import solve_exactly
+from verification.problem.coated_contact import CoatedContact
+from verification.sources.exact_sources import solve_exactly
 
 __all__ = ["FRICTION", "BallCurve", "curves"]
 

@@ -9,7 +9,7 @@ from verification.bench.figures import Figure
 from verification.bench.history import BenchRun, append, read
 from verification.cli import app
 from verification.report.figures import speed
-from verification.running.store import StoreError
+from verification.running.checked_files import StoreError
 
 
 def bench_run(n, *figures):

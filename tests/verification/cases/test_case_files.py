@@ -5,9 +5,9 @@ from pathlib import Path
 
 import pytest
 
-from verification.cases.contact import parse_case, read_case, shipped_cases
-from verification.cases.toml import CaseError
-from verification.judging.claims import standard_claims
+from verification.cases.case_file import parse_case, read_case, shipped_cases
+from verification.cases.toml_file import CaseError
+from verification.judging.standard_claims import standard_claims
 
 GOOD = """
 title = "Stiff coating"

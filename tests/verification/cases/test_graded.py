@@ -5,9 +5,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from verification.cases.contact import parse_case
-from verification.cases.graded import Course, Table, moduli
-from verification.cases.toml import CaseError
+from verification.cases.case_file import parse_case
+from verification.cases.graded_coating import Course, Table, moduli
+from verification.cases.toml_file import CaseError
 
 TEXT = """
 title = "Graded"

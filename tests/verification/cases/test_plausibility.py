@@ -5,11 +5,11 @@ from pathlib import Path
 
 import pytest
 
-from verification.cases.contact import parse_case, read_case, shipped_cases
+from verification.cases.case_file import parse_case, read_case, shipped_cases
 from verification.cases.plausibility import YIELD, beyond_limits, warnings_of
-from verification.cases.toml import CaseError
-from verification.problem.contact import CoatedContact
-from verification.study.plan import parse_study, read_study_file, shipped_studies
+from verification.cases.toml_file import CaseError
+from verification.problem.coated_contact import CoatedContact
+from verification.study.study_plan import parse_study, read_study_file, shipped_studies
 
 CONTACT = CoatedContact(10e-3, 20.0, ((450e9, 0.22, 3e-6),), (210e9, 0.3))
 CASE = """

@@ -5,12 +5,12 @@ import shutil
 import numpy as np
 import pytest
 
-from verification.cases.columns import RECOMPUTED
-from verification.cases.contact import shipped_cases
-from verification.cases.published import is_published, published_cases, read_published
-from verification.cases.table import FOLDER, PublishedError, read_table
-from verification.cases.toml import CaseError
-from verification.problem.contact import CoatedContact, PrescribedLoad
+from verification.cases.case_file import shipped_cases
+from verification.cases.published_columns import RECOMPUTED
+from verification.cases.published_file import is_published, published_cases, read_published
+from verification.cases.published_table import FOLDER, PublishedError, read_table
+from verification.cases.toml_file import CaseError
+from verification.problem.coated_contact import CoatedContact, PrescribedLoad
 
 TOML = """
 title = "A disc"

@@ -10,11 +10,11 @@ import pytest
 from hypothesis import Phase, given, settings
 from hypothesis import strategies as st
 
-from verification.cases.contact import parse_case
-from verification.cases.published import parse_published
-from verification.cases.toml import CaseError
-from verification.guests.description import parse_guest
-from verification.study.plan import parse_study
+from verification.cases.case_file import parse_case
+from verification.cases.published_file import parse_published
+from verification.cases.toml_file import CaseError
+from verification.guests.guest_description import parse_guest
+from verification.study.study_plan import parse_study
 
 BARE = """
 title = "Stiff coating"

@@ -7,12 +7,12 @@ import subprocess
 import pytest
 from quick_case import COMMAND, QUICK, coatcheck
 
-from verification.cases.contact import Case, read_case, shipped_cases
-from verification.cases.published import published_cases
-from verification.commands.common.exits import exit_code
+from verification.cases.case_file import Case, read_case, shipped_cases
+from verification.cases.published_file import published_cases
+from verification.commands.common.exit_codes import exit_code
 from verification.judging.verdict import Claim, Outcome, Verdict
-from verification.running.result import CaseResult
-from verification.running.tasks import run_cases
+from verification.running.case_result import CaseResult
+from verification.running.case_tasks import run_cases
 
 
 @pytest.mark.parametrize(

@@ -7,10 +7,10 @@ from pathlib import Path
 import pytest
 from quick_case import coatcheck
 
-from verification.cases.contact import parse_case
+from verification.cases.case_file import parse_case
 from verification.commands import solve as command
-from verification.desk import answer as desk
-from verification.desk.wording import case_text
+from verification.desk import contact_answer as desk
+from verification.desk.case_wording import case_text
 
 WORDS = ["solve", "--ball", "10 mm", "--load", "20 N", "--substrate", "210 GPa, 0.3"]
 FAST = [*WORDS, "--friction", "0.25"]
@@ -92,8 +92,8 @@ def test_json_holds_everything_and_the_figure_is_written(tmp_path):
 
 @pytest.mark.parametrize("suffix", [".pdf", ".svg"])
 def test_figure_has_the_format_of_its_name(suffix, tmp_path):
-    from verification.problem.contact import CoatedContact
-    from verification.report.figures.solved import write
+    from verification.desk.answer_figure import write
+    from verification.problem.coated_contact import CoatedContact
 
     problem = CoatedContact(10e-3, 20.0, ((420e9, 0.3, 3e-5),), (210e9, 0.3), 0.2)
     path = tmp_path / f"stress{suffix}"

@@ -6,7 +6,7 @@ import pytest
 from synthetic_solves import STUDY
 
 from verification.commands.study import Options, thickness
-from verification.study.table import read_columns
+from verification.study.study_table import read_columns
 
 
 def written(folder):

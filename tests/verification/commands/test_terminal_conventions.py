@@ -16,17 +16,17 @@ from quick_case import COMMAND, QUICK, coatcheck
 from rich.console import Console
 from synthetic_results import INFO, contact, result_of
 
-from verification.cases.contact import shipped_cases
-from verification.cases.published import published_cases
+from verification.cases.case_file import shipped_cases
+from verification.cases.published_file import published_cases
 from verification.commands.common import terminal
 from verification.commands.compare import compare
 from verification.commands.shipped.list_cases import list_cases
-from verification.report.material import Material
-from verification.report.pdf import NoBrowser, browser, printed
-from verification.report.write import report_json
-from verification.running.result import to_json
-from verification.running.store import write_checked
-from verification.running.stored import read_run
+from verification.page.pdf_file import NoBrowser, browser, printed
+from verification.report.report_files import report_json
+from verification.report.report_material import Material
+from verification.running.case_result import to_json
+from verification.running.checked_files import write_checked
+from verification.running.stored_run import read_run
 
 COMMANDS = (
     "run",
@@ -129,8 +129,8 @@ def test_completion_works_in_the_shell_itself(capsys, tmp_path, shell, words):
 @pytest.mark.parametrize("width", [40, 80])
 def test_the_table_stands_in_a_narrow_terminal(stored, capsys, monkeypatch, width):
     from verification.commands.run import _print_table
-    from verification.regression.baseline import Update, regression
-    from verification.running.stored import read_run
+    from verification.regression.baseline_change import Update, regression
+    from verification.running.stored_run import read_run
 
     monkeypatch.setenv("COLUMNS", str(width))
     monkeypatch.setenv("TERM", "dumb")

@@ -7,11 +7,11 @@ import pytest
 from quick_case import coatcheck
 from synthetic_results import INFO, contact, result_of
 
-from verification.commands.common.exits import CommandError
+from verification.commands.common.exit_codes import CommandError
 from verification.commands.common.terminal import print_warnings
-from verification.report.material import Material
-from verification.report.page import render
-from verification.running.result import from_json, to_json
+from verification.report.report_material import Material
+from verification.report.report_page import render
+from verification.running.case_result import from_json, to_json
 
 LINE = "load = 3 <looks> like mN"
 

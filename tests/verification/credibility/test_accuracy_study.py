@@ -2,6 +2,8 @@
 
 import json
 from dataclasses import replace
+from functools import partial
+from importlib import import_module
 from itertools import pairwise
 
 import numpy as np
@@ -10,15 +12,21 @@ from quick_case import solved_here
 from synthetic_study import study
 
 from verification.commands import run as command
-from verification.commands.common import solving
-from verification.credibility import accuracy as accuracy_study
-from verification.credibility.accuracy import BARE, COATED, AccuracyStudy, from_json, to_json
-from verification.credibility.refinement import QUANTITIES, order_of, refined_grid, refined_mesh, settled
-from verification.judging.invariants.influence import conversion_errors
-from verification.running.pool.processes import run_tasks
-from verification.running.pool.task import Task
-from verification.running.store import StoreError, write_checked
-from verification.sources.methods import solve_semianalytic
+from verification.commands.common import task_progress
+from verification.credibility import accuracy_study as accuracy_study
+from verification.credibility.accuracy_study import BARE, COATED, AccuracyStudy, from_json, to_json
+from verification.credibility.refinement_studies import (
+    QUANTITIES,
+    order_of,
+    refined_grid,
+    refined_mesh,
+    settled,
+)
+from verification.judging.invariants.influence_error import conversion_errors
+from verification.running.checked_files import StoreError, write_checked
+from verification.running.pool.pool_task import Task
+from verification.running.pool.process_pool import run_tasks
+from verification.sources.method_sources import solve_semianalytic
 
 
 @pytest.fixture(scope="module")
@@ -190,7 +198,9 @@ def test_study_is_kept_for_the_very_same_code_only(tmp_path):
 
 def test_process_that_dies_leaves_its_reason(tmp_path):
     task = accuracy_study.task(tmp_path)
-    broken = Task(task.name, ("verification.no_such_module",), task.path, task.read, task.failed)
+    broken = Task(
+        task.name, partial(import_module, "verification.no_such_module"), task.path, task.read, task.failed
+    )
     (found,) = run_tasks([broken], jobs=1, time_limit=60)
     assert found.refinements == ()
     assert "ended with code 1" in found.failures[0]
@@ -215,7 +225,7 @@ def test_study_that_fails_is_a_sentence_of_the_report_and_no_verdict(one_case, t
     whole = accuracy_study.task
 
     def broken(folder):
-        return replace(whole(folder), command=("verification.no_such_module:main",))
+        return replace(whole(folder), work=partial(import_module, "verification.no_such_module"))
 
     monkeypatch.setattr(accuracy_study, "task", broken)
     assert command.run(output=tmp_path / "all", **one_case) == 0
@@ -227,14 +237,14 @@ def test_study_that_fails_is_a_sentence_of_the_report_and_no_verdict(one_case, t
     assert [c["outcome"] for c in report["cases"]] == ["AGREES"]
 
     # A run of chosen cases measures no convergence.
-    monkeypatch.setattr(solving, "run_tasks", solved_here)
+    monkeypatch.setattr(task_progress, "run_tasks", solved_here)
     assert command.run("quick", output=tmp_path / "one", **one_case) == 0
     assert 'id="semi-analytical-accuracy"' not in (tmp_path / "one" / "report.html").read_text()
     assert json.loads((tmp_path / "one" / "report.json").read_text())["accuracy"] is None
 
 
 def test_resumed_run_keeps_the_study(one_case, tmp_path, monkeypatch):
-    monkeypatch.setattr(solving, "run_tasks", solved_here)
+    monkeypatch.setattr(task_progress, "run_tasks", solved_here)
     monkeypatch.setattr(accuracy_study, "stored", lambda folder: study())
     monkeypatch.setattr(accuracy_study, "task", lambda folder: pytest.fail("measured again"))
     assert command.run(output=tmp_path / "out", resume=True, **one_case) == 0

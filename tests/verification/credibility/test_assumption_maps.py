@@ -6,14 +6,14 @@ from dataclasses import astuple, replace
 import numpy as np
 import pytest
 
-from verification.commands.common.folders import RECORDS
-from verification.credibility.model.assumptions import ASSUMPTIONS, PARABOLA, QUANTITIES, Assumption
-from verification.credibility.model.error import model_error
-from verification.credibility.model.maps import AssumptionMaps, assembled, measure, read_maps
-from verification.credibility.model.place import Place, places_of
-from verification.problem.contact import CoatedContact
-from verification.running.result import RunInfo
-from verification.sources.assumptions.change import Change
+from verification.commands.common.known_folders import RECORDS
+from verification.credibility.model.model_error import model_error
+from verification.credibility.model.shared_assumptions import ASSUMPTIONS, PARABOLA, QUANTITIES, Assumption
+from verification.evidence.assumption_maps import AssumptionMaps, assembled, measure, read_maps
+from verification.evidence.map_places import Place, places_of
+from verification.problem.coated_contact import CoatedContact
+from verification.running.case_result import RunInfo
+from verification.sources.assumptions.contact_change import Change
 
 INFO = RunInfo("coatcheck assumptions", "2026-11-22", 1.0, 1, None, "a machine", {})
 

@@ -9,7 +9,7 @@ import pytest
 from quick_case import coatcheck
 from synthetic_results import INFO, STEEL, contact, crashed, result_of
 
-from verification.cases.contact import Case, parse_case
+from verification.cases.case_file import Case, parse_case
 from verification.cases.random_problems import (
     FRICTION,
     MOST_COATINGS,
@@ -19,10 +19,10 @@ from verification.cases.random_problems import (
     THINNEST,
     draw,
 )
-from verification.credibility.alarms import counted, path_in, read_record, write_record
-from verification.judging.claims import standard_claims
+from verification.evidence.alarm_record import counted, path_in, read_record, write_record
+from verification.judging.standard_claims import standard_claims
 from verification.judging.verdict import Outcome
-from verification.running.store import StoreError
+from verification.running.checked_files import StoreError
 
 E, NU = STEEL
 

@@ -4,8 +4,7 @@ from dataclasses import replace
 
 import pytest
 
-from verification.credibility.model.assumptions import SMALL_STRAINS
-from verification.credibility.model.error import (
+from verification.credibility.model.model_error import (
     GOODMAN,
     HALF_SPACES,
     PARABOLA,
@@ -13,7 +12,8 @@ from verification.credibility.model.error import (
     ModelError,
     model_error,
 )
-from verification.problem.contact import CoatedContact
+from verification.credibility.model.shared_assumptions import SMALL_STRAINS
+from verification.problem.coated_contact import CoatedContact
 
 BARE = CoatedContact(10e-3, 20.0, (), (210e9, 0.3))
 

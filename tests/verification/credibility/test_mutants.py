@@ -9,18 +9,18 @@ import pytest
 from synthetic_results import INFO
 
 from verification.commands.credibility.faults import mutants as command
-from verification.credibility.mutation import record as records
 from verification.credibility.mutation import trial
-from verification.credibility.mutation.record import ROOMS, ROOT, Catch, MutantRecord, Trial, annotated, drawn
 from verification.credibility.mutation.sites import mutants, mutated
 from verification.credibility.mutation.trial import kept_trial, main, try_mutant
-from verification.report.credibility import mutants as page
-from verification.report.material import Evidence, Material
-from verification.report.sections.first import worth
-from verification.running.records import decode, encode
-from verification.running.store import StoreError, read_checked
+from verification.evidence import mutant_record as records
+from verification.evidence.mutant_record import ROOMS, ROOT, Catch, MutantRecord, Trial, annotated, drawn
+from verification.report.credibility import mutants_section as page
+from verification.report.report_material import Evidence, Material
+from verification.report.sections.first_page import worth
+from verification.running.checked_files import StoreError, read_checked
+from verification.running.json_records import decode, encode
 
-GUARD = "verification/running/pool/guard.py"
+GUARD = "verification/running/pool/fork_guard.py"
 SMALL = '''"""A module of 3 words."""
 from dataclasses import dataclass
 __all__ = ["f", "g"]
@@ -95,7 +95,9 @@ def test_a_small_source_has_the_known_mutants_and_no_other():
     assert {m.function for m in found} == {"", "C.f", "g"}
 
 
-@pytest.mark.parametrize("file", ["", "verification/judging/verdict.py", "verification/sampling/plane.py"])
+@pytest.mark.parametrize(
+    "file", ["", "verification/judging/verdict.py", "verification/sampling/stress_plane.py"]
+)
 def test_every_mutant_differs_and_compiles(file):
     source = (ROOT / file).read_text("utf-8") if file else SMALL
     for mutant in mutants(source, file):

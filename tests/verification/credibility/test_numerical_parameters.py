@@ -5,10 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from verification.credibility.accuracy import BARE, COATED
-from verification.credibility.parameters import PARAMETERS, stated, study, sweep
-from verification.sources.record import NumericalParameter
+from verification.credibility.accuracy_study import BARE, COATED
+from verification.credibility.parameter_sweeps import PARAMETERS, stated, study, sweep
 from verification.sources.references.hertz import Hertz
+from verification.sources.source_record import NumericalParameter
 
 EXACT = Hertz(BARE.radius, BARE.load, *BARE.substrate)
 KNOB = NumericalParameter(

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from verification.credibility.uncertainty import convergence_index, least_squares, uncertainty
+from verification.credibility.level_uncertainty import convergence_index, least_squares, uncertainty
 
 STEPS = (8.0, 4.0, 2.0, 1.0)
 LIMIT = 3.7

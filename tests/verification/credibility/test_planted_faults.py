@@ -7,21 +7,21 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from verification.cases.contact import read_case, shipped_cases
+from verification.cases.case_file import read_case, shipped_cases
 from verification.commands.credibility.faults import faults
-from verification.credibility.faults import campaign
-from verification.credibility.faults.catalogue import CONTROLS, FAULTS, GROUPS, chosen
-from verification.credibility.faults.checks import Check
-from verification.credibility.faults.planting import Constant, Edit, Fault, PlantError, planted
-from verification.credibility.faults.record import Catch, Record, from_json, read_record, row_of, to_json
-from verification.credibility.faults.trial import Trial, clean_path, try_fault
+from verification.credibility.faults import fault_campaign
+from verification.credibility.faults.default_checks import Check
+from verification.credibility.faults.fault_catalogue import CONTROLS, FAULTS, GROUPS, chosen
+from verification.credibility.faults.fault_planting import Constant, Edit, Fault, PlantError, planted
+from verification.credibility.faults.fault_trial import Trial, clean_path, try_fault
+from verification.evidence.fault_record import Catch, Record, from_json, read_record, row_of, to_json
 from verification.judging.verdict import Outcome
-from verification.report.credibility.faults import faults_page
-from verification.running import contact as running
-from verification.running.result import from_json as result_from_json
-from verification.running.result import to_json as result_to_json
-from verification.running.store import read_checked, write_checked
-from verification.sources import registry
+from verification.report.credibility.faults_section import faults_page
+from verification.running import contact_run as running
+from verification.running.case_result import from_json as result_from_json
+from verification.running.case_result import to_json as result_to_json
+from verification.running.checked_files import read_checked, write_checked
+from verification.sources import source_registry
 from verification.sources.references.hertz import Hertz, HertzContact
 
 # What issue after issue of such codes has been about, each by the fault that stands for it.
@@ -81,11 +81,11 @@ def test_a_fault_says_what_is_wrong_where_it_sits_what_should_catch_it(fault):
     assert fault.changes
     assert fault.predicted
     assert set(fault.cases) <= set(shipped_cases())
-    assert fault.where in (*registry.solvers(), "harness", "published")
+    assert fault.where in (*source_registry.solvers(), "harness", "published")
 
 
 def test_names_are_unique_across_the_groups():
-    from verification.credibility.faults.catalogue import LISTS
+    from verification.credibility.faults.fault_catalogue import LISTS
 
     names = [
         entry["name"]
@@ -173,7 +173,7 @@ def clean(tmp_path_factory):
     """A clean run of the uncoated case in which the exact reference stands in for both methods."""
     folder = tmp_path_factory.mktemp("clean")
     case = read_case(shipped_cases()["01_uncoated_steel"])
-    known = registry.solvers()
+    known = source_registry.solvers()
     exact = known["integral_equation"]
     sources = {"semianalytic": exact, "fem_reference": exact} | {
         name: known[name] for name in ("integral_equation", "hertz")
@@ -249,7 +249,7 @@ def test_drift_alone_counts_only_where_it_was_foretold():
 
 
 def _record(*trials: Trial) -> Record:
-    return campaign.record_of(
+    return fault_campaign.record_of(
         trials, started="2026-11-21T12:00:00+00:00", seconds=1.0, commit=None, machine="here", versions={}
     )
 
@@ -310,7 +310,7 @@ def test_a_wrong_question_is_bad_input_and_writes_nothing(arguments, tmp_path, c
 def test_the_command_tries_resumes_and_writes_matrix_and_page(tmp_path, capsys):
     assert faults("sides_swapped", output=tmp_path, jobs=1) == 0
     assert "1 of 1 faults caught" in capsys.readouterr().out.replace("\n", " ")
-    record = read_record(tmp_path / campaign.RECORD)
+    record = read_record(tmp_path / fault_campaign.RECORD)
     assert record is not None
     assert record.rows[0].as_predicted
     assert (tmp_path / "faults.html").read_text().startswith("<!DOCTYPE html>")
@@ -328,7 +328,7 @@ def test_groups_and_names_choose_their_faults():
 @pytest.mark.slow
 def test_nineteen_of_twenty_faults_are_caught_and_every_survivor_is_explained(tmp_path):
     assert faults(output=tmp_path, quiet=True) == 0
-    record = read_record(tmp_path / campaign.RECORD)
+    record = read_record(tmp_path / fault_campaign.RECORD)
     assert record is not None
     assert record.share >= 0.95
     assert np.isfinite(record.core_seconds)

@@ -3,16 +3,16 @@
 import pytest
 from synthetic_results import INFO, contact, result_of
 
-from verification.commands.common.exits import EXIT
+from verification.commands.common.exit_codes import EXIT
 from verification.commands.run import _code
 from verification.credibility import self_tests as room
-from verification.credibility.faults.catalogue import FAULTS
-from verification.credibility.faults.planting import planted
+from verification.credibility.faults.fault_catalogue import FAULTS
+from verification.credibility.faults.fault_planting import planted
 from verification.credibility.self_tests import SelfTest, self_tests
 from verification.judging.verdict import Outcome
-from verification.regression.baseline import Regression
-from verification.report.credibility.self_tests import section
-from verification.report.material import Evidence, Material
+from verification.regression.baseline_change import Regression
+from verification.report.credibility.self_tests_section import section
+from verification.report.report_material import Evidence, Material
 
 PASSED = SelfTest("judging", "verdicts are what they must be", True, "21 known answers")
 FAILED = SelfTest(

@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 from scipy.optimize import minimize_scalar
 
-from verification.cases.graded import Course, moduli
-from verification.desk.answer import answer, differences
-from verification.desk.stresses import first_principal
-from verification.desk.summary import summary
-from verification.problem.contact import CoatedContact
+from verification.cases.graded_coating import Course, moduli
+from verification.desk.answer_stresses import first_principal
+from verification.desk.answer_summary import summary
+from verification.desk.contact_answer import answer, differences
+from verification.problem.coated_contact import CoatedContact
 from verification.problem.quantity import von_mises
-from verification.sources.registry import EXACT, METHODS, solvers
+from verification.sources.source_registry import EXACT, METHODS, solvers
 
 BARE = CoatedContact(10e-3, 20.0, (), (210e9, 0.3))
 SLIDING = replace(BARE, friction=0.25)
@@ -119,7 +119,7 @@ def test_principal_stresses_are_eigenvalues():
 
 def test_largest_stresses_are_those_of_the_whole_body():
     """Eigenvalues of all six stresses at points around the contact, off the plane y = 0 too."""
-    from verification.sources.registry import SOURCES
+    from verification.sources.source_registry import SOURCES
 
     solution = SOURCES["hamilton"].solve(SLIDING, {})
     found = answer(SLIDING, "semianalytic")

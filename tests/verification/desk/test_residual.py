@@ -6,11 +6,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from verification.cases.contact import parse_case
-from verification.cases.toml import CaseError
-from verification.desk.answer import answer
-from verification.problem.contact import CoatedContact
-from verification.sources.registry import SOURCES
+from verification.cases.case_file import parse_case
+from verification.cases.toml_file import CaseError
+from verification.desk.contact_answer import answer
+from verification.problem.coated_contact import CoatedContact
+from verification.sources.source_registry import SOURCES
 
 STRESS = -2e9
 SLIDING = CoatedContact(10e-3, 20.0, ((210e9, 0.3, 10e-6),), (210e9, 0.3), 0.25)

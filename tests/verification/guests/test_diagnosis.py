@@ -5,18 +5,18 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from verification.cases.contact import read_case, shipped_cases
-from verification.guests.description import Guest, Supports
-from verification.guests.diagnosis import slips
-from verification.guests.doors.program import Solved
-from verification.guests.exam import claims_of, prepare, question_of
-from verification.guests.protocol import VERSION, Answer
-from verification.guests.subjects import REFERENCE, subject_of
-from verification.guests.verdicts import judged
-from verification.problem.contact import CoatedContact
-from verification.running.result import from_json
-from verification.running.store import read_checked
-from verification.sources.exact import solve_exactly
+from verification.cases.case_file import read_case, shipped_cases
+from verification.guests.case_exam import claims_of, prepare, question_of
+from verification.guests.doors.program_door import Solved
+from verification.guests.exam_subjects import REFERENCE, subject_of
+from verification.guests.guest_description import Guest, Supports
+from verification.guests.guest_protocol import VERSION, Answer
+from verification.guests.guest_verdicts import judged
+from verification.guests.slip_diagnosis import slips
+from verification.problem.coated_contact import CoatedContact
+from verification.running.case_result import from_json
+from verification.running.checked_files import read_checked
+from verification.sources.exact_sources import solve_exactly
 
 GUEST = Guest(
     folder=None, text="", name="g", claim=0.01, supports=Supports(coatings=9, friction=True, stress=True)

@@ -9,27 +9,27 @@ import pytest
 from quick_case import coatcheck
 
 import verification
-from verification.cases.contact import read_case, shipped_cases
-from verification.cases.toml import CaseError
-from verification.guests.description import GROUP, installed_guests, read_guest
-from verification.guests.doors.asking import answered
-from verification.guests.doors.files import fill, pack, read_answer
-from verification.guests.exam import claims_of, prepare, question_of
-from verification.guests.protocol import ProtocolError, schema
-from verification.guests.subjects import PLANE, REFERENCE, subject_of
-from verification.guests.verdicts import judged
+from verification.cases.case_file import read_case, shipped_cases
+from verification.cases.toml_file import CaseError
+from verification.guests.case_exam import claims_of, prepare, question_of
+from verification.guests.doors.ask_guest import answered
+from verification.guests.doors.file_door import fill, pack, read_answer
+from verification.guests.exam_subjects import PLANE, REFERENCE, subject_of
+from verification.guests.guest_description import GROUP, installed_guests, read_guest
+from verification.guests.guest_protocol import ProtocolError, schema
+from verification.guests.guest_verdicts import judged
 from verification.judging.verdict import Outcome
 from verification.problem.quantity import STRESSES
-from verification.running.contact import decide
-from verification.running.result import SourceResult, from_json
-from verification.running.store import read_checked
-from verification.sampling.lines import sample, sample_contact
-from verification.sources.registry import SOURCES
+from verification.running.case_result import SourceResult, from_json
+from verification.running.checked_files import read_checked
+from verification.running.contact_run import decide
+from verification.sampling.line_sampling import sample, sample_contact
+from verification.sources.source_registry import SOURCES
 
 PACKAGE = Path(verification.__file__).parent
 EXAMPLES = PACKAGE / "guests" / "examples"
 SUPPORTS = "supports = { coatings = 50, friction = true, stress = true }\n"
-SERVED = ["-m", "verification.guests.doors.serve"]
+SERVED = ["-m", "verification.guests.doors.serve_function"]
 
 
 def guest_in(folder, text):

@@ -9,19 +9,19 @@ from dataclasses import replace
 
 import pytest
 
-from verification.cases.contact import read_case, shipped_cases
-from verification.guests.description import Guest, Supports
-from verification.guests.doors.asking import answered, ask_task
-from verification.guests.doors.files import pack
-from verification.guests.doors.program import Program
-from verification.guests.exam import claims_of, exam_path, prepare, question_of
-from verification.guests.protocol import ProtocolError
-from verification.guests.subjects import subject_of
-from verification.guests.verdicts import judged
+from verification.cases.case_file import read_case, shipped_cases
+from verification.guests.case_exam import claims_of, exam_path, prepare, question_of
+from verification.guests.doors.ask_guest import answered, ask_task
+from verification.guests.doors.file_door import pack
+from verification.guests.doors.program_door import Program
+from verification.guests.exam_subjects import subject_of
+from verification.guests.guest_description import Guest, Supports
+from verification.guests.guest_protocol import ProtocolError
+from verification.guests.guest_verdicts import judged
 from verification.judging.verdict import Outcome
-from verification.running.pool.processes import run_tasks
-from verification.running.result import from_json
-from verification.running.store import read_checked
+from verification.running.case_result import from_json
+from verification.running.checked_files import read_checked
+from verification.running.pool.process_pool import run_tasks
 
 LIMIT = 0.4  # s for an answer of a guest that hangs
 # Every program begins so: the question is read, `good` is what Hertz would answer.

@@ -8,22 +8,22 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from verification.cases.contact import read_case, shipped_cases
-from verification.credibility.faults.catalogue import FAULTS
-from verification.credibility.faults.planting import planted
-from verification.guests.description import read_guest
-from verification.guests.doors.face import values_of
-from verification.guests.doors.program import Solved
-from verification.guests.doors.serve import called, problem_of
-from verification.guests.exam import claims_of, prepare, question_of
-from verification.guests.protocol import VERSION, Answer, LineOfPoints
-from verification.guests.subjects import DISC, PLANE, SPHERE, SQUARE, subject_of
-from verification.guests.verdicts import judged
+from verification.cases.case_file import read_case, shipped_cases
+from verification.credibility.faults.fault_catalogue import FAULTS
+from verification.credibility.faults.fault_planting import planted
+from verification.guests.case_exam import claims_of, prepare, question_of
+from verification.guests.doors.program_door import Solved
+from verification.guests.doors.returned_answers import values_of
+from verification.guests.doors.serve_function import called, problem_of
+from verification.guests.exam_subjects import DISC, PLANE, SPHERE, SQUARE, subject_of
+from verification.guests.guest_description import read_guest
+from verification.guests.guest_protocol import VERSION, Answer, LineOfPoints
+from verification.guests.guest_verdicts import judged
 from verification.judging.verdict import Outcome
-from verification.problem.contact import CoatedContact
-from verification.running.records import plain
-from verification.running.result import from_json
-from verification.running.store import read_checked
+from verification.problem.coated_contact import CoatedContact
+from verification.running.case_result import from_json
+from verification.running.checked_files import read_checked
+from verification.running.json_records import plain
 
 OWN = {"semianalytic": "semianalytic", "fem_reference": "finite_elements"}
 EXAMPLES = "verification.guests.examples"

@@ -11,20 +11,20 @@ import numpy as np
 import pytest
 from quick_case import coatcheck
 
-from verification.guests.vectors import content
+from verification.guests.vectors import open_digits
 from verification.guests.vectors.making import make
-from verification.guests.vectors.problems import problems
-from verification.guests.vectors.values import exact_rows
+from verification.guests.vectors.open_problems import problems
+from verification.guests.vectors.open_values import exact_rows
 
 
 @pytest.fixture(scope="module")
 def shipped():
-    return content.shipped()
+    return open_digits.shipped()
 
 
 def test_at_least_500_problems_with_50_000_values(shipped):
     assert len(shipped["problems"]) >= 500
-    assert content.value_count(shipped) >= 50_000
+    assert open_digits.value_count(shipped) >= 50_000
     assert len({one["name"] for one in shipped["problems"]}) == len(shipped["problems"])
     assert {len(one["problem"]["coatings"]) for one in shipped["problems"]} == set(range(6))
     groups = {one["group"] for one in shipped["problems"]}
@@ -32,7 +32,7 @@ def test_at_least_500_problems_with_50_000_values(shipped):
 
 
 def test_the_schema_holds_and_every_value_has_its_uncertainty(shipped):
-    content.VectorSet.model_validate_json(json.dumps(shipped))
+    open_digits.VectorSet.model_validate_json(json.dumps(shipped))
     assert "CC0" in shipped["licence"]
     assert "coatcheck" in shipped["cite"]
     for one in shipped["problems"]:
@@ -40,7 +40,7 @@ def test_the_schema_holds_and_every_value_has_its_uncertainty(shipped):
             assert points["values"].keys() == points["uncertainty"].keys()
             sizes = {len(v) for part in ("values", "uncertainty") for v in points[part].values()}
             assert sizes == {len(points["x"])} == {len(points["z"])}
-    wide = np.array(list(content.uncertain(shipped)))
+    wide = np.array(list(open_digits.uncertain(shipped)))
     assert np.isfinite(wide).all()
     assert (wide >= 0).all()
     assert (wide <= 1e-10).mean() > 0.8  # ten digits
@@ -60,7 +60,7 @@ def test_both_methods_agree_within_their_uncertainty(shipped):
 def test_problems_computed_anew_have_the_same_digits(shipped, number):
     one = problems()[number]
     stored = shipped["problems"][number]
-    found = content.vector(one, exact_rows(one.problem))
+    found = open_digits.vector(one, exact_rows(one.problem))
     assert found["problem"] == stored["problem"]
     for new, old in zip(found["points"], stored["points"], strict=True):
         for quantity, values in old["values"].items():
@@ -84,7 +84,7 @@ def test_the_command_writes_files_whose_checksums_hold(folder, shipped):
     for name, digest in shipped["sha256"].items():
         assert hashlib.sha256((folder / name).read_bytes()).hexdigest() == digest
     rows = list(csv.DictReader(io.StringIO((folder / "values.csv").read_text())))
-    assert len(rows) == content.value_count(shipped)
+    assert len(rows) == open_digits.value_count(shipped)
 
 
 def test_the_reader_shown_is_at_most_20_lines_that_run(folder, monkeypatch, capsys):

@@ -6,10 +6,10 @@ from typing import ClassVar
 import numpy as np
 import pytest
 
-from verification.judging.invariants.bond import displacement_bound, hooke
-from verification.judging.invariants.stencil import Stencil
+from verification.judging.invariants.bonded_deformation import displacement_bound, hooke
+from verification.judging.invariants.central_differences import Stencil
 from verification.judging.verdict import Outcome
-from verification.problem.contact import CoatedContact, Uncertainty
+from verification.problem.coated_contact import CoatedContact, Uncertainty
 
 E, NU, A, S = 210e9, 0.3, 1e-4, 1e6
 BARE = CoatedContact(10e-3, 20.0, (), (E, NU))

@@ -3,12 +3,12 @@
 import pytest
 
 import semianalytic
-from verification.cases.contact import read_case, shipped_cases
-from verification.credibility.faults.planting import Edit, planted
+from verification.cases.case_file import read_case, shipped_cases
+from verification.credibility.faults.fault_planting import Edit, planted
 from verification.judging.invariants import check
-from verification.judging.invariants.influence import conversion_errors, influence_coefficients
+from verification.judging.invariants.influence_error import conversion_errors, influence_coefficients
 from verification.judging.verdict import Outcome
-from verification.problem.contact import CoatedContact
+from verification.problem.coated_contact import CoatedContact
 
 POOR = {
     "a domain too small": Edit(

@@ -8,12 +8,12 @@ import pytest
 
 import fem_reference
 import semianalytic
-from verification.judging.invariant import decide
+from verification.judging.invariant_verdict import decide
 from verification.judging.invariants import check
-from verification.judging.invariants.limits import thick_shift, thin_shift
-from verification.judging.invariants.stencil import Stencil
+from verification.judging.invariants.central_differences import Stencil
+from verification.judging.invariants.thickness_limits import thick_shift, thin_shift
 from verification.judging.verdict import Outcome
-from verification.problem.contact import CoatedContact
+from verification.problem.coated_contact import CoatedContact
 from verification.sources.references import integral_equation
 from verification.sources.references.hamilton import Hamilton
 from verification.sources.references.hertz import Hertz
@@ -294,7 +294,7 @@ def test_thin_coating_changes_the_approach_by_the_first_order_of_perturbation():
 @pytest.mark.slow
 def test_invariants_between_solutions_hold_for_both_methods():
     from verification.judging.invariants import resolved
-    from verification.sources.registry import solvers
+    from verification.sources.source_registry import solvers
 
     found = resolved(SLIDING, solvers())
     assert len(found) == 10

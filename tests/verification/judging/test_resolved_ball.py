@@ -5,10 +5,10 @@ from dataclasses import replace
 import pytest
 
 from verification.judging.invariants import resolved
-from verification.judging.invariants.resolved import BALL_NAMES
+from verification.judging.invariants.resolved_invariants import BALL_NAMES
 from verification.judging.verdict import Outcome
-from verification.problem.contact import CoatedContact, PrescribedLoad
-from verification.sources.exact import solve_exactly
+from verification.problem.coated_contact import CoatedContact, PrescribedLoad
+from verification.sources.exact_sources import solve_exactly
 
 BOTH_COATED = CoatedContact(
     1e-2, 20.0, ((4e11, 0.2, 2e-5),), (2.1e11, 0.3), ball=(3e11, 0.22, ((2e11, 0.3, 1.5e-5),))

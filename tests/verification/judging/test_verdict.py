@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from verification.judging.verdict import Outcome, compare, judge
-from verification.problem.profile import Profile
+from verification.problem.line_profile import Profile
 
 
 def profile(value, uncertainty=None, source="a", position=None):

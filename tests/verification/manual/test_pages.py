@@ -4,10 +4,10 @@ import re
 
 import pytest
 
-from verification.manual import book, build
-from verification.manual.blocks import BLOCKS
-from verification.manual.typeset import restructured
-from verification.manual.worked import WORKED
+from verification.manual import manual_build, manual_pdf
+from verification.manual.generated_blocks import BLOCKS
+from verification.manual.sphinx_extension import restructured
+from verification.manual.worked_examples import WORKED
 
 SLOW = ("solved", *WORKED)  # solve problems
 
@@ -16,9 +16,9 @@ def test_an_unknown_block_is_refused_with_the_page(tmp_path, monkeypatch):
     source = tmp_path / "kept"
     source.mkdir()
     (source / "page.md").write_text("# Page\n\n```{generated} nothing\n```\n")
-    monkeypatch.setattr(build, "SOURCE", source)
-    with pytest.raises(build.ManualError, match=r"page.md: no generated block 'nothing'"):
-        build.assemble(tmp_path / "out")
+    monkeypatch.setattr(manual_build, "SOURCE", source)
+    with pytest.raises(manual_build.ManualError, match=r"page.md: no generated block 'nothing'"):
+        manual_build.assemble(tmp_path / "out")
 
 
 def test_a_docstring_keeps_formulas_lists_its_parameters_and_escapes_the_rest():
@@ -37,8 +37,8 @@ over two lines. Raises ValueError."""
 
 def test_a_folder_with_something_else_is_not_written_to(tmp_path):
     (tmp_path / "letter.txt").write_text("mine")
-    with pytest.raises(build.ManualError, match="holds something else than a manual"):
-        build.build(tmp_path)
+    with pytest.raises(manual_build.ManualError, match="holds something else than a manual"):
+        manual_build.build(tmp_path)
 
 
 def test_the_page_to_be_printed_loads_no_file_and_lists_its_chapters(tmp_path):
@@ -50,7 +50,7 @@ def test_the_page_to_be_printed_loads_no_file_and_lists_its_chapters(tmp_path):
         '<section class="a" id="one">\n<h2>First <em>chapter</em><a class="headerlink" href="#one">x</a></h2>'
         '<img alt="" src="a.svg" />'
     )
-    page = book.with_contents(book.in_one_file(tmp_path / "index.html"))
+    page = manual_pdf.with_contents(manual_pdf.in_one_file(tmp_path / "index.html"))
     assert re.findall(r'(?:src|href)="([^"]+)"', page) == [
         "#heading-0",
         "#one",
@@ -69,7 +69,7 @@ def test_every_block_of_the_manual_has_content():
 @pytest.mark.filterwarnings("ignore:.*Check CHANGES for Sphinx API modifications")  # of MyST by Sphinx
 def test_the_manual_builds_without_a_warning_and_loads_nothing(tmp_path):
     pytest.importorskip("sphinx")
-    first = build.build(tmp_path / "manual")
+    first = manual_build.build(tmp_path / "manual")
     pages = {path: path.read_text(encoding="utf-8") for path in first.parent.rglob("*.html")}
     assert len(pages) > 20
     loaded = r'<(?:script|img|link|iframe)[^>]+(?:src|href)="(?:https?:)?//'

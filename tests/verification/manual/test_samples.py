@@ -11,13 +11,13 @@ from pathlib import Path
 
 import pytest
 
-from verification.cases.contact import parse_case
-from verification.cases.published import parse_published
-from verification.cases.toml import CaseError
+from verification.cases.case_file import parse_case
+from verification.cases.published_file import parse_published
+from verification.cases.toml_file import CaseError
 from verification.cli import app
-from verification.guests.description import parse_guest
-from verification.manual.blocks import SOURCE
-from verification.study.plan import parse_study
+from verification.guests.guest_description import parse_guest
+from verification.manual.generated_blocks import SOURCE
+from verification.study.study_plan import parse_study
 
 ROOT = Path(__file__).resolve().parents[3]
 PAGES = (

@@ -10,10 +10,10 @@ import pytest
 from quick_case import QUICK, coatcheck
 from synthetic_results import INFO, STEEL, contact, result_of
 
-from verification.cases.contact import shipped_cases
-from verification.cases.published import published_cases
-from verification.commands.common.folders import BASELINE
-from verification.regression.baseline import (
+from verification.cases.case_file import shipped_cases
+from verification.cases.published_file import published_cases
+from verification.commands.common.known_folders import BASELINE
+from verification.regression.baseline_change import (
     Baseline,
     against,
     case_drift,
@@ -21,12 +21,12 @@ from verification.regression.baseline import (
     regression_json,
     updated,
 )
-from verification.regression.drift import RELATIVE, State, measured
-from verification.regression.record import path_in, read_baseline, write_baseline
-from verification.report.material import Material
-from verification.report.write import report_json
-from verification.running.result import CaseResult, to_json
-from verification.running.store import StoreError, write_checked
+from verification.regression.baseline_file import path_in, read_baseline, write_baseline
+from verification.regression.number_drift import RELATIVE, State, measured
+from verification.report.report_files import report_json
+from verification.report.report_material import Material
+from verification.running.case_result import CaseResult, to_json
+from verification.running.checked_files import StoreError, write_checked
 
 E, NU = STEEL
 RESULT = result_of(contact((2 * E, NU, 1.0)), text="title = 'stiff'\n")
@@ -294,7 +294,7 @@ def test_a_run_that_agrees_but_drifted_ends_with_code_5(tmp_path):
     done = coatcheck("run", "quick.toml", "--json", "--baseline", "base", cwd=tmp_path)
     assert done.returncode == 0, done.stderr
     assert json.loads(done.stdout)["baseline"]["recorded"] is None
-    from verification.running.stored import confirm, read_run
+    from verification.running.stored_run import confirm, read_run
 
     run = read_run(tmp_path / "reports")
     confirm(run)

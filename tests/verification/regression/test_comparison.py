@@ -12,16 +12,16 @@ from quick_case import coatcheck
 from synthetic_results import INFO, STEEL, contact, result_of
 
 from verification.judging.verdict import Outcome
-from verification.regression.comparison import compare_runs
-from verification.regression.drift import State
-from verification.regression.history import history
-from verification.report.material import Material
-from verification.report.runs.comparison import comparison_message, comparison_page
-from verification.report.runs.history import history_page
-from verification.report.write import report_json
-from verification.running.result import CaseResult, RunInfo
-from verification.running.store import StoreError
-from verification.running.stored import StoredRun, read_run
+from verification.regression.comparison_page import comparison_message, comparison_page
+from verification.regression.history_page import history_page
+from verification.regression.number_drift import State
+from verification.regression.run_comparison import compare_runs
+from verification.regression.run_history import history
+from verification.report.report_files import report_json
+from verification.report.report_material import Material
+from verification.running.case_result import CaseResult, RunInfo
+from verification.running.checked_files import StoreError
+from verification.running.stored_run import StoredRun, read_run
 
 E, NU = STEEL
 GOOD = result_of(contact((2 * E, NU, 1.0)), name="stiff", points=33)

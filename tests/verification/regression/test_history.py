@@ -10,12 +10,12 @@ from html_document import Document
 from quick_case import coatcheck
 from synthetic_results import INFO, STEEL, contact, result_of
 
-from verification.regression.baseline import updated
-from verification.regression.history import history, reports_in
-from verification.report.material import Material
-from verification.report.runs.history import MOST_COLUMNS, history_message, history_page
-from verification.report.write import report_json
-from verification.running.stored import StoredRun
+from verification.regression.baseline_change import updated
+from verification.regression.history_page import MOST_COLUMNS, history_message, history_page
+from verification.regression.run_history import history, reports_in
+from verification.report.report_files import report_json
+from verification.report.report_material import Material
+from verification.running.stored_run import StoredRun
 
 GOOD = result_of(contact((2 * STEEL[0], 0.3, 1.0)), name="stiff", points=17)
 BASELINE = updated(None, [GOOD], INFO, "first", "2026-11-20T00:00:00+00:00")

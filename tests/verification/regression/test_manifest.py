@@ -7,22 +7,22 @@ from pathlib import Path
 import pytest
 from quick_case import QUICK, coatcheck
 
-from verification.cases.contact import parse_case
-from verification.cases.toml import CaseError
-from verification.credibility.faults.planting import Edit, planted
+from verification.cases.case_file import parse_case
+from verification.cases.toml_file import CaseError
+from verification.credibility.faults.fault_planting import Edit, planted
 from verification.credibility.self_tests import self_tests
-from verification.credibility.self_tests.outputs import ELSEWHERE, HERE
+from verification.credibility.self_tests.known_outputs import ELSEWHERE, HERE
+from verification.credibility.self_tests.known_runs import MATERIAL, ran
 from verification.credibility.self_tests.stand_ins import Stated
-from verification.credibility.self_tests.whole_runs import MATERIAL, ran
-from verification.regression.baseline import regression, updated
+from verification.regression.baseline_change import regression, updated
+from verification.regression.baseline_file import read_baseline, write_baseline
 from verification.regression.manifest import manifest_message
-from verification.regression.record import read_baseline, write_baseline
-from verification.running.result import CaseResult, to_json
-from verification.running.stored import read_run
+from verification.running.case_result import CaseResult, to_json
+from verification.running.stored_run import read_run
 
-DECIDE = "verification.running.contact:decide"
-POSITIONS = "verification.sampling.lines:positions"
-LAWS = "verification.judging.invariants.check:_laws"
+DECIDE = "verification.running.contact_run:decide"
+POSITIONS = "verification.sampling.line_sampling:positions"
+LAWS = "verification.judging.invariants.solution_invariants:_laws"
 TENFOLD = Edit(DECIDE, "scale = divisor(", "scale = (1 if claim.line == 'contact' else 10) * divisor(")
 ZONE = "np.abs(np.abs(a.position) - edge) < claim.edge * edge"
 
@@ -53,7 +53,7 @@ def recorded():
         (Edit(DECIDE, "claim.edge * edge", "0.12 * edge"), "points"),
         (
             Edit(
-                "verification.sampling.lines:_depths",
+                "verification.sampling.line_sampling:_depths",
                 "bounds = np.array([0.0, *",
                 "a *= 0.4; bounds = np.array([0.0, *",
             ),
@@ -61,7 +61,7 @@ def recorded():
         ),
         (
             Edit(
-                "verification.judging.invariants.check:_of_body",
+                "verification.judging.invariants.solution_invariants:_of_body",
                 'yield "symmetry"',
                 'yield from () ; "symmetry"',
             ),
@@ -69,7 +69,7 @@ def recorded():
         ),
         (
             Edit(
-                "verification.running.contact:judge_case",
+                "verification.running.contact_run:judge_case",
                 "held += check(solution, source, case.problem)",
                 "held += check(solution, source, case.problem) if source == 'semianalytic' else ()",
             ),
@@ -92,16 +92,25 @@ def test_less_that_is_judged_is_a_failure_on_any_machine(recorded, change, messa
     [
         (
             Edit(
-                "verification.sampling.lines:sample",
+                "verification.sampling.line_sampling:sample",
                 "stress_with_uncertainty(solution, points, 0.0, depth",
                 "stress_with_uncertainty(solution, points, 0.3 * solution.contact_radius, depth",
             ),
             "sampling",
         ),
-        (Edit("verification.regression.junit:_mark", "if outcome is Outcome.AGREES:", "if True:"), "JUnit"),
-        (Edit("verification.regression.exits:run_code", "if not passed:", "if False:"), "exit codes"),
-        (Edit("verification.regression.exits:exit_code", "in found:", "in ():"), "exit codes"),
-        (Edit("verification.regression.exits:run_code", "LESS if beside.less else", ""), "exit codes"),
+        (
+            Edit("verification.regression.junit_xml:_mark", "if outcome is Outcome.AGREES:", "if True:"),
+            "JUnit",
+        ),
+        (
+            Edit("verification.regression.run_exit_codes:run_code", "if not passed:", "if False:"),
+            "exit codes",
+        ),
+        (Edit("verification.regression.run_exit_codes:exit_code", "in found:", "in ():"), "exit codes"),
+        (
+            Edit("verification.regression.run_exit_codes:run_code", "LESS if beside.less else", ""),
+            "exit codes",
+        ),
         (TENFOLD, "coverage"),
         (Edit(DECIDE, ZONE, "a.position < 0"), "coverage"),
     ],
@@ -113,7 +122,15 @@ def test_a_self_test_notices_what_no_number_shows(change, failing):
 
 def test_a_case_that_claims_nothing_is_refused(tmp_path):
     with (
-        planted((Edit("verification.judging.claims:standard_claims", "return tuple(claims)", "return ()"),)),
+        planted(
+            (
+                Edit(
+                    "verification.judging.standard_claims:standard_claims",
+                    "return tuple(claims)",
+                    "return ()",
+                ),
+            )
+        ),
         pytest.raises(CaseError, match="nothing would be judged"),
     ):
         parse_case(QUICK.partition("[[claim]]")[0].encode(), Path("quick.toml"))

@@ -10,14 +10,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from verification.cases.contact import read_case, shipped_cases
-from verification.commands.common.folders import BASELINE
+from verification.cases.case_file import read_case, shipped_cases
+from verification.commands.common.known_folders import BASELINE
 from verification.judging.verdict import Outcome
-from verification.problem.profile import Profile
-from verification.regression.drift import TOLERANCE, Numbers, State, drift
-from verification.regression.record import read_baseline
-from verification.running.contact import decide
-from verification.running.result import SourceResult
+from verification.problem.line_profile import Profile
+from verification.regression.baseline_file import read_baseline
+from verification.regression.number_drift import TOLERANCE, Numbers, State, drift
+from verification.running.case_result import SourceResult
+from verification.running.contact_run import decide
 
 DRAWS = 2000
 KINDS = ("value", "point", "component", "uncertainty")

@@ -9,14 +9,14 @@ from html_document import Document
 from synthetic_results import INFO, contact, result_of
 from synthetic_study import conversion, elements, falling, study
 
-from verification.credibility.accuracy import CORRECTED, PLAIN, STAIRCASE, failed
-from verification.credibility.refinement import QUANTITIES
-from verification.report.figures.loglog import Trail, decades, draw_loglog
-from verification.report.material import Evidence, Material
-from verification.report.page import render
-from verification.report.sections.refinement import finite_element_section, semianalytic_section
-from verification.report.tables.numbers import factor
-from verification.sources.record import Style
+from verification.credibility.accuracy_study import CORRECTED, PLAIN, STAIRCASE, failed
+from verification.credibility.refinement_studies import QUANTITIES
+from verification.page.number_text import factor
+from verification.page.svg_loglog import Trail, decades, draw_loglog
+from verification.report.report_material import Evidence, Material
+from verification.report.report_page import render
+from verification.report.sections.refinement_section import finite_element_section, semianalytic_section
+from verification.sources.source_record import Style
 
 
 def material(found, results=()) -> Material:

@@ -7,10 +7,10 @@ from headless import Page, browser, page
 from synthetic_results import INFO, showcase
 from synthetic_study import study
 
-from verification.report.material import Evidence, Material
-from verification.report.pdf import page_numbers, printed, with_numbers
-from verification.report.write import write_report
-from verification.sampling.plane import sample_plane
+from verification.page.pdf_file import page_numbers, printed, with_numbers
+from verification.report.report_files import write_report
+from verification.report.report_material import Evidence, Material
+from verification.sampling.stress_plane import sample_plane
 from verification.sources.references.hertz import Hertz
 
 pytestmark = pytest.mark.skipif(browser() is None, reason="no Chromium on this machine")

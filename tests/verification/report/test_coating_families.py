@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from synthetic_results import INFO, contact, result_of
 
-from verification.report.material import Material
-from verification.report.page import render
-from verification.report.sections.family import family_section
+from verification.report.report_material import Material
+from verification.report.report_page import render
+from verification.report.sections.family_section import family_section
 
 
 def member(ratio, thickness=1.0, friction=0.0, name=None):

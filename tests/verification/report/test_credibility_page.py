@@ -6,23 +6,24 @@ import pytest
 from synthetic_results import INFO, STEEL, contact, result_of
 from synthetic_study import study
 
-from verification.credibility import alarms
-from verification.credibility.alarms import counted
-from verification.credibility.enclosures import SHIPPED
-from verification.credibility.enclosures import read_record as read_enclosures
-from verification.credibility.faults import campaign
-from verification.credibility.faults.record import Catch, Record, Row, write_record
-from verification.credibility.independence import PARTS, imports_of, parts, shared
+from verification.credibility.faults import fault_campaign
+from verification.credibility.import_independence import PARTS, imports_of, parts, shared
 from verification.credibility.self_tests import SelfTest
-from verification.credibility.self_tests.enclosed import TEST
-from verification.regression.baseline import regression
-from verification.report.credibility import guests, statement
-from verification.report.credibility.faults import faults_section
-from verification.report.credibility.statement import figures
-from verification.report.material import Evidence, Material, gather
-from verification.report.page import render
-from verification.report.tables.cells import Part, Section
-from verification.running.result import CaseResult
+from verification.credibility.self_tests.known_enclosures import TEST
+from verification.evidence import alarm_record
+from verification.evidence.alarm_record import counted
+from verification.evidence.enclosure_record import SHIPPED
+from verification.evidence.enclosure_record import read_record as read_enclosures
+from verification.evidence.fault_record import Catch, Record, Row, write_record
+from verification.guests.pages import guests_section
+from verification.page.page_parts import Part, Section
+from verification.regression.baseline_change import regression
+from verification.report.credibility import credibility_statement
+from verification.report.credibility.credibility_statement import figures
+from verification.report.credibility.faults_section import faults_section
+from verification.report.report_material import Evidence, Material, gather
+from verification.report.report_page import render
+from verification.running.case_result import CaseResult
 
 E, NU = STEEL
 RESULTS = [
@@ -47,7 +48,7 @@ def evidence(tmp_path_factory) -> Evidence:
 
 
 def section(evidence: Evidence, results: list[CaseResult] = RESULTS, **more) -> Section:
-    found = statement.section(Material(results, INFO, replace(evidence, **more)))
+    found = credibility_statement.section(Material(results, INFO, replace(evidence, **more)))
     assert found is not None
     return found
 
@@ -104,7 +105,7 @@ def test_figures_of_a_record_carry_date_and_commit(evidence, tmp_path):
     vague = result_of(contact((E / 2, NU, 1.0)), name="vague", points=33, errors={"semianalytic": 4e-3})
     info = replace(INFO, started="2026-10-09T08:00:00+00:00", commit="c0ffee123456")
     record = counted([RESULTS[0], vague], 1, info)
-    alarms.write_record(tmp_path, record)
+    alarm_record.write_record(tmp_path, record)
     known = gather(tmp_path)
     assert known.alarms == record
     text = said(part(section(known), STEPS[6]))
@@ -131,7 +132,7 @@ def test_the_fault_score_and_its_survivors_come_from_the_record(tmp_path):
     record = Record(
         tuple(rows), (), "2026-10-09T08:00:00+00:00", 60.0, 90.0, "c0ffee123456", "m", dict(INFO.versions)
     )
-    write_record(tmp_path / campaign.RECORD, record)
+    write_record(tmp_path / fault_campaign.RECORD, record)
     found = gather(tmp_path)
     assert found.failures == ()
     text = said(part(section(found), STEPS[5]))
@@ -211,7 +212,7 @@ def test_an_import_across_the_border_is_found(tmp_path, monkeypatch):
 
 def test_the_page_takes_the_section_and_escapes_it(evidence, tmp_path):
     bad = result_of(contact((E / 2, NU, 1.0)), name="vague", points=9, errors={"semianalytic": 4e-3})
-    alarms.write_record(tmp_path, counted([replace(bad, title="<script>alert(1)</script>")], 1, INFO))
+    alarm_record.write_record(tmp_path, counted([replace(bad, title="<script>alert(1)</script>")], 1, INFO))
     text = render(Material(RESULTS[:1], INFO, gather(tmp_path)))
     assert '<section class="page run" id="credibility">' in text
     for title in STEPS:
@@ -221,7 +222,7 @@ def test_the_page_takes_the_section_and_escapes_it(evidence, tmp_path):
 
 
 def test_other_codes_have_their_differences_in_the_report(evidence):
-    (table,) = guests.section(Material(RESULTS, INFO, evidence)).parts[0].tables
+    (table,) = guests_section.section(Material(RESULTS, INFO, evidence)).parts[0].tables
     rows = {one.head.text: [cell.sort for cell in one.cells] for one in table.rows}
     assert len(rows) == 4
     assert rows["tamaas"][3] == pytest.approx(5.4e-6, rel=0.1)  # p0

@@ -9,12 +9,12 @@ import pytest
 from synthetic_results import INFO, STEEL, contact, result_of, showcase
 
 from verification.judging.verdict import Outcome
-from verification.regression.junit import junit_xml
-from verification.report import write
-from verification.report.material import Material
-from verification.report.write import write_report
-from verification.running.result import SCHEMA, CaseResult, SourceResult, from_json
-from verification.running.store import StoreError
+from verification.regression.junit_xml import junit_xml
+from verification.report import report_files
+from verification.report.report_files import write_report
+from verification.report.report_material import Material
+from verification.running.case_result import SCHEMA, CaseResult, SourceResult, from_json
+from verification.running.checked_files import StoreError
 
 NAMES = {"report.html", "report.json", "junit.xml"}
 
@@ -41,11 +41,11 @@ def test_an_earlier_report_survives_whatever_goes_wrong(tmp_path, results, monke
         raise OSError(28, "No space left on device")
 
     with monkeypatch.context() as patched:
-        patched.setattr(write.os, "fsync", full)
+        patched.setattr(report_files.os, "fsync", full)
         with pytest.raises(StoreError, match="No space left"):
             write_report(Material(results, INFO), tmp_path)
     with monkeypatch.context() as patched:
-        patched.setattr(write, "render", lambda _: 1 / 0)
+        patched.setattr(report_files, "render", lambda _: 1 / 0)
         with pytest.raises(ZeroDivisionError):
             write_report(Material(results, INFO), tmp_path)
     assert {path.name: path.read_bytes() for path in tmp_path.iterdir()} == before

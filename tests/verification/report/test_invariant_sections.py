@@ -8,19 +8,19 @@ import pytest
 from synthetic_results import INFO, STEEL, contact, result_of
 from synthetic_study import study
 
-from verification.credibility.accuracy import from_json as study_from_json
-from verification.credibility.accuracy import to_json as study_to_json
-from verification.credibility.parameters import Stated, Sweep
+from verification.credibility.accuracy_study import from_json as study_from_json
+from verification.credibility.accuracy_study import to_json as study_to_json
+from verification.credibility.parameter_sweeps import Stated, Sweep
 from verification.judging.invariants import Invariant
 from verification.judging.verdict import Outcome
-from verification.regression.junit import junit_xml
-from verification.report.material import Material
-from verification.report.page import render
-from verification.report.sections.accuracy import coverage_table
-from verification.report.sections.invariants import invariant_table, section
-from verification.report.sections.parameters import parameter_section
-from verification.report.tables.case import dominating_parameter
-from verification.running.result import from_json, to_json
+from verification.regression.junit_xml import junit_xml
+from verification.report.report_material import Material
+from verification.report.report_page import render
+from verification.report.sections.accuracy_section import coverage_table
+from verification.report.sections.invariants_section import invariant_table, section
+from verification.report.sections.parameters_section import parameter_section
+from verification.report.tables.case_tables import dominating_parameter
+from verification.running.case_result import from_json, to_json
 
 HOLDS = Invariant("load balance", "semianalytic", 1e-7, 1e-5, Outcome.AGREES, "int p dA = W: off by 1e-07")
 CLOSE = Invariant(

@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 from synthetic_results import INFO, contact, result_of
 
-from verification.commands.common.folders import RECORDS
-from verification.credibility.model.error import LIMIT, Cost, ModelError, judged_quantities
-from verification.credibility.model.maps import read_maps
-from verification.report.credibility.model import LEVELS, section
-from verification.report.material import Evidence, Material, model_warnings
-from verification.report.page import render
+from verification.commands.common.known_folders import RECORDS
+from verification.credibility.model.model_error import LIMIT, Cost, ModelError, judged_quantities
+from verification.evidence.assumption_maps import read_maps
+from verification.report.credibility.model_section import LEVELS, section
+from verification.report.report_material import Evidence, Material, model_warnings
+from verification.report.report_page import render
 
 RESULT = result_of(contact(), points=5)
 TITLES = ("parabola for the sphere", "Goodman's assumption")

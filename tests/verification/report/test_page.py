@@ -14,14 +14,14 @@ from html_document import Document
 from synthetic_results import INFO, STEEL, contact, crashed, result_of, showcase
 
 from verification.judging.verdict import Outcome
-from verification.report import page as module
-from verification.report import pdf
-from verification.report.material import Material
-from verification.report.page import render
-from verification.report.sections import first
-from verification.report.sections.case import MOST_FAILING
-from verification.report.tables.symbols import typeset
-from verification.running.result import CaseResult, RunInfo, from_json, to_json
+from verification.page import pdf_file
+from verification.page.symbol_text import typeset
+from verification.report import report_page as module
+from verification.report.report_material import Material
+from verification.report.report_page import render
+from verification.report.sections import first_page
+from verification.report.sections.case_page import MOST_FAILING
+from verification.running.case_result import CaseResult, RunInfo, from_json, to_json
 
 
 @pytest.fixture(scope="module")
@@ -102,12 +102,12 @@ def test_many_cases_are_grouped_behind_the_worst():
         for n in range(40)
     ]
     several[33] = crashed(contact(), "dead", "killed after 300 s")
-    chart = first.chart(Material(several, INFO))
-    assert len(chart.rows) == first.OWN_ROWS + 1
+    chart = first_page.chart(Material(several, INFO))
+    assert len(chart.rows) == first_page.OWN_ROWS + 1
     assert chart.rows[0].title == "Dead"
     assert chart.rows[0].style.word == "no result"
-    assert chart.rows[-1].title == f"{40 - first.OWN_ROWS} more: one coating"
-    assert first.chart(Material(several[:3], INFO)).grouped == 0
+    assert chart.rows[-1].title == f"{40 - first_page.OWN_ROWS} more: one coating"
+    assert first_page.chart(Material(several[:3], INFO)).grouped == 0
 
 
 def test_every_case_has_a_row_in_the_matrix_and_a_section_with_its_command(document, results):
@@ -161,7 +161,7 @@ def test_pages_of_many_cases_are_compressed_and_come_out_whole(monkeypatch):
     assert small.count('<div class="packed"') == 2
     assert len(small) < 0.85 * len(plain)
     assert "<h3>The contact</h3>" not in small
-    whole = Document(pdf.whole(small))
+    whole = Document(pdf_file.whole(small))
     assert whole.whole("article") == Document(plain).whole("article")
 
 

@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 from synthetic_results import INFO, STEEL, contact, result_of
 
-from verification.report.figures.fields import EVERY, pictures, plane_difference
-from verification.report.figures.raster import THINNEST, Frame, Scale, coloured, rasterised
-from verification.report.material import Material
-from verification.report.page import render
-from verification.sampling.plane import Plane, sample_plane
+from verification.page.svg_raster import THINNEST, Frame, Scale, coloured, rasterised
+from verification.report.figures.field_pictures import EVERY, pictures, plane_difference
+from verification.report.report_material import Material
+from verification.report.report_page import render
+from verification.sampling.stress_plane import Plane, sample_plane
 from verification.sources.references.hertz import Hertz
 
 HERTZ = Hertz(10e-3, 20.0, *STEEL)

@@ -9,15 +9,15 @@ from xml.etree import ElementTree
 import pytest
 from quick_case import coatcheck
 
-from verification.cases.published import published_cases, read_published
-from verification.regression.junit import junit_xml
-from verification.report.material import Material
-from verification.report.page import render
-from verification.report.sections.published import counts, published_message
-from verification.running.published import failed, run, with_digits
-from verification.running.result import RunInfo, from_json
-from verification.running.store import read_checked
-from verification.sources.registry import solvers
+from verification.cases.published_file import published_cases, read_published
+from verification.regression.junit_xml import junit_xml
+from verification.report.report_material import Material
+from verification.report.report_page import render
+from verification.report.sections.published_section import counts, published_message
+from verification.running.case_result import RunInfo, from_json
+from verification.running.checked_files import read_checked
+from verification.running.published_run import failed, run, with_digits
+from verification.sources.source_registry import solvers
 
 SHIPPED = published_cases()
 INFO = RunInfo("coatcheck run published", "2026-01-01T00:00:00+00:00", 1.0, 1, None, "a machine", {})
@@ -131,7 +131,7 @@ def test_junit_has_one_item_for_each_comparison(results):
 
 
 def test_command_line_runs_a_table_of_ones_own(tmp_path, monkeypatch):
-    monkeypatch.setattr("verification.running.published.solvers", lambda problem: both())
+    monkeypatch.setattr("verification.running.published_run.solvers", lambda problem: both())
     (tmp_path / "mine.toml").write_text(SHIPPED["jones_1962"].read_text().replace("nu = 0.5", "nu = 0.3"))
     table = "factor,meaning,table_memory\nZZ1,a,0.500\nZZ1-RR1,b,1.000\n"
     (tmp_path / "jones_1962_three_layer.csv").write_text(table)

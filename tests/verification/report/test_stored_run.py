@@ -8,18 +8,18 @@ from synthetic_results import INFO, STEEL, contact, result_of
 from synthetic_study import study
 
 from verification.commands.report import report
-from verification.credibility.alarms import counted, write_record
 from verification.credibility.self_tests import SelfTest
-from verification.regression.baseline import regression, updated
-from verification.report.material import Material, gather, rerun_command, stored_material
-from verification.report.write import write_report
-from verification.running.fields import plane_path, write_plane
-from verification.running.result import to_json
-from verification.running.store import write_checked
-from verification.sampling.plane import sample_plane
+from verification.evidence.alarm_record import counted, write_record
+from verification.regression.baseline_change import regression, updated
+from verification.report.report_files import write_report
+from verification.report.report_material import Material, gather, rerun_command, stored_material
+from verification.running.case_result import to_json
+from verification.running.checked_files import write_checked
+from verification.running.stored_fields import plane_path, write_plane
+from verification.sampling.stress_plane import sample_plane
 from verification.sources.references.hertz import Hertz
-from verification.study.formulas import EffectiveStudy
-from verification.study.formulas import to_json as effective_json
+from verification.study.formula_errors import EffectiveStudy
+from verification.study.formula_errors import to_json as effective_json
 
 RESULTS = [
     result_of(contact((2 * STEEL[0], 0.3, 1.0)), name="z_first", text="the case file", points=11),

@@ -12,17 +12,22 @@ from markupsafe import Markup
 from synthetic_results import STEEL, contact, result_of
 
 from verification.judging.verdict import Outcome
-from verification.report.figures import panels
-from verification.report.figures.curves import FLOOR, LOWER, UPPER, Curve, Difference, draw
-from verification.report.figures.panels import case_figures
-from verification.report.figures.plot import Axes, drawing, polyline
-from verification.report.sections.accuracy import accuracies, coverage_table
-from verification.report.tables.case import budget_table, comparison_table, contact_tables, failing_table
-from verification.report.tables.csv import embedded, line_csv
-from verification.report.tables.labels import OUTCOMES, pair_style, source_style
-from verification.report.tables.lookup import contact_radius, difference, judged, reference_source
-from verification.report.tables.numbers import aligned, engineering, scientific, seconds, with_uncertainty
-from verification.report.tables.symbols import drawn, typeset, unicode
+from verification.page.embedded_csv import embedded, line_csv
+from verification.page.number_text import aligned, engineering, scientific, seconds, with_uncertainty
+from verification.page.source_labels import OUTCOMES, pair_style, source_style
+from verification.page.svg_curves import FLOOR, LOWER, UPPER, Curve, Difference, draw
+from verification.page.svg_plot import Axes, drawing, polyline
+from verification.page.symbol_text import drawn, typeset, unicode
+from verification.report.figures import line_panels
+from verification.report.figures.line_panels import case_figures
+from verification.report.sections.accuracy_section import accuracies, coverage_table
+from verification.report.tables.case_lookup import contact_radius, difference, judged, reference_source
+from verification.report.tables.case_tables import (
+    budget_table,
+    comparison_table,
+    contact_tables,
+    failing_table,
+)
 
 COATED = contact((2 * STEEL[0], 0.3, 1.0))
 
@@ -298,7 +303,7 @@ def test_figures_are_drawn_in_the_scales_of_the_bare_substrate(monkeypatch):
         drawn.append((curves, differences, more))
         return Markup("")
 
-    monkeypatch.setattr(panels, "draw", record)
+    monkeypatch.setattr(line_panels, "draw", record)
     result = result_of(COATED, errors={"semianalytic": 2e-3}, stated={"semianalytic": 0.7}, points=201)
     case_figures(result)
     curves, differences, more = next(one for one in drawn if 'data-quantity="pressure"' in one[2]["data"])

@@ -8,10 +8,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from verification.cases.contact import parse_case
+from verification.cases.case_file import parse_case
 from verification.judging.verdict import Outcome
-from verification.running.contact import judge_case, run, solve_case
-from verification.running.result import diagnostics_of, from_json, to_json
+from verification.running.case_result import diagnostics_of, from_json, to_json
+from verification.running.contact_run import judge_case, run, solve_case
 from verification.sources.references import integral_equation
 from verification.sources.references.hertz import Hertz
 

@@ -9,12 +9,12 @@ import pytest
 
 import fem_reference
 import semianalytic
-from verification.cases.contact import parse_case
-from verification.commands.common.exits import CommandError
+from verification.cases.case_file import parse_case
+from verification.commands.common.exit_codes import CommandError
 from verification.commands.view import _picture, view
 from verification.problem.quantity import STRESSES
-from verification.running.fields import read_fields, write_fields
-from verification.running.store import StoreError
+from verification.running.checked_files import StoreError
+from verification.running.stored_fields import read_fields, write_fields
 
 pv = pytest.importorskip("pyvista")
 

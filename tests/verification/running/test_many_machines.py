@@ -9,8 +9,8 @@ import sys
 import pytest
 from scheduler_by_hand import ENVIRONMENT, hand_started, wait_until
 
+from verification.running.checked_files import read_checked
 from verification.running.provenance import cores
-from verification.running.store import read_checked
 
 CASES = ("01_uncoated_steel", "13_uncoated_sliding", "02_ratio_quarter", "07_thick")
 

@@ -7,17 +7,17 @@ from functools import cache
 import numpy as np
 import pytest
 
-from verification.cases.digits import changed_digits
-from verification.cases.published import published_cases, read_published
-from verification.cases.table import FOLDER
+from verification.cases.digit_changes import changed_digits
+from verification.cases.published_file import published_cases, read_published
+from verification.cases.published_table import FOLDER
 from verification.judging.verdict import Outcome
-from verification.problem.contact import PrescribedLoad
-from verification.problem.points import Points
-from verification.running.published import failed, run, with_digits
-from verification.running.result import from_json, to_json
-from verification.sampling.points import values
-from verification.sources.extrapolation import extrapolated
-from verification.sources.registry import PUBLISHED, solvers
+from verification.problem.coated_contact import PrescribedLoad
+from verification.problem.evaluation_points import Points
+from verification.running.case_result import from_json, to_json
+from verification.running.published_run import failed, run, with_digits
+from verification.sampling.point_values import values
+from verification.sources.limit_extrapolation import extrapolated
+from verification.sources.source_registry import PUBLISHED, solvers
 
 SHIPPED = published_cases()
 DISC = PrescribedLoad(1e6, 0.1, (), (1e9, 0.3))

@@ -4,15 +4,15 @@ import numpy as np
 import pytest
 from html_document import Document
 
-from verification.cases.published import published_cases, read_published
-from verification.cases.toml import CaseError
+from verification.cases.published_file import published_cases, read_published
+from verification.cases.toml_file import CaseError
 from verification.judging.verdict import Outcome
-from verification.problem.loading import LoadingCurve
-from verification.report.material import Material
-from verification.report.page import render
-from verification.running.published import run
-from verification.running.result import RunInfo, from_json, to_json
-from verification.sources.registry import EXACT, solvers
+from verification.problem.loading_curve import LoadingCurve
+from verification.report.report_material import Material
+from verification.report.report_page import render
+from verification.running.case_result import RunInfo, from_json, to_json
+from verification.running.published_run import run
+from verification.sources.source_registry import EXACT, solvers
 
 SHIPPED = published_cases()
 INFO = RunInfo("coatcheck run published", "2026-01-01T00:00:00+00:00", 1.0, 1, None, "a machine", {})

@@ -6,9 +6,15 @@ from pathlib import Path
 import pytest
 from synthetic_results import INFO, contact, result_of
 
-from verification.running.result import to_json
-from verification.running.store import StoreError, locked, read_checked, write_atomically, write_checked
-from verification.running.stored import StoredRun, confirm
+from verification.running.case_result import to_json
+from verification.running.checked_files import (
+    StoreError,
+    locked,
+    read_checked,
+    write_atomically,
+    write_checked,
+)
+from verification.running.stored_run import StoredRun, confirm
 
 PAYLOAD = {"name": "β-film <script>", "value": [1.0, 1e-300, -0.0, 0.1 + 0.2], "none": None}
 

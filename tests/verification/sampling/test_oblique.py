@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from verification.problem.contact import CoatedContact, NotClaimed
-from verification.problem.profile import line_of, oblique_lines
+from verification.problem.coated_contact import CoatedContact, NotClaimed
+from verification.problem.line_profile import line_of, oblique_lines
 from verification.problem.quantity import DISPLACEMENTS, STRESSES
-from verification.sampling import oblique
+from verification.sampling import oblique_sampling
 from verification.sources.references.hamilton import Hamilton
 
 STEEL = (210e9, 0.3)
@@ -17,11 +17,11 @@ HAMILTON = Hamilton(10e-3, 20.0, *STEEL, 0.25)
 
 
 @pytest.mark.parametrize("friction", [0.0, 0.25])
-@pytest.mark.parametrize("coatings", [(), STACK[:1], STACK, ((100e9, 0.3, oblique.DOWN[4] * A),)])
+@pytest.mark.parametrize("coatings", [(), STACK[:1], STACK, ((100e9, 0.3, oblique_sampling.DOWN[4] * A),)])
 def test_oblique_line_visits_every_layer_and_no_interface(coatings, friction):
     problem = CoatedContact(10e-3, 20.0, coatings, STEEL, friction)
     line = line_of("oblique", problem)
-    x, y, z = line.points(oblique.positions(problem, line, A))
+    x, y, z = line.points(oblique_sampling.positions(problem, line, A))
     bounds = np.array([0.0, *problem.interfaces])
     assert set(np.searchsorted(bounds, z) - 1) == set(range(len(coatings) + 1))
     assert np.abs(z[:, None] - bounds).min() > 1e-5 * A
@@ -32,7 +32,7 @@ def test_surface_line_goes_to_five_contact_radii_on_both_sides_where_it_slides()
     for friction, least in ((0.25, -5.0), (0.0, 0.0)):
         problem = CoatedContact(10e-3, 20.0, (), STEEL, friction)
         line = line_of("oblique surface", problem)
-        s = oblique.positions(problem, line, A)
+        s = oblique_sampling.positions(problem, line, A)
         x, y, z = line.points(s)
         assert (s.min(), s.max()) == pytest.approx((least * A, 5 * A))
         assert np.all(z == 0)
@@ -41,8 +41,8 @@ def test_surface_line_goes_to_five_contact_radii_on_both_sides_where_it_slides()
 
 def test_profiles_hold_the_six_stresses_and_three_displacements_of_their_points():
     for line in oblique_lines(BARE):
-        position = oblique.positions(BARE, line, A)
-        found = {p.quantity: p.value for p in oblique.sample(HAMILTON, "hamilton", line, position)}
+        position = oblique_sampling.positions(BARE, line, A)
+        found = {p.quantity: p.value for p in oblique_sampling.sample(HAMILTON, "hamilton", line, position)}
         at = line.points(position)
         if line.name != "oblique surface":
             sigma = HAMILTON.stress(*at)
@@ -58,5 +58,5 @@ def test_source_that_claims_no_displacement_has_no_profile_of_it():
             raise NotClaimed("no displacement")
 
     line = line_of("oblique", BARE)
-    found = oblique.sample(Stressed(10e-3, 20.0, *STEEL, 0.25), "s", line, np.array([A, 2 * A]))
+    found = oblique_sampling.sample(Stressed(10e-3, 20.0, *STEEL, 0.25), "s", line, np.array([A, 2 * A]))
     assert {p.quantity for p in found} == set(STRESSES)

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from verification.problem.quantity import IN_PLANE, von_mises
-from verification.running.fields import read_plane, write_plane
-from verification.running.store import StoreError
-from verification.sampling.plane import Plane, depths_of, sample_plane
+from verification.running.checked_files import StoreError
+from verification.running.stored_fields import read_plane, write_plane
+from verification.sampling.stress_plane import Plane, depths_of, sample_plane
 from verification.sources.references.hertz import Hertz
 
 STEEL = Hertz(10e-3, 20.0, 210e9, 0.3)

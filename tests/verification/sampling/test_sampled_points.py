@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 
 import semianalytic
-from verification.problem.contact import CoatedContact
-from verification.problem.points import Points
-from verification.problem.profile import lines_of
-from verification.sampling.lines import edge_of, positions, sample
-from verification.sampling.points import values
+from verification.problem.coated_contact import CoatedContact
+from verification.problem.evaluation_points import Points
+from verification.problem.line_profile import lines_of
+from verification.sampling.line_sampling import edge_of, positions, sample
+from verification.sampling.point_values import values
 from verification.sources.references.hertz import Hertz
 
 STEEL = (210e9, 0.3)

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from verification.problem.points import Points
-from verification.sampling.memo import tabulated
+from verification.problem.evaluation_points import Points
+from verification.sampling.tabulated_solution import tabulated
 from verification.sources.references.uniform_disc import solve_prescribed
 
 COATINGS = ((4e9, 0.3, 0.2),)

@@ -7,15 +7,15 @@ import numpy as np
 import pytest
 from synthetic_results import contact
 
-from verification.cases.contact import read_case, shipped_cases
-from verification.judging.claims import standard_claims
-from verification.problem.contact import stress_with_uncertainty
-from verification.problem.profile import lines_of
+from verification.cases.case_file import read_case, shipped_cases
+from verification.judging.standard_claims import standard_claims
+from verification.problem.coated_contact import stress_with_uncertainty
+from verification.problem.line_profile import lines_of
 from verification.problem.quantity import PEAKS
-from verification.sampling import tension
-from verification.sampling.lines import positions, sample
-from verification.sampling.tension import Search, Tension, edge_uncertainty
-from verification.sources.exact import solve_exactly
+from verification.sampling import largest_tension
+from verification.sampling.largest_tension import Search, Tension, edge_uncertainty
+from verification.sampling.line_sampling import positions, sample
+from verification.sources.exact_sources import solve_exactly
 from verification.sources.references.hamilton import Hamilton
 
 STEEL, NU = 210e9, 0.3
@@ -148,8 +148,8 @@ def test_place_of_a_smooth_maximum_is_the_least_uncertain_one_with_its_distance_
     solution, problem = Waving(1.0, Waving()), contact()
     found = largest(solution, problem)
     single = set()  # two of three fits keep as many terms here
-    for fit in tension.FITS:
-        monkeypatch.setattr(tension, "FITS", np.array([fit]))
+    for fit in largest_tension.FITS:
+        monkeypatch.setattr(largest_tension, "FITS", np.array([fit]))
         single.add(largest(solution, problem))
     best, other = sorted(single, key=lambda one: one.place_uncertainty)
     assert other.place_uncertainty > 2 * best.place_uncertainty

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import semianalytic
-from verification.problem.contact import CoatedContact, keywords
-from verification.sources.assumptions.change import (
+from verification.problem.coated_contact import CoatedContact, keywords
+from verification.sources.assumptions.contact_change import (
     RESOLUTION,
     Curve,
     line_along_interface,

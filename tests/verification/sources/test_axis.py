@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from verification.problem.contact import CoatedContact
-from verification.sources.registry import solvers
+from verification.problem.coated_contact import CoatedContact
+from verification.sources.source_registry import solvers
 
 CONTACT = CoatedContact(10e-3, 20.0, ((630e9, 0.2, 20e-6),), (210e9, 0.3), friction=0.4)
 SETTINGS = {"fem_reference": {"quality": "fast", "estimate_uncertainty": False}}

@@ -7,13 +7,13 @@ import pytest
 
 import fem_reference
 import semianalytic
-from verification.cases.table import FOLDER
-from verification.credibility.enclosures import SHIPPED, WIDTH, distances, read_record
-from verification.credibility.self_tests.enclosed import COATED, ROUNDING
-from verification.problem.contact import CoatedContact, keywords
-from verification.sources.enclosures.problems import problems
+from verification.cases.published_table import FOLDER
+from verification.credibility.self_tests.known_enclosures import COATED, ROUNDING
+from verification.evidence.enclosure_record import SHIPPED, WIDTH, distances, read_record
+from verification.problem.coated_contact import CoatedContact, keywords
+from verification.sources.enclosures.enclosed_problems import problems
 from verification.sources.references import integral_equation
-from verification.sources.references.layered import LayeredHalfSpace
+from verification.sources.references.layered_half_space import LayeredHalfSpace
 
 RECORD = read_record(SHIPPED)
 ALL = {one.name: one for one in RECORD.enclosures}
@@ -101,7 +101,7 @@ def test_ball_arithmetic_repeats_an_enclosure():
     pytest.importorskip("flint", reason="ball arithmetic is an extra: pip install 'coatcheck[certify]'")
     from flint import ctx
 
-    from verification.sources.enclosures.contact import enclose
+    from verification.sources.enclosures.contact_enclosure import enclose
 
     name = "ratio_4_h_1"
     bits, ctx.prec = ctx.prec, 128
@@ -117,7 +117,7 @@ def test_ball_arithmetic_repeats_an_enclosure():
 
 def test_both_forms_of_the_layers_overlap():
     flint = pytest.importorskip("flint", reason="an extra: pip install 'coatcheck[certify]'")
-    from verification.sources.enclosures.response import LayeredSolid
+    from verification.sources.enclosures.enclosed_response import LayeredSolid
 
     solid = LayeredSolid(((4e11, 0.2, 0.3), (5e10, 0.45, 0.4), (3e11, 0.0, 0.2)), (1e11, 0.1))
     for k in (1e-3, 0.3, 2.0, 5.0):
@@ -129,7 +129,7 @@ def test_both_forms_of_the_layers_overlap():
 
 def test_the_bound_of_the_tail_holds_beyond_its_end():
     flint = pytest.importorskip("flint", reason="an extra: pip install 'coatcheck[certify]'")
-    from verification.sources.enclosures.response import LayeredSolid
+    from verification.sources.enclosures.enclosed_response import LayeredSolid
 
     h = 0.3
     solid = LayeredSolid(((4e11, 0.2, h), (5e10, 0.45, 0.4)), (1e11, 0.1))
@@ -144,7 +144,7 @@ def test_the_bound_of_the_tail_holds_beyond_its_end():
 
 def test_an_elastic_ball_is_refused():
     pytest.importorskip("flint", reason="an extra: pip install 'coatcheck[certify]'")
-    from verification.sources.enclosures.contact import enclose
+    from verification.sources.enclosures.contact_enclosure import enclose
 
     with pytest.raises(ValueError, match="elastic ball"):
         enclose(CoatedContact(10e-3, 20.0, (), (210e9, 0.3), ball=(210e9, 0.3, ())))

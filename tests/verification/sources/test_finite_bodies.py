@@ -19,12 +19,12 @@ from skfem import (
 from skfem.helpers import grad
 
 import semianalytic
-from verification.problem.contact import CoatedContact, keywords
-from verification.sources.assumptions.ball import ElasticBall
-from verification.sources.assumptions.bodies import RESOLUTIONS, change_at, of_half_spaces, on_disc
-from verification.sources.assumptions.change import FLOOR
+from verification.problem.coated_contact import CoatedContact, keywords
+from verification.sources.assumptions.contact_change import FLOOR
+from verification.sources.assumptions.elastic_ball import ElasticBall
+from verification.sources.assumptions.finite_bodies import RESOLUTIONS, change_at, of_half_spaces, on_disc
+from verification.sources.references.gauss_legendre import gauss_legendre
 from verification.sources.references.integral_equation import compliance, kernel_wavenumbers
-from verification.sources.references.quadrature import gauss_legendre
 
 E, NU, R = 210e9, 0.3, 10e-3
 RIGID = (1e9 * E, 0.3)
@@ -118,7 +118,7 @@ def test_uncertainty_contains_finer_quadrature(monkeypatch):
     problem, limits = contact(0.1, (0.5 * E, NU, ()), coating=(4.0, 0.5)), (1e-4, 2e-5)
     found = []
     for resolutions in (RESOLUTIONS, FINE, ({"nodes": 130},) * 2):
-        monkeypatch.setattr("verification.sources.assumptions.bodies.RESOLUTIONS", resolutions)
+        monkeypatch.setattr("verification.sources.assumptions.finite_bodies.RESOLUTIONS", resolutions)
         found.append([np.array(astuple(one)) for one in of_half_spaces(problem)])
     *tried, (finest, _) = found
     for (change, uncertainty), limit in zip(tried, limits, strict=True):
@@ -128,7 +128,7 @@ def test_uncertainty_contains_finer_quadrature(monkeypatch):
 
 @pytest.mark.slow
 def test_semianalytical_contact_confirms_the_disc(monkeypatch):
-    monkeypatch.setattr("verification.sources.assumptions.bodies.RESOLUTIONS", FINE)
+    monkeypatch.setattr("verification.sources.assumptions.finite_bodies.RESOLUTIONS", FINE)
     problem = contact(0.1, coating=(4.0, 0.5))
     half, disc = (
         semianalytic.solve(**keywords(one), gap="sphere", patches=33, estimate_uncertainty=False)

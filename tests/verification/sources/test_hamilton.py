@@ -5,16 +5,16 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from verification.cases.contact import parse_case
-from verification.judging.claims import sources_of
+from verification.cases.case_file import parse_case
+from verification.judging.standard_claims import sources_of
 from verification.judging.verdict import Outcome
-from verification.problem.contact import CoatedContact
-from verification.running.contact import run
+from verification.problem.coated_contact import CoatedContact
+from verification.running.contact_run import run
 from verification.sources.references.axisymmetric_pressure import AbelPressure
 from verification.sources.references.hamilton import Hamilton
-from verification.sources.references.hankel import HankelField
+from verification.sources.references.hankel_field import HankelField
 from verification.sources.references.hertz import Hertz
-from verification.sources.registry import solvers
+from verification.sources.source_registry import solvers
 
 
 @pytest.fixture

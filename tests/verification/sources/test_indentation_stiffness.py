@@ -7,8 +7,8 @@ import pytest
 
 import fem_reference
 import semianalytic
-from verification.problem.loading import LoadingCurve
-from verification.sources.loading import Loading, LoadingDiagnostics, exact_loading, loading
+from verification.problem.loading_curve import LoadingCurve
+from verification.sources.loading_solution import Loading, LoadingDiagnostics, exact_loading, loading
 from verification.sources.references.effective_modulus import (
     FORMULAS,
     I0,

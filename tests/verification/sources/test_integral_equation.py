@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 import scipy.linalg
 
-from verification.cases.table import FOLDER
-from verification.problem.contact import CoatedContact
+from verification.cases.published_table import FOLDER
+from verification.problem.coated_contact import CoatedContact
 from verification.sources.references import integral_equation
 from verification.sources.references.axisymmetric_pressure import AbelPressure
-from verification.sources.references.hankel import HankelField
+from verification.sources.references.hankel_field import HankelField
 from verification.sources.references.hertz import Hertz
-from verification.sources.references.layered import LayeredHalfSpace, _in_plane, _propagator
+from verification.sources.references.layered_half_space import LayeredHalfSpace, _in_plane, _propagator
 
 STEEL = (210e9, 0.3)
 BARE = CoatedContact(10e-3, 20.0, (), STEEL)

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from verification.sources.references.patch import over_square, surface_coefficient
+from verification.sources.references.patch_displacement import over_square, surface_coefficient
 
 STEEL = (210e9, 0.3)  # E [Pa], nu
 PLACES = [(0, 0), (1, 0), (1, 1), (3, 2), (20, 0), (64, 64)]

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import semianalytic
-from verification.cases.table import FOLDER, read_table
+from verification.cases.published_table import FOLDER, read_table
 from verification.sources.references import flat_punch, integral_equation
 from verification.sources.references.flat_punch import pressed
 

@@ -9,11 +9,11 @@ from scipy.sparse.linalg import LinearOperator, gmres
 from scipy.special import j0, j1
 
 from semianalytic import frf
-from verification.problem.contact import CoatedContact, keywords
-from verification.sources.assumptions.goodman import SlidingExpansion, coupling
-from verification.sources.assumptions.stress import first_harmonic
+from verification.problem.coated_contact import CoatedContact, keywords
+from verification.sources.assumptions.harmonic_stress import first_harmonic
+from verification.sources.assumptions.sliding_coupling import SlidingExpansion, coupling
 from verification.sources.references import integral_equation
-from verification.sources.references.layered import contact_modulus
+from verification.sources.references.layered_half_space import contact_modulus
 
 E, NU = 210e9, 0.3
 BARE = CoatedContact(10e-3, 20.0, (), (E, NU))

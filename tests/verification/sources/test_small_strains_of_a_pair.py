@@ -8,13 +8,13 @@ import pytest
 from numpy.polynomial import legendre
 from scipy.sparse.linalg import splu
 
-from verification.credibility.model.place import Place
-from verification.problem.contact import CoatedContact, keywords
-from verification.sources.assumptions.change import Change
-from verification.sources.assumptions.deformation import SphereContact, State
-from verification.sources.assumptions.meridian import Meridian, lagrange
-from verification.sources.assumptions.pair import SAFETY, of_pair
-from verification.sources.assumptions.strain import COARSE, of_small_strains
+from verification.evidence.map_places import Place
+from verification.problem.coated_contact import CoatedContact, keywords
+from verification.sources.assumptions.contact_change import Change
+from verification.sources.assumptions.finite_deformation import SphereContact, State
+from verification.sources.assumptions.meridian_elements import Meridian, lagrange
+from verification.sources.assumptions.small_strain_cost import COARSE, of_small_strains
+from verification.sources.assumptions.strain_cost_of_pair import SAFETY, of_pair
 from verification.sources.references import integral_equation
 
 WIDTH = 1e-3

@@ -5,13 +5,13 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from verification.credibility.enclosures import SHIPPED, read_record
-from verification.problem.contact import CoatedContact, keywords
-from verification.sources.bounds import displacement, stress
-from verification.sources.bounds.approach import approach_bounds, bound
-from verification.sources.bounds.elements import Pieces, Points
-from verification.sources.bounds.energy import virtual_work
-from verification.sources.bounds.half_space import RADIAL_POINTS, STEEPEST, half_space
+from verification.evidence.enclosure_record import SHIPPED, read_record
+from verification.problem.coated_contact import CoatedContact, keywords
+from verification.sources.bounds import lower_bounds, upper_bounds
+from verification.sources.bounds.approach_bounds import approach_bounds, bound
+from verification.sources.bounds.half_space_mesh import RADIAL_POINTS, STEEPEST, half_space
+from verification.sources.bounds.spline_elements import Pieces, Points
+from verification.sources.bounds.tensor_energy import virtual_work
 from verification.sources.references import integral_equation
 
 COARSE = {"degree": 4, "edge": 0.1, "far": 300.0}
@@ -31,13 +31,13 @@ def stresses(x, r, z):
     """sigma_rr, tt, zz, rz of the unknowns at the places ``r``, ``z`` of [-1, 1] in every piece."""
     at = [Points(knots, np.asarray(p), np.zeros(len(p))) for knots, p in ((SOLID.r, r), (SOLID.z, z))]
     with np.errstate(all="ignore"):  # 0/0 on the axis
-        sigma = stress.stress_energy(SOLID, *at).components(x)[0]
+        sigma = lower_bounds.stress_energy(SOLID, *at).components(x)[0]
     return sigma.reshape(4, SOLID.r.size - 1, len(r), SOLID.z.size - 1, len(z)), at[0].place
 
 
 @pytest.fixture(scope="module")
 def phi():
-    return random_unknowns(stress.stress_energy(SOLID, *SOLID.points()), stress.admissible)
+    return random_unknowns(lower_bounds.stress_energy(SOLID, *SOLID.points()), lower_bounds.admissible)
 
 
 def test_pieces_are_as_smooth_as_stated():
@@ -98,13 +98,13 @@ def test_the_far_cone_continues_the_tractions(phi):
 
 
 def test_stresses_do_the_work_of_their_pressure_in_any_displacement(phi):
-    strain = displacement.strain_energy(SOLID)
-    u = random_unknowns(strain, displacement.admissible)
-    sigma = stress.stress_energy(SOLID, *SOLID.points())
+    strain = upper_bounds.strain_energy(SOLID)
+    u = random_unknowns(strain, upper_bounds.admissible)
+    sigma = lower_bounds.stress_energy(SOLID, *SOLID.points())
     tensor, strains = sigma.components(phi)[0][None], np.stack([strain.components(v)[0] for v in u.T])
     inside = virtual_work(tensor, strains, strain.weights)
     parts = virtual_work(np.abs(tensor), np.abs(strains), strain.weights)
-    assert np.all(np.abs(inside - phi @ stress.pressure_work(sigma)) < 1e-13 * parts)
+    assert np.all(np.abs(inside - phi @ lower_bounds.pressure_work(sigma)) < 1e-13 * parts)
 
 
 @pytest.mark.parametrize("coatings", [(), COATINGS])

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import semianalytic
-from verification.sources.references.hankel import HankelField
+from verification.sources.references.hankel_field import HankelField
 from verification.sources.references.uniform_disc import UniformDisc, solve_prescribed
 
 Q, A = 2e6, 0.15

@@ -8,11 +8,11 @@ from pathlib import Path
 import pytest
 from synthetic_solves import STUDY, made_up
 
+from verification.running.checked_files import StoreError
 from verification.running.provenance import fingerprint
-from verification.running.store import StoreError
-from verification.study import cache
-from verification.study.cache import Cache, solve_key
-from verification.study.plan import parse_study
+from verification.study import solve_cache
+from verification.study.solve_cache import Cache, solve_key
+from verification.study.study_plan import parse_study
 
 
 @pytest.fixture
@@ -39,15 +39,23 @@ def imports(module):
 
 def test_whatever_finds_the_quantities_is_in_the_key():
     # the table and the cache only carry what was found; run brings the solvers, the reading of errors
-    carriers = {"verification.study.table", "verification.study.cache", "verification.running.provenance"}
-    searched = tuple(cache._SEARCH)
-    for module in ("verification.study.point", "verification.study.quantities", "verification.study.planes"):
+    carriers = {
+        "verification.study.study_table",
+        "verification.study.solve_cache",
+        "verification.running.provenance",
+    }
+    searched = tuple(solve_cache._SEARCH)
+    for module in (
+        "verification.study.study_point",
+        "verification.study.largest_stresses",
+        "verification.study.friction_planes",
+    ):
         assert all(name.startswith(searched) or name in carriers for name in imports(module))
 
 
 def test_a_changed_source_file_changes_every_key(request_, monkeypatch):
     before = solve_key(request_)
-    planes = find_spec("verification.study.planes").origin
+    planes = find_spec("verification.study.friction_planes").origin
     read = Path.read_bytes
     monkeypatch.setattr(Path, "read_bytes", lambda path: read(path) + b" " * (str(path) == planes))
     fingerprint.cache_clear()

@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 import study_table
 
-from verification.cases.toml import CaseError
-from verification.report.study.summary import agreement_messages, main_messages
-from verification.study.choice.criteria import Criteria, judged
-from verification.study.curves import curves, differences, tension_checks
-from verification.study.plan import parse_study
-from verification.study.table import read_columns
+from verification.cases.toml_file import CaseError
+from verification.study.choice.failure_criteria import Criteria, judged
+from verification.study.pages.curve_summary import agreement_messages, main_messages
+from verification.study.study_plan import parse_study
+from verification.study.study_table import read_columns
+from verification.study.thickness_curves import curves, differences, tension_checks
 
 
 @pytest.fixture(scope="module")

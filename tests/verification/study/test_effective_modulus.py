@@ -7,12 +7,12 @@ import numpy as np
 import pytest
 from html_document import Document
 
-from verification.report.material import Evidence, Material
-from verification.report.page import render
-from verification.running.result import RunInfo
-from verification.running.store import read_checked
-from verification.study import formulas as effective_study
-from verification.study.formulas import EffectiveStudy, from_json, measure, to_json
+from verification.report.report_material import Evidence, Material
+from verification.report.report_page import render
+from verification.running.case_result import RunInfo
+from verification.running.checked_files import read_checked
+from verification.study import formula_errors as effective_study
+from verification.study.formula_errors import EffectiveStudy, from_json, measure, to_json
 from verification.study.usual_correction import curves
 
 INFO = RunInfo("coatcheck run published", "2026-01-01T00:00:00+00:00", 1.0, 1, None, "a machine", {})
@@ -54,7 +54,7 @@ def test_the_study_survives_json(study, tmp_path):
 def test_a_weight_that_is_not_a_number_does_not_end_the_study(study, tmp_path, monkeypatch):
     spoiled = replace(study, weights=(float("nan"), 1e-9))
     monkeypatch.setattr(effective_study, "measure", lambda: spoiled)
-    effective_study.main(str(tmp_path / "study.json"))
+    effective_study.main(tmp_path / "study.json")
     back = from_json(read_checked(tmp_path / "study.json"))
     assert np.array_equal(back.weights, spoiled.weights, equal_nan=True)
     assert "not finite" in render(Material([], INFO, Evidence(formulas=back)))
@@ -64,7 +64,7 @@ def test_a_weight_that_is_not_a_number_does_not_end_the_study(study, tmp_path, m
 def test_it_runs_in_a_process_of_its_own(tmp_path, monkeypatch, study):
     monkeypatch.setattr(effective_study, "measure", lambda: study)
     task = effective_study.task(tmp_path)
-    effective_study.main(task.command[-1])
+    task.work()
     assert task.read(read_checked(task.path)).ratio == study.ratio
     assert task.failed("was killed", 2.0) == EffectiveStudy(failure="was killed", seconds=2.0)
 

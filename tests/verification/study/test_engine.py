@@ -10,14 +10,14 @@ import pytest
 import synthetic_solves
 from synthetic_solves import CRASHING, FAILING, STUDY, made_up
 
-from verification.running.pool import cluster as dask_cluster
-from verification.running.pool.cluster import connected
-from verification.running.pool.task import SchedulerError
-from verification.running.store import StoreError, locked
-from verification.study.engine import run_study
-from verification.study.plan import parse_study
-from verification.study.point import answer
-from verification.study.table import COLUMNS, read_columns, read_study
+from verification.running.checked_files import StoreError, locked
+from verification.running.pool import dask_cluster as dask_cluster
+from verification.running.pool.dask_cluster import connected
+from verification.running.pool.pool_task import SchedulerError
+from verification.study.study_engine import run_study
+from verification.study.study_plan import parse_study
+from verification.study.study_point import answer
+from verification.study.study_table import COLUMNS, read_columns, read_study
 
 SOLVES = 6 + 2 * 3  # curves and their checks
 

@@ -15,8 +15,8 @@ import psutil
 import pytest
 from scheduler_by_hand import ENVIRONMENT, hand_started, wait_until
 
-from verification.running.store import read_checked
-from verification.study.table import read_columns
+from verification.running.checked_files import read_checked
+from verification.study.study_table import read_columns
 
 STUDY = """
 title = "Small but real"
@@ -189,9 +189,9 @@ def test_memory_stays_flat_over_ten_thousand_points(tmp_path):
         f"sys.path.insert(0, {str(Path(__file__).parents[1])!r})\n"
         "from pathlib import Path\n"
         "from synthetic_solves import made_up\n"
-        "from verification.running.pool.cluster import connected\n"
-        "from verification.study.engine import run_study\n"
-        "from verification.study.plan import read_study_file, shipped_studies\n"
+        "from verification.running.pool.dask_cluster import connected\n"
+        "from verification.study.study_engine import run_study\n"
+        "from verification.study.study_plan import read_study_file, shipped_studies\n"
         "if __name__ == '__main__':\n"
         "    study = read_study_file(shipped_studies()['ten_thousand'])\n"
         "    cluster = functools.partial(connected, None, 2)\n"

@@ -7,16 +7,16 @@ import numpy as np
 import pytest
 from synthetic_solves import STUDY
 
-from verification.cases.toml import CaseError
-from verification.problem.contact import CoatedContact
-from verification.report.study.load import answers, write_load_report
-from verification.study.choice.criteria import Criteria
-from verification.study.choice.load import Critical, Ramp, critical, ramps
+from verification.cases.toml_file import CaseError
+from verification.problem.coated_contact import CoatedContact
+from verification.study.choice.critical_load import Critical, Ramp, critical, ramps
+from verification.study.choice.failure_criteria import Criteria
 from verification.study.choice.strength import Uniform
-from verification.study.plan import parse_study
-from verification.study.point import answer, table_rows
-from verification.study.quantities import QUANTITIES
-from verification.study.table import read_columns, write_table
+from verification.study.largest_stresses import QUANTITIES
+from verification.study.pages.load_page import answers, write_load_report
+from verification.study.study_plan import parse_study
+from verification.study.study_point import answer, table_rows
+from verification.study.study_table import read_columns, write_table
 
 LOADS = STUDY.replace("load = 20.0", "").replace(
     "cross_check = 5", "cross_check = 0\nload = { from = 4, to = 30, count = 5 }"

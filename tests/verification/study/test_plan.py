@@ -6,8 +6,8 @@ from pathlib import Path
 import pytest
 from synthetic_solves import STUDY
 
-from verification.cases.toml import CaseError
-from verification.study.plan import parse_study, read_study_file, shipped_studies, thicknesses_between
+from verification.cases.toml_file import CaseError
+from verification.study.study_plan import parse_study, read_study_file, shipped_studies, thicknesses_between
 
 PATH = Path("mine.toml")
 

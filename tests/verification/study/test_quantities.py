@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 from synthetic_results import contact
 
-from verification.problem.contact import CoatedContact
+from verification.problem.coated_contact import CoatedContact
 from verification.sources.references import integral_equation
 from verification.sources.references.hamilton import Hamilton
-from verification.study.quantities import QUANTITIES, quantities, von_mises
+from verification.study.largest_stresses import QUANTITIES, quantities, von_mises
 
 FRICTIONS = (0.0, 0.25, 0.5)
 NU = 0.3

@@ -8,15 +8,15 @@ import study_table
 from scipy.integrate import quad
 from scipy.special import ndtr
 
-from verification.cases.toml import CaseError
-from verification.cases.units import Units
-from verification.report.study.recommendation import answers
-from verification.study.choice.criteria import Criteria, judged
+from verification.cases.toml_file import CaseError
+from verification.cases.unit_numbers import Units
+from verification.study.choice.failure_criteria import Criteria, judged
 from verification.study.choice.strength import LogNormal, Uniform, strength_of
-from verification.study.choice.thickness import DRAWN, choice, sampled
-from verification.study.curves import curves
-from verification.study.plan import parse_study
-from verification.study.table import read_columns
+from verification.study.choice.thickness_choice import DRAWN, choice, sampled
+from verification.study.pages.thickness_recommendation import answers
+from verification.study.study_plan import parse_study
+from verification.study.study_table import read_columns
+from verification.study.thickness_curves import curves
 
 SIGMAS = 4.0  # of sampling, 0.5/sqrt(DRAWN) each
 CLOSE = SIGMAS * 0.5 / np.sqrt(DRAWN)

@@ -35,7 +35,7 @@ def print_warnings(warnings: Iterable[str], name: str, *, strict: bool, silent: 
 
     strict : raise CommandError with the first instead.
     """
-    from verification.commands.common.exits import CommandError
+    from verification.commands.common.exit_codes import CommandError
 
     for message in warnings:
         if strict:

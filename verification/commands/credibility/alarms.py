@@ -6,11 +6,11 @@ from pathlib import Path
 
 from rich.markup import escape
 
-from verification.cases.contact import Case, parse_case
+from verification.cases.case_file import Case, parse_case
 from verification.cases.random_problems import draw
-from verification.commands.common.exits import CommandError, exit_code, with_exit_code
-from verification.commands.common.folders import RECORDS, require_checkout
-from verification.commands.common.options import (
+from verification.commands.common.exit_codes import CommandError, exit_code, with_exit_code
+from verification.commands.common.known_folders import RECORDS, require_checkout
+from verification.commands.common.shared_options import (
     AsJson,
     Flag,
     Jobs,
@@ -20,12 +20,12 @@ from verification.commands.common.options import (
     Resume,
     Scheduler,
 )
-from verification.commands.common.solving import kept_results, pool_of, require_gmsh, run_info, solve
+from verification.commands.common.task_progress import kept_results, pool_of, require_gmsh, run_info, solve
 from verification.commands.common.terminal import STYLE, named_table, one_line, print_json, print_out
-from verification.credibility.alarms import AlarmRecord, counted, write_record
-from verification.running.records import plain
-from verification.running.store import locked, write_atomically
-from verification.running.tasks import case_task
+from verification.evidence.alarm_record import AlarmRecord, counted, write_record
+from verification.running.case_tasks import case_task
+from verification.running.checked_files import locked, write_atomically
+from verification.running.json_records import plain
 
 MOST_SHOWN = 12
 
@@ -65,8 +65,8 @@ def alarms(
         require_checkout(records, "--records")
     require_gmsh()
 
-    from verification.report.material import Material
-    from verification.report.write import write_report
+    from verification.report.report_files import write_report
+    from verification.report.report_material import Material
 
     started = datetime.datetime.now(datetime.UTC)
     with locked(output):

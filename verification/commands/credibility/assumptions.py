@@ -8,13 +8,13 @@ import numpy as np
 from rich.console import Console
 from rich.markup import escape
 
-from verification.commands.common.exits import CommandError, with_exit_code
-from verification.commands.common.folders import RECORDS, require_checkout
-from verification.commands.common.options import AsJson, Flag, Quiet, RecordsFolder
-from verification.commands.common.solving import progress_bar, run_info
+from verification.commands.common.exit_codes import CommandError, with_exit_code
+from verification.commands.common.known_folders import RECORDS, require_checkout
+from verification.commands.common.shared_options import AsJson, Flag, Quiet, RecordsFolder
+from verification.commands.common.task_progress import progress_bar, run_info
 from verification.commands.common.terminal import did_you_mean, named_table, print_json, print_out
-from verification.credibility.model.assumptions import ASSUMPTIONS
-from verification.credibility.model.maps import (
+from verification.credibility.model.shared_assumptions import ASSUMPTIONS
+from verification.evidence.assumption_maps import (
     WORDS,
     AssumptionMap,
     AssumptionMaps,
@@ -23,7 +23,7 @@ from verification.credibility.model.maps import (
     read_maps,
     write_maps,
 )
-from verification.running.records import encode
+from verification.running.json_records import encode
 
 
 @with_exit_code

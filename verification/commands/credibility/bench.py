@@ -17,14 +17,14 @@ from verification.bench.checkout import checkout
 from verification.bench.device import LIBRARY, not_measured
 from verification.bench.figures import PEERS, Figure, Other, Part, groups, measure
 from verification.bench.history import BenchRun, append, read
-from verification.commands.common.exits import EXIT, CommandError, with_exit_code
-from verification.commands.common.folders import require_format
-from verification.commands.common.options import AsJson, Flag
-from verification.commands.common.solving import progress_bar
+from verification.commands.common.exit_codes import EXIT, CommandError, with_exit_code
+from verification.commands.common.known_folders import require_format
+from verification.commands.common.shared_options import AsJson, Flag
+from verification.commands.common.task_progress import progress_bar
 from verification.commands.common.terminal import named_table, print_error, print_json, print_out
 from verification.judging.outcome import Outcome
+from verification.running.json_records import encode
 from verification.running.provenance import PACKAGES, commit, machine, versions
-from verification.running.records import encode
 
 Numbers = Annotated[tuple[int, ...], Parameter(consume_multiple=True, negative="")]
 FASTER = "mkl"  # distribution of the extra "fast"

@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING
 
 from rich.markup import escape
 
-from verification.commands.common.exits import EXIT, CommandError, no_result, with_exit_code
-from verification.commands.common.folders import RECORDS, require_checkout
-from verification.commands.common.options import AsJson, Flag, Quiet, RecordsFolder
-from verification.commands.common.solving import run_info
+from verification.commands.common.exit_codes import EXIT, CommandError, no_result, with_exit_code
+from verification.commands.common.known_folders import RECORDS, require_checkout
+from verification.commands.common.shared_options import AsJson, Flag, Quiet, RecordsFolder
+from verification.commands.common.task_progress import run_info
 from verification.commands.common.terminal import did_you_mean, named_table, print_json, print_out
-from verification.credibility.enclosures import (
+from verification.evidence.enclosure_record import (
     LOWER,
     SURFACE,
     UPPER,
@@ -27,9 +27,9 @@ from verification.credibility.enclosures import (
     write_record,
 )
 from verification.judging.outcome import Outcome
-from verification.problem.contact import CoatedContact
-from verification.running.records import plain
-from verification.sources.enclosures.problems import problems, profile_radii
+from verification.problem.coated_contact import CoatedContact
+from verification.running.json_records import plain
+from verification.sources.enclosures.enclosed_problems import problems, profile_radii
 
 if TYPE_CHECKING:
     from flint import arb
@@ -126,8 +126,8 @@ def certify(
 
 def _certified(name: str, problem: CoatedContact) -> Enclosure:
     """The enclosure of a problem. Raises ValueError where a bound cannot be proven."""
-    from verification.sources.bounds.approach import bound
-    from verification.sources.enclosures.contact import enclose
+    from verification.sources.bounds.approach_bounds import bound
+    from verification.sources.enclosures.contact_enclosure import enclose
 
     began, radii = time.process_time(), profile_radii(name)
     balls = enclose(problem, radii)

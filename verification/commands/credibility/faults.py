@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Annotated
 from cyclopts import Parameter
 from rich.markup import escape
 
-from verification.commands.common.exits import CommandError, no_result, with_exit_code
-from verification.commands.common.folders import RECORDS, require_checkout
-from verification.commands.common.options import (
+from verification.commands.common.exit_codes import CommandError, no_result, with_exit_code
+from verification.commands.common.known_folders import RECORDS, require_checkout
+from verification.commands.common.shared_options import (
     AsJson,
     Flag,
     Jobs,
@@ -21,7 +21,7 @@ from verification.commands.common.options import (
     Resume,
     Scheduler,
 )
-from verification.commands.common.solving import (
+from verification.commands.common.task_progress import (
     Pool,
     kept_results,
     pool_of,
@@ -31,15 +31,15 @@ from verification.commands.common.solving import (
     worker_count,
 )
 from verification.commands.common.terminal import did_you_mean, named_table, print_json, print_out
-from verification.running.store import locked, write_atomically
-from verification.running.tasks import case_task
+from verification.running.case_tasks import case_task
+from verification.running.checked_files import locked, write_atomically
 
 if TYPE_CHECKING:
-    from verification.credibility.faults.planting import Fault
-    from verification.credibility.faults.record import Record
-    from verification.credibility.mutation.record import MutantRecord
-    from verification.credibility.mutation.record import Trial as MutantTrial
+    from verification.credibility.faults.fault_planting import Fault
     from verification.credibility.mutation.sites import Mutant
+    from verification.evidence.fault_record import Record
+    from verification.evidence.mutant_record import MutantRecord
+    from verification.evidence.mutant_record import Trial as MutantTrial
 
 
 @with_exit_code
@@ -74,7 +74,7 @@ def faults(
         time_limit: Seconds one fault may take before it is stopped and counted as not tried.
     """
     pool = pool_of(jobs, time_limit, scheduler)
-    from verification.credibility.faults.catalogue import CONTROLS, FAULTS, GROUPS, chosen
+    from verification.credibility.faults.fault_catalogue import CONTROLS, FAULTS, GROUPS, chosen
 
     if group is not None and (group not in GROUPS or names):
         remedy = "give a group or names, not both" if names else f"choose one of {', '.join(GROUPS)}"
@@ -94,20 +94,20 @@ def faults(
         require_checkout(records, "--records")
     require_gmsh()
 
-    from verification.credibility.faults import campaign
-    from verification.credibility.faults.record import to_json, write_record
-    from verification.report.credibility.faults import faults_page
+    from verification.credibility.faults import fault_campaign
+    from verification.evidence.fault_record import to_json, write_record
+    from verification.report.credibility.faults_section import faults_page
 
     started = datetime.datetime.now(datetime.UTC)
     with locked(output):
         _solve_clean(wanted, output, pool, time_limit, resume, quiet or as_json)
-        kept = {f.name: t for f in wanted if resume and (t := campaign.kept_trial(f, output))}
+        kept = {f.name: t for f in wanted if resume and (t := fault_campaign.kept_trial(f, output))}
         # the long ones first, so that no core waits at the end
-        order = sorted((f for f in wanted if f.name not in kept), key=campaign.cost, reverse=True)
-        trials = [campaign.trial_task(fault, output) for fault in order]
+        order = sorted((f for f in wanted if f.name not in kept), key=fault_campaign.cost, reverse=True)
+        trials = [fault_campaign.trial_task(fault, output) for fault in order]
         fresh = {trial.fault: trial for trial in solve(trials, pool, time_limit, quiet or as_json)}
         info = run_info("coatcheck faults", started, pool)
-        found = campaign.record_of(
+        found = fault_campaign.record_of(
             [kept.get(f.name) or fresh[f.name] for f in wanted],
             started=info.started,
             seconds=info.seconds,
@@ -115,11 +115,11 @@ def faults(
             machine=f"{info.machine}, {info.jobs} jobs",
             versions=info.versions,
         )
-        write_record(output / campaign.RECORD, found)
+        write_record(output / fault_campaign.RECORD, found)
         page = output / "faults.html"
         write_atomically(page, faults_page(found))
         if record:
-            write_record(records / campaign.RECORD, found)
+            write_record(records / fault_campaign.RECORD, found)
     if as_json:
         print_json(to_json(found))
     elif not quiet:
@@ -131,13 +131,13 @@ def _solve_clean(
     wanted: Sequence["Fault"], output: Path, pool: Pool, time_limit: float, resume: bool, silent: bool
 ) -> None:
     """Solve the cases of ``wanted`` without a fault; ends the command where that fails."""
-    from verification.credibility.faults import campaign
+    from verification.credibility.faults import fault_campaign
 
-    folder = campaign.clean_folder(output)
-    cases = campaign.clean_cases(wanted)
+    folder = fault_campaign.clean_folder(output)
+    cases = fault_campaign.clean_cases(wanted)
     clean = kept_results(cases, folder) if resume else {}
     tasks = [case_task(case, folder) for case in cases if case.name not in clean]
-    if reason := campaign.failed_source([*clean.values(), *solve(tasks, pool, time_limit, silent)]):
+    if reason := fault_campaign.failed_source([*clean.values(), *solve(tasks, pool, time_limit, silent)]):
         raise no_result(reason)
 
 
@@ -152,8 +152,8 @@ def _list(wanted: Sequence["Fault"], as_json: bool) -> None:
 
 
 def _print(found: "Record", page: Path) -> None:
-    from verification.credibility.faults.catalogue import GROUPS
-    from verification.credibility.faults.record import Catch
+    from verification.credibility.faults.fault_catalogue import GROUPS
+    from verification.evidence.fault_record import Catch
 
     shown = [catch for catch in Catch if any(row.catch is catch for row in found.rows)]
     table = named_table("group", "faults", *shown, "predicted check")
@@ -214,7 +214,7 @@ def mutants(
         time_limit: Seconds one mutant may take before it is stopped and counted as not tried.
     """
     jobs = worker_count(jobs, time_limit)
-    from verification.credibility.mutation import record as store
+    from verification.evidence import mutant_record as store
 
     for name in rooms:
         if name not in store.ROOMS:

@@ -2,9 +2,9 @@
 
 from rich.markup import escape
 
-from verification.cases.contact import Case, read_case, shipped_cases
-from verification.cases.published import PublishedCase, published_cases, read_published
-from verification.commands.common.options import AsJson
+from verification.cases.case_file import Case, read_case, shipped_cases
+from verification.cases.published_file import PublishedCase, published_cases, read_published
+from verification.commands.common.shared_options import AsJson
 from verification.commands.common.terminal import named_table, print_json, print_out
 
 

@@ -2,8 +2,8 @@
 
 from pathlib import Path
 
-from verification.commands.common.exits import CommandError, no_result, with_exit_code
-from verification.commands.common.options import AsJson, Flag, Output, Quiet
+from verification.commands.common.exit_codes import CommandError, no_result, with_exit_code
+from verification.commands.common.shared_options import AsJson, Flag, Output, Quiet
 from verification.commands.common.terminal import print_files
 
 
@@ -25,9 +25,9 @@ def manual(
         pdf: Also write coatcheck.pdf there, through an installed Chromium or Chrome.
         time_limit: Seconds that printing may take.
     """
-    from verification.manual.book import print_manual
-    from verification.manual.build import build
-    from verification.report.pdf import NoBrowser
+    from verification.manual.manual_build import build
+    from verification.manual.manual_pdf import print_manual
+    from verification.page.pdf_file import NoBrowser
 
     try:
         files = print_manual(output, "coatcheck.pdf", time_limit) if pdf else [build(output)]

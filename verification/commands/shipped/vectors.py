@@ -4,10 +4,10 @@ from pathlib import Path
 
 from rich.markup import escape
 
-from verification.commands.common.exits import with_exit_code
-from verification.commands.common.options import AsJson, Flag
+from verification.commands.common.exit_codes import with_exit_code
+from verification.commands.common.shared_options import AsJson, Flag
 from verification.commands.common.terminal import print_json, print_out
-from verification.running.store import write_atomically
+from verification.running.checked_files import write_atomically
 
 
 @with_exit_code
@@ -28,21 +28,21 @@ def vectors(
         semianalytic: With --compute, how many problems the semi-analytical method checks.
         elements: With --compute, how many problems the finite elements check.
     """
-    from verification.guests.vectors import content, making
+    from verification.guests.vectors import making, open_digits
 
     if compute:
         samples = {"semianalytic": semianalytic, "fem_reference": elements}
         found = making.make(folder / "work", samples, lambda line: print_out(escape(line)))
-        write_atomically(folder / content.FILE.name, content.packed(found))
+        write_atomically(folder / open_digits.FILE.name, open_digits.packed(found))
     else:
-        found = content.shipped()
-    for name, text in content.texts(found).items():
+        found = open_digits.shipped()
+    for name, text in open_digits.texts(found).items():
         write_atomically(folder / name, text)
-    wide = sorted(content.uncertain(found))
+    wide = sorted(open_digits.uncertain(found))
     summary = {
         "folder": str(folder),
         "problems": len(found["problems"]),
-        "values": content.value_count(found),
+        "values": open_digits.value_count(found),
         "ten_digits": sum(U <= 1e-10 for U in wide) / len(wide),
         "largest_uncertainty": wide[-1],
         "checked": found["checked"],

@@ -15,15 +15,15 @@ import tempfile
 from pathlib import Path
 from typing import Any
 
-from verification.credibility.faults.trial import try_fault
-from verification.credibility.mutation.record import ROOMS, ROOT, Catch, Trial
+from verification.credibility.faults.fault_trial import try_fault
 from verification.credibility.mutation.sites import Mutant, mutated
+from verification.evidence.mutant_record import ROOMS, ROOT, Catch, Trial
 from verification.judging.outcome import Outcome
-from verification.running.pool.processes import THREAD_VARIABLES
-from verification.running.pool.task import Task
+from verification.running.checked_files import StoreError, read_checked, write_checked
+from verification.running.json_records import decode, encode
+from verification.running.pool.pool_task import Task
+from verification.running.pool.process_pool import THREAD_VARIABLES
 from verification.running.provenance import CODE, fingerprint
-from verification.running.records import decode, encode
-from verification.running.store import StoreError, read_checked, write_checked
 
 KILLED = (128 + 9, 128 + 24)  # by the limit of processor time
 WAITING = 10  # times that limit of wall time: a mutant that waits for ever uses no processor

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from verification.problem.arrays import Array
-from verification.problem.contact import FLAT, Uncertainty
+from verification.problem.array_types import Array
+from verification.problem.coated_contact import FLAT, Uncertainty
 from verification.sources.references.hamilton import Hamilton
 
 

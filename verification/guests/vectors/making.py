@@ -8,12 +8,12 @@ from typing import Any
 
 import numpy as np
 
-from verification.guests.vectors.content import data_set, vector
-from verification.guests.vectors.problems import SEED, VectorProblem, problems
-from verification.guests.vectors.values import compared, exact_rows
+from verification.guests.vectors.open_digits import data_set, vector
+from verification.guests.vectors.open_problems import SEED, VectorProblem, problems
+from verification.guests.vectors.open_values import compared, exact_rows
+from verification.running.checked_files import write_atomically
 from verification.running.provenance import machine, versions
-from verification.running.store import write_atomically
-from verification.sources.registry import METHODS, SOURCES
+from verification.sources.source_registry import METHODS, SOURCES
 
 
 def make(

@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator
 
 from verification.bench.history import BenchRun
-from verification.report.figures.solved import COLOURS, save
+from verification.desk.answer_figure import COLOURS, save
 
 __all__ = ["draw", "write"]
 

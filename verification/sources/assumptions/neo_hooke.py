@@ -9,7 +9,7 @@ F_rz = dr/dZ.
 
 import numpy as np
 
-from verification.problem.arrays import Array
+from verification.problem.array_types import Array
 
 COMPONENTS = 5
 IDENTITY = np.array([1.0, 0.0, 0.0, 1.0, 1.0])

@@ -15,8 +15,8 @@ from numpy.polynomial import legendre
 from numpy.typing import ArrayLike
 from scipy.optimize import minimize_scalar
 
-from verification.problem.arrays import Array
-from verification.sources.references.quadrature import gauss_legendre
+from verification.problem.array_types import Array
+from verification.sources.references.gauss_legendre import gauss_legendre
 
 NEAR_AXIS = 0.1  # of a
 

@@ -18,7 +18,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from verification.problem.arrays import Array
+from verification.problem.array_types import Array
 
 Material = tuple[float, float]
 

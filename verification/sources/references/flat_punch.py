@@ -15,9 +15,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from verification.problem.arrays import Coatings
-from verification.sources.references.layered import LayeredHalfSpace, contact_modulus
-from verification.sources.references.quadrature import gauss_legendre, on_panels
+from verification.problem.array_types import Coatings
+from verification.sources.references.gauss_legendre import gauss_legendre, on_panels
+from verification.sources.references.layered_half_space import LayeredHalfSpace, contact_modulus
 
 
 @dataclass(frozen=True)

@@ -11,8 +11,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from verification.problem.arrays import Array
-from verification.problem.contact import BALL, FLAT
+from verification.problem.array_types import Array
+from verification.problem.coated_contact import BALL, FLAT
 from verification.sources.references.hertz import Hertz, HertzContact, integrals
 
 

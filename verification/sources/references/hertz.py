@@ -25,8 +25,8 @@ from typing import Self
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from verification.problem.arrays import Array
-from verification.problem.contact import BALL, FLAT, Uncertainty
+from verification.problem.array_types import Array
+from verification.problem.coated_contact import BALL, FLAT, Uncertainty
 
 Complex = NDArray[np.complex128]
 

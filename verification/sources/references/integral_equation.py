@@ -25,12 +25,16 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.optimize import brentq
 
-from verification.problem.arrays import Array, Ball, Coatings
-from verification.problem.contact import BALL, FLAT, Uncertainty
+from verification.problem.array_types import Array, Ball, Coatings
+from verification.problem.coated_contact import BALL, FLAT, Uncertainty
 from verification.sources.references.axisymmetric_pressure import AbelPressure
-from verification.sources.references.hankel import HankelField
-from verification.sources.references.layered import LayeredHalfSpace, bending_length, contact_modulus
-from verification.sources.references.quadrature import gauss_legendre, wavenumber_panels
+from verification.sources.references.gauss_legendre import gauss_legendre, wavenumber_panels
+from verification.sources.references.hankel_field import HankelField
+from verification.sources.references.layered_half_space import (
+    LayeredHalfSpace,
+    bending_length,
+    contact_modulus,
+)
 
 
 @dataclass(frozen=True)

@@ -11,9 +11,9 @@ Mechanics (2018), chapter 18. Thick: Hertz of the coating, then what the interfa
 
 import numpy as np
 
-from verification.problem.arrays import Coatings
-from verification.sources.references.layered import LayeredHalfSpace, bending_length
-from verification.sources.references.quadrature import wavenumber_panels
+from verification.problem.array_types import Coatings
+from verification.sources.references.gauss_legendre import wavenumber_panels
+from verification.sources.references.layered_half_space import LayeredHalfSpace, bending_length
 
 
 def spring_bed(a: float, E: float, nu: float, h: float) -> tuple[float, float]:

@@ -12,9 +12,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.special import ellipe, ellipkm1, j1
 
-from verification.problem.arrays import Array, Coatings
-from verification.problem.contact import Uncertainty
-from verification.sources.references.hankel import HankelField
+from verification.problem.array_types import Array, Coatings
+from verification.problem.coated_contact import Uncertainty
+from verification.sources.references.hankel_field import HankelField
 
 
 @dataclass(frozen=True)

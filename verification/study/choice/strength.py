@@ -14,9 +14,9 @@ import numpy as np
 from pydantic import Discriminator, Field, Tag, model_validator
 from scipy.special import ndtri
 
-from verification.cases.toml import Strict
-from verification.cases.units import Pascals
-from verification.problem.arrays import Array
+from verification.cases.toml_file import Strict
+from verification.cases.unit_numbers import Pascals
+from verification.problem.array_types import Array
 
 __all__ = ["Given", "Strength", "strength_of"]
 

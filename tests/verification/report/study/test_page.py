@@ -8,15 +8,15 @@ import study_table
 from markupsafe import escape
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 
-from verification.report.study import figures, page
-from verification.report.study.figures import governing_figure
-from verification.report.study.page import write_study_report
-from verification.study.choice.criteria import Criteria, judged
+from verification.study.choice.failure_criteria import Criteria, judged
 from verification.study.choice.strength import Uniform
-from verification.study.choice.thickness import choice
-from verification.study.curves import curves
-from verification.study.quantities import QUANTITIES
-from verification.study.table import read_columns
+from verification.study.choice.thickness_choice import choice
+from verification.study.largest_stresses import QUANTITIES
+from verification.study.pages import study_figures, thickness_page
+from verification.study.pages.study_figures import governing_figure
+from verification.study.pages.thickness_page import write_study_report
+from verification.study.study_table import read_columns
+from verification.study.thickness_curves import curves
 
 
 def reported(folder):
@@ -41,7 +41,7 @@ def brief(tmp_path_factory):
     folder = tmp_path_factory.mktemp("study")
     with pytest.MonkeyPatch.context() as patch:
         for name in ("use_figures", "governing_figure", "stress_figures"):
-            patch.setattr(page, name, lambda *_: [])
+            patch.setattr(thickness_page, name, lambda *_: [])
         return folder, reported(folder)
 
 
@@ -106,7 +106,7 @@ def test_no_label_or_legend_of_a_figure_is_cut(report, monkeypatch):
         if min(tight.x0, tight.y0) < 0 or tight.x1 > whole[0] or tight.y1 > whole[1]:
             cut.append((name, tight.extents))
 
-    monkeypatch.setattr(figures, "drawn", measured)
+    monkeypatch.setattr(study_figures, "drawn", measured)
     folder, study = report
     found = curves(read_columns(folder / "study.parquet"))
     criteria = Criteria(
@@ -115,10 +115,10 @@ def test_no_label_or_legend_of_a_figure_is_cut(report, monkeypatch):
     for chosen in (found, [c for c in found if c.ratio > 1]):
         groups = [[judged(c, criteria) for c in chosen if c.ratio == r] for r in {c.ratio for c in chosen}]
         choices = [choice(group, criteria) for group in groups]
-        figures.stress_figures(chosen, study.units)
-        figures.contact_figure(chosen, study.units)
-        figures.use_figures(choices, study.units)
-        figures.governing_figure(choices, study.units)
+        study_figures.stress_figures(chosen, study.units)
+        study_figures.contact_figure(chosen, study.units)
+        study_figures.use_figures(choices, study.units)
+        study_figures.governing_figure(choices, study.units)
     assert cut == []
 
 

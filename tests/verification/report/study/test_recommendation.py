@@ -4,13 +4,13 @@ import numpy as np
 import pytest
 import study_table
 
-from verification.cases.units import Units
-from verification.report.study.recommendation import answers, checked_messages, near, rounded
-from verification.report.study.summary import main_messages
-from verification.study.choice.criteria import Criteria, judged
-from verification.study.choice.thickness import choice
-from verification.study.curves import curves
-from verification.study.table import read_columns
+from verification.cases.unit_numbers import Units
+from verification.study.choice.failure_criteria import Criteria, judged
+from verification.study.choice.thickness_choice import choice
+from verification.study.pages.curve_summary import main_messages
+from verification.study.pages.thickness_recommendation import answers, checked_messages, near, rounded
+from verification.study.study_table import read_columns
+from verification.study.thickness_curves import curves
 
 
 @pytest.fixture(scope="module")

@@ -7,7 +7,7 @@ import numpy as np
 import semianalytic
 from semianalytic.influence import surface_coefficients
 from semianalytic.inputs import Body, Numerics
-from verification.problem.arrays import Array, Coatings
+from verification.problem.array_types import Array, Coatings
 
 PATCHES = 33
 

@@ -1,0 +1,352 @@
+"""A case: one coated contact with the claims about it, read from a TOML file."""
+
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+from pydantic import AfterValidator, Field, model_validator
+
+from verification.cases.graded_coating import LAYERS, Modulus, moduli
+from verification.cases.plausibility import likely_slips, residual_warnings, warnings_of
+from verification.cases.toml_file import (
+    CaseError,
+    Friction,
+    Poisson,
+    Positive,
+    Strict,
+    Text,
+    read_bounded,
+    read_toml,
+)
+from verification.cases.unit_numbers import AnyPascals, Metres, Newtons, Pascals
+from verification.judging.standard_claims import standard_claims
+from verification.judging.verdict import Claim
+from verification.problem.array_types import Ball, Coatings
+from verification.problem.coated_contact import BALL, FLAT, CoatedContact
+from verification.problem.line_profile import Line, line_of, lines_of, oblique_lines
+from verification.sources.source_registry import METHODS, sources_of
+
+CASES = Path(__file__).parent / "shipped" / "contact"
+
+
+@dataclass(frozen=True)
+class Case:
+    """``problem`` with the ``claims`` about it; ``numerics`` holds each method's own keywords.
+
+    text : the file it was read from, kept with the results so that they carry their full input.
+    warnings : of implausible numbers, a line each.   limits : hardness, yield strength [Pa] by their keys.
+    residual : equibiaxial stress [Pa] of each coating by body, no part of ``problem``; {} without any.
+    layers : number of sub-layers of each coating by body; {} where no coating is graded.
+    resolve : whether it is also solved scaled, with equal moduli, thick and thin (``invariants.resolved``).
+    """
+
+    name: str
+    title: str
+    problem: CoatedContact
+    claims: tuple[Claim, ...]
+    source: str = ""
+    numerics: dict[str, dict[str, Any]] = field(default_factory=dict)
+    text: str = ""
+    resolve: bool = False
+    warnings: tuple[str, ...] = ()
+    limits: dict[str, float] = field(default_factory=dict)
+    residual: dict[str, tuple[float, ...]] = field(default_factory=dict)
+    layers: dict[str, tuple[int, ...]] = field(default_factory=dict)
+
+    @property
+    def lines(self) -> tuple[Line, ...]:
+        """The lines on which sources are compared: those of the plane y = 0, then the others."""
+        return lines_of(self.problem) + oblique_lines(self.problem)
+
+
+Expansion = Annotated[float, Field(ge=-1e-3, le=1e-3)]
+TemperatureChange = Annotated[float, Field(ge=-5000, le=5000)]
+
+
+class Limited(Strict):
+    """Stresses of a material beyond which the contact is not elastic."""
+
+    hardness: Pascals | None = None
+    yield_strength: Pascals | None = None
+
+    def limits(self, key: str) -> dict[str, float]:
+        """Those given [Pa], by their keys after ``key``."""
+        given = {"hardness": self.hardness, "yield_strength": self.yield_strength}
+        return {f"{key}.{name}": value for name, value in given.items() if value is not None}
+
+
+class Material(Limited):
+    """An elastic material; ``expansion`` is its coefficient of thermal expansion [1/K]."""
+
+    E: Pascals
+    nu: Poisson
+    expansion: Expansion | None = None
+
+
+class Stressed(Strict):
+    """A coating with a residual stress, given or by thermal mismatch."""
+
+    residual_stress: AnyPascals | None = None
+    expansion: Expansion | None = None
+
+    def residual(self, E: float, nu: float, below: float | None, change: float | None) -> float:
+        """Equibiaxial residual stress [Pa]: that given, or by thermal mismatch, or 0.
+
+        sigma = E/(1 - nu) (alpha_s - alpha) dT, of a thin film whose strain is that of its thick substrate.
+        L. B. Freund, S. Suresh, Thin Film Materials, Cambridge University Press, 2003, chapter 2.
+        below : expansion of the substrate alpha_s [1/K].   change : of the temperature since deposition [K].
+        Raises ValueError where both are given, or the mismatch lacks a part.
+        """
+        if self.expansion is None:
+            return self.residual_stress or 0.0
+        if self.residual_stress is not None:
+            raise ValueError("residual_stress and expansion are both given; give one")
+        if below is None or change is None:
+            raise ValueError("expansion requires that of the substrate, and problem.temperature_change")
+        return E / (1 - nu) * (below - self.expansion) * change
+
+
+class _Coating(Limited, Stressed):
+    """One coating; of a graded one E is a course over its depth, followed by ``layers`` sub-layers."""
+
+    E: Modulus
+    nu: Poisson
+    thickness: Metres | None = None
+    thickness_over_a_h: Positive | None = None
+    layers: Annotated[int, Field(ge=2, le=LAYERS)] | None = None
+
+    @model_validator(mode="after")
+    def _graded(self) -> "_Coating":
+        if (self.layers is None) != isinstance(self.E, float):
+            raise ValueError("is graded: needs E as a course over the depth, with its number of layers")
+        return self
+
+    @model_validator(mode="after")
+    def _one_thickness(self) -> "_Coating":
+        if (self.thickness is None) == (self.thickness_over_a_h is None):
+            raise ValueError("needs exactly one of thickness [m] or thickness_over_a_h")
+        return self
+
+    def sublayers(self, over: int) -> int:
+        """Number of its sub-layers, over ``over``."""
+        return max(1, (self.layers or 1) // over)
+
+    def in_metres(self, a_h: float, over: int = 1) -> Coatings:
+        """E, nu, thickness of its sub-layers."""
+        thickness = self.thickness if self.thickness is not None else a_h * (self.thickness_over_a_h or 0.0)
+        n = self.sublayers(over)
+        # One layer keeps the number as it was given, which knows whether it had a unit.
+        return tuple((E, self.nu, thickness / n if n > 1 else thickness) for E in moduli(self.E, n))
+
+
+class BallEntry(Material):
+    """An elastic ball; its coatings from its surface inwards."""
+
+    coatings: Annotated[list[_Coating], Field(default_factory=list, max_length=50)]
+
+    def all_limits(self) -> dict[str, float]:
+        """Hardness and yield strength [Pa] of the ball with its coatings, by their keys."""
+        return self.limits(BALL) | _limits(self.coatings, f"{BALL}.coatings")
+
+    @property
+    def bare(self) -> Ball:
+        """The ball without its coatings."""
+        return self.E, self.nu, ()
+
+    def coated(self, a_h: float, over: int = 1) -> Ball:
+        """The ball; a thickness over a_h is that over the scale of both bodies uncoated."""
+        return self.E, self.nu, _in_metres(self.coatings, a_h, over)
+
+
+def _limits(coatings: list[_Coating], key: str) -> dict[str, float]:
+    return {k: v for i, c in enumerate(coatings) for k, v in c.limits(f"{key}.{i}").items()}
+
+
+def _in_metres(coatings: list[_Coating], a_h: float, over: int = 1) -> Coatings:
+    found = tuple(layer for c in coatings for layer in c.in_metres(a_h, over))
+    if len(found) > LAYERS:
+        raise ValueError(f"coatings have {len(found)} layers; at most {LAYERS} are supported on a body")
+    return found
+
+
+class _Problem(Strict):
+    radius: Metres
+    load: Newtons
+    friction: Friction = 0.0
+    substrate: Material
+    coatings: Annotated[list[_Coating], Field(default_factory=list, max_length=50)]
+    ball: BallEntry | None = None
+    temperature_change: TemperatureChange | None = None
+
+    def layers(self, over: int = 1) -> dict[str, tuple[int, ...]]:
+        """Number of sub-layers of each coating by body; {} where no coating is graded."""
+        bodies = {FLAT: self.coatings} | ({BALL: self.ball.coatings} if self.ball else {})
+        found = {body: tuple(c.sublayers(over) for c in coatings) for body, coatings in bodies.items()}
+        return found if any(c.layers for coatings in bodies.values() for c in coatings) else {}
+
+    def residual(self, over: int = 1) -> dict[str, tuple[float, ...]]:
+        """Residual stress [Pa] of each sub-layer of the coatings by body; {} where there is none.
+
+        Raises ValueError naming the coating whose residual stress is not determined.
+        """
+        bodies = {FLAT: (self.substrate.expansion, self.coatings)}
+        if self.ball:
+            bodies[BALL] = (self.ball.expansion, self.ball.coatings)
+        found = {}
+        for body, (below, coatings) in bodies.items():
+            stresses = []
+            for i, coating in enumerate(coatings):
+                try:
+                    for E in moduli(coating.E, coating.sublayers(over)):
+                        stresses.append(coating.residual(E, coating.nu, below, self.temperature_change))
+                except ValueError as error:
+                    raise ValueError(f"{'ball.' if body == BALL else ''}coatings.{i}: {error}") from None
+            found[body] = tuple(stresses)
+        return found if any(any(stresses) for stresses in found.values()) else {}
+
+    def contact(self, over: int = 1) -> CoatedContact:
+        """The problem; a thickness over a_h is that over the scale of both bodies uncoated.
+
+        over : divisor of the number of sub-layers.
+        """
+        ball, substrate = self.ball, (self.substrate.E, self.substrate.nu)
+        bare = CoatedContact(
+            self.radius, self.load, (), substrate, self.friction, ball.bare if ball else None
+        )
+        given = ball.coated(bare.a_h, over) if ball else None
+        return replace(bare, coatings=_in_metres(self.coatings, bare.a_h, over), ball=given)
+
+    def limits(self) -> dict[str, float]:
+        """Hardness and yield strength [Pa] of every material that has one, by their keys."""
+        ball = self.ball.all_limits() if self.ball else {}
+        return self.substrate.limits("substrate") | _limits(self.coatings, "coatings") | ball
+
+
+class _Claim(Strict):
+    quantity: Text
+    line: Text
+    between: Annotated[list[Text], Field(min_length=2, max_length=2)]
+    cap: Annotated[float, Field(gt=0, le=1)]
+    why: Text
+    edge: Annotated[float, Field(ge=0, lt=1)] = 0.0
+
+
+def _odd(number: int) -> int:
+    if number % 2 == 0:
+        raise ValueError("must be odd, so that a patch lies in the middle")
+    return number
+
+
+class _SemianalyticNumerics(Strict):
+    patches: Annotated[int, Field(ge=33, le=4097), AfterValidator(_odd)] | None = None
+    conversion: Literal["split", "split-fft", "plain"] | None = None
+    max_iterations: Annotated[int, Field(ge=1, le=100_000)] | None = None
+
+
+class _FemNumerics(Strict):
+    order: Annotated[int, Field(ge=2, le=4)] | None = None
+    quality: Literal["fast", "default", "fine"] | None = None
+
+
+class _CaseFile(Strict):
+    title: Text
+    source: Text = "no source stated"
+    problem: _Problem
+    semianalytic: _SemianalyticNumerics = _SemianalyticNumerics()
+    fem_reference: _FemNumerics = _FemNumerics()
+    claim: Annotated[list[_Claim], Field(default_factory=list, max_length=1000)]
+    resolve: bool = False
+
+
+def read_case(path: Path) -> Case:
+    """Read and check one case file. Raises CaseError naming file and key."""
+    return parse_case(read_bounded(path, "case", "one problem"), path)
+
+
+def parse_case(raw: bytes, path: Path, over: int = 1) -> Case:
+    """Check the content of a case file; ``path`` names it in messages. Raises CaseError.
+
+    over : divisor of the number of sub-layers of graded coatings.
+    """
+    text, checked = read_toml(raw, path, _CaseFile)
+    try:
+        problem, residual = checked.problem.contact(over), checked.problem.residual(over)
+    except (ValueError, OverflowError, ZeroDivisionError) as error:
+        raise CaseError(f"{path}: problem: {error}") from None
+    refuse_unfit_scales(path, problem)
+    if checked.resolve and not problem.coatings:
+        raise CaseError(f"{path}: resolve: requires a coating; add one, or leave resolve out")
+    numerics = {
+        method: getattr(checked, method).model_dump(exclude_none=True)
+        for method in METHODS
+        if method in _CaseFile.model_fields
+    }
+    claims = _claims(path, checked, problem)
+    if not claims:
+        raise CaseError(f"{path}: claim: nothing is claimed of this problem, so that nothing would be judged")
+    limits = checked.problem.limits()
+    return Case(
+        path.stem,
+        checked.title,
+        problem,
+        claims,
+        checked.source,
+        numerics,
+        text,
+        checked.resolve,
+        (*warnings_of(problem, limits), *residual_warnings(residual)),
+        limits,
+        residual,
+        checked.problem.layers(over),
+    )
+
+
+def refuse_unfit_scales(path: Path, problem: CoatedContact) -> None:
+    """Raise CaseError beyond the range of the parabolic sphere, of a method or of floating point."""
+    a_h, R, slips = problem.a_h, problem.radius, likely_slips(problem)
+    if a_h > R:
+        reason = f".load: gives a contact radius of {a_h:.3g} m on a sphere of {R:.3g} m; lower the load"
+        raise CaseError(f"{path}: problem{reason}{slips}")
+    if not 1e-12 < a_h < 1e3:
+        reason = f"contact radius a_h = {a_h:.3g} m; check units of radius, load, E{slips}"
+        raise CaseError(f"{path}: problem: {reason}")
+    for body in problem.bodies:
+        seen, key = problem.seen_from(body), f"{path}: problem{'.ball' if body == BALL else ''}"
+        for i, (_, _, h) in enumerate(seen.coatings):
+            if not 1e-3 <= h / a_h <= 1e3:
+                reason = (
+                    f"{h / a_h:.3g} times the contact radius {a_h:.3g} m; both methods support 1e-3 to 1e3"
+                )
+                raise CaseError(f"{key}.coatings.{i}.thickness: {reason}{slips}")
+        moduli = [*(E for E, _, _ in seen.coatings), seen.substrate[0]]
+        contrast = max(moduli) / min(moduli)
+        if contrast > 1e4:
+            raise CaseError(f"{key}: moduli differ {contrast:.3g} times; at most 1e4 is supported{slips}")
+
+
+def _claims(path: Path, checked: _CaseFile, problem: CoatedContact) -> tuple[Claim, ...]:
+    if not checked.claim:
+        return standard_claims(problem)
+    known = {(c.quantity, c.line) for c in standard_claims(problem)}
+    sources = sources_of(problem)
+    claims = []
+    for i, claim in enumerate(checked.claim):
+        key = f"{path}: claim.{i}"
+        if claim.line != "contact":
+            try:
+                line_of(claim.line, problem)
+            except ValueError as error:
+                raise CaseError(f"{key}.{error}") from None
+        if (claim.quantity, claim.line) not in known:
+            fit = sorted(q for q, line in known if line == claim.line)
+            raise CaseError(f"{key}.quantity = {claim.quantity!r}; on {claim.line} there is {', '.join(fit)}")
+        first, second = claim.between
+        if first == second or not {first, second} <= set(sources):
+            raise CaseError(f"{key}.between = {claim.between}; give two of {', '.join(sources)}")
+        claims.append(Claim(claim.quantity, claim.line, (first, second), claim.cap, claim.why, claim.edge))
+    return tuple(claims)
+
+
+def shipped_cases() -> dict[str, Path]:
+    """The cases of the default run, by name, in the order of their file names."""
+    return {path.stem: path for path in sorted(CASES.glob("*.toml"))}

@@ -1,0 +1,188 @@
+"""Progress of tasks on the terminal; results of earlier runs that can be kept."""
+
+import datetime
+from collections.abc import Callable, Sequence
+from functools import partial
+from pathlib import Path
+from typing import TypeVar
+
+from rich.console import Console
+from rich.markup import escape
+from rich.progress import (
+    BarColumn,
+    MofNCompleteColumn,
+    Progress,
+    ProgressColumn,
+    TextColumn,
+    TimeElapsedColumn,
+    TimeRemainingColumn,
+)
+from rich.progress import Task as RichTask
+from rich.table import Column
+from rich.text import Text
+
+from verification.cases.case_file import Case
+from verification.cases.published_file import PublishedCase
+from verification.commands.common.exit_codes import CommandError, no_result
+from verification.commands.common.terminal import STYLE, one_line, print_error
+from verification.credibility import accuracy_study as accuracy_study
+from verification.credibility.accuracy_study import AccuracyStudy
+from verification.running.case_result import CaseResult, RunInfo
+from verification.running.case_tasks import kept_result
+from verification.running.checked_files import StoreError
+from verification.running.pool.dask_cluster import Cluster
+from verification.running.pool.pool_task import Task
+from verification.running.pool.process_pool import run_tasks
+from verification.running.provenance import commit, cores, hardware, missing_libraries, versions
+
+T = TypeVar("T")
+
+NARROW = 60  # columns
+
+Pool = int | Cluster  # so many processes on this machine, or the workers of a scheduler
+
+
+def worker_count(jobs: int | None, time_limit: float) -> int:
+    """Processes side by side. Raises CommandError where one of both is not positive."""
+    jobs = cores() if jobs is None else jobs
+    if jobs < 1 or not time_limit > 0:
+        raise CommandError(f"--jobs = {jobs}, --time-limit = {time_limit:g}; both must be positive")
+    return jobs
+
+
+def pool_of(jobs: int | None, time_limit: float, scheduler: str | None) -> Pool:
+    """Where tasks run. Raises CommandError for a number that is not positive, jobs beside a scheduler."""
+    here = worker_count(jobs, time_limit)
+    if scheduler is None:
+        return here
+    if jobs is not None:
+        raise CommandError(f"--jobs = {jobs}: the workers of --scheduler decide; leave one of both out")
+    return Cluster(scheduler)
+
+
+def require_gmsh() -> None:
+    """Raises CommandError with the packages to install where gmsh cannot be loaded."""
+    if lacking := missing_libraries():
+        install = f"apt-get install {' '.join(lacking)}"
+        raise no_result(f"gmsh lacks system libraries here; install them with: {install}")
+
+
+def kept_results(
+    chosen: Sequence[Case | PublishedCase], output: Path, *, fields: bool = False
+) -> dict[str, CaseResult]:
+    """Earlier results that can be kept, by name; prints why another one cannot."""
+    kept = {}
+    for case in chosen:
+        try:
+            result = kept_result(output, case, fields=fields)
+        except StoreError as error:
+            print_error(f"{error}; computed again")
+            continue
+        if result is not None:
+            kept[case.name] = result
+    return kept
+
+
+def kept_study(output: Path) -> AccuracyStudy | None:
+    """The earlier accuracy study where it can be kept; prints why it cannot."""
+    try:
+        return accuracy_study.stored(output)
+    except StoreError as error:
+        print_error(f"{error}; measured again")
+        return None
+
+
+def solve(
+    tasks: Sequence[Task[T]],
+    pool: Pool,
+    time_limit: float,
+    silent: bool,
+    *,
+    verbose: bool = False,
+    meanwhile: Callable[[], object] = lambda: None,
+) -> list[T]:
+    """Run ``tasks`` with a progress bar and a line for each result, unless ``silent``.
+
+    verbose : print seconds, iterations and unknowns of every source.   meanwhile : as in ``run_tasks``.
+    """
+    console = Console(stderr=True)
+    bar = progress_bar(console, silent=silent)
+    at_work: list[str] = []
+    with bar:
+        task = bar.add_task("solving", total=len(tasks))
+
+        def started(name: str) -> None:
+            at_work.append(name)
+            bar.update(task, description=", ".join(at_work))
+
+        def finished(name: str, result: T) -> None:
+            at_work.remove(name)
+            bar.update(task, advance=1, description=", ".join(at_work) or "report")
+            if not silent and isinstance(result, CaseResult):
+                colour = STYLE[result.outcome]
+                line = f"[{colour}]{result.outcome:<12}[/] {escape(result.name)}  {result.seconds:.1f} s"
+                console.print(line, highlight=False)
+                if verbose:
+                    console.print(escape(_sources(result)), style="dim", highlight=False)
+
+        run = pool.run if isinstance(pool, Cluster) else partial(run_tasks, jobs=pool)
+        return run(
+            tasks,
+            time_limit=time_limit,
+            started=started,
+            finished=finished,
+            meanwhile=meanwhile,
+        )
+
+
+def _sources(result: CaseResult) -> str:
+    """A line for each source of a case: its seconds, iterations and unknowns, or why it failed."""
+    lines = []
+    for source in result.sources:
+        text = f"{'':13}{source.source:<18} {source.seconds:6.2f} s"
+        for name in ("iterations", "patches", "dofs"):
+            if name in source.diagnostics:
+                text += f"  {source.diagnostics[name]} {name}"
+        lines.append(text if source.failure is None else f"{text}  {one_line(source.failure)}")
+    return "\n".join(lines)
+
+
+def run_info(command: str, started: datetime.datetime, pool: Pool) -> RunInfo:
+    """Command, time, commit, machines and versions of the run that ends now."""
+    jobs, machines = (pool.jobs, pool.machines) if isinstance(pool, Cluster) else (pool, set())
+    return RunInfo(
+        command=command,
+        started=started.isoformat(timespec="seconds"),
+        seconds=(datetime.datetime.now(datetime.UTC) - started).total_seconds(),
+        jobs=jobs,
+        commit=commit(),
+        machine=" and ".join(sorted(machines)) or hardware(),
+        versions=versions(),
+    )
+
+
+class _Description(ProgressColumn):
+    """Names of the tasks at work, in one line."""
+
+    def render(self, task: RichTask) -> Text:
+        return Text(task.description, no_wrap=True, overflow="ellipsis")
+
+
+def progress_bar(console: Console, *more: ProgressColumn, silent: bool = False) -> Progress:
+    """A bar that counts, with time gone and left; nothing at all where ``console`` is not a terminal.
+
+    more : columns behind the count.
+    """
+    return Progress(
+        # Words and bar give way where the terminal is narrow; counts and times stay whole.
+        _Description(table_column=Column(no_wrap=False)),
+        *([BarColumn(table_column=Column(no_wrap=False))] if console.width >= NARROW else []),
+        MofNCompleteColumn(),
+        *more,
+        TimeElapsedColumn(),
+        TextColumn("left"),
+        TimeRemainingColumn(),
+        console=console,
+        transient=True,
+        disable=silent or not console.is_terminal,
+    )

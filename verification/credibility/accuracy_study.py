@@ -1,0 +1,153 @@
+"""The accuracy study of a default run: convergence of both methods on two solids of known solution."""
+
+import os
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+from typing import Any, TypeVar
+
+from verification.credibility.parameter_sweeps import Stated, Sweep, study
+from verification.credibility.refinement_studies import (
+    Refinement,
+    failure_message,
+    refined_grid,
+    refined_mesh,
+)
+from verification.judging.invariants.influence_error import ConversionError, conversion_errors
+from verification.problem.coated_contact import CoatedContact
+from verification.running.checked_files import StoreError, read_checked, write_checked
+from verification.running.json_records import decode, encode
+from verification.running.pool.pool_task import Task
+from verification.running.provenance import commit, versions
+from verification.sources.method_sources import sharing_pressure
+from verification.sources.source_registry import solvers
+
+SCHEMA = "coatcheck-accuracy/2"
+CORRECTED = "split conversion, corrected edge"
+# Patches alone: influence coefficients, DC-FFT, conjugate gradients against the exact solution.
+STAIRCASE = "split conversion, staircase edge"
+PLAIN = "plain conversion, staircase edge"
+# The edge profile does not depend on the grid: with it p0 and a are the same at every N, and the approach
+# differs by the tolerance of the patches.
+FINE = (41, 49, 65, 97, 129, 257)
+KEPT = 4  # solutions of a method, some 100 MB each of the finest meshes
+STEEL = (210e9, 0.3)
+BARE = CoatedContact(10e-3, 20.0, (), STEEL)
+COATED = CoatedContact(10e-3, 20.0, ((4 * STEEL[0], 0.3, BARE.a_h),), STEEL)
+COST = 5.0  # of the whole study, over that of an uncoated contact
+PROBLEM = "a sphere of 10 mm under 20 N on steel, bare or with a coating of E1/E2 = 4, h = a_h"
+
+T = TypeVar("T")
+
+
+@dataclass(frozen=True)
+class AccuracyStudy:
+    """Errors of both methods with provenance; ``failures`` are messages on what could not be computed.
+
+    conversions, sweeps, stated : of the coated solid.   commit : None outside a checkout.
+    """
+
+    refinements: tuple[Refinement, ...]
+    conversions: tuple[ConversionError, ...]
+    failures: tuple[str, ...]
+    seconds: float
+    commit: str | None
+    versions: dict[str, str]
+    sweeps: tuple[Sweep, ...] = ()
+    stated: tuple[Stated, ...] = ()
+
+
+def measure() -> AccuracyStudy:
+    """Compute every part of the study; a part that fails leaves a message, the others are computed."""
+    begin = time.perf_counter()
+    failures: list[str] = []
+
+    def attempt(part: str, compute: Callable[[], T], otherwise: T) -> T:
+        try:
+            return compute()
+        except Exception as error:  # a message of the report, not a traceback
+            failures.append(f"{part}: {failure_message(error)}")
+            return otherwise
+
+    # Sweeps pass through numerics of the refinement studies, and of one another.
+    available = {name: sharing_pressure(solve, KEPT) for name, solve in solvers(COATED).items()}
+    grid = partial(refined_grid, solve=available["semianalytic"])
+    mesh = partial(refined_mesh, COATED, solid="coated", solve=available["fem_reference"])
+    refinements = (
+        grid(COATED, FINE, solid="coated", setting=CORRECTED),
+        grid(COATED, solid="coated", setting=STAIRCASE, edge_correction=False),
+        # Its convolution kernel alone costs more than the rest, so it ends one level earlier.
+        grid(COATED, (33, 65, 129), solid="coated", setting=PLAIN, edge_correction=False, conversion="plain"),
+        grid(BARE, FINE, solid="uncoated", setting=CORRECTED),
+        grid(BARE, solid="uncoated", setting=STAIRCASE, edge_correction=False),
+        *(mesh(order) for order in (2, 3, 4)),
+    )
+    failures += [f"{r.method}, {r.solid}, {r.setting}, {r.failure}" for r in refinements if r.failure]
+    conversions: tuple[ConversionError, ...] = attempt(
+        "conversions of the influence coefficients", lambda: conversion_errors(COATED), ()
+    )
+    nothing: tuple[tuple[Sweep, ...], tuple[Stated, ...]] = ((), ())
+    sweeps, stated = attempt(
+        "uncertainty by parameter", lambda: study(COATED, "coated", available=available), nothing
+    )
+    failures += [f"{sweep.method}, {sweep.parameter}, {sweep.failure}" for sweep in sweeps if sweep.failure]
+    seconds = time.perf_counter() - begin
+    return AccuracyStudy(
+        refinements, conversions, tuple(failures), seconds, commit(), versions(), sweeps, stated
+    )
+
+
+def failed(reason: str, seconds: float) -> AccuracyStudy:
+    """The study of a process that left nothing but the ``reason``."""
+    return AccuracyStudy((), (), (reason,), seconds, commit(), versions())
+
+
+def path_in(folder: Path) -> Path:
+    """Path of the study in a run directory."""
+    return folder / "accuracy.json"
+
+
+def stored(
+    folder: Path, source: Callable[[], str | None] = commit, packages: Callable[[], dict[str, str]] = versions
+) -> AccuracyStudy | None:
+    """The earlier study where it has no failures and is of this commit and these versions, or None.
+
+    The study of a tree that was changed since its commit (marked "+") is not used: the tree may have changed
+    since. Raises StoreError, naming the file, where the study is damaged.
+    """
+    path = path_in(folder)
+    if not os.path.lexists(path):
+        return None
+    data = read_checked(path)
+    try:
+        found = from_json(data)
+    except ValueError as error:
+        raise StoreError(f"{path}: not a study of this program ({error})") from None
+    now = source()
+    same = (found.commit, found.versions) == (now, packages()) and not (now or "").endswith("+")
+    return found if same and not found.failures else None
+
+
+def task(folder: Path) -> Task[AccuracyStudy]:
+    """The study as a task beside the cases of a run."""
+    path = path_in(folder)
+    return Task("accuracy study", partial(main, path), path, from_json, failed, cost=COST)
+
+
+def to_json(study: AccuracyStudy) -> dict[str, Any]:
+    """The study as strict JSON."""
+    return {"schema": SCHEMA, **encode(study)}
+
+
+def from_json(data: dict[str, Any]) -> AccuracyStudy:
+    """The inverse of ``to_json``. Raises ValueError for another schema or a field that does not fit."""
+    if data.get("schema") != SCHEMA:
+        raise ValueError(f"schema = {data.get('schema')!r}; this version reads {SCHEMA!r}, run it again")
+    return decode(AccuracyStudy, data)
+
+
+def main(path: Path) -> None:
+    """Measure and store at ``path``."""
+    write_checked(path, to_json(measure()))

@@ -1,0 +1,114 @@
+"""All trials of a run of ``coatcheck faults``: the clean cases they need, then one process for each fault."""
+
+import time
+from collections.abc import Sequence
+from dataclasses import replace
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+from verification.cases.case_file import Case, read_case, shipped_cases
+from verification.credibility.faults.fault_catalogue import CONTROLS, FAULTS
+from verification.credibility.faults.fault_planting import Fault
+from verification.credibility.faults.fault_trial import Trial, clean_path, try_fault
+from verification.evidence.fault_record import Record, row_of
+from verification.running.case_result import CaseResult
+from verification.running.checked_files import StoreError, read_checked, write_checked
+from verification.running.json_records import decode, encode
+from verification.running.pool.pool_task import Task
+from verification.running.provenance import fingerprint
+
+RECORD = "faults.json"  # its name in a folder of records
+
+
+def clean_folder(output: Path) -> Path:
+    """Folder of the clean runs of the cases."""
+    return output / "clean"
+
+
+def clean_cases(faults: Sequence[Fault]) -> list[Case]:
+    """The cases of all trials, which have to be solved without a fault first."""
+    shipped = shipped_cases()
+    return [read_case(shipped[name]) for name in sorted({name for fault in faults for name in fault.cases})]
+
+
+def cost(fault: Fault) -> float:
+    """Approximate cost of a trial in semi-analytical solutions."""
+    share = {"semianalytic": 1.0, "fem_reference": 3.0}
+    return len(fault.cases) * sum(share.get(name, 0.2) for name in fault.solve or (fault.where,))
+
+
+def failed_source(clean: Sequence[CaseResult]) -> str:
+    """Message on a source that fails without any fault, so that no trial is possible; empty without one."""
+    for result in clean:
+        for source in result.sources:
+            if source.failure is not None:
+                return f"{result.name} cannot be solved without any fault: {source.source}: {source.failure}"
+    return ""
+
+
+def trial_task(fault: Fault, output: Path) -> Task[Trial]:
+    """The trial of ``fault`` in a process of its own."""
+    path, clean = _path(fault, output), clean_folder(output)
+
+    def failed(reason: str, seconds: float) -> Trial:
+        return Trial(fault.name, seconds=seconds, failure=reason)
+
+    return Task(
+        fault.name,
+        partial(main, fault, clean, path),
+        path,
+        _trial,
+        failed,
+        needs=lambda: [clean_path(clean, name) for name in fault.cases],
+    )
+
+
+def kept_trial(fault: Fault, output: Path) -> Trial | None:
+    """The trial of an earlier run of the same fault by the same code; None without one."""
+    try:
+        data = read_checked(_path(fault, output))
+    except StoreError:
+        return None
+    same = data.get("fault") == encode(fault) and data.get("made_by") == fingerprint()
+    return _trial(data) if same else None
+
+
+def record_of(
+    trials: Sequence[Trial],
+    *,
+    started: str,
+    seconds: float,
+    commit: str | None,
+    machine: str,
+    versions: dict[str, str],
+) -> Record:
+    """The record of all ``trials``, controls apart."""
+    rows = [(trial.fault, row_of((FAULTS | CONTROLS)[trial.fault], trial)) for trial in trials]
+    return Record(
+        rows=tuple(row for name, row in rows if name in FAULTS),
+        controls=tuple(row for name, row in rows if name in CONTROLS),
+        started=started,
+        seconds=seconds,
+        core_seconds=sum(trial.seconds for trial in trials),
+        commit=commit,
+        machine=machine,
+        versions=versions,
+        failing_clean=tuple(sorted({message for trial in trials for message in trial.failing_clean})),
+    )
+
+
+def _path(fault: Fault, output: Path) -> Path:
+    return output / "trials" / f"{fault.name}.json"
+
+
+def _trial(data: dict[str, Any]) -> Trial:
+    return decode(Trial, data["trial"])
+
+
+def main(fault: Fault, clean: Path, path: Path) -> None:
+    """Try ``fault`` against the clean run in ``clean`` and store its trial at ``path``."""
+    made_by = fingerprint()  # before anything is planted
+    trial = try_fault(fault, clean)
+    trial = replace(trial, seconds=time.process_time())  # of this process
+    write_checked(path, {"made_by": made_by, "fault": encode(fault), "trial": encode(trial)})

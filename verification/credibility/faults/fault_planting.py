@@ -1,0 +1,148 @@
+"""Planted faults: part of a function, or a constant, replaced while a trial runs.
+
+The source on disk is never changed. The text of the function is taken from the running code, edited, compiled
+in the module of the original and put in its place wherever that was imported by name; leaving the context
+restores the originals.
+"""
+
+import inspect
+import linecache
+import sys
+import textwrap
+from collections.abc import Iterator
+from contextlib import ExitStack, contextmanager
+from dataclasses import dataclass
+from functools import cached_property
+from importlib import import_module
+from types import ModuleType
+from typing import Any
+
+from verification.sources.source_registry import METHODS, SOURCES
+
+PACKAGES = (*(SOURCES[name].package for name in METHODS), "verification")
+
+
+class PlantError(Exception):
+    """A fault that no longer fits the source; the message names the function and the text."""
+
+
+@dataclass(frozen=True)
+class Edit:
+    """In the function ``target``, "module:function" or "module:Class.method", ``old`` becomes ``new``.
+
+    ``old`` must occur exactly once, so that a change of the source is noticed.
+    """
+
+    target: str
+    old: str
+    new: str
+
+
+@dataclass(frozen=True)
+class Constant:
+    """The constant ``target``, "module:NAME", becomes ``new``."""
+
+    target: str
+    new: Any
+
+
+@dataclass(frozen=True)
+class Fault:
+    """One mistake with a ``description`` of what is wrong.
+
+    where : the faulty source, "harness", or "published" for the reader of published tables.
+    predicted : names of the quantities, invariants, tables or self-tests of which at least one should catch
+    it, stated before the first trial.   cases : of the default run, in the trial.   solve : sources solved
+    under the fault, the others are taken from the clean run.   published : published cases in the trial.
+    reason, remedy : of a fault that no check catches, why not and which check would.
+    """
+
+    name: str
+    group: str
+    description: str
+    where: str
+    changes: tuple[Edit | Constant, ...] = ()
+    predicted: tuple[str, ...] = ()
+    cases: tuple[str, ...] = ()
+    solve: tuple[str, ...] = ()
+    published: tuple[str, ...] = ()
+    reason: str = ""
+    remedy: str = ""
+
+
+@contextmanager
+def planted(changes: tuple[Edit | Constant, ...]) -> Iterator[None]:
+    """Context in which the running code has ``changes``. Raises PlantError where one does not fit."""
+    with ExitStack() as stack:
+        for change in changes:
+            owner, name = _owner(change.target)
+            if name not in vars(owner):
+                raise PlantError(
+                    f"{change.target}: there is no such function; the fault no longer fits the source"
+                )
+            original = vars(owner)[name]
+            places: list[tuple[Any, str]] = [(owner, name)]
+            if isinstance(change, Constant):
+                if original == change.new:
+                    raise PlantError(f"{change.target} is {original!r} already; nothing would be planted")
+                changed = change.new
+            else:
+                changed = _changed(original, name, change)
+                if isinstance(owner, ModuleType):
+                    places = _holders(original)
+            for place, known in places:
+                stack.callback(setattr, place, known, original)
+                setattr(place, known, changed)
+        yield
+
+
+def _holders(function: Any) -> list[tuple[Any, str]]:
+    """Every module that holds ``function``, with its name there: functions are imported by name."""
+    return [
+        (module, known)
+        for key, module in list(sys.modules.items())
+        if key.split(".")[0] in PACKAGES
+        for known, value in list(vars(module).items())
+        if value is function
+    ]
+
+
+def _owner(target: str) -> tuple[Any, str]:
+    module, _, path = target.partition(":")
+    *parents, name = path.split(".")
+    owner: Any = import_module(module)
+    for parent in parents:
+        owner = getattr(owner, parent)
+    return owner, name
+
+
+def _changed(original: Any, name: str, change: Edit) -> Any:
+    """The function, method or property with the edit, compiled in its own module."""
+    function = original
+    if isinstance(function, property):
+        function = function.fget
+    elif isinstance(function, cached_property):
+        function = function.func
+    elif isinstance(function, classmethod | staticmethod):
+        function = function.__func__
+    function = inspect.unwrap(getattr(function, "form", function))
+    text = textwrap.dedent(inspect.getsource(function))
+    count = text.count(change.old)
+    if count != 1:
+        raise PlantError(
+            f"{change.target}: {change.old!r} occurs there {count} times, not once; "
+            "the fault no longer fits the source"
+        )
+    module = sys.modules[function.__module__]
+    # A compiled property remains one, since its decorator is part of the text.
+    made: dict[str, Any] = {}
+    # Kept where inspect looks, so that a second edit finds the text of the first.
+    name_of_file = f"<{change.target}, {change.new!r} planted>"
+    lines = text.replace(change.old, change.new).splitlines(keepends=True)
+    linecache.cache[name_of_file] = (len(text), None, lines, name_of_file)
+    code = compile("".join(lines), name_of_file, "exec")
+    exec(code, vars(module), made)  # text from this package only
+    changed = made[name]
+    if isinstance(changed, cached_property):
+        changed.__set_name__(type(name, (), {}), name)
+    return changed

@@ -1,0 +1,218 @@
+"""One planted fault tried against the checks of the default run."""
+
+import time
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+from verification.cases.case_file import Case, read_case, shipped_cases
+from verification.cases.published_columns import PublishedColumn
+from verification.cases.published_file import PublishedCase, published_cases, read_published
+from verification.credibility.faults.default_checks import (
+    Check,
+    of_baseline,
+    of_claim,
+    of_invariant,
+    of_manifest,
+    of_self_test,
+)
+from verification.credibility.faults.fault_planting import Fault, planted
+from verification.credibility.self_tests import self_tests
+from verification.judging.invariant_verdict import Invariant
+from verification.judging.invariants import check as invariants_of
+from verification.judging.verdict import Claim
+from verification.problem.coated_contact import Solution
+from verification.problem.line_profile import Profile
+from verification.problem.quantity import DISPLACEMENTS
+from verification.regression.baseline_change import State, drift, measured
+from verification.regression.manifest import differences, manifest_of
+from verification.running import contact_run as run
+from verification.running import published_run as published_run
+from verification.running.case_result import CaseResult, SourceResult, from_json
+from verification.running.checked_files import read_checked
+from verification.sampling.line_sampling import sample, sample_contact
+from verification.sampling.stress_plane import plane_invariants, sample_plane
+from verification.sources.source_registry import METHODS
+
+Profiles = dict[tuple[str, str, str], Profile]
+Columns = list[tuple[PublishedColumn, np.ndarray]]  # each with the values the methods are compared with
+FOR_PUBLISHED = METHODS[:1]  # published tables are compared with the faster method only
+
+
+@dataclass(frozen=True)
+class Trial:
+    """Checks of one fault.
+
+    checks : every check that was made, passed or not.   change : the largest change of a value over its
+    scale, or of an uncertainty over itself where no value changed; ``changed`` names it.
+    failing_clean : checks that do not pass without the fault either, which are no evidence and not among
+    ``checks``.   seconds : of one core.   failure : why there was no trial.
+    """
+
+    fault: str
+    checks: tuple[Check, ...] = ()
+    change: float = 0.0
+    changed: str = ""
+    seconds: float = 0.0
+    failure: str | None = None
+    failing_clean: tuple[str, ...] = ()
+
+
+def clean_path(folder: Path, case: str) -> Path:
+    """Path of the clean result of a shipped case in the folder of the clean run."""
+    return folder / "cases" / f"{case}.json"
+
+
+def try_fault(fault: Fault, clean_folder: Path) -> Trial:
+    """Plant ``fault``, solve and judge what it affects, restore the code.
+
+    Sources without the fault are not solved: their profiles are those of the clean run in ``clean_folder``,
+    and the faulty source is sampled at the same points. Raises StoreError where the clean run is missing,
+    PlantError where the fault no longer fits the source.
+    """
+    began = time.process_time()
+    clean = {name: from_json(read_checked(clean_path(clean_folder, name))) for name in fault.cases}
+    published = {name: _as_read(name)[1] for name in fault.published}
+    checks: list[Check] = []
+    changes: list[tuple[float, str]] = []
+    failing = {check.key: check for result in clean.values() for check in _of_clean(result)}
+    with planted(fault.changes):
+        for name in fault.cases:
+            found, profiles = _judged(read_case(shipped_cases()[name]), clean[name], fault)
+            checks += found
+            changes += _changes(clean[name], profiles)
+        for name in fault.published:
+            found, moved = _published(name, published[name])
+            checks += found
+            changes.append(moved)
+        tests = self_tests()
+    checks += [of_self_test(test) for test in tests]
+    failed = [test.name for test in tests if not test.passed]
+    if failed:
+        changes.append((float(len(failed)), f"answers of the harness: {', '.join(failed)}"))
+    change, changed = max(changes, default=(0.0, "nothing"))
+    seconds = time.process_time() - began
+    failing_clean = tuple(sorted({failing[c.key].message for c in checks if c.key in failing}))
+    evidence = tuple(check for check in checks if check.key not in failing)
+    return Trial(fault.name, evidence, change, changed, seconds, failing_clean=failing_clean)
+
+
+def _of_clean(result: CaseResult) -> list[Check]:
+    """The checks of a clean run that do not pass."""
+    coated = bool(result.problem["coatings"])
+    checks = [of_claim(claim, verdict, result.name, coated) for claim, verdict in result.verdicts]
+    checks += [of_invariant(row, result.name) for row in result.invariants]
+    return [check for check in checks if not check.passed]
+
+
+def _judged(case: Case, clean: CaseResult, fault: Fault) -> tuple[list[Check], Profiles]:
+    """The verdicts that involve the faulty sources, their invariants and their profiles."""
+    solve = fault.solve or (fault.where,)
+    profiles: Profiles = {(p.quantity, p.line, p.source): p for p in clean.profiles if p.source not in solve}
+    outcomes = {source.source: source for source in clean.sources}
+    available = {name: solver for name, solver in run.solvers().items() if name in solve}
+    solved = run.solve_case(case, available)
+    outcomes |= solved.outcomes
+    fresh: Profiles = {}
+    checks: list[Check] = []
+    invariants: list[Invariant] = []
+    for source, solution in solved.solutions.items():
+        try:
+            found = _sampled(case, clean, source, solution)
+        except Exception as error:  # as in the run itself
+            outcomes[source] = SourceResult(source, 0.0, run.message_of(error))
+            continue
+        fresh |= {(p.quantity, p.line, source): p for p in found}
+        invariants += invariants_of(solution, source, case.problem)
+    invariants += solved.resolved
+    drawn = sample_plane(case.problem.interfaces, solved.solutions)
+    invariants += plane_invariants(drawn, solved.solutions, case.problem)
+    profiles |= fresh
+    checks += [of_invariant(row, case.name) for row in invariants]
+    checks += _drifts(clean, fresh)
+
+    def concerned(claim: Claim) -> bool:
+        return not available or bool(set(claim.between) & set(solve))
+
+    verdicts = [
+        (claim, run.decide(claim, profiles, outcomes, case.problem))
+        for claim in case.claims
+        if concerned(claim)
+    ]
+    coated = bool(case.problem.coatings)
+    checks += [of_claim(claim, verdict, case.name, coated) for claim, verdict in verdicts]
+    now = replace(clean, verdicts=tuple(verdicts), invariants=tuple(invariants))
+    before = replace(
+        clean,
+        verdicts=tuple((claim, verdict) for claim, verdict in clean.verdicts if concerned(claim)),
+        invariants=tuple(row for row in clean.invariants if row.source in solved.solutions),
+    )
+    checks.append(of_manifest(differences(now, manifest_of(before)), clean.name))
+    return checks, fresh
+
+
+def _sampled(case: Case, clean: CaseResult, source: str, solution: Solution) -> list[Profile]:
+    places = {profile.line: profile.position for profile in clean.profiles}
+    found = list(sample_contact(solution, source, case.problem))
+    radii = [p for p in clean.profiles if (p.quantity, p.line) == ("contact_radius", "contact")]
+    edge = float(radii[-1].value[0])
+    for line in case.lines:
+        found += sample(solution, source, line, places[line.name], case.problem, edge)
+    return found
+
+
+def _drifts(clean: CaseResult, fresh: Profiles) -> list[Check]:
+    """The numbers of the sources solved in the trial, compared with the clean run as with a baseline."""
+    now = tuple(fresh.get((p.quantity, p.line, p.source), p) for p in clean.profiles)
+    found = {numbers.key: numbers for numbers in measured(replace(clean, profiles=now))}
+    solved = {source for _, _, source in fresh}
+    rows = [drift(then, found[then.key]) for then in measured(clean) if then.source in solved]
+    return [of_baseline(row, clean.name, row.state is State.SAME) for row in rows]
+
+
+def _changes(clean: CaseResult, fresh: Profiles) -> list[tuple[float, str]]:
+    """Change of each profile by the fault; where none changed, that of its uncertainty."""
+    p_h, delta_h = (float(clean.problem[name]) for name in ("p_h", "delta_h"))
+    values, uncertainties = [], []
+    for (quantity, line, source), profile in fresh.items():
+        old = clean.profile_of.get((quantity, line, source))
+        if old is None:
+            continue
+        scale = delta_h if quantity in DISPLACEMENTS else p_h
+        if line == "contact":
+            scale = float(abs(old.value[0]))
+        where = f"{quantity} on {line} in {clean.name}"
+        values.append((_largest(profile.value - old.value) / scale, where))
+        if profile.uncertainty is not None and old.uncertainty is not None:
+            change = _largest(profile.uncertainty - old.uncertainty) / (_largest(old.uncertainty) or 1.0)
+            uncertainties.append((change, f"uncertainty of {where}"))
+    return values if any(value > 0 for value, _ in values) else uncertainties
+
+
+def _largest(values: np.ndarray) -> float:
+    """Largest magnitude; infinite where one is not finite."""
+    return float(np.max(np.abs(values))) if np.isfinite(values).all() else float("inf")
+
+
+def _as_read(name: str) -> tuple[PublishedCase, Columns]:
+    """A published case, and its columns as they are read now, with or without a fault."""
+    case = read_published(published_cases()[name])
+    return case, [(column, column.reference.value) for column in case.columns]
+
+
+def _published(name: str, before: Columns) -> tuple[list[Check], tuple[float, str]]:
+    """Verdicts of a published table read under the fault, and how far the fault changed the values read."""
+    case, columns = _as_read(name)
+    available = {m: s for m, s in run.solvers().items() if m in FOR_PUBLISHED}
+    result = published_run.run(case, available)
+    decided = [(c, v) for c, v in result.verdicts if set(c.between) & set(available)]
+    checks = [of_claim(c, v, name, False, kind="published") for c, v in decided]
+    change = (0.0, "nothing")
+    for (old, old_value), (new, value) in zip(before, columns, strict=True):
+        moved = max(
+            _largest(value - old_value) / old.scale,
+            _largest(new.at.z - old.at.z) / (_largest(old.at.z) or 1.0),
+        )
+        change = max(change, (moved, f"{old.column} of {old.file} as read"))
+    return checks, change

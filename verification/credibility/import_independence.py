@@ -1,0 +1,98 @@
+"""Imports of methods or references, read from their installed source.
+
+This shows what code they share. Equations that they share are named in ``report.credibility.statement``.
+"""
+
+import ast
+import sys
+from collections.abc import Iterator
+from dataclasses import dataclass
+from importlib.util import find_spec
+from pathlib import Path
+
+from verification.sources.source_registry import METHODS, SOURCES
+
+# Each part with the packages that it must not import.
+_METHODS = tuple(SOURCES[name].package for name in METHODS)
+PARTS = {name: (*(other for other in _METHODS if other != name), "verification") for name in _METHODS}
+PARTS["verification.sources.references"] = _METHODS
+
+
+@dataclass(frozen=True)
+class Part:
+    """Package ``name``: how many ``files`` with how many ``statements`` of import were read.
+
+    modules : every module outside the standard library that it imports, its own left out.
+    forbidden : messages, one for each forbidden import.
+    hidden : messages, one for each import that is resolved only at run time.
+    """
+
+    name: str
+    files: int
+    statements: int
+    modules: tuple[str, ...]
+    forbidden: tuple[str, ...]
+    hidden: tuple[str, ...]
+
+    @property
+    def packages(self) -> tuple[str, ...]:
+        """The top-level packages among ``modules``."""
+        return tuple(sorted({module.partition(".")[0] for module in self.modules}))
+
+
+def parts() -> tuple[Part, ...]:
+    """Both methods, then the references. Raises ValueError where one is not installed as source."""
+    return tuple(imports_of(name, forbidden_packages) for name, forbidden_packages in PARTS.items())
+
+
+def shared(first: Part, second: Part) -> tuple[str, ...]:
+    """Modules that both import, by the name in the source: scipy.special, numpy, ..."""
+    return tuple(sorted(set(first.modules) & set(second.modules)))
+
+
+def imports_of(name: str, forbidden_packages: tuple[str, ...] = ()) -> Part:
+    """Read every file of the package ``name``. Raises ValueError where there is no source to read."""
+    folder = _folder(name)
+    modules: set[str] = set()
+    forbidden, hidden = [], []
+    files = statements = 0
+    for path in sorted(folder.rglob("*.py")):
+        files += 1
+        nodes = list(ast.walk(ast.parse(path.read_text(encoding="utf-8"))))
+        place = path.relative_to(folder).as_posix()
+        for module in _imported(nodes):
+            statements += 1
+            for other in forbidden_packages:
+                if module == other or module.startswith(f"{other}."):
+                    forbidden.append(f"{name}/{place} imports {module}")
+            top = module.partition(".")[0]
+            if top not in sys.stdlib_module_names and not (module + ".").startswith(f"{name}."):
+                modules.add(module)
+        hidden += [f"{name}/{place} calls {called}" for called in _called_by_name(nodes)]
+    return Part(name, files, statements, tuple(sorted(modules)), tuple(forbidden), tuple(hidden))
+
+
+def _folder(name: str) -> Path:
+    spec = find_spec(name)
+    places = spec.submodule_search_locations if spec is not None else None
+    if not places or not list(Path(places[0]).glob("*.py")):
+        raise ValueError(f"{name}: its source is not installed, so that its imports cannot be read")
+    return Path(places[0])
+
+
+def _imported(nodes: list[ast.AST]) -> Iterator[str]:
+    """The module of each import, ``from scipy import special`` being one of scipy.special."""
+    for node in nodes:
+        if isinstance(node, ast.Import):
+            yield from (alias.name for alias in node.names)
+        elif isinstance(node, ast.ImportFrom) and node.level == 0 and node.module:
+            for alias in node.names:
+                yield f"scipy.{alias.name}" if node.module == "scipy" else node.module
+
+
+def _called_by_name(nodes: list[ast.AST]) -> Iterator[str]:
+    for node in nodes:
+        if isinstance(node, ast.Call):
+            name = getattr(node.func, "id", None) or getattr(node.func, "attr", None)
+            if name in ("import_module", "__import__", "exec", "eval"):
+                yield ast.unparse(node.func)

@@ -1,0 +1,246 @@
+"""The largest stresses of a contact with any number of coatings, each with place, layer, uncertainty.
+
+The searches are those of the plane y = 0, where a sphere that slides along x has its largest stresses:
+
+    sigma_1 = max(sigma_yy, (sigma_xx + sigma_zz)/2 + sqrt((sigma_xx - sigma_zz)^2/4 + sigma_xz^2))
+
+since sigma_xy = sigma_yz = 0 there by symmetry. An equibiaxial residual stress of a coating
+adds to sigma_xx, sigma_yy within it alone: the half-space below balances it at no stress. The tractions of an
+interface change near a free edge of the coating only, which is not part of this.
+"""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from verification.problem.array_types import Array
+from verification.problem.coated_contact import BALL, CoatedContact, Solution, stress_with_uncertainty
+from verification.problem.either_body import on_body
+from verification.problem.quantity import von_mises
+from verification.sampling.largest_tension import Search
+from verification.study.friction_planes import XX, XZ, ZZ, Parts, Plane, crowded, plane, stress_at, surface
+from verification.study.largest_stresses import (
+    Located,
+    Measure,
+    depths,
+    inside,
+    largest,
+    propagated,
+    tensile,
+    vertex,
+    with_residual,
+)
+
+__all__ = ["Course", "Extreme", "first_principal", "stresses"]
+
+REACH, POINTS = 2.0, 401  # of a course, over a
+
+
+@dataclass(frozen=True)
+class Extreme:
+    """The largest ``quantity`` at one place of a ``body``: ``value`` +- ``uncertainty`` [Pa] at x, z [m].
+
+    quantity : sigma_xx, |sigma_xz|, sigma_zz, sigma_1 or von_mises.   where : "surface", "base of coating 1",
+    "top of substrate", "interface 1", "coating 1" and the like.   x : along the sliding of the ball over the
+    flat; NaN with value 0 where a tensile stress is nowhere positive, in a layer without residual stress.
+    z : into the body.
+    """
+
+    body: str
+    quantity: str
+    where: str
+    value: float
+    uncertainty: float
+    x: float
+    z: float
+
+
+@dataclass(frozen=True, eq=False)
+class Course:
+    """sigma_xx, sigma_yy, sigma_zz, sigma_xz [Pa], (4, n), along ``x`` [m] at one place as of ``Extreme``."""
+
+    body: str
+    where: str
+    x: Array
+    stress: Array
+
+
+def first_principal(s: Array) -> Array:
+    """The largest principal stress [Pa] from xx, yy, zz, xz, (4, ...), in the plane of symmetry."""
+    xx, yy, zz, xz = s
+    return np.maximum(yy, (xx + zz) / 2 + np.hypot((xx - zz) / 2, xz))
+
+
+def stresses(
+    solution: Solution,
+    problem: CoatedContact,
+    residual: Mapping[str, tuple[float, ...]] | None = None,
+    layers: Mapping[str, tuple[int, ...]] | None = None,
+) -> tuple[tuple[Extreme, ...], tuple[Course, ...]]:
+    """Every largest stress of ``solution``, first of the flat from its surface down, then of an elastic ball.
+
+    With them the stresses along x on the surface, both sides of each interface, out to 2 a.
+    residual : equibiaxial stress [Pa] of each layer by body, 0 unless given.
+    layers : number of sub-layers of each coating by body, 1 unless given; they count as one coating.
+    Raises what ``solution.stress`` raises.
+    """
+    found, drawn = [], []
+    for body in problem.bodies:
+        seen, turned = problem.seen_from(body), -1.0 if body == BALL else 1.0
+        sublayers = (layers or {}).get(body) or (1,) * len(seen.coatings)
+        parts = _Layers.of(on_body(solution, body), seen, (residual or {}).get(body, ()), sublayers)
+        for quantity, where, at in parts.extremes():
+            place = turned * at.x + 0.0  # no -0
+            found.append(Extreme(body, quantity, where, at.value, at.uncertainty, place, at.z))
+        x = np.linspace(-REACH, REACH, POINTS) * float(solution.contact_radius)
+        for where, line in parts.lines():
+            stress = line(turned * x, seen.friction) + parts.added(line.layer, 1)
+            stress[XZ] *= turned
+            drawn.append(Course(body, where, x, stress))
+    return tuple(found), tuple(drawn)
+
+
+def _value(at: Located) -> float:
+    return at.value
+
+
+@dataclass(frozen=True, eq=False)
+class _Layers:
+    """One body: planes on the upper side of each layer, ``tops``, the lower of each coating's, ``bases``.
+
+    bounds : number of the layer with which each coating begins, then that of the substrate.
+    """
+
+    solution: Solution
+    problem: CoatedContact
+    parts: Parts
+    tops: list[Plane]
+    bases: list[Plane]
+    residual: tuple[float, ...]
+    bounds: tuple[int, ...]
+
+    @classmethod
+    def of(
+        cls,
+        solution: Solution,
+        problem: CoatedContact,
+        residual: tuple[float, ...],
+        sublayers: tuple[int, ...],
+    ) -> "_Layers":
+        parts, a = Parts(solution, problem.friction), float(solution.contact_radius)
+        bounds = (0, *(int(n) for n in np.cumsum(sublayers, dtype=int)))
+        h = problem.interfaces[bounds[1] - 1] if problem.coatings else a
+        tops, bases = [surface(parts, a, h, min(a + 2 * h, 7 * a))], []
+        for k, z in enumerate(problem.interfaces):
+            knots = crowded(a, 0.5 * min(a, z), a + 2.5 * z)
+            bases.append(plane(parts, knots, z, k))
+            tops.append(plane(parts, knots, z, k + 1))
+        return cls(solution, problem, parts, tops, bases, residual, bounds)
+
+    def added(self, layer: int, dimensions: int) -> Array:
+        """xx, yy, zz, xz [Pa] of the residual stress of a layer, (4,) + (1,) * ``dimensions``."""
+        stress = self.residual[layer] if layer < len(self.residual) else 0.0
+        return (stress * np.array([1.0, 1.0, 0.0, 0.0])).reshape(4, *[1] * dimensions)
+
+    def _total(self, measure: Measure, layer: int) -> Measure:
+        """``measure`` of a stress with the residual stress of its layer."""
+        return with_residual(measure, self.residual[layer] if layer < len(self.residual) else 0.0)
+
+    def _shown(self, found: Located, layer: int) -> Located:
+        """As ``tensile`` in a layer without residual stress; with one as it is, with its sign."""
+        return found if self.added(layer, 0).any() else tensile(found)
+
+    def name(self, number: int) -> str:
+        return "substrate" if number == len(self.bounds) - 1 else f"coating {number + 1}"
+
+    def lines(self) -> Iterator[tuple[str, Plane]]:
+        yield "surface", self.tops[0]
+        for number, k in enumerate(self.bounds[1:]):
+            yield f"base of {self.name(number)}", self.bases[k - 1]
+            yield f"top of {self.name(number + 1)}", self.tops[k]
+
+    def extremes(self) -> Iterator[tuple[str, str, Located]]:
+        """(quantity, where, the largest), the place in the frame of the body."""
+        f = self.problem.friction
+        yield "sigma_xx", "surface", self._surface()
+        for where, line in list(self.lines())[1:]:
+            measure = self._total(lambda s: s[XX], line.layer)
+            yield "sigma_xx", where, self._shown(largest(line, measure, f), line.layer)
+        for k, base in enumerate(self.bases[i - 1] for i in self.bounds[1:]):
+            yield "|sigma_xz|", f"interface {k + 1}", largest(base, lambda s: np.abs(s[XZ]), f)
+            yield "sigma_zz", f"interface {k + 1}", tensile(largest(base, lambda s: s[ZZ], f))
+        measures: dict[str, Measure] = {"sigma_1": first_principal, "von_mises": von_mises}
+        for number, layer in enumerate(self.bounds):
+            below = (*self.bounds, layer + 1)[number + 1]
+            if below - layer > 1:
+                for quantity, plain in measures.items():
+                    yield quantity, self.name(number), self._graded(plain, range(layer, below))
+                continue
+            planes, knots = self._planes(layer)
+            for quantity, plain in measures.items():
+                measure = self._total(plain, layer)
+                ends = [largest(planes[0], measure, f), largest(planes[-1], measure, f)]
+                within = inside(self.parts, planes, knots, f, measure) + self._between(planes, measure)
+                best = max([*ends, *within], key=lambda at: at.value)
+                yield quantity, self.name(number), self._shown(best, layer)
+
+    def _graded(self, plain: Measure, layers: range) -> Located:
+        """The largest at the top and base of every sub-layer; uncertain too by the maximum between them."""
+        found = []
+        for layer in layers:
+            measure = self._total(plain, layer)
+            ends = (self.tops[layer], self.bases[layer])
+            found.append(max((largest(one, measure, self.problem.friction) for one in ends), key=_value))
+        best = int(np.argmax([at.value for at in found]))
+        at = found[best]
+        # Between two planes it may be larger, but not beyond the outer ones.
+        outer = at.z in (self.tops[layers[0]].z, self.bases[layers[-1]].z)
+        near = sorted(one.value for one in found[max(best - 1, 0) : best + 2])
+        excess = 0.0 if outer else near[-1] - near[-2]
+        return self._shown(replace(at, uncertainty=at.uncertainty + excess), layers[best])
+
+    def _between(self, planes: list[Plane], measure: Measure) -> list[Located]:
+        """The largest on the planes between, moved to the vertex in depth; none where an outer plane has it.
+
+        Unlike ``inside`` it needs no interpolation in depth, whose error exceeds a small sigma_1 under strong
+        compression. Its uncertainty contains the change by the move.
+        """
+        found = [largest(one, measure, self.problem.friction) for one in planes]
+        k = int(np.argmax([at.value for at in found]))
+        if not 0 < k < len(planes) - 1:
+            return []
+        near = found[k - 1 : k + 2]
+        z = np.array([at.z for at in near])
+        depth = vertex(z, np.array([at.value for at in near]))
+        places = [(found[k].x, found[k].z), (float(np.interp(depth, z, [at.x for at in near])), depth)]
+        layer, f = planes[1].layer, self.problem.friction
+        stress = [stress_at(self.parts, x, z, layer, f) for x, z in places]
+        values = [float(measure(one)) for one, _ in stress]
+        best = int(np.argmax(values))
+        spread = propagated(measure, *stress[best]) + abs(values[1] - values[0])
+        return [Located(values[best], spread, *places[best])]
+
+    def _surface(self) -> Located:
+        """The largest tension of the surface, with the cusp at the contact edge as a candidate."""
+        search = Search(self.solution, self.problem)
+        sigma, U = stress_with_uncertainty(self.solution, search.x, 0.0, 0.0, layer=0)
+        found = search.largest(sigma[0, 0], None if U is None else U[0, 0])
+        spread = float("nan") if found.uncertainty is None else found.uncertainty
+        total = found.value + float(self.added(0, 0)[XX])
+        return self._shown(Located(total, spread, found.place, 0.0), 0)
+
+    def _planes(self, layer: int) -> tuple[list[Plane], Array]:
+        """Planes of a layer from its upper side down, with the radii of those between."""
+        a, bounds = float(self.solution.contact_radius), (0.0, *self.problem.interfaces)
+        top, coating = bounds[layer], layer < len(self.bases)
+        h = bounds[layer + 1] if coating else (top or a)
+        knots = crowded(a, 0.5 * min(a, h), 0.5 * (a + h))
+        if coating:
+            between = depths(top, h, 0.5 * a)[1:-1]
+        else:
+            between = depths(top, 1.5 * top + 2 * a, 0.5 * max(a / 2, top))[1:]
+        # They only locate: the uncertainty is evaluated at the place found.
+        parts = replace(self.parts, stated=False)
+        planes = [plane(parts, knots, float(z), layer) for z in between]
+        return [self.tops[layer], *planes, *([self.bases[layer]] if coating else [])], knots

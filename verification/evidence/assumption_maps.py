@@ -1,0 +1,360 @@
+"""Maps of what each assumption costs: the record with its values between the nodes.
+
+``coatcheck assumptions --record`` makes them, each over the axes that ``assumptions`` states.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass, replace
+from functools import cached_property
+from math import prod
+from pathlib import Path
+
+import numpy as np
+
+from verification.credibility.model.shared_assumptions import ASSUMPTIONS, QUANTITIES
+from verification.evidence.map_places import LOGARITHMIC, Place, coordinate, places_of
+from verification.problem.array_types import Array
+from verification.problem.coated_contact import CoatedContact
+from verification.running.case_result import RunInfo
+from verification.running.json_records import RecordFile
+from verification.sources.assumptions.contact_change import SCALARS, Change
+
+SHIPPED = Path(__file__).parent / "shipped"
+SCHEMA = "coatcheck-assumptions/2"
+DIGITS = 5
+KINK = 0.05  # of the largest value around
+SAFETY = 2.0  # of the error of interpolation, over its estimate
+SAME = 1e-6  # relative; nearer to a fixed coordinate a problem has it
+WORDS = {
+    "ratio": "E1/E2",
+    "thickness": "h/a_h",
+    "nu": "nu",
+    "width": "a_h/R",
+    "friction": "f",
+    "ball": "E*/E_ball*",
+}
+
+
+@dataclass(frozen=True)
+class Axis:
+    """Values of the coordinate ``name``, ascending; ``rates`` as of Assumption, of each quantity."""
+
+    name: str
+    values: tuple[float, ...]
+    rates: tuple[float, ...]
+
+    @cached_property
+    def nodes(self) -> Array:
+        """Coordinates of interpolation: logarithms of ratios and widths."""
+        values = np.array(self.values)
+        return np.log(values) if self.name in LOGARITHMIC else values
+
+    def position(self, value: float) -> float:
+        """``value`` as the coordinate of interpolation, that of the first node where a rate holds below.
+
+        Raises ValueError outside the axis.
+        """
+        low, high = self.values[0], self.values[-1]
+        below = any(self.rates) and value < low
+        if not (below or low * (1 - SAME) <= value <= high * (1 + SAME)):
+            extent = f"{low:g}" if low == high else f"{low:g} to {high:g}"
+            raise ValueError(f"{WORDS[self.name]} = {value:.3g}; the map holds {extent}")
+        inside = min(max(value, low), high)
+        return float(np.log(inside)) if self.name in LOGARITHMIC else inside
+
+
+@dataclass(frozen=True, eq=False)
+class AssumptionMap:
+    """Relative change of each of ``quantities`` by ``assumption``, (quantities, *axes), NaN without answer.
+
+    uncertainty : of the change.   seconds : of the processor.
+    """
+
+    assumption: str
+    title: str
+    quantities: tuple[str, ...]
+    axes: tuple[Axis, ...]
+    independent_of: tuple[str, ...]
+    change: Array
+    uncertainty: Array
+    started: str
+    seconds: float
+    commit: str | None
+    machine: str
+    versions: dict[str, str]
+
+    def at(self, problem: CoatedContact) -> tuple[Change, Change]:
+        """Change with uncertainty at ``problem``, that of the interpolation included; None where it has none.
+
+        Between Poisson's ratios of the bodies and the coating the middle, half of the range as uncertainty.
+        Raises ValueError outside the map, or where its model had no answer.
+        """
+        places = places_of(problem)
+        if not problem.coatings:
+            places = tuple(replace(place, thickness=self._any_thickness) for place in places)
+        if "nu" in self.independent_of:
+            places = places[:1]
+        found = np.array([self._at_place(place) for place in places])
+        low, high = found[:, 0].min(axis=0), found[:, 0].max(axis=0)
+        value, uncertainty = (low + high) / 2, found[:, 1].max(axis=0) + (high - low) / 2
+        if not problem.coatings:
+            value[self.quantities.index("shear")] = np.nan
+        if np.isnan(value).all():
+            raise ValueError("the model had no answer near this problem")
+        one, other = (
+            Change(
+                **{n: None if np.isnan(v) else float(v) for n, v in zip(self.quantities, some, strict=True)}
+            )
+            for some in (value, np.where(np.isnan(value), np.nan, uncertainty))
+        )
+        return one, other
+
+    @property
+    def driver(self) -> int | None:
+        """Index of the axis along which the change grows; None where no rate is stated."""
+        return next((i for i, axis in enumerate(self.axes) if any(axis.rates)), None)
+
+    @cached_property
+    def largest(self) -> Array:
+        """Largest magnitude with its uncertainty at each value of the ``driver``, (quantities, values)."""
+        assert self.driver is not None
+        size = np.moveaxis(np.abs(self.change) + self.uncertainty, 1 + self.driver, 1)
+        flat = np.where(np.isnan(size), -np.inf, size).reshape(*size.shape[:2], -1).max(axis=-1)
+        return np.where(np.isinf(flat), np.nan, flat)
+
+    def reach(self, quantity: int, level: float) -> float | None:
+        """Value of the ``driver`` up to which the change of a quantity is at most ``level`` all over the map.
+
+        By powers between the values, below the first by its rate; None where it is above the last.
+        """
+        assert self.driver is not None
+        axis, size = self.axes[self.driver], self.largest[quantity]
+        above = np.flatnonzero(size > level)
+        if not above.size:
+            return None
+        i = int(above[0])
+        if i == 0:
+            return float(axis.values[0] * (level / size[0]) ** (1 / axis.rates[quantity]))
+        share = np.log(level / size[i - 1]) / np.log(size[i] / size[i - 1])
+        return float(axis.values[i - 1] * (axis.values[i] / axis.values[i - 1]) ** share)
+
+    def plane(
+        self, across: str, up: str, at: Mapping[str, float], refined: int = 6
+    ) -> tuple[Array, Array, Array]:
+        """Coordinates and changes (quantities, up, across) of the map with the others ``at`` nodes.
+
+        refined : points a step of either axis, linear between the nodes.
+        """
+        names = [axis.name for axis in self.axes]
+        picked = tuple(
+            slice(None) if axis.name in (across, up) else axis.values.index(at[axis.name])
+            for axis in self.axes
+        )
+        table = self.change[(slice(None), *picked)]
+        if names.index(across) < names.index(up):
+            table = np.swapaxes(table, 1, 2)
+        lines = []
+        for name in (across, up):
+            nodes = self.axes[names.index(name)].nodes
+            x = np.interp(np.arange((nodes.size - 1) * refined + 1) / refined, np.arange(nodes.size), nodes)
+            weights = np.zeros((x.size, nodes.size))
+            for row, value in zip(weights, x, strict=True):
+                for i, weight in _linear(nodes, float(value)).items():
+                    row[i] = weight
+            lines.append((x, weights))
+        (x, along), (y, over) = lines
+        held = np.isfinite(table)
+        plane = over @ np.where(held, table, 0.0) @ along.T
+        return x, y, np.where(over @ held @ along.T > 1 - 1e-9, plane, np.nan)
+
+    @property
+    def _any_thickness(self) -> float:
+        """A thickness of the map, for a problem without a coating."""
+        values = next((axis.values for axis in self.axes if axis.name == "thickness"), (1.0,))
+        return min(values, key=lambda value: abs(np.log(value)))
+
+    def _at_place(self, place: Place) -> tuple[Array, Array]:
+        frictionless = next((axis.values == (0.0,) for axis in self.axes if axis.name == "friction"), False)
+        if frictionless and place.friction:
+            # friction leaves the pressure as it is, but for Goodman's assumption
+            value, uncertainty = self._at_place(replace(place, friction=0.0))
+            stress = np.array([name not in SCALARS for name in self.quantities])
+            return np.where(stress, np.nan, value), uncertainty
+        positions = [axis.position(coordinate(place, axis.name)) for axis in self.axes]
+        scale = np.prod([self._scale(axis, coordinate(place, axis.name)) for axis in self.axes], axis=0)
+        below = [coordinate(place, axis.name) < axis.values[0] * (1 - SAME) for axis in self.axes]
+        # with fewer nodes where the model had no answer at some of four
+        for most in (4, 2):
+            value, error = interpolated(self._scaled, self.axes, positions, below, most)
+            if np.isfinite(value).any():
+                break
+        near = [_linear(axis.nodes, x) for axis, x in zip(self.axes, positions, strict=True)]
+        return value * scale, (error + _contracted(self._scaled_uncertainty, near)) * scale
+
+    @cached_property
+    def _scaled(self) -> Array:
+        return self.change / self._scales
+
+    @cached_property
+    def _scaled_uncertainty(self) -> Array:
+        return self.uncertainty / self._scales
+
+    @cached_property
+    def _scales(self) -> Array:
+        """What the changes vanish with, at every node."""
+        total = np.ones_like(self.change)
+        for j, axis in enumerate(self.axes):
+            along = np.stack([self._scale(axis, value) for value in axis.values], axis=1)
+            total *= along.reshape(
+                [len(self.quantities)] + [-1 if i == j else 1 for i in range(len(self.axes))]
+            )
+        return total
+
+    @staticmethod
+    def _scale(axis: Axis, value: float) -> Array:
+        return np.array([value**rate if rate else 1.0 for rate in axis.rates])
+
+
+@dataclass(frozen=True)
+class AssumptionMaps:
+    """The maps of all assumptions, each with its own provenance."""
+
+    maps: tuple[AssumptionMap, ...]
+
+    def of(self, assumption: str) -> AssumptionMap | None:
+        """The map of ``assumption``; None where it was not measured."""
+        return next((one for one in self.maps if one.assumption == assumption), None)
+
+    def with_map(self, new: AssumptionMap) -> "AssumptionMaps":
+        """These with ``new`` in place of its predecessor, in the order of ``ASSUMPTIONS``."""
+        found = {one.assumption: one for one in self.maps} | {new.assumption: new}
+        known = [name for name in ASSUMPTIONS if name in found]
+        return AssumptionMaps(tuple(found[name] for name in (*known, *(found.keys() - set(known)))))
+
+
+def interpolated(
+    table: Array, axes: Sequence[Axis], positions: Sequence[float], below: Sequence[bool], most: int
+) -> tuple[Array, Array]:
+    """Values of ``table`` (quantities, *axes) at ``positions``, each with an estimate of its error.
+
+    Polynomials through the ``most`` nearest nodes of each axis. The error is twice the distance from those
+    through one node less, of two nodes from the nearer, summed over the axes, with a share of the largest
+    value around; it vanishes at a node.
+    below : axes whose first node stands for smaller values, with the step to the second as error.
+    """
+    full = [_window(axis.nodes, x, most) for axis, x in zip(axes, positions, strict=True)]
+    value, error = _contracted(table, full), np.zeros(table.shape[0])
+
+    def distance(j: int, weights: Weights) -> Array:
+        return np.abs(_contracted(table, [*full[:j], weights, *full[j + 1 :]]) - value)
+
+    for j, (axis, x) in enumerate(zip(axes, positions, strict=True)):
+        if below[j] and axis.nodes.size > 1:
+            error += distance(j, {1: 1.0})
+            continue
+        apart = [SAFETY * distance(j, less) for less in _fewer(axis.nodes, x, most)]
+        error += np.max([np.zeros_like(error), *apart], axis=0)
+    # a kink, as of a peak that moves off the axis, may escape the polynomials
+    near = [_linear(axis.nodes, x) for axis, x in zip(axes, positions, strict=True)]
+    cell = table[np.ix_(range(table.shape[0]), *(list(weights) for weights in near))]
+    between = max((4 * prod(w.values()) for w in near if len(w) == 2), default=0.0)
+    return value, error + KINK * between * np.abs(cell).max(axis=tuple(range(1, cell.ndim)))
+
+
+Weights = Mapping[int, float]  # by index of a node
+
+
+def _contracted(table: Array, weights: Sequence[Weights]) -> Array:
+    for along in reversed(weights):
+        chosen = [i for i, weight in along.items() if weight]
+        table = table[..., chosen] @ np.array([along[i] for i in chosen])
+    return table
+
+
+def _lagrange(nodes: Array, x: float, chosen: Sequence[int]) -> Weights:
+    """Weights of the polynomial through the ``chosen`` nodes."""
+    return {
+        i: float(np.prod([(x - nodes[j]) / (nodes[i] - nodes[j]) for j in chosen if j != i])) for i in chosen
+    }
+
+
+def _cell(nodes: Array, x: float) -> tuple[int, int]:
+    """The nodes on both sides of ``x``; of an axis of one node twice this."""
+    right = int(np.clip(np.searchsorted(nodes, x), min(1, nodes.size - 1), nodes.size - 1))
+    return max(right - 1, 0), right
+
+
+def _chosen(nodes: Array, x: float, most: int) -> list[int]:
+    left, right = _cell(nodes, x)
+    if most == 2:
+        return sorted({left, right})
+    first = int(np.clip(left - 1, 0, max(nodes.size - most, 0)))
+    return list(range(first, min(first + most, nodes.size)))
+
+
+def _window(nodes: Array, x: float, most: int) -> Weights:
+    return _lagrange(nodes, x, _chosen(nodes, x, most))
+
+
+def _linear(nodes: Array, x: float) -> Weights:
+    return _window(nodes, x, 2)
+
+
+def _fewer(nodes: Array, x: float, most: int) -> list[Weights]:
+    """Weights by one node less than ``_window``, those beside ``x`` kept; the nearer one of two."""
+    chosen, cell = _chosen(nodes, x, most), _cell(nodes, x)
+    if len(chosen) == 2:
+        return [{min(chosen, key=lambda i: abs(nodes[i] - x)): 1.0}]
+    ends = [end for end in (chosen[0], chosen[-1]) if end not in cell]
+    return [_lagrange(nodes, x, [i for i in chosen if i != end]) for end in ends]
+
+
+@dataclass(frozen=True)
+class Measured:
+    """Change and uncertainty of ``QUANTITIES`` at a place, rounded; NaN where the model has no answer."""
+
+    change: tuple[float, ...]
+    uncertainty: tuple[float, ...]
+
+
+def measure(assumption: str, place: Place) -> Measured:
+    """What ``assumption`` costs at ``place``."""
+    nothing = (float("nan"),) * len(QUANTITIES)
+    try:
+        found = ASSUMPTIONS[assumption].change(place.problem)
+    except ValueError:
+        return Measured(nothing, nothing)
+    return Measured(*(_rounded(one) for one in found))
+
+
+def _rounded(change: Change) -> tuple[float, ...]:
+    return tuple(float("nan") if v is None else float(f"{v:.{DIGITS}g}") for v in asdict(change).values())
+
+
+def assembled(assumption: str, measured: Sequence[Measured], info: RunInfo) -> AssumptionMap:
+    """The map of ``assumption`` from what was ``measured`` at its places, in their order."""
+    stated = ASSUMPTIONS[assumption]
+    axes = tuple(Axis(name, values, stated.rates_of(name)) for name, values in stated.all_axes.items())
+    shape = (*(len(axis.values) for axis in axes), len(QUANTITIES))
+    change, uncertainty = (
+        np.moveaxis(np.array([getattr(one, name) for one in measured]).reshape(shape), -1, 0)
+        for name in ("change", "uncertainty")
+    )
+    return AssumptionMap(
+        assumption,
+        stated.title,
+        QUANTITIES,
+        axes,
+        stated.independent_of,
+        change,
+        uncertainty,
+        info.started,
+        info.seconds,
+        info.commit,
+        info.machine,
+        dict(info.versions),
+    )
+
+
+_FILE = RecordFile(AssumptionMaps, "assumptions.json", (SCHEMA,), "maps of the assumptions", "make it again")
+path_in, write_maps, read_maps = _FILE.path_in, _FILE.write, _FILE.read

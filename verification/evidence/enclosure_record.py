@@ -1,0 +1,168 @@
+"""Proven enclosures as the package holds them, with the distance of a solution from each.
+
+``coatcheck certify`` makes them by ``verification.sources.enclosures``; reading needs no ball arithmetic.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from decimal import Decimal
+from fractions import Fraction
+from pathlib import Path
+
+import numpy as np
+
+from verification.problem.array_types import Coatings
+from verification.problem.coated_contact import CoatedContact, Solution, stress_with_uncertainty
+from verification.running.json_records import RecordFile
+from verification.sources.bounds.approach_bounds import EnergyBounds
+
+SHIPPED = Path(__file__).parent / "shipped"
+SCHEMA = "coatcheck-enclosures/1"
+WIDTH = 1e-10  # largest relative width that is required of an enclosure
+SURFACE, UPPER, LOWER = "surface", "interface 1, upper side", "interface 1, lower side"
+
+
+@dataclass(frozen=True)
+class Bounds:
+    """``quantity`` on the axis lies between two decimal numbers, SI.
+
+    line : "contact" of the scalars, otherwise where the axis meets it.
+    """
+
+    quantity: str
+    line: str
+    lower: str
+    upper: str
+
+    @property
+    def exact(self) -> tuple[Fraction, Fraction]:
+        """Lower and upper number as they are written."""
+        return Fraction(Decimal(self.lower)), Fraction(Decimal(self.upper))
+
+    @property
+    def middle(self) -> float:
+        """The nearest binary number to the middle."""
+        return float(sum(self.exact) / 2)
+
+    @property
+    def width(self) -> float:
+        """Relative to the middle, rounded to nearest."""
+        return float(self.exact[1] - self.exact[0]) / abs(self.middle)
+
+    def distance(self, value: float) -> float:
+        """How far ``value`` lies outside, 0 inside; infinite where it is not finite."""
+        if not np.isfinite(value):
+            return float("inf")
+        lower, upper = self.exact
+        return float(max(lower - Fraction(value), Fraction(value) - upper, Fraction(0)))
+
+
+@dataclass(frozen=True)
+class Ring:
+    """The pressure [Pa] at ``r`` [m] lies between two decimal numbers."""
+
+    r: float
+    lower: str
+    upper: str
+
+
+@dataclass(frozen=True)
+class TwoSided:
+    """Energy bounds by finite elements at the enclosed contact radius, beside what they have to contain."""
+
+    found: EnergyBounds
+    stiffness: Bounds
+    approach: Bounds
+    seconds: float
+
+    @property
+    def contained(self) -> bool:
+        """Whether both enclosures lie between the energy bounds."""
+        pairs = ((self.found.stiffness, self.stiffness), (self.found.approach, self.approach))
+        return all(low <= one.exact[0] and one.exact[1] <= high for (low, high), one in pairs)
+
+    @property
+    def compared(self) -> tuple[tuple[tuple[float, float], float, float], ...]:
+        """Bounds, enclosed value, effectivity; of the stiffness, then of the approach."""
+        k, d = self.effectivities
+        return (
+            (self.found.stiffness, self.stiffness.middle, k),
+            (self.found.approach, self.approach.middle, d),
+        )
+
+    @property
+    def widths(self) -> tuple[float, float]:
+        """Of the bounds of stiffness and approach, relative."""
+        k, d = np.ptp(self.found.stiffness), np.ptp(self.found.approach)
+        return float(k / self.stiffness.middle), float(d / self.approach.middle)
+
+    @property
+    def effectivities(self) -> tuple[float, float]:
+        """Proven over true error of the displacements alone, of stiffness and approach."""
+        low, high = self.found.stiffness
+        displaced = self.found.displaced
+        proven = max(abs(displaced - end) for end in self.found.approach)
+        return (high - low) / (high - self.stiffness.middle), proven / abs(displaced - self.approach.middle)
+
+
+@dataclass(frozen=True)
+class Enclosure:
+    """One problem, a rigid sphere without friction, with its bounds.
+
+    profile : bounds of the pressure along the radius, of the problems of published tables.
+    two_sided : bounds by finite elements, of some problems.
+    bits, terms : precision and number of basis functions of the proof; 0 where a closed form is enclosed.
+    """
+
+    name: str
+    radius: float
+    load: float
+    coatings: Coatings
+    substrate: tuple[float, float]
+    bounds: tuple[Bounds, ...]
+    seconds: float
+    bits: int = 0
+    terms: int = 0
+    profile: tuple[Ring, ...] = ()
+    two_sided: TwoSided | None = None
+
+    @property
+    def problem(self) -> CoatedContact:
+        """As the sources solve it."""
+        return CoatedContact(self.radius, self.load, self.coatings, self.substrate)
+
+
+@dataclass(frozen=True)
+class EnclosureRecord:
+    """All enclosures with provenance, processor seconds in total."""
+
+    enclosures: tuple[Enclosure, ...]
+    started: str
+    seconds: float
+    commit: str | None
+    machine: str
+    versions: dict[str, str]
+
+
+def distances(enclosure: Enclosure, solution: Solution) -> Iterator[tuple[Bounds, float, float | None]]:
+    """Each bound with the distance of the solution's value from it, then U of this value if stated."""
+    for bounds in enclosure.bounds:
+        value, U = _value(enclosure.problem, solution, bounds)
+        yield bounds, bounds.distance(value), U
+
+
+def _value(problem: CoatedContact, solution: Solution, bounds: Bounds) -> tuple[float, float | None]:
+    if bounds.quantity == "sigma_xx":
+        layer = 1 if bounds.line == LOWER else 0
+        z = 0.0 if bounds.line == SURFACE else problem.interfaces[0]
+        sigma, U_sigma = stress_with_uncertainty(solution, 0.0, 0.0, z, layer)
+        return float(sigma[0, 0]), None if U_sigma is None else float(U_sigma[0, 0])
+    if bounds.quantity == "pressure":
+        U = None if solution.uncertainty is None else float(solution.pressure_uncertainty(0.0))
+        return float(solution.pressure(0.0)), U
+    U = None if solution.uncertainty is None else getattr(solution.uncertainty, bounds.quantity)
+    return getattr(solution, bounds.quantity), U
+
+
+_FILE = RecordFile(EnclosureRecord, "enclosures.json", (SCHEMA,), "enclosures", "make it again")
+path_in, write_record, read_record = _FILE.path_in, _FILE.write, _FILE.read

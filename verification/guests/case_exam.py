@@ -1,0 +1,175 @@
+"""Examination of a guest on one case: the exact reference, then the question in the units of the guest."""
+
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from verification.guests.exam_subjects import REFERENCE, SquareLoad, Subject
+from verification.guests.guest_description import Guest
+from verification.guests.guest_protocol import (
+    Answer,
+    Disc,
+    ElasticBall,
+    Layer,
+    LineOfPoints,
+    Problem,
+    Question,
+    Sphere,
+    Square,
+)
+from verification.judging.verdict import Claim
+from verification.problem.array_types import Coatings
+from verification.problem.coated_contact import CoatedContact
+from verification.problem.layer_depths import layer_at
+from verification.problem.line_profile import Profile
+from verification.problem.quantity import unit_of
+from verification.running.case_result import CaseResult, SourceResult, describe, from_json, to_json
+from verification.running.checked_files import StoreError, read_checked, write_checked
+from verification.running.contact_run import failed
+from verification.running.json_records import plain
+from verification.running.pool.pool_task import Task
+from verification.running.provenance import fingerprint
+
+ALONG_SURFACE = ("surface", "oblique surface")  # lines that cross the contact edge
+
+
+@dataclass(frozen=True, eq=False)
+class Exam:
+    """The exact reference of a case as a ``result`` without verdicts; without profiles where it failed."""
+
+    result: CaseResult
+
+
+def prepare(case: Subject, path: Path) -> None:
+    """Solve ``case`` exactly, sample it on its lines, store it at ``path``."""
+    result = CaseResult(
+        name=case.name,
+        title=case.title,
+        source=case.source,
+        problem=describe(case.problem),
+        sources=(SourceResult(REFERENCE, 0.0),),
+        profiles=case.exact(),
+        verdicts=(),
+        seconds=0.0,
+        text=case.text,
+    )
+    write_checked(path, to_json(result) | {"made_by": fingerprint()})
+
+
+def exam_path(folder: Path, case: Subject) -> Path:
+    """Where the exact reference of ``case`` lies in a run directory."""
+    return folder / "problems" / f"{case.name}.json"
+
+
+def exam_task(case: Subject, folder: Path) -> Task[Exam]:
+    """Solving ``case`` exactly; its profiles at the points required of every guest."""
+    path = exam_path(folder, case)
+    cost = 1.0 + len(case.problem.coatings)
+    work, failed = partial(prepare, case, path), partial(_failed, case)
+    return Task(case.name, work, path, lambda data: Exam(from_json(data)), failed, cost=cost)
+
+
+def _failed(case: Subject, reason: str, seconds: float) -> Exam:
+    return Exam(failed(case, reason, seconds))
+
+
+def kept_exam(folder: Path, case: Subject) -> CaseResult | None:
+    """The exact reference of an earlier run, where it is of the same case file and code."""
+    try:
+        data = read_checked(exam_path(folder, case))
+        result = from_json(data)
+    except (StoreError, ValueError):
+        return None
+    same = result.text == case.text and result.problem == plain(describe(case.problem))
+    return result if same and data.get("made_by") == fingerprint() and result.profiles else None
+
+
+def claims_of(case: Subject, guest: Guest) -> tuple[Claim, ...]:
+    """The claims of ``case`` as claims about the guest; the cap is what it claims, where this is more."""
+    return tuple(
+        Claim(
+            claim.quantity,
+            claim.line,
+            (guest.name, REFERENCE),
+            max(claim.cap, guest.claim or 0.0),
+            claim.why,
+            max(claim.edge, guest.edge) if claim.line in ALONG_SURFACE else claim.edge,
+        )
+        for claim in case.claims
+    )
+
+
+def question_of(
+    case: Subject, exam: CaseResult, guest: Guest, claims: tuple[Claim, ...], parameter: dict[str, float]
+) -> Question:
+    """The question about ``case`` in the units of ``guest``, at the points of ``exam``.
+
+    Only quantities of ``claims`` that the guest gives by its own statement are wanted.
+    """
+    m = guest.factor("m")
+    wanted: dict[str, list[str]] = {}
+    for claim in claims:
+        if guest.gives(claim.quantity):
+            wanted.setdefault(claim.line, []).append(claim.quantity)
+    lines = []
+    for name, quantities in wanted.items():
+        if name == "contact":
+            continue
+        line = case.line(name)
+        along = next(p.position for p in exam.profiles if p.line == name)
+        x, y, z = line.points(along)
+        layers = layer_at(z, case.problem.seen_from(line.body).coatings, line.layer)
+        points: dict[str, Any] = {"x": x / m, "y": y / m, "z": z / m, "layer": layers}
+        at = {name: v.tolist() for name, v in points.items()}
+        lines.append(LineOfPoints(line=name, body=line.body, quantities=quantities, **at))
+
+    level = "".join(f"@{name}={value:g}" for name, value in parameter.items())
+    return Question(
+        id=f"{case.name}{level}",
+        problem=_in_units(case, guest),
+        parameter=dict(parameter),
+        contact=wanted.get("contact", []),
+        lines=lines,
+    )
+
+
+def _in_units(case: Subject, guest: Guest) -> Problem:
+    """The problem of ``case`` in the units of ``guest``."""
+    problem = case.loaded
+    m, Pa, N = (guest.factor(unit) for unit in ("m", "Pa", "N"))
+
+    def materials(coatings: Coatings) -> list[Layer]:
+        return [Layer(E=E / Pa, nu=nu, thickness=h / m) for E, nu, h in coatings]
+
+    E, nu = problem.substrate
+    solid: dict[str, Any] = {
+        "coatings": materials(problem.coatings),
+        "substrate": Layer(E=E / Pa, nu=nu),
+    }
+    if isinstance(problem, SquareLoad):
+        return Square(side=problem.side / m, pressure=problem.pressure / Pa, **solid)
+    if not isinstance(problem, CoatedContact):
+        return Disc(load_radius=problem.load_radius / m, pressure=problem.pressure / Pa, **solid)
+    ball = problem.ball and ElasticBall(
+        E=problem.ball[0] / Pa, nu=problem.ball[1], coatings=materials(problem.ball[2])
+    )
+    return Sphere(
+        radius=problem.radius / m, load=problem.load / N, friction=problem.friction, ball=ball, **solid
+    )
+
+
+def profiles_of(answer: Answer, exam: CaseResult, guest: Guest) -> tuple[Profile, ...]:
+    """Values and uncertainties of ``answer``, in the units of ``guest``, as profiles in SI."""
+    places = {p.line: p.position for p in exam.profiles}
+    found = []
+    for line, numbers in (answer.values or {}).items():
+        for quantity, value in numbers.items():
+            factor = guest.factor(unit_of(quantity))
+            stated = answer.uncertainty.get(line, {}).get(quantity)
+            U = None if stated is None else factor * np.atleast_1d(np.asarray(stated, dtype=float))
+            SI = factor * np.atleast_1d(np.asarray(value, dtype=float))
+            found.append(Profile(quantity, line, places[line], SI, guest.name, U))
+    return tuple(found)

@@ -1,0 +1,202 @@
+"""Description of a guest: its ``guest.toml``, or an entry point that leads to one.
+
+name = "my code"
+callable = "adapter:solve"     # or command = ["./adapter"], or results = "answers"
+"""
+
+import re
+from dataclasses import dataclass, field
+from fnmatch import fnmatchcase
+from importlib.metadata import entry_points
+from importlib.util import find_spec
+from itertools import pairwise
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+from pydantic import Field, model_validator
+
+from verification.cases.toml_file import CaseError, Strict, Text, read_bounded, read_toml
+from verification.cases.unit_numbers import Seconds
+from verification.problem.coated_contact import CoatedContact
+from verification.problem.quantity import QUANTITIES
+from verification.sources.source_registry import SOURCES
+
+FILE = "guest.toml"
+GROUP = "coatcheck.guests"  # of entry points; each names a package with a guest.toml
+LENGTHS = {"m": 1.0, "mm": 1e-3, "um": 1e-6, "nm": 1e-9}
+STRESSES = {"Pa": 1.0, "kPa": 1e3, "MPa": 1e6, "GPa": 1e9}
+FORCES = {"N": 1.0, "mN": 1e-3, "uN": 1e-6, "kN": 1e3}
+_PLACE = re.compile(r"[A-Za-z_][\w.]*:[A-Za-z_][\w.]*")
+
+Word = Annotated[str, Field(min_length=1, max_length=1000)]
+Level = Annotated[int | float, Field(gt=0)]
+LEAST_LEVELS, MOST_LEVELS = 3, 12
+
+
+class Supports(Strict):
+    """What a code can solve: the largest number of coatings, friction, stresses, an elastic ball.
+
+    loads : prescribed ones, each a uniform pressure on a disc or on a square.
+    """
+
+    coatings: Annotated[int, Field(ge=0, le=50)] = 0
+    ball: bool = False
+    friction: bool = False
+    stress: bool = False
+    loads: Annotated[list[Literal["disc", "square"]], Field(max_length=2)] = Field(default=[])
+
+
+class Units(Strict):
+    """Units of the code; numbers are converted on the way to it and back."""
+
+    length: Literal["m", "mm", "um", "nm"] = "m"
+    stress: Literal["Pa", "kPa", "MPa", "GPa"] = "Pa"
+    force: Literal["N", "mN", "uN", "kN"] = "N"
+
+
+class _GuestFile(Strict):
+    name: Annotated[str, Field(pattern=r"^[^\x00-\x1f\x7f]{1,60}$")]
+    callable: Word | None = None
+    command: Annotated[list[Word], Field(min_length=1, max_length=50)] | None = None
+    results: Word | None = None
+    claim: Annotated[float, Field(gt=0, le=1)] | None = None
+    edge: Annotated[float, Field(ge=0, lt=1)] = 0.0
+    time_limit: Seconds = 120.0
+    homepage: Text | None = None
+    supports: Supports = Supports()
+    units: Units = Units()
+    refine: Annotated[
+        dict[str, Annotated[list[Level], Field(min_length=LEAST_LEVELS, max_length=MOST_LEVELS)]],
+        Field(max_length=1),
+    ] = Field(default_factory=dict)
+    known: Annotated[dict[str, Text], Field(default_factory=dict, max_length=1000)]
+
+    @model_validator(mode="after")
+    def _one_way_in(self) -> "_GuestFile":
+        given = [name for name in ("callable", "command", "results") if getattr(self, name) is not None]
+        if len(given) != 1:
+            raise ValueError(
+                f"needs exactly one of callable, command, results, not {' and '.join(given) or 'none'}"
+            )
+        if self.callable is not None and not _PLACE.fullmatch(self.callable):
+            raise ValueError(f"callable = {self.callable!r}; give it as module:function")
+        if self.name in SOURCES:
+            raise ValueError(f"name = {self.name!r}; this is the name of a source of coatcheck")
+        for name, levels in self.refine.items():
+            steps = [b - a for a, b in pairwise(levels)]
+            if not (all(step > 0 for step in steps) or all(step < 0 for step in steps)):
+                raise ValueError(f"refine.{name}: levels go from coarse to fine, each only once")
+        for key in self.known:
+            if key.count("/") not in (1, 2):
+                raise ValueError(f'known."{key}": give "case/quantity" or "case/quantity/line"')
+        return self
+
+
+@dataclass(frozen=True, eq=False)
+class Guest:
+    """A contact code to examine, with the directory that its files are relative to.
+
+    text : the guest file.
+
+    callable, command, results : the way in, one of the three.
+    claim : largest relative difference that the code claims to have; None where it does not say.
+    edge : half-width of a zone around the contact edge that is left out, as a fraction of a.
+    parameter, levels : numerical parameter of the refinement study with its values, coarse to fine; "" and ()
+    without one.   known : reason of each known failure by "case/quantity" or "case/quantity/line".
+    """
+
+    folder: Path
+    text: str
+    name: str
+    callable: str | None = None
+    command: tuple[str, ...] = ()
+    results: str | None = None
+    claim: float | None = None
+    edge: float = 0.0
+    time_limit: float = 120.0
+    homepage: str | None = None
+    supports: Supports = field(default_factory=Supports)
+    units: Units = field(default_factory=Units)
+    parameter: str = ""
+    levels: tuple[float, ...] = ()
+    known: dict[str, str] = field(default_factory=dict)
+
+    def refusal(self, problem: CoatedContact) -> str | None:
+        """Why the code does not solve ``problem``, by its own statement; None where it does."""
+        count = len(problem.coatings)
+        if count > self.supports.coatings:
+            return f"the guest supports {self.supports.coatings} coatings, this problem has {count}"
+        if problem.friction and not self.supports.friction:
+            return "the guest does not support friction"
+        if problem.ball is not None and not self.supports.ball:
+            return "the guest does not support an elastic ball"
+        return None
+
+    def gives(self, quantity: str) -> bool:
+        """Whether the code gives ``quantity``, by its own statement."""
+        return self.supports.stress or QUANTITIES[quantity].kind not in ("stress", "peak")
+
+    def known_failure(self, case: str, quantity: str, line: str) -> str | None:
+        """The reason of a known failure; None where none is listed."""
+        for pattern, reason in self.known.items():
+            if fnmatchcase(f"{case}/{quantity}", pattern) or fnmatchcase(
+                f"{case}/{quantity}/{line}", pattern
+            ):
+                return reason
+        return None
+
+    def factor(self, unit: str) -> float:
+        """SI value of the code's unit for quantities of the SI ``unit``."""
+        m, N = LENGTHS[self.units.length], FORCES[self.units.force]
+        return {"m": m, "N": N, "N/m": N / m, "Pa": STRESSES[self.units.stress]}.get(unit, 1.0)
+
+    @property
+    def questions(self) -> tuple[dict[str, float], ...]:
+        """Numerical parameters of each solve, coarse to fine."""
+        return tuple({self.parameter: level} for level in self.levels) or ({},)
+
+
+def read_guest(place: str | Path) -> Guest:
+    """The guest in the directory ``place``, in the file ``place``, or of an entry point of that name.
+
+    Raises CaseError naming file and key.
+    """
+    path = Path(place)
+    if path.is_dir():
+        path = path / FILE
+    elif not path.exists() and (found := _of_entry_point(str(place))) is not None:
+        path = found
+    raw = read_bounded(path, "guest", "one guest; coatcheck guest init writes one")
+    return parse_guest(raw, path)
+
+
+def parse_guest(raw: bytes, path: Path) -> Guest:
+    """Check the content of a guest file; ``path`` names it in messages. Raises CaseError."""
+    text, checked = read_toml(raw, path, _GuestFile)
+    given: dict[str, Any] = {name: getattr(checked, name) for name in _GuestFile.model_fields}
+    refine = given.pop("refine")
+    parameter = next(iter(refine), "")
+    return Guest(
+        folder=path.resolve().parent,
+        text=text,
+        **given | {"command": tuple(checked.command or ())},
+        parameter=parameter,
+        levels=tuple(refine.get(parameter, ())),
+    )
+
+
+def installed_guests() -> dict[str, Path]:
+    """The guest files of installed packages by the name of their entry point."""
+    found = {}
+    for point in entry_points(group=GROUP):
+        spec = find_spec(point.value)
+        if spec is not None and spec.origin is not None:
+            found[point.name] = Path(spec.origin).parent / FILE
+    return found
+
+
+def _of_entry_point(name: str) -> Path | None:
+    try:
+        return installed_guests().get(name)
+    except (ImportError, ValueError) as error:
+        raise CaseError(f"{name}: entry point of the group {GROUP} cannot be found ({error})") from None

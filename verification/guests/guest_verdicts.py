@@ -1,0 +1,126 @@
+"""Verdicts on a guest's answers about one case."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import Any
+
+from verification.guests.case_exam import claims_of, profiles_of
+from verification.guests.doors.program_door import Solved
+from verification.guests.exam_subjects import REFERENCE, Subject
+from verification.guests.grid_convergence import LEAST, estimated
+from verification.guests.guest_description import Guest
+from verification.judging.verdict import Claim, Outcome, Verdict
+from verification.problem.line_profile import Profile
+from verification.running.case_result import CaseResult, SourceResult, describe
+from verification.running.contact_run import decide
+
+Key = tuple[str, str]  # quantity, line
+
+
+def judged(guest: Guest, case: Subject, exam: CaseResult, replies: Sequence[Solved]) -> CaseResult:
+    """The verdicts on ``replies``, one for each level, with the profiles behind them."""
+    levels = [profiles_of(reply.answer, exam, guest) for reply in replies]
+    last = replies[-1].answer
+    found = {(p.quantity, p.line): p for p in levels[-1]} if last.values is not None else {}
+    if last.values and guest.levels:
+        found = {key: _with_uncertainty(guest, key, profile, levels) for key, profile in found.items()}
+    profiles = {(q, line, guest.name): profile for (q, line), profile in found.items()}
+    profiles |= {(p.quantity, p.line, REFERENCE): p for p in exam.profiles}
+    seconds = replies[-1].seconds
+    memory = max((r.memory for r in replies if r.memory), default=None)
+    mine = SourceResult(guest.name, seconds, last.error, _diagnostics(guest, replies, memory))
+    exact = next((s for s in exam.sources if s.source == REFERENCE), SourceResult(REFERENCE, 0.0))
+    outcomes = {guest.name: mine, REFERENCE: exact}
+    verdicts = []
+    for claim in claims_of(case, guest):
+        verdict = _refused(guest, claim, last.unsupported, found if last.values is not None else None)
+        if verdict is None:
+            verdict = decided(guest, claim, decide(claim, profiles, outcomes, case.problem))
+        verdicts.append((claim, verdict))
+    return _result(case, (mine, exact), tuple(profiles.values()), verdicts, sum(r.seconds for r in replies))
+
+
+def refused(guest: Guest, case: Subject, reason: str) -> CaseResult:
+    """The result of a case that the guest does not solve, by its own statement."""
+    verdict = Verdict(Outcome.UNSUPPORTED, reason)
+    return _result(
+        case, (SourceResult(guest.name, 0.0),), (), [(c, verdict) for c in claims_of(case, guest)], 0.0
+    )
+
+
+def decided(guest: Guest, claim: Claim, verdict: Verdict) -> Verdict:
+    """``verdict``; of an answer without uncertainty by what the guest claims, as the reason says."""
+    if verdict.difference is None:
+        return verdict
+    if verdict.uncertainty is not None:
+        unseen = verdict.outcome is Outcome.DISAGREES and guest.claim and verdict.difference <= guest.claim
+        if not unseen:
+            return verdict
+        study = (
+            f"the levels of {guest.parameter} do not show it" if guest.levels else "not within what it states"
+        )
+        reason = f"{verdict.reason}; within the claimed {guest.claim:g}, but {study}"
+        return replace(verdict, reason=reason)
+    if guest.claim is None:
+        reason = f"difference {verdict.difference:.2e}; the guest states no uncertainty: give refine or claim"
+        return replace(verdict, outcome=Outcome.INCONCLUSIVE, reason=reason)
+    within = verdict.difference <= guest.claim
+    reason = (
+        f"difference {verdict.difference:.2e} {'within' if within else 'exceeds'} the claimed {guest.claim:g}"
+    )
+    return replace(
+        verdict,
+        outcome=Outcome.AGREES if within else Outcome.DISAGREES,
+        reason=f"{reason}; the guest states no uncertainty",
+    )
+
+
+def _refused(
+    guest: Guest, claim: Claim, reason: str | None, found: Mapping[Key, Profile] | None
+) -> Verdict | None:
+    """UNSUPPORTED where the guest says so, or does not give the quantity; None where it has to be judged."""
+    if reason is None and not guest.gives(claim.quantity):
+        reason = "the guest does not give stresses"
+    elif reason is None and found is not None and (claim.quantity, claim.line) not in found:
+        reason = "not answered"
+    return None if reason is None else Verdict(Outcome.UNSUPPORTED, reason)
+
+
+def _with_uncertainty(
+    guest: Guest, key: Key, profile: Profile, levels: Sequence[Sequence[Profile]]
+) -> Profile:
+    """``profile`` with its stated uncertainty, or that of the refinement study where every level gives it."""
+    study = [p for level in levels for p in level if (p.quantity, p.line) == key]
+    if profile.uncertainty is not None or len(study) != len(guest.levels) or len(study) < LEAST:
+        return profile
+    return replace(profile, uncertainty=estimated(guest.levels, study))
+
+
+def _diagnostics(guest: Guest, replies: Sequence[Solved], memory: int | None) -> dict[str, Any]:
+    found: dict[str, Any] = {}
+    if memory:
+        found["memory"] = memory
+    if guest.levels:
+        found[guest.parameter] = list(guest.levels[: len(replies)])
+        found["seconds"] = [r.seconds for r in replies]
+    return found
+
+
+def _result(
+    case: Subject,
+    sources: tuple[SourceResult, ...],
+    profiles: tuple[Profile, ...],
+    verdicts: Sequence[tuple[Claim, Verdict]],
+    seconds: float,
+) -> CaseResult:
+    return CaseResult(
+        name=case.name,
+        title=case.title,
+        source=case.source,
+        problem=describe(case.problem),
+        sources=sources,
+        profiles=profiles,
+        verdicts=tuple(verdicts),
+        seconds=seconds,
+        text=case.text,
+    )

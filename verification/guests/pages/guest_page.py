@@ -1,0 +1,421 @@
+"""The report of a guest: which quantity is wrong, why, how it converges, what it did not answer."""
+
+from collections import Counter
+from collections.abc import Sequence
+from math import log10
+from typing import Any
+
+import numpy as np
+from markupsafe import Markup
+
+from verification.guests.case_exam import profiles_of
+from verification.guests.exam_subjects import REFERENCE
+from verification.guests.examination import Examined, outcome_counts
+from verification.guests.slip_diagnosis import UNEXPLAINED, slips
+from verification.judging.verdict import Claim, Outcome, Verdict
+from verification.page.html_page import render_sections
+from verification.page.number_text import plain, seconds
+from verification.page.page_parts import (
+    Cell,
+    Gallery,
+    Panel,
+    Part,
+    Row,
+    Section,
+    Table,
+    number,
+    outcome_cell,
+    row,
+    words,
+)
+from verification.page.source_labels import OUTCOMES, row_css
+from verification.page.svg_curves import Curve, Difference, draw
+from verification.page.svg_loglog import DASHES, DOTS, MIXED, Plot, Trail, panels
+from verification.problem.quantity import QUANTITIES
+from verification.running.case_result import CaseResult, RunInfo
+from verification.sources.source_record import Style
+
+WORST_FIRST = (
+    Outcome.DISAGREES,
+    Outcome.NO_RESULT,
+    Outcome.INCONCLUSIVE,
+    Outcome.AGREES,
+    Outcome.UNSUPPORTED,
+)
+MOST_FIGURES, MOST_DIGITS = 12, 15
+ROUNDING = 1e-12
+MOST_REASONS, MOST_REASONS_LISTED = 2, 20
+GUEST, EXACT = Style("semi"), Style("exact", (), 5.0, 0.35)
+DASHED = ((), DASHES, DOTS, MIXED)
+OWN = ("semi", "fem")
+
+
+def page(found: Examined, info: RunInfo) -> str:
+    """The whole page as HTML."""
+    total = outcome_counts(found.results)
+    answered = sum(total.values()) - total[Outcome.UNSUPPORTED]
+    guest = found.guest
+    facts = [
+        ("guest", guest.name),
+        ("way in", guest.callable or " ".join(guest.command) or f"files in {guest.results}"),
+        ("uncertainty", _uncertainty(found)),
+        ("left out", f"|r - a| < {guest.edge:g} a" if guest.edge else "nothing"),
+        ("command", info.command),
+        ("machine", info.machine),
+    ]
+    sections = [_quantities(found), _cases(found), _failures(found), _convergence(found), _missing(found)]
+    return render_sections(
+        "coatcheck guest",
+        f"{guest.name}: {total[Outcome.AGREES]} of {answered} comparisons agree, "
+        f"{total[Outcome.UNSUPPORTED]} are not supported.",
+        facts,
+        [section for section in sections if section is not None],
+    )
+
+
+def badge(found: Examined) -> str:
+    """A badge with the count of comparisons that agree, as SVG."""
+    total = outcome_counts(found.results)
+    answered = sum(total.values()) - total[Outcome.UNSUPPORTED]
+    text = f"{total[Outcome.AGREES]} of {answered} agree"
+    colour = "#2e7d4f" if answered and total[Outcome.AGREES] == answered else "#b3261e"
+    left, right = 74, 12 + 7 * len(text)
+    return Markup(
+        '<svg xmlns="http://www.w3.org/2000/svg" width="{width}" height="20" role="img" '
+        'aria-label="coatcheck: {text}"><rect width="{left}" height="20" fill="#444"/>'
+        '<rect x="{left}" width="{right}" height="20" fill="{colour}"/>'
+        '<g fill="#fff" font-family="Verdana,sans-serif" font-size="11"><text x="6" y="14">'
+        'coatcheck</text><text x="{at}" y="14">{text}</text></g></svg>\n'
+    ).format(width=left + right, left=left, right=right, colour=colour, at=left + 6, text=text)
+
+
+def summary(found: Examined) -> dict[str, Any]:
+    """The examination in a few numbers, for a table of several guests.
+
+    differences : the largest of each kind of quantity, by the name of a scalar.   seconds : shortest, longest
+    answer at the finest level.   memory : the largest [bytes], None where it is not known.
+    """
+    total, guest = outcome_counts(found.results), found.guest
+    differences: dict[str, float] = {}
+    for claim, verdict in (item for result in found.results for item in result.verdicts):
+        if verdict.difference is not None:
+            kind = QUANTITIES[claim.quantity].kind
+            name = claim.quantity if kind == "scalar" else kind
+            differences[name] = max(differences.get(name, 0.0), verdict.difference)
+    own = [s for r in found.results for s in r.sources if s.source == guest.name and s.seconds]
+    times = [source.seconds for source in own]
+    return {
+        "guest": guest.name,
+        "cases": len(own),
+        "levels": f"{guest.parameter} {', '.join(f'{v:g}' for v in guest.levels)}" if guest.levels else "",
+        "agree": total[Outcome.AGREES],
+        "answered": sum(total.values()) - total[Outcome.UNSUPPORTED],
+        "differences": differences,
+        "seconds": [min(times, default=0.0), max(times, default=0.0)],
+        "memory": max((s.diagnostics["memory"] for s in own if "memory" in s.diagnostics), default=None),
+    }
+
+
+def _uncertainty(found: Examined) -> str:
+    guest = found.guest
+    if guest.levels:
+        return f"from its refinement study, {guest.parameter} = {', '.join(f'{v:g}' for v in guest.levels)}"
+    own = [p for result in found.results for p in result.profiles if p.source == guest.name]
+    if any(p.uncertainty is not None for p in own):
+        return "as the guest states it"
+    return f"none; differences are compared with the claimed {guest.claim:g}" if guest.claim else "none"
+
+
+def digits(difference: float | None) -> str:
+    """Correct decimal digits of the largest difference; a dash for None."""
+    if difference is None:
+        return "–"
+    return f"{min(max(-log10(max(difference, 10.0**-MOST_DIGITS)), 0.0), MOST_DIGITS):.1f}"
+
+
+def _quantities(found: Examined) -> Section:
+    """A row for each quantity, the worst first, with its likely reason: what to look at."""
+    reasons = _reasons(found)
+    rows: list[tuple[tuple[int, float], Row]] = []
+    for quantity in dict.fromkeys(c.quantity for r in found.results for c, _ in r.verdicts):
+        verdicts = [(r, c, v) for r in found.results for c, v in r.verdicts if c.quantity == quantity]
+        count = Counter(v.outcome for _, _, v in verdicts)
+        if set(count) == {Outcome.UNSUPPORTED}:
+            continue
+        worst = next(outcome for outcome in WORST_FIRST if count[outcome])
+        gaps = [(v.difference, r, c) for r, c, v in verdicts if v.difference is not None]
+        gap, where = None, ""
+        if gaps:
+            gap, result, claim = max(gaps, key=lambda item: item[0])
+            where = result.title + ("" if claim.line == "contact" else f", {claim.line}")
+        answered = len(verdicts) - count[Outcome.UNSUPPORTED]
+        why = [message for message, places in reasons if any(q == quantity for _, q, _ in places)]
+        why = [message for message in why if not message.startswith(UNEXPLAINED)] or why[:1]
+        rows.append(
+            (
+                (WORST_FIRST.index(worst), -(gap or 0.0)),
+                row(
+                    Cell(quantity, note=QUANTITIES[quantity].meaning),
+                    *([words("; ".join(why[:MOST_REASONS]))] if reasons else []),
+                    Cell(digits(gap), gap),
+                    outcome_cell(worst),
+                    Cell(f"{count[Outcome.AGREES]} of {answered}", count[Outcome.AGREES] / answered),
+                    number(gap),
+                    words(where),
+                    css=row_css(worst),
+                ),
+            )
+        )
+    table = Table(
+        "The largest difference over all cases and lines with the digits that it leaves; relative to the "
+        "value (p0, a, approach), else to the smaller of p_h and p0.",
+        [
+            "quantity",
+            *(["likely reason"] if reasons else []),
+            *("digits", "worst", "agree", "largest difference", "where"),
+        ],
+        [line for _, line in sorted(rows, key=lambda item: item[0])],
+    )
+    parts = [Part("", [table])]
+    if reasons:
+        lines = [
+            row(
+                words(message),
+                words("; ".join(dict.fromkeys(_place(q, line) for _, q, line in places))),
+                words("; ".join(dict.fromkeys(r.title for r, _, _ in places))),
+            )
+            for message, places in reasons[:MOST_REASONS_LISTED]
+        ]
+        title = "What common slips would give, most comparisons first."
+        parts.append(Part("Likely reasons.", [Table(title, ["slip", "explains", "cases"], lines)]))
+    return Section("quantities", "Which quantity is wrong?", parts)
+
+
+def _reasons(found: Examined) -> list[tuple[str, list[tuple[CaseResult, str, str]]]]:
+    """Each likely slip with its cases, quantities and lines; unexplained differences last."""
+    by: dict[str, list[tuple[CaseResult, str, str]]] = {}
+    for result in found.results:
+        for slip in slips(result, found.guest.name):
+            by.setdefault(slip.message, []).extend((result, *place) for place in slip.places)
+    return sorted(by.items(), key=lambda item: (item[0].startswith(UNEXPLAINED), -len(item[1])))
+
+
+def _place(quantity: str, line: str) -> str:
+    return quantity if line == "contact" else f"{quantity} on {line}"
+
+
+def _cases(found: Examined) -> Section:
+    """A row for each case with an answer: digits by quantity, time, memory."""
+    names = dict.fromkeys(
+        c.quantity for r in found.results for c, v in r.verdicts if v.difference is not None
+    )
+    rows: list[Row] = []
+    for result in found.results:
+        if all(v.outcome is Outcome.UNSUPPORTED for _, v in result.verdicts):
+            continue
+        mine = next((s for s in result.sources if s.source == found.guest.name), None)
+        cells = [_digits_cell([v for c, v in result.verdicts if c.quantity == name]) for name in names]
+        memory = None if mine is None else mine.diagnostics.get("memory")
+        taken = None if mine is None or not mine.seconds else mine.seconds
+        rows.append(
+            row(
+                result.title,
+                *cells,
+                Cell("–" if taken is None else seconds(taken), taken),
+                Cell("–" if memory is None else f"{memory / 1e6:.0f} MB", memory),
+            )
+        )
+    table = Table(
+        "Digits that agree with the exact reference, by case, with the worst verdict; time and peak memory "
+        "at the finest level.",
+        ["case", *names, "time", "memory"],
+        rows,
+    )
+    lead = (
+        f"{len(rows)} of {len(found.results)} cases; the others are not supported."
+        if len(rows) < len(found.results)
+        else ""
+    )
+    return Section("cases", "Cases", [Part(lead, [table])])
+
+
+def _digits_cell(verdicts: Sequence[Verdict]) -> Cell:
+    outcomes = {v.outcome for v in verdicts}
+    worst = next((outcome for outcome in WORST_FIRST if outcome in outcomes), None)
+    if worst is None or worst is Outcome.UNSUPPORTED:
+        return Cell("–")
+    gap = max((v.difference for v in verdicts if v.difference is not None), default=None)
+    style = OUTCOMES[worst]
+    return Cell(f"{style.mark} {digits(gap)}", gap, f"verdict {style.css}", style.word)
+
+
+def _failures(found: Examined) -> Section | None:
+    """Figures of the error along the line, of the comparisons that are furthest off."""
+    bad = [
+        (result, claim, verdict)
+        for result in found.results
+        for claim, verdict in result.verdicts
+        if verdict.outcome in (Outcome.DISAGREES, Outcome.INCONCLUSIVE)
+    ]
+    failures = sorted({f"{r.title}: {s.failure}" for r in found.results for s in r.sources if s.failure})
+    if not bad and not failures:
+        return None
+    along = [item for item in bad if item[1].line != "contact"]
+    along.sort(key=lambda item: -(item[2].difference or 0.0))
+    # Every quantity once before one is shown again.
+    seen: Counter[str] = Counter()
+    ranked = []
+    for item in along:
+        ranked.append((seen[item[1].quantity], item))
+        seen[item[1].quantity] += 1
+    ranked.sort(key=lambda one: one[0])
+    figures = [_figure(found.guest.name, *item) for _, item in ranked[:MOST_FIGURES]]
+    parts = []
+    if figures:
+        legend = [(Markup('<span class="s-semi">—</span>'), "guest"), (Markup("<span>━</span>"), "exact")]
+        caption = (
+            "Above the values of guest and exact reference over the scale, below their difference with its "
+            "uncertainty on a logarithmic scale; a ring marks the point that decides, a dashed line the cap."
+        )
+        parts.append(
+            Part(
+                "Values along the line: of each quantity the largest difference, then the others.",
+                gallery=Gallery(legend, figures, caption),
+            )
+        )
+    rows = [
+        row(
+            result.title,
+            outcome_cell(verdict.outcome),
+            claim.quantity,
+            claim.line,
+            Cell(_ratio(found.guest.name, result, claim)),
+            number(verdict.difference),
+            number(verdict.uncertainty),
+            number(claim.cap),
+            words(verdict.reason),
+            css=row_css(verdict.outcome),
+        )
+        for result, claim, verdict in sorted(bad, key=lambda item: -(item[2].difference or 0.0))
+    ]
+    heads = ["case", "verdict", "quantity", "line", "guest / exact", "difference", "U", "cap", "reason"]
+    parts.append(Part("", [Table("Every comparison that does not agree.", heads, rows)]))
+    return Section("failures", "What does not agree", parts, failures)
+
+
+def _ratio(guest: str, result: CaseResult, claim: Claim) -> str:
+    """Least-squares factor between the guest and the exact values; 1 where only the pattern differs."""
+    mine, exact = (result.profile_of.get((claim.quantity, claim.line, s)) for s in (guest, REFERENCE))
+    if mine is None or exact is None or not np.isfinite(mine.value).all() or not exact.value.any():
+        return "–"
+    return plain(float(mine.value @ exact.value / (exact.value @ exact.value)), 6)
+
+
+def _figure(guest: str, result: CaseResult, claim: Claim, verdict: Verdict) -> Panel:
+    mine, exact = (result.profile_of[claim.quantity, claim.line, s] for s in (guest, REFERENCE))
+    a = float(result.profile_of["contact_radius", "contact", REFERENCE].value[0])
+    top = float(np.abs(exact.value).max()) or 1.0
+    x = exact.position / a
+    difference = np.abs(mine.value - exact.value) / top
+    uncertainty = None if mine.uncertainty is None else mine.uncertainty / top
+    coordinate = "z" if claim.line == "axis" else "s" if claim.line.startswith("oblique") else "x"
+    figure = draw(
+        [Curve(x, exact.value / top, EXACT), Curve(x, mine.value / top, GUEST)],
+        [
+            Difference(
+                x,
+                difference,
+                uncertainty,
+                GUEST,
+                None if verdict.worst is None else verdict.worst / a,
+                verdict.outcome is Outcome.INCONCLUSIVE,
+            )
+        ],
+        label=f"{claim.quantity} on {claim.line} of {result.title}",
+        coordinate=f"{coordinate} / a",
+        cap=claim.cap,
+        unjudged=[(1 - claim.edge, 1 + claim.edge)] if claim.edge else (),
+    )
+    return Panel(f"{claim.quantity}, {claim.line}", figure, result.title, "fails")
+
+
+def _convergence(found: Examined) -> Section | None:
+    """Error against the exact reference over the levels of the refinement study."""
+    guest = found.guest
+    if not guest.levels:
+        return None
+    plots, rows = [], []
+    errors = {result.name: _errors(found, result) for result in found.results if result.name in found.replies}
+    quantities = dict.fromkeys(name for by in errors.values() for name in by)
+    for quantity in quantities:
+        trails = []
+        for n, (name, by) in enumerate(errors.items()):
+            if quantity not in by:
+                continue
+            style = Style(OWN[n % 2], DASHED[n // 2 % 4])
+            order = _order(guest.levels, by[quantity])
+            trails.append(Trail(guest.levels, by[quantity], style, "" if order is None else f"{order:.1f}"))
+            title = next(r.title for r in found.results if r.name == name)
+            rows.append(row(title, quantity, *(number(e) for e in by[quantity]), number(order, plain)))
+        label = f"error of {quantity} over {guest.parameter}"
+        plots.append(Plot(quantity, label, "error, order at the end", guest.parameter, guest.levels, trails))
+    heads = ["case", "quantity", *(f"{guest.parameter} = {v:g}" for v in guest.levels), "order"]
+    table = Table(
+        "Largest error against the exact reference, order observed over the last two levels.", heads, rows
+    )
+    gallery = Gallery([], panels(plots), "A curve for each case; the observed order is written at its end.")
+    return Section("convergence", "Convergence against the exact solution", [Part("", [table], gallery)])
+
+
+def _errors(found: Examined, result: CaseResult) -> dict[str, tuple[float, ...]]:
+    """Largest error of each quantity at each level over its scale; of a line outside the zone left out."""
+    guest, exact = found.guest, result.profile_of
+    if ("contact_radius", "contact", REFERENCE) not in exact:
+        return {}
+    a = float(exact["contact_radius", "contact", REFERENCE].value[0])
+    levels = [profiles_of(reply.answer, result, guest) for reply in found.replies[result.name]]
+    errors: dict[str, list[float]] = {}
+    for profiles in levels:
+        largest: dict[str, float] = {}
+        for p in profiles:
+            true = exact[p.quantity, p.line, REFERENCE]
+            judged = np.abs(np.abs(true.position) - a) >= guest.edge * a
+            scale = float(np.abs(true.value).max())
+            if scale and (p.line == "contact" or judged.any()):
+                gap = (
+                    np.abs(p.value - true.value)
+                    if p.line == "contact"
+                    else np.abs(p.value - true.value)[judged]
+                )
+                largest[p.quantity] = max(largest.get(p.quantity, 0.0), float(gap.max()) / scale)
+        for quantity, value in largest.items():
+            errors.setdefault(quantity, []).append(value)
+    return {q: tuple(values) for q, values in errors.items() if len(values) == len(guest.levels)}
+
+
+def _order(levels: Sequence[float], errors: Sequence[float]) -> float | None:
+    """Observed over the last two levels; None where the finest error is rounding."""
+    first, last = errors[-2:]
+    ratio = max(levels[-1] / levels[-2], levels[-2] / levels[-1])
+    return float(np.log(first / last) / np.log(ratio)) if first > 0 and last > ROUNDING else None
+
+
+def _missing(found: Examined) -> Section | None:
+    """What the guest did not answer, with the reason."""
+    reasons: Counter[tuple[str, str]] = Counter()
+    for result in found.results:
+        for claim, verdict in result.verdicts:
+            if verdict.outcome is Outcome.UNSUPPORTED:
+                reasons[verdict.reason, claim.quantity] += 1
+    if not reasons:
+        return None
+    by: dict[str, list[str]] = {}
+    for (reason, quantity), count in reasons.items():
+        by.setdefault(reason, []).append(f"{quantity} ({count})")
+    rows = [row(words(reason), words(", ".join(names))) for reason, names in by.items()]
+    table = Table("Quantities with the number of comparisons.", ["reason", "not answered"], rows)
+    known = [row(name, words(reason)) for name, reason in found.known]
+    parts = [Part("", [table])]
+    if known:
+        parts.append(Part("", [Table("Known failures.", ["comparison", "reason"], known)]))
+    return Section("missing", "What it did not answer", parts)

@@ -1,0 +1,307 @@
+"""Likely slips behind wrong answers: units, signs, axes, a for 2a, shifts, the contact edge.
+
+Each slip predicts the wrong answer from the exact one. The slip that leaves the smallest rest is named, where
+it explains nine tenths of the error at least.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from math import isclose, log
+from typing import Any
+
+import numpy as np
+from scipy.optimize import minimize_scalar
+
+from verification.guests.case_exam import ALONG_SURFACE
+from verification.guests.exam_subjects import REFERENCE
+from verification.judging.verdict import Outcome
+from verification.problem.array_types import Array
+from verification.problem.line_profile import Profile
+from verification.problem.quantity import STRESSES, unit_of
+from verification.running.case_result import CaseResult
+
+EXPLAINED = 0.1  # of the error may remain
+FINE = 2e-2  # relative: differences below may be those of a coarse grid
+NEAR = 5e-3  # relative: two factors that differ by less are the same
+SMALL = 1e-2  # of the largest value of a line: no error worth a message
+UNEXPLAINED = "no single slip explains it"
+EDGE = 0.08  # half-width of the zone around the contact edge, of a
+UNITS = {
+    "Pa": {
+        1e6: "MPa taken for Pa",
+        1e-6: "MPa in place of Pa",
+        1e9: "GPa taken for Pa",
+        1e-9: "GPa in place of Pa",
+    },
+    "m": {1e3: "mm in place of m", 1e-3: "mm taken for m", 1e6: "um in place of m", 1e-6: "um taken for m"},
+}
+TWICE = {
+    "contact_radius": {2.0: "the diameter 2 a in place of a"},
+    "peak_pressure": {2 / 3: "the mean pressure in place of the largest", 1.5: "3/2 of the largest pressure"},
+    "approach": {
+        2.0: "twice the approach",
+        0.5: "a^2/(2 R), the depth of the contact edge, in place of a^2/R",
+    },
+}
+OF_INPUTS = ("contact_radius", "peak_pressure", "approach", "stiffness")
+THOUSANDS = {10.0**k: "a factor of units" for k in (-9, -6, -3, 3, 6, 9)}
+
+
+@dataclass(frozen=True)
+class Slip:
+    """A likely mistake: its ``message``, with the ``places`` (quantity, line) that it explains."""
+
+    message: str
+    places: tuple[tuple[str, str], ...]
+
+    def __str__(self) -> str:
+        lines: dict[str, list[str]] = {}
+        for quantity, line in self.places:
+            lines.setdefault(quantity, []).append(line)
+        groups: dict[tuple[str, ...], list[str]] = {}
+        for quantity, at in lines.items():
+            groups.setdefault(tuple(at), []).append(quantity)
+        shown = [
+            ", ".join(quantities) + ("" if at == ("contact",) else f" on {'; '.join(at)}")
+            for at, quantities in groups.items()
+        ]
+        return f"{' and '.join(shown)}: {self.message}"
+
+
+def slips(result: CaseResult, guest: str) -> list[Slip]:
+    """The likely slips behind the answers of ``guest`` that do not agree, most places first."""
+    wrong = [
+        (claim.quantity, claim.line)
+        for claim, verdict in result.verdicts
+        if verdict.outcome in (Outcome.DISAGREES, Outcome.INCONCLUSIVE) and verdict.difference is not None
+    ]
+    if not wrong:
+        return []
+    zone = max(claim.edge for claim, _ in result.verdicts)
+    result = _outside_zone(result, zone) if zone else result
+    found: dict[str, list[tuple[str, str]]] = {}
+    inputs = _of_inputs(result, guest)
+    for quantity, line in wrong:
+        mine = result.profile_of.get((quantity, line, guest))
+        exact = result.profile_of.get((quantity, line, REFERENCE))
+        if mine is None or exact is None or not np.isfinite(mine.value).all():
+            continue
+        if line == "contact":
+            message = (inputs if quantity in OF_INPUTS else None) or _of_number(mine, exact)
+        else:
+            message = _of_line(mine, exact, result)
+            message = (message and _explained(message)) or inputs or message
+        if message:
+            found.setdefault(message, []).append((quantity, line))
+    named = [Slip(message, tuple(places)) for message, places in found.items()]
+    return sorted(named, key=lambda slip: -len(slip.places))
+
+
+def _outside_zone(result: CaseResult, zone: float) -> CaseResult:
+    """``result`` without the points that its claims leave out around the contact edge."""
+    a = float(result.profile_of["contact_radius", "contact", REFERENCE].value[0])
+    profiles = []
+    for p in result.profiles:
+        keep = np.abs(np.abs(p.position) - a) >= zone * a
+        uncertainty = None if p.uncertainty is None else p.uncertainty[keep]
+        kept = replace(p, position=p.position[keep], value=p.value[keep], uncertainty=uncertainty)
+        profiles.append(kept if p.line in ALONG_SURFACE else p)
+    return replace(result, profiles=tuple(profiles))
+
+
+def _of_inputs(result: CaseResult, guest: str) -> str | None:
+    """A wrong input of an uncoated contact, from its three numbers; None where an output alone is wrong.
+
+        a = (3 W R / 4 E*)^(1/3),  p0 = 3 W / (2 pi a^2),  delta = a^2 / R      Johnson (4.22) to (4.24)
+
+    gives the factors of R, W and E* that explain the three ratios to the exact values.
+    """
+    if result.problem["coatings"] or result.problem.get("ball"):
+        return None
+    ratios = {}
+    for name in ("contact_radius", "peak_pressure", "approach"):
+        mine, exact = (result.profile_of.get((name, "contact", source)) for source in (guest, REFERENCE))
+        if mine is None or exact is None or not np.isfinite(mine.value[0]) or mine.value[0] <= 0:
+            return None
+        ratios[name] = float(mine.value[0] / exact.value[0])
+    a, p0, delta = (ratios[name] for name in ("contact_radius", "peak_pressure", "approach"))
+    R, W = a**2 / delta, p0 * a**2
+    E = W * R / a**3
+    nu = float(result.problem["substrate"][1])
+    plane = 1 - nu**2
+    names: dict[str, dict[float, str]] = {
+        "E*": {
+            plane: "E in place of E* = E/(1 - nu^2)",
+            0.5: "E*/2, as if the sphere were of the same elastic material; it is rigid",
+            plane / 2: "E/2 in place of E* = E/(1 - nu^2)",
+            2.0: "2 E* in place of E*",
+            1 / (1 + nu): "E/((1 - nu^2)(1 + nu)) in place of E/(1 - nu^2)",
+            plane / (2 * (1 + nu)): "the shear modulus G = E/(2(1 + nu)) in place of E*",
+            plane**2: "E (1 - nu^2) in place of E/(1 - nu^2)",
+            **THOUSANDS,
+        },
+        "R": {2.0: "the diameter in place of the radius", 0.5: "R/2 in place of R", **THOUSANDS},
+        "W": {
+            2.0: "twice the load",
+            0.5: "half of the load",
+            0.25: "the load of a quarter model",
+            **THOUSANDS,
+        },
+    }
+    factors = {"E*": E, "R": R, "W": W}
+    off = {name: factor for name, factor in factors.items() if not isclose(factor, 1, rel_tol=4 * NEAR)}
+    if len(off) != 1 or sum(not isclose(ratio, 1, rel_tol=NEAR) for ratio in ratios.values()) < 2:
+        return None
+    ((name, factor),) = off.items()
+    cause = _nearest(factor, names[name])
+    known = f": {cause}?" if cause else ""
+    return f"the answers are those of Hertz with {name} times {factor:.4g}{known}"
+
+
+def _explained(message: str) -> str | None:
+    return None if message.startswith(UNEXPLAINED) else message
+
+
+def _of_number(mine: Profile, exact: Profile) -> str | None:
+    value, true = float(mine.value[0]), float(exact.value[0])
+    if true == 0 or isclose(value, true, rel_tol=NEAR):
+        return None
+    return _of_factor(value / true, mine.quantity)
+
+
+def _of_factor(factor: float, quantity: str) -> str:
+    """The message of a constant ``factor`` between an answer and the exact value."""
+    sign = "of the opposite sign" if factor < 0 else ""
+    size = abs(factor)
+    if isclose(size, 1, rel_tol=NEAR):
+        convention = _convention(quantity) if sign else ""
+        return f"{sign}{convention}"
+    named = THOUSANDS | UNITS.get(unit_of(quantity), {}) | TWICE.get(quantity, {})
+    cause = _nearest(size, named)
+    text = f"{size:.4g} times the exact value" + (f": {cause}?" if cause else "")
+    return f"{sign}, {text}" if sign else text
+
+
+def _convention(quantity: str) -> str:
+    if quantity in ("tension_place", "sigma_xz"):
+        return ": is x along sliding, and q the traction on the solid in +x?"
+    if quantity == "pressure":
+        return ": pressure is positive in compression"
+    return ": compression positive? Stress is positive in tension here"
+
+
+def _of_line(mine: Profile, exact: Profile, result: CaseResult) -> str | None:
+    """The slip that leaves the smallest rest of the error along a line."""
+    g, e, x = mine.value, exact.value, mine.position
+    size = float(np.abs(e).max())
+    error = _norm(g - e)
+    if size == 0 or float(np.abs(g - e).max()) <= SMALL * size / 10:
+        return None
+    if not g.any():
+        return "zero everywhere: not computed? Leave it out to have it counted as unsupported"
+    best: tuple[float, str] | None = None
+    for message, predicted, where in _candidates(mine, exact, result):
+        keep = where if where is not None else np.ones(g.shape, dtype=bool)
+        if keep.sum() < 5:
+            continue
+        rest = _norm((g - predicted)[keep])
+        if rest <= max(EXPLAINED * _norm((g - e)[keep]), 1e-9 * size) and (
+            best is None or rest < best[0] / 3
+        ):
+            best = (rest, message)
+    if best is not None:
+        return best[1]
+    a = float(result.profile_of["contact_radius", "contact", REFERENCE].value[0])
+    beside = np.abs(np.abs(x) - a) < EDGE * a
+    if mine.line in ALONG_SURFACE and beside.any() and not beside.all():
+        inside, outside = np.abs(g - e)[beside].max(), np.abs(g - e)[~beside].max()
+        if outside < EXPLAINED * inside or (outside <= SMALL * size < inside):
+            return (
+                f"wrong at the contact edge alone, |r - a| < {EDGE:g} a: a patch or element across the edge? "
+                "edge in guest.toml leaves a zone out"
+            )
+    worst = int(np.argmax(np.abs(g - e)))
+    coordinate = "z" if mine.line == "axis" else "x"
+    where_worst = f"{coordinate} = {x[worst] / a:.3g} a"
+    return (
+        f"{UNEXPLAINED}: off by {np.abs(g - e)[worst] / size:.1e} of the largest value at "
+        f"{where_worst}, {error / _norm(e):.1e} on average"
+    )
+
+
+Candidate = tuple[str, Array, Any]
+
+
+def _candidates(mine: Profile, exact: Profile, result: CaseResult) -> Iterator[Candidate]:
+    """Message, predicted wrong answer, points where it is one (None for all), simplest first."""
+    g, e, x = mine.value, exact.value, mine.position
+    quantity, line = mine.quantity, mine.line
+    yield _of_factor(-1.0, quantity), -e, None
+    others = [name for name in STRESSES if name != quantity] if quantity in STRESSES else []
+    for other in others:
+        profile = result.profile_of.get((other, line, REFERENCE))
+        if profile is not None and _norm(profile.value - e) > FINE * _norm(e):
+            axes = set(quantity[-2:]) ^ set(other[-2:])
+            cause = f": {' and '.join(sorted(axes))} transposed?" if len(axes) == 2 else ""
+            yield f"equal to {other}{cause}", profile.value, None
+            yield f"equal to -{other}{cause}", -profile.value, None
+    if "side" in line:
+        flipped = line.replace("upper", "~").replace("lower", "upper").replace("~", "lower")
+        profile = result.profile_of.get((quantity, flipped, REFERENCE))
+        if profile is not None and _norm(profile.value - e) > FINE * _norm(e):
+            yield f"equal to the value on the {flipped}: the other layer?", profile.value, None
+    if line != "axis" and x.min(initial=0.0) < 0:
+        mirrored, common = np.interp(-x, x, e), (-x >= x.min()) & (-x <= x.max())
+        if _norm(mirrored - e) > FINE * _norm(e):
+            yield "mirrored in x: leading and trailing side exchanged?", mirrored, common
+            yield "mirrored in x, of the opposite sign: is sliding along +x?", -mirrored, common
+    for stretch, message in (
+        (2.0, "as if every position were doubled: a for the diameter, or a radius for 2 r?"),
+        (0.5, "as if every position were halved: the diameter 2 a in place of a?"),
+        (1e3, "as if positions were taken in mm?"),
+        (1e-3, "as if positions were taken in km: a factor of 1e3 in lengths?"),
+    ):
+        at = stretch * x
+        inside = (at >= x.min()) & (at <= x.max())
+        yield message, np.interp(at, x, e), inside
+    factor = float(g @ e / (e @ e))
+    if not isclose(factor, 1, rel_tol=NEAR):
+        yield _of_factor(factor, quantity), factor * e, None
+    yield from _shifted(mine, exact, result)
+    offset = float(np.mean(g - e))
+    yield f"off by the same {offset:.3g} {unit_of(quantity)} everywhere", e + offset, None
+
+
+def _shifted(mine: Profile, exact: Profile, result: CaseResult) -> Iterator[Candidate]:
+    """The exact values moved along the line by the length that fits best."""
+    g, e, x = mine.value, exact.value, mine.position
+    if mine.line == "axis":
+        return
+    a = float(result.profile_of["contact_radius", "contact", REFERENCE].value[0])
+    # At the edge the slope of the pressure is infinite.
+    slope = np.where(np.abs(np.abs(x) - a) > EDGE * a, np.gradient(e, x), 0.0)
+    if not slope.any():
+        return
+    shift = -float((g - e) @ slope / (slope @ slope))
+    keep = (x - abs(shift) > x.min()) & (x + abs(shift) < x.max()) & (np.abs(np.abs(x) - a) > EDGE * a)
+    if keep.sum() < 5:
+        return
+
+    def rest(s: float) -> float:
+        return _norm((g - np.interp(x - s, x, e))[keep])
+
+    bounds = sorted((0.1 * shift, 5 * shift))
+    shift = float(minimize_scalar(rest, bounds=bounds, method="bounded", options={"xatol": 1e-9 * a}).x)
+    if 1e-5 * a < abs(shift) < 0.3 * a:
+        text = f"shifted by {shift:+.3g} m = {shift / a:+.3g} a in x: half a cell, a corner for a centre?"
+        yield text, np.interp(x - shift, x, e), keep
+
+
+def _nearest(factor: float, names: dict[float, str]) -> str | None:
+    near = [(abs(log(factor / known)), text) for known, text in names.items() if factor > 0]
+    distance, text = min(near, default=(1.0, ""))
+    return text if distance < 2 * NEAR else None
+
+
+def _norm(values: Array) -> float:
+    return float(np.sqrt(np.mean(np.square(values)))) if values.size else 0.0

@@ -1,0 +1,72 @@
+"""Every invariant that one solution has to satisfy by itself."""
+
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from functools import partial
+
+from verification.judging.invariant_verdict import Invariant, failed
+from verification.judging.invariants import (
+    bonded_deformation,
+    force_balance,
+    influence_error,
+    mirror_symmetry,
+    plane_consistency,
+)
+from verification.problem.coated_contact import BALL, CoatedContact, NotClaimed, Solution
+from verification.problem.either_body import on_body
+from verification.problem.line_profile import ON_BALL
+
+Law = Callable[[], Invariant | tuple[Invariant, ...]]
+
+
+def check(solution: Solution, source: str, problem: CoatedContact) -> tuple[Invariant, ...]:
+    """Balance, tractions, equilibrium, bonds, Hooke's law and symmetry of ``solution`` by ``source``.
+
+    The names of those of an elastic ball begin with "ball, ". One that raises an exception is NO_RESULT with
+    its message; one of a field that the source does not claim is left out.
+    """
+    found: list[Invariant] = []
+    for name, law in _laws(solution, source, problem):
+        try:
+            row = law()
+        except NotClaimed:
+            continue
+        except Exception as error:  # any failure of a solution is a row of the report
+            row = failed(name, source, error)
+        rows = row if isinstance(row, tuple) else (row,)
+        before = ON_BALL if name.startswith(ON_BALL) else ""
+        found += [replace(one, name=before + one.name.removeprefix(before)) for one in rows]
+    return tuple(found)
+
+
+def _laws(solution: Solution, source: str, problem: CoatedContact) -> Iterator[tuple[str, Law]]:
+    subject = (solution, source, problem)
+    yield "load balance", partial(force_balance.load_balance, *subject)
+    yield "sphere", partial(bonded_deformation.sphere, *subject)
+    yield from _of_body(*subject)
+    if source == "semianalytic":
+        yield "influence coefficients", partial(influence_error.influence_coefficients, *subject)
+    if hasattr(solution, "stress_plane"):
+        yield "planes", partial(plane_consistency.planes, *subject)
+    if problem.ball is not None:
+        of_ball = on_body(solution, BALL), source, problem.seen_from(BALL)
+        yield from ((f"{ON_BALL}{name}", law) for name, law in _of_body(*of_ball))
+
+
+def _of_body(solution: Solution, source: str, problem: CoatedContact) -> Iterator[tuple[str, Law]]:
+    """Invariants of the fields of one body, which is the flat of ``problem``."""
+    subject = (solution, source, problem)
+    yield "surface tractions", partial(force_balance.surface, *subject)
+    for k in range(1, len(problem.coatings) + 1):
+        yield f"bonded tractions, interface {k}", partial(bonded_deformation.bonded_traction, *subject, k)
+        yield (
+            f"bonded displacements, interface {k}",
+            partial(bonded_deformation.bonded_displacement, *subject, k),
+        )
+    for layer in range(len(problem.coatings) + 1):
+        stencil = force_balance.places_in(layer, solution, problem)
+        yield f"equilibrium, layer {layer}", partial(force_balance.equilibrium, *subject, layer, stencil)
+        yield f"Hooke's law, layer {layer}", partial(bonded_deformation.hooke, *subject, layer, stencil)
+    if problem.friction:
+        yield "reciprocity of load and sliding", partial(bonded_deformation.reciprocity, *subject)
+    yield "symmetry", partial(mirror_symmetry.symmetry, *subject)

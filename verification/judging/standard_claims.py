@@ -1,0 +1,51 @@
+"""Claims a case makes when its file names none: every quantity on every line, source against source."""
+
+from verification.judging.verdict import Claim
+from verification.problem.coated_contact import FLAT, CoatedContact
+from verification.problem.line_profile import Line, lines_of, oblique_lines
+from verification.problem.quantity import (
+    BALL_PEAKS,
+    DISPLACEMENTS,
+    IN_PLANE,
+    PEAKS,
+    QUANTITIES,
+    SCALARS,
+    SLOPES,
+    STRESSES,
+)
+from verification.sources.source_registry import pairs_of, sources_of
+
+
+def standard_claims(problem: CoatedContact) -> tuple[Claim, ...]:
+    """Every quantity on every line, no zone left out, for every pair of the sources of ``problem``."""
+    pairs = pairs_of(sources_of(problem))
+    why = "numbers of the contact as a whole"
+    claims = [
+        Claim(name, "contact", pair, QUANTITIES[name].cap, why) for pair in pairs for name in SCALARS + SLOPES
+    ]
+    why = "the tension a coating cracks by, where each source has it"
+    peaks = PEAKS if problem.ball is None else (*PEAKS, *BALL_PEAKS)
+    claims += [Claim(name, "contact", pair, QUANTITIES[name].cap, why) for pair in pairs for name in peaks]
+    why = "the stress a coating cracks or peels by"
+    for line in lines_of(problem):
+        for name in _quantities(line, problem):
+            claims += [Claim(name, line.name, pair, QUANTITIES[name].cap, why) for pair in pairs]
+    why = "all components, where none vanishes by symmetry"
+    displaced = pairs_of(sources_of(problem, "displacement"))
+    for line in oblique_lines(problem):
+        if line.place != "oblique surface":
+            claims += [Claim(n, line.name, pair, QUANTITIES[n].cap, why) for n in STRESSES for pair in pairs]
+        if line.place != "off plane":
+            claims += [
+                Claim(n, line.name, pair, QUANTITIES[n].cap, why) for n in DISPLACEMENTS for pair in displaced
+            ]
+    return tuple(claims)
+
+
+def _quantities(line: Line, problem: CoatedContact) -> tuple[str, ...]:
+    if line.place == "surface":
+        # sigma_zz = -p and sigma_xz = -f p hold by construction there; the pressure says it all.
+        return (*(("pressure",) if line.body == FLAT else ()), "sigma_xx", "sigma_yy")
+    if line.place == "axis":
+        return ("sigma_xx", "sigma_zz", *(("sigma_xz",) if problem.friction else ()))
+    return tuple(IN_PLANE)

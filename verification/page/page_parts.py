@@ -1,0 +1,159 @@
+"""Parts of a report page: cells, rows, tables, figures, sections."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from markupsafe import Markup
+
+from verification.judging.verdict import Outcome
+from verification.page.embedded_csv import embedded, written
+from verification.page.number_text import scientific
+from verification.page.source_labels import OUTCOMES
+from verification.running.case_result import CaseResult
+
+
+@dataclass(frozen=True)
+class Cell:
+    """``text`` of a table cell; ``sort`` orders a column where the text would not.
+
+    css : class names.   note : what a pointer or a screen reader adds.   href : where the cell leads.
+    """
+
+    text: str
+    sort: float | None = None
+    css: str = ""
+    note: str = ""
+    href: str = ""
+
+
+def number(value: float | None, show: Callable[[Any], str] = scientific, css: str = "") -> Cell:
+    """A cell that shows ``value``, a dash for None, and sorts by it."""
+    return Cell("–" if value is None else show(value), value, css)
+
+
+def words(text: str) -> Cell:
+    """A cell of running text, which may wrap."""
+    return Cell(text, css="words")
+
+
+def outcome_cell(outcome: Outcome, href: str = "") -> Cell:
+    """A verdict as mark, word and colour; it sorts by how bad it is."""
+    style = OUTCOMES[outcome]
+    return Cell(f"{style.mark} {style.word}", float(style.rank), f"verdict {style.css}", "", href)
+
+
+def case_cell(result: CaseResult, href: str) -> Cell:
+    """The title of a case as the head of a row, with its name for a pointer."""
+    return Cell(result.title, note=f"{result.title} ({result.name})", href=href)
+
+
+def tally(good: int, total: int, css: str = "") -> Cell:
+    """A cell "good of total" that sorts by the share."""
+    return Cell(f"{good} of {total}", good / total, css)
+
+
+@dataclass(frozen=True)
+class Row:
+    """One row: its ``head`` names it, ``css`` colours it."""
+
+    head: Cell
+    cells: Sequence[Cell]
+    css: str = ""
+
+
+def row(head: Cell | str, *cells: Cell | str, css: str = "") -> Row:
+    """A row of cells; text alone becomes a cell."""
+    first, *others = (cell if isinstance(cell, Cell) else Cell(cell) for cell in (head, *cells))
+    return Row(first, others, css)
+
+
+@dataclass(frozen=True)
+class Table:
+    """``columns`` head the cells, ``groups`` span them: (title, number of columns), "" for none.
+
+    The first column is that of the row heads. A table without rows is false, and not shown.
+    """
+
+    caption: str
+    columns: Sequence[str]
+    rows: Sequence[Row]
+    groups: Sequence[tuple[str, int]] = ()
+    css: str = ""
+
+    def __bool__(self) -> bool:
+        return bool(self.rows)
+
+
+@dataclass(frozen=True)
+class Panel:
+    """One drawn quantity: ``title`` with its scale, the figure, what a reader should look at."""
+
+    title: str
+    figure: Markup
+    note: str
+    css: str
+
+
+@dataclass(frozen=True)
+class Gallery:
+    """Figures side by side under one ``legend`` of (swatch, words), over one ``caption``.
+
+    csv : the numbers behind, where they are not those of the tables beside the figures.
+    """
+
+    legend: Sequence[tuple[Markup, str]]
+    panels: Sequence[Panel]
+    caption: str
+    csv: str = ""
+
+
+@dataclass(frozen=True)
+class Part:
+    """A paragraph of a section with the figures and the tables it introduces, under a ``title`` or none.
+
+    folded : what the reader clicks to unfold all of it; "" where it lies open.
+    """
+
+    text: str
+    tables: Sequence[Table] = ()
+    gallery: Gallery | None = None
+    title: str = ""
+    folded: str = ""
+
+    def __bool__(self) -> bool:
+        """False where there is nothing to show."""
+        return bool(self.text or self.title or self.gallery or any(self.tables))
+
+    @property
+    def download(self) -> str:
+        """The numbers of the gallery as a data address; "" without a gallery."""
+        if self.gallery is None:
+            return ""
+        return embedded(self.gallery.csv or written([row for item in self.tables for row in _cells_of(item)]))
+
+
+@dataclass(frozen=True)
+class Section:
+    """A part of the page about the run as a whole; ``failures`` are messages shown first."""
+
+    anchor: str
+    title: str
+    parts: Sequence[Part]
+    failures: Sequence[str] = ()
+
+
+def _cells_of(table: Table) -> list[list[str]]:
+    """Heads, then rows: the number of a cell where it has one, else its text."""
+    heads = list(table.columns)
+    if table.groups:
+        over = [title for title, count in table.groups for _ in range(count)]
+        heads = [f"{group}: {head}" if group else head for group, head in zip(over, heads, strict=True)]
+    rows = [
+        [
+            cell.text if cell.sort is None or cell.text in ("", "–") else f"{cell.sort:.9g}"
+            for cell in row.cells
+        ]
+        for row in table.rows
+    ]
+    return [heads, *([row.head.text, *cells] for row, cells in zip(table.rows, rows, strict=True)), []]

@@ -1,0 +1,252 @@
+"""The physical problem: a sphere, rigid or elastic, in contact with a coated elastic half-space.
+
+Origin at first contact, ``x`` along sliding, ``z`` into the body in question, surface at z = 0. Tension
+positive, pressure and load positive in compression. SI units.
+"""
+
+from dataclasses import dataclass, fields, replace
+from math import isfinite, pi
+from typing import Any, Protocol
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from verification.problem.array_types import Array, Ball, Coatings
+
+FLAT, BALL = "flat", "ball"  # the two bodies of a contact
+
+
+@dataclass(frozen=True)
+class CoatedContact:
+    """Sphere of ``radius`` [m] under ``load`` [N] on ``coatings`` bonded to ``substrate``.
+
+    coatings : ((E [Pa], nu, thickness [m]), ...) from the surface down; () is the uncoated solid.
+    substrate : (E [Pa], nu).   friction : f in q = f p, traction on the flat in +x and on the ball in -x.
+    ball : None is rigid; (E, nu, coatings) of an elastic ball, its coatings from its surface inwards.
+
+    Near the contact both bodies are layered half-spaces, with the gap r^2/2R before they deform. The scales
+    a_h, p_h, delta_h are those of both bodies without coatings.
+    Raises ValueError with a message naming the quantity and its value.
+    """
+
+    radius: float
+    load: float
+    coatings: Coatings
+    substrate: tuple[float, float]
+    friction: float = 0.0
+    ball: Ball | None = None
+
+    def __post_init__(self) -> None:
+        _require_positive("radius", self.radius)
+        _require_positive("load", self.load)
+        _require_solid(self.coatings, self.substrate, self.friction)
+        if self.ball is not None:
+            _require_solid(self.ball[2], self.ball[:2], 0.0, "ball.")
+
+    @property
+    def E_star(self) -> float:
+        """Contact modulus of both substrates [Pa], 1/E* = sum (1 - nu^2)/E. Johnson (4.20)."""
+        E, nu = self.substrate
+        if self.ball is None:
+            return E / (1 - nu**2)
+        return 1 / ((1 - nu**2) / E + (1 - self.ball[1] ** 2) / self.ball[0])
+
+    @property
+    def a_h(self) -> float:
+        """Hertz contact radius of the bare substrates, (3 W R / 4 E*)^(1/3) [m]. Johnson (4.22)."""
+        return (3 * self.load * self.radius / (4 * self.E_star)) ** (1 / 3)
+
+    @property
+    def p_h(self) -> float:
+        """Hertz peak pressure of the bare substrates, 3 W / (2 pi a_h^2) [Pa]. Johnson (4.24)."""
+        return 3 * self.load / (2 * pi * self.a_h**2)
+
+    @property
+    def delta_h(self) -> float:
+        """Hertz approach of the bare substrates, a_h^2 / R [m]. Johnson (4.23)."""
+        return self.a_h**2 / self.radius
+
+    @property
+    def S_h(self) -> float:
+        """Hertz stiffness dW/d delta of the bare substrate, 2 E* a_h [N/m]. Johnson (4.23) differentiated."""
+        return 2 * self.E_star * self.a_h
+
+    @property
+    def bodies(self) -> tuple[str, ...]:
+        """The elastic bodies by name."""
+        return (FLAT,) if self.ball is None else (FLAT, BALL)
+
+    def seen_from(self, body: str) -> "CoatedContact":
+        """The same contact with ``body`` as the flat: of the ball the two bodies are exchanged.
+
+        Raises ValueError where the ball is rigid.
+        """
+        if body == FLAT:
+            return self
+        if body != BALL or self.ball is None:
+            raise ValueError(f"body = {body!r}; this contact has {' and '.join(self.bodies)}")
+        E, nu, coatings = self.ball
+        return replace(self, coatings=coatings, substrate=(E, nu), ball=(*self.substrate, self.coatings))
+
+    @property
+    def dundurs_beta(self) -> float:
+        """Dundurs' beta of the two materials in contact, which couples pressure and friction. Johnson (5.3).
+
+        beta = [(1 - 2 nu_f)/G_f - (1 - 2 nu_b)/G_b] / 2 / [(1 - nu_f)/G_f + (1 - nu_b)/G_b]
+        """
+        surfaces = [(*self.coatings, self.substrate)[0][:2]]
+        if self.ball is not None:
+            surfaces.append((*self.ball[2], self.ball[:2])[0][:2])
+        # 1/G with its sign: the ball opposes the flat
+        one, two = [(2 * (1 + nu) / E, nu) for E, nu in surfaces] + [(0.0, 0.0)] * (2 - len(surfaces))
+        coupled = one[0] * (1 - 2 * one[1]) - two[0] * (1 - 2 * two[1])
+        return coupled / 2 / (one[0] * (1 - one[1]) + two[0] * (1 - two[1]))
+
+    @property
+    def interfaces(self) -> tuple[float, ...]:
+        """Depth of each interface [m], from the surface down."""
+        return tuple(float(z) for z in np.cumsum([thickness for _, _, thickness in self.coatings]))
+
+    @property
+    def homogeneous(self) -> bool:
+        """True where every layer of either body has the moduli of its substrate, so that Hertz holds."""
+        ball = () if self.ball is None else self.ball[2]
+        same = [(E, nu) == self.substrate for E, nu, _ in self.coatings]
+        return all([*same, *((E, nu) == self.ball[:2] for E, nu, _ in ball if self.ball)])
+
+    def under_disc(self, pressure: float, load_radius: float) -> "PrescribedLoad":
+        """The same solid, friction included, under ``pressure`` [Pa] on a disc of ``load_radius`` [m]."""
+        shared = {f.name for f in fields(PrescribedLoad)} & {f.name for f in fields(self)}
+        return PrescribedLoad(pressure, load_radius, **{name: getattr(self, name) for name in shared})
+
+
+@dataclass(frozen=True)
+class PrescribedLoad:
+    """Uniform ``pressure`` [Pa] on a disc of ``load_radius`` [m], on ``coatings`` bonded to ``substrate``.
+
+    coatings, substrate, friction as in CoatedContact.
+    Raises ValueError with a message naming the quantity and its value.
+    """
+
+    pressure: float
+    load_radius: float
+    coatings: Coatings
+    substrate: tuple[float, float]
+    friction: float = 0.0
+
+    def __post_init__(self) -> None:
+        _require_positive("pressure", self.pressure)
+        _require_positive("load_radius", self.load_radius)
+        _require_solid(self.coatings, self.substrate, self.friction)
+
+
+def keywords(problem: CoatedContact | PrescribedLoad) -> dict[str, Any]:
+    """The fields of ``problem`` by name, as keywords of a solver."""
+    return {f.name: getattr(problem, f.name) for f in fields(problem)}
+
+
+@dataclass(frozen=True)
+class Uncertainty:
+    """Uncertainty of the scalars of a reference, absolute, SI: of a closed form 0, otherwise by quadrature.
+
+    budget : (scalar, contribution, value) of each that is not exact.
+    """
+
+    contact_radius: float = 0.0
+    approach: float = 0.0
+    peak_pressure: float = 0.0
+    budget: tuple[tuple[str, str, float], ...] = ()
+
+
+class NotClaimed(ValueError):
+    """A source does not give the field that was requested; this is no failure of it."""
+
+
+class Solution(Protocol):
+    """Solution that both methods and the references return; see each method for its own record.
+
+    Of a contact with an elastic ball, stresses and displacements are those of the flat, with ``body="ball"``
+    those of the ball: z into it, x and y as on the flat.
+    ``displacement`` of a reference without displacements raises NotClaimed. ``stiffness`` is dW/d
+    delta, None where a method has none.
+    """
+
+    @property
+    def contact_radius(self) -> float: ...
+    @property
+    def approach(self) -> float: ...
+    @property
+    def peak_pressure(self) -> float: ...
+    @property
+    def stiffness(self) -> float | None: ...
+    @property
+    def stiffness_uncertainty(self) -> float | None: ...
+    @property
+    def uncertainty(self) -> Any: ...
+    @property
+    def diagnostics(self) -> Any: ...
+    @property
+    def surface_nodes(self) -> Array: ...
+    def pressure(self, x: ArrayLike, y: ArrayLike = 0.0) -> Array: ...
+    def stress(self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None) -> Array: ...
+    def displacement(self, x: ArrayLike, y: ArrayLike, z: ArrayLike) -> Array: ...
+    def pressure_uncertainty(self, x: ArrayLike, y: ArrayLike = 0.0) -> Array: ...
+    def stress_uncertainty(
+        self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None
+    ) -> Array: ...
+    def displacement_uncertainty(self, x: ArrayLike, y: ArrayLike, z: ArrayLike) -> Array: ...
+
+
+def stress_with_uncertainty(
+    solution: Solution, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None, body: str = FLAT
+) -> tuple[Array, Array | None]:
+    """Stress and its uncertainty [Pa] at points, (3, 3) + points; None where the solution states none.
+
+    A solution with a method of this name evaluates its stress once for both.
+    """
+    of: dict[str, Any] = {"layer": layer} if body == FLAT else {"layer": layer, "body": body}
+    return _with_uncertainty(solution, "stress", x, y, z, **of)
+
+
+def displacement_with_uncertainty(
+    solution: Solution, x: ArrayLike, y: ArrayLike, z: ArrayLike, body: str = FLAT
+) -> tuple[Array, Array | None]:
+    """Displacement and its uncertainty [m] at points, (3,) + points, as ``stress_with_uncertainty``."""
+    of = {} if body == FLAT else {"body": body}
+    return _with_uncertainty(solution, "displacement", x, y, z, **of)
+
+
+def _with_uncertainty(
+    solution: Solution, field: str, *points: ArrayLike, **of: Any
+) -> tuple[Array, Array | None]:
+    if solution.uncertainty is None:
+        return getattr(solution, field)(*points, **of), None
+    # Looked up in the type: a wrapper that changes the field alone must not be passed over.
+    both = getattr(type(solution), f"{field}_with_uncertainty", None)
+    if both is not None:
+        value, U = both(solution, *points, **of)
+        return value, U
+    return getattr(solution, field)(*points, **of), getattr(solution, f"{field}_uncertainty")(*points, **of)
+
+
+def _require_solid(coatings: Coatings, substrate: tuple[float, float], friction: float, of: str = "") -> None:
+    for i, (E, nu, thickness) in enumerate(coatings):
+        _require_positive(f"{of}coatings[{i}].E", E)
+        _require_poisson(f"{of}coatings[{i}].nu", nu)
+        _require_positive(f"{of}coatings[{i}].thickness", thickness)
+    of = of or "substrate."
+    _require_positive(f"{of}E", substrate[0])
+    _require_poisson(f"{of}nu", substrate[1])
+    if not (isfinite(friction) and friction >= 0):
+        raise ValueError(f"friction = {friction:g}; Coulomb's coefficient is zero or positive")
+
+
+def _require_positive(name: str, value: float) -> None:
+    if not (isfinite(value) and value > 0):
+        raise ValueError(f"{name} = {value:g}; it must be a positive finite number")
+
+
+def _require_poisson(name: str, nu: float) -> None:
+    # nu = 1/2 is physical; a method that does not support it raises its own error.
+    if not -1 < nu <= 0.5:
+        raise ValueError(f"{name} = {nu:g}; an isotropic solid has -1 < nu <= 0.5")

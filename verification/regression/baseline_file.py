@@ -1,0 +1,105 @@
+"""The baseline as one compressed file, its numbers to a hundredth of what counts as a change."""
+
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+from verification.problem.array_types import Array
+from verification.regression.baseline_change import Baseline, Update
+from verification.regression.manifest import Manifest
+from verification.regression.number_drift import RELATIVE, TOLERANCE, Numbers
+from verification.running.checked_files import StoreError, read_checked, write_checked
+from verification.running.json_records import decode, encode
+
+SCHEMA = "coatcheck-baseline/2"
+DIGITS = 0.01  # of the least change that counts
+
+
+@dataclass(frozen=True, eq=False)
+class _Profile:
+    """``Numbers`` without its points, which all profiles of a line share.
+
+    value : whole multiples of ``step`` [SI].   U : uncertainty to three digits.
+    """
+
+    source: str
+    quantity: str
+    line: str
+    scale: float
+    step: float
+    value: Array
+    U: Array | None
+
+
+@dataclass(frozen=True, eq=False)
+class _Case:
+    digest: str
+    manifest: Manifest
+    lines: dict[str, Array]
+    profiles: tuple[_Profile, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class _File:
+    schema: str
+    cases: dict[str, _Case]
+    history: tuple[Update, ...]
+    self_tests: dict[str, int] = field(default_factory=dict)
+
+
+def path_in(folder: Path) -> Path:
+    """Path of the baseline in ``folder``."""
+    return folder / "baseline.json.xz"
+
+
+def write_baseline(folder: Path, baseline: Baseline) -> Path:
+    """Store the baseline in ``folder``, whole or not at all. Raises StoreError."""
+    path = path_in(folder)
+    cases = {
+        name: _Case(
+            baseline.digests[name],
+            baseline.manifests[name],
+            {n.line: _digits(n.position, 12) for n in found},
+            tuple(_stored(n) for n in found),
+        )
+        for name, found in baseline.cases.items()
+    }
+    write_checked(path, encode(_File(SCHEMA, cases, baseline.history, dict(baseline.self_tests))))
+    return path
+
+
+def read_baseline(folder: Path) -> Baseline | None:
+    """The baseline in ``folder``, None where there is none. Raises StoreError where it is damaged."""
+    path = path_in(folder)
+    if not path.exists():
+        return None
+    data = read_checked(path)
+    if data.get("schema") != SCHEMA:
+        raise StoreError(f"{path}: schema = {data.get('schema')!r}; this version reads {SCHEMA!r}")
+    try:
+        file = decode(_File, data)
+        numbers = {name: tuple(_numbers(p, c) for p in c.profiles) for name, c in file.cases.items()}
+    except (KeyError, ValueError) as error:
+        raise StoreError(f"{path}: not a baseline ({error}); restore it or update it") from None
+    digests = {name: case.digest for name, case in file.cases.items()}
+    manifests = {name: case.manifest for name, case in file.cases.items()}
+    return Baseline(numbers, digests, file.history, manifests, file.self_tests)
+
+
+def _stored(n: Numbers) -> _Profile:
+    U = None if n.uncertainty is None else _digits(n.uncertainty, 3)
+    least = RELATIVE * n.scale if n.uncertainty is None else float(np.min(n.uncertainty))
+    step = DIGITS * min(max(least, TOLERANCE * n.scale), RELATIVE * n.scale)
+    # No step of a scale that is 0, NaN or infinite.
+    step = float(f"{step:.3g}") if 0 < step < np.inf else 1.0
+    return _Profile(n.source, n.quantity, n.line, n.scale, step, np.round(n.value / step), U)
+
+
+def _numbers(p: _Profile, case: _Case) -> Numbers:
+    value = p.value * p.step
+    return Numbers(p.source, p.quantity, p.line, case.lines[p.line], value, p.scale, p.U)
+
+
+def _digits(values: Array, digits: int) -> Array:
+    return np.array([float(f"{value:.{digits}g}") for value in values.tolist()])

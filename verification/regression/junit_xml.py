@@ -1,0 +1,101 @@
+"""JUnit XML: one test case for each comparison, invariant, self-test, so that any CI can read a run."""
+
+import re
+from collections.abc import Mapping, Sequence
+from xml.etree.ElementTree import Element, SubElement, indent, tostring
+
+from verification.judging.verdict import Outcome
+from verification.regression.baseline_change import Regression, State
+from verification.regression.manifest import manifest_message
+from verification.running.case_result import CaseResult, RunInfo
+
+# XML 1.0 has no way to write these, not even escaped.
+_FORBIDDEN = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
+
+
+def junit_xml(
+    results: Sequence[CaseResult],
+    info: RunInfo,
+    beside: Regression | None = None,
+    tests: Mapping[str, str] | None = None,
+) -> str:
+    """The verdicts as JUnit XML, with the manifest and the baseline ``beside`` them.
+
+    DISAGREES is a failure, NO_RESULT an error. INCONCLUSIVE is a failure too, of its own type: only
+    AGREES passes, and a skipped test counts as passed in most readers of this format. UNSUPPORTED, what a
+    guest does not give, is skipped.
+    tests : what each self-test found wrong, "" where it passed.
+    """
+    root = Element("testsuites", name="coatcheck", time=f"{info.seconds:.3f}")
+    for result in results:
+        _suite(root, result, info)
+    messages = {f"self-test of the {name}": message for name, message in (tests or {}).items()}
+    if beside is not None and beside.update is not None:
+        moved = [
+            case.name for case in beside.cases if case.beyond or case.state in (State.DRIFTED, State.GONE)
+        ]
+        messages["manifest"] = manifest_message(beside.less)
+        messages["baseline"] = f"drifted: {', '.join(moved)}" if beside.unexplained else ""
+    if messages:
+        suite = SubElement(root, "testsuite", name="run", time="0", skipped="0", errors="0")
+        for name, message in messages.items():
+            item = SubElement(suite, "testcase", classname="run", name=name, time="0")
+            _mark(item, Outcome.DISAGREES if message else Outcome.AGREES, message, message)
+        suite.set("tests", str(len(messages)))
+        suite.set("failures", str(sum(map(bool, messages.values()))))
+    for name in ("tests", "failures", "errors"):
+        root.set(name, str(sum(int(suite.get(name, "0")) for suite in root)))
+    indent(root)
+    return '<?xml version="1.0" encoding="utf-8"?>\n' + tostring(root, encoding="unicode") + "\n"
+
+
+def _suite(root: Element, result: CaseResult, info: RunInfo) -> None:
+    suite = SubElement(
+        root,
+        "testsuite",
+        name=_text(result.name),
+        time=f"{result.seconds:.3f}",
+        timestamp=_text(info.started),
+    )
+    properties = SubElement(suite, "properties")
+    SubElement(properties, "property", name="title", value=_text(result.title))
+    for claim, verdict in result.verdicts:
+        name = f"{claim.quantity} on {claim.line}: {' against '.join(claim.between)}"
+        item = SubElement(suite, "testcase", classname=_text(result.name), name=_text(name), time="0")
+        text = (
+            f"{verdict.reason}\ndifference {_number(verdict.difference)}, uncertainty "
+            f"{_number(verdict.uncertainty)}, cap {_number(claim.cap)}, margin {_number(verdict.margin)}"
+        )
+        _mark(item, verdict.outcome, verdict.reason, text)
+    for one in result.invariants:
+        name = f"{one.name} of {one.source}"
+        item = SubElement(suite, "testcase", classname=_text(result.name), name=_text(name), time="0")
+        text = f"{one.message}\nresidual {_number(one.value)}, bound {_number(one.bound)}"
+        _mark(item, one.outcome, one.message, text)
+    if not result.verdicts:
+        # A case without a result must not vanish from the count.
+        item = SubElement(suite, "testcase", classname=_text(result.name), name="case", time="0")
+        failures = [f"{s.source}: {s.failure}" for s in result.sources if s.failure is not None]
+        _mark(item, Outcome.NO_RESULT, "the case has no comparison", "\n".join(failures))
+    suite.set("tests", str(len(suite.findall("testcase"))))
+    suite.set("failures", str(len(suite.findall("testcase/failure"))))
+    suite.set("errors", str(len(suite.findall("testcase/error"))))
+    suite.set("skipped", str(len(suite.findall("testcase/skipped"))))
+
+
+def _mark(item: Element, outcome: Outcome, reason: str, text: str) -> None:
+    if outcome is Outcome.AGREES:
+        return
+    if outcome is Outcome.UNSUPPORTED:
+        SubElement(item, "skipped", message=_text(reason))
+        return
+    tag = "error" if outcome is Outcome.NO_RESULT else "failure"
+    SubElement(item, tag, type=outcome.value, message=_text(reason)).text = _text(text)
+
+
+def _number(value: float | None) -> str:
+    return "-" if value is None else f"{value:.1e}"
+
+
+def _text(text: str) -> str:
+    return _FORBIDDEN.sub("\ufffd", text)

@@ -1,0 +1,315 @@
+"""Credibility of the verdicts: evidence in eight steps, each figure with its date, its commit.
+
+In the order of ASME V&V 10-2006, Guide for Verification and Validation in Computational Solid Mechanics, with
+further requirements of NASA-STD-7009A (2016), Standard for Models and Simulations: limits of use, robustness
+of the result, evidence for each.
+"""
+
+from collections.abc import Sequence
+
+from verification.credibility.import_independence import shared
+from verification.credibility.self_tests.known_enclosures import TEST
+from verification.evidence.alarm_record import DECADES, AlarmRecord
+from verification.evidence.enclosure_record import EnclosureRecord
+from verification.evidence.fault_record import Record
+from verification.evidence.mutant_record import MutantRecord
+from verification.judging.verdict import Outcome
+from verification.page.number_text import plain
+from verification.page.page_parts import Gallery, Panel, Part, Section, Table, row, words
+from verification.page.source_labels import source_label
+from verification.page.svg_loglog import draw_histogram
+from verification.regression.baseline_section import baseline_message
+from verification.report.credibility.credibility_tables import (
+    alarm_table,
+    design_table,
+    import_table,
+    pair_table,
+    parameter_table,
+    range_table,
+    two_sided_table,
+)
+from verification.report.credibility.manifest_section import manifest_parts, short_message
+from verification.report.credibility.mutants_section import mutants_message
+from verification.report.report_material import Evidence, Material
+from verification.report.sections.accuracy_section import accuracies, coverage_table
+from verification.running.case_result import CaseResult
+
+ANCHOR = "credibility"
+NO_RECORD = ("Not measured: there is no record of {}; make one with: coatcheck {} --record", "not measured")
+ASSUMED = (
+    "A rigid, parabolic sphere, much larger than the contact; small strains; linear, isotropic, elastic "
+    "layers with nu < 1/2, perfectly bonded, on a half-space; no adhesion, no roughness; Coulomb friction "
+    "q = f p that leaves p unchanged."
+)
+COMMON_TITLES = (
+    "What the semi-analytical method and the integral equation share",
+    "What comparisons of a sphere test of the patches",
+)
+COMMON_EQUATION = (
+    "For a sphere, the semi-analytical method and the exact integral equation discretise one equation, "
+    "without common code: the deflection under a pressure given by its Abel potential phi, of the surface "
+    "material alone plus a Hankel integral of the layers' response, closes the gap. The method closes it "
+    "at Gauss points of 1 - (r/a)^2; its unknowns are the approach and the coefficients of phi over 1 - "
+    "(x/a)^2; a follows by secant steps. The reference inverts Abel's integral to a Fredholm equation of "
+    "the second kind; its unknowns are the values of phi at Gauss points of x/a (Nystrom); phi(a) = 0 "
+    "gives the approach, Brent's method a. The method has the layers' response from Papkovich potentials "
+    "with reflection matrices, the reference from state vectors with surface impedances; their panels in "
+    "the wavenumber differ. The part of the homogeneous solid in the stresses of the first coating is a "
+    "contour integral in the method, Hankel quadrature in the reference, with a closed form on the "
+    "surface. Both use even Legendre series with spherical Bessel functions for the transform of the "
+    "pressure. Agreement of these two therefore says less than agreement of either with the finite "
+    "elements, which share only the assumptions.",
+    "The patches of a sphere find what its edge profile leaves, usually nothing above their tolerance, "
+    "and the approach: comparisons of a sphere hardly test influence coefficients, conjugate gradients "
+    "and DC-FFT. The studies without the profile, named staircase edge, compare these with the exact "
+    "solution in the section Semi-analytical accuracy of every default run; an invariant of every case "
+    "compares the influence coefficients with direct quadrature.",
+)
+NOT_CLAIMED = (
+    "Validity for a real coating: nothing was compared with an experiment, so this is verification, not "
+    "validation. Detection of an error in the assumptions common to both methods. Surface stresses at fixed "
+    "points next to the contact edge better than the root of the error of the radius; the largest tension "
+    "has no such root. A strict bound by the uncertainty: it is an estimate from coarser solutions, and the "
+    "share in which it covers the true error is given above. Detection of other kinds of faults at the rate "
+    "of those that were planted. The same accuracy outside the ranges above."
+)
+
+
+def section(material: Material) -> Section | None:
+    """Eight steps from the intended use to the limits of the claim, under a table of their figures.
+
+    None where no evidence was collected.
+    """
+    results, evidence = material.results, material.evidence
+    if evidence == Evidence():
+        return None
+    contacts = material.contacts
+    parts = [
+        Part(
+            "Evidence for the verdicts of this report, in the order of ASME V&V 10 (Guide for Verification "
+            "and Validation in Computational Solid Mechanics) with further requirements of NASA-STD-7009A. "
+            "Every figure was measured in this run or is read from a record with its date and commit.",
+            [_overview(material)],
+        ),
+        Part(
+            "Deciding whether numerical solutions of one mathematical model are correct within a stated "
+            f"uncertainty. The model: {ASSUMED[0].lower()}{ASSUMED[1:]} Ranges of the problems of this "
+            "run and of the random problems of the false alarm rate:",
+            [range_table(contacts)],
+            title="1. Intended use and limits",
+        ),
+        Part(
+            "Orders of convergence on problems with a known solution: manufactured fields in two bonded "
+            "materials for the finite element operator below, exact solutions of the contact for both "
+            "methods in the accuracy sections.",
+            [design_table(evidence.orders)],
+            title="2. Code verification",
+        ),
+        Part(
+            "Every method states an uncertainty U for each number, estimated from coarser solutions of the "
+            "same problem: for a sphere from fewer terms of the edge profile, for finite elements from a "
+            "coarser mesh. U is checked where the exact solution is known: "
+            f"{_bracketed(contacts)}",
+            [coverage_table(contacts), parameter_table(contacts)],
+            title="3. Solution verification",
+        ),
+        Part(
+            f"{_compared(results)} {_enclosed(evidence)}",
+            [pair_table(results), two_sided_table(evidence.enclosures)],
+            title="4. Comparison with references and between methods",
+        ),
+        *manifest_parts(material),
+        Part(
+            _independent(evidence), [import_table(evidence.parts)], title="5. Independence of the two methods"
+        ),
+        *(Part(text, folded=title) for title, text in zip(COMMON_TITLES, COMMON_EQUATION, strict=True)),
+        Part(f"{_faults(evidence)} {_mutants(evidence)}", [], title="6. Fault detection"),
+        Part(_alarms(evidence), [], _histograms(evidence), "7. False alarms"),
+        Part("", [alarm_table(evidence.alarms)], folded="Verdicts of clean problems that are not AGREES"),
+        Part(NOT_CLAIMED, title="8. Not claimed"),
+    ]
+    return Section(ANCHOR, "Credibility", parts, evidence.failures)
+
+
+def figures(evidence: Evidence) -> tuple[str, str]:
+    """Fault detection score and false alarm rate as sentences, each with date and commit."""
+    return _faults(evidence), _alarms(evidence)
+
+
+def _overview(material: Material) -> Table:
+    results, info, evidence = material.results, material.info, material.evidence
+    here = f"this run, {info.started[:10]}, {info.commit or 'no commit'}"
+    good = [one for one in evidence.orders if one.as_designed]
+    invariants = [one for result in results for one in result.invariants]
+    holding = sum(one.outcome is Outcome.AGREES for one in invariants)
+    agreeing, total = _agreeing(results)
+    design, refinements, regression = "not measured", "not measured in this run", "not measured"
+    if evidence.orders:
+        design = f"{len(good)} of {len(evidence.orders)} manufactured solutions at their design order"
+    if evidence.accuracy is not None:
+        refinements = f"{len(evidence.accuracy.refinements)} refinement studies on exact solutions"
+    if evidence.baseline is not None:
+        regression = baseline_message(evidence.baseline)
+    held = f"{holding} of {len(invariants)} invariants hold" if invariants else "not measured"
+    rows = [
+        ("Code verification", f"{design}; {refinements}", here),
+        ("Solution verification", _bracketed(material.contacts), here),
+        ("Invariants of each solution", held, here),
+        ("Exact reference", _enclosed(evidence, short=True), _when(evidence.enclosures)),
+        ("Comparison", f"{agreeing} of {total} comparisons agree", here),
+        ("What was judged", short_message(material), here),
+        ("Independence", _short_independence(evidence), here),
+        ("Regression", regression, here),
+        ("Fault detection", _faults(evidence, short=True), _when(evidence.faults)),
+        ("Mutation testing", _mutants(evidence, short=True), _when(evidence.mutants)),
+        ("False alarms", _alarms(evidence, short=True), _when(evidence.alarms)),
+    ]
+    return Table(
+        "Overview of the evidence.",
+        ["question", "found", "measured"],
+        [row(name, words(found), words(when)) for name, found, when in rows],
+    )
+
+
+def _when(record: Record | AlarmRecord | MutantRecord | EnclosureRecord | None) -> str:
+    made = record.info if isinstance(record, MutantRecord) else record
+    return "never" if made is None else f"{made.started[:10]}, {made.commit or 'no commit'}"
+
+
+def _agreeing(results: Sequence[CaseResult]) -> tuple[int, int]:
+    verdicts = [verdict for result in results for _, verdict in result.verdicts]
+    return sum(verdict.outcome is Outcome.AGREES for verdict in verdicts), len(verdicts)
+
+
+def _bracketed(results: Sequence[CaseResult]) -> str:
+    found = [item for result in results for item in accuracies(result)]
+    if not found:
+        return "not measured: no case of this run has an exact reference."
+    good = sum(item.covered for item in found)
+    return (
+        f"U covers the true error at every judged point in {good} of {len(found)} quantities "
+        f"({plain(100 * good / len(found), 3)} %)."
+    )
+
+
+def _compared(results: Sequence[CaseResult]) -> str:
+    agreeing, total = _agreeing(results)
+    if not total:
+        return "Nothing was compared in this run."
+    text = f"{agreeing} of {total} comparisons of this run agree."
+    if not any(result.published for result in results):
+        text += " Published results were not part of it: coatcheck run published."
+    return text
+
+
+def _enclosed(evidence: Evidence, *, short: bool = False) -> str:
+    """What is proven of the exact reference, with what this run found of it."""
+    record = evidence.enclosures
+    if record is None:
+        return NO_RECORD[short].format("enclosures", "certify")
+    values = [bounds for one in record.enclosures for bounds in one.bounds]
+    text = (
+        f"Proven bounds hold {len(values)} values of {len(record.enclosures)} problems, relative width "
+        f"{plain(max(bounds.width for bounds in values), 2)} at most."
+    )
+    if short:
+        return text
+    held = next((test for test in evidence.self_tests if test.name == TEST), None)
+    found = "" if held is None else f" Held against them in this run: {held.found}."
+    return (
+        "The exact reference states its uncertainty by two resolutions; it is checked against enclosures of "
+        f"the integral equation by ball arithmetic, without common code. {text} Made {_when(record)}, by "
+        f"coatcheck certify with python-flint {record.versions.get('python-flint', 'unknown')}; the proof is "
+        f"in the manual.{found}"
+    )
+
+
+def _independent(evidence: Evidence) -> str:
+    if not evidence.parts:
+        return "Not measured: the source of the packages could not be read."
+    first, second = evidence.parts[:2]
+    common = ", ".join(shared(first, second)) or "none"
+    both = ", ".join(sorted(set(first.packages) & set(second.packages))) or "none"
+    return (
+        f"{_short_independence(evidence)} Read from the installed source. Packages that both "
+        f"methods use: {both}; modules that both import: {common}. A fault in one of these, in Python "
+        "or in the processor affects both. So does a fault in their common assumptions, in the statement of "
+        "the problem, in the sampling and judging of both; the last two are checked by planted faults and by "
+        "self-tests of the harness."
+    )
+
+
+def _short_independence(evidence: Evidence) -> str:
+    if not evidence.parts:
+        return "not measured"
+    bad = [message for part in evidence.parts for message in (*part.forbidden, *part.hidden)]
+    if bad:
+        return f"{len(bad)} imports are forbidden: {'; '.join(bad[:5])}."
+    counted = sum(part.statements for part in evidence.parts)
+    files = sum(part.files for part in evidence.parts)
+    return f"None of {counted} imports in {files} files of both methods and the references is forbidden."
+
+
+def _faults(evidence: Evidence, *, short: bool = False) -> str:
+    record = evidence.faults
+    if record is None:
+        return NO_RECORD[short].format("planted faults", "faults")
+    text = (
+        f"{record.caught} of {len(record.rows)} planted faults are detected, "
+        f"{plain(100 * record.share, 3)} %; {record.as_predicted} of them by the predicted check."
+    )
+    if short:
+        return text
+    survivors = "Those that were not are in the section on planted faults." if record.survivors else ""
+    return (
+        f"{text} Measured {_when(record)}, by coatcheck faults, which also tabulates faults against checks. "
+        f"A crash alone does not count as detected. {survivors}"
+    )
+
+
+def _mutants(evidence: Evidence, *, short: bool = False) -> str:
+    record = evidence.mutants
+    if record is None:
+        return NO_RECORD[short].format("mutants", "mutants")
+    text = mutants_message(record)
+    return text if short else f"Apart from these, changes at random places: {text} Measured {_when(record)}."
+
+
+def _histograms(evidence: Evidence) -> Gallery | None:
+    """Error over uncertainty of each method in the random problems of the false alarms."""
+    record = evidence.alarms
+    if record is None or not any(one.values for one in record.ratios):
+        return None
+    panels = [
+        Panel(
+            source_label(one.source),
+            draw_histogram(DECADES, one.counts, f"Error over uncertainty of {source_label(one.source)}"),
+            f"{one.values} values, {100 * one.within:.4g} % within U, largest error over U "
+            f"{one.largest:.3g}; median of U over the error {one.median:.3g}",
+            "",
+        )
+        for one in record.ratios
+    ]
+    caption = (
+        "Error over stated uncertainty of every value in the random problems, the integral equation taken "
+        "for the truth; errors below 1e-9 of the largest value of a profile are left out. Right of the line, "
+        "an error exceeds its uncertainty; far to the left, an uncertainty is needlessly large."
+    )
+    return Gallery((), panels, caption)
+
+
+def _alarms(evidence: Evidence, *, short: bool = False) -> str:
+    record = evidence.alarms
+    if record is None:
+        return NO_RECORD[short].format("false alarms", "alarms")
+    text = (
+        f"{len(record.alarms)} false alarms in {record.comparisons} comparisons and {record.invariants} "
+        f"invariants of {record.problems} clean random problems; {record.agreeing} of the problems agree "
+        "throughout."
+    )
+    if short:
+        return text
+    return (
+        f"{text} Measured {_when(record)}, by coatcheck alarms --count {record.problems} --seed "
+        f"{record.seed}. INCONCLUSIVE and a missing result count as alarms, too."
+    )

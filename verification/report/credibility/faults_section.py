@@ -1,0 +1,219 @@
+"""Planted faults: share detected, checks that detect each, those that none detects."""
+
+from collections import Counter
+from collections.abc import Sequence
+
+from verification.credibility.faults.default_checks import COLUMNS
+from verification.credibility.faults.fault_catalogue import GROUPS
+from verification.evidence.fault_record import Catch, Record, Tally
+from verification.evidence.fault_record import Row as Fault
+from verification.page.html_page import render_sections
+from verification.page.number_text import plain, scientific, seconds
+from verification.page.page_parts import Cell, Part, Section, Table, number, row, words
+from verification.page.source_labels import source_label
+from verification.report.report_material import Material
+
+# Mark, class and words of each outcome of a planted fault.
+_CATCHES = {
+    Catch.DISAGREES: ("✓ detected", "verdict agrees", "a check that must hold does not"),
+    Catch.INCONCLUSIVE: (
+        "? inconclusive",
+        "verdict inconclusive",
+        "the uncertainty it leaves exceeds the cap",
+    ),
+    Catch.DRIFTED: ("~ baseline", "verdict inconclusive", "a number differs from the baseline"),
+    Catch.NO_RESULT: ("∅ no result", "verdict no-result", "the source fails without a reason"),
+    Catch.SURVIVED: ("✗ survived", "verdict disagrees", "every check passes"),
+    Catch.NOT_TRIED: ("∅ not tried", "verdict no-result", "the trial failed"),
+}
+
+
+def faults_message(record: Record) -> str:
+    """The score as a message."""
+    text = (
+        f"{record.caught} of {len(record.rows)} planted faults are detected "
+        f"({plain(100 * record.share, 3)} %), "
+        f"{record.as_predicted} of them by the check predicted before the trial"
+    )
+    if record.controls:
+        text += (
+            f"; of {len(record.controls)} negative controls {len(record.alarms) or 'none'} raised an alarm"
+        )
+    return text + "."
+
+
+def section(material: Material) -> Section | None:
+    """The planted faults on record; None without a record."""
+    record = material.evidence.faults
+    return None if record is None else faults_section(record)
+
+
+def faults_section(record: Record) -> Section:
+    """Planted faults as a section of any page: method, share detected, survivors, checks of each fault."""
+    method = (
+        "One fault at a time is planted in the running code by changing a few words of one function, and the "
+        "checks of the default run are applied to the result. Only the faulty source is solved again, with "
+        "the default numerics; the other sources keep the results of a clean run. Date "
+        f"{record.started[:10]}, commit {record.commit or 'unknown'}, {seconds(record.core_seconds)} on one "
+        "core."
+    )
+    parts = [Part(method), Part(faults_message(record), [_score(record)])]
+    if survivors := _survivors(record):
+        parts.append(
+            Part("Faults that were not detected, with the reason and a possible check.", [survivors])
+        )
+    if record.controls:
+        text = "Negative controls, the same trials with nothing planted: any detection is a false alarm."
+        parts.append(Part(text, [_controls(record.controls)]))
+    parts.append(Part(_explained(record), title="Faults against checks"))
+    parts += [
+        Part("", [_matrix(rows, title)], folded=f"{title}, {len(rows)} faults")
+        for title, rows in _groups(record)
+    ]
+    failures = [f"{row.name} changes no number, so it is not a fault." for row in record.idle]
+    failures += [f"{row.name}, a negative control, is detected: {row.by}" for row in record.alarms]
+    failures += [f"{row.name}: {row.failure}" for row in record.rows if row.failure]
+    failures += [
+        f"Fails without any fault, so that it is no evidence: {check}" for check in record.failing_clean
+    ]
+    return Section("faults", "Planted faults", parts, failures)
+
+
+def faults_page(record: Record) -> str:
+    """The section as a page of its own."""
+    facts = (
+        ("started", record.started.replace("T", " ").replace("+00:00", " UTC")),
+        ("duration", seconds(record.seconds)),
+        ("on one core", seconds(record.core_seconds)),
+        ("commit", record.commit or "not in a repository"),
+        ("machine", record.machine),
+        *record.versions.items(),
+    )
+    return render_sections(
+        "coatcheck faults",
+        faults_message(record),
+        facts,
+        [faults_section(record)],
+        "Written by coatcheck faults.",
+    )
+
+
+def _explained(record: Record) -> str:
+    columns = "; ".join(f"“{title}”: {text}" for title, text in COLUMNS.items())
+    blind = sum(_only_coated(row) for row in record.rows)
+    first = (
+        f"{blind} faults pass every comparison of the uncoated cases, including Hertz and Hamilton, and are "
+        "detected on coated cases only. "
+        if blind
+        else ""
+    )
+    return (
+        f"{first}Each cell counts the checks that do not pass, of those that were made: ✓ a disagreement, "
+        "? an uncertainty beyond its cap, ∅ no result. An empty cell: not checked, since the "
+        f"fault does not affect it. The columns: {columns}."
+    )
+
+
+def _only_coated(row: Fault) -> bool:
+    """True where comparisons on uncoated cases all pass and some on coated ones do not."""
+    bare = [seen for column, seen in row.columns.items() if column.startswith("bare")]
+    coated = [seen for column, seen in row.columns.items() if column.startswith("coated")]
+    passed = all(seen.disagree + seen.inconclusive + seen.no_result == 0 for seen in bare)
+    return bool(bare) and passed and any(seen.disagree + seen.inconclusive for seen in coated)
+
+
+def _groups(record: Record) -> list[tuple[str, list[Fault]]]:
+    """Title and faults of each group that has any."""
+    groups = [
+        (title, [fault for fault in record.rows if fault.group == key]) for key, title in GROUPS.items()
+    ]
+    return [(title, faults) for title, faults in groups if faults]
+
+
+def _score(record: Record) -> Table:
+    shown = [catch for catch in Catch if any(fault.catch is catch for fault in record.rows)]
+    rows, groups = [], _groups(record)
+    if len(groups) > 1:
+        groups.append(("All", list(record.rows)))
+    for title, members in groups:
+        count = Counter(fault.catch for fault in members)
+        caught = sum(fault.caught for fault in members) / len(members)
+        rows.append(
+            row(
+                title,
+                number(len(members), str),
+                *(Cell(str(count[catch] or "–"), count[catch]) for catch in shown),
+                number(caught, lambda share: f"{plain(100 * share, 3)} %"),
+                number(sum(fault.as_predicted for fault in members), str),
+            )
+        )
+    return Table(
+        "Outcome of the faults of each group. Predicted check: detected by the check that was named for the "
+        "fault before the trial.",
+        ["group", "faults", *(str(catch) for catch in shown), "detected", "predicted check"],
+        rows,
+    )
+
+
+def _survivors(record: Record) -> Table:
+    rows = [
+        row(
+            Cell(fault.name, note=fault.description),
+            _catch_cell(fault),
+            words(fault.description),
+            words(fault.reason or fault.failure or "not known"),
+            words(fault.remedy or "–"),
+        )
+        for fault in record.survivors
+    ]
+    columns = ["fault", "outcome", "fault planted", "reason", "possible check"]
+    return Table("Survivors.", columns, rows)
+
+
+def _matrix(faults: Sequence[Fault], caption: str) -> Table:
+    made = [
+        row(
+            Cell(fault.name, note=fault.by),
+            words(fault.description),
+            source_label(fault.where),
+            _catch_cell(fault),
+            Cell("✓" if fault.as_predicted else "–", note=fault.by),
+            *(_seen_cell(fault.columns.get(column)) for column in COLUMNS),
+            Cell(scientific(fault.change), fault.change, note=f"{fault.changed}; {seconds(fault.seconds)}"),
+        )
+        for fault in faults
+    ]
+    columns = ["fault", "fault planted", "in", "outcome", "predicted check", *COLUMNS, "change"]
+    spans = [("", 5), ("checks that do not pass", len(COLUMNS)), ("", 1)]
+    return Table(caption, columns, made, spans, "faults")
+
+
+def _controls(controls: Sequence[Fault]) -> Table:
+    """Trials with nothing planted: silence is right, a detection is a false alarm."""
+    silent = Cell("✓ no alarm", 1.0, "verdict agrees")
+    rows = [
+        row(
+            one.name,
+            words(one.description),
+            Cell("✗ false alarm", 0.0, "verdict disagrees", one.by) if one.caught else silent,
+            number(sum(seen.made for seen in one.columns.values()), str),
+        )
+        for one in controls
+    ]
+    return Table("Nothing planted.", ["control", "solved again", "outcome", "checks"], rows)
+
+
+def _catch_cell(row: Fault) -> Cell:
+    text, css, meaning = _CATCHES[row.catch]
+    return Cell(text, float(list(Catch).index(row.catch)), css, row.by or meaning)
+
+
+def _seen_cell(seen: Tally | None) -> Cell:
+    if seen is None:
+        return Cell("", None, "nothing", "not made")
+    parts = [("✓", seen.disagree), ("?", seen.inconclusive), ("∅", seen.no_result)]
+    text = " ".join(f"{mark}{count}" for mark, count in parts if count)
+    if not text:
+        return Cell(f"0/{seen.made}", 0.0, note=f"all {seen.made} pass")
+    css = "agrees" if seen.disagree else "inconclusive" if seen.inconclusive else "no-result"
+    return Cell(f"{text}/{seen.made}", seen.disagree + seen.inconclusive, f"verdict {css}", seen.message)

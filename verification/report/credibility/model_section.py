@@ -1,0 +1,224 @@
+"""Where the model ends: what each assumption that all sources share costs, as maps."""
+
+from collections.abc import Sequence
+from functools import partial
+from itertools import pairwise, product
+
+import numpy as np
+from markupsafe import Markup
+
+from verification.credibility.model.model_error import WORDS as NAMES
+from verification.credibility.model.shared_assumptions import ASSUMPTIONS
+from verification.evidence.assumption_maps import WORDS, AssumptionMap
+from verification.page.embedded_csv import written
+from verification.page.number_text import plain
+from verification.page.page_parts import Cell, Gallery, Panel, Part, Section, Table, number, row
+from verification.page.svg_plot import Axes, drawing
+from verification.problem.array_types import Array
+from verification.report.report_material import Material
+from verification.sources.assumptions.contact_change import SCALARS
+
+ANCHOR = "model"
+LEVELS = (0.001, 0.01, 0.05)
+SHADES = (0.15, 0.4, 0.75)
+COLOUR = "fem"
+ACROSS, UP = "thickness", "ratio"
+WIDTH, HEIGHT = 320, 250
+BOX = (48.0, 5.0, 266.0, 207.5)  # left, top, width, height
+SHORT = {"contact_radius": "a", "approach": "delta", "peak_pressure": "p0"}
+THICKNESSES = (0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2)  # ticks
+USUAL = {"nu": 0.3}  # coordinate of a panel, where the map has it
+
+
+def section(material: Material) -> Section | None:
+    """A conclusion with the reach of each assumption, then its maps; None without a record."""
+    record = material.evidence.maps
+    if record is None or not record.maps:
+        return None
+    parts = [Part(_conclusion(record.maps), [_reaches(record.maps)])]
+    return Section(ANCHOR, "Where the model ends", [*parts, *(_part(one) for one in record.maps)])
+
+
+def _conclusion(maps: Sequence[AssumptionMap]) -> str:
+    """Up to where the model is good to 1 %, for the worst coating; what was not measured."""
+    texts = []
+    for words, scalar in (("p0, delta and the contact radius", True), ("the stresses", False)):
+        limits = [
+            f"{_coordinate(one)} = {plain(reach, 2)} ({one.title})"
+            for one in maps
+            if one.driver is not None
+            and (reach := _least([one.reach(i, LEVELS[1]) for i in _measured(one, scalar=scalar)]))
+            is not None
+        ]
+        texts.append(f"{words} {'up to ' + ', '.join(limits) if limits else 'all over the maps'}")
+    text = (
+        f"For the worst coating the model itself is good to {_percent(LEVELS[1])} of {'; of '.join(texts)}."
+    )
+    missing = [a.title for name, a in ASSUMPTIONS.items() if name not in {one.assumption for one in maps}]
+    return f"{text} Not measured: {', '.join(missing)}." if missing else text
+
+
+def _measured(one: AssumptionMap, *, scalar: bool | None = None) -> list[int]:
+    """Indices of the quantities that the map holds, scalars or stresses alone."""
+    return [
+        i
+        for i, name in enumerate(one.quantities)
+        if np.isfinite(one.change[i]).any() and scalar in (None, name in SCALARS)
+    ]
+
+
+def _coordinate(one: AssumptionMap) -> str:
+    """The coordinate that the change grows with; "" where no rate is stated."""
+    return "" if one.driver is None else WORDS[one.axes[one.driver].name]
+
+
+def _least(values: Sequence[float | None]) -> float | None:
+    return min((value for value in values if value is not None), default=None)
+
+
+def _reaches(maps: Sequence[AssumptionMap]) -> Table:
+    """Where each quantity reaches the levels, an assumption below the other."""
+    shown = [one for one in maps if one.driver is not None]
+    names = list(dict.fromkeys(one.quantities[i] for one in shown for i in _measured(one)))
+    rows = []
+    for one in shown:
+        known = {one.quantities[i]: i for i in _measured(one)}
+        for level in LEVELS:
+            cells: list[Cell] = []
+            for name in names:
+                value = one.reach(known[name], level) if name in known else None
+                beyond = name in known and not value
+                cells.append(Cell("beyond") if beyond else number(value, partial(plain, digits=2)))
+            head = f"{one.title}, {_coordinate(one)}" if level == LEVELS[0] else ""
+            rows.append(row(head, _percent(level), *cells))
+    return Table(
+        "Where dropping an assumption changes a quantity by three levels, for the worst coating: tension at "
+        "the trailing edge, shear of the first interface.",
+        ["assumption", "level", *(SHORT.get(name, name) for name in names)],
+        rows,
+    )
+
+
+def _largest(one: AssumptionMap) -> Table:
+    rows = []
+    for i in _measured(one):
+        size = np.abs(one.change[i])
+        worst = np.unravel_index(int(np.nanargmax(size)), size.shape)
+        where = ", ".join(
+            f"{WORDS[axis.name]} = {axis.values[k]:g}"
+            for axis, k in zip(one.axes, worst, strict=True)
+            if len(axis.values) > 1
+        )
+        values = (number(float(table[i][worst]), _percent) for table in (one.change, one.uncertainty))
+        rows.append(row(_name(one.quantities[i]), *values, where))
+    return Table("The largest change of the map.", ["quantity", "largest", "±", "where"], rows)
+
+
+def _part(one: AssumptionMap) -> Part:
+    """The maps of an assumption, with all its numbers as CSV."""
+    text = (
+        f"Measured {one.started[:10]}, commit {one.commit or 'unknown'}, in {one.seconds:.0f} s of a core on "
+        f"{one.machine}, over {', '.join(_extent(axis.name, axis.values) for axis in one.axes)}."
+    )
+    title = one.title[0].upper() + one.title[1:]
+    drawable = {axis.name: axis.values for axis in one.axes if len(axis.values) > 1}
+    if not {ACROSS, UP} <= drawable.keys():
+        return Part(text, [_largest(one), _numbers(one)], title=title)
+    at = _slice(one)
+    x, y, planes = one.plane(ACROSS, UP, at)
+    panels = [
+        Panel(_name(quantity), _draw(x, y, plane, f"{one.title}: {_name(quantity)}"), _span(plane), "")
+        for quantity, plane in zip(one.quantities, planes, strict=True)
+        if np.isfinite(plane).any()
+    ]
+    legend = [(_tint(shade), f"above {_percent(level)}") for level, shade in zip(LEVELS, SHADES, strict=True)]
+    fixed = ", ".join(
+        f"{WORDS[name]} = {at[name]:g}" for name in at if name in drawable and name not in (ACROSS, UP)
+    )
+    caption = (
+        f"Relative change{f' at {fixed}' if fixed else ''}, linear between the nodes. White: below "
+        f"{_percent(LEVELS[0])}, or the model had no answer."
+    )
+    return Part(text, [_largest(one)], Gallery(legend, panels, caption, _csv(one)), title)
+
+
+def _slice(one: AssumptionMap) -> dict[str, float]:
+    """Coordinates of the panels: of the driver where a typical change is nearest to the last level."""
+    at = {}
+    for i, axis in enumerate(one.axes):
+        if axis.name in (ACROSS, UP):
+            continue
+        if i == one.driver:
+            size = np.median(one.largest[_measured(one)], axis=0)
+            at[axis.name] = axis.values[int(np.argmin(np.abs(np.log(np.maximum(size, 1e-12) / LEVELS[-1]))))]
+        else:
+            usual = USUAL.get(axis.name, axis.values[-1])
+            at[axis.name] = axis.values[int(np.argmin(np.abs(np.array(axis.values) - usual)))]
+    return at
+
+
+def _draw(x: Array, y: Array, plane: Array, label: str) -> Markup:
+    axes, size = Axes(BOX, (x[0], x[-1]), (y[0], y[-1])), np.ma.masked_invalid(np.abs(plane))
+    for (low, high), shade in zip(pairwise((*LEVELS, 1e9)), SHADES, strict=True):
+        if (size > low).any():
+            axes.filled(x, y, size, low, high, COLOUR, shade)
+    for level in LEVELS:
+        if size.min() < level < size.max():
+            axes.contour(x, y, size, level, _percent(level))
+    axes.ticks(_ticks(THICKNESSES, x), _ticks((0.1, 0.25, 1, 4, 10), y), WORDS[ACROSS])
+    axes.text(x[0], y[-1], WORDS[UP], by=(4, 13))
+    return drawing(WIDTH, HEIGHT, f"{label} over {WORDS[ACROSS]} and {WORDS[UP]}", axes)
+
+
+def _ticks(values: tuple[float, ...], shown: Array) -> list[tuple[float, str]]:
+    low, high = float(shown[0]) - 1e-9, float(shown[-1]) + 1e-9
+    return [(float(np.log(value)), f"{value:g}") for value in values if low <= np.log(value) <= high]
+
+
+def _span(plane: Array) -> str:
+    return f"from {_percent(float(np.nanmin(plane)))} to {_percent(float(np.nanmax(plane)))}"
+
+
+def _extent(name: str, values: tuple[float, ...]) -> str:
+    if name == "ball" and values == (0.0,):
+        return "a rigid ball"
+    return f"{WORDS[name]} = {values[0]:g}" + (f" to {values[-1]:g}" if len(values) > 1 else "")
+
+
+def _name(quantity: str) -> str:
+    return NAMES.get(quantity, quantity)
+
+
+def _percent(value: float) -> str:
+    return f"{100 * value:.2g} %".replace("-", "−")
+
+
+def _tint(shade: float) -> Markup:
+    return Markup(
+        '<svg class="swatch" viewBox="0 0 36 10" aria-hidden="true"><rect x="1" y="0" width="34" height="10" '
+        'class="f-{}" fill-opacity="{}"/></svg>'
+    ).format(COLOUR, shade)
+
+
+def _rows(one: AssumptionMap) -> list[list[str]]:
+    """Heads, then coordinates, changes, uncertainties of every place of the map."""
+    heads = [WORDS[axis.name] for axis in one.axes]
+    heads += [text for name in one.quantities for text in (f"change of {name}", f"uncertainty of {name}")]
+    count = len(one.quantities)
+    both = np.stack([one.change.reshape(count, -1), one.uncertainty.reshape(count, -1)], axis=1)
+    columns = both.reshape(2 * count, -1)
+    places = product(*(axis.values for axis in one.axes))
+    return [
+        heads,
+        *([f"{v:g}" for v in (*at, *values)] for at, values in zip(places, columns.T, strict=True)),
+    ]
+
+
+def _csv(one: AssumptionMap) -> str:
+    return written(_rows(one))
+
+
+def _numbers(one: AssumptionMap) -> Table:
+    """The map as a table, where it has no plane to be drawn in."""
+    heads, *rows = _rows(one)
+    return Table("All places of the map.", heads, [row(*cells) for cells in rows])

@@ -1,0 +1,228 @@
+"""Material of a report: results, provenance, other evidence, of a run or read back from one."""
+
+import json
+import shlex
+from collections import Counter
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, fields
+from datetime import UTC, datetime
+from functools import cached_property, partial
+from pathlib import Path, PurePath
+from typing import Any, TypeVar
+
+from verification.cases.case_file import shipped_cases
+from verification.cases.published_file import published_cases
+from verification.credibility import accuracy_study
+from verification.credibility.accuracy_study import AccuracyStudy
+from verification.credibility.faults.fault_campaign import RECORD
+from verification.credibility.import_independence import Part, parts
+from verification.credibility.manufactured_solutions import DesignOrder, design_orders
+from verification.credibility.model.model_error import ModelError, judged_quantities, model_error
+from verification.credibility.self_tests import SelfTest
+from verification.evidence import alarm_record, enclosure_record
+from verification.evidence import mutant_record as mutation
+from verification.evidence.alarm_record import AlarmRecord
+from verification.evidence.assumption_maps import AssumptionMaps, read_maps
+from verification.evidence.enclosure_record import EnclosureRecord
+from verification.evidence.fault_record import Record, read_record
+from verification.evidence.mutant_record import MutantRecord
+from verification.problem.coated_contact import CoatedContact
+from verification.regression.baseline_change import Regression
+from verification.report.tables.case_lookup import slug
+from verification.running.case_result import CaseResult, RunInfo, from_json, to_json
+from verification.running.checked_files import MAX_BYTES, StoreError, read_bounded, read_checked
+from verification.running.json_records import decode
+from verification.running.provenance import machine
+from verification.running.stored_fields import read_planes
+from verification.sampling.stress_plane import Plane
+from verification.study import formula_errors
+from verification.study.formula_errors import EffectiveStudy
+
+T = TypeVar("T")
+
+
+@dataclass(frozen=True)
+class Evidence:
+    """What a report shows beside the results; None or () for what is missing, see ``failures``.
+
+    orders, parts : manufactured solutions and imports, measured.
+    faults, alarms, mutants, enclosures : read from records.
+    accuracy : errors of the methods over resolution.
+    formulas : effective-modulus formulas.
+    baseline : the change of each number since the baseline.
+    maps : what the assumptions of the model cost.   models : the same of each case, by its name.
+    """
+
+    orders: tuple[DesignOrder, ...] = ()
+    parts: tuple[Part, ...] = ()
+    faults: Record | None = None
+    alarms: AlarmRecord | None = None
+    failures: tuple[str, ...] = ()
+    accuracy: AccuracyStudy | None = None
+    baseline: Regression | None = None
+    self_tests: tuple[SelfTest, ...] = ()
+    formulas: EffectiveStudy | None = None
+    mutants: MutantRecord | None = None
+    enclosures: EnclosureRecord | None = None
+    maps: AssumptionMaps | None = None
+    models: Mapping[str, ModelError] = field(default_factory=dict)
+
+
+def gather(records: Path, problems: Mapping[str, CoatedContact] | None = None) -> Evidence:
+    """Evidence of credibility; what is recorded from the directory ``records``.
+
+    problems : the contacts of the run by the name of their case, of which the error of the model is found.
+    """
+    failures: list[str] = []
+
+    def attempt(what: str, measure: Callable[[], T], otherwise: T) -> T:
+        try:
+            return measure()
+        except Exception as error:  # one row of the page, never the report
+            message = str(error) if isinstance(error, StoreError) else f"{what}: {error}"
+            failures.append(" ".join(message.split())[:300])
+            return otherwise
+
+    mutants = attempt("mutants", lambda: mutation.read_record(records / mutation.RECORD), None)
+    enclosed = attempt("enclosures", lambda: enclosure_record.read_record(records), None)
+    maps = attempt("maps of the assumptions", lambda: read_maps(records), None)
+    models = {
+        name: attempt(f"error of the model, {name}", partial(model_error, problem, maps), ModelError(()))
+        for name, problem in (problems or {}).items()
+    }
+    return Evidence(
+        attempt("manufactured solutions", design_orders, ()),
+        attempt("imports", parts, ()),
+        attempt("planted faults", lambda: read_record(records / RECORD), None),
+        attempt("false alarms", lambda: alarm_record.read_record(records), None),
+        tuple(failures),
+        mutants=mutants,
+        enclosures=enclosed,
+        maps=maps,
+        models=models,
+    )
+
+
+def model_warnings(result: CaseResult, evidence: Evidence) -> tuple[str, ...]:
+    """A line for each assumption that costs too much of what ``result`` judges, if it is not said yet."""
+    found = evidence.models.get(result.name)
+    if found is None:
+        return ()
+    return found.warnings(
+        judged_quantities({claim.quantity for claim, _ in result.verdicts}), result.warnings
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class Material:
+    """Everything a report is made from.   planes : stresses below the contact, by name of the case."""
+
+    results: Sequence[CaseResult]
+    info: RunInfo
+    evidence: Evidence = field(default_factory=Evidence)
+    planes: Mapping[str, Plane] = field(default_factory=dict)
+
+    @cached_property
+    def contacts(self) -> list[CaseResult]:
+        """The results of cases that are not published sources."""
+        return [result for result in self.results if not result.published]
+
+    @property
+    def problems(self) -> dict[str, CoatedContact]:
+        """The problems of ``contacts`` by the names of their cases."""
+        names = {one.name for one in fields(CoatedContact)}
+        return {
+            result.name: decode(CoatedContact, {k: v for k, v in result.problem.items() if k in names})
+            for result in self.contacts
+        }
+
+    @cached_property
+    def published(self) -> list[CaseResult]:
+        """The results of published sources."""
+        return [result for result in self.results if result.published]
+
+    @cached_property
+    def anchors(self) -> Mapping[CaseResult, str]:
+        """A readable anchor for each case; two cases with one name get different ones."""
+        taken: Counter[str] = Counter()
+        anchors = {}
+        for result in self.results:
+            name = f"case-{slug(result.name)}"
+            taken[name] += 1
+            anchors[result] = name if taken[name] == 1 else f"{name}--{taken[name]}"
+        return anchors
+
+
+def stored_material(folder: Path) -> tuple[Material, bool]:
+    """The material of the run in ``folder``, and whether its evidence is that of the run.
+
+    Where report.json is missing or of other results, as after a run that was stopped, provenance and
+    evidence are those that can be had without it. Raises StoreError.
+    """
+    found = {}
+    for path in sorted((folder / "cases").glob("*.json")):
+        try:
+            result = from_json(read_checked(path))
+        except (KeyError, TypeError, ValueError) as error:
+            message = " ".join(str(error).split())[:100]
+            raise StoreError(f"{path}: of another version ({message}); run the case again") from None
+        found[result.name] = result
+    last = _last_report(folder)
+    order = [case.get("name") for case in last.get("cases", [])]
+    results = [found[name] for name in dict.fromkeys([*(n for n in order if n in found), *found])]
+    planes = read_planes(folder, results)
+    try:
+        if [to_json(result) for result in results] == last["cases"]:
+            info, evidence = decode(RunInfo, last["run"]), decode(Evidence, last["evidence"])
+            return Material(results, info, evidence, planes), True
+    except (KeyError, ValueError):
+        pass
+    times = [path.stat().st_mtime for path in (folder / "cases").glob("*.json")]
+    info = RunInfo(
+        command="coatcheck run, stopped before its report or of several runs",
+        started=datetime.fromtimestamp(min(times, default=0.0), UTC).isoformat(timespec="seconds"),
+        seconds=sum(result.seconds for result in results),
+        jobs=1,
+        commit="not recorded",
+        machine=machine(),
+        versions={},
+    )
+    measured = {
+        name: _measured(study, folder)
+        for name, study in (("accuracy", accuracy_study), ("formulas", formula_errors))
+    }
+    return Material(results, info, Evidence(**measured), planes), False
+
+
+def _measured(study: Any, folder: Path) -> Any:
+    """The result of a study that a run stored in ``folder``; None where it has none."""
+    path = study.task(folder).path
+    return study.from_json(read_checked(path)) if path.exists() else None
+
+
+def _last_report(folder: Path) -> dict[str, Any]:
+    try:
+        data = json.loads(read_bounded(folder / "report.json", MAX_BYTES))
+        return data if isinstance(data, dict) and all(isinstance(c, dict) for c in data["cases"]) else {}
+    except (StoreError, ValueError, KeyError, TypeError, RecursionError):
+        return {}
+
+
+def rerun_command(name: str, command: str) -> str:
+    """The command, quoted for a shell, that solves the case ``name`` again.
+
+    command : that of the run, which tells where a file of the user's own was read from. Where it does not,
+    as after a run that was stopped, the file is named alone.
+    """
+    try:
+        words = shlex.split(command)[2:]
+    except ValueError:
+        words = []
+    own = [word for word in words if PurePath(word).stem == name and PurePath(word).name != name]
+    if own:
+        word = own[0]
+    elif name in words or name in shipped_cases() or name in published_cases():
+        word = name
+    else:
+        word = f"{name}.toml"
+    return f"coatcheck run {shlex.quote(f'./{word}' if word.startswith('-') else word)}"

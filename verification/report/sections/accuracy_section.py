@@ -1,0 +1,181 @@
+"""Error of each method against the exact reference beside the uncertainty it states."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import lru_cache, partial
+
+import numpy as np
+
+from verification.judging.verdict import Claim
+from verification.page.number_text import factor, plain, scientific
+from verification.page.page_parts import Cell, Part, Section, Table, case_cell, number, row, tally, words
+from verification.page.source_labels import source_label, symbol_of
+from verification.problem.quantity import PEAKS, QUANTITIES, SCALARS, SLOPES
+from verification.report.report_material import Material
+from verification.report.tables.case_lookup import (
+    GROUPS,
+    difference,
+    group_of,
+    judged,
+    reference_source,
+    sources_with_profiles,
+)
+from verification.running.case_result import CaseResult
+from verification.sources.source_registry import METHODS, REFERENCES
+
+# Ratio of stated to true error below which an estimate counts as wrong.
+TOO_SMALL = 0.5
+# Share of quantities whose true error an uncertainty must cover, the level at which it is usually stated.
+COVERED = 0.95
+
+
+@dataclass(frozen=True)
+class Accuracy:
+    """One quantity on one line: the largest ``error``, the ``estimate`` at that point, as fractions.
+
+    ratio : smallest (U_method + U_reference) / |error| over the judged points; 1 or more covered the
+            error everywhere.   None where the method states no uncertainty.
+    """
+
+    source: str
+    quantity: str
+    line: str
+    error: float
+    estimate: float | None
+    ratio: float | None
+
+    @property
+    def covered(self) -> bool:
+        """True where the stated uncertainty covers the error at every judged point."""
+        return self.ratio is not None and self.ratio >= 1
+
+    @property
+    def css(self) -> str:
+        """Class of a cell: by the ratio of the stated to the true error."""
+        if self.ratio is None or self.ratio < TOO_SMALL:
+            return "disagrees"
+        return "agrees" if self.ratio >= 1 else "inconclusive"
+
+
+def section(material: Material) -> Section | None:
+    """How often the stated uncertainty covers the true error, then the errors of each method."""
+    results = material.contacts
+    parts = [
+        Part("", [overview], folded=f"Errors of {source_label(source)}, case by case")
+        for source in METHODS
+        if (overview := accuracy_overview(results, material.anchors, source))
+    ]
+    coverage = Part("", [coverage_table(results)])
+    return Section("accuracy", "Accuracy against the exact reference", [coverage, *parts]) if parts else None
+
+
+@lru_cache(maxsize=256)
+def accuracies(result: CaseResult) -> tuple[Accuracy, ...]:
+    """Every quantity of every method with an exact counterpart; () where the case has no exact reference."""
+    exact = reference_source(result)
+    if exact not in REFERENCES:
+        return ()
+    edges = {(c.quantity, c.line): c for c, _ in result.verdicts}
+    found = []
+    for source in sources_with_profiles(result):
+        if source not in METHODS:
+            continue
+        for profile in result.profiles:
+            claim = edges.get((profile.quantity, profile.line))
+            if profile.source == source and claim is not None:
+                found.append(_accuracy(result, claim, source, exact))
+    return tuple(item for item in found if item is not None)
+
+
+def _accuracy(result: CaseResult, claim: Claim, source: str, exact: str) -> Accuracy | None:
+    mine = result.profile_of.get((claim.quantity, claim.line, source))
+    theirs = result.profile_of.get((claim.quantity, claim.line, exact))
+    found = difference(result, mine, theirs)
+    if found is None or mine is None:
+        return None
+    error, uncertainty = found
+    here = judged(result, claim, mine.position) & np.isfinite(error)
+    if not here.any():
+        return None
+    worst = int(np.argmax(np.where(here, error, -1.0)))
+    if uncertainty is None:
+        return Accuracy(source, claim.quantity, claim.line, float(error[worst]), None, None)
+    ratio = np.where(error > 0, uncertainty / np.where(error > 0, error, 1.0), np.inf)
+    smallest = float(np.min(np.where(np.isfinite(uncertainty), ratio, 0.0)[here]))
+    estimate = float(uncertainty[worst])
+    return Accuracy(source, claim.quantity, claim.line, float(error[worst]), estimate, smallest)
+
+
+def accuracy_overview(results: Sequence[CaseResult], anchors: Mapping[CaseResult, str], source: str) -> Table:
+    """The errors of one method over all cases, the worst quantity of each group; None where there is none."""
+    columns = [*SCALARS, *SLOPES, *PEAKS, *GROUPS[1:]]
+    rows = []
+    for result in results:
+        found = [item for item in accuracies(result) if item.source == source]
+        if not found:
+            continue
+        cells = [
+            _overview_cell([i for i in found if name in (i.quantity, group_of(i.line))]) for name in columns
+        ]
+        rows.append(row(case_cell(result, f"#{anchors[result]}-comparisons"), *cells))
+    return Table(
+        f"Error of {source_label(source)} against the exact reference, then the uncertainty it states for "
+        "the same point. Marked where the estimate is below the error (▼) or below half of it (▼▼).",
+        ["case", *(QUANTITIES[name].symbol if name in QUANTITIES else name for name in columns)],
+        rows,
+        css="overview",
+    )
+
+
+def _overview_cell(found: Sequence[Accuracy]) -> Cell:
+    if not found:
+        return Cell("", css="nothing")
+    worst = max(found, key=lambda item: item.error)
+    weakest = min(found, key=lambda item: -1.0 if item.ratio is None else item.ratio)
+    mark = {"agrees": "", "inconclusive": " ▼", "disagrees": " ▼▼"}[weakest.css]
+    note = f"largest error: {symbol_of(worst.quantity)} on {worst.line}"
+    if weakest.ratio is not None:
+        note += f"; smallest ratio {plain(weakest.ratio, 2)}: {symbol_of(weakest.quantity)} on {weakest.line}"
+    text = f"{scientific(worst.error)} | {scientific(worst.estimate)}{mark}"
+    return Cell(text, worst.error, f"flag {weakest.css}", note)
+
+
+def coverage_table(results: Sequence[CaseResult]) -> Table:
+    """How often the uncertainty that a method states covers its true error, scalars and lines apart."""
+    rows, columns = [], ["method", "quantities", "covered", "share", "largest error / U"]
+    scalar_names = ", ".join(QUANTITIES[name].symbol for name in SCALARS + SLOPES)
+    for source in METHODS:
+        for name, scalars in ((scalar_names, True), ("stresses, pressure, displacements", False)):
+            found = [
+                (result, item)
+                for result in results
+                for item in accuracies(result)
+                if item.source == source and (item.quantity in SCALARS + SLOPES) is scalars
+            ]
+            if not found:
+                continue
+            share = sum(item.covered for _, item in found) / len(found)
+            case, worst = min(found, key=lambda pair: -1.0 if pair[1].ratio is None else pair[1].ratio)
+            stated = [item.ratio for _, item in found if item.ratio is not None and np.isfinite(item.ratio)]
+            rows.append(
+                row(
+                    source_label(source),
+                    name,
+                    tally(sum(item.covered for _, item in found), len(found)),
+                    Cell(
+                        f"{100 * share:.1f} %", share, f"flag {'agrees' if share >= COVERED else 'disagrees'}"
+                    ),
+                    number(1 / worst.ratio, partial(plain, digits=2)) if worst.ratio else "not stated",
+                    words(f"{symbol_of(worst.quantity)} on {worst.line}, {case.title}"),
+                    number(float(np.median(stated)) if stated else None, partial(factor, better=1.0)),
+                    number(max(item.error for _, item in found)),
+                )
+            )
+    return Table(
+        "Quantities on all lines of all cases whose true error, known from the exact reference, lies within "
+        f"the stated uncertainty U at every judged point; {100 * COVERED:.0f} % are required. Largest "
+        "ratio of error to U with its place; median of the smallest ratios of U to the error; largest error.",
+        [*columns, "there", "median U / error", "largest error"],
+        rows,
+        css="overview",
+    )

@@ -1,0 +1,153 @@
+"""Page of one case: problem, numbers of the contact, figures, all comparisons, statements of its sources."""
+
+from typing import Any
+
+from verification.credibility.model.model_error import ModelError
+from verification.judging.verdict import Outcome
+from verification.page.embedded_csv import embedded, line_csv
+from verification.page.number_text import scientific
+from verification.page.source_labels import OUTCOMES, pair_style, source_label, source_style, symbol_of
+from verification.page.symbol_text import typeset
+from verification.problem.coated_contact import BALL
+from verification.report.figures.field_pictures import pictures
+from verification.report.figures.line_panels import case_figures
+from verification.report.figures.problem_sketch import sketch
+from verification.report.figures.verdict_strips import Item, axis_of, draw_axis, draw_strip, ordered
+from verification.report.report_material import Material, model_warnings, rerun_command
+from verification.report.sections import invariants_section, published_section
+from verification.report.tables.case_lookup import contact_radius, divisor, layers, lines, scale, slug
+from verification.report.tables.case_tables import (
+    budget_table,
+    comparison_table,
+    contact_tables,
+    diagnostics_table,
+    dominating_parameter,
+    facts,
+    failing_table,
+    layer_table,
+)
+from verification.running.case_result import CaseResult
+
+# A failed source fails every comparison; the list before the figures stays short.
+MOST_FAILING = 6
+
+
+def contents(material: Material, result: CaseResult) -> dict[str, Any]:
+    """What the template of a case shows."""
+    common = {
+        "anchor": material.anchors[result],
+        "result": result,
+        "outcome": OUTCOMES[result.outcome],
+        "summary": summary(result),
+        "command": rerun_command(result.name, material.info.command),
+        "facts": facts(result),
+        "failures": [(source_label(s.source), s.failure) for s in result.sources if s.failure is not None],
+        "layers": [layer_table(result), *([layer_table(result, BALL)] if layers(result, BALL) else [])],
+        "failing": failing_table(result, scale(result, "a_h"), MOST_FAILING),
+        "budget": budget_table(result),
+        "diagnostics": diagnostics_table(result),
+    }
+    if result.published:
+        return common | {"tables": published_section.tables(result), "comparisons": comparison_table(result)}
+    file = slug(result.name)
+    broken = [one for one in result.invariants if one.outcome is not Outcome.AGREES]
+    return common | {
+        "sketch": sketch(result),
+        "contact": contact_tables(result),
+        "pictures": pictures(result, material.planes.get(result.name)),
+        "figures": case_figures(result),
+        "strips": _strips(result, material.anchors[result]),
+        "beyond": model_warnings(result, material.evidence),
+        "maps": material.evidence.maps is not None,
+        "model": _model(material.evidence.models.get(result.name)),
+        "files": [
+            (line, embedded(line_csv(result, line)), f"{file}-{slug(line)}.csv")
+            for line in (*(("contact",) if result.profiles else ()), *lines(result))
+        ],
+        "broken": invariants_section.invariant_table(broken),
+        "invariants": invariants_section.invariant_table(result.invariants),
+    }
+
+
+def _model(found: ModelError | None) -> str:
+    """What the assumptions cost, in sentences."""
+    if found is None:
+        return ""
+    return " ".join(f"{line[0].upper()}{line[1:]}." for line in (found.message(), *found.notes))
+
+
+def summary(result: CaseResult) -> str:
+    """The outcome of a case in one or two sentences."""
+    bad = sum(verdict.outcome is not Outcome.AGREES for _, verdict in result.verdicts)
+    broken = sum(one.outcome is not Outcome.AGREES for one in result.invariants)
+    total, count = len(result.verdicts), len(result.invariants)
+    text = f"{bad} of {total} comparisons do not agree" if bad else f"All {total} comparisons agree"
+    if count:
+        text += (
+            f", {broken} of {count} invariants do not hold" if broken else f", all {count} invariants hold"
+        )
+    gaps = [v.difference for _, v in result.verdicts if v.difference is not None]
+    if gaps:
+        text += f"; the largest difference is {scientific(max(gaps))}"
+    return f"{text}." if total else "No comparison was possible."
+
+
+def _strips(result: CaseResult, anchor: str) -> dict[str, Any] | None:
+    """All comparisons of a case, a strip for each line."""
+    items = [Item(claim, verdict) for claim, verdict in result.verdicts]
+    if not items:
+        return None
+    axis = axis_of(items)
+    rows = []
+    for line in dict.fromkeys(item.claim.line for item in items):
+        mine = [item for item in items if item.claim.line == line]
+        bad = sum(item.verdict.outcome is not Outcome.AGREES for item in mine)
+        rows.append((line, draw_strip(mine, axis, f"comparisons on {line}", anchor), bad, len(mine)))
+    return {"rows": rows, "scale": draw_axis(axis)}
+
+
+def data(material: Material) -> dict[str, Any]:
+    """What the script of the page knows of the comparisons: names once, then rows of indices and numbers."""
+    quantities: dict[str, int] = {}
+    lines_: dict[str, int] = {}
+    pairs: dict[tuple[str, str], int] = {}
+    parts: dict[str, int] = {}
+    cases = {}
+    for result in material.contacts:
+        rows = [
+            [
+                quantities.setdefault(item.claim.quantity, len(quantities)),
+                lines_.setdefault(item.claim.line, len(lines_)),
+                pairs.setdefault(item.claim.between, len(pairs)),
+                _short(item.difference),
+                _short(item.uncertainty),
+                item.claim.cap,
+                list(OUTCOMES).index(item.verdict.outcome),
+                parts.setdefault(dominating_parameter(result, item.claim, item.verdict), len(parts)),
+            ]
+            for item in ordered([Item(claim, verdict) for claim, verdict in result.verdicts])
+        ]
+        scales = [float(scale(result, name)) for name in ("a_h", "p_h", "delta_h")]
+        scales += [float(divisor(result, name, 1.0)) for name in ("sigma_xx", "u_x")]
+        scales.append(float(contact_radius(result) or scales[0]))
+        cases[material.anchors[result]] = {"rows": rows, "scales": [_short(v, 9) for v in scales]}
+    sources = dict.fromkeys(p.source for result in material.contacts for p in result.profiles)
+    return {
+        "sources": {
+            name: [source_label(name), source_style(name).colour, source_style(name).width > 3]
+            for name in sources
+        },
+        "quantities": [[name, typeset(symbol_of(name))] for name in quantities],
+        "lines": list(lines_),
+        "pairs": [[*pair, pair_style(pair).colour] for pair in pairs],
+        "parts": list(parts),
+        "agrees": list(OUTCOMES).index(Outcome.AGREES),
+        "outcomes": [f"{style.mark} {style.word}" for style in OUTCOMES.values()],
+        "cases": cases,
+    }
+
+
+def _short(value: float | None, digits: int = 3) -> float | None:
+    if value is None or not abs(value) < float("inf"):
+        return None
+    return float(f"{value:.{digits}g}")

@@ -1,0 +1,261 @@
+"""The tables of one case: contact, verdicts, uncertainty budget, run times."""
+
+from collections.abc import Sequence
+from functools import partial
+from math import isfinite
+from typing import Any
+
+import numpy as np
+
+from verification.judging.verdict import Claim, Outcome, Verdict
+from verification.page.number_text import aligned, engineering, plain, scientific
+from verification.page.page_parts import Cell, Table, number, outcome_cell, row
+from verification.page.source_labels import OUTCOMES, pair_label, row_css, source_label, symbol_of
+from verification.problem.coated_contact import BALL, FLAT
+from verification.problem.quantity import BALL_PEAKS, PEAKS, QUANTITIES, SCALARS, SLOPES, unit_of
+from verification.report.tables.case_lookup import coordinate, layers, scalar, scale
+from verification.running.case_result import CaseResult
+
+_FACTS = {
+    "pressure": ("uniform pressure q", "Pa"),
+    "load_radius": ("radius of the disc a", "m"),
+    "radius": ("sphere radius R", "m"),
+    "load": ("load W", "N"),
+    "friction": ("friction f", ""),
+    "a_h": ("Hertz contact radius a_h", "m"),
+    "p_h": ("Hertz peak pressure p_h", "Pa"),
+    "delta_h": ("Hertz approach delta_h", "m"),
+    "dundurs_beta": ("Dundurs' β of the surfaces", ""),
+    "S_h": ("Hertz stiffness S_h", "N/m"),
+}
+
+
+def facts(result: CaseResult) -> list[tuple[str, str]]:
+    """(name, value) of each parameter and each Hertz scale of a problem."""
+    given = {"friction": 0.0} | result.problem
+    return [
+        (text, engineering(given[name], unit) if unit else plain(given[name]))
+        for name, (text, unit) in _FACTS.items()
+        if name in given
+    ]
+
+
+def layer_table(result: CaseResult, body: str = FLAT) -> Table:
+    """The layers of a body from its surface inwards, in real units and against its bare substrate.
+
+    Thicknesses are over a_h, or over the radius of a prescribed load.
+    """
+    length = "a" if "load_radius" in result.problem else "a_h"
+    a_h = scale(result, "load_radius" if length == "a" else "a_h")
+    found = layers(result, body)
+    rows = []
+    for layer, (E, nu, thickness) in enumerate(found, start=1):
+        below = layer == len(found)
+        rows.append(
+            row(
+                "substrate" if below else f"coating {layer}",
+                Cell(engineering(E, "Pa"), E),
+                Cell(plain(E / found[-1][0], 3), E),
+                number(nu, plain),
+                Cell("∞" if below else engineering(thickness, "m"), thickness),
+                Cell("∞" if below else plain(thickness / a_h, 3) if a_h > 0 else "–", thickness),
+            )
+        )
+    caption = (
+        "Layers from the surface down." if body == FLAT else "Layers of the ball, from its surface inwards."
+    )
+    return Table(caption, ["layer", "E", "E / E_s", "nu", "h", f"h / {length}"], rows)
+
+
+def contact_tables(result: CaseResult) -> list[Table]:
+    """The numbers of the contact, then of an elastic ball those of its own surface."""
+    ball = [_contact_table(result, BALL_PEAKS, "The surface of the ball.")] if layers(result, BALL) else []
+    text = (
+        "In parentheses the uncertainty of the last digits. Below, |A − B| of each pair of sources, its U, "
+        "over the value; of the largest tension over the smaller of p_h and p0, of its place over a."
+    )
+    return [table for table in (_contact_table(result, SCALARS + SLOPES + PEAKS, text), *ball) if table]
+
+
+def _contact_table(result: CaseResult, quantities: Sequence[str], caption: str) -> Table:
+    """Numbers of a contact, a column each: by every source, then the differences."""
+    names = [q for q in quantities if any(scalar(result, q, s.source) for s in result.sources)]
+    heads, columns = [], []
+    for quantity in names:
+        found = [scalar(result, quantity, source.source) for source in result.sources]
+        unit, texts = aligned(found, unit_of(quantity))
+        heads.append(f"{QUANTITIES[quantity].symbol} [{unit}]" if unit else QUANTITIES[quantity].symbol)
+        columns.append(
+            [
+                Cell("no result", css="no-result") if pair is None else Cell(text, float(pair[0]))
+                for text, pair in zip(texts, found, strict=True)
+            ]
+        )
+    rows = [
+        row(
+            source_label(source.source),
+            *(column[n] for column in columns),
+            css="" if source.failure is None else "failed",
+        )
+        for n, source in enumerate(result.sources)
+    ]
+    verdicts = {(c.quantity, c.between): v for c, v in result.verdicts if c.line == "contact"}
+    for pair in dict.fromkeys(between for _, between in verdicts):
+        judged = [verdicts.get((quantity, pair)) for quantity in names]
+        gaps = [Cell("–") if v is None else _judged_cell(v, v.difference) for v in judged]
+        bounds = [Cell("–") if v is None else number(v.uncertainty) for v in judged]
+        rows.append(row(pair_label(pair), *gaps, css="gap"))
+        rows.append(row("U of both", *bounds, css="bound"))
+    return Table(caption, ["source", *heads], rows if names else [], css="numbers")
+
+
+def _judged_cell(verdict: Verdict, value: float | None) -> Cell:
+    """A difference; with the mark and the colour of its verdict where it does not agree."""
+    style = OUTCOMES[verdict.outcome]
+    if verdict.outcome is Outcome.AGREES:
+        return number(value)
+    return Cell(f"{style.mark} {scientific(value)}", value, f"verdict {style.css}", verdict.reason)
+
+
+def comparison_table(result: CaseResult) -> Table:
+    """Largest difference and largest U of every pair of sources, a row for each quantity on each line."""
+    verdicts = {(c.quantity, c.line, c.between): (c, v) for c, v in result.verdicts}
+    pairs = list(dict.fromkeys(between for _, _, between in verdicts))
+    rows = []
+    for quantity, line in dict.fromkeys((quantity, line) for quantity, line, _ in verdicts):
+        found = [verdicts.get((quantity, line, pair)) for pair in pairs]
+        cap = next((claim.cap for claim, _ in filter(None, found)), None)
+        cells = [Cell(line), number(cap, partial(scientific, digits=1))]
+        for one in found:
+            if one is None:
+                cells += [Cell(""), Cell("")]
+            else:
+                verdict = one[1]
+                cells += [_judged_cell(verdict, verdict.difference), number(verdict.uncertainty)]
+        rows.append(row(symbol_of(quantity), *cells))
+    return Table(
+        "Largest |A − B| and largest U = U_A + U_B over the judged points, over the scale of the comparison: "
+        "the value (p0, a, approach, dW/d delta), a (places), the smaller of delta_h and approach "
+        "(displacements) or of p_h and p0.",
+        ["quantity", "line", "cap on U", *["|A − B|", "U"] * len(pairs)],
+        rows,
+        [("", 3), *((pair_label(pair), 2) for pair in pairs)],
+        "comparisons",
+    )
+
+
+def failing_table(result: CaseResult, a_h: float, most: int) -> Table:
+    """The comparisons that do not agree, the worst first; ``most`` of them."""
+    bad = [item for item in result.verdicts if item[1].outcome is not Outcome.AGREES]
+    rows = []
+    for claim, verdict in sorted(bad, key=lambda item: _badness(item[1]))[:most]:
+        where = ""
+        if verdict.worst is not None and claim.line != "contact" and a_h:
+            where = f"{coordinate(claim.line)} = {plain(verdict.worst / a_h, 3)} a_h"
+        rows.append(
+            row(
+                outcome_cell(verdict.outcome),
+                Cell(symbol_of(claim.quantity), note=claim.why),
+                claim.line,
+                pair_label(claim.between),
+                number(verdict.difference),
+                number(verdict.uncertainty),
+                number(claim.cap),
+                Cell(where, verdict.worst),
+                Cell(verdict.reason, css="reason"),
+                css=row_css(verdict.outcome),
+            )
+        )
+    columns = ["verdict", "quantity", "line", "between", "max |A − B|", "max U", "cap", "at", "reason"]
+    more = f" The worst {most} of {len(bad)}." if len(bad) > most else ""
+    return Table(f"Comparisons that do not agree.{more}", columns, rows, css="verdicts")
+
+
+def _badness(verdict: Verdict) -> tuple[int, float]:
+    margin = verdict.margin if verdict.margin is not None else 0.0
+    return OUTCOMES[verdict.outcome].rank, margin if isfinite(margin) else 0.0
+
+
+def dominating_parameter(result: CaseResult, claim: Claim, verdict: Verdict) -> str:
+    """The source with the larger uncertainty at the deciding point, with its dominating parameter.
+
+    U of a stress or pressure is that of p0, of a displacement or the stiffness that of the approach, with its
+    own part due to the first parameter, the edge terms or the size of patches or elements: the excess of U
+    over the other parts belongs to the first.
+    """
+    sides = []
+    for source in claim.between:
+        profile = result.profile_of.get((claim.quantity, claim.line, source))
+        if profile is not None and profile.uncertainty is not None and profile.position.size:
+            at = 0 if verdict.worst is None else int(np.argmin(np.abs(profile.position - verdict.worst)))
+            sides.append((float(profile.uncertainty[at]), source))
+    if not sides or not max(sides)[0] > 0:
+        return ""
+    U, source = max(sides)
+    budget = next((s.budget for s in result.sources if s.source == source), ())
+    scalar_claim = any(q == claim.quantity for q, _, _ in budget)
+    like = "approach" if QUANTITIES[claim.quantity].kind in ("slope", "displacement") else "peak_pressure"
+    quantity = claim.quantity if scalar_claim else like
+    parts = [(name, value) for q, name, value in budget if q == quantity]
+    if not parts:
+        return source_label(source)
+    if not scalar_claim:
+        others = sum(value for _, value in parts[1:])
+        parts[0] = (parts[0][0], max(U - others, 0.0))
+    return f"{source_label(source)}: {max(parts, key=lambda item: item[1])[0]}"
+
+
+def budget_table(result: CaseResult) -> Table | None:
+    """Uncertainty budget: a row for each numerical parameter of each method."""
+    rows = []
+    for source in result.sources:
+        for quantity in dict.fromkeys(quantity for quantity, _, _ in source.budget):
+            parts = [(name, value) for q, name, value in source.budget if q == quantity]
+            largest = max((value for _, value in parts if isfinite(value)), default=0.0)
+            for name, value in parts:
+                dominant = value == largest > 0 and len(parts) > 1
+                rows.append(
+                    row(
+                        source_label(source.source),
+                        quantity,
+                        Cell(name, css="dominant" if dominant else ""),
+                        Cell(engineering(value, unit_of(quantity), 2), value),
+                        Cell(scientific(_relative(result, source.source, quantity, value)), value),
+                        Cell("◀ dominates" if dominant else "", css="dominant"),
+                    )
+                )
+    return Table(
+        "Uncertainty of each method by numerical parameter, from its own refinement; relative to the value, "
+        "to p_h for stresses.",
+        ["source", "quantity", "parameter", "uncertainty", "relative", ""],
+        rows,
+    )
+
+
+def _relative(result: CaseResult, source: str, quantity: str, value: float) -> float | None:
+    found = scalar(result, quantity, source)
+    size = abs(found[0]) if found else scale(result, "p_h")
+    return value / size if size else None
+
+
+def diagnostics_table(result: CaseResult) -> Table | None:
+    """Diagnostics of each source: iterations, residuals, unknowns."""
+    rows = [
+        row(source_label(source.source), name.replace("_", " "), _shown(value))
+        for source in result.sources
+        for name, value in source.diagnostics.items()
+    ]
+    return Table("Diagnostics reported by each source.", ["source", "diagnostic", "value"], rows)
+
+
+def _shown(value: Any) -> str:
+    if isinstance(value, float):
+        return f"{value:.4g}"
+    if isinstance(value, list | tuple):
+        if len(value) > 6:
+            return f"{len(value)} values, first {_shown(value[0])}, last {_shown(value[-1])}"
+        return ", ".join(_shown(item) for item in value)
+    if isinstance(value, dict):
+        return ", ".join(f"{key} {_shown(item)}" for key, item in value.items())
+    text = str(value)
+    return text if len(text) <= 300 else text[:297] + "..."

@@ -1,0 +1,106 @@
+"""Cases as tasks of the process pool, and the results stored by an earlier run."""
+
+import os
+from collections.abc import Sequence
+from dataclasses import replace
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+from verification.cases.case_file import Case
+from verification.cases.published_file import PublishedCase
+from verification.judging.verdict import Outcome
+from verification.running import published_run
+from verification.running.case_result import CaseResult, describe, from_json
+from verification.running.case_worker import solve_and_store, solve_and_store_published
+from verification.running.checked_files import StoreError, read_checked
+from verification.running.contact_run import failed
+from verification.running.json_records import plain
+from verification.running.pool.pool_task import Task
+from verification.running.pool.process_pool import run_tasks
+from verification.running.provenance import fingerprint
+from verification.running.stored_fields import plane_path, read_fields, read_plane
+from verification.sources.source_registry import METHODS, SOURCES
+
+_METHOD_PACKAGES = tuple(SOURCES[method].package for method in METHODS)
+
+
+def result_path(folder: Path, case: Case | PublishedCase) -> Path:
+    """Where the checked result of ``case`` lies in a run directory."""
+    return folder / "cases" / f"{case.name}.json"
+
+
+def case_task(case: Case, folder: Path, *, fields: bool = False) -> Task[CaseResult]:
+    """Solving ``case`` with its result stored under ``folder``, and its ``fields`` where they are wanted.
+
+    Cases that differ in friction alone share a process, and so the solution without friction.
+    """
+    path = result_path(folder, case)
+    return Task(
+        case.name,
+        partial(solve_and_store, case, path, plane_path(folder, case.name), folder if fields else None),
+        path,
+        partial(_of, case),
+        partial(failed, case),
+        cost=cost(case),
+        together=repr((replace(case.problem, friction=0.0), sorted(case.numerics.items()))),
+        ahead=_METHOD_PACKAGES,
+    )
+
+
+def cost(case: Case) -> float:
+    """Estimated time over that of an uncoated contact at rest.
+
+    Layers, the harmonic of sliding, further solves, the finer grid under a thin first coating.
+    """
+    problem = case.problem
+    layers = 1 + 0.3 * len(problem.coatings)
+    solves = 1 + bool(problem.friction) + 4 * case.resolve
+    finest = [numerics["patches"] / 257 for numerics in case.numerics.values() if "patches" in numerics]
+    thin = [0.1 * problem.a_h / thickness for _, _, thickness in problem.coatings[:1]]
+    return layers * solves * min(max([1.0, *finest, *thin]), 2.0) ** 2
+
+
+def published_task(case: PublishedCase, folder: Path) -> Task[CaseResult]:
+    """Comparing both methods with the results published in ``case``, its result stored under ``folder``."""
+    path = result_path(folder, case)
+    work = partial(solve_and_store_published, case, path)
+    failed = partial(published_run.failed, case)
+    return Task(case.name, work, path, partial(_of, case), failed, cost=1.0, ahead=_METHOD_PACKAGES)
+
+
+def _of(case: Case | PublishedCase, data: dict[str, Any]) -> CaseResult:
+    """The stored result of ``case``. Raises ValueError where it is that of another file or problem."""
+    result = from_json(data)
+    if (result.name, result.text, result.problem) != (case.name, case.text, plain(describe(case.problem))):
+        raise ValueError(f"holds the result of another case file than {case.name} is now")
+    return result
+
+
+def kept_result(folder: Path, case: Case | PublishedCase, *, fields: bool = False) -> CaseResult | None:
+    """The result of ``case`` in a run directory that need not be computed again; None where there is none.
+
+    It is whole, of the same case file, made by the same code, and a result; so is what is drawn of it, and
+    so are its ``fields`` where they are wanted.
+    Raises StoreError, naming the file, where there is one that cannot be used.
+    """
+    path = result_path(folder, case)
+    if not os.path.lexists(path):
+        return None
+    data = read_checked(path)
+    if data.get("made_by") != fingerprint():
+        raise StoreError(f"{path}: made by another version of this program")
+    try:
+        result = _of(case, data)
+    except ValueError as error:
+        raise StoreError(f"{path}: {error}") from None
+    if isinstance(case, Case):
+        read_plane(plane_path(folder, case.name), case.text)
+        if fields:
+            read_fields(folder, case.name, case.text)
+    return result if result.outcome is not Outcome.NO_RESULT else None
+
+
+def run_cases(cases: Sequence[Case], folder: Path, *, jobs: int, time_limit: float) -> list[CaseResult]:
+    """Run ``cases`` as ``run_tasks`` does; their results in order, stored under ``folder``."""
+    return run_tasks([case_task(case, folder) for case in cases], jobs=jobs, time_limit=time_limit)

@@ -1,0 +1,159 @@
+"""One case from its problem to its verdicts."""
+
+import time
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from verification.cases.case_file import Case
+from verification.judging.invariants import Invariant, check, resolved
+from verification.judging.verdict import Claim, Outcome, Verdict, compare, judge
+from verification.problem.coated_contact import CoatedContact, Solution
+from verification.problem.line_profile import Profile
+from verification.problem.quantity import QUANTITIES, SCALARS
+from verification.running.case_result import CaseResult, SourceResult, describe, diagnostics_of, message_of
+from verification.sampling.line_sampling import edge_of, positions, sample, sample_contact
+from verification.sources.source_record import Solver
+from verification.sources.source_registry import solvers
+
+
+def run(case: Case, available: Mapping[str, Solver] | None = None) -> CaseResult:
+    """Solve a case by every source its claims name, sample all at the same points, judge the claims.
+
+    A source that fails leaves its message and NO_RESULT on each of its claims; the others are compared.
+    available : other solvers by name, as in tests and with planted faults.
+    """
+    return judge_case(case, solve_case(case, available))
+
+
+@dataclass(frozen=True, eq=False)
+class Solved:
+    """Solution and SourceResult of each source of a case, by name; a source that failed has no Solution.
+
+    resolved : invariants between solutions of the problem and of others, where the case has ``resolve``.
+    """
+
+    solutions: Mapping[str, Solution]
+    outcomes: Mapping[str, SourceResult]
+    resolved: tuple[Invariant, ...] = ()
+
+
+def solve_case(case: Case, available: Mapping[str, Solver] | None = None) -> Solved:
+    """Solve a case by every source its claims name; ``available`` as in ``run``."""
+    available = solvers() if available is None else available
+    wanted = {source for claim in case.claims for source in claim.between}
+    outcomes: dict[str, SourceResult] = {}
+    solutions: dict[str, Solution] = {}
+    for source in (name for name in available if name in wanted):
+        begin = time.perf_counter()
+        try:
+            solution = available[source](case.problem, case.numerics.get(source, {}))
+            for name in SCALARS:
+                if not np.isfinite(value := QUANTITIES[name].value(solution, case.problem)):
+                    raise ValueError(f"{name} = {value}; the solution is not finite")
+        except Exception as error:  # any failed solve is a row of the report
+            outcomes[source] = SourceResult(source, time.perf_counter() - begin, message_of(error))
+            continue
+        solutions[source] = solution
+        outcomes[source] = SourceResult(
+            source,
+            time.perf_counter() - begin,
+            diagnostics=diagnostics_of(solution.diagnostics),
+            budget=getattr(solution.uncertainty, "budget", ()),
+        )
+    return Solved(solutions, outcomes, resolved(case.problem, available) if case.resolve else ())
+
+
+def judge_case(case: Case, solved: Solved, *, invariants: bool = True) -> CaseResult:
+    """Sample every solution at the same points of every line, then decide each claim of ``case``.
+
+    invariants : whether each solution is checked against its invariants too.
+    """
+    started = time.perf_counter()
+    solutions, outcomes = dict(solved.solutions), dict(solved.outcomes)
+    profiles: dict[tuple[str, str, str], Profile] = {}
+    places = positions(case.problem, case.lines, solutions) if solutions else {}
+    edge = edge_of(solutions) if solutions else None
+    for source, solution in solutions.items():
+        begin = time.perf_counter()
+        try:
+            found = list(sample_contact(solution, source, case.problem))
+            for line in case.lines:
+                found += sample(solution, source, line, places[line], case.problem, edge)
+        except Exception as error:  # as above
+            outcomes[source] = SourceResult(source, outcomes[source].seconds, message_of(error))
+            continue
+        old = outcomes[source]
+        seconds = old.seconds + time.perf_counter() - begin
+        outcomes[source] = SourceResult(source, seconds, None, old.diagnostics, old.budget)
+        profiles |= {(p.quantity, p.line, source): p for p in found}
+
+    held: list[Invariant] = []
+    if invariants:
+        for source, solution in solutions.items():
+            held += check(solution, source, case.problem)
+        held += solved.resolved
+    verdicts = tuple((claim, decide(claim, profiles, outcomes, case.problem)) for claim in case.claims)
+    return CaseResult(
+        name=case.name,
+        title=case.title,
+        source=case.source,
+        problem=describe(case.problem),
+        sources=tuple(outcomes.values()),
+        profiles=tuple(profiles.values()),
+        verdicts=verdicts,
+        seconds=sum(s.seconds for s in solved.outcomes.values()) + time.perf_counter() - started,
+        text=case.text,
+        invariants=tuple(held),
+        warnings=case.warnings,
+    )
+
+
+def failed(case: Case, reason: str, seconds: float) -> CaseResult:
+    """The result of a case that could not be run at all: every claim NO_RESULT, for ``reason``."""
+    return CaseResult(
+        name=case.name,
+        title=case.title,
+        source=case.source,
+        problem=describe(case.problem),
+        sources=(SourceResult("case", seconds, reason),),
+        profiles=(),
+        verdicts=tuple((claim, Verdict(Outcome.NO_RESULT, reason)) for claim in case.claims),
+        seconds=seconds,
+        text=case.text,
+        warnings=case.warnings,
+    )
+
+
+def decide(
+    claim: Claim,
+    profiles: Mapping[tuple[str, str, str], Profile],
+    outcomes: Mapping[str, SourceResult],
+    problem: CoatedContact,
+) -> Verdict:
+    """The verdict of ``claim``; ``profiles`` by (quantity, line, source)."""
+    sides = []
+    for source in claim.between:
+        outcome = outcomes.get(source)
+        if outcome is None or outcome.failure is not None:
+            reason = "was not solved" if outcome is None else outcome.failure
+            return Verdict(Outcome.NO_RESULT, f"{source}: {reason}")
+        side = profiles.get((claim.quantity, claim.line, source))
+        if side is None:
+            return Verdict(Outcome.NO_RESULT, f"{source} gives no {claim.quantity} on {claim.line}")
+        sides.append(side)
+    a, b = sides
+    p0, edge, delta = (_of_best(name, profiles, outcomes) for name in SCALARS)
+    divisor = QUANTITIES[claim.quantity].divisor
+    scale = divisor(float(b.value[0]), problem.p_h, p0, edge, problem.delta_h, delta)
+    excluded = np.abs(np.abs(a.position) - edge) < claim.edge * edge
+    return judge(compare(a, b, scale=scale, excluded=excluded), claim.cap)
+
+
+def _of_best(
+    quantity: str, profiles: Mapping[tuple[str, str, str], Profile], outcomes: Mapping[str, SourceResult]
+) -> float:
+    """A scalar of the contact [SI] by the last source that has one, an exact reference where there is any."""
+    found = [profiles.get((quantity, "contact", source)) for source in outcomes]
+    return next((float(profile.value[0]) for profile in reversed(found) if profile is not None), 0.0)

@@ -1,0 +1,148 @@
+"""One published case from its problem to its verdicts."""
+
+import time
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from verification.cases.digit_changes import digit_changes
+from verification.cases.published_columns import PublishedColumn
+from verification.cases.published_file import PublishedCase
+from verification.judging.verdict import Outcome, Verdict, compare, judge
+from verification.problem.coated_contact import Solution
+from verification.problem.line_profile import Profile
+from verification.problem.loading_curve import Problem
+from verification.problem.quantity import POINTWISE, QUANTITIES
+from verification.running.case_result import CaseResult, SourceResult, describe, diagnostics_of, message_of
+from verification.sampling.point_values import values
+from verification.sampling.tabulated_solution import tabulated
+from verification.sources.loading_solution import Loading
+from verification.sources.source_record import Solver
+from verification.sources.source_registry import CLOSED, METHODS, PUBLISHED, solvers
+
+
+def published_solvers(problem: Problem) -> dict[str, Solver]:
+    """Solvers of a published ``problem``: the methods, and the exact reference where it supports it."""
+    return {name: solve for name, solve in solvers(problem).items() if name not in CLOSED}
+
+
+def run(case: PublishedCase, available: Mapping[str, Solver] | None = None) -> CaseResult:
+    """Solve by every source, evaluate each at the published points, judge every column on every line.
+
+    available : solvers by source; a method that is missing has NO_RESULT, a reference no claims.
+    A source that fails leaves its message and NO_RESULT on each of its claims.
+    """
+    started = time.perf_counter()
+    available = published_solvers(case.problem) if available is None else available
+    outcomes: dict[str, SourceResult] = {}
+    profiles = {(p.profile.quantity, p.profile.line, PUBLISHED): p.profile for p in case.columns}
+    for source, solve in available.items():
+        begin = time.perf_counter()
+        try:
+            solution = solve(case.problem)
+            if not isinstance(solution, Loading):
+                points = [i.at for i in case.columns if QUANTITIES[i.profile.quantity].kind in POINTWISE]
+                solution = tabulated(solution, points)
+            claimed = {(c.quantity, c.line) for c in case.claims if source in c.between}
+            found = [
+                _profile(solution, source, item, case)
+                for item in case.columns
+                if source in METHODS or (item.profile.quantity, item.profile.line) in claimed
+            ]
+        except Exception as error:  # a failed solve is a row of the report, whatever went wrong
+            outcomes[source] = SourceResult(source, time.perf_counter() - begin, message_of(error))
+            continue
+        seconds, budget = time.perf_counter() - begin, getattr(solution.uncertainty, "budget", ())
+        outcomes[source] = SourceResult(source, seconds, None, diagnostics_of(solution.diagnostics), budget)
+        profiles |= {(p.quantity, p.line, source): p for p in found}
+    columns = {(p.profile.quantity, p.profile.line): p for p in case.columns}
+    verdicts = []
+    for claim in case.claims:
+        source, item = claim.between[0], columns[claim.quantity, claim.line]
+        if source not in available and source not in METHODS:
+            continue
+        failure = outcomes[source].failure if source in outcomes else "was not solved"
+        if failure is not None:
+            verdicts.append((claim, Verdict(Outcome.NO_RESULT, f"{source}: {failure}")))
+            continue
+        mine = profiles[claim.quantity, claim.line, source]
+        verdict = judge(compare(mine, item.reference, scale=item.scale), claim.cap)
+        verdicts.append((claim, replace(verdict, reason=verdict.reason + _departures(item))))
+    return replace(
+        _blank(case),
+        sources=tuple(outcomes.values()),
+        profiles=tuple(profiles.values()),
+        verdicts=tuple(verdicts),
+        seconds=time.perf_counter() - started,
+    )
+
+
+def with_digits(case: PublishedCase, result: CaseResult) -> CaseResult:
+    """``result`` with the changes of single digits that its verdicts would notice."""
+    digits = digit_changes(case.columns, case.claims, result.profile_of)
+    return replace(result, published=result.published | {"digits": digits})
+
+
+def failed(case: PublishedCase, reason: str, seconds: float) -> CaseResult:
+    """The result of a case that could not be run at all: every claim NO_RESULT, for ``reason``."""
+    return replace(
+        _blank(case),
+        sources=(SourceResult("case", seconds, reason),),
+        verdicts=tuple((claim, Verdict(Outcome.NO_RESULT, reason)) for claim in case.claims),
+        seconds=seconds,
+    )
+
+
+def _blank(case: PublishedCase) -> CaseResult:
+    return CaseResult(
+        name=case.name,
+        title=case.title,
+        source=case.source,
+        problem=describe(case.problem),
+        sources=(),
+        profiles=(),
+        verdicts=(),
+        seconds=0.0,
+        text=case.text,
+        published=case.citation | {"columns": [_record(item) for item in case.columns]},
+    )
+
+
+def _record(item: PublishedColumn) -> dict[str, Any]:
+    """A published column as the report shows it."""
+    return {
+        "quantity": item.profile.quantity,
+        "line": item.profile.line,
+        "file": item.file,
+        "column": item.column,
+        "coordinate": item.at.coordinate,
+        "position": (item.at.along / item.at.in_si).tolist(),
+        "position_unit": item.at.unit,
+        "text": item.text,
+        "rows": item.rows,
+        "labels": item.labels,
+        "unit": item.unit,
+        "to_si": item.to_si,
+        "seen": item.seen,
+        "departure": (item.departure / item.to_si).tolist(),
+        "counted": item.counted.tolist(),
+        "scale": item.scale,
+    }
+
+
+def _departures(item: PublishedColumn) -> str:
+    """Message on the listed departures of a column; empty where there are none."""
+    if not item.departs.any():
+        return ""
+    largest = np.abs(item.departure).max() / item.scale
+    count = f"{item.departs.sum()} of {item.departs.size} values, listed and not counted"
+    return f"; {count}, depart from the exact solution by up to {largest:.2e}"
+
+
+def _profile(
+    solution: Solution | Loading, source: str, item: PublishedColumn, case: PublishedCase
+) -> Profile:
+    value, uncertainty = values(solution, item.profile.quantity, item.at, case.problem, item.series)
+    return replace(item.profile, value=value, source=source, uncertainty=uncertainty)

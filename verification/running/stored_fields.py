@@ -1,0 +1,157 @@
+"""Stored stresses of a case: the plane y = 0 for the report, files for ParaView.
+
+Every file carries the case file it came from. Those for ParaView, the finite element mesh and boxes of the
+semi-analytical method, have their checksums in a file beside them that checks itself.
+"""
+
+import hashlib
+from collections.abc import Iterable, Mapping
+from contextlib import suppress
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+from verification.cases.case_file import Case
+from verification.problem.coated_contact import Solution
+from verification.running.case_result import CaseResult
+from verification.running.checked_files import (
+    MAX_BYTES,
+    StoreError,
+    read_checked,
+    write_atomically,
+    write_checked,
+)
+from verification.running.json_records import decode, encode
+from verification.sampling.stress_plane import Plane
+from verification.sampling.vtk_files import WRITERS
+from verification.sources.source_registry import SOURCES
+
+SCHEMA = "coatcheck-fields/1"
+PLANE = "coatcheck-plane/2"
+
+
+def plane_path(folder: Path, name: str) -> Path:
+    """Where the plane of the case called ``name`` lies in a run directory."""
+    return folder / "planes" / f"{name}.json"
+
+
+def write_plane(path: Path, plane: Plane, case_file: str) -> None:
+    """Store ``plane`` with the case file it came from; nine digits, a billionth of the largest stress."""
+    peaks = [float(np.max(np.abs(s))) for some in plane.stress.values() for s in some]
+    largest = max((peak for peak in peaks if np.isfinite(peak)), default=0.0)
+    digits = 0 if not largest > 0 else 9 - int(np.ceil(np.log10(largest)))
+    stress = {name: tuple(np.round(s, digits) for s in some) for name, some in plane.stress.items()}
+    content = {"schema": PLANE, "case_file": case_file, "plane": encode(replace(plane, stress=stress))}
+    write_checked(path, content)
+
+
+def read_plane(path: Path, case_file: str) -> Plane:
+    """The plane stored at ``path``.
+
+    Raises StoreError where it is missing, damaged or of another case file.
+    """
+    data = read_checked(path)
+    if (data.get("schema"), data.get("case_file")) != (PLANE, case_file):
+        raise StoreError(f"{path}: of another case file or version of this program; run the case again")
+    try:
+        return decode(Plane, data.get("plane"))
+    except ValueError:
+        raise StoreError(f"{path}: not a whole plane; it is damaged, run the case again") from None
+
+
+def read_planes(folder: Path, results: Iterable[CaseResult]) -> dict[str, Plane]:
+    """The planes that a run directory holds of ``results``, by name of the case."""
+    found = {}
+    for result in results:
+        with suppress(StoreError):  # neither a failed case nor a published one has a plane
+            found[result.name] = read_plane(plane_path(folder, result.name), result.text)
+    return found
+
+
+@dataclass(frozen=True)
+class Fields:
+    """Files of a case: the finite element ``mesh``, the ``boxes`` layer by layer, their ``index``.
+
+    None and () where a method gave nothing; ``failures`` has the message of each such method.
+    """
+
+    mesh: Path | None
+    index: Path | None
+    boxes: tuple[Path, ...]
+    failures: Mapping[str, str]
+
+
+def fields_path(folder: Path, name: str) -> Path:
+    """Where a run directory has the checksums of the fields of the case called ``name``."""
+    return folder / "fields" / f"{name}.json"
+
+
+def write_fields(case: Case, solutions: Mapping[str, Solution], folder: Path) -> Fields:
+    """Write the fields of ``solutions`` into ``folder``/fields, the file of checksums last.
+
+    NAME-fem.vtu : the plane y = 0, quadratic triangles.   NAME-semi.vtm : an index of NAME-semi-layer-K.vtr,
+    a box of a layer each, so that what jumps at an interface has both its values. All in metres, z into the
+    solid; fields "sigma_xx [Pa]" ..., "von_mises [Pa]", "displacement [m]", cells with their "layer".
+    A method that fails leaves its message. Raises StoreError where files cannot be written.
+    """
+    path = fields_path(folder, case.name)
+    written: dict[str, bytes] = {}
+    failures: dict[str, str] = {}
+    for source, solution in solutions.items():
+        if SOURCES[source].fields:
+            try:
+                written |= WRITERS[SOURCES[source].fields](case, solution)
+            except Exception as error:  # a result does not depend on its files for ParaView
+                failures[source] = f"{type(error).__name__}: {' '.join(str(error).split())[:300]}"
+    for name, data in written.items():
+        write_atomically(path.parent / name, data)
+    content = {
+        "schema": SCHEMA,
+        "case_file": case.text,
+        "files": {name: hashlib.sha256(data).hexdigest() for name, data in written.items()},
+        "failures": failures,
+    }
+    write_checked(path, content)
+    return read_fields(folder, case.name, case.text)
+
+
+def read_fields(folder: Path, name: str, case_file: str | None = None) -> Fields:
+    """The fields of the case ``name`` in a run directory, every file's checksum confirmed.
+
+    case_file : that they have to come from.   Raises StoreError, naming the file.
+    """
+    path = fields_path(folder, name)
+    data = read_checked(path)
+    if data.get("schema") != SCHEMA or (case_file is not None and data.get("case_file") != case_file):
+        raise StoreError(f"{path}: of another case file or version of this program; run the case again")
+    try:
+        sums = {str(file): str(stated) for file, stated in data["files"].items()}
+        failures = {str(source): str(message) for source, message in data["failures"].items()}
+    except (KeyError, AttributeError):
+        raise StoreError(f"{path}: not a list of fields; run the case again with --fields") from None
+    for file, stated in sums.items():
+        if file != Path(file).name:
+            raise StoreError(f"{path}: names {file!r}, which is no file beside it")
+        if _digest(path.parent / file) != stated:
+            raise StoreError(
+                f"{path.parent / file}: its checksum does not hold; run the case again with --fields"
+            )
+    found = [path.parent / file for file in sums]
+    return Fields(
+        next((p for p in found if p.suffix == ".vtu"), None),
+        next((p for p in found if p.suffix == ".vtm"), None),
+        tuple(p for p in found if p.suffix == ".vtr"),
+        failures,
+    )
+
+
+def _digest(path: Path) -> str:
+    try:
+        if path.stat().st_size > MAX_BYTES:
+            raise StoreError(f"{path}: larger than {MAX_BYTES} bytes; not a file of this program")
+        return hashlib.sha256(path.read_bytes()).hexdigest()
+    except OSError as error:
+        raise StoreError(
+            f"{path}: cannot be read ({error.strerror}); run the case again with --fields"
+        ) from None

@@ -1,0 +1,50 @@
+"""A run read back from the report.json that it left."""
+
+import json
+from dataclasses import dataclass
+from pathlib import Path
+
+from verification.running.case_result import CaseResult, RunInfo, from_json, to_json
+from verification.running.checked_files import StoreError, read_bounded, read_checked
+from verification.running.json_records import decode
+
+MAX_BYTES = 1_000_000_000  # of all the results of a run: half a megabyte a case, up to 3 with an elastic ball
+
+
+@dataclass(frozen=True, eq=False)
+class StoredRun:
+    """The ``results`` of a run with its provenance; ``path`` is that of its report.json."""
+
+    path: Path
+    info: RunInfo
+    results: tuple[CaseResult, ...]
+
+    def result(self, name: str) -> CaseResult | None:
+        """The result of the case ``name``; None where the run has none."""
+        return next((result for result in self.results if result.name == name), None)
+
+
+def read_run(place: Path) -> StoredRun:
+    """The run in the directory ``place``, or in the report.json ``place`` itself.
+
+    Raises StoreError with a message that names the file.
+    """
+    path = place / "report.json" if place.is_dir() else place
+    try:
+        raw = read_bounded(path, MAX_BYTES)
+    except StoreError as error:
+        raise StoreError(f"{error}; give the directory of a run, or its report.json") from None
+    try:
+        data = json.loads(raw)
+        return StoredRun(path, decode(RunInfo, data["run"]), tuple(from_json(case) for case in data["cases"]))
+    except (ValueError, KeyError, TypeError, AttributeError, OverflowError, RecursionError) as error:
+        reason = " ".join(str(error).split())[:120]
+        raise StoreError(f"{path}: not a report of this program ({reason}); run the cases again") from None
+
+
+def confirm(run: StoredRun) -> None:
+    """Raises StoreError where a case of the report is not the one stored beside it with its checksum."""
+    for result in run.results:
+        path = run.path.parent / "cases" / f"{result.name}.json"
+        if to_json(from_json(read_checked(path))) != to_json(result):
+            raise StoreError(f"{path}: of another run than {run.path}; run the cases again")

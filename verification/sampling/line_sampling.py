@@ -1,0 +1,145 @@
+"""Profiles of a solution along the lines of a case."""
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from verification.judging.invariants.companion_uncertainty import followed
+from verification.problem.array_types import Array
+from verification.problem.coated_contact import BALL, FLAT, CoatedContact, Solution, stress_with_uncertainty
+from verification.problem.either_body import on_body
+from verification.problem.line_profile import Line, Profile
+from verification.problem.quantity import BALL_PEAKS, IN_PLANE, PEAKS, QUANTITIES, SCALARS, SLOPES
+from verification.sampling import oblique_sampling
+from verification.sampling.largest_tension import ENDS, Search, around_edge, edge_uncertainty
+
+__all__ = ["edge_of", "positions", "sample", "sample_contact"]
+
+# Of a: distances from the contact edge of points on the surface line, either side.
+NEAR_EDGE = np.array([0.0, 1e-4, 1e-3, 1e-2])
+
+
+def sample_contact(solution: Solution, source: str, problem: CoatedContact) -> tuple[Profile, ...]:
+    """Every scalar of the contact as a profile of one point [SI]; no slope where the solution has none."""
+    found = []
+    for name in (*SCALARS, *(name for name in SLOPES if getattr(solution, name, None) is not None)):
+        value = np.array([QUANTITIES[name].value(solution, problem)])
+        stated = QUANTITIES[name].uncertainty(solution, problem)
+        U = None if stated is None else np.array([stated])
+        found.append(Profile(name, "contact", np.zeros(1), value, source, U))
+    return tuple(found)
+
+
+def positions(
+    problem: CoatedContact, lines: Sequence[Line], solutions: Mapping[str, Solution]
+) -> dict[Line, Array]:
+    """Positions along each line [m]: in x the surface nodes of the first solution, in z inside the layers.
+
+    The semi-analytical method comes first and needs no interpolation at its nodes; finite elements have
+    shape functions anywhere. The surface has points at the contact edge of the last solution, the reference,
+    and ``NEAR_EDGE``.
+    """
+    a = max(solution.contact_radius for solution in solutions.values())
+    edge = edge_of(solutions)
+    nodes = next(iter(solutions.values())).surface_nodes
+    wanted = 2.5 * a * np.linspace(0, 1, 101)
+    if problem.friction:
+        wanted = np.concatenate([-wanted[:0:-1], wanted])
+    wanted = wanted[np.abs(wanted) <= np.abs(nodes).max()]
+    x = nodes[np.unique(np.abs(nodes[None, :] - wanted[:, None]).argmin(axis=1))]
+    z = {body: _depths(problem.seen_from(body), a) for body in problem.bodies}
+    near = edge * np.concatenate([1 + NEAR_EDGE, 1 - NEAR_EDGE])
+    clear = x[np.abs(np.abs(x) - edge) > NEAR_EDGE[1] * edge]
+    surface = np.unique(np.concatenate([clear, near, -near] if problem.friction else [clear, near]))
+
+    def along(line: Line) -> Array:
+        if line.coordinate == "z":
+            return z[line.body]
+        if line.depth is None:
+            return oblique_sampling.positions(problem, line, a)
+        return surface if line.depth == 0 else x
+
+    return {line: along(line) for line in lines}
+
+
+def edge_of(solutions: Mapping[str, Solution]) -> float:
+    """Contact radius [m] of the last solution, the reference: where the surface line has r = a."""
+    return float(list(solutions.values())[-1].contact_radius)
+
+
+def _depths(problem: CoatedContact, a: float) -> Array:
+    """Depths on the axis [m]: at least six in each layer, none on an interface; spacing grows with depth."""
+    bounds = np.array([0.0, *problem.interfaces, max(4 * a, *(2 * z for z in problem.interfaces), 0.0)])
+    inside = bounds[:-1, None] + np.diff(bounds)[:, None] * (np.arange(6) + 0.5) / 6
+    return np.unique(np.concatenate([inside.ravel(), 4 * a * ((np.arange(40) + 0.5) / 40) ** 1.5]))
+
+
+def sample(
+    solution: Solution,
+    source: str,
+    line: Line,
+    position: Array,
+    problem: CoatedContact | None = None,
+    edge: float | None = None,
+) -> tuple[Profile, ...]:
+    """Every quantity of ``line`` at ``position`` [m]: the four stresses, on the surface the pressure too.
+
+    Off the plane y = 0 see ``oblique``. On a line of the ball x is that of the flat.
+
+    problem : on the surface also its largest tension with its place, as ``PEAKS`` of the contact.
+    edge : as of ``edge_of``; points of the surface at this radius [m] are evaluated at the solution's own
+           contact edge, where a value does not depend on the error of the radius.
+    """
+    if line.depth is None and line.coordinate != "z":
+        return oblique_sampling.sample(solution, source, line, position)
+    solution, turned = on_body(solution, line.body), -1.0 if line.body == BALL else 1.0
+    x, _, z = (np.array(along) for along in line.points(position))
+    x = turned * x
+    stated = solution.uncertainty is not None
+    surface = line.place == "surface"
+    at = np.flatnonzero(np.abs(position) == edge) if surface else np.arange(0)
+    side = np.sign(x[at])
+    x[at] = side * float(solution.contact_radius)
+    around = (side[:, None] * around_edge(solution)).ravel() if at.size and stated else np.zeros(0)
+    search = Search(solution, problem.seen_from(line.body)) if problem is not None and surface else None
+    # In one call, whose cost hardly depends on the number of points.
+    parts = (x, around, np.zeros(0) if search is None else search.x)
+    points = np.concatenate(parts)
+    depth = np.concatenate([z, np.zeros(points.size - z.size)])
+    sigma, U = stress_with_uncertainty(solution, points, 0.0, depth, layer=line.layer)
+    ends = np.cumsum([part.size for part in parts])[:-1]
+    values, near, sought = np.split(sigma, ends, axis=-1)
+    wide, near_U, sought_U = (None,) * 3 if U is None else np.split(U, ends, axis=-1)
+    if wide is not None and near_U is not None and around.size:
+        wide[..., at] = _at_edge(
+            solution, near, near_U, lambda one: one.stress(ENDS * one.contact_radius, 0.0, 0.0, layer=0)
+        )
+    values[0, 2] = values[2, 0] = turned * values[0, 2]
+    found = [(name, values[component], wide, component) for name, component in IN_PLANE.items()]
+    profiles = [
+        Profile(name, line.name, position, value, source, None if U is None else U[component])
+        for name, value, U, component in found
+    ]
+    if line.name == "surface":  # the pressure is that of both bodies
+        spread = solution.pressure_uncertainty(x) if stated else None
+        if spread is not None and around.size:
+            near, near_U = solution.pressure(around), solution.pressure_uncertainty(around)
+            spread[at] = _at_edge(solution, near, near_U, lambda one: one.pressure(ENDS * one.contact_radius))
+        profiles.append(Profile("pressure", line.name, position, solution.pressure(x), source, spread))
+    if search is not None:
+        best = search.largest(sought[0, 0], None if sought_U is None else sought_U[0, 0])
+        numbers = ((best.value, best.uncertainty), (turned * best.place, best.place_uncertainty))
+        names = PEAKS if line.body == FLAT else BALL_PEAKS
+        for name, (number, uncertain) in zip(names, numbers, strict=True):
+            own = None if uncertain is None else np.array([uncertain])
+            profiles.append(Profile(name, "contact", np.zeros(1), np.array([number]), source, own))
+    return tuple(profiles)
+
+
+def _at_edge(solution: Solution, value: Array, U: Array, at_own_edge: Callable[[Any], Array]) -> Array:
+    """Uncertainty at the solution's own edge from values at ``around_edge`` of each side, (..., 5 sides)."""
+    change = followed(solution, at_own_edge)
+    shape = (*value.shape[:-1], -1, 5)
+    ends = None if change is None else change[..., None, :]
+    return edge_uncertainty(value.reshape(shape), U.reshape(shape), ends)

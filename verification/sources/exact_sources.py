@@ -1,0 +1,64 @@
+"""Records of the exact reference with the closed forms of uncoated contacts."""
+
+from collections.abc import Mapping
+from functools import partial
+from typing import Any
+
+from verification.problem.coated_contact import CoatedContact, PrescribedLoad, keywords
+from verification.problem.loading_curve import LoadingCurve, Problem
+from verification.sources.source_record import Kind, Source, Style
+
+CODE = "verification.sources.references"
+
+
+def solve_exactly(problem: Problem, numerics: Mapping[str, Any] | None = None) -> Any:
+    """``problem`` by the integral equation of the contact, or by Hankel transforms of a uniform disc."""
+    from verification.sources.references import integral_equation, uniform_disc
+
+    if isinstance(problem, LoadingCurve):
+        from verification.sources.loading_solution import exact_loading
+
+        return exact_loading(problem)
+    if isinstance(problem, PrescribedLoad):
+        return uniform_disc.solve_prescribed(**keywords(problem), **(numerics or {}))
+    return integral_equation.solve(**keywords(problem), **(numerics or {}))
+
+
+def hertz(problem: CoatedContact, numerics: Mapping[str, Any] | None = None) -> Any:
+    """Hertz's contact of the substrates."""
+    from verification.sources.references.hertz import Hertz
+
+    return Hertz(problem.radius, problem.load, *problem.substrate, ball=_bare_ball(problem))
+
+
+def hamilton(problem: CoatedContact, numerics: Mapping[str, Any] | None = None) -> Any:
+    """Hamilton's sliding contact of the substrates."""
+    from verification.sources.references.hamilton import Hamilton
+
+    ball = _bare_ball(problem)
+    return Hamilton(problem.radius, problem.load, *problem.substrate, problem.friction, ball=ball)
+
+
+def _bare_ball(problem: CoatedContact) -> tuple[float, float] | None:
+    return None if problem.ball is None else problem.ball[:2]
+
+
+def _exact_accepts(problem: Problem, kind: str) -> bool:
+    """No sliding disc, whose stress is infinite at the rim."""
+    return not (isinstance(problem, PrescribedLoad) and problem.friction)
+
+
+def _closed_accepts(problem: Problem, kind: str, *, sliding: bool) -> bool:
+    if not isinstance(problem, CoatedContact):
+        return False
+    return problem.homogeneous and (problem.friction > 0) is sliding
+
+
+_EXACT, _CLOSED = Style("exact", (), 5.0, 0.35, "+"), Style("hertz", (1.0, 1.4), 1.8, marker="s")
+_smooth, _sliding = partial(_closed_accepts, sliding=False), partial(_closed_accepts, sliding=True)
+# The exact curve lies below the methods' as a broad grey band.
+REFERENCE_SOURCES = (
+    Source("integral_equation", Kind.EXACT, "integral equation", _EXACT, solve_exactly, _exact_accepts, CODE),
+    Source("hertz", Kind.CLOSED, "Hertz", _CLOSED, hertz, _smooth, CODE),
+    Source("hamilton", Kind.CLOSED, "Hamilton", _CLOSED, hamilton, _sliding, CODE),
+)

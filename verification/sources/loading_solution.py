@@ -1,0 +1,181 @@
+"""Loading curve of a sphere: load, approach, contact radius, stiffness at given points.
+
+The sphere's dW/d delta is the stiffness of a flat punch of the contact radius, 2 a E1* kappa, for any
+layers: Pharr, Oliver and Brotzen, J. Mater. Res. 7 (1992) 613-617. A solver of spheres therefore gives the
+stiffness of flat punches too.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from math import exp, log, sqrt
+
+import numpy as np
+from scipy.optimize import brentq
+
+from verification.problem.array_types import Array
+from verification.problem.coated_contact import CoatedContact, Solution
+from verification.problem.loading_curve import LoadingCurve
+from verification.sources.limit_extrapolation import short_of_limit
+from verification.sources.references.flat_punch import Pressed, pressed
+
+# Step in log W of a difference quotient. Rounding and the uncertainty of the approach require a longer step,
+# the curvature a shorter one; at 1 % both errors are about 1e-5.
+STEP = 0.01
+
+
+@dataclass(frozen=True)
+class LoadingDiagnostics:
+    """Contacts solved for the curve."""
+
+    contacts: int
+
+
+@dataclass(frozen=True, eq=False)
+class Loading:
+    """States (W, delta, a, S) near the points, columns of ``state``, with their ``uncertainties`` [SI]."""
+
+    problem: LoadingCurve
+    state: Array
+    uncertainties: Array
+    diagnostics: LoadingDiagnostics
+    uncertainty: None = None
+
+    def quantity(self, name: str, at: Array, series: tuple[float, ...] = ()) -> tuple[Array, Array]:
+        """One of ``CURVES`` with its uncertainty [SI] where the control equals ``at``, points of the problem.
+
+        series_over_load  : (4/3) E1* sqrt(R) delta^1.5 (1 + c1 X + c2 X^2 + ..) / W,  X = sqrt(R delta)/h
+        series_over_kappa : (1 + c1 X + c2 X^2 + ..) / kappa,  X = a/h
+
+        A state misses its point by the error of the load estimated for it. The value is moved to the point
+        along the curve through the neighbouring states; the shift is part of the uncertainty.
+        """
+        value = self._of(name, self.state, series)
+        uncertainty = np.zeros(value.shape)
+        for j in range(4):
+            moved = self.state.copy()
+            moved[:, j] *= 1 + 1e-6
+            slope = (self._of(name, moved, series) / value - 1) / 1e-6
+            uncertainty += np.abs(slope * self.uncertainties[:, j] / self.state[:, j])
+        column = 2 if self.problem.control == "contact_radius" else 1
+        control = self.state[:, column]
+        miss = np.log(np.array(self.problem.at) / control)
+        power = np.full(value.shape, 3.0)
+        if control.size > 1:
+            order = np.argsort(control)
+            power[order] = np.gradient(np.log(value[order]), np.log(control[order]))
+        uncertainty += np.abs(power) * (self.uncertainties[:, column] / control + np.abs(miss))
+        value = value * np.exp(power * miss)
+        rows = [self.problem.at.index(float(x)) for x in at]
+        return value[rows], (uncertainty * value)[rows]
+
+    def _of(self, name: str, state: Array, series: tuple[float, ...]) -> Array:
+        W, delta, a, S = state.T
+        p = self.problem
+        h = p.coatings[0][2] if p.coatings else np.inf
+        kappa = S / (2 * a * p.E_star)
+        if name == "series_over_load":
+            hertz = 4 / 3 * p.E_star * np.sqrt(p.radius) * delta**1.5
+            return hertz * _series(np.sqrt(p.radius * delta) / h, series) / W
+        if name == "series_over_kappa":
+            return _series(a / h, series) / kappa
+        return {"load": W, "approach": delta, "contact_radius": a, "kappa": kappa}[name]
+
+
+def pressed_at(problem: LoadingCurve, at: float) -> tuple[float, Pressed]:
+    """Contact radius [m] and exact solution where the control of ``problem`` equals ``at`` [m]."""
+    layers = (problem.coatings, problem.substrate)
+    if problem.control == "contact_radius":
+        return at, pressed(at, *layers)
+    wanted = at * problem.radius
+    # Hertz has delta R = a^2; a layer on a stiff base down to a^2/4, one on a soft base far more.
+    span = (log(sqrt(wanted) / 30), log(sqrt(wanted) * 30))
+    a = exp(brentq(lambda s: log(pressed(exp(s), *layers).approach / wanted), *span))
+    return a, pressed(a, *layers)
+
+
+def loading(
+    problem: LoadingCurve, solve: Callable[[CoatedContact], Solution], *, limits: bool = False
+) -> Loading:
+    """The curve by a solver of one contact under a load; S from three loads where its solution states none.
+
+    limits : extrapolate to nu = 1/2 and to a rigid base, see ``extrapolation``.
+    """
+    found, count = [], 0
+
+    def state(contact: CoatedContact) -> tuple[Array, Array]:
+        nonlocal count
+        count += 1
+        one = solve(contact)
+        if problem.punch and getattr(one, "stiffness", None) is None:
+            count += 2
+            return _three(contact, one, solve)
+        return _one(contact, one)
+
+    for at in problem.at:
+        contact = problem.contact(pressed_at(problem, at)[1].load / problem.radius)
+        if not limits or short_of_limit(contact, 1) == contact:
+            found.append(state(contact))
+            continue
+        (near, U), (further, V) = (state(short_of_limit(contact, t)) for t in (1, 2))
+        if not _incompressible(contact):
+            # A base in series with the layer: extrapolation linear in its compliance neglects the square of
+            # its contribution; twice that for both ends of the step.
+            found.append((2 * near - further, 2 * U + V + 2 * (near - further) ** 2 / near))
+            continue
+        third, T = state(short_of_limit(contact, 3))
+        # Parabola through all three points, with the uncertainty of the straight line through two.
+        bend = near - 2 * further + third
+        found.append((2 * near - further + bend, 3 * U + 3 * V + T + np.abs(bend)))
+    states, uncertainties = (np.array(column) for column in zip(*found, strict=True))
+    return Loading(problem, states, uncertainties, LoadingDiagnostics(count))
+
+
+def _incompressible(contact: CoatedContact) -> bool:
+    return 0.5 in [contact.substrate[1], *(nu for _, nu, _ in contact.coatings)]
+
+
+def exact_loading(problem: LoadingCurve) -> Loading:
+    """The curve by the integral equation; its uncertainty is the change by fewer nodes and a shorter tail."""
+    rows, uncertainty = [], []
+    for at in problem.at:
+        a, fine = pressed_at(problem, at)
+        coarse = pressed(a, problem.coatings, problem.substrate, nodes=45, tail=30.0)
+        state, other = (_exact_state(problem, a, one) for one in (fine, coarse))
+        rows.append(state)
+        uncertainty.append(2 * np.abs(state - other) + 1e-12 * state)
+    return Loading(problem, np.array(rows), np.array(uncertainty), LoadingDiagnostics(2 * len(rows)))
+
+
+def _exact_state(problem: LoadingCurve, a: float, one: Pressed) -> Array:
+    return np.array(
+        [one.load / problem.radius, one.approach / problem.radius, a, 2 * a * problem.E_star * one.kappa]
+    )
+
+
+def _one(contact: CoatedContact, one: Solution) -> tuple[Array, Array]:
+    S, dS = getattr(one, "stiffness", None), getattr(one, "stiffness_uncertainty", None)
+    U = one.uncertainty
+    state = np.array([contact.load, one.approach, one.contact_radius, 1.0 if S is None else S])
+    return state, np.array([0.0, U.approach, U.contact_radius, 0.0 if dS is None else dS])
+
+
+def _three(
+    contact: CoatedContact, middle: Solution, solve: Callable[[CoatedContact], Solution]
+) -> tuple[Array, Array]:
+    """State with S = (W/delta) d log W / d log delta from a load above and one below."""
+    low, high = (solve(replace(contact, load=contact.load * exp(s))) for s in (-STEP, STEP))
+    x = np.log([low.approach, middle.approach, high.approach])
+    m = 2 * STEP / (x[2] - x[0])
+    # The second derivative of log W; the third, which the quotient neglects, is no larger.
+    bend = abs(STEP / (x[2] - x[1]) - STEP / (x[1] - x[0])) / (x[2] - x[0]) * 2
+    noise = sum(one.uncertainty.approach / one.approach for one in (low, high)) / (x[2] - x[0])
+    state, uncertainty = _one(contact, middle)
+    state[3] = m * contact.load / middle.approach
+    uncertainty[3] = state[3] * (
+        noise + bend / m * (0.5 * (x[2] - x[0])) ** 2 + uncertainty[1] / middle.approach
+    )
+    return state, uncertainty
+
+
+def _series(X: Array, coefficients: tuple[float, ...]) -> Array:
+    return 1 + X * np.polynomial.polynomial.polyval(X, coefficients or (0.0,))

@@ -1,0 +1,81 @@
+"""Record of one source: name, kind, label, line style, solver, what it supports."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from enum import StrEnum
+from typing import Any
+
+from verification.problem.loading_curve import Problem
+
+Solver = Callable[..., Any]  # (problem, numerics) -> Solution, of a LoadingCurve a Loading
+
+
+class Kind(StrEnum):
+    """Where the numbers of a source come from."""
+
+    METHOD = "method"
+    EXACT = "exact"
+    CLOSED = "closed form"
+    PUBLISHED = "published"
+
+
+@dataclass(frozen=True)
+class Style:
+    """Line in a figure: ``colour`` names a role of the style sheet, never a value.
+
+    dash : on, off lengths in line widths; () is a full line, so that colour is never the only difference.
+    marker : of single points, in the notation of matplotlib.
+    """
+
+    colour: str
+    dash: tuple[float, ...] = ()
+    width: float = 1.6
+    opacity: float = 1.0
+    marker: str = "o"
+
+
+@dataclass(frozen=True)
+class NumericalParameter:
+    """One numerical parameter of a method: its ``levels`` as (name, keywords, step), coarse to fine.
+
+    order : theoretical, at which the error falls with the step.   coated : of coated solids alone.
+    """
+
+    method: str
+    name: str
+    levels: tuple[tuple[str, Mapping[str, Any], float], ...]
+    order: float = 2.0
+    coated: bool = False
+
+
+def _everything(problem: Problem, kind: str) -> bool:
+    return True
+
+
+@dataclass(frozen=True)
+class Source:
+    """One source of numbers.
+
+    solve : solver of every problem it supports; modules are imported when it is called.
+    accepts : (problem, kind of quantity) -> whether it gives such quantities of such a problem.
+    package : module or package that the fingerprint of its stored solutions is taken of.
+    parameters : numerical parameters of a refinement study.
+    coarse, coarse_stress : keywords of the coarse solves of the invariants, for scalars and for stresses.
+    fields : how its fields are written for ParaView, "mesh" or "boxes"; "" where they are not.
+    """
+
+    name: str
+    kind: Kind
+    label: str
+    style: Style
+    solve: Solver | None = None
+    accepts: Callable[[Any, str], bool] = _everything
+    package: str = ""
+    parameters: tuple[NumericalParameter, ...] = ()
+    coarse: Mapping[str, Any] = field(default_factory=dict)
+    coarse_stress: Mapping[str, Any] = field(default_factory=dict)
+    fields: str = ""
+
+    def supports(self, problem: Problem, kind: str = "stress") -> bool:
+        """Whether it gives quantities of ``kind``, see ``Quantity``, of ``problem``."""
+        return self.solve is not None and self.accepts(problem, kind)

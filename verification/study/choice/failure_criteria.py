@@ -1,0 +1,187 @@
+"""Preferable thickness: the stress of each failure mode compared with a strength.
+
+    utilisation u_i(h) = safety * stress_i(h) / strength_i,   governing mode: the largest u_i
+
+Of a strength that scatters it is the fractile below which a stated share lies, 5 % unless given. A thickness
+is admissible where every u_i, computed with its stress plus numerical uncertainty, is at most 1; the
+preferable one minimises the largest u_i. Without strengths the criterion is the least maximum of a few
+stresses over p_h, which is the same with equal strengths.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Annotated
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import Field, model_validator
+from scipy.interpolate import PchipInterpolator
+
+from verification.cases.toml_file import Strict
+from verification.cases.unit_numbers import InSI
+from verification.problem.array_types import Array
+from verification.study.choice.strength import Given, Strength, strength_of
+from verification.study.largest_stresses import Stress
+from verification.study.thickness_curves import Curve
+
+# Failure mode of each stress.
+MODES = {
+    "sigma_xx_surface": "the coating cracks at its surface",
+    "sigma_xx_base": "the coating cracks at its base",
+    "sigma_xx_substrate": "the substrate cracks under the coating",
+    "sigma_xz_interface": "the coating shears off",
+    "sigma_zz_interface": "the coating lifts off",
+    "von_mises_coating": "the coating yields",
+    "von_mises_substrate": "the substrate yields",
+}
+SAMPLES = 4001  # of an interpolated curve
+
+
+class Criteria(Strict):
+    """The table ``[criteria]`` of a study file.
+
+    strength : upper limit of each stress [Pa].   safety : factor on every stress.
+    fractile : share of weaker ones below the strength that counts, of strengths that scatter.
+    minimise : without strengths, the stresses whose maximum is minimised.
+    """
+
+    strength: Annotated[dict[Stress, Given], Field(min_length=1)] | None = None
+    safety: Annotated[float, Field(ge=1, le=100)] = 1.0
+    fractile: Annotated[float, Field(gt=0, le=0.5)] = 0.05
+    minimise: Annotated[list[Stress], Field(min_length=1)] | None = None
+
+    @model_validator(mode="after")
+    def _one(self) -> "Criteria":
+        if self.strength is not None and self.minimise is not None:
+            raise ValueError("takes strength or minimise, not both")
+        return self
+
+    def warnings(self) -> tuple[str, ...]:
+        """A line for each implausible strength."""
+        found = []
+        for name, given in (self.strength or {}).items():
+            # of a range its lower end, of a distribution its mean
+            key, value = ("", given) if isinstance(given, float) else given.first
+            if value < 1e6:
+                unit = "GPa" if value < 100 else "MPa"
+                slip = "check its unit" if isinstance(value, InSI) else f"{value:g} looks like {unit}"
+                found.append(f"criteria.strength.{name}{key} = {value:g} Pa is below 1 MPa; {slip}")
+        return tuple(found)
+
+    @property
+    def scatters(self) -> bool:
+        """Whether any strength is more than one value."""
+        return any(one.scatters for one in self.given().values())
+
+    def given(self, shown: Callable[[float], str] = str) -> dict[str, Strength]:
+        """Strength of every mode that has one, in the order of ``MODES``; {} without strengths."""
+        given = self.strength or {}
+        return {mode: strength_of(given[mode], shown) for mode in MODES if mode in given}
+
+    def strengths(self, p_h: float) -> dict[str, float]:
+        """Strength [Pa] that counts of every mode in the criterion; ``p_h`` [Pa] for all without any."""
+        if self.strength is not None:
+            return {mode: float(one.quantile(self.fractile)) for mode, one in self.given().items()}
+        chosen = self.minimise or ["sigma_xx_surface", "sigma_xx_base", "sigma_xz_interface"]
+        return {mode: p_h for mode in MODES if mode in chosen}
+
+    def description(self) -> str:
+        """The criterion in words."""
+        if self.strength is None:
+            names = ", ".join(self.strengths(1.0))
+            return (
+                f"No strengths are given, so the preferable thickness is where the largest of {names} is "
+                "smallest; [criteria] minimise names other stresses, [criteria] strength gives strengths."
+            )
+        factor = f", each stress times {self.safety:g}" if self.safety != 1 else ""
+        kind = f"the {100 * self.fractile:g} % fractile of its strength" if self.scatters else "its strength"
+        return f"Every stress must stay below {kind}{factor}."
+
+
+@dataclass(frozen=True, eq=False)
+class Judged:
+    """A criterion evaluated on one curve; thicknesses over a_h.
+
+    modes : of the criterion.   utilisation : (modes, points of the curve).   limited : strengths were given.
+    h, largest, governing : dense samples, the largest utilisation there, the number of its mode.
+    admissible : ranges of h.   preferable : (h, largest utilisation, mode).
+    interpolation_error : largest change of a utilisation at points left out one by one, over the largest
+    utilisation.
+    """
+
+    curve: Curve
+    modes: tuple[str, ...]
+    utilisation: Array
+    limited: bool
+    h: Array
+    largest: Array
+    governing: NDArray[np.int_]
+    admissible: tuple[tuple[float, float], ...]
+    preferable: tuple[float, float, str]
+    interpolation_error: float
+
+
+def judged(curve: Curve, criteria: Criteria) -> Judged:
+    """Evaluate ``criteria`` on ``curve``, interpolated by monotone cubics in log h.
+
+    Raises ValueError for a curve of fewer than two points.
+    """
+    if curve.h.size < 2:
+        raise ValueError(f"{curve.h.size} thickness solved; a criterion needs two, sweep more")
+    strengths = criteria.strengths(curve.p_h)
+    scale = criteria.safety * curve.p_h / np.array([*strengths.values()])[:, None]
+    stress = np.array([curve.stress[mode] for mode in strengths])
+    used = scale * stress
+    bound = scale * (stress + np.nan_to_num([curve.uncertainty[mode] for mode in strengths]))
+    s = np.log(curve.h)
+    h = np.geomspace(curve.h[0], curve.h[-1], SAMPLES)
+    h[0], h[-1] = curve.h[0], curve.h[-1]
+    interpolated = PchipInterpolator(s, used, axis=1)(np.log(h))
+    largest, governing = interpolated.max(axis=0), interpolated.argmax(axis=0)
+    best = int(largest.argmin())
+    modes = tuple(strengths)
+    return Judged(
+        curve,
+        modes,
+        used,
+        criteria.strength is not None,
+        h,
+        largest,
+        governing,
+        _ranges(h, PchipInterpolator(s, bound, axis=1)(np.log(h)).max(axis=0)),
+        (float(h[best]), float(largest[best]), modes[governing[best]]),
+        _interpolation_error(s, used),
+    )
+
+
+def _ranges(h: Array, largest: Array) -> tuple[tuple[float, float], ...]:
+    """Ranges where ``largest`` is at most 1, their ends by linear interpolation between samples."""
+    inside = largest <= 1
+    ranges = []
+    starts = np.flatnonzero(inside & ~np.append(False, inside[:-1]))
+    ends = np.flatnonzero(inside & ~np.append(inside[1:], False))
+
+    def crossing(k: int) -> float:
+        """Thickness between samples k and k + 1 where the utilisation is 1."""
+        return h[k] + (h[k + 1] - h[k]) * (1 - largest[k]) / (largest[k + 1] - largest[k])
+
+    for i, j in zip(starts.tolist(), ends.tolist(), strict=True):
+        low = h[i] if i == 0 else crossing(i - 1)
+        high = h[j] if j == h.size - 1 else crossing(j)
+        ranges.append((float(low), float(high)))
+    return tuple(ranges)
+
+
+def _interpolation_error(s: Array, used: Array) -> float:
+    """Largest error of interpolating an inner point from the others, over the largest utilisation.
+
+    A point left out doubles the interval, so this exceeds the error of the whole curve.
+    """
+    if s.size < 4:
+        return float("nan")
+    worst = 0.0
+    for i in range(1, s.size - 1):
+        others = np.arange(s.size) != i
+        interpolated = PchipInterpolator(s[others], used[:, others], axis=1)(s[i])
+        worst = max(worst, float(np.abs(interpolated - used[:, i]).max()))
+    return worst / float(np.abs(used).max() or 1.0)

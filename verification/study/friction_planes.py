@@ -1,0 +1,208 @@
+"""The stress of a solution along x at one depth, as a function of friction.
+
+The pressure does not depend on f (Goodman) and stress is linear in f, so that one solution at friction g
+gives the stress at every f:
+
+    sigma = sigma_n + f sigma_t
+
+In the plane y = 0 the two parts have opposite parity in x, so that the values at x and -x determine both.
+Between the samples both are quintic splines. At the contact edge the surface stress has a cusp: sigma_n is
+smooth outside r = a and has the root of the pressure inside; sigma_t is smooth inside and has a root outside.
+Splines on either side of it, smooth up to the edge, meet at the solution's own value there.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.interpolate import make_interp_spline
+
+from verification.judging.invariants.companion_uncertainty import followed
+from verification.problem.array_types import Array
+from verification.problem.coated_contact import Solution, stress_with_uncertainty
+from verification.sampling.largest_tension import around_edge, edge_uncertainty
+
+Curve = Callable[[Array], Array]
+
+XX, YY, ZZ, XZ = range(4)
+# factor of the response to p under x -> -x; that to q has the opposite sign
+PARITY = np.array([1.0, 1.0, 1.0, -1.0])
+LEAST = 33  # samples of a plane; below, the semi-analytical method sums point by point, which takes longer
+MIRRORED = 5  # samples repeated beyond x = 0, so that the splines know the parity
+
+
+@dataclass(frozen=True)
+class Parts:
+    """Stress due to p and due to q = p, from ``solution`` at ``friction`` g > 0, or 0 without sliding.
+
+    stated : whether its uncertainty is evaluated too.
+    """
+
+    solution: Solution
+    friction: float
+    stated: bool = True
+
+    def __call__(self, r: Array, z: float, layer: int) -> tuple[Array, Array, Array]:
+        """sigma_n, sigma_t at x = ``r`` >= 0, (4, n) each, with the uncertainty at r, -r, (2, 4, n).
+
+        The uncertainty is the solution's own, NaN where it has none.
+        """
+        x = np.stack([r, -r]) if self.friction else r[None, :]
+        if self.stated:
+            full, U = stress_with_uncertainty(self.solution, x, 0.0, z, layer=layer)
+        else:
+            full, U = self.solution.stress(x, 0.0, z, layer=layer), None
+        sigma, bound = _components(full), _components(np.full_like(full, np.nan) if U is None else U)
+        if not self.friction:
+            return sigma[:, 0], np.zeros_like(sigma[:, 0]), np.stack([bound[:, 0]] * 2)
+        right, left = sigma[:, 0], sigma[:, 1] * PARITY[:, None]
+        return (right + left) / 2, (right - left) / (2 * self.friction), np.moveaxis(bound, 1, 0)
+
+    def uncertainty(self, bound: Array, friction: Array | float) -> Array:
+        """That of sigma_n + f sigma_t at x, (4, n), from those at x and -x, (2, 4, n).
+
+        sigma(x) = (g + f)/2g S(x) +- (g - f)/2g S(-x), S the stress at friction g.
+        """
+        here = (1 + friction / self.friction) / 2 if self.friction else 1.0
+        return here * bound[0] + np.abs(1 - here) * bound[1]
+
+
+def _components(sigma: Array) -> Array:
+    return np.stack([sigma[0, 0], sigma[1, 1], sigma[2, 2], sigma[0, 2]])
+
+
+@dataclass(frozen=True)
+class Plane:
+    """Stress at one depth in one layer as a function of x and f.
+
+    knots : radii [m] of the samples.   fine, coarse : sigma_n and sigma_t over r, (4,) + shape of r, from all
+    the samples and from every other one.   bound : uncertainty at knots and -knots, (2, 4, knots), at the
+    contact edge on the surface that of values which move with it.
+    """
+
+    parts: Parts
+    z: float
+    layer: int
+    knots: Array
+    fine: tuple[Curve, Curve]
+    coarse: tuple[Curve, Curve]
+    bound: Array
+
+    def __call__(self, x: Array, friction: float) -> Array:
+        """xx, yy, zz, xz [Pa] at signed ``x`` [m], (4,) + shape of ``x``."""
+        return _signed(self.fine, x, friction)
+
+    def uncertainty(self, x: float, friction: float) -> Array:
+        """Uncertainty [Pa] at ``x``: that of the solution plus 1/8 of the error with half the samples."""
+        i = int(np.clip(np.searchsorted(self.knots, abs(x)), 1, self.knots.size - 1))
+        at_knot = np.isclose(abs(x), self.knots, rtol=1e-12, atol=0)
+        beside = self.bound[:, :, at_knot if at_knot.any() else slice(i - 1, i + 1)].max(axis=2)
+        stated = self.parts.uncertainty(beside if x >= 0 else beside[::-1], friction)
+        fine, coarse = (_signed(curve, np.array([x]), friction) for curve in (self.fine, self.coarse))
+        interpolation = np.abs(fine - coarse)[:, 0] / 8
+        return stated + interpolation
+
+
+def _signed(curves: tuple[Curve, Curve], x: Array, friction: float) -> Array:
+    normal, tangential = (curve(np.abs(x)) for curve in curves)
+    left = x < 0
+    sign = np.where(left, PARITY.reshape(4, *[1] * x.ndim), 1.0)
+    return sign * (normal + friction * np.where(left, -1.0, 1.0) * tangential)
+
+
+def stress_at(parts: Parts, x: float, z: float, layer: int, friction: float) -> tuple[Array, Array]:
+    """xx, yy, zz, xz [Pa] at one point (x, 0, z), (4,), with their uncertainty: the solution's own."""
+    r = np.array([abs(x)])
+    normal, tangential, bound = parts(r, z, layer)
+    stress = _signed((lambda _: normal, lambda _: tangential), np.array([x]), friction)[:, 0]
+    return stress, parts.uncertainty(bound if x >= 0 else bound[::-1], friction)[:, 0]
+
+
+def crowded(a: float, width: float, reach: float) -> Array:
+    """Radii [m] from 0 to a + ``reach`` as a sinh, densest at r = a, ``width``/6 apart there."""
+    low, high = np.arcsinh(-a / width), np.arcsinh(reach / width)
+    count = max(LEAST, int(np.ceil((high - low) / 0.16)) + 1)
+    r = a + width * np.sinh(np.linspace(low, high, count))
+    r[0] = 0.0
+    return r
+
+
+def plane(parts: Parts, knots: Array, z: float, layer: int) -> Plane:
+    """The plane at depth ``z`` > 0 of ``layer``, sampled at ``knots``."""
+    normal, tangential, bound = parts(knots, z, layer)
+
+    def curves(keep: NDArray[np.int_]) -> tuple[Curve, Curve]:
+        r = knots[keep]
+        return _spline(r, normal[:, keep], PARITY), _spline(r, tangential[:, keep], -PARITY)
+
+    fine, coarse = curves(np.arange(knots.size)), curves(_every_other(knots.size))
+    return Plane(parts, z, layer, knots, fine, coarse, bound)
+
+
+def surface(parts: Parts, a: float, h: float, reach: float) -> Plane:
+    """The surface out to a + ``reach`` under a contact of radius ``a``, on a coating of thickness ``h``.
+
+    Splines in theta = arcsin(r/a) inside, eta = arcosh(r/a) outside: the roots of the edge are smooth there.
+    """
+    more = 0.5 * min(a / h, 20)
+    theta = np.linspace(0, np.pi / 2, int(22 + more))
+    eta = np.linspace(0, np.arccosh(1 + reach / a), int(17 + more + 2 * reach / a))
+    inside = theta.size
+    knots = np.concatenate([a * np.sin(theta), a * np.cosh(eta[1:])])
+    around = around_edge(parts.solution)
+    normal, tangential, bound = parts(np.append(knots, around), 0.0, 0)
+    edge = slice(knots.size, None)
+    sides = np.stack([normal + g * tangential for g in (parts.friction, -parts.friction)])
+    bound[:, :, inside - 1] = edge_uncertainty(sides[:, :, edge], bound[:, :, edge], _change(parts))
+
+    def joined(values: Array, parity: Array, keep: Callable[[int], NDArray[np.int_]]) -> _Joined:
+        i, o = keep(inside), keep(eta.size)
+        within = _spline(theta[i], values[:, i], parity)
+        return _Joined(a, within, _spline(eta[o], values[:, inside - 1 + o], None))
+
+    def curves(keep: Callable[[int], NDArray[np.int_]]) -> tuple[Curve, Curve]:
+        return joined(normal, PARITY, keep), joined(tangential, -PARITY, keep)
+
+    return Plane(parts, 0.0, 0, knots, curves(np.arange), curves(_every_other), bound[:, :, : knots.size])
+
+
+def _change(parts: Parts) -> Array | None:
+    """Change of the stress at x = a and -a over the coarser companions, (1, 4, 2)."""
+
+    def at_edge(solution: Any) -> Array:
+        edge = np.array([float(solution.contact_radius)])
+        normal, tangential, _ = Parts(solution, parts.friction, stated=False)(edge, 0.0, 0)
+        return np.stack([normal + g * tangential for g in (parts.friction, -parts.friction)])[..., 0]
+
+    change = followed(parts.solution, at_edge)
+    return None if change is None else change.T[None]
+
+
+@dataclass(frozen=True)
+class _Joined:
+    """Two splines that meet at r = a."""
+
+    a: float
+    within: Curve
+    beyond: Curve
+
+    def __call__(self, r: Array) -> Array:
+        s = r / self.a
+        within = self.within(np.arcsin(np.minimum(s, 1)))
+        return np.where(s <= 1, within, self.beyond(np.arccosh(np.maximum(s, 1))))
+
+
+def _spline(at: Array, values: Array, parity: Array | None) -> Curve:
+    """Quintic spline through ``values`` (4, n); continued across 0 by ``parity`` where given."""
+    if parity is not None:
+        m = min(MIRRORED, at.size - 1)
+        at = np.concatenate([-at[m:0:-1], at])
+        values = np.concatenate([parity[:, None] * values[:, m:0:-1], values], axis=1)
+    return make_interp_spline(at, values, k=min(5, at.size - 1), axis=1)
+
+
+def _every_other(n: int) -> NDArray[np.int_]:
+    """Numbers of every other of n samples with both ends."""
+    return np.unique(np.append(np.arange(0, n, 2), n - 1))

@@ -1,0 +1,184 @@
+"""The largest stresses of a coated contact with their positions.
+
+Each is the maximum along a line, or in a layer, of the functions in ``planes``: found on 16 points for each
+sample, then refined. The maximum of the von Mises stress inside a layer is located by interpolation between
+depths, then evaluated by the solution itself.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from typing import Literal, get_args
+
+import numpy as np
+from scipy.interpolate import CubicSpline
+from scipy.optimize import minimize_scalar
+
+from verification.problem.array_types import Array
+from verification.problem.coated_contact import CoatedContact, Solution
+from verification.problem.quantity import von_mises
+from verification.study.friction_planes import XX, XZ, ZZ, Parts, Plane, crowded, plane, stress_at, surface
+
+Measure = Callable[[Array], Array]
+
+# The stresses of a study [Pa] in the order of the columns.
+Stress = Literal[
+    "sigma_xx_surface",
+    "sigma_xx_base",
+    "sigma_xx_substrate",
+    "sigma_xz_interface",
+    "sigma_zz_interface",
+    "von_mises_coating",
+    "von_mises_substrate",
+]
+QUANTITIES: tuple[str, ...] = get_args(Stress)
+DENSE = 16  # points between two samples of a line
+FINE = 8  # between two samples of a layer, each way
+
+
+@dataclass(frozen=True)
+class Located:
+    """``value`` with its absolute ``uncertainty`` at (x, 0, z); SI units."""
+
+    value: float
+    uncertainty: float
+    x: float
+    z: float
+
+
+def quantities(
+    solution: Solution, problem: CoatedContact, frictions: Sequence[float], residual: Sequence[float] = (0.0,)
+) -> dict[tuple[float, float], dict[str, Located]]:
+    """Every stress of ``QUANTITIES`` by residual stress and friction, from one ``solution``.
+
+    solution : of ``problem``, which has one coating, at friction 1, or at 0 where no other is asked for.
+    residual : equibiaxial stresses [Pa] of the coating, each added to sigma_xx, sigma_yy within it.
+    A tensile stress that is nowhere positive has value 0 and position NaN. Without friction, where the field
+    is symmetric in x, the position is on the trailing side.
+    Raises ValueError where a friction is given and the solution has none, or what ``solution.stress`` raises.
+    """
+    if any(frictions) and not problem.friction:
+        raise ValueError("the solution has no friction; solve with friction=1")
+    parts = Parts(solution, problem.friction)
+    a, h = float(solution.contact_radius), problem.interfaces[0]
+    knots = crowded(a, 0.5 * min(a, h), a + 2.5 * h)
+    top = surface(parts, a, h, min(a + 2 * h, 7 * a))
+    upper, lower = plane(parts, knots, h, 0), plane(parts, knots, h, 1)
+    near = crowded(a, 0.5 * min(a, h), 0.5 * (a + h))
+    above = [plane(parts, near, z, 0) for z in depths(0.0, h, 0.5 * a)[1:-1]]
+    below = [plane(parts, near, z, 1) for z in depths(h, 1.5 * h + 2 * a, 0.5 * max(a / 2, h))[1:]]
+    lines: dict[str, tuple[Plane, Measure]] = {
+        "sigma_xx_surface": (top, lambda s: s[XX]),
+        "sigma_xx_base": (upper, lambda s: s[XX]),
+        "sigma_xx_substrate": (lower, lambda s: s[XX]),
+        "sigma_xz_interface": (upper, lambda s: np.abs(s[XZ])),
+        "sigma_zz_interface": (upper, lambda s: s[ZZ]),
+    }
+    layers = {"von_mises_coating": [top, *above, upper], "von_mises_substrate": [lower, *below]}
+    found: dict[tuple[float, float], dict[str, Located]] = {}
+    for f in frictions:
+        alone = {name: largest(line, measure, f) for name, (line, measure) in lines.items()}
+        for stress in residual:
+            added = {name: stress for name in ("sigma_xx_surface", "sigma_xx_base")}
+            here = {
+                name: tensile(replace(at, value=at.value + added.get(name, 0.0)))
+                for name, at in alone.items()
+            }
+            for name, planes in layers.items():
+                if name == "von_mises_substrate" and (residual[0], f) in found:
+                    here[name] = found[residual[0], f][name]
+                    continue
+                measure = with_residual(von_mises, stress if name == "von_mises_coating" else 0.0)
+                candidates = [largest(planes[0], measure, f), largest(planes[-1], measure, f)]
+                within = inside(parts, planes, near, f, measure)
+                here[name] = max([*candidates, *within], key=lambda place: place.value)
+            found[stress, f] = here
+    return found
+
+
+def with_residual(measure: Measure, residual: float) -> Measure:
+    """``measure`` of a stress with an equibiaxial ``residual`` stress [Pa] added to sigma_xx, sigma_yy."""
+    if not residual:
+        return measure
+    added = residual * np.array([1.0, 1.0, 0.0, 0.0])
+    return lambda s: measure(s + added.reshape(4, *[1] * (s.ndim - 1)))
+
+
+def depths(top: float, bottom: float, width: float) -> Array:
+    """Depths from ``top`` to ``bottom``, densest at the top."""
+    end = np.arcsinh((bottom - top) / width)
+    z = top + width * np.sinh(np.linspace(0, end, 5 + int(2 * end)))
+    z[0], z[-1] = top, bottom
+    return z
+
+
+def largest(line: Plane, measure: Measure, friction: float) -> Located:
+    """The largest ``measure`` of the stresses along a line."""
+    x = _both_sides(line.knots, DENSE)
+    value = measure(line(x, friction))
+    i = int(np.argmax(value))
+    at, best = float(x[i]), float(value[i])
+    if 0 < i < x.size - 1:
+        found = minimize_scalar(
+            lambda place: -float(measure(line(np.array([place]), friction))[0]),
+            bounds=(x[i - 1], x[i + 1]),
+            method="bounded",
+            options={"xatol": 1e-7 * line.knots[-1]},
+        )
+        if -found.fun > best:
+            at, best = float(found.x), -float(found.fun)
+    stress = line(np.array([at]), friction)[:, 0]
+    return Located(best, propagated(measure, stress, line.uncertainty(at, friction)), at, line.z)
+
+
+def inside(
+    parts: Parts, planes: Sequence[Plane], knots: Array, friction: float, measure: Measure
+) -> list[Located]:
+    """The largest ``measure`` between the planes of a layer; none where it lies on an outer one."""
+    x = _both_sides(knots, FINE)
+    depth = np.array([p.z for p in planes])
+    z = _finer(depth, FINE)
+    stress = CubicSpline(depth, np.stack([p(x, friction) for p in planes]), axis=0)
+    value = measure(np.moveaxis(stress(z), 1, 0))
+    i, j = np.unravel_index(int(np.argmax(value)), value.shape)
+    if not (0 < i < z.size - 1 and 0 < j < x.size - 1):
+        return []
+    at_z = vertex(z[i - 1 : i + 2], value[i - 1 : i + 2, j])
+    at_x = vertex(x[j - 1 : j + 2], value[i, j - 1 : j + 2])
+    stress_there, bound = stress_at(parts, at_x, at_z, planes[1].layer, friction)
+    best = float(measure(stress_there))
+    interpolation = abs(best - float(value[i, j]))  # which may have located another point than the maximum
+    return [Located(best, propagated(measure, stress_there, bound) + interpolation, at_x, at_z)]
+
+
+def _both_sides(knots: Array, fine: int) -> Array:
+    """Points from -knots[-1] to knots[-1], the trailing side first, ``fine`` between two knots."""
+    r = _finer(knots, fine)
+    return np.concatenate([-r[:0:-1], r])
+
+
+def _finer(points: Array, fine: int) -> Array:
+    """``points`` with each interval divided into ``fine`` equal ones."""
+    inner = points[:-1, None] + np.diff(points)[:, None] * np.arange(fine) / fine
+    return np.append(inner.ravel(), points[-1])
+
+
+def propagated(measure: Measure, s: Array, bound: Array) -> float:
+    """Uncertainty of a measure from those of the four stresses, added in magnitude."""
+    value = float(measure(s))
+    return float(sum(np.abs(measure(s + step) - value) for step in np.diag(bound)))
+
+
+def tensile(found: Located) -> Located:
+    """``found``, or 0 for compression, with the part of the uncertainty that exceeds 0."""
+    if found.value > 0:
+        return found
+    excess = float(np.maximum(0.0, found.uncertainty + found.value))  # NaN where none is stated
+    return Located(0.0, excess, float("nan"), float("nan"))
+
+
+def vertex(x: Array, y: Array) -> float:
+    """Position of the maximum of the parabola through three points, within their interval."""
+    c = np.polyfit(x - x[1], y, 2)
+    if c[0] >= 0:
+        return float(x[1])
+    return float(x[1] + np.clip(-c[1] / (2 * c[0]), x[0] - x[1], x[2] - x[1]))

@@ -1,0 +1,279 @@
+"""The report of a study of loads: critical load of every failure mode, its map over the thickness."""
+
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+import numpy as np
+from matplotlib.ticker import MaxNLocator
+
+from verification.page.page_parts import Cell, Part, Section, Table, number, row
+from verification.study.choice.critical_load import Critical, critical, ramps
+from verification.study.choice.failure_criteria import MODES
+from verification.study.pages.study_assembly import (
+    Draw,
+    Written,
+    check_sections,
+    draw_sections,
+    failed_section,
+    inputs_section,
+    write_page,
+)
+from verification.study.pages.study_figures import (
+    COLOURS,
+    DASHES,
+    Drawn,
+    below,
+    drawn,
+    pale,
+    sheet,
+    thickness_axes,
+)
+from verification.study.pages.thickness_recommendation import rounded
+from verification.study.study_plan import Study
+from verification.study.study_table import read_columns
+from verification.study.thickness_curves import differences, tension_checks
+
+__all__ = ["answers", "write_load_report"]
+
+
+def write_load_report(
+    table: Path,
+    study: Study,
+    folder: Path,
+    facts: Sequence[tuple[str, str]] = (),
+    *,
+    figures: bool = True,
+    drawing: Callable[[str], None] = lambda name: None,
+) -> Written:
+    """Report the ``table`` of a ``study`` of loads as ``write_study_report`` does that of thicknesses.
+
+    Raises StoreError where the table cannot be read or the folder not written, ValueError without strengths.
+    """
+    columns = read_columns(table)
+    assert study.loads is not None
+    found = [critical(ramp, study.criteria, study.loads[:2]) for ramp in ramps(columns)]
+    draws: list[Draw] = []
+    if figures and found:
+        draws = [
+            ("map", "Critical load against thickness", lambda: _maps(study, found)),
+            ("ramp", "Load ramp", lambda: _tracks(study, found)),
+        ]
+    drawings = draw_sections(draws, folder / "figures" / study.name, drawing)
+    said = answers(study, found)
+    failed = np.flatnonzero(columns["status"] != "solved")
+    failures = sorted({f"h = {columns['thickness'][i]:.4g} m: {columns['failure'][i]}" for i in failed})
+    sections = [
+        Section("critical", "Critical loads", [Part(text) for text in said] + [_table(study, found)]),
+        inputs_section(study),
+        *drawings,
+        *check_sections(differences(columns), tension_checks(columns)),
+        *failed_section(failures),
+    ]
+    summary = said[0] if said else f"No answer: no ramp of {study.title} has four solved loads."
+    return write_page(table, study, folder, said, summary, sections, [], facts)
+
+
+def answers(study: Study, found: Sequence[Critical]) -> list[str]:
+    """For each coating and thickness the critical load at the friction where it is lowest."""
+    said = []
+    keys = dict.fromkeys((one.ramp.ratio, one.ramp.thickness) for one in found)
+    for ratio, thickness in keys:
+        group = [one for one in found if (one.ramp.ratio, one.ramp.thickness) == (ratio, thickness)]
+        worst = min(group, key=_weakness)
+        several = f"E1/E2 = {ratio:.3g}, " if len({key[0] for key in keys}) > 1 else ""
+        name = f"{several}{study.units.shown_length(thickness)}, f = {worst.ramp.friction:g}"
+        said.append(f"{name}: {_said(worst)}.")
+    return said
+
+
+def _weakness(one: Critical) -> tuple[float, float, float]:
+    """Sorts the friction with the lowest critical load first, the highest friction of equal ones."""
+    return one.first[1], one.first[0], -one.ramp.friction
+
+
+def _said(one: Critical) -> str:
+    mode, last = one.mode, one.load[-1]
+    if mode is None:
+        return f"no stress reaches its strength up to {last:.3g} N"
+    low, middle, high = one.first
+    U = one.uncertainty[mode]
+    share = one.share[mode] / sum(one.share.values())
+    first = f"{MODES[mode]} first" + (f", in {100 * share:.0f} % of the failures" if share < 0.995 else "")
+    if middle <= one.load[0]:
+        return f"below {one.load[0]:.3g} N {first}"
+    text = f"critical load {_newtons(middle, U, last)}"
+    if low != high:
+        least = _newtons(low, U, last).removesuffix(" N")
+        text += f" ({least} to {_newtons(high, U, last)} in 90 % of the strengths)"
+    return f"{text}: {first}"
+
+
+def _newtons(value: float, uncertainty: float, last: float) -> str:
+    return f"above {last:.3g} N" if not np.isfinite(value) else f"{rounded(value, uncertainty)} N"
+
+
+def _table(study: Study, found: Sequence[Critical]) -> Part:
+    units, rows = study.units, []
+    for one in found:
+        last = float(one.load[-1])
+        for mode, (low, middle, high) in one.of.items():
+            if not np.isfinite(low):
+                continue
+            known = np.isfinite(middle)
+            p0 = np.interp(np.log(middle), np.log(one.ramp.load), one.ramp.p0) if known else np.nan
+            rows.append(
+                row(
+                    number(one.ramp.ratio, "{:.4g}".format),
+                    number(one.ramp.thickness / units.metre, "{:.4g}".format),
+                    number(one.ramp.friction, "{:g}".format),
+                    Cell(mode, note=MODES[mode]),
+                    *(
+                        Cell(_newtons(value, one.uncertainty[mode], last)[: -len(" N")], value)
+                        for value in (low, middle, high)
+                    ),
+                    number(one.uncertainty[mode] if known else None),
+                    number(p0 / units.pascal if known else None, "{:.3g}".format),
+                    number(one.share[mode], "{:.0%}".format),
+                )
+            )
+    table = Table(
+        "Critical load [N] of each failure mode whose strength some sample reaches within the ramp: its 5 %, "
+        "50 %, 95 % quantiles, the numerical uncertainty of the median, the peak pressure there; last the "
+        "probability that this mode is the first within the ramp.",
+        [
+            "E1/E2",
+            f"h [{units.length}]",
+            "f",
+            "mode",
+            "5 %",
+            "50 %",
+            "95 %",
+            "±",
+            f"p0 [{units.stress}]",
+            "first",
+        ],
+        rows,
+    )
+    return Part("", [table])
+
+
+def _groups(found: Sequence[Critical]) -> dict[tuple[float, float], list[Critical]]:
+    """The critical loads by E1/E2 and friction, over the thickness."""
+    groups: dict[tuple[float, float], list[Critical]] = {}
+    for one in sorted(found, key=lambda one: one.ramp.thickness):
+        groups.setdefault((one.ramp.ratio, one.ramp.friction), []).append(one)
+    return groups
+
+
+def _maps(study: Study, found: Sequence[Critical]) -> list[Drawn]:
+    """Critical load of each mode over the thickness, with the band of 90 % of the strengths."""
+    drawings, units = [], study.units
+    a_h = study.bare.a_h / units.metre
+    for (ratio, friction), members in _groups(found).items():
+        if len(members) < 2:
+            continue
+        modes = [mode for mode in members[0].of if any(np.isfinite(one.of[mode][0]) for one in members)]
+        h = np.array([one.ramp.thickness / units.metre for one in members])
+        rows = [["E1/E2", "f", f"h [{units.length}]", "mode", "5 % [N]", "50 % [N]", "95 % [N]"]]
+        low, high = members[0].load[0], members[0].load[-1]
+        with sheet(80, (len(modes) + 2) // 2, right=4) as figure:
+            axes = figure.subplots(1, 1)
+            for mode in modes:
+                colour = COLOURS[list(MODES).index(mode)]
+                band = np.array([one.of[mode] for one in members])
+                rows += [
+                    [f"{ratio:g}", f"{friction:g}", f"{x:.6g}", mode, *(f"{v:.6g}" for v in values)]
+                    for x, values in zip(h, band, strict=True)
+                ]
+                shown = np.where(np.isfinite(band), band, 10 * high)
+                axes.fill_between(h, shown[:, 0], shown[:, 2], color=pale(colour), linewidth=0, alpha=0.6)
+                axes.plot(h, shown[:, 1], color=colour, label=mode, marker=".", markersize=3)
+            first = np.array([one.first[1] for one in members])
+            axes.plot(h, np.where(np.isfinite(first), first, 10 * high), color="black", linewidth=0.9,
+                      linestyle=DASHES[1], label="first of all")  # fmt: skip
+            axes.set_yscale("log")
+            axes.set_ylim(0.9 * low, 1.1 * high)
+            axes.yaxis.set_major_formatter(lambda y, _: f"{y:g}")
+            axes.set_ylabel("critical load [N]")
+            axes.grid(True, which="both", linewidth=0.3, color="#cccccc")
+            thickness_axes([axes], a_h, units)
+            below(figure, axes.get_legend_handles_labels()[0], 2)
+            name = f"critical_{ratio:.4g}_f{friction:g}".replace(".", "_")
+            title = f"Critical load, E1/E2 = {ratio:.4g}, f = {friction:g}"
+            load = f"{study.load:g} N"
+            caption = f"Bands: 90 % of the strengths. h/a_h at {load}."
+            drawings.append(drawn(figure, name, title, caption, rows))
+    return drawings
+
+
+def _tracks(study: Study, found: Sequence[Critical]) -> list[Drawn]:
+    """As a scratch test shows it: stress over strength along the ramp with Lc marked, then what has failed.
+
+    For each coating and thickness at the friction with the lowest critical load.
+    """
+    drawings, units = [], study.units
+    for ratio, thickness in dict.fromkeys((one.ramp.ratio, one.ramp.thickness) for one in found):
+        group = [one for one in found if (one.ramp.ratio, one.ramp.thickness) == (ratio, thickness)]
+        one = min(group, key=_weakness)
+        ramp, strengths = one.ramp, study.criteria.given()
+        modes = list(strengths)
+        colours = {mode: COLOURS[list(MODES).index(mode)] for mode in modes}
+        rows = [
+            ["load [N]", *(f"{mode} over strength" for mode in modes), *(f"{m} failed first" for m in modes)]
+        ]
+        some = np.linspace(0, one.load.size - 1, 81).astype(int)
+        use = {
+            mode: study.criteria.safety * ramp.at(one.load, mode) / float(strengths[mode].quantile(0.5))
+            for mode in modes
+        }
+        with sheet(104, (len(modes) + 1) // 2, right=4) as figure:
+            upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=(2, 1))
+            for mode in modes:
+                upper.plot(one.load, use[mode], color=colours[mode], label=mode)
+                Lc = one.of[mode][1]
+                if one.load[0] < Lc <= one.load[-1]:
+                    upper.plot([Lc], [1.0], "v", color=colours[mode], markersize=5)
+            upper.axhline(1.0, color="#c02a2a", linewidth=0.9, linestyle=(0, (4, 2)))
+            upper.set_ylabel("stress over strength")
+            upper.set_ylim(0, max(1.4, min(2.5, max(float(u.max()) for u in use.values()))))
+            upper.grid(True, linewidth=0.3, color="#cccccc")
+            lower.stackplot(
+                one.load, *one.fails.values(), colors=[pale(c) for c in colours.values()], linewidth=0
+            )
+            lower.set_ylim(0, 1)
+            lower.set_ylabel("probability\nof failure")
+            lower.set_xlabel("load [N]")
+            lower.set_xlim(one.load[0], one.load[-1])
+            top = upper.secondary_xaxis("top", functions=_pressure(ramp.load, ramp.p0 / units.pascal))
+            top.xaxis.set_major_locator(MaxNLocator(5))
+            top.set_xlabel(f"peak pressure $p_0$ [{units.stress}]")
+            below(figure, upper.get_legend_handles_labels()[0], 2)
+            rows += [
+                [
+                    f"{one.load[i]:.6g}",
+                    *(f"{use[m][i]:.6g}" for m in modes),
+                    *(f"{one.fails[m][i]:.4f}" for m in modes),
+                ]
+                for i in some
+            ]
+            h = units.shown_length(thickness)
+            name = f"ramp_{ratio:.4g}_{thickness / units.metre:.4g}".replace(".", "_")
+            title = f"Load ramp, E1/E2 = {ratio:.4g}, {h}, f = {ramp.friction:g}"
+            caption = (
+                "Triangles: critical loads at median strength. Below: probability of failure, by first mode."
+            )
+            drawings.append(drawn(figure, name, title, caption, rows))
+    return drawings
+
+
+def _pressure(load: np.ndarray, p0: np.ndarray) -> tuple[Callable, Callable]:
+    """From a load to its peak pressure and back, both by power laws between the points and beyond."""
+    slope = np.log(p0[-1] / p0[0]) / np.log(load[-1] / load[0])
+    x, y = np.log(load), np.log(p0)
+
+    def through(a: np.ndarray, b: np.ndarray, rise: float, value: np.ndarray) -> np.ndarray:
+        at = np.log(np.maximum(value, 1e-9))
+        inner = np.interp(at, a, b)
+        return np.exp(inner + rise * (np.minimum(at - a[0], 0) + np.maximum(at - a[-1], 0)))
+
+    return (lambda v: through(x, y, slope, v)), (lambda v: through(y, x, 1 / slope, v))

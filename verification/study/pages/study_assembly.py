@@ -1,0 +1,222 @@
+"""What the reports of all studies share: figures as files, common sections, the page as a file."""
+
+import base64
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+
+from markupsafe import Markup
+
+from verification.page.embedded_csv import embedded
+from verification.page.html_page import render_sections
+from verification.page.number_text import scientific
+from verification.page.page_parts import (
+    Cell,
+    Gallery,
+    Panel,
+    Part,
+    Row,
+    Section,
+    Table,
+    number,
+    row,
+    words,
+)
+from verification.page.source_labels import source_label
+from verification.running.checked_files import write_atomically
+from verification.study.choice.failure_criteria import MODES
+from verification.study.pages.study_figures import Drawn, write_drawn
+from verification.study.study_plan import Study
+from verification.study.thickness_curves import Difference, TensionCheck
+
+Draw = tuple[str, str, Callable[[], list[Drawn]]]  # anchor, title, function that draws the figures
+
+
+@dataclass(frozen=True)
+class Written:
+    """The ``page`` of a study and its ``answer``, a line for each coating."""
+
+    page: Path
+    answer: tuple[str, ...]
+
+
+def write_page(
+    table: Path,
+    study: Study,
+    folder: Path,
+    answer: Sequence[str],
+    summary: str,
+    sections: Sequence[Section],
+    counts: Sequence[tuple[str, str]],
+    facts: Sequence[tuple[str, str]],
+) -> Written:
+    """NAME.html under ``folder`` on the ``table`` of ``study``.
+
+    summary : the line on top.   counts, facts : (name, value) pairs, before and after its warnings.
+    Raises StoreError where it cannot be written.
+    """
+    page = folder / f"{study.name}.html"
+    head = [("study", study.title), *counts, *(("implausible", text) for text in study.warnings), *facts]
+    footer = f"Written by coatcheck from {table.name} beside this file."
+    write_atomically(page, render_sections("coatcheck study", summary, head, sections, footer))
+    return Written(page, tuple(answer))
+
+
+def draw_sections(draws: Iterable[Draw], folder: Path, drawing: Callable[[str], None]) -> list[Section]:
+    """Draw every group of figures, write it to ``folder`` as PDF, SVG, CSV; a section for each with figures.
+
+    drawing : called with the title of each group before it is drawn.   Raises StoreError.
+    """
+    sections = []
+    for anchor, title, draw in draws:
+        drawing(title)
+        found = draw()
+        for one in found:
+            write_drawn(one, folder)
+        if found:
+            sections.append(_drawn_section(anchor, title, found))
+    return sections
+
+
+def failed_section(failures: Sequence[str]) -> list[Section]:
+    """The first messages of what could not be solved; no section where all was."""
+    return [Section("failed", "What could not be solved", [], failures[:200])] if failures else []
+
+
+def inputs_section(study: Study) -> Section:
+    """Every input and assumption in one table."""
+    units, bare = study.units, study.bare
+    E_ball = "rigid" if study.ball is None else _solid(*study.ball[:2])
+    on_ball = (
+        []
+        if study.ball is None
+        else [f"{_solid(E, nu)}, {units.shown_length(h)}" for E, nu, h in study.ball[2]]
+    )
+    moduli = ", ".join(f"{E / 1e9:.4g}" for E in study.moduli)
+    ratios = ", ".join(f"{E / study.substrate[0]:.3g}" for E in study.moduli)
+    h = study.thicknesses
+    swept = (
+        f"{units.shown_length(min(h))} to {units.shown_length(max(h))}, {len(h)} of them, "
+        f"{min(h) / bare.a_h:.3g} to {max(h) / bare.a_h:.3g} a_h"
+    )
+    strengths = study.criteria.given(units.shown_stress)
+    rows = [
+        row("ball", f"R = {study.radius * 1e3:g} mm, {E_ball}"),
+        *(row(f"coating {i} on the ball", text) for i, text in enumerate(on_ball, start=1)),
+        row("load", load_text(study)),
+        row("substrate", _solid(*study.substrate)),
+        row("coating", f"E = {moduli} GPa (E1/E2 = {ratios}), nu = {study.coating_nu:g}"),
+        row("thickness", swept),
+        row("friction", ", ".join(f"{f:g}" for f in study.frictions)),
+        row(
+            "residual stress of the coating",
+            ", ".join(units.shown_stress(one) for one in study.residual) or "none",
+        ),
+        row(
+            "uncoated",
+            f"a_h = {units.shown_length(bare.a_h)}, p_h = {units.shown_stress(bare.p_h)}, "
+            f"delta_h = {units.shown_length(bare.delta_h)}",
+        ),
+        *(row(f"strength, {mode}", f"{one.text} ({MODES[mode]})") for mode, one in strengths.items()),
+        row("safety factor on every stress", f"{study.criteria.safety:g}"),
+        row(
+            "assumed",
+            words(
+                "parabolic ball, small strains, linear elasticity, perfect bond, friction that leaves the "
+                "pressure unchanged; strengths are independent of each other"
+            ),
+        ),
+    ]
+    rows = [Row(one.head, [Cell(cell.text, css="words") for cell in one.cells]) for one in rows]
+    return Section("inputs", "Inputs and assumptions", [Part("", [Table("", ["input", "value"], rows)])])
+
+
+def check_sections(checks: Sequence[Difference], tensions: Sequence[TensionCheck]) -> list[Section]:
+    """The largest differences of the other sources; no section where nothing was checked."""
+    if not checks:
+        return []
+    rows = [
+        row(
+            source_label(d.source),
+            d.quantity,
+            number(d.points, str),
+            number(d.largest),
+            number(d.stated),
+            number(d.ratio, "{:.4g}".format),
+            number(d.h, "{:.3g}".format),
+            number(d.friction, "{:g}".format),
+            css="" if d.largest <= d.stated or d.stated != d.stated else "disagrees",
+        )
+        for d in checks
+    ]
+    columns = ["source", "quantity", "points", "largest difference", "uncertainty of both"]
+    table = Table(
+        "The largest difference from the semi-analytical method, over a_h, delta_h or the smaller of p_h and "
+        "p0, where it occurs, the uncertainty both state there.",
+        [*columns, "E1/E2", "h / a_h", "f"],
+        rows,
+    )
+    every = Part("", [_tension_table(tensions)], folded=f"{len(tensions)} rows")
+    return [Section("checks", "Cross-check", [Part("", [table]), every])]
+
+
+def _tension_table(tensions: Sequence[TensionCheck]) -> Table:
+    rows = [
+        row(
+            source_label(t.source),
+            number(t.ratio, "{:.4g}".format),
+            number(t.h, "{:.3g}".format),
+            number(t.friction, "{:g}".format),
+            number(t.tension, "{:.6f}".format),
+            number(t.difference, partial(scientific, sign=True)),
+            number(t.stated),
+            number(t.place, partial(scientific, sign=True)),
+            css="" if abs(t.difference) <= t.stated or t.stated != t.stated else "disagrees",
+        )
+        for t in tensions
+    ]
+    return Table(
+        "The largest tension of the surface by the semi-analytical method at every cross-checked point, "
+        "over p_h; the difference of the other source and the uncertainty of both, over the smaller of p_h "
+        "and p0; the difference of the places, over a.",
+        ["source", "E1/E2", "h / a_h", "f", "tension", "difference", "uncertainty of both", "place"],
+        rows,
+    )
+
+
+def load_text(study: Study) -> str:
+    """The load of a study, or its range."""
+    return f"{study.load:g} N" if study.loads is None else f"{study.loads[0]:g} to {study.loads[1]:g} N"
+
+
+def _solid(E: float, nu: float) -> str:
+    return f"E = {E / 1e9:.4g} GPa, nu = {nu:g}"
+
+
+def _drawn_section(anchor: str, title: str, drawings: Sequence[Drawn]) -> Section:
+    """The figures of one kind, with what is common to them."""
+    panels = [
+        Panel(
+            d.title,
+            Markup(
+                '<img class="print" src="data:image/svg+xml;base64,{}" alt="{}" loading="lazy">'
+                '<a class="csv" href="{}" download="{}.csv.gz" data-csv="{}.csv">Numbers as CSV</a>'
+            ).format(
+                base64.b64encode(d.svg).decode(), f"{d.title}. {d.caption}", embedded(d.csv), d.name, d.name
+            ),
+            d.caption,
+            "",
+        )
+        for d in drawings
+    ]
+    captions = {
+        "stress": "Lines: semi-analytical method; triangles: finite elements; crosses: exact reference, at "
+        "the cross-checked points; below, how far these are from the lines. ",
+        "contact": "Lines, triangles, crosses as above. ",
+        "contours": "Sliding in +x. Thick bar: the contact; dashed: the interface. All thicknesses have the "
+        "same extent and the same scales. ",
+    }
+    files = ", ".join(f"{d.name}.pdf" for d in drawings)
+    text = f"{captions.get(anchor, '')}For print, in the folder of figures: {files}."
+    return Section(anchor, title, [Part("", gallery=Gallery([], panels, text))])

@@ -1,0 +1,440 @@
+"""Figures of a study at the width of a column: each as vector PDF, as SVG, its numbers as CSV.
+
+Lengths and stresses are in the units of the study; second axes give them over a_h, p_h of the substrate.
+"""
+
+import io
+import warnings
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import matplotlib as mpl
+import numpy as np
+from fontTools import subset
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_pdf import FigureCanvasPdf
+from matplotlib.backends.backend_svg import FigureCanvasSVG
+from matplotlib.colors import ListedColormap
+from matplotlib.contour import QuadContourSet
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+from matplotlib.ticker import LogLocator, NullFormatter, ScalarFormatter
+from scipy.interpolate import PchipInterpolator
+
+from verification.cases.unit_numbers import Units
+from verification.page.embedded_csv import written
+from verification.problem.array_types import Array
+from verification.problem.quantity import QUANTITIES as QUANTITY
+from verification.running.checked_files import write_atomically
+from verification.sources.source_registry import SOURCES as RECORDS
+from verification.study.choice.failure_criteria import MODES
+from verification.study.choice.thickness_choice import Choice
+from verification.study.largest_stresses import QUANTITIES
+from verification.study.study_table import SCALARS, SOURCES
+from verification.study.thickness_curves import Curve
+
+# Okabe and Ito's colours, distinct for the colour-blind; dashes distinguish friction.
+COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00", "#000000")
+DASHES: tuple[Any, ...] = ("-", (0, (5, 2)), (0, (1.2, 1.4)), (0, (5, 1.5, 1, 1.5)))
+COLUMN, LEFT, TOP, BOTTOM, ROW = 88.0, 15.0, 9.5, 9.0, 3.7  # mm; a row of the legend
+LEAST = 1e-7  # smaller differences are drawn here
+NAMES = {
+    "sigma_xx_surface": r"largest $\sigma_{xx}$, surface",
+    "sigma_xx_base": r"largest $\sigma_{xx}$, base",
+    "sigma_xx_substrate": r"largest $\sigma_{xx}$, substrate",
+    "sigma_xz_interface": r"largest $|\sigma_{xz}|$, interface",
+    "sigma_zz_interface": r"largest $\sigma_{zz}$, interface",
+    "von_mises_coating": "von Mises, coating",
+    "von_mises_substrate": "von Mises, substrate",
+}
+SCALE_NAMES = {"p_h": "p_h", "a_h": "a_h", "delta_h": r"\delta_h"}
+_SETTINGS: Any = {
+    "font.size": 7,
+    "font.family": "DejaVu Sans",
+    "axes.linewidth": 0.6,
+    "lines.linewidth": 1.2,
+    "xtick.direction": "in",
+    "ytick.direction": "in",
+    "pdf.fonttype": 42,
+    "svg.hashsalt": "coatcheck",
+    "savefig.facecolor": "white",
+}
+
+
+@dataclass(frozen=True)
+class Drawn:
+    """One figure under its ``name``, the bytes of its ``pdf`` and ``svg``, its numbers as ``csv``."""
+
+    name: str
+    title: str
+    caption: str
+    pdf: bytes
+    svg: bytes
+    csv: str
+
+
+@contextmanager
+def sheet(height: float, legend: int = 0, right: float = 13.5) -> Iterator[Figure]:
+    """An empty figure of a column's width and a ``height`` [mm] in the settings of a paper.
+
+    legend : rows of keys under it.   right : margin [mm].
+    Margins are fixed: to measure every label instead takes longer than all the rest.
+    """
+    with mpl.rc_context(_SETTINGS), warnings.catch_warnings():
+        # Curves without one finite number leave an empty frame, without a warning.
+        warnings.simplefilter("ignore")
+        total = height + ROW * legend
+        figure = Figure(figsize=(COLUMN / 25.4, total / 25.4))
+        figure.subplots_adjust(
+            left=LEFT / COLUMN,
+            right=1 - right / COLUMN,
+            top=1 - TOP / total,
+            bottom=(BOTTOM + ROW * legend) / total,
+            hspace=0.16,
+        )
+        yield figure
+
+
+def drawn(figure: Figure, name: str, title: str, caption: str, rows: Sequence[Sequence[str]]) -> Drawn:
+    """``figure`` written both ways; the same figure always gives the same bytes."""
+    pdf, svg = io.BytesIO(), io.BytesIO()
+    with _fonts_without_layout():
+        FigureCanvasPdf(figure).print_figure(pdf, format="pdf", metadata={"CreationDate": None}, dpi=300)
+    FigureCanvasSVG(figure).print_figure(svg, format="svg", metadata={"Date": None}, dpi=200)
+    return Drawn(name, title, caption, pdf.getvalue(), svg.getvalue(), written(rows))
+
+
+@contextmanager
+def _fonts_without_layout() -> Iterator[None]:
+    """Fonts are embedded without tables of layout, which a PDF does not use: half of the time of a figure."""
+    before = subset.Options
+    dropped = [*before().drop_tables, "GSUB", "GPOS", "GDEF"]
+    subset.Options = partial(before, drop_tables=dropped)
+    try:
+        yield
+    finally:
+        subset.Options = before
+
+
+def write_drawn(figure: Drawn, folder: Path) -> None:
+    """NAME.pdf, NAME.svg, NAME.csv under ``folder``. Raises StoreError where it cannot be written."""
+    for kind, data in (("pdf", figure.pdf), ("svg", figure.svg), ("csv", figure.csv)):
+        write_atomically(folder / f"{figure.name}.{kind}", data)
+
+
+def stress_figures(curves: Sequence[Curve], units: Units) -> list[Drawn]:
+    """For each failure mode its stress against thickness, compliant above stiff coatings."""
+    return [
+        _against_thickness(curves, units, f"stress_{name}", [name], f"{name}: {MODES[name]}")
+        for name in QUANTITIES
+    ]
+
+
+def contact_figure(curves: Sequence[Curve], units: Units) -> list[Drawn]:
+    """Peak pressure, contact radius and approach against thickness; they do not depend on friction."""
+    smallest = min(curve.friction for curve in curves)
+    chosen = [curve for curve in curves if curve.friction == smallest]
+    title = "Peak pressure, contact radius, approach"
+    return [_against_thickness(chosen, units, "contact", list(SCALARS), title)]
+
+
+def _values(curve: Curve, quantity: str) -> Array:
+    return curve.stress[quantity] if quantity in curve.stress else curve.scalar[quantity]
+
+
+def _label(quantity: str) -> str:
+    return NAMES.get(quantity) or f"${QUANTITY[quantity].tex}$"
+
+
+def _scale(curve: Curve, quantity: str, units: Units) -> tuple[str, float, str]:
+    """Name of the scale of a quantity, its value in the units, the unit."""
+    scale = SCALARS.get(quantity, "p_h")
+    size = getattr(curve, scale)
+    if scale == "p_h":
+        return scale, size / units.pascal, units.stress
+    return scale, size / units.metre, units.length
+
+
+def _against_thickness(
+    curves: Sequence[Curve], units: Units, name: str, quantities: Sequence[str], title: str
+) -> Drawn:
+    sides = [
+        ("compliant coating, $E_1 < E_2$", [c for c in curves if c.ratio < 1]),
+        ("stiff coating, $E_1 \\geq E_2$", [c for c in curves if c.ratio >= 1]),
+    ]
+    sides = [(heading, members) for heading, members in sides if members]
+    # A panel for each quantity holds all coatings, or one for each side a single quantity.
+    panels_of = [
+        (quantity, heading if len(sides) == 2 else "", members)
+        for quantity in quantities
+        for heading, members in (sides if len(quantities) == 1 else [("", list(curves))])
+    ]
+    frictions = sorted({c.friction for c in curves})
+    ratios = sorted({c.ratio for c in curves})
+    colours = {ratio: COLOURS[i % len(COLOURS)] for i, ratio in enumerate(ratios)}
+    thickness = f"h [{units.length}]"
+    rows = [["E1/E2", "f", "h / a_h", thickness, "quantity", "over its scale", "value", "unit", "source"]]
+    checked = len(quantities) == 1 and any(curve.marks for curve in curves)
+    heights = [3.0] * len(panels_of) + [1.3] * checked
+    sources = {s for c in curves for s in c.marks}
+    keys = _keys(ratios, frictions, sources)
+    with sheet(TOP + BOTTOM + 13.5 * sum(heights), -(-len(keys) // 3)) as figure:
+        panels = figure.subplots(len(heights), 1, sharex=True, squeeze=False, height_ratios=heights)[:, 0]
+        for axes, (quantity, heading, members) in zip(panels, panels_of, strict=False):
+            scale, size, unit = _scale(curves[0], quantity, units)
+            for curve in members:
+                colour, h = colours[curve.ratio], curve.a_h / units.metre
+                dash = DASHES[frictions.index(curve.friction) % len(DASHES)]
+                axes.plot(curve.h * h, _values(curve, quantity) * size, color=colour, linestyle=dash)
+                points = {SOURCES[0]: (curve.h, _values(curve, quantity))}
+                for source, marks in curve.marks.items():
+                    at, value = marks[quantity]
+                    _mark(axes, at * h, value * size, source, colour)
+                    points[source] = marks[quantity]
+                rows += [
+                    [
+                        *(f"{curve.ratio:g}", f"{curve.friction:g}", f"{x:.9g}", f"{x * h:.6g}", quantity),
+                        *(f"{y:.9g}", f"{y * size:.6g}", unit, source),
+                    ]
+                    for source, (at, value) in points.items()
+                    for x, y in zip(at, value, strict=True)
+                ]
+            axes.set_ylabel(f"{_label(quantity)} [{unit}]")
+            beside(axes, size, f"over ${SCALE_NAMES[scale]}$")
+            axes.grid(True, linewidth=0.3, color="#cccccc")
+            if heading:
+                axes.text(0.5, 0.97, heading, transform=axes.transAxes, ha="center", va="top")
+                axes.margins(y=0.12)
+        if checked:
+            _differences(panels[-1], curves, units, quantities[0], colours)
+        thickness_axes(list(panels), curves[0].a_h / units.metre, units)
+        below(figure, keys, 3)
+        return drawn(figure, name, title, "", rows)
+
+
+def _differences(
+    axes: Axes, curves: Sequence[Curve], units: Units, quantity: str, colours: dict[float, str]
+) -> None:
+    """|mark - curve| at every cross-checked thickness, on a logarithmic scale that ends at ``LEAST``."""
+    for curve in curves:
+        for source, marks in curve.marks.items():
+            at, value = marks[quantity]
+            known = np.isin(at, curve.h)
+            here = _values(curve, quantity)[np.searchsorted(curve.h, at[known])]
+            gap = np.maximum(np.abs(value[known] - here), LEAST)
+            _mark(axes, at[known] * curve.a_h / units.metre, gap, source, colours[curve.ratio])
+    axes.set_yscale("log")
+    axes.set_ylim(0.6 * LEAST, 1e-2)
+    axes.set_yticks([1e-7, 1e-5, 1e-3])
+    axes.grid(True, linewidth=0.3, color="#cccccc")
+    axes.set_ylabel("difference\nover $p_h$")
+
+
+def _mark(axes: Axes, h: Array, value: Array, source: str, colour: str) -> None:
+    marker = RECORDS[source].style.marker
+    axes.plot(h, value, marker, color=colour, markerfacecolor="none", markersize=4, markeredgewidth=0.7)
+
+
+def beside(axes: Axes, size: float, label: str) -> None:
+    """A second vertical axis for the values over ``size``."""
+    second = axes.secondary_yaxis("right", functions=_over(size))
+    second.set_ylabel(label)
+    # A power of ten of its own would lie on the numbers of the axis above.
+    second.yaxis.set_major_formatter(lambda value, _: f"{value:.4g}")
+
+
+def _over(size: float) -> tuple[Callable[[Any], Any], Callable[[Any], Any]]:
+    """Of a second axis: from a value to that over ``size``, and back."""
+    return (lambda value: value / size), (lambda value: value * size)
+
+
+def thickness_axes(panels: Sequence[Axes], a_h: float, units: Units) -> None:
+    """Logarithmic thickness below the last of ``panels``, over ``a_h`` above the first."""
+    for axes in panels:
+        axes.set_xscale("log")
+    top = panels[0].secondary_xaxis("top", functions=_over(a_h))
+    top.set_xlabel("$h / a_h$")
+    low, high = panels[0].get_xlim()
+    subs = (1.0, 2.0, 5.0) if high > 8 * low else (1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 7.0)
+    for axis in (top.xaxis, panels[-1].xaxis):
+        axis.set_major_locator(LogLocator(subs=subs))
+        axis.set_major_formatter(ScalarFormatter())
+        axis.set_minor_formatter(NullFormatter())
+    panels[-1].set_xlabel(f"coating thickness h [{units.length}]")
+
+
+def _keys(ratios: Sequence[float], frictions: Sequence[float], sources: set[str]) -> list[Line2D]:
+    def key(label: str, colour: str = "#444444", **style: Any) -> Line2D:
+        return Line2D([], [], color=colour, label=label, **style)
+
+    handles = [key(f"$E_1/E_2$ = {r:.4g}", COLOURS[i % len(COLOURS)]) for i, r in enumerate(ratios)]
+    if len(frictions) > 1:
+        handles += [key(f"f = {f:g}", linestyle=DASHES[i % len(DASHES)]) for i, f in enumerate(frictions)]
+    for record in (RECORDS[source] for source in SOURCES[1:] if source in sources):
+        marker = record.style.marker
+        handles.append(key(record.label, marker=marker, linestyle="none", markerfacecolor="none"))
+    return handles
+
+
+def below(figure: Figure, handles: Sequence[Artist], columns: int) -> None:
+    """The legend of a figure under it, in at most so many columns."""
+    figure.legend(
+        handles=handles,
+        loc="lower center",
+        ncols=min(columns, len(handles)),
+        borderaxespad=0.2,
+        labelspacing=0.35,
+        frameon=False,
+        fontsize=6.5,
+        columnspacing=1.2,
+        handlelength=2.2,
+    )
+
+
+def use_figures(choices: Sequence[Choice], units: Units) -> list[Drawn]:
+    """Stress over strength against thickness, admissible ranges shaded; [] where no strengths are given.
+
+    Of strengths that scatter the probability that each mode governs too, and that any fails.
+    """
+    return [_use(choice, units) for choice in choices if choice.judgements[0].limited]
+
+
+def _use(choice: Choice, units: Units) -> Drawn:
+    curve, modes = choice.judgements[0].curve, choice.judgements[0].modes
+    size = curve.a_h / units.metre
+    scattered = choice.criteria.scatters
+    colours = [COLOURS[list(MODES).index(mode)] for mode in modes]
+    use = choice.use.max(axis=0)
+    some = np.linspace(0, choice.h.size - 1, 81).astype(int)
+    h = choice.h[some] * size
+    rows = [["h / a_h", f"h [{units.length}]", *modes]]
+    numbers = [use[:, some]]
+    with sheet(72 + 38 * scattered, (len(modes) + scattered + 1) // 2, right=4) as figure:
+        panels = figure.subplots(1 + scattered, 1, sharex=True, squeeze=False)[:, 0]
+        axes = panels[0]
+        for pair in choice.ranges:
+            ends = [edge if end is None else end.h for end, edge in zip(pair, choice.h[[0, -1]], strict=True)]
+            axes.axvspan(ends[0] * size, ends[1] * size, color="#d5efe1", linewidth=0)
+        for colour, mode, one in zip(colours, modes, use, strict=True):
+            axes.plot(choice.h * size, one, color=colour, label=mode)
+        axes.axhline(1.0, color="#c02a2a", linewidth=0.9, linestyle=(0, (4, 2)))
+        axes.set_yscale("log")
+        axes.set_ylim(0.02, 1.5 * max(1.0, float(use.max())))
+        axes.set_ylabel("stress over strength")
+        axes.grid(True, linewidth=0.3, color="#cccccc")
+        caption = (
+            "Largest over all frictions. Green: admissible thicknesses, where every stress stays below its "
+            "strength" + (f", the {100 * choice.criteria.fractile:g} % fractile." if scattered else ".")
+        )
+        if scattered:
+            chances = choice.chances(choice.h[some])
+            axes = panels[1]
+            axes.stackplot(h, *chances.governs, colors=[pale(c) for c in colours], linewidth=0)
+            axes.plot(h, chances.fails, color="black", label="coating fails")
+            axes.set_ylim(0, 1)
+            axes.set_ylabel("probability")
+            caption += (
+                " Below: probability that each mode governs; line: that any stress exceeds its strength."
+            )
+            rows[0] += [f"{mode} governs" for mode in modes] + ["fails"]
+            numbers += [chances.governs, chances.fails[None]]
+        thickness_axes(list(panels), size, units)
+        handles = [line for one in panels for line in one.get_legend_handles_labels()[0] if line in one.lines]
+        below(figure, handles, 2)
+        values = np.concatenate(numbers)
+        rows += [
+            [f"{choice.h[i]:.6g}", f"{x:.6g}", *(f"{v:.6g}" for v in column)]
+            for i, x, column in zip(some, h, values.T, strict=True)
+        ]
+        name = f"use_{curve.ratio:.4g}".replace(".", "_")
+        return drawn(figure, name, f"Stress over strength, E1/E2 = {curve.ratio:.4g}", caption, rows)
+
+
+def governing_figure(choices: Sequence[Choice], units: Units) -> list[Drawn]:
+    """The mode that governs over (h, E1/E2), the largest over frictions; [] for a single modulus.
+
+    Between the solved points, which are dots, each use of strength is read by monotone cubics in log h,
+    then by straight lines in log E1/E2.
+    """
+    grid = _map(choices)
+    if grid is None:
+        return []
+    first = choices[0].judgements[0]
+    modes, size = first.modes, first.curve.a_h / units.metre
+    over, ratio, use = grid
+    h, governing, largest = over * size, use.argmax(axis=0), use.max(axis=0)
+    with sheet(78, len(modes), right=4) as figure:
+        axes = figure.subplots(1, 1)
+        colours = ListedColormap([pale(COLOURS[list(MODES).index(mode)]) for mode in modes])
+        axes.pcolormesh(
+            h, ratio, governing, cmap=colours, vmin=-0.5, vmax=len(modes) - 0.5, shading="nearest",
+            rasterized=True
+        )  # fmt: skip
+        lines = axes.contour(h, ratio, largest, levels=6, colors="#555555", linewidths=0.6)
+        axes.clabel(lines, fontsize=6, fmt="%.3g", manual=_places(lines, h, ratio))
+        if first.limited:
+            axes.contour(h, ratio, largest, levels=[1.0], colors="#c02a2a", linewidths=1.6)
+        for curve in (one.judgements[0].curve for one in choices):
+            axes.plot(curve.h * size, np.full_like(curve.h, curve.ratio), ".", color="#222222", ms=1.6)
+        axes.set_yscale("log")
+        axes.yaxis.set_minor_formatter(NullFormatter())
+        axes.set_yticks(sorted({one.judgements[0].curve.ratio for one in choices}))
+        axes.yaxis.set_major_formatter(lambda y, _: f"{y:.3g}")
+        axes.set_ylabel("$E_1/E_2$")
+        thickness_axes([axes], size, units)
+        handles = [Patch(color=pale(COLOURS[list(MODES).index(m)]), label=f"{m}: {MODES[m]}") for m in modes]
+        below(figure, handles, 1)
+        rows = [["E1/E2", "h / a_h", f"h [{units.length}]", "largest use", "governing"]]
+        rows += [
+            [*(f"{x:.6g}" for x in (ratio[i], over[j], h[j], largest[i, j])), modes[governing[i, j]]]
+            for i in range(0, ratio.size, 4)
+            for j in range(0, h.size, 8)
+        ]
+        quantity = "stress over strength, red where it is 1" if first.limited else "stress over p_h"
+        caption = (
+            "Colour: the mode whose stress is largest against its strength, at the worst friction. Lines: "
+            f"the largest {quantity}. Dots: solved points."
+        )
+        return [drawn(figure, "governing_mode", "Governing failure mode", caption, rows)]
+
+
+def _places(lines: QuadContourSet, h: Array, ratio: Array) -> list[tuple[float, float]]:
+    """A point of each contour line for its number: off the frame, off the numbers of the lines beside it."""
+    low, high = np.log(ratio[[0, -1]]) + 0.06 * np.log(ratio[-1] / ratio[0]) * np.array([1, -1])
+    found = []
+    for i, path in enumerate(lines.get_paths()):
+        x, y = np.log(np.asarray(path.vertices).reshape(-1, 2)).T
+        inside = np.flatnonzero((y > low) & (y < high))
+        if inside.size:
+            wanted = np.log(h[0]) + (0.3, 0.5, 0.7)[i % 3] * np.log(h[-1] / h[0])
+            at = inside[np.abs(x[inside] - wanted).argmin()]
+            found.append((float(np.exp(x[at])), float(np.exp(y[at]))))
+    return found
+
+
+def pale(colour: str) -> tuple[float, float, float]:
+    """A ``colour`` for areas: nearer to white."""
+    r, g, b = mpl.colors.to_rgb(colour)
+    return (0.45 * r + 0.55, 0.45 * g + 0.55, 0.45 * b + 0.55)
+
+
+def _map(choices: Sequence[Choice]) -> tuple[Array, Array, Array] | None:
+    """h/a_h, E1/E2, uses of strength (modes, ratios, thicknesses) on a dense grid; None for one modulus."""
+    members = sorted(choices, key=lambda one: one.judgements[0].curve.ratio)
+    if len(members) < 2:
+        return None
+    h = np.geomspace(max(one.h[0] for one in members), min(one.h[-1] for one in members), 240)
+    known = np.log([one.judgements[0].curve.ratio for one in members])
+    ratio = np.exp(np.linspace(known[0], known[-1], 120))
+    rows = np.stack(
+        [PchipInterpolator(np.log(one.h), one.use.max(axis=0), axis=1)(np.log(h)) for one in members], axis=1
+    )
+    at = np.clip(np.searchsorted(known, np.log(ratio)) - 1, 0, known.size - 2)
+    share = ((np.log(ratio) - known[at]) / np.diff(known)[at])[:, None]
+    return h, ratio, (1 - share) * rows[:, at] + share * rows[:, at + 1]

@@ -1,0 +1,361 @@
+"""The plan of a study: its TOML file as a sequence of solves.
+
+The thicknesses of a range {from, to, count} are denser about its geometric middle, where the stresses change
+from those of the bare substrate to those of the bulk coating:
+
+    h = sqrt(from to) (to/from)^((3 t + 2 t^3)/10),   t = -1 .. 1 in equal steps
+
+so that neighbours differ by 0.6 of an equal ratio's step (in log h) in the middle, by 1.8 of it at the ends.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from itertools import product
+from pathlib import Path
+from typing import Annotated, Any
+
+import numpy as np
+from pydantic import Discriminator, Field, Tag, model_validator
+
+from verification.cases.case_file import (
+    BallEntry,
+    Limited,
+    Material,
+    Stressed,
+    TemperatureChange,
+    refuse_unfit_scales,
+)
+from verification.cases.plausibility import likely_slips, residual_warnings, warnings_of
+from verification.cases.toml_file import CaseError, Poisson, Positive, Strict, Text, read_bounded, read_toml
+from verification.cases.unit_numbers import Metres, Newtons, Pascals, Units, units_of
+from verification.problem.array_types import Ball
+from verification.problem.coated_contact import FLAT, CoatedContact
+from verification.running.json_records import plain
+from verification.study.choice.failure_criteria import Criteria
+from verification.study.solve_cache import solve_key
+from verification.study.study_table import SOURCES
+
+STUDIES = Path(__file__).parent.parent / "cases" / "shipped" / "studies"
+MOST_POINTS = 1_000_000
+
+
+@dataclass(frozen=True)
+class Solve:
+    """One contact solved by one source; it covers every friction of the study at each of its places.
+
+    first : number of its first point.  request : argument of ``point.answer``.
+    places : (thickness [m], load [N]) of equal h/a_h, of which the request is the first.
+    """
+
+    first: int
+    request: dict[str, Any]
+    places: tuple[tuple[float, float], ...]
+
+    @property
+    def points(self) -> int:
+        return len(self.places) * len(self.request["frictions"])
+
+    @property
+    def source(self) -> str:
+        return self.request["source"]
+
+    @cached_property
+    def key(self) -> str:
+        """Key of the solve in the cache."""
+        return solve_key(self.request)
+
+
+@dataclass(frozen=True)
+class Study:
+    """A sphere on coatings of every modulus [Pa] and thickness [m], at every friction; SI.
+
+    loads : smallest and largest [N], number for each thickness; None for ``load`` alone.
+    residual : stress [Pa] of the coating of each modulus, () for none.
+    cross_check : every point whose number is a multiple is also solved by the other sources; 0 none.
+    ball : None is rigid, or as of CoatedContact.
+    numerics : each source's own keywords.  criteria : of the preferable thickness.  text : the file.
+    warnings : of implausible numbers, a line each.
+    """
+
+    name: str
+    title: str
+    radius: float
+    load: float
+    substrate: tuple[float, float]
+    coating_nu: float
+    moduli: tuple[float, ...]
+    thicknesses: tuple[float, ...]
+    frictions: tuple[float, ...]
+    loads: tuple[float, float, int] | None = None
+    residual: tuple[float, ...] = ()
+    ball: Ball | None = None
+    cross_check: int = 10
+    numerics: dict[str, dict[str, Any]] = field(default_factory=dict)
+    criteria: Criteria = field(default_factory=Criteria)
+    text: str = ""
+    warnings: tuple[str, ...] = ()
+    units: Units = field(default_factory=Units)
+
+    @property
+    def bare(self) -> CoatedContact:
+        """The contact at ``load`` without coatings on the flat."""
+        return CoatedContact(self.radius, self.load, (), self.substrate, ball=self.ball)
+
+    @property
+    def points(self) -> int:
+        """Number of points; friction varies fastest, then thickness, then modulus."""
+        return len(self.moduli) * len(self.frictions) * sum(len(places) for places in self.places)
+
+    @cached_property
+    def places(self) -> tuple[tuple[tuple[float, float], ...], ...]:
+        """The (thickness [m], load [N]) of each solve: those of equal h/a_h, of which one stands for all.
+
+        Of a study of loads h/a_h has equal ratios, and so have the loads at each thickness.
+        """
+        if self.loads is None:
+            return tuple(((h, self.load),) for h in self.thicknesses)
+        low, high, count = self.loads
+        unit = self.bare.a_h / self.load ** (1 / 3)
+        thin, thick = min(self.thicknesses), max(self.thicknesses)
+        first, last = thin / (unit * high ** (1 / 3)), thick / (unit * low ** (1 / 3))
+        steps = max(1, round(3 * (count - 1) * np.log(last / first) / np.log(high / low)))
+        ratio, found = (last / first) ** (3 / steps), []
+        for s in np.geomspace(first, last, steps + 1).tolist():
+            loads = [(h, (h / (s * unit)) ** 3) for h in self.thicknesses]
+            # Up to the first load beyond either end.
+            found.append(tuple((h, W) for h, W in loads if low / ratio < W * (1 + 1e-9) and high * ratio > W))
+        return tuple(places for places in found if places)
+
+    def solves(self) -> Iterator[Solve]:
+        """Every solve, in the order of its points; of each point first the semi-analytical one."""
+        first = 0
+        for (i, E), places in product(enumerate(self.moduli), self.places):
+            thickness, load = places[0]
+            stress = self.residual[i] if self.residual else 0.0
+            # Over p_h, which is that of the load, it differs between the places.
+            residual = [stress * (load / W) ** (1 / 3) for _, W in places] if stress else [0.0]
+            step = len(places) * len(self.frictions)
+            checked = self.cross_check and -(-first // self.cross_check) * self.cross_check < first + step
+            for source in SOURCES if checked else SOURCES[:1]:
+                request = {
+                    "source": source,
+                    "numerics": self.numerics.get(source, {}),
+                    "radius": self.radius,
+                    "load": load,
+                    "coating": [E, self.coating_nu, thickness],
+                    "residual": residual,
+                    "substrate": list(self.substrate),
+                    "ball": plain(self.ball),
+                    "frictions": list(self.frictions),
+                }
+                yield Solve(first, request, places)
+            first += step
+
+
+def thicknesses_between(low: float, high: float, count: int) -> tuple[float, ...]:
+    """``count`` values from ``low`` to ``high`` by the formula of this file, the ends as they are given."""
+    if count == 1:
+        return (low,)
+    t = np.linspace(-1, 1, count)
+    values = np.sqrt(low * high) * (high / low) ** ((3 * t + 2 * t**3) / 10)
+    return (low, *(float(v) for v in values[1:-1]), high)
+
+
+Values = Annotated[list[Positive], Field(min_length=1, max_length=100_000)]
+
+
+class _Coating(Limited, Stressed):
+    E: Pascals | None = None
+    nu: Poisson
+
+
+class _Problem(Strict):
+    radius: Metres
+    load: Newtons | None = None
+    substrate: Material
+    coating: _Coating
+    ball: BallEntry | None = None
+    temperature_change: TemperatureChange | None = None
+
+
+Lengths = Annotated[list[Metres], Field(min_length=1, max_length=100_000)]
+
+
+class _Range(Strict):
+    start: Annotated[Positive, Field(alias="from")]
+    to: Positive
+    count: Annotated[int, Field(ge=1, le=100_000)]
+
+    @model_validator(mode="after")
+    def _upwards(self) -> "_Range":
+        if not self.start < self.to:
+            raise ValueError(f"runs from {self.start:g} to {self.to:g}; give from < to")
+        return self
+
+
+class _Lengths(_Range):
+    start: Annotated[Metres, Field(alias="from")]
+    to: Metres
+
+
+class _Loads(_Range):
+    start: Annotated[Newtons, Field(alias="from")]
+    to: Newtons
+    count: Annotated[int, Field(ge=4, le=1000)]
+
+
+# Discriminated by type, so that an error message concerns one of them only.
+_BY_TYPE = Discriminator(lambda given: "range" if isinstance(given, dict | _Range) else "list")
+Sweep = Annotated[Annotated[Values, Tag("list")] | Annotated[_Range, Tag("range")], _BY_TYPE]
+LengthSweep = Annotated[Annotated[Lengths, Tag("list")] | Annotated[_Lengths, Tag("range")], _BY_TYPE]
+
+
+class _Sweep(Strict):
+    modulus_ratio: Values | None = None
+    thickness: LengthSweep | None = None
+    thickness_over_a_h: Sweep | None = None
+    load: _Loads | None = None
+    friction: Annotated[list[Annotated[float, Field(ge=0, le=2)]], Field(min_length=1, max_length=1000)] = (
+        Field(default_factory=lambda: [0.0])
+    )
+    cross_check: Annotated[int, Field(ge=0, le=MOST_POINTS)] = 10
+
+    @model_validator(mode="after")
+    def _one_thickness(self) -> "_Sweep":
+        if (self.thickness is None) == (self.thickness_over_a_h is None):
+            raise ValueError("needs exactly one of thickness [m] or thickness_over_a_h")
+        return self
+
+
+class _Semianalytic(Strict):
+    patches: Annotated[int, Field(ge=33, le=1025)] | None = None
+    estimate_uncertainty: bool | None = None
+
+
+class _Fem(Strict):
+    quality: Text | None = None
+    estimate_uncertainty: bool | None = None
+
+
+class _StudyFile(Strict):
+    title: Text
+    source: Text = "no source stated"
+    problem: _Problem
+    sweep: _Sweep
+    semianalytic: _Semianalytic = _Semianalytic()
+    fem_reference: _Fem = _Fem()
+    criteria: Criteria = Criteria()
+
+
+def read_study_file(path: Path) -> Study:
+    """Read and check one study file. Raises CaseError, whose message names file and key."""
+    return parse_study(read_bounded(path, "study", "one sweep"), path)
+
+
+def parse_study(raw: bytes, path: Path) -> Study:
+    """Check the content of a study file; ``path`` names it in messages. Raises CaseError."""
+    text, checked = read_toml(raw, path, _StudyFile)
+    p, sweep = checked.problem, checked.sweep
+    coatings = p.ball.coatings if p.ball else []
+    if any(c.residual_stress or c.expansion for c in coatings):
+        raise CaseError(
+            f"{path}: problem.ball.coatings: leave residual out, for no stress of the ball is judged"
+        )
+    if (p.load is None) == (sweep.load is None):
+        raise CaseError(f"{path}: needs exactly one of problem.load or sweep.load")
+    if sweep.load is not None and coatings:
+        raise CaseError(f"{path}: sweep.load: not with coatings on the ball, whose h/a_h varies too")
+    load = p.load if p.load is not None else sweep.load.to  # type: ignore[union-attr]
+    try:
+        substrate = (p.substrate.E, p.substrate.nu)
+        bare = CoatedContact(p.radius, load, (), substrate, ball=p.ball.bare if p.ball else None)
+        ball = p.ball.coated(bare.a_h) if p.ball else None
+    except ValueError as error:
+        raise CaseError(f"{path}: problem: {error}") from None
+    if (p.coating.E is None) == (sweep.modulus_ratio is None):
+        raise CaseError(f"{path}: needs exactly one of problem.coating.E or sweep.modulus_ratio, E1/E2")
+    moduli = [p.coating.E] if p.coating.E else [r * p.substrate.E for r in sweep.modulus_ratio or ()]
+    try:
+        below = p.substrate.expansion
+        residual = tuple(p.coating.residual(E, p.coating.nu, below, p.temperature_change) for E in moduli)
+    except ValueError as error:
+        raise CaseError(f"{path}: problem.coating: {error}") from None
+    refuse_unfit_scales(path, replace(bare, ball=ball))
+    asked: list[float] | _Range | None = sweep.thickness
+    key, scale = "thickness", 1.0
+    if asked is None:
+        key, scale, asked = "thickness_over_a_h", bare.a_h, sweep.thickness_over_a_h
+    assert asked is not None
+    values = thicknesses_between(asked.start, asked.to, asked.count) if isinstance(asked, _Range) else asked
+    thicknesses = tuple(value * scale for value in values)
+
+    def slips(*given: float) -> str:
+        coatings = tuple((moduli[0], p.coating.nu, h) for h in given)
+        return likely_slips(replace(bare, coatings=coatings, ball=ball)).replace("coatings.0", "coating")
+
+    contacts = [bare, replace(bare, load=sweep.load.start)] if sweep.load else [bare]
+    for a_h, (i, h) in product([one.a_h for one in contacts], enumerate(thicknesses)):
+        if not 1e-2 <= h / a_h <= 1e2:
+            raise CaseError(
+                f"{path}: sweep.{key}: value {i + 1} is {h / a_h:.3g} a_h, with a_h = {a_h:.3g} m; "
+                f"a study supports 0.01 to 100{slips(h)}"
+            )
+    for E in moduli:
+        if not 1e-3 <= E / p.substrate.E <= 1e3:
+            raise CaseError(f"{path}: E1/E2 = {E / p.substrate.E:.3g}; a study supports 1e-3 to 1e3{slips()}")
+    study = Study(
+        name=path.stem,
+        title=checked.title,
+        radius=p.radius,
+        load=load,
+        substrate=bare.substrate,
+        coating_nu=p.coating.nu,
+        moduli=tuple(moduli),
+        thicknesses=thicknesses,
+        frictions=tuple(sweep.friction),
+        loads=(sweep.load.start, sweep.load.to, sweep.load.count) if sweep.load else None,
+        residual=residual if any(residual) else (),
+        ball=ball,
+        cross_check=sweep.cross_check,
+        numerics={
+            source: getattr(checked, source).model_dump(exclude_none=True)
+            for source in SOURCES
+            if source in _StudyFile.model_fields
+        },
+        criteria=checked.criteria,
+        text=text,
+        warnings=(
+            *_warnings(bare, ball, thicknesses, checked),
+            *(line.replace("coatings.0", "coating") for line in residual_warnings({FLAT: residual[:1]})),
+        ),
+        units=units_of(checked),
+    )
+    if study.points > MOST_POINTS:
+        raise CaseError(f"{path}: sweep: {study.points} points; a study has at most {MOST_POINTS}")
+    return study
+
+
+def _warnings(
+    bare: CoatedContact,
+    ball: Ball | None,
+    thicknesses: tuple[float, ...],
+    checked: _StudyFile,
+) -> tuple[str, ...]:
+    """Those of the thinnest coating and the thickest, each line once."""
+    p = checked.problem
+    limits = p.substrate.limits("substrate") | p.coating.limits("coating")
+    limits |= p.ball.all_limits() if p.ball else {}
+    found = [
+        line.replace("coatings.0.", "coating.")
+        # A ratio has no unit.
+        for E in ([p.coating.E] if p.coating.E else [p.substrate.E])
+        for h in (min(thicknesses), max(thicknesses))
+        for line in warnings_of(replace(bare, coatings=((E, p.coating.nu, h),), ball=ball), limits)
+    ]
+    return (*dict.fromkeys(found), *checked.criteria.warnings())
+
+
+def shipped_studies() -> dict[str, Path]:
+    """The studies that come with the package, by name."""
+    return {path.stem: path for path in sorted(STUDIES.glob("*.toml"))}

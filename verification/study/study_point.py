@@ -1,0 +1,166 @@
+"""One solve of a study: from its plain request to the rows of all its frictions.
+
+Requests and answers are plain dictionaries, lists, numbers and text, so that any process with the package can
+answer.
+"""
+
+import json
+import sys
+import time
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from itertools import product
+from typing import Any
+
+from threadpoolctl import threadpool_limits
+
+from verification.problem.coated_contact import CoatedContact
+from verification.problem.quantity import QUANTITIES
+from verification.running.case_result import message_of
+from verification.running.provenance import versions
+from verification.sources.source_registry import SOURCES
+from verification.study.largest_stresses import QUANTITIES as STRESSES
+from verification.study.largest_stresses import quantities
+from verification.study.solve_cache import code_version
+from verification.study.study_table import SCALARS, SCALES
+
+
+def answer(request: Mapping[str, Any]) -> dict[str, Any]:
+    """Solve ``request`` and find every quantity at each of its frictions.
+
+    request : source, numerics (its own keywords), frictions, radius, load, coating (E, nu, thickness),
+    residual (stresses of the coating [Pa]), substrate (E, nu), ball (E, nu, coatings) unless it is rigid.
+    Returns {"rows": [one dictionary for each residual stress, then friction], "seconds", "versions", "code",
+    "memory" [bytes]}; a solve that fails leaves its message in every row.
+    """
+    begin = time.perf_counter()
+    frictions = [float(f) for f in request["frictions"]]
+    # The pressure does not depend on friction, stresses are linear in it: friction 1 gives every other.
+    problem = problem_of(request, 1.0 if any(frictions) else 0.0)
+    try:
+        with threadpool_limits(1):  # the order of sums over threads changes the last digit
+            solve = SOURCES[request["source"]].solve
+            assert solve is not None
+            solution = solve(problem, request["numerics"])
+            rows = _rows(solution, problem, frictions, request["residual"])
+    except Exception as error:  # a point that fails is a row with its message
+        rows = failed_rows(request, message_of(error))
+    return {
+        "rows": rows,
+        "seconds": time.perf_counter() - begin,
+        "versions": versions(),
+        "code": code_version(request["source"]),
+        "memory": peak_memory(),
+    }
+
+
+def failed_rows(request: Mapping[str, Any], message: str) -> list[dict[str, Any]]:
+    """A row with the ``message`` for each residual stress and friction of ``request``."""
+    failed = [{"friction": float(f), "status": "failed", "failure": message} for f in request["frictions"]]
+    return [row for _ in request["residual"] for row in failed]
+
+
+def peak_memory() -> int:
+    """Peak resident memory of this process [bytes]; 0 where the system does not provide it."""
+    try:
+        import resource
+    except ImportError:
+        return 0
+    most = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    return most if sys.platform == "darwin" else 1024 * most
+
+
+def problem_of(request: Mapping[str, Any], friction: float) -> CoatedContact:
+    """The contact of ``request`` at ``friction``."""
+    coating, substrate, ball = tuple(request["coating"]), tuple(request["substrate"]), request.get("ball")
+    if ball is not None:
+        E, nu, coatings = ball
+        ball = E, nu, tuple(tuple(layer) for layer in coatings)
+    return CoatedContact(request["radius"], request["load"], (coating,), substrate, friction, ball)
+
+
+def table_rows(
+    first: int,
+    key: str,
+    request: Mapping[str, Any],
+    found: Mapping[str, Any],
+    places: Sequence[tuple[float, float]],
+) -> list[dict[str, Any]]:
+    """The rows of the answer ``found`` to ``request``, whose first row is point ``first``.
+
+    places : (thickness [m], load [N]) of equal h/a_h. There stresses over p_h, positions over a_h and the
+    approach over delta_h are the same: both bodies are half-spaces and the gap is a parabola.
+    """
+    E1, nu1, thickness = request["coating"]
+    E2, nu2 = request["substrate"]
+    solved = problem_of(request, 0.0)
+    rows: list[dict[str, Any]] = []
+    count = len(request["frictions"])
+    for i, (h, load) in enumerate(places):
+        bare = replace(solved, coatings=(), load=load)
+        k = i if len(request["residual"]) > 1 else 0
+        shared = {
+            "source": request["source"],
+            "radius": request["radius"],
+            "load": load,
+            "coating_E": E1,
+            "coating_nu": nu1,
+            "thickness": h,
+            "residual_stress": request["residual"][k] * bare.p_h / solved.p_h,
+            "substrate_E": E2,
+            "substrate_nu": nu2,
+            "modulus_ratio": E1 / E2,
+            "thickness_over_a_h": thickness / solved.a_h,
+            "a_h": bare.a_h,
+            "p_h": bare.p_h,
+            "delta_h": bare.delta_h,
+            "ball": json.dumps(request.get("ball")),
+            "numerics": json.dumps(request["numerics"], sort_keys=True),
+            "versions": json.dumps(found["versions"], sort_keys=True),
+            "key": key,
+            "seconds": found["seconds"],
+        }
+        for row in found["rows"][k * count : (k + 1) * count]:
+            scaled = row if load == solved.load else _scaled(row, solved, bare)
+            rows.append({"point": first + len(rows)} | shared | scaled)
+    return rows
+
+
+def _scaled(row: Mapping[str, Any], solved: CoatedContact, bare: CoatedContact) -> dict[str, Any]:
+    """``row`` of ``solved`` at the scales of ``bare``."""
+    factor = {scale: getattr(bare, scale) / getattr(solved, scale) for scale in ("p_h", "a_h", "delta_h")}
+    of = {f"{name}{end}": factor["a_h"] for name in STRESSES for end in ("_x", "_z")}
+    for name, scale in SCALES.items():
+        of |= {name: factor[scale], f"{name}_uncertainty": factor[scale]}
+    return {key: value * of[key] if key in of and value is not None else value for key, value in row.items()}
+
+
+def _rows(
+    solution: Any, problem: CoatedContact, frictions: list[float], residual: list[float]
+) -> list[dict[str, Any]]:
+    common: dict[str, Any] = {}
+    for name, scale in SCALARS.items():
+        value = QUANTITIES[name].value(solution, problem)
+        if not 0 < value < float("inf"):
+            raise ValueError(f"{name} = {value:g}; the solution is no contact")
+        common |= {name: value, f"{name}_over_{scale}": value / getattr(problem, scale)}
+        spread = QUANTITIES[name].uncertainty(solution, problem)
+        if spread is not None:
+            common[f"{name}_uncertainty"] = spread
+    rows = []
+    found = quantities(solution, problem, frictions, residual)
+    for stress, f in product(residual, frictions):
+        located = found[stress, f]
+        row: dict[str, Any] = {"friction": f, "status": "solved", "failure": None, **common}
+        for name, at in located.items():
+            row |= {
+                name: at.value,
+                f"{name}_over_p_h": at.value / problem.p_h,
+                f"{name}_uncertainty": at.uncertainty,
+                f"{name}_x": at.x,
+                f"{name}_x_over_a_h": at.x / problem.a_h,
+                f"{name}_z": at.z,
+                f"{name}_z_over_a_h": at.z / problem.a_h,
+            }
+        rows.append(row)
+    return rows

@@ -1,0 +1,188 @@
+"""The table of a study as curves over the thickness, one for each modulus at each friction.
+
+The rows of the other sources are marks beside the curve.
+"""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from verification.problem.array_types import Array
+from verification.study.largest_stresses import QUANTITIES
+from verification.study.study_table import SCALARS, SCALES, SOURCES
+
+
+@dataclass(frozen=True, eq=False)
+class Curve:
+    """Quantities over ``h``, the thickness over a_h, in increasing order; p_h [Pa], a_h and delta_h [m].
+
+    stress, uncertainty : each of QUANTITIES over p_h.   x, z : their positions over a_h.
+    scalar : peak_pressure, contact_radius, approach over p_h, a_h, delta_h.
+    marks : by source, by quantity the (h, value) of cross-checked points.
+    failures : (h, message) of points that could not be solved.
+    """
+
+    ratio: float
+    friction: float
+    p_h: float
+    a_h: float
+    delta_h: float
+    h: Array
+    stress: Mapping[str, Array]
+    uncertainty: Mapping[str, Array]
+    x: Mapping[str, Array]
+    z: Mapping[str, Array]
+    scalar: Mapping[str, Array]
+    marks: Mapping[str, Mapping[str, tuple[Array, Array]]]
+    failures: tuple[tuple[float, str], ...]
+
+    @property
+    def label(self) -> str:
+        """The curve in a legend."""
+        return f"E1/E2 = {self.ratio:.4g}, f = {self.friction:g}"
+
+    def extremes(self, quantity: str) -> tuple[tuple[float, float], tuple[float, float]]:
+        """(h, value) of the smallest and of the largest value of the solved points."""
+        value = self.stress.get(quantity, self.scalar.get(quantity))
+        assert value is not None
+        low, high = int(value.argmin()), int(value.argmax())
+        return (float(self.h[low]), float(value[low])), (float(self.h[high]), float(value[high]))
+
+
+@dataclass(frozen=True)
+class Difference:
+    """Largest difference of ``source`` from the semi-analytical method in ``quantity``.
+
+    largest : |difference| over a_h, delta_h, of a pressure or stress over the smaller of p_h and p0.
+    stated : sum of the uncertainties at that point, over the same.
+    """
+
+    source: str
+    quantity: str
+    points: int
+    largest: float
+    stated: float
+    ratio: float
+    h: float
+    friction: float
+
+
+@dataclass(frozen=True)
+class TensionCheck:
+    """The largest tension of the surface by the semi-analytical method and by ``source`` at one point.
+
+    tension : by the first, over p_h.   difference, stated : of the two, and the sum of their uncertainties,
+    over the smaller of p_h and p0.   place : difference of x over a; NaN where there is no tension.
+    """
+
+    source: str
+    ratio: float
+    h: float
+    friction: float
+    tension: float
+    difference: float
+    stated: float
+    place: float
+
+
+def curves(columns: Mapping[str, NDArray[Any]]) -> tuple[Curve, ...]:
+    """Every curve of a table, by modulus, then by friction."""
+    keys = sorted(set(zip(columns["modulus_ratio"].tolist(), columns["friction"].tolist(), strict=True)))
+    return tuple(_curve(columns, *key) for key in keys)
+
+
+def differences(columns: Mapping[str, NDArray[Any]]) -> tuple[Difference, ...]:
+    """The largest difference of each other source by quantity; a source that solved nothing is absent."""
+    found = []
+    for source, here, beside in _checked(columns):
+        for quantity, scale in SCALES.items():
+            over = _scale(columns, here) if scale == "p_h" else columns[scale][here]
+            difference = np.abs(columns[quantity][here] - columns[quantity][beside]) / over
+            uncertainty = columns[f"{quantity}_uncertainty"]
+            i = int(np.nanargmax(difference))
+            largest = float(difference[i])
+            stated = float((uncertainty[here[i]] + uncertainty[beside[i]]) / over[i])
+            place = (columns[name][here[i]] for name in ("modulus_ratio", "thickness_over_a_h", "friction"))
+            ratio, h, friction = map(float, place)
+            found.append(Difference(source, quantity, here.size, largest, stated, ratio, h, friction))
+    return tuple(found)
+
+
+def tension_checks(columns: Mapping[str, NDArray[Any]]) -> tuple[TensionCheck, ...]:
+    """The largest tension of the surface at every cross-checked point, by source, then by point."""
+    name, found = "sigma_xx_surface", []
+    for source, here, beside in _checked(columns):
+        over = _scale(columns, here)
+        uncertainty = columns[f"{name}_uncertainty"]
+        numbers = (
+            *(columns[key][here] for key in ("modulus_ratio", "thickness_over_a_h", "friction")),
+            columns[f"{name}_over_p_h"][beside],
+            (columns[name][here] - columns[name][beside]) / over,
+            (uncertainty[here] + uncertainty[beside]) / over,
+            (columns[f"{name}_x"][here] - columns[f"{name}_x"][beside]) / columns["contact_radius"][here],
+        )
+        found += [TensionCheck(source, *row) for row in np.stack(numbers, axis=1).tolist()]
+    return tuple(found)
+
+
+def _checked(
+    columns: Mapping[str, NDArray[Any]],
+) -> Iterator[tuple[str, NDArray[np.int_], NDArray[np.int_]]]:
+    """Each other source, its solved rows, those of the semi-analytical method at the same points."""
+    point = columns["point"]
+    first, *others = (
+        np.flatnonzero((columns["source"] == source) & (columns["status"] == "solved")) for source in SOURCES
+    )
+    for source, rows in zip(SOURCES[1:], others, strict=True):
+        _, mine, its = np.intersect1d(point[rows], point[first], return_indices=True)
+        if mine.size:
+            yield source, rows[mine], first[its]
+
+
+def _scale(columns: Mapping[str, NDArray[Any]], rows: NDArray[np.int_]) -> Array:
+    """Divisor of a difference of stresses [Pa]: the smaller of p_h and p0."""
+    return np.minimum(columns["p_h"][rows], columns["peak_pressure"][rows])
+
+
+def _curve(columns: Mapping[str, NDArray[Any]], ratio: float, friction: float) -> Curve:
+    mine = (columns["modulus_ratio"] == ratio) & (columns["friction"] == friction)
+    solved = mine & (columns["status"] == "solved")
+    lead = columns["source"] == SOURCES[0]
+    rows = _by_thickness(columns, solved & lead)
+    p_h, a_h, delta_h = (float(columns[name][np.flatnonzero(mine)[0]]) for name in ("p_h", "a_h", "delta_h"))
+
+    def take(name: str) -> Array:
+        return columns[name][rows].astype(float)
+
+    marks = {}
+    for source in SOURCES[1:]:
+        checked = _by_thickness(columns, solved & (columns["source"] == source))
+        if checked.size:
+            h = columns["thickness_over_a_h"][checked]
+            marks[source] = {q: (h, columns[f"{q}_over_{s}"][checked]) for q, s in SCALES.items()}
+    return Curve(
+        ratio,
+        friction,
+        p_h,
+        a_h,
+        delta_h,
+        take("thickness_over_a_h"),
+        {q: take(f"{q}_over_p_h") for q in QUANTITIES},
+        {q: take(f"{q}_uncertainty") / p_h for q in QUANTITIES},
+        {q: take(f"{q}_x_over_a_h") for q in QUANTITIES},
+        {q: take(f"{q}_z_over_a_h") for q in QUANTITIES},
+        {q: take(f"{q}_over_{scale}") for q, scale in SCALARS.items()},
+        marks,
+        tuple(
+            (float(columns["thickness_over_a_h"][i]), str(columns["failure"][i]))
+            for i in np.flatnonzero(mine & lead & (columns["status"] != "solved"))
+        ),
+    )
+
+
+def _by_thickness(columns: Mapping[str, NDArray[Any]], chosen: NDArray[np.bool_]) -> NDArray[np.int_]:
+    rows = np.flatnonzero(chosen)
+    return rows[np.argsort(columns["thickness_over_a_h"][rows], kind="stable")]
