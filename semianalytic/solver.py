@@ -184,7 +184,7 @@ def _stiffness(
         slopes.append(float(np.divide(*(ends[0] - ends[1]))))
     slope = slopes[0] + (slopes[0] - slopes[1]) * STEPS[0] ** 2 / (STEPS[1] ** 2 - STEPS[0] ** 2)
     stiffness = slope * fine.load / fine.found.approach
-    error = abs(slope - slopes[0]) / slope + abs(fine.found.approach / level.found.approach - 1)
+    error = 2 * abs(slope - slopes[0]) / slope + abs(fine.found.approach / level.found.approach - 1)
     return stiffness, stiffness * error
 
 
