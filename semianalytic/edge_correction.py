@@ -1,9 +1,9 @@
 """Contact on one grid, corrected for the square root of the pressure at a smooth edge, in rounds.
 
-A round fits the shape of the edge to the pressures of the patches (``edge_shape``), adds what constant patches
-miss of its deflection to the gap (``smooth_edge``) and solves the contact on the patches again. Its fixed point
-is the contact under f + (p - f at the centres), f within the patches, p at their centres; each round leaves a
-fifth to a tenth of the error.
+A round fits the shape of the edge to the pressures of the patches (``edge_shape``), adds what constant
+patches miss of its deflection to the gap (``smooth_edge``) and solves the contact on the patches again. Its
+fixed point is the contact under f + (p - f at the centres), f within the patches, p at their centres; each
+round leaves a fifth to a tenth of the error.
 """
 
 from dataclasses import replace
@@ -15,7 +15,6 @@ from numpy.typing import NDArray
 from semianalytic import edge_shape, influence, smooth_edge
 from semianalytic.arrays import namespace, to_numpy
 from semianalytic.edge_shape import Shape, Step
-from semianalytic.inputs import Body, Numerics
 from semianalytic.level import Level, LevelProblem
 
 __all__ = ["corrected"]
@@ -25,7 +24,10 @@ Array = NDArray[np.floating]
 ROUNDS = 8  # at most
 HELD = 2  # rounds from patches alone in which the edge is held
 STILL = 5e-4  # of a patch: a smaller movement of the edge in a round leaves less than a ten-thousandth
-MISFIT, COARSE_MISFIT = 0.3, 2.0  # patches by which the pressures near a smooth edge may miss f; in the first rounds
+MISFIT, COARSE_MISFIT = (
+    0.3,
+    2.0,
+)  # patches by which the pressures near a smooth edge may miss f; in the first rounds
 OUTER_TERMS = 6  # polynomials of a pressure that is fitted near the edge alone
 NARROW = 5  # patches between centre and edge, below which the edge is not resolved
 FEW, MOST = 3, 60  # polynomials
@@ -61,7 +63,8 @@ def corrected(problem: LevelProblem, start: Shape | None) -> Level:
 def _rounds(problem: LevelProblem, gap: Array, shape: Shape, p: Array | None) -> Level | None:
     """Rounds of fit and contact from a shape; None where the edge that they find is not that of the patches.
 
-    p : pressure of the patches alone [Pa], to which the shape is fitted first; None for a shape that is fitted.
+    p : pressure of the patches alone [Pa], to which the shape is fitted first; None for a shape that is
+    fitted.
     """
     grid, (x, y), xp = problem.grid, problem.centres, namespace(gap)
     near, weight, convolutions = _near_influence(problem), grid.weight(gap.shape), 0
@@ -103,8 +106,10 @@ def _rounds(problem: LevelProblem, gap: Array, shape: Shape, p: Array | None) ->
 
 def _start(problem: LevelProblem, p: Array) -> Shape | None:
     """Shape to begin with, None where the contact is no single island of some width, away from the rim."""
-    grid, (x, y) = problem.grid, problem.centres
-    harmonics = edge_shape.ROUND if problem.indenter.round else edge_shape.EVEN if grid.quarter else edge_shape.FULL
+    grid = problem.grid
+    harmonics = (
+        edge_shape.ROUND if problem.indenter.round else edge_shape.EVEN if grid.quarter else edge_shape.FULL
+    )
     whole = grid.whole(p)
     xs = grid.whole_centres(problem.window)
     shape = edge_shape.start(whole, xs[0][:, None], xs[1], harmonics, FEW, grid.d**2)
@@ -114,7 +119,8 @@ def _start(problem: LevelProblem, p: Array) -> Shape | None:
 
 
 def _is_island(loaded: NDArray[np.bool_]) -> bool:
-    """Whether the contact is connected, without holes or notches deeper than a patch along rows and columns."""
+    """Whether the contact is connected, without holes or notches deeper than a patch along rows and
+    columns."""
     for marks in (loaded, loaded.T):
         changes = np.count_nonzero(marks[:, 1:] & ~marks[:, :-1], axis=1) + marks[:, 0]
         if np.count_nonzero(changes > 1) > 0:
@@ -125,9 +131,10 @@ def _is_island(loaded: NDArray[np.bool_]) -> bool:
 def _terms(problem: LevelProblem, axes: tuple[float, float]) -> int:
     """Polynomials of q: its singularities lie 2 h beyond the edge, h the depth of what reflects.
 
-    Of an analytic function the error falls as exp(-c M sqrt(h/a)): Boyd, Chebyshev and Fourier Spectral Methods
-    (2001), section 2. More than the patches resolve would fit their errors, ten times as large at the edge: the
-    last polynomial changes sign a quarter of a patch from the edge, t = (1.2/M)^2, or further away.
+    Of an analytic function the error falls as exp(-c M sqrt(h/a)): Boyd, Chebyshev and Fourier Spectral
+    Methods (2001), section 2. More than the patches resolve would fit their errors, ten times as large at
+    the edge: the last polynomial changes sign a quarter of a patch from the edge, t = (1.2/M)^2, or further
+    away.
     """
     both, d, a = problem.body.response, problem.grid.d, min(axes)
     depth = both.depth if both else np.inf

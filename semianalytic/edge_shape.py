@@ -2,9 +2,9 @@
 
     f = sqrt(t) q,   t = 1 - s^2 + 2 sum_n c_n H_n,   q = sum_n H_n sum_m b_mn P_m(2t - 1),
 
-with s^2 = u^2 + v^2, u = (x - x0)/A, v = (y - y0)/B and the harmonic polynomials H_n = Re (u + iv)^n, for n < 0
-Im (u + iv)^-n; s^2 takes the place of H_0 in t. The edge is t = 0: a circle for n = 0 alone, an ellipse where
-A and B differ. Under a smooth indenter q is smooth where p is not (Johnson 1985, section 5.1).
+with s^2 = u^2 + v^2, u = (x - x0)/A, v = (y - y0)/B and the harmonic polynomials H_n = Re (u + iv)^n, for n
+< 0 Im (u + iv)^-n; s^2 takes the place of H_0 in t. The edge is t = 0: a circle for n = 0 alone, an ellipse
+where A and B differ. Under a smooth indenter q is smooth where p is not (Johnson 1985, section 5.1).
 
 The coefficients are those that fit the pressures of the patches in the energy norm: with the columns
 phi = df/db, df/dc at the patch centres and e the patches' pressure less f,
@@ -30,7 +30,10 @@ ROUND = (0,)  # harmonics of a contact that is round,
 EVEN = (0, 2, 4, 6)  # even in x and in y,
 FULL = (0, 1, -1, 2, -2, 3, -3, 4, -4, 6, -6)  # any
 DAMPING = 0.8  # share of the first step of a fit
-FADED = 0.3, 0.65  # t over which a pressure fitted near the edge alone fades towards the inside; so does its fit
+FADED = (
+    0.3,
+    0.65,
+)  # t over which a pressure fitted near the edge alone fades towards the inside; so does its fit
 BLUNT = 0.7  # patches from the edge, nearer than which the column of the edge, infinite there, is constant
 SLACK = 0.15  # patches by which the edge may pass the centre of a loaded or of an unloaded patch
 ANGLES = 256  # at which a contour that is no ellipse is sampled
@@ -38,9 +41,11 @@ ANGLES = 256  # at which a contour that is no ellipse is sampled
 
 @dataclass(frozen=True, eq=False)
 class Shape:
-    """centre (x0, y0), axes (A, B) [m].  harmonics : n, (k,).  contour : c, (k,).  coefficients : b [Pa], (M, k).
+    """centre (x0, y0), axes (A, B) [m].  harmonics : n, (k,).  contour : c, (k,).  coefficients : b [Pa],
+    (M, k).
 
-    outside : f is fitted near the edge alone, where the pressure inside is not smooth, and fades to zero inside.
+    outside : f is fitted near the edge alone, where the pressure inside is not smooth, and fades to zero
+    inside.
     """
 
     centre: tuple[float, float]
@@ -120,7 +125,8 @@ class Shape:
         return total
 
     def columns(self, x: Array, y: Array, blunt: float) -> Array:
-        """df/db, then df/dc, ((M + 1) k,) + points; 0 outside.  blunt : t below which 1/sqrt(t) is constant."""
+        """df/db, then df/dc, ((M + 1) k,) + points; 0 outside.  blunt : t below which 1/sqrt(t) is
+        constant."""
         t, s2, H = self.polynomials(x, y)
         inside, M = t > 0, len(self.coefficients)
         t = np.clip(t, 0, 1)
@@ -135,7 +141,8 @@ class Shape:
         return np.concatenate([of_b.reshape(-1, *t.shape), of_c])
 
     def changed(self, x: Array) -> "Shape":
-        """The shape with its coefficients changed by x, ((M + 1) k,); c_0, c_2, c_1 become axes and centre."""
+        """The shape with its coefficients changed by x, ((M + 1) k,); c_0, c_2, c_1 become axes and
+        centre."""
         k = len(self.harmonics)
         by = dict(zip(self.harmonics, x[-k:], strict=True))
         c0, c2 = by.get(0, 0.0), by.get(2, 0.0)
@@ -143,7 +150,13 @@ class Shape:
         centre = self.centre[0] + A * by.get(1, 0.0), self.centre[1] + B * by.get(-1, 0.0)
         kept = [n not in (0, 1, -1, 2) for n in self.harmonics]
         contour = self.contour + np.where(kept, x[-k:], 0.0)
-        return replace(self, centre=centre, axes=(A, B), contour=contour, coefficients=self.coefficients + x[:-k].reshape(-1, k))
+        return replace(
+            self,
+            centre=centre,
+            axes=(A, B),
+            contour=contour,
+            coefficients=self.coefficients + x[:-k].reshape(-1, k),
+        )
 
     def widened(self, shift: float) -> "Shape":
         """The same with an edge ``shift`` [m] farther out."""
@@ -207,11 +220,11 @@ def fitted(
 ) -> tuple[Shape, Step]:
     """The shape nearer to the patches' pressure in the energy norm, and the step to it.
 
-    The step is relaxed: rounds of fit and contact would oscillate. Its share is Aitken's, from the step before
-    (Irons and Tuck, Int. J. Numer. Meth. Engng 1 (1969) 275-277).
+    The step is relaxed: rounds of fit and contact would oscillate. Its share is Aitken's, from the step
+    before (Irons and Tuck, Int. J. Numer. Meth. Engng 1 (1969) 275-277).
 
-    pressure [Pa] : of the patches at centres x, y [m], (nx, ny).  deflection : K p.  weight : patches that each
-    one represents.  patch [m] : the side.  fixed_edge : change the coefficients b alone.
+    pressure [Pa] : of the patches at centres x, y [m], (nx, ny).  deflection : K p.  weight : patches that
+    each one represents.  patch [m] : the side.  fixed_edge : change the coefficients b alone.
     """
     k, across = len(shape.harmonics), min(shape.axes)
     columns = shape.columns(x, y, BLUNT * patch / across)

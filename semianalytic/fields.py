@@ -39,7 +39,14 @@ def stress(
         rough = level.mean if smooth is None else level.rest
         if rough is not None:
             few = smooth is not None
-            total += patch_field.stress(*at, grid_x=level.nodes, pressure=level.grid.whole(rough), body=body, kept=of_patches, few_depths=few)
+            total += patch_field.stress(
+                *at,
+                grid_x=level.nodes,
+                pressure=level.grid.whole(rough),
+                body=body,
+                kept=of_patches,
+                few_depths=few,
+            )
     shape = np.broadcast_shapes(*(np.shape(v) for v in (x, y, z)))
     return np.array([patch_field.tensor(one) for one in out]).reshape(len(levels), 3, 3, *shape)
 
@@ -48,7 +55,8 @@ def stress_of_uncertain_edge(
     level: Level, body: Body, shift: float, x: Array, y: Array, z: Array, layer: int | None
 ) -> Array:
     """Largest change of a stress [Pa] when a smooth edge widens or narrows by ``shift`` [m], (n,)."""
-    points, kept = _points(body, x, y, z, layer), {}
+    points = _points(body, x, y, z, layer)
+    kept: subsurface.Tables = {}
     assert level.shape is not None
     moved = [rings_of(level.shape.widened(s)) for s in (0.0, -shift, shift)]
     here, *others = (subsurface.stress(*points, pressure=one, body=body, kept=kept) for one in moved)
@@ -66,7 +74,9 @@ def displacement(levels: Sequence[Level], body: Body, x: ArrayLike, y: ArrayLike
             total += subsurface.displacement(*points, pressure=smooth, body=body, kept=kept)
         rough = level.mean if smooth is None else level.rest
         if rough is not None:
-            total += patch_field.displacement(*points, grid_x=level.nodes, pressure=level.grid.whole(rough), body=body)
+            total += patch_field.displacement(
+                *points, grid_x=level.nodes, pressure=level.grid.whole(rough), body=body
+            )
     return out.reshape(len(levels), 3, *np.broadcast_shapes(*(np.shape(v) for v in (x, y, z))))
 
 
@@ -80,14 +90,18 @@ def stress_plane(level: Level, body: Body, z: float, layer: int | None) -> Array
 def displacement_plane(level: Level, body: Body, z: float) -> Array:
     """Displacement [m] below every patch centre at depth z [m]; shape (3, n, n)."""
     number = int(body.layer_of(z, None))
-    return patch_field.displacement_plane(z, number, grid_x=level.nodes, body=body)(level.grid.whole(level.mean))
+    return patch_field.displacement_plane(z, number, grid_x=level.nodes, body=body)(
+        level.grid.whole(level.mean)
+    )
 
 
 def _points(
     body: Body, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None
 ) -> tuple[Array, Array, Array, NDArray[np.intp]]:
     """The points one after the other, with their layers."""
-    x, y, z, where = np.broadcast_arrays(*(np.asarray(v, dtype=float) for v in (x, y, z)), body.layer_of(z, layer))
+    x, y, z, where = np.broadcast_arrays(
+        *(np.asarray(v, dtype=float) for v in (x, y, z)), body.layer_of(z, layer)
+    )
     return x.ravel(), y.ravel(), z.ravel(), where.ravel()
 
 

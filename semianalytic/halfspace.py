@@ -108,7 +108,8 @@ def tangential_displacement(
 
 
 def point_stress(x: Array, y: Array, z: Array, nu: float, *, tangential: bool = True) -> Array:
-    """Stress xx, yy, zz, xy, xz, yz of a normal and of a tangential unit force at the origin [1/m^2], (2, 6, n).
+    """Stress xx, yy, zz, xy, xz, yz of a normal and of a tangential unit force at the origin [1/m^2], (2, 6,
+    n).
 
     Johnson (1985) eqs. 3.19 and 3.77.  x, y, z : [m], not the origin.  tangential : 0 in its place if False.
     """
@@ -123,9 +124,7 @@ def point_displacement(
     return u * ((1 + nu) / (2 * np.pi * E))
 
 
-def _points(
-    normal: Field, shear: Field, x: Array, y: Array, z: Array, nu: float, tangential: bool
-) -> Array:
+def _points(normal: Field, shear: Field, x: Array, y: Array, z: Array, nu: float, tangential: bool) -> Array:
     of_normal = np.array(normal(x, y, z, nu))
     return np.array([of_normal, shear(x, y, z, nu) if tangential else np.zeros_like(of_normal)])
 

@@ -30,9 +30,9 @@ LOOSE = 1e-8  # at this tolerance or above: the iterations were measured to be a
 class Indenter:
     """Undeformed gap on a grid, and either the load [N] or the approach [m].
 
-    round : the gap depends on the distance from the origin alone.  edge_correction : where the edge is smooth.
-    The gap may be above any level; the approach counts from its lowest point, of the patches or, given x
-    and y [m] on a grid, of what ``between`` them is [m].
+    round : the gap depends on the distance from the origin alone.  edge_correction : where the edge is
+    smooth. The gap may be above any level; the approach counts from its lowest point, of the patches or,
+    given x and y [m] on a grid, of what ``between`` them is [m].
     """
 
     gap: Callable[[Grid], Array]
@@ -129,13 +129,23 @@ class Level:
             return self.found.pressure
         return smooth_edge.patch_mean(self.edge, self.found.pressure, self.grid)
 
+    @cached_property
+    def ripple(self) -> float:
+        """Root mean square of the patches' pressure less that of the shape [Pa], where they meet inside."""
+        if self.edge is None:
+            return 0.0
+        edge, inner = self.edge, self.edge.share < 1
+        rest = (self.found.pressure[edge.i, edge.j] - edge.centre)[inner]
+        return float(np.sqrt(np.mean(rest**2))) if rest.size else 0.0
+
     @property
     def nodes(self) -> Array:
         """Centres of all patches along one axis [m], (n,)."""
         return replace(self.grid, quarter=False).x
 
     def smooth(self, coarser: int = 0) -> RingPressure | None:
-        """The pressure with a smooth edge, on rings of fewer points where ``coarser``; None of patches alone."""
+        """The pressure with a smooth edge, on rings of fewer points where ``coarser``; None of patches
+        alone."""
         if self.given is not None:
             return Disc(self.given.radius, self.given.of_square, 24 - 4 * coarser, 10 - coarser)
         return None if self.shape is None else rings_of(self.shape, coarser)

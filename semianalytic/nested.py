@@ -18,7 +18,11 @@ Array = NDArray[np.floating]
 
 STRIDE = 2.8  # of grids that only give the start: iterations on the next one are about as many as by halves
 HALVINGS = 6  # of steps to the lowest point between the patches, off by 1e-4 of the height over a patch
-REFINED = (2.0, 1.4, 1.0)  # of the patches a side, over those of the grids of a refinement study; of patches alone
+REFINED = (
+    2.0,
+    1.4,
+    1.0,
+)  # of the patches a side, over those of the grids of a refinement study; of patches alone
 HALVED = (4.0, 2.0, 1.0)
 
 
@@ -27,9 +31,10 @@ def levels(
 ) -> list[Level]:
     """Contacts on the three grids of a refinement study, or on the last alone: N/2, N/1.4, N patches a side.
 
-    Each starts from the one before, with the shape of its edge; the first from coarser grids of patches alone.
+    Each starts from the one before, with the shape of its edge; the first from coarser grids of patches
+    alone.
     """
-    ratios = REFINED if indenter.edge_correction else HALVED
+    ratios: tuple[float, ...] = REFINED if indenter.edge_correction else HALVED
     if not estimate_uncertainty:
         ratios = (2.0, 1.0) if indenter.edge_correction else (1.0,)
     sizes = [odd(numerics.patches / ratio) for ratio in ratios[:-1]] + [numerics.patches]

@@ -75,7 +75,8 @@ def stress(
     """Stress at points (x, y, z) of the layers named, under pressure p with traction q = f p in +x.
 
     x, y, z : points [m], broadcast.  layer : integers, which pick the side of an interface, broadcast.
-    pressure : mean of p over each patch [Pa], (n, n), centred at grid_x along both axes [m], which are uniform.
+    pressure : mean of p over each patch [Pa], (n, n), centred at grid_x along both axes [m], which are
+    uniform.
     kept : point-force tables of other calls for the same solid; those of this call are added.
     few_depths : interpolate between depths below three patches too, to 1e-3 of the largest stress.
     Returns xx, yy, zz, xy, xz, yz [Pa], (6,) + points.

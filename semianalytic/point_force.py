@@ -144,7 +144,9 @@ def stress_from_lines(field: Field, reach: Array, friction: float) -> PointForce
 
 def displacement_from_lines(field: Field, reach: Array, friction: float) -> PointForce:
     """As `stress_from_lines`, from the displacements (2, 3, n)."""
-    return _outer(displacement_columns_of_lines(field, reach, friction), reach, friction, combine_displacement)
+    return _outer(
+        displacement_columns_of_lines(field, reach, friction), reach, friction, combine_displacement
+    )
 
 
 def stress_columns_of_lines(field: Field, reach: Array, friction: float) -> list[Array]:
@@ -232,7 +234,8 @@ def combine_displacement(table: Array, harmonics: Array, f: float) -> Array:
 
 
 def half_space_stress(r: Array, z: Array, nu: float, friction: float) -> Array:
-    """Radial functions of a point force on a homogeneous half-space [1/m^2], (4 or 10, n), at r > 0, z >= 0 [m]."""
+    """Radial functions of a point force on a homogeneous half-space [1/m^2], (4 or 10, n), at r > 0, z >= 0
+    [m]."""
     return _half_space(partial(halfspace.point_stress, nu=nu), stress_columns_of_lines, r, z, friction)
 
 

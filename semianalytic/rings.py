@@ -1,23 +1,26 @@
 """Pressure on rings around a point, by angular harmonics.
 
-The field at depth z below a point is the pressure p times the influence of a point force, a few harmonics of the
-direction psi from the force to the point (``point_force``), summed over the contact. Ring by ring,
+The field at depth z below a point is the pressure p times the influence of a point force, a few harmonics of
+the direction psi from the force to the point (``point_force``), summed over the contact. Ring by ring,
 
-    int p G_m(rho, z) cos(m psi) dA = int_0^inf G_m(rho, z) P_m(rho) rho d rho,    P_m = int p cos(m psi) d psi,
+    int p G_m(rho, z) cos(m psi) dA = int_0^inf G_m(rho, z) P_m(rho) rho d rho,    P_m = int p cos(m psi) d
+    psi,
 
-and the P_m of one point serve every depth below it. Where a ring crosses the edge of the contact p falls to zero
-like a square root. Each arc inside is integrated from the crossing, or from where the ring passes nearest to the
-edge, by Gauss points in mu, with beta the angle from the middle of the gap outside and delta half its width,
+and the P_m of one point serve every depth below it. Where a ring crosses the edge of the contact p falls to
+zero like a square root. Each arc inside is integrated from the crossing, or from where the ring passes
+nearest to the edge, by Gauss points in mu, with beta the angle from the middle of the gap outside and delta
+half its width,
 
     beta = delta cosh(mu) on a ring that crosses the edge,    beta = delta sinh(mu) on one that misses it.
 
-Panels of rho shrink towards the radii at which a ring touches the edge, and to the scale of the depth. Against
-closed forms: 1e-8 of the peak pressure, at the edge itself too.
+Panels of rho shrink towards the radii at which a ring touches the edge, and to the scale of the depth.
+Against closed forms: 1e-8 of the peak pressure, at the edge itself too.
 """
 
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
+from itertools import pairwise
 from typing import Protocol
 
 import numpy as np
@@ -38,7 +41,8 @@ AT_ONCE = 400_000  # points of the pressure held at a time
 
 @dataclass(frozen=True, eq=False)
 class Rings:
-    """foot : index of the point each ring surrounds, (n,), ascending.  radius : rho [m].  weight : rho d rho [m^2].
+    """foot : index of the point each ring surrounds, (n,), ascending.  radius : rho [m].  weight : rho d rho
+    [m^2].
 
     harmonics : P_m [Pa] with 1, cos psi, sin psi, .. cos 3 psi, sin 3 psi, (7, n).
     """
@@ -71,7 +75,8 @@ def rings_of(shape: Shape, coarser: int = 0) -> "RingPressure":
 
 @dataclass(frozen=True, eq=False)
 class Disc:
-    """Round pressure: ``of_square``, p of r^2, on a disc of ``radius`` [m]; Gauss points on an arc, on a panel."""
+    """Round pressure: ``of_square``, p of r^2, on a disc of ``radius`` [m]; Gauss points on an arc, on a
+    panel."""
 
     radius: float
     of_square: Callable[[Array], Array]
@@ -153,7 +158,9 @@ class SmoothContour:
 
         def square(of: NDArray[np.intp], angle: Array) -> Array:
             reach = self.shape.reach(angle)
-            found: Array = (x0 + A * reach * np.cos(angle) - x[of]) ** 2 + (y0 + B * reach * np.sin(angle) - y[of]) ** 2
+            found: Array = (x0 + A * reach * np.cos(angle) - x[of]) ** 2 + (
+                y0 + B * reach * np.sin(angle) - y[of]
+            ) ** 2
             return found
 
         point, k = (v.ravel() for v in np.indices((x.size, AROUND)))
@@ -180,8 +187,11 @@ class SmoothContour:
         order = np.lexsort((distance, point))
         point, distance = point[order], distance[order]
         begin = np.searchsorted(point, np.arange(x.size + 1))
-        touches = [distance[i:j].tolist() for i, j in zip(begin[:-1], begin[1:], strict=True)]
-        return [[one[0], *(d for d in one[1:-1] if d > 1.001 * one[0] and d < 0.999 * one[-1]), one[-1] + 1e-15] for one in touches]
+        touches = [distance[i:j].tolist() for i, j in pairwise(begin)]
+        return [
+            [one[0], *(d for d in one[1:-1] if d > 1.001 * one[0] and d < 0.999 * one[-1]), one[-1] + 1e-15]
+            for one in touches
+        ]
 
     def _harmonics(self, x: Array, y: Array, rho: Array) -> Array:
         def t(ring: NDArray[np.intp], phi: Array) -> Array:
@@ -235,7 +245,8 @@ def _turned(rings: Rings, same: NDArray[np.intp], angle: Array) -> Rings:
 
 
 def _from_gap(delta: Array, width: Array, crossing: NDArray[np.bool_], s: Array) -> tuple[Array, Array]:
-    """beta and d beta/ds at s in [0, 1] of arcs from the edge of a gap to ``width`` from its middle, (n, nodes)."""
+    """beta and d beta/ds at s in [0, 1] of arcs from the edge of a gap to ``width`` from its middle, (n,
+    nodes)."""
     delta = np.clip(delta, 1e-12, np.where(crossing, width, 4.0))
     ratio = width / delta
     top = np.where(crossing, np.arccosh(np.maximum(ratio, 1)), np.arcsinh(ratio))[:, None]
@@ -323,24 +334,29 @@ def _graded(touches: list[float], inside: bool, scale: float, nodes: int) -> tup
         plain(0.0, near, lambda rho: min(np.hypot(rho, scale), 0.75 * (first - rho)))
         points.append(first - (first - near) * crowded[::-1])
         weights.append((first - near) * slope[::-1])
-    bounds = [first, *touches[1:-1], last]
-    for low, high in zip(bounds[:-1], bounds[1:], strict=True):
+    for low, high in pairwise([first, *touches[1:-1], last]):
         if high <= low:
             continue
+        # graded from the lower end, from the middle on towards the upper one
         to = high if high == last else (low + high) / 2
         begin = min(0.5 * least, (to - low) / 2, scale if low == 0 else np.inf)
         points.append(low + begin * crowded)
         weights.append(begin * slope)
-        plain(low + begin, to, lambda rho, low=low: min(np.hypot(rho, scale), 1.5 * (rho - low)))
+        plain(low + begin, to, _growing(low, scale))
         if to < high:
             end = min(0.5 * least, (high - to) / 2)
-            mirrored = len(points)
-            plain(0.0, high - end - to, lambda rho, high=high, to=to, end=end: min(np.hypot(to, scale), max(0.6 * (high - to - rho), end)))
-            for n in range(mirrored, len(points)):
-                points[n] = points[n] + to
+            plain(to, high - end, _shrinking(high, end, scale))
             points.append(high - end * crowded[::-1])
             weights.append(end * slope[::-1])
     return np.concatenate(points), np.concatenate(weights)
+
+
+def _growing(low: float, scale: float) -> Step:
+    return lambda rho: min(float(np.hypot(rho, scale)), 1.5 * (rho - low))
+
+
+def _shrinking(high: float, end: float, scale: float) -> Step:
+    return lambda rho: min(float(np.hypot(rho, scale)), max(0.6 * (high - rho), end))
 
 
 @lru_cache

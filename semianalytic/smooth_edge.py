@@ -1,10 +1,11 @@
 """What constant patches miss of a pressure with a smooth edge.
 
 Constant patches carry the pressure at their centres. Near the edge, where p falls like the square root of the
-distance, the pressure f of ``edge_shape`` replaces them: each patch is divided into parts, whose mean pressures
-follow from f^2, nearly linear across a part even where the edge cuts it. Near the patch the deflection of the
-parts is that of their own influence coefficients; farther away that of 3 x 3 constant patches with the same
-moments up to the second. Inside, differences of p^2 give the moments. Both share the patches in between.
+distance, the pressure f of ``edge_shape`` replaces them: each patch is divided into parts, whose mean
+pressures follow from f^2, nearly linear across a part even where the edge cuts it. Near the patch the
+deflection of the parts is that of their own influence coefficients; farther away that of 3 x 3 constant
+patches with the same moments up to the second. Inside, differences of p^2 give the moments. Both share the
+patches in between.
 
 Indices count the patches held: of a quarter grid those at x >= 0, y >= 0 (``grid``).
 """
@@ -39,9 +40,9 @@ NEAR = 4  # within which the deflection is that of the parts, beyond it that of 
 class EdgePatches:
     """The patches near the edge and the pressure in them.
 
-    i, j : indices, (k,).  centre : f at the centres [Pa], (k,).  parts : means of f over PARTS x PARTS parts [Pa],
-    (k, PARTS^2).  share : integrated by parts, (k,).  misfit : largest distance by which the patches' pressure
-    misses f near the edge, in patches where f^2 is steepest.
+    i, j : indices, (k,).  centre : f at the centres [Pa], (k,).  parts : means of f over PARTS x PARTS parts
+    [Pa], (k, PARTS^2).  share : integrated by parts, (k,).  misfit : largest distance by which the patches'
+    pressure misses f near the edge, in patches where f^2 is steepest.
     """
 
     i: Indices
@@ -57,7 +58,8 @@ class EdgePatches:
 
 
 def edge_patches(shape: Shape, p: Array, grid: Grid, window: Window) -> EdgePatches:
-    """The patches of a window near the edge of ``shape``.  p : pressure of the patches [Pa], on the window."""
+    """The patches of a window near the edge of ``shape``.  p : pressure of the patches [Pa], on the
+    window."""
     loaded = np.pad(grid.whole(p) > 0, 1)
     depth = distance_transform_cdt(loaded, metric="chessboard")
     beside = maximum_filter(loaded, 3)
@@ -84,15 +86,18 @@ def edge_patches(shape: Shape, p: Array, grid: Grid, window: Window) -> EdgePatc
     at_edge = (depth[i, j] >= 1) & (depth[i, j] <= 2)
     missed = np.abs(held**2 - c)[at_edge] / slope[at_edge].max(initial=np.finfo(float).tiny)
     centre = np.sqrt(np.maximum(c, 0))
-    return EdgePatches(i, j, centre, _parts(quadratic, depth[i, j] < NEARLY), share, float(missed.max(initial=0.0)))
+    return EdgePatches(
+        i, j, centre, _parts(quadratic, depth[i, j] < NEARLY), share, float(missed.max(initial=0.0))
+    )
 
 
 def _parts(quadratic: Array, near: NDArray[np.bool_]) -> Array:
     """Mean of f over PARTS x PARTS parts of every patch, (k, PARTS^2).
 
     quadratic : f^2 = c0 + c1 x + c2 y + c3 x^2 + c4 x y + c5 y^2, in patches from the centre, (k, 6).
-    near : patches near the edge, of which the mean is exact for f^2 linear in the direction in which it changes
-    most, by two Gauss points across; elsewhere the mean follows from f^2 and its derivatives at the part's centre.
+    near : patches near the edge, of which the mean is exact for f^2 linear in the direction in which it
+    changes most, by two Gauss points across; elsewhere the mean follows from f^2 and its derivatives at the
+    part's centre.
     """
     middle = (np.arange(PARTS) - PARTS // 2) / PARTS
     square = quadratic @ _terms(middle, middle)
@@ -223,6 +228,8 @@ def _smooth(p: Array, edge: EdgePatches, grid: Grid) -> tuple[Array, Array, Arra
     inverse = np.divide(1, p, out=np.zeros_like(p), where=rest > 0)
     px = (square[2:, 1:-1] - square[:-2, 1:-1]) * inverse / 4
     py = (square[1:-1, 2:] - square[1:-1, :-2]) * inverse / 4
-    bend = square[2:, 1:-1] + square[:-2, 1:-1] + square[1:-1, 2:] + square[1:-1, :-2] - 4 * square[1:-1, 1:-1]
+    bend = (
+        square[2:, 1:-1] + square[:-2, 1:-1] + square[1:-1, 2:] + square[1:-1, :-2] - 4 * square[1:-1, 1:-1]
+    )
     bend = bend * inverse / 2 - (px * px + py * py) * inverse
     return bend / 24 * rest, px / 12 * rest, py / 12 * rest

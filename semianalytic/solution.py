@@ -28,9 +28,11 @@ Array = NDArray[np.floating]
 EVALUATION = (5e-6, 5e-7)
 RINGS = 2e-8  # likewise on rings
 NEAR = 8.0  # patches from the edge, within which the error of its radius is felt
-# what the refinement of a smooth edge does not show: of the root mean square of the change of the pressure, and of
-# the peak pressure; felt to a depth of some patches
+# what the refinement of a smooth edge does not show: of the root mean square of the change of the pressure,
+# and of the peak pressure; felt to a depth of some patches
 FLOOR, REACH = (1.0, 2e-6), 8.0
+# likewise near the edge, of the ripple of the patches, which the shape averages; as far as they meet
+RIPPLE, TAPER = 0.6, 16.0
 RESOLUTION = 1e-7  # of the pressure of patches: its response to the gap the iteration leaves
 
 
@@ -141,8 +143,8 @@ class Solution:
     def pressure(self, x: ArrayLike, y: ArrayLike = 0.0) -> Array:
         """Contact pressure [Pa], 0 outside; x, y : [m], broadcast.
 
-        With a smooth edge that of its shape, fitted to the patches; of patches alone interpolated between them
-        by p^2.
+        With a smooth edge that of its shape, fitted to the patches; of patches alone interpolated between
+        them by p^2.
         """
         if self._level.smooth() is not None:
             return self._smooth_pressure(self._level, x, y)
@@ -218,10 +220,10 @@ class Solution:
     def pressure_uncertainty(self, x: ArrayLike, y: ArrayLike = 0.0, *, own_edge: bool = False) -> Array:
         """Uncertainty of the pressure [Pa] from the coarser companions.
 
-        With a smooth edge as that of the stress. Of patches alone the largest difference from the companion within
-        two of its patches, times ``safety``, or a sixth of that of the next two; plus the changes of the peak by
-        the other numerical parameters, twice, since they were varied on half the patches and the pressure
-        due to a gap is proportional to the patches; plus ``RESOLUTION`` of the peak; twice the sum.
+        With a smooth edge as that of the stress. Of patches alone the largest difference from the companion
+        within two of its patches, times ``safety``, or a sixth of that of the next two; plus the changes of
+        the peak by the other numerical parameters, twice, since they were varied on half the patches and the
+        pressure due to a gap is proportional to the patches; plus ``RESOLUTION`` of the peak; twice the sum.
         own_edge : as in ``stress_with_uncertainty``.
         Raises ValueError where no uncertainty was estimated.
         """
@@ -242,24 +244,27 @@ class Solution:
     def _rim(self, x: ArrayLike, y: ArrayLike, z: ArrayLike) -> Array:
         """Error [Pa] that a staircase makes of an edge: the highest pressure beside it, felt over a patch."""
         d, loaded = self.diagnostics.patch_size, np.pad(self.patch_pressure > 0, 1)
-        inside, outside = (distance_transform_cdt(marks, metric="chessboard") for marks in (loaded, ~loaded))
+        inside, outside = (distance_transform_cdt(one, metric="chessboard") for one in (loaded, ~loaded))
         highest = float(self.patch_pressure[inside[1:-1, 1:-1] == 1].max(initial=0.0))
         away = _at(self.nodes, (np.maximum(inside, outside) - 1.0)[1:-1, 1:-1], x, y, order=1) * d
         return highest * d / (d + np.hypot(away, z))
 
     def _smooth_uncertainty(self, x: ArrayLike, y: ArrayLike, own_edge: bool) -> Array:
-        """Uncertainty of the pressure [Pa] of a smooth edge: of its shape at the same x/a, and of its radius."""
+        """Uncertainty of the pressure [Pa] of a smooth edge: of its shape at the same x/a, and of its
+        radius."""
         assert self.uncertainty is not None
         fine = self._level.shape
         assert fine is not None
         p, second, third = (
-            self._smooth_pressure(level, np.asarray(x) * level.radius / fine.radius, np.asarray(y) * level.radius / fine.radius)
+            self._smooth_pressure(
+                level, np.asarray(x) * level.radius / fine.radius, np.asarray(y) * level.radius / fine.radius
+            )
             for level in self._levels
         )
         factor, share = SMOOTH
         total = np.maximum(factor * np.abs(p - second), share * np.abs(second - third))
         _, floor = self._companion()
-        total = total + self._floor + floor * self.peak_pressure
+        total = total + self._floor + self._near_ripple(x, y) + floor * self.peak_pressure
         if own_edge:
             return total
         shift = self.uncertainty.contact_radius
@@ -295,11 +300,11 @@ class Solution:
         """Stress and its uncertainty [Pa], shape (3, 3) + points each, the latter from coarser companions.
 
         The largest difference over the six components, for every component alike, of this level and the next,
-        or of the next and the one after, at the same x/a of each. With a smooth edge twice that, or once; plus
-        ``FLOOR`` of the peak pressure; or the change by the uncertain radius near the edge, where that is larger,
-        unless ``own_edge``: the points are meant relative to the edge, as x/a. Of patches alone times
-        ``safety``, or a third, plus the error of the evaluation, ``EVALUATION`` of the peak pressure. Both with
-        the changes of the peak pressure by the other numerical parameters.
+        or of the next and the one after, at the same x/a of each. With a smooth edge twice that, or once;
+        plus ``FLOOR`` of the peak pressure; or the change by the uncertain radius near the edge, where that
+        is larger, unless ``own_edge``: the points are meant relative to the edge, as x/a. Of patches alone
+        times ``safety``, or a third, plus the error of the evaluation, ``EVALUATION`` of the peak pressure.
+        Both with the changes of the peak pressure by the other numerical parameters.
         Raises ValueError where no uncertainty was estimated.
         """
         coarser, floor = self._companion()
@@ -312,17 +317,30 @@ class Solution:
             total = np.maximum(factor * change, share * before)
             if self._level.shape is not None:
                 shallow = 1 / (1 + np.asarray(z) / (REACH * self.diagnostics.patch_size))
-                total = total + self._floor * shallow + floor * self.peak_pressure
+                least = (self._floor + self._near_ripple(x, y)) * shallow
+                total = total + least + floor * self.peak_pressure
                 if not own_edge:
                     total = np.maximum(total, self._uncertain_edge(solid, x, y, z, layer))
             total = total + RINGS * self.peak_pressure
         else:
             change = np.maximum(safety(len(self.nodes) / len(coarser.nodes)) * change, before / 3)
             total = change + floor * self.peak_pressure
-            shallow = np.asarray(z) < 4 * self.diagnostics.patch_size
-            total += np.where(shallow, *EVALUATION) * self.peak_pressure
+            deep = np.asarray(z) >= 4 * self.diagnostics.patch_size
+            total += np.where(deep, *EVALUATION[::-1]) * self.peak_pressure
             total += self._rim(x, y, z)
         return sigma, np.broadcast_to(total, (3, 3, *change.shape)).copy()
+
+    def _near_ripple(self, x: ArrayLike, y: ArrayLike) -> Array:
+        away = self._to_edge(x, y) / (TAPER * self.diagnostics.patch_size)
+        return RIPPLE * self._level.ripple / (1 + away * away)
+
+    def _to_edge(self, x: ArrayLike, y: ArrayLike) -> Array:
+        """Distance of points from a smooth edge [m], about."""
+        shape = self._level.shape
+        assert shape is not None
+        t, s2, _ = shape.polynomials(x, y)
+        distance: Array = np.abs(t) / (1 + np.sqrt(s2)) * min(shape.axes)
+        return distance
 
     @cached_property
     def _floor(self) -> float:
@@ -331,7 +349,10 @@ class Solution:
         s = np.linspace(-1, 1, 201)
         s, angle = np.sqrt(np.abs(s)), np.pi * (s > 0) / 4
         p = [
-            one.pressure(one.centre[0] + one.axes[0] * s * np.cos(angle), one.centre[1] + one.axes[1] * s * np.sin(angle))
+            one.pressure(
+                one.centre[0] + one.axes[0] * s * np.cos(angle),
+                one.centre[1] + one.axes[1] * s * np.sin(angle),
+            )
             for one in shapes
         ]
         share, least = FLOOR
@@ -342,12 +363,9 @@ class Solution:
     ) -> Array:
         """Change of the stress [Pa] by the uncertain radius, within ``NEAR`` patches of the edge."""
         assert self.uncertainty is not None
-        shape = self._level.shape
-        assert shape is not None
         shift = self.uncertainty.contact_radius
         x, y, z = np.broadcast_arrays(*(np.asarray(v, dtype=float) for v in (x, y, z)))
-        t, s2, _ = shape.polynomials(x, y)
-        distance = np.hypot(np.abs(t) / (1 + np.sqrt(s2)) * min(shape.axes), z)
+        distance = np.hypot(self._to_edge(x, y), z)
         near = distance < NEAR * self.diagnostics.patch_size + shift
         change = np.zeros(x.shape)
         if near.any():

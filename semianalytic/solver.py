@@ -38,7 +38,10 @@ Substrate = tuple[float, float]
 Ball = tuple[float, float, Coatings]
 
 LARGEST = 0.9  # contact radius over that of the sphere
-ROUGH, ROOMY = 49, 1.5  # patches a side of the grid that finds the contact radius, and its half-width over that
+ROUGH, ROOMY = (
+    49,
+    1.5,
+)  # patches a side of the grid that finds the contact radius, and its half-width over that
 FINER, LARGEST_GRID = 1.4, 725  # patches a side of the next grid over the last; of the last for ``accuracy``
 STEPS = 0.08, 0.16  # of the load, to the neighbouring contacts that give the stiffness
 
@@ -76,7 +79,8 @@ def solve(
     edge_correction : for the square root of the pressure at the edge (``edge_correction``). False : constant
     patches alone, whose edge is a staircase.
     accuracy : relative uncertainty of contact radius, approach and peak pressure, for which the patches are
-    refined beyond ``patches`` to at most 725 a side; the solution states what it reached. None : no refinement.
+    refined beyond ``patches`` to at most 725 a side; the solution states what it reached. None : no
+    refinement.
     gap : "parabola" r^2/2R or "sphere" R - sqrt(R^2 - r^2).
 
     Raises ValueError for input without meaning and for a contact as wide as the sphere, NotConverged when the
@@ -135,8 +139,8 @@ def _contact_radius(radius: float, sphere: Indenter, body: Body, numerics: Numer
         found = level.radius
         if found > LARGEST * radius:
             raise ValueError(
-                f"contact radius a = {found:g} m is {found / radius:.2g} of the sphere's radius; the parabolic "
-                f"gap and small strains hold below {LARGEST:g}, and well below 0.1"
+                f"contact radius a = {found:g} m is {found / radius:.2g} of the sphere's radius; "
+                f"the parabolic gap and small strains hold below {LARGEST:g}, and well below 0.1"
             )
         if touches_rim(level.found.pressure, level.grid.quarter):
             a = 2 * a
@@ -363,8 +367,9 @@ def _loaded(grid: Grid, shape: prescribed.Prescribed, body: Body, numerics: Nume
 def _body(coatings: Coatings, substrate: Substrate, friction: float, ball: Ball | None = None) -> Body:
     Body(coatings, substrate, friction)  # refuses what is no number before it is made one
     opposite = None if ball is None else _ball(ball, friction)
-    layers = tuple(tuple(float(v) for v in coating) for coating in coatings)
-    return Body(layers, tuple(float(v) for v in substrate), float(friction), opposite)  # type: ignore[arg-type]
+    layers = tuple((float(E), float(nu), float(h)) for E, nu, h in coatings)
+    E, nu = substrate
+    return Body(layers, (float(E), float(nu)), float(friction), opposite)
 
 
 def _ball(ball: Ball, friction: float) -> Body:

@@ -2,11 +2,12 @@
 
     sigma(x, y, z) = int p G dA = sum over rings rho around (x, y) of  G_m(rho, z) P_m(rho) rho d rho,
 
-G_m the influence of a normal and of a tangential point force f (``point_force``), P_m the harmonics of p on the
-ring (``rings``), q = f p in +x. In the first layer G is the closed form of the half-space of its material plus the
-reflection of what lies below; deeper down, the response of the layers. Both come from tables over rho, one a depth;
-where many depths share a layer, from those of a few Chebyshev depths. At z = 0 the closed form leaves the local
-terms sigma_zz = -p, sigma_xz = -q, (sigma_xx + sigma_yy)/2 = -(1 + 2 nu) p/2 (Johnson 1985, section 3.4).
+G_m the influence of a normal and of a tangential point force f (``point_force``), P_m the harmonics of p on
+the ring (``rings``), q = f p in +x. In the first layer G is the closed form of the half-space of its
+material plus the reflection of what lies below; deeper down, the response of the layers. Both come from
+tables over rho, one a depth; where many depths share a layer, from those of a few Chebyshev depths. At z = 0
+the closed form leaves the local terms sigma_zz = -p, sigma_xz = -q, (sigma_xx + sigma_yy)/2 = -(1 + 2 nu)
+p/2 (Johnson 1985, section 3.4).
 
 "Stress analysis of elastic coated solids in point contact", eqs. 1-4. Axes: z down; tension positive; SI.
 Rough pressures, and planes of many points: ``patch_field``.
@@ -38,14 +39,16 @@ Array = NDArray[Any]
 Tables = dict[tuple[bytes, int, float, int], list[PointForce]]
 
 PAIRS = 200_000  # points times rings held at a time
-DEPTHS = 10  # Chebyshev depths within an octave of the reach, 3e-10 of the field; fewer depths are taken as they are
+# Chebyshev depths within an octave of the reach, 3e-10 of the field; fewer depths are taken as they are
+DEPTHS = 10
 KEPT = 64  # depths of which tables are kept, half a megabyte each
 
 
 @dataclass(frozen=True, eq=False)
 class _Response:
-    """Stress or displacement of a unit force: closed(rho, z) of the half-space of the first material, (columns, n);
-    below(z, layer, scale, excess=) the tables of the layers; combine(table, harmonics, friction) the components."""
+    """Stress or displacement of a unit force: closed(rho, z) of the half-space of the first material,
+    (columns, n); below(z, layer, scale, excess=) the tables of the layers; combine(table, harmonics,
+    friction) the components."""
 
     components: int
     closed: Callable[[Array, Array], Array]
@@ -54,11 +57,19 @@ class _Response:
 
 
 def stress(
-    x: Array, y: Array, z: Array, layer: Array, *, pressure: RingPressure, body: Body, kept: Tables | None = None
+    x: Array,
+    y: Array,
+    z: Array,
+    layer: Array,
+    *,
+    pressure: RingPressure,
+    body: Body,
+    kept: Tables | None = None,
 ) -> Array:
     """Stress xx, yy, zz, xy, xz, yz [Pa] at points x, y, z [m] of the layers named, (n,) each; (6, n).
 
-    layer : picks the side of an interface.  kept : tables of other calls for the same body; new ones are added.
+    layer : picks the side of an interface.  kept : tables of other calls for the same body; new ones are
+    added.
     """
     nu, f = body.materials[0][1], body.friction
     response = _Response(6, partial(_stress, nu, f), partial(stress_below, body=body), combine_stress)
@@ -69,7 +80,14 @@ def stress(
 
 
 def displacement(
-    x: Array, y: Array, z: Array, layer: Array, *, pressure: RingPressure, body: Body, kept: Tables | None = None
+    x: Array,
+    y: Array,
+    z: Array,
+    layer: Array,
+    *,
+    pressure: RingPressure,
+    body: Body,
+    kept: Tables | None = None,
 ) -> Array:
     """Displacement u_x, u_y, u_z [m], (3, n); arguments as in `stress`."""
     E, nu, f = *body.materials[0][:2], body.friction
@@ -109,12 +127,13 @@ def _summed(x, y, z, layer, pressure: RingPressure, body: Body, response: _Respo
             stop = max(start + 1, int(np.searchsorted(ends, held + PAIRS, side="right")))
             some = members[start:stop]
             which = np.repeat(np.arange(some.size), count[some])
-            ring = np.arange(which.size) + np.repeat(begin[foot[some]] - (ends[start:stop] - count[some] - held), count[some])
+            ring = np.arange(which.size) + np.repeat(
+                begin[foot[some]] - (ends[start:stop] - count[some] - held), count[some]
+            )
             depth = z[some][which]
             rho = rings.radius[ring]
-            table = tables(rho, depth) if tables else 0.0
-            if number == 0:
-                table = table + response.closed(rho, depth)
+            closed = [response.closed(rho, depth)] if number == 0 else []
+            table = sum([tables(rho, depth)] if tables else [], start=sum(closed, start=np.zeros(1)))
             parts = response.combine(table, rings.harmonics[:, ring] * rings.weight[ring], body.friction)
             out[:, some] = [np.bincount(which, part, minlength=some.size) for part in parts]
             start = stop
@@ -123,7 +142,8 @@ def _summed(x, y, z, layer, pressure: RingPressure, body: Body, response: _Respo
 
 @dataclass(frozen=True, eq=False)
 class _Tables:
-    """Radial functions of the layers at any depth between those of ``groups``: (least depth, nodes, tables)."""
+    """Radial functions of the layers at any depth between those of ``groups``: (least depth, nodes,
+    tables)."""
 
     groups: list[tuple[float, Array, list[PointForce]]]
     between: list[bool]

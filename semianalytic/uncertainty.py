@@ -1,4 +1,5 @@
-"""Numerical uncertainty by a refinement study over grids, and by variation of the other numerical parameters."""
+"""Numerical uncertainty by a refinement study over grids, and by variation of the other numerical
+parameters."""
 
 from dataclasses import dataclass, replace
 
@@ -51,10 +52,12 @@ class Uncertainty:
     ) -> "Uncertainty":
         """From the results on three grids, and the changes by one other parameter that is less accurate.
 
-        Patch size: ``factor`` times the change to the finest grid, or ``share`` of the change before where the
-        last is small by chance, or ``edge``, the error of the contact radius by patches that the edge cuts [m].
+        Patch size: ``factor`` times the change to the finest grid, or ``share`` of the change before where
+        the last is small by chance, or ``edge``, the error of the contact radius by patches that the edge
+        cuts [m].
         """
-        # an error of the edge is of the second order in the approach, which is stationary in the contact's area
+        # an error of the edge is of the second order in the approach, which is stationary in the contact's
+        # area
         least = {"contact_radius": edge, "approach": fine["approach"] * (edge / fine["contact_radius"]) ** 2}
         rows = []
         for name, value in fine.items():
@@ -81,7 +84,8 @@ def change(one: dict[str, float], other: dict[str, float]) -> dict[str, float]:
 
 
 def of_contact(levels: list[Level], indenter: Indenter, body: Body, numerics: Numerics) -> Uncertainty:
-    """Refinement study of the last three levels; conversion and domain on the coarsest, iteration on the finest."""
+    """Refinement study of the last three levels; conversion and domain on the coarsest, iteration on the
+    finest."""
     fine, middle, coarse = (level.scalars for level in levels[:-4:-1])
     last, varied = levels[-1], levels[-3]
     variations = {
@@ -100,10 +104,10 @@ def _by_other_coefficients(
 ) -> dict[str, float]:
     """Changes by other influence coefficients, computed on a box ``wider`` times as wide.
 
-    Their deflection changes by e = dK p. At a given load the approach changes by a mean of e, weighted with the
-    pressure of a flat punch, which is nowhere negative: by no more than the largest |e|. Hertz's contact, whose
-    gap e changes by c r^2, is that of another radius of curvature: p0 changes by 4/3, a by 2/3 of the range of e
-    over the approach; here by twice and once that share.
+    Their deflection changes by e = dK p. At a given load the approach changes by a mean of e, weighted with
+    the pressure of a flat punch, which is nowhere negative: by no more than the largest |e|. Hertz's
+    contact, whose gap e changes by c r^2, is that of another radius of curvature: p0 changes by 4/3, a by
+    2/3 of the range of e over the approach; here by twice and once that share.
     """
     none = dict.fromkeys(level.scalars, 0.0)
     if numerics.conversion == "split" and (wider > 1 or not any(one.coatings for one in body.pair)):
