@@ -338,16 +338,15 @@ def _graded(touches: list[float], inside: bool, scale: float, nodes: int) -> tup
         if high <= low:
             continue
         # graded from the lower end, from the middle on towards the upper one
-        to = high if high == last else (low + high) / 2
+        to = (low + high) / 2
         begin = min(0.5 * least, (to - low) / 2, scale if low == 0 else np.inf)
         points.append(low + begin * crowded)
         weights.append(begin * slope)
         plain(low + begin, to, _growing(low, scale))
-        if to < high:
-            end = min(0.5 * least, (high - to) / 2)
-            plain(to, high - end, _shrinking(high, end, scale))
-            points.append(high - end * crowded[::-1])
-            weights.append(end * slope[::-1])
+        end = (high - to) / 2 if high == last else min(0.5 * least, (high - to) / 2)
+        plain(to, high - end, _shrinking(high, end, scale))
+        points.append(high - end * crowded[::-1])
+        weights.append(end * slope[::-1])
     return np.concatenate(points), np.concatenate(weights)
 
 

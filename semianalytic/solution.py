@@ -198,8 +198,8 @@ class Solution:
     ) -> tuple[Array, Array]:
         """Displacement and its uncertainty [m], shape (3,) + points each.
 
-        With a smooth edge from its coarser companions, the largest of the components for each alike; else the
-        uncertainty of the approach everywhere.
+        With a smooth edge from its coarser companions, the largest of the components for each alike, and the
+        uncertainty of the approach; else the latter everywhere.
         Raises ValueError where no uncertainty was estimated.
         """
         self._companion()
@@ -211,6 +211,8 @@ class Solution:
         last, before = (np.abs(one - other).max(axis=0) for one, other in ((u, second), (second, third)))
         factor, share = SMOOTH
         total = np.maximum(factor * last, share * before) + RINGS * self.approach
+        if self._level.shape is not None:
+            total = total + self.uncertainty.approach
         return u, np.broadcast_to(total, u.shape).copy()
 
     def displacement_uncertainty(self, x: ArrayLike, y: ArrayLike, z: ArrayLike, body: str = "flat") -> Array:
