@@ -1,14 +1,20 @@
-"""The packages in rooms: small folders, names that do not repeat each other, imports downwards only."""
+"""The packages in rooms: small folders and files, names that stand alone, imports downwards only."""
 
 import ast
-import re
 from collections import defaultdict
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
 PACKAGES = ("semianalytic", "fem_reference", "verification")
-MODULES = sorted(path for package in PACKAGES for path in (ROOT / package).rglob("*.py"))
-MOST = 12
+EXAMPLES = ROOT / "verification" / "guests" / "examples"  # adapters that users copy
+MODULES = sorted(
+    path
+    for package in PACKAGES
+    for path in (ROOT / package).rglob("*.py")
+    if EXAMPLES not in path.parents and path.name != "__init__.py"
+)
+MOST_IN_A_FOLDER = 13
+MOST_LINES = 450
 # A room imports from those before it; rooms on one floor do not import each other.
 FLOORS = (
     ("problem",),
@@ -17,25 +23,15 @@ FLOORS = (
     ("cases",),
     ("sampling",),
     ("running",),
+    ("page",),
+    ("evidence",),
     ("study", "regression", "guests"),
-    ("credibility", "bench", "desk"),
+    ("credibility", "desk"),
     ("report",),
     ("manual",),
     ("commands",),
 )
 FLOOR = {room: number for number, rooms in enumerate(FLOORS) for room in rooms}
-
-
-def folders():
-    """Every folder of the packages with the names of its modules and its folders of modules."""
-    found = defaultdict(lambda: (set(), set()))
-    for path in MODULES:
-        folder = path.parent
-        if path.name != "__init__.py":
-            found[folder][0].add(path.stem)
-        if folder.parent != ROOT:
-            found[folder.parent][1].add(folder.name)
-    return found
 
 
 def imported(tree):
@@ -49,66 +45,64 @@ def imported(tree):
             yield from (f"{node.module}.{alias.name}" for alias in node.names)
 
 
-def plain(name):
-    """A name in the singular."""
-    return name[:-3] + "y" if name.endswith("ies") else name.removesuffix("s")
+def rooms_imported(path):
+    """The rooms of ``verification`` that the module at ``path`` imports from."""
+    for name in imported(ast.parse(path.read_text(encoding="utf-8"))):
+        top, _, rest = name.partition(".")
+        if top == "verification" and rest:
+            yield rest.partition(".")[0]
 
 
 def test_verification_shows_its_rooms_and_the_command_line():
-    modules, rooms = folders()[ROOT / "verification"]
-    assert modules == {"cli"}
-    assert rooms >= FLOOR.keys()
-    assert (
-        len(rooms) <= MOST + 3
-    )  # three more than a folder may hold: the guests, the desk, the manual have a room of their own
+    here = ROOT / "verification"
+    assert [path.stem for path in MODULES if path.parent == here] == ["cli"]
+    found = {path.relative_to(here).parts[0] for path in MODULES if here in path.parents} - {"cli.py"}
+    assert found == FLOOR.keys()
 
 
-def test_no_room_holds_more_than_twelve_modules():
-    sizes = {
-        folder.relative_to(ROOT).as_posix(): len(modules) + len(inner)
-        for folder, (modules, inner) in folders().items()
-        if ROOT / "verification" in folder.parents
-    }
-    assert {name: size for name, size in sizes.items() if size > MOST} == {}
+def test_no_room_holds_more_than_thirteen_modules():
+    held = defaultdict(set)
+    for path in MODULES:
+        held[path.parent].add(path.stem)
+        for folder in path.parents:
+            if folder.parent not in (ROOT, ROOT / "verification") and ROOT in folder.parents:
+                held[folder.parent].add(folder.name)
+    sizes = {folder.relative_to(ROOT).as_posix(): len(names) for folder, names in held.items()}
+    rooms = {name: size for name, size in sizes.items() if name.startswith("verification/")}
+    assert {name: size for name, size in rooms.items() if size > MOST_IN_A_FOLDER} == {}
 
 
-def test_no_module_repeats_the_name_of_its_folder():
-    repeated = [
-        f"{folder.relative_to(ROOT)}/{name}"
-        for folder, (modules, _) in folders().items()
-        for name in sorted(modules)
-        if plain(folder.name) in {plain(name), *map(plain, name.split("_"))}
-    ]
-    assert repeated == []
+def test_no_file_is_longer_than_one_can_read_at_once():
+    sizes = {path.relative_to(ROOT).as_posix(): path.read_text("utf-8").count("\n") for path in MODULES}
+    rooms = {name: size for name, size in sizes.items() if name.startswith("verification/")}
+    assert {name: size for name, size in rooms.items() if size > MOST_LINES} == {}
 
 
-def test_no_modules_of_a_folder_share_the_first_word_of_their_names():
-    families = defaultdict(list)
-    for folder, (modules, _) in folders().items():
-        for name in sorted(modules):
-            families[f"{folder.relative_to(ROOT)}/{name.split('_')[0]}"].append(name)
-    assert {place: names for place, names in families.items() if len(names) > 1} == {}
+def test_a_name_of_a_module_of_verification_occurs_once_in_the_product():
+    places = defaultdict(list)
+    for path in MODULES:
+        places[path.stem].append(path.relative_to(ROOT).as_posix())
+    shared = [found for found in places.values() if len(found) > 1]
+    assert [found for found in shared if any(name.startswith("verification/") for name in found)] == []
 
 
 def test_rooms_import_downwards_only():
-    upward = []
-    for path in MODULES:
-        package, room, *_ = path.relative_to(ROOT).parts
-        if package != "verification" or room not in FLOOR:
-            continue
-        for name in sorted(set(imported(ast.parse(path.read_text(encoding="utf-8"))))):
-            top, _, rest = name.partition(".")
-            other = rest.partition(".")[0]
-            if top == "verification" and other and other != room and FLOOR.get(other, MOST) >= FLOOR[room]:
-                upward.append(f"{path.relative_to(ROOT)} imports {name}")
+    upward = [
+        f"{path.relative_to(ROOT)} imports {other}"
+        for path in MODULES
+        if (room := path.relative_to(ROOT).parts[1]) in FLOOR
+        for other in sorted(set(rooms_imported(path)))
+        if other in FLOOR and other != room and FLOOR[other] >= FLOOR[room]
+    ]
     assert upward == []
 
 
-def test_every_module_has_one_purpose_in_its_first_line():
-    lines = {}
-    for path in MODULES:
-        tree = ast.parse(path.read_text(encoding="utf-8"))
-        if tree.body or path.name != "__init__.py":
-            lines[path.relative_to(ROOT).as_posix()] = (ast.get_docstring(tree) or "").partition("\n")[0]
-    found = {name: line for name, line in lines.items() if not line or re.search(r"\band\b", line, re.I)}
-    assert found == {}
+def test_stored_evidence_is_small_and_read_without_the_campaigns_that_make_it():
+    room = [path for path in MODULES if path.parent.name == "evidence"]
+    assert sum(path.read_text("utf-8").count("\n") for path in room) <= 900
+    assert not {other for path in room for other in rooms_imported(path)} & {"credibility", "report"}
+
+
+def test_every_module_says_what_it_holds_in_its_first_line():
+    docs = {path: ast.get_docstring(ast.parse(path.read_text(encoding="utf-8"))) for path in MODULES}
+    assert [path for path, text in docs.items() if not text] == []

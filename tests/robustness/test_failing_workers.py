@@ -46,7 +46,7 @@ def task(how: str, folder: Path, number: int = 0) -> Task[str]:
     path = folder / f"{how}-{number}.json"
     return Task(
         path.stem,
-        partial(planted_worker.main, how, path),
+        partial(planted_worker.main, how, str(path)),
         path,
         lambda data: data["said"],
         lambda reason, _: reason,

@@ -1,27 +1,24 @@
 """Maps of what each assumption costs: the record with its values between the nodes.
 
-``coatcheck assumptions --record`` makes them, each over the axes that ``assumptions`` states.
+Maintainers make them; ``credibility.model.shared_assumptions`` states the axes of each.
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass, replace
+from dataclasses import dataclass, replace
 from functools import cached_property
 from math import prod
 from pathlib import Path
 
 import numpy as np
 
-from verification.credibility.model.shared_assumptions import ASSUMPTIONS, QUANTITIES
 from verification.evidence.map_places import LOGARITHMIC, Place, coordinate, places_of
 from verification.problem.array_types import Array
 from verification.problem.coated_contact import CoatedContact
-from verification.running.case_result import RunInfo
 from verification.running.json_records import RecordFile
 from verification.sources.assumptions.contact_change import SCALARS, Change
 
 SHIPPED = Path(__file__).parent / "shipped"
 SCHEMA = "coatcheck-assumptions/2"
-DIGITS = 5
 KINK = 0.05  # of the largest value around
 SAFETY = 2.0  # of the error of interpolation, over its estimate
 SAME = 1e-6  # relative; nearer to a fixed coordinate a problem has it
@@ -225,12 +222,6 @@ class AssumptionMaps:
         """The map of ``assumption``; None where it was not measured."""
         return next((one for one in self.maps if one.assumption == assumption), None)
 
-    def with_map(self, new: AssumptionMap) -> "AssumptionMaps":
-        """These with ``new`` in place of its predecessor, in the order of ``ASSUMPTIONS``."""
-        found = {one.assumption: one for one in self.maps} | {new.assumption: new}
-        known = [name for name in ASSUMPTIONS if name in found]
-        return AssumptionMaps(tuple(found[name] for name in (*known, *(found.keys() - set(known)))))
-
 
 def interpolated(
     table: Array, axes: Sequence[Axis], positions: Sequence[float], below: Sequence[bool], most: int
@@ -307,53 +298,6 @@ def _fewer(nodes: Array, x: float, most: int) -> list[Weights]:
         return [{min(chosen, key=lambda i: abs(nodes[i] - x)): 1.0}]
     ends = [end for end in (chosen[0], chosen[-1]) if end not in cell]
     return [_lagrange(nodes, x, [i for i in chosen if i != end]) for end in ends]
-
-
-@dataclass(frozen=True)
-class Measured:
-    """Change and uncertainty of ``QUANTITIES`` at a place, rounded; NaN where the model has no answer."""
-
-    change: tuple[float, ...]
-    uncertainty: tuple[float, ...]
-
-
-def measure(assumption: str, place: Place) -> Measured:
-    """What ``assumption`` costs at ``place``."""
-    nothing = (float("nan"),) * len(QUANTITIES)
-    try:
-        found = ASSUMPTIONS[assumption].change(place.problem)
-    except ValueError:
-        return Measured(nothing, nothing)
-    return Measured(*(_rounded(one) for one in found))
-
-
-def _rounded(change: Change) -> tuple[float, ...]:
-    return tuple(float("nan") if v is None else float(f"{v:.{DIGITS}g}") for v in asdict(change).values())
-
-
-def assembled(assumption: str, measured: Sequence[Measured], info: RunInfo) -> AssumptionMap:
-    """The map of ``assumption`` from what was ``measured`` at its places, in their order."""
-    stated = ASSUMPTIONS[assumption]
-    axes = tuple(Axis(name, values, stated.rates_of(name)) for name, values in stated.all_axes.items())
-    shape = (*(len(axis.values) for axis in axes), len(QUANTITIES))
-    change, uncertainty = (
-        np.moveaxis(np.array([getattr(one, name) for one in measured]).reshape(shape), -1, 0)
-        for name in ("change", "uncertainty")
-    )
-    return AssumptionMap(
-        assumption,
-        stated.title,
-        QUANTITIES,
-        axes,
-        stated.independent_of,
-        change,
-        uncertainty,
-        info.started,
-        info.seconds,
-        info.commit,
-        info.machine,
-        dict(info.versions),
-    )
 
 
 _FILE = RecordFile(AssumptionMaps, "assumptions.json", (SCHEMA,), "maps of the assumptions", "make it again")

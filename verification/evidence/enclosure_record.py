@@ -1,9 +1,8 @@
-"""Proven enclosures as the package holds them, with the distance of a solution from each.
+"""Proven enclosures as the package holds them.
 
 ``coatcheck certify`` makes them by ``verification.sources.enclosures``; reading needs no ball arithmetic.
 """
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 from decimal import Decimal
 from fractions import Fraction
@@ -12,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from verification.problem.array_types import Coatings
-from verification.problem.coated_contact import CoatedContact, Solution, stress_with_uncertainty
+from verification.problem.coated_contact import CoatedContact
 from verification.running.json_records import RecordFile
 from verification.sources.bounds.approach_bounds import EnergyBounds
 
@@ -142,26 +141,6 @@ class EnclosureRecord:
     commit: str | None
     machine: str
     versions: dict[str, str]
-
-
-def distances(enclosure: Enclosure, solution: Solution) -> Iterator[tuple[Bounds, float, float | None]]:
-    """Each bound with the distance of the solution's value from it, then U of this value if stated."""
-    for bounds in enclosure.bounds:
-        value, U = _value(enclosure.problem, solution, bounds)
-        yield bounds, bounds.distance(value), U
-
-
-def _value(problem: CoatedContact, solution: Solution, bounds: Bounds) -> tuple[float, float | None]:
-    if bounds.quantity == "sigma_xx":
-        layer = 1 if bounds.line == LOWER else 0
-        z = 0.0 if bounds.line == SURFACE else problem.interfaces[0]
-        sigma, U_sigma = stress_with_uncertainty(solution, 0.0, 0.0, z, layer)
-        return float(sigma[0, 0]), None if U_sigma is None else float(U_sigma[0, 0])
-    if bounds.quantity == "pressure":
-        U = None if solution.uncertainty is None else float(solution.pressure_uncertainty(0.0))
-        return float(solution.pressure(0.0)), U
-    U = None if solution.uncertainty is None else getattr(solution.uncertainty, bounds.quantity)
-    return getattr(solution, bounds.quantity), U
 
 
 _FILE = RecordFile(EnclosureRecord, "enclosures.json", (SCHEMA,), "enclosures", "make it again")

@@ -1,21 +1,39 @@
 """Record of all trials of planted faults: detections, score, file."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import StrEnum
-from pathlib import Path
 from typing import Any
 
-from verification.credibility.faults.default_checks import COLUMNS, Check
-from verification.credibility.faults.fault_planting import Fault
-from verification.credibility.faults.fault_trial import Trial
-from verification.judging.verdict import Outcome
-from verification.running.checked_files import StoreError, read_checked, write_checked
-from verification.running.json_records import decode, encode, plain
+from verification.running.json_records import RecordFile
 
-SCHEMA = "coatcheck-faults/2"
 PASS_SHARE = 0.95
-WORST_FIRST = (Outcome.DISAGREES, Outcome.INCONCLUSIVE, Outcome.NO_RESULT)  # of those that do not pass
+# Titles of the groups of faults, in the order of the matrix.
+GROUPS = {
+    "material": "Material",
+    "ball": "Elastic ball",
+    "frf": "Frequency response functions",
+    "conversion_fft": "Conversion and FFT",
+    "conjugate_gradients": "Conjugate gradients",
+    "stress": "Stress",
+    "finite_elements": "Finite elements",
+    "fields": "Displacements, stiffness, stacks, planes",
+    "references": "References",
+    "harness": "Harness",
+    "coverage": "Harness: coverage, manifest, baseline, exit",
+}
+# The columns of the matrix of faults: title and what is compared.
+COLUMNS = {
+    "bare, closed form": "uncoated cases, Hertz or Hamilton on one side",
+    "bare, exact": "uncoated cases, the integral equation on one side, no closed form on the other",
+    "bare, methods": "uncoated cases, method against method",
+    "coated, exact": "coated cases, the integral equation on one side",
+    "coated, methods": "coated cases, method against method",
+    "invariants": "invariants that one solution must satisfy by itself",
+    "published": "tables published by others (coatcheck run published)",
+    "self-tests": "known answers of the harness itself",
+    "manifest": "less that is judged: points, lines, invariants, or a wider cap or scale",
+    "baseline": "numbers that changed; counted only where no other check can detect the fault",
+}
 SMALLEST_CHANGE = 1e-12  # of its scale; a smaller change is rounding
 
 
@@ -146,92 +164,27 @@ class Record:
         silent = not (self.unexplained or self.idle or self.alarms or self.failing_clean)
         return self.share >= PASS_SHARE and silent
 
-
-def row_of(fault: Fault, trial: Trial) -> Row:
-    """The row of one trial: its checks counted column by column."""
-    by_column = {column: [c for c in trial.checks if c.column == column] for column in COLUMNS}
-    bad = [check for check in trial.checks if not check.passed]
-    decided = [c for c in bad if c.outcome is not Outcome.NO_RESULT]
-    predicted = [c for c in decided if c.name in fault.predicted]
-    catch = _catch(bad, fault, trial)
-    return Row(
-        fault.name,
-        fault.group,
-        fault.description,
-        fault.where,
-        catch,
-        bool(predicted),
-        _worst_message(predicted or decided or bad),
-        {column: _tally(checks) for column, checks in by_column.items() if checks},
-        trial.change,
-        trial.changed,
-        trial.seconds,
-        (*fault.cases, *fault.published),
-        trial.failure or "",
-        "" if catch in CAUGHT else fault.reason,
-        "" if catch in CAUGHT else fault.remedy,
-    )
+    @property
+    def score(self) -> dict[str, Any]:
+        """The counts, for other readers of the file."""
+        return {
+            "faults": len(self.rows),
+            "caught": self.caught,
+            "as_predicted": self.as_predicted,
+            "share": self.share,
+            "by": {catch: sum(row.catch is catch for row in self.rows) for catch in Catch},
+            "controls": len(self.controls),
+            "alarms": len(self.alarms),
+            "passed": self.passed,
+        }
 
 
-def _catch(bad: Sequence[Check], fault: Fault, trial: Trial) -> Catch:
-    if trial.failure is not None:
-        return Catch.NOT_TRIED
-    # A changed number is not in itself an error; it counts where no other check can detect the fault.
-    own = [check for check in bad if check.column != "baseline"]
-    outcomes = {check.outcome for check in own}
-    if Outcome.DISAGREES in outcomes:
-        return Catch.DISAGREES
-    if Outcome.INCONCLUSIVE in outcomes:
-        return Catch.INCONCLUSIVE
-    if "baseline" in fault.predicted and len(own) < len(bad):
-        return Catch.DRIFTED
-    return Catch.NO_RESULT if own else Catch.SURVIVED
-
-
-def _tally(checks: Sequence[Check]) -> Tally:
-    disagree, inconclusive, no_result = (sum(c.outcome is one for c in checks) for one in WORST_FIRST)
-    message = _worst_message([check for check in checks if not check.passed])
-    return Tally(len(checks), disagree, inconclusive, no_result, message)
-
-
-def _worst_message(bad: Sequence[Check]) -> str:
-    """Message of the worst check: the first disagreement, then the first inconclusive, then no result."""
-    ranked = sorted(bad, key=lambda check: WORST_FIRST.index(check.outcome))
-    return ranked[0].message if ranked else ""
-
-
-def to_json(record: Record) -> dict[str, Any]:
-    """The record with its score as strict JSON."""
-    score = {
-        "faults": len(record.rows),
-        "caught": record.caught,
-        "as_predicted": record.as_predicted,
-        "share": record.share,
-        "by": {catch: sum(row.catch is catch for row in record.rows) for catch in Catch},
-        "controls": len(record.controls),
-        "alarms": len(record.alarms),
-        "passed": record.passed,
-    }
-    return {"schema": SCHEMA, **encode(record), "score": plain(score)}
-
-
-def from_json(data: dict[str, Any]) -> Record:
-    """The inverse of ``to_json``. Raises ValueError for another schema or a field that does not fit."""
-    if data.get("schema") != SCHEMA:
-        raise ValueError(f"schema = {data.get('schema')!r}; this version reads {SCHEMA!r}")
-    return decode(Record, data)
-
-
-def write_record(path: Path, record: Record) -> None:
-    """Store ``record`` as a checked file. Raises StoreError where it cannot be written."""
-    write_checked(path, to_json(record))
-
-
-def read_record(path: Path) -> Record | None:
-    """The record stored at ``path``; None where there is none. Raises StoreError where it is damaged."""
-    if not path.exists():
-        return None
-    try:
-        return from_json(read_checked(path))
-    except ValueError as error:
-        raise StoreError(f"{path}: not a record of {SCHEMA} ({error}); run coatcheck faults again") from None
+_FILE = RecordFile(
+    Record,
+    "faults.json",
+    ("coatcheck-faults/2",),
+    "planted faults",
+    "run coatcheck faults again",
+    lambda record: {"score": record.score},
+)
+to_json, write_record, read_record = _FILE.to_json, _FILE.write, _FILE.read

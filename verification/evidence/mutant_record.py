@@ -1,43 +1,48 @@
-"""Rooms with their mutants: the draw, the outcome of each, the survivors that were read, the score."""
+"""Mutants on record: what caught each, the survivors that were read, the score of each part of the code."""
 
-import random
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from enum import StrEnum
-from pathlib import Path
-from typing import Any
+from hashlib import sha256
 
-from verification.cases.toml_file import load_toml
-from verification.credibility.faults.fault_planting import Fault
-from verification.credibility.mutation.sites import Mutant, mutants
 from verification.running.case_result import RunInfo
-from verification.running.checked_files import StoreError, read_checked, write_checked
-from verification.running.json_records import decode, encode
+from verification.running.json_records import RecordFile
 
-SCHEMA = "coatcheck-mutants/1"
-RECORD = "mutants.json"  # its name in a folder of records
-ROOT = Path(__file__).resolve().parents[3]
-SURVIVORS = Path(__file__).with_name("survivors.toml")
+# Share of the mutants of each part of the code that has to be caught.
+REQUIRED = {
+    "semianalytic": 0.9,
+    "fem_reference": 0.9,
+    "references": 0.9,
+    "judging": 0.95,
+    "sampling": 0.95,
+    "running": 0.95,
+}
 
 
 @dataclass(frozen=True)
-class Room:
-    """A ``folder`` of code with its ``tests``, see rooms.toml."""
+class Mutant:
+    """The lines ``before`` of ``file``, from ``line`` on, become ``after``, changed at ``column``.
 
-    folder: str
-    tests: tuple[str, ...]
-    asked: float
-    where: str
-    cases: tuple[str, ...]
-    solve: tuple[str, ...] = ()
+    function : what encloses them, "" in the module itself.
+    """
+
+    file: str
+    function: str
+    operator: str
+    line: int
+    column: int
+    before: str
+    after: str
 
     @property
-    def checks(self) -> Fault:
-        """Nothing planted, with what is solved under each mutant."""
-        return Fault("none", "", "", self.where, cases=self.cases, solve=self.solve)
+    def name(self) -> str:
+        """Its place with a digest, as the name of a file."""
+        place = self.file.removesuffix(".py").replace("/", ".")
+        return f"{place}_{self.line}_{sha256(repr(self).encode()).hexdigest()[:8]}"
 
-
-ROOMS = decode(dict[str, Room], load_toml(Path(__file__).with_name("rooms.toml").read_bytes())[1])
+    @property
+    def change(self) -> str:
+        """Both in one line."""
+        return " ".join(f"{self.before} -> {self.after}".split())
 
 
 class Catch(StrEnum):
@@ -56,7 +61,7 @@ class Catch(StrEnum):
 class Trial:
     """A mutant of a ``room``, None where nothing was changed, with what caught it.
 
-    by : its message.   change, changed : the largest change of a number, as in ``faults.trial.Trial``.
+    by : its message.   change, changed : the largest change of a number, as in ``fault_trial.Trial``.
     kind, reason : of a survivor that was read: "equivalent", or "harmless" below the uncertainty.
     """
 
@@ -88,59 +93,26 @@ class MutantRecord:
     def survivors(self) -> list[tuple[Trial, Mutant]]:
         return [(trial, trial.mutant) for trial in self.trials if trial.mutant and not trial.caught]
 
+    @property
+    def passed(self) -> bool:
+        """True where enough is caught in the parts of each required share, and every survivor was read."""
+        shares = set(REQUIRED.values())
+        scores = {s: self.score(*(name for name, share in REQUIRED.items() if share == s)) for s in shares}
+        enough = all(caught >= share * count for share, (caught, count) in scores.items())
+        return enough and all(trial.kind for trial, _ in self.survivors)
+
     def score(self, *rooms: str) -> tuple[int, int]:
         """Caught, and all but the equivalent ones, in ``rooms``; in all unless given."""
         counted = [t for t in self.trials if (not rooms or t.room in rooms) and t.kind != "equivalent"]
         return sum(t.caught for t in counted), len(counted)
 
-    @property
-    def passed(self) -> bool:
-        """True where enough is caught in the rooms of each share asked, and every survivor was read."""
-        shares = {room.asked for room in ROOMS.values()}
-        scores = {s: self.score(*(name for name, room in ROOMS.items() if room.asked == s)) for s in shares}
-        enough = all(caught >= share * count for share, (caught, count) in scores.items())
-        return enough and all(trial.kind for trial, _ in self.survivors)
 
-
-def drawn(rooms: Sequence[str], count: int, seed: int) -> list[tuple[str, Mutant]]:
-    """``count`` mutants, as many from each of ``rooms``; those of a larger count are these with more."""
-    found = []
-    for number, name in enumerate(rooms):
-        files = sorted((ROOT / ROOMS[name].folder).rglob("*.py"))
-        known = [m for f in files for m in mutants(f.read_text("utf-8"), f.relative_to(ROOT).as_posix())]
-        random.Random(f"{seed} {name}").shuffle(known)
-        share = count // len(rooms) + (number < count % len(rooms))
-        found += [(name, mutant) for mutant in known[:share]]
-    return found
-
-
-def annotated(trials: Sequence[Trial], listed: Path = SURVIVORS) -> tuple[Trial, ...]:
-    """``trials`` with kind and reason of the survivors listed by file, function and change."""
-    rows = load_toml(listed.read_bytes())[1].get("survivor", [])
-    known = {(row["file"], row["function"], row["change"]): row for row in rows}
-
-    def read(trial: Trial, m: Mutant | None) -> Trial:
-        row = known.get((m.file, m.function, m.change)) if m and trial.catch is Catch.SURVIVED else None
-        return replace(trial, kind=row["kind"], reason=row["reason"]) if row else trial
-
-    return tuple(read(trial, trial.mutant) for trial in trials)
-
-
-def to_json(record: MutantRecord) -> dict[str, Any]:
-    """The record with its score as strict JSON."""
-    return {"schema": SCHEMA, **encode(record), "score": list(record.score()), "passed": record.passed}
-
-
-def read_record(path: Path) -> MutantRecord | None:
-    """The record stored at ``path``; None where there is none. Raises StoreError where it is damaged."""
-    if not path.exists():
-        return None
-    try:
-        return decode(MutantRecord, read_checked(path))
-    except ValueError as error:
-        raise StoreError(f"{path}: not a record of {SCHEMA} ({error}); run coatcheck mutants again") from None
-
-
-def write_record(path: Path, record: MutantRecord) -> None:
-    """Store ``record`` as a checked file. Raises StoreError where it cannot be written."""
-    write_checked(path, to_json(record))
+_FILE = RecordFile(
+    MutantRecord,
+    "mutants.json",
+    ("coatcheck-mutants/1",),
+    "mutants",
+    "make it again",
+    lambda record: {"score": list(record.score()), "passed": record.passed},
+)
+to_json, write_record, read_record = _FILE.to_json, _FILE.write, _FILE.read

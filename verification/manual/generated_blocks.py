@@ -12,7 +12,6 @@ import numpy as np
 
 from verification.cases.case_file import read_case, shipped_cases
 from verification.cases.published_file import published_cases, read_published
-from verification.credibility.faults.fault_campaign import RECORD
 from verification.evidence import alarm_record
 from verification.evidence.assumption_maps import WORDS as WORDS_OF_AXES
 from verification.evidence.assumption_maps import AssumptionMap, read_maps
@@ -125,7 +124,7 @@ def invariants() -> str:
 
 def fault_score() -> str:
     """Planted faults: how many are caught, by group."""
-    record = read_record(RECORDS / RECORD)
+    record = read_record(RECORDS)
     if record is None:
         return "No record of planted faults is part of this version."
     groups: dict[str, list[bool]] = {}

@@ -5,43 +5,6 @@ import csv
 import gzip
 from collections.abc import Sequence
 from io import StringIO
-from itertools import zip_longest
-
-import numpy as np
-
-from verification.problem.line_profile import Profile
-from verification.problem.quantity import unit_of
-from verification.report.tables.case_lookup import coordinate
-from verification.running.case_result import CaseResult
-
-MOST_DIGITS = 10
-
-
-def line_csv(result: CaseResult, line: str) -> str:
-    """Every quantity of every source on ``line`` as CSV, SI units in the column heads.
-
-    Sources at the same positions share one position column; another one follows where they differ.
-    """
-    groups: list[list[Profile]] = []
-    for profile in result.profiles:
-        if profile.line != line:
-            continue
-        same = [g for g in groups if g[0].position.tobytes() == profile.position.tobytes()]
-        if same:
-            same[0].append(profile)
-        else:
-            groups.append([profile])
-    columns: list[list[str]] = []
-    for group in groups:
-        if line != "contact":
-            columns.append([f"{coordinate(line)} [m]", *(f"{x:.9g}" for x in group[0].position.tolist())])
-        for profile in group:
-            head = f"{profile.quantity} [{unit_of(profile.quantity)}] {profile.source}"
-            columns.append([_safe(head), *_cut(profile)])
-            if profile.uncertainty is not None:
-                uncertainty = [f"{v:.2g}" for v in profile.uncertainty.tolist()]
-                columns.append([_safe(f"uncertainty of {head}"), *uncertainty])
-    return written(list(zip_longest(*columns, fillvalue="")))
 
 
 def embedded(text: str) -> str:
@@ -55,19 +18,3 @@ def written(rows: Sequence[Sequence[str]]) -> str:
     out = StringIO()
     csv.writer(out, lineterminator="\n").writerows(rows)
     return out.getvalue()
-
-
-def _cut(profile: Profile) -> list[str]:
-    """The values, each to a tenth of its uncertainty, ten digits at most; eight where none is stated."""
-    values = profile.value
-    if profile.uncertainty is None:
-        return [f"{v:.8g}" for v in values.tolist()]
-    with np.errstate(all="ignore"):
-        digits = np.ceil(np.log10(np.abs(values) / profile.uncertainty) + 1.7)
-    digits = np.clip(np.nan_to_num(digits, nan=2, posinf=MOST_DIGITS), 2, MOST_DIGITS).astype(int)
-    return [f"{v:.{d}g}" for v, d in zip(values.tolist(), digits.tolist(), strict=True)]
-
-
-def _safe(text: str) -> str:
-    # An untrusted name must not run as a formula when the file is opened in a spreadsheet.
-    return f"'{text}" if text[:1] in ("=", "+", "-", "@", "\t", "\r") else text

@@ -17,10 +17,10 @@ HTML = Path(__file__).parent / "html"
 
 
 @cache
-def _environment() -> Environment:
-    """One for all pages, so that each template is compiled once."""
+def _environment(folder: Path) -> Environment:
+    """One for all pages of a ``folder``, so that each template is compiled once."""
     made = Environment(
-        loader=FileSystemLoader(HTML),
+        loader=FileSystemLoader([folder, HTML]),
         autoescape=True,
         undefined=StrictUndefined,
         trim_blocks=True,
@@ -30,11 +30,14 @@ def _environment() -> Environment:
     return made
 
 
-def rendered(template: str, **content: object) -> str:
-    """One HTML text that needs nothing else; of ``content`` only ``Markup`` stays as it is."""
+def rendered(template: str, folder: Path = HTML, **content: object) -> str:
+    """One HTML text that needs nothing else; of ``content`` only ``Markup`` stays as it is.
+
+    folder : of the ``template``, which may use those of this room.
+    """
     script = (HTML / "script.js").read_text(encoding="utf-8")
     return (
-        _environment()
+        _environment(folder)
         .get_template(template)
         .render(
             content,

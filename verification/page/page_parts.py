@@ -10,7 +10,6 @@ from verification.judging.verdict import Outcome
 from verification.page.embedded_csv import embedded, written
 from verification.page.number_text import scientific
 from verification.page.source_labels import OUTCOMES
-from verification.running.case_result import CaseResult
 
 
 @dataclass(frozen=True)
@@ -41,11 +40,6 @@ def outcome_cell(outcome: Outcome, href: str = "") -> Cell:
     """A verdict as mark, word and colour; it sorts by how bad it is."""
     style = OUTCOMES[outcome]
     return Cell(f"{style.mark} {style.word}", float(style.rank), f"verdict {style.css}", "", href)
-
-
-def case_cell(result: CaseResult, href: str) -> Cell:
-    """The title of a case as the head of a row, with its name for a pointer."""
-    return Cell(result.title, note=f"{result.title} ({result.name})", href=href)
 
 
 def tally(good: int, total: int, css: str = "") -> Cell:

@@ -9,7 +9,6 @@ from verification.page.source_labels import source_label
 from verification.regression.baseline_change import CaseDrift, Regression
 from verification.regression.manifest import manifest_message
 from verification.regression.number_drift import FACTOR, RELATIVE, TOLERANCE, Drift, State
-from verification.report.report_material import Material
 
 ANCHOR = "baseline"
 MOST = 40
@@ -50,12 +49,10 @@ def baseline_message(found: Regression) -> str:
     return f"{', '.join(parts)}, of {sum(counts.values())} numbers{by}."
 
 
-def section(material: Material) -> Section | None:
-    """The run compared with its baseline; None where that was not done."""
-    found = material.evidence.baseline
+def section(found: Regression | None, anchors: Mapping[str, str]) -> Section | None:
+    """The run compared with its baseline; None where that was not done.   anchors : of cases by name."""
     if found is None:
         return None
-    anchors = {result.name: anchor for result, anchor in material.anchors.items()}
     if found.update is None:
         text = (
             f"{baseline_message(found)} A complete run that agrees throughout becomes the baseline by: "

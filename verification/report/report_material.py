@@ -14,7 +14,6 @@ from verification.cases.case_file import shipped_cases
 from verification.cases.published_file import published_cases
 from verification.credibility import accuracy_study
 from verification.credibility.accuracy_study import AccuracyStudy
-from verification.credibility.faults.fault_campaign import RECORD
 from verification.credibility.import_independence import Part, parts
 from verification.credibility.manufactured_solutions import DesignOrder, design_orders
 from verification.credibility.model.model_error import ModelError, judged_quantities, model_error
@@ -83,7 +82,7 @@ def gather(records: Path, problems: Mapping[str, CoatedContact] | None = None) -
             failures.append(" ".join(message.split())[:300])
             return otherwise
 
-    mutants = attempt("mutants", lambda: mutation.read_record(records / mutation.RECORD), None)
+    mutants = attempt("mutants", lambda: mutation.read_record(records), None)
     enclosed = attempt("enclosures", lambda: enclosure_record.read_record(records), None)
     maps = attempt("maps of the assumptions", lambda: read_maps(records), None)
     models = {
@@ -93,7 +92,7 @@ def gather(records: Path, problems: Mapping[str, CoatedContact] | None = None) -
     return Evidence(
         attempt("manufactured solutions", design_orders, ()),
         attempt("imports", parts, ()),
-        attempt("planted faults", lambda: read_record(records / RECORD), None),
+        attempt("planted faults", lambda: read_record(records), None),
         attempt("false alarms", lambda: alarm_record.read_record(records), None),
         tuple(failures),
         mutants=mutants,

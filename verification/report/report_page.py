@@ -7,6 +7,7 @@ address behind "#". Without the script, and on paper, all pages follow one after
 import json
 from collections.abc import Callable
 from itertools import groupby
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -41,6 +42,14 @@ from verification.report.sections import (
 
 # Of more cases each page is compressed until it is opened: a report of hundreds stays small.
 MOST_UNPACKED = 60
+HTML = Path(__file__).parent / "html"
+
+
+def _baseline(material: Material) -> Section | None:
+    anchors = {result.name: anchor for result, anchor in material.anchors.items()}
+    return baseline_section.section(material.evidence.baseline, anchors)
+
+
 # Pages about the run as a whole in their order, under the heading of the contents; None is left out.
 SECTIONS: tuple[tuple[str, Callable[[Material], Section | None]], ...] = (
     ("Results", overview_section.section),
@@ -58,8 +67,8 @@ SECTIONS: tuple[tuple[str, Callable[[Material], Section | None]], ...] = (
     ("Evidence", faults_section.section),
     ("Evidence", mutants_section.section),
     ("Evidence", self_tests_section.section),
-    ("Evidence", baseline_section.section),
-    ("Evidence", guests_section.section),
+    ("Evidence", _baseline),
+    ("Evidence", lambda _: guests_section.section()),
 )
 
 
@@ -70,6 +79,7 @@ def render(material: Material) -> str:
         sections = [(group, found) for group, make in SECTIONS if (found := make(material)) is not None]
         return rendered(
             "page.html",
+            HTML,
             info=material.info,
             asked=first_page.asked(material.results),
             headline=first_page.headline(material.results),

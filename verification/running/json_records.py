@@ -1,5 +1,6 @@
 """Records as JSON: any frozen dataclass of the project as plain content, with the exact inverse."""
 
+from collections.abc import Callable
 from dataclasses import asdict, dataclass
 from functools import cache
 from pathlib import Path
@@ -66,6 +67,7 @@ class RecordFile(Generic[T]):
 
     schemas : that of what is written, then the others that this version reads.
     what, remedy : of the message of StoreError.
+    more : what the file holds beside the record, for other readers.
     """
 
     kind: type[T]
@@ -73,6 +75,11 @@ class RecordFile(Generic[T]):
     schemas: tuple[str, ...]
     what: str
     remedy: str
+    more: Callable[[T], dict[str, Any]] = lambda record: {}
+
+    def to_json(self, record: T) -> dict[str, Any]:
+        """What the file holds, as strict JSON."""
+        return {"schema": self.schemas[0], **encode(record), **plain(self.more(record))}
 
     def path_in(self, folder: Path) -> Path:
         """Path of the record in ``folder``."""
@@ -81,7 +88,7 @@ class RecordFile(Generic[T]):
     def write(self, folder: Path, record: T) -> Path:
         """Store ``record`` in ``folder``, whole or not at all. Raises StoreError."""
         path = self.path_in(folder)
-        write_checked(path, {"schema": self.schemas[0], **encode(record)})
+        write_checked(path, self.to_json(record))
         return path
 
     def read(self, folder: Path) -> T | None:

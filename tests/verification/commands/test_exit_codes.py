@@ -3,16 +3,20 @@
 import json
 import os
 import subprocess
+from dataclasses import replace
+from functools import partial
+from importlib import import_module
 
 import pytest
 from quick_case import COMMAND, QUICK, coatcheck
 
-from verification.cases.case_file import Case, read_case, shipped_cases
+from verification.cases.case_file import read_case, shipped_cases
 from verification.cases.published_file import published_cases
 from verification.commands.common.exit_codes import exit_code
 from verification.judging.verdict import Claim, Outcome, Verdict
 from verification.running.case_result import CaseResult
-from verification.running.case_tasks import run_cases
+from verification.running.case_tasks import case_task
+from verification.running.pool.process_pool import run_tasks
 
 
 @pytest.mark.parametrize(
@@ -82,8 +86,8 @@ def test_case_that_exceeds_its_time_is_no_result_and_the_others_finish(tmp_path)
 def test_process_that_ends_badly_is_no_result_with_the_reason(tmp_path):
     (tmp_path / "quick.toml").write_text(QUICK)
     quick = read_case(tmp_path / "quick.toml")
-    broken = Case(quick.name, quick.title, quick.problem, quick.claims, text="not = [toml")
-    result = run_cases([broken], tmp_path, jobs=1, time_limit=100)[0]
+    broken = replace(case_task(quick, tmp_path), work=partial(import_module, "no_such_module"))
+    result = run_tasks([broken], jobs=1, time_limit=100)[0]
     assert result.outcome is Outcome.NO_RESULT
     assert "ended with code 1" in result.verdicts[0][1].reason
 

@@ -5,17 +5,18 @@ from dataclasses import astuple, replace
 
 import numpy as np
 import pytest
+from assumption_maps_made.measuring import assembled, measure, with_map
 
 from verification.commands.common.known_folders import RECORDS
 from verification.credibility.model.model_error import model_error
 from verification.credibility.model.shared_assumptions import ASSUMPTIONS, PARABOLA, QUANTITIES, Assumption
-from verification.evidence.assumption_maps import AssumptionMaps, assembled, measure, read_maps
+from verification.evidence.assumption_maps import AssumptionMaps, read_maps
 from verification.evidence.map_places import Place, places_of
 from verification.problem.coated_contact import CoatedContact
 from verification.running.case_result import RunInfo
 from verification.sources.assumptions.contact_change import Change
 
-INFO = RunInfo("coatcheck assumptions", "2026-11-22", 1.0, 1, None, "a machine", {})
+INFO = RunInfo("python tests/tools assumptions", "2026-11-22", 1.0, 1, None, "a machine", {})
 
 
 @pytest.fixture(scope="module")
@@ -169,7 +170,9 @@ BARE = CoatedContact(INSIDE.radius, INSIDE.load, (), INSIDE.substrate)
 
 def test_assumption_without_an_answer_is_missing_with_the_reason(slow):
     missing = dict(model_error(BARE, AssumptionMaps(())).missing)
-    assert missing["slowness"] == "its map was not measured; coatcheck assumptions slow --record makes it"
+    assert (
+        missing["slowness"] == "its map was not measured; run: python tests/tools assumptions slow --record"
+    )
     assert set(missing) == {one.title for one in ASSUMPTIONS.values() if not one.direct}
     wide = replace(BARE, load=1e4 * BARE.load)
     assert dict(model_error(wide, slow).missing)["slowness"].endswith("the map holds 0.01 to 0.3")
@@ -186,5 +189,5 @@ def test_uncoated_problem_is_read_without_shear(slow):
 
 
 def test_map_takes_the_place_of_its_predecessor(slow, maps):
-    both = maps.with_map(slow.maps[0]).with_map(slow.maps[0])
+    both = with_map(with_map(maps, slow.maps[0]), slow.maps[0])
     assert [one.assumption for one in both.maps] == ["sphere", "goodman", "bodies", "strains", "slow"]

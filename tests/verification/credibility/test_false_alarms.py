@@ -19,7 +19,8 @@ from verification.cases.random_problems import (
     THINNEST,
     draw,
 )
-from verification.evidence.alarm_record import counted, path_in, read_record, write_record
+from verification.credibility.false_alarms import counted
+from verification.evidence.alarm_record import path_in, read_record, write_record
 from verification.judging.standard_claims import standard_claims
 from verification.judging.verdict import Outcome
 from verification.running.checked_files import StoreError

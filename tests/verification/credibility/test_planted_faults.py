@@ -11,16 +11,17 @@ from verification.cases.case_file import read_case, shipped_cases
 from verification.commands.credibility.faults import faults
 from verification.credibility.faults import fault_campaign
 from verification.credibility.faults.default_checks import Check
-from verification.credibility.faults.fault_catalogue import CONTROLS, FAULTS, GROUPS, chosen
+from verification.credibility.faults.fault_catalogue import CONTROLS, FAULTS, chosen
+from verification.credibility.faults.fault_outcome import row_of
 from verification.credibility.faults.fault_planting import Constant, Edit, Fault, PlantError, planted
 from verification.credibility.faults.fault_trial import Trial, clean_path, try_fault
-from verification.evidence.fault_record import Catch, Record, from_json, read_record, row_of, to_json
+from verification.evidence.fault_record import GROUPS, Catch, Record, read_record, to_json, write_record
 from verification.judging.verdict import Outcome
 from verification.report.credibility.faults_section import faults_page
 from verification.running import contact_run as running
 from verification.running.case_result import from_json as result_from_json
 from verification.running.case_result import to_json as result_to_json
-from verification.running.checked_files import read_checked, write_checked
+from verification.running.checked_files import StoreError, read_checked, write_checked
 from verification.sources import source_registry
 from verification.sources.references.hertz import Hertz, HertzContact
 
@@ -259,11 +260,13 @@ def _trial(name: str, outcome: Outcome = Outcome.DISAGREES, change: float = 0.1)
     return Trial(name, (check,), change, "approach", 2.0)
 
 
-def test_a_record_is_read_as_it_was_written():
+def test_a_record_is_read_as_it_was_written(tmp_path):
     record = _record(_trial("kap_sign"), _trial("load_off", Outcome.AGREES), Trial("control_published"))
-    assert from_json(to_json(record)) == record
-    with pytest.raises(ValueError, match="schema"):
-        from_json(to_json(record) | {"schema": "another"})
+    path = write_record(tmp_path, record)
+    assert read_record(tmp_path) == record
+    write_checked(path, to_json(record) | {"schema": "another"})
+    with pytest.raises(StoreError):
+        read_record(tmp_path)
 
 
 def test_a_record_passes_only_where_enough_is_caught_and_nothing_is_left_unsaid():
@@ -310,7 +313,7 @@ def test_a_wrong_question_is_bad_input_and_writes_nothing(arguments, tmp_path, c
 def test_the_command_tries_resumes_and_writes_matrix_and_page(tmp_path, capsys):
     assert faults("sides_swapped", output=tmp_path, jobs=1) == 0
     assert "1 of 1 faults caught" in capsys.readouterr().out.replace("\n", " ")
-    record = read_record(tmp_path / fault_campaign.RECORD)
+    record = read_record(tmp_path)
     assert record is not None
     assert record.rows[0].as_predicted
     assert (tmp_path / "faults.html").read_text().startswith("<!DOCTYPE html>")
@@ -328,7 +331,7 @@ def test_groups_and_names_choose_their_faults():
 @pytest.mark.slow
 def test_nineteen_of_twenty_faults_are_caught_and_every_survivor_is_explained(tmp_path):
     assert faults(output=tmp_path, quiet=True) == 0
-    record = read_record(tmp_path / fault_campaign.RECORD)
+    record = read_record(tmp_path)
     assert record is not None
     assert record.share >= 0.95
     assert np.isfinite(record.core_seconds)

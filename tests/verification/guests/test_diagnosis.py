@@ -32,7 +32,7 @@ def exams(tmp_path_factory):
     for name in (HERTZ, COATED, SLIDING):
         case = subject_of(read_case(shipped_cases()[name]))
         path = tmp_path_factory.mktemp("exam") / "exam.json"
-        prepare(case.name, case.text, str(path))
+        prepare(case, path)
         found[name] = case, from_json(read_checked(path))
     return found
 

@@ -41,7 +41,7 @@ def guest_in(folder, text):
 def through_all_doors(method, case, folder):
     """The exact reference; results of a method as function, as program and as files, at one case."""
     path = folder / "exam.json"
-    prepare(case.name, case.text, str(path))
+    prepare(case, path)
     exam = from_json(read_checked(path))
     name = f'name = "own"\ntime_limit = 900\n{SUPPORTS}'  # of a machine at work
     command = json.dumps([sys.executable, *SERVED, f"{method}:solve"])
@@ -188,7 +188,7 @@ def test_units_of_a_guest_are_converted_both_ways(tmp_path):
 
 def test_files_that_are_filled_in_wrongly_are_named(tmp_path):
     case = subject_of(read_case(shipped_cases()["01_uncoated_steel"]))
-    prepare(case.name, case.text, str(tmp_path / "exam.json"))
+    prepare(case, tmp_path / "exam.json")
     exam = from_json(read_checked(tmp_path / "exam.json"))
     guest = guest_in(tmp_path / "files", f'name = "f"\nresults = "answers"\nclaim = 0.01\n{SUPPORTS}')
     question = question_of(case, exam, guest, claims_of(case, guest), {})

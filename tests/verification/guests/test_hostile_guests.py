@@ -164,7 +164,7 @@ def hertz(tmp_path_factory):
     case = subject_of(read_case(shipped_cases()["01_uncoated_steel"]))
     folder = tmp_path_factory.mktemp("hostile")
     path = exam_path(folder, case)
-    prepare(case.name, case.text, str(path))
+    prepare(case, path)
     return case, from_json(read_checked(path)), folder
 
 
@@ -309,7 +309,7 @@ def test_a_hostile_guest_does_not_hold_up_the_others(hertz, tmp_path):
     host = replace(guest(tmp_path), text=text)
     begin = time.monotonic()
     second = replace(case, name="second")
-    prepare(second.name, second.text, str(exam_path(folder, second)))
+    prepare(second, exam_path(folder, second))
     tasks = [ask_task(host, one, folder) for one in (case, second)]
     found = run_tasks(tasks, jobs=1, time_limit=60.0)
     assert ["no answer" in replies[0].answer.error for replies in found] == [True, True]

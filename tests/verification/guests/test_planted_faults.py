@@ -51,7 +51,7 @@ class Examiner:
             case = subject_of(replace(read_case(shipped_cases()[name]), numerics={}), load)
             path = self.folder / f"{case.name}.json"
             if not path.exists():
-                prepare(name, case.text, str(path), load)
+                prepare(case, path)
             self.known[name, load] = case, from_json(read_checked(path))
         return self.known[name, load]
 

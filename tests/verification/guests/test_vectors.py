@@ -9,12 +9,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from open_digits_made.content import vector
+from open_digits_made.making import make
+from open_digits_made.problems import problems
+from open_digits_made.values import exact_rows
 from quick_case import coatcheck
 
 from verification.guests.vectors import open_digits
-from verification.guests.vectors.making import make
-from verification.guests.vectors.open_problems import problems
-from verification.guests.vectors.open_values import exact_rows
 
 
 @pytest.fixture(scope="module")
@@ -60,7 +61,7 @@ def test_both_methods_agree_within_their_uncertainty(shipped):
 def test_problems_computed_anew_have_the_same_digits(shipped, number):
     one = problems()[number]
     stored = shipped["problems"][number]
-    found = open_digits.vector(one, exact_rows(one.problem))
+    found = vector(one, exact_rows(one.problem))
     assert found["problem"] == stored["problem"]
     for new, old in zip(found["points"], stored["points"], strict=True):
         for quantity, values in old["values"].items():
@@ -98,7 +99,7 @@ def test_the_reader_shown_is_at_most_20_lines_that_run(folder, monkeypatch, caps
 
 def test_making_goes_on_where_it_was_stopped(tmp_path, monkeypatch):
     few = problems()[:2]
-    monkeypatch.setattr("verification.guests.vectors.making.problems", lambda: few)
+    monkeypatch.setattr("open_digits_made.making.problems", lambda: few)
     first = make(tmp_path, {"semianalytic": 1})
     stamp = {path: path.stat().st_mtime_ns for path in Path(tmp_path).rglob("*.json")}
     assert make(tmp_path, {"semianalytic": 1}) == first

@@ -6,12 +6,12 @@ import pytest
 from synthetic_results import INFO, STEEL, contact, result_of
 from synthetic_study import study
 
+from verification.credibility.false_alarms import counted
 from verification.credibility.faults import fault_campaign
 from verification.credibility.import_independence import PARTS, imports_of, parts, shared
 from verification.credibility.self_tests import SelfTest
 from verification.credibility.self_tests.known_enclosures import TEST
 from verification.evidence import alarm_record
-from verification.evidence.alarm_record import counted
 from verification.evidence.enclosure_record import SHIPPED
 from verification.evidence.enclosure_record import read_record as read_enclosures
 from verification.evidence.fault_record import Catch, Record, Row, write_record

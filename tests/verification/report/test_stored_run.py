@@ -8,8 +8,9 @@ from synthetic_results import INFO, STEEL, contact, result_of
 from synthetic_study import study
 
 from verification.commands.report import report
+from verification.credibility.false_alarms import counted
 from verification.credibility.self_tests import SelfTest
-from verification.evidence.alarm_record import counted, write_record
+from verification.evidence.alarm_record import write_record
 from verification.regression.baseline_change import regression, updated
 from verification.report.report_files import write_report
 from verification.report.report_material import Material, gather, rerun_command, stored_material

@@ -12,7 +12,7 @@ from markupsafe import Markup
 from synthetic_results import STEEL, contact, result_of
 
 from verification.judging.verdict import Outcome
-from verification.page.embedded_csv import embedded, line_csv
+from verification.page.embedded_csv import embedded
 from verification.page.number_text import aligned, engineering, scientific, seconds, with_uncertainty
 from verification.page.source_labels import OUTCOMES, pair_style, source_style
 from verification.page.svg_curves import FLOOR, LOWER, UPPER, Curve, Difference, draw
@@ -28,6 +28,7 @@ from verification.report.tables.case_tables import (
     contact_tables,
     failing_table,
 )
+from verification.report.tables.line_csv import line_csv
 
 COATED = contact((2 * STEEL[0], 0.3, 1.0))
 

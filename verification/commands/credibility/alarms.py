@@ -22,7 +22,8 @@ from verification.commands.common.shared_options import (
 )
 from verification.commands.common.task_progress import kept_results, pool_of, require_gmsh, run_info, solve
 from verification.commands.common.terminal import STYLE, named_table, one_line, print_json, print_out
-from verification.evidence.alarm_record import AlarmRecord, counted, write_record
+from verification.credibility.false_alarms import counted
+from verification.evidence.alarm_record import AlarmRecord, write_record
 from verification.running.case_tasks import case_task
 from verification.running.checked_files import locked, write_atomically
 from verification.running.json_records import plain

@@ -28,7 +28,6 @@ from verification.commands.common.task_progress import (
     require_gmsh,
     run_info,
     solve,
-    worker_count,
 )
 from verification.commands.common.terminal import did_you_mean, named_table, print_json, print_out
 from verification.running.case_tasks import case_task
@@ -36,10 +35,7 @@ from verification.running.checked_files import locked, write_atomically
 
 if TYPE_CHECKING:
     from verification.credibility.faults.fault_planting import Fault
-    from verification.credibility.mutation.sites import Mutant
     from verification.evidence.fault_record import Record
-    from verification.evidence.mutant_record import MutantRecord
-    from verification.evidence.mutant_record import Trial as MutantTrial
 
 
 @with_exit_code
@@ -74,7 +70,8 @@ def faults(
         time_limit: Seconds one fault may take before it is stopped and counted as not tried.
     """
     pool = pool_of(jobs, time_limit, scheduler)
-    from verification.credibility.faults.fault_catalogue import CONTROLS, FAULTS, GROUPS, chosen
+    from verification.credibility.faults.fault_catalogue import CONTROLS, FAULTS, chosen
+    from verification.evidence.fault_record import GROUPS
 
     if group is not None and (group not in GROUPS or names):
         remedy = "give a group or names, not both" if names else f"choose one of {', '.join(GROUPS)}"
@@ -100,7 +97,7 @@ def faults(
 
     started = datetime.datetime.now(datetime.UTC)
     with locked(output):
-        _solve_clean(wanted, output, pool, time_limit, resume, quiet or as_json)
+        solve_clean(wanted, output, pool, time_limit, resume, quiet or as_json)
         kept = {f.name: t for f in wanted if resume and (t := fault_campaign.kept_trial(f, output))}
         # the long ones first, so that no core waits at the end
         order = sorted((f for f in wanted if f.name not in kept), key=fault_campaign.cost, reverse=True)
@@ -115,11 +112,11 @@ def faults(
             machine=f"{info.machine}, {info.jobs} jobs",
             versions=info.versions,
         )
-        write_record(output / fault_campaign.RECORD, found)
+        write_record(output, found)
         page = output / "faults.html"
         write_atomically(page, faults_page(found))
         if record:
-            write_record(records / fault_campaign.RECORD, found)
+            write_record(records, found)
     if as_json:
         print_json(to_json(found))
     elif not quiet:
@@ -127,7 +124,7 @@ def faults(
     return 0 if found.passed else 1
 
 
-def _solve_clean(
+def solve_clean(
     wanted: Sequence["Fault"], output: Path, pool: Pool, time_limit: float, resume: bool, silent: bool
 ) -> None:
     """Solve the cases of ``wanted`` without a fault; ends the command where that fails."""
@@ -152,8 +149,7 @@ def _list(wanted: Sequence["Fault"], as_json: bool) -> None:
 
 
 def _print(found: "Record", page: Path) -> None:
-    from verification.credibility.faults.fault_catalogue import GROUPS
-    from verification.evidence.fault_record import Catch
+    from verification.evidence.fault_record import GROUPS, Catch
 
     shown = [catch for catch in Catch if any(row.catch is catch for row in found.rows)]
     table = named_table("group", "faults", *shown, "predicted check")
@@ -181,88 +177,3 @@ def _print(found: "Record", page: Path) -> None:
     if found.controls:
         text += f"; {len(found.alarms)} alarms in {len(found.controls)} negative controls"
     print_out(f"{text}; {found.seconds:.0f} s; matrix: {escape(str(page))}")
-
-
-@with_exit_code
-def mutants(
-    *rooms: str,
-    count: int = 400,
-    seed: int = 1,
-    output: Output = Path("reports/mutants"),
-    record: Flag = False,
-    records: RecordsFolder = RECORDS,
-    jobs: Jobs = None,
-    time_limit: float = 7200.0,
-    resume: Resume = False,
-    quiet: Quiet = False,
-    as_json: AsJson = False,
-) -> int:
-    """Change one operator, constant, index or term at a time; report the changes that nothing catches.
-
-    As many mutants of each room, drawn at random, meet the checks of the default run, then the unit tests of
-    the room, which both have to pass without any change. It needs a source checkout that nobody edits
-    meanwhile.
-
-    Exit codes: 0 enough are caught, every survivor was read; 1 not so; 2 bad input.
-
-    Args:
-        rooms: semianalytic, fem_reference, references, judging, sampling, running; all of them unless given.
-        count: Number of mutants, in all.
-        seed: Seed of the random numbers.
-        output: Directory of mutants.json, of the clean runs, of the trials.
-        record: Store the record as RECORDS/mutants.json, for the credibility page of every report.
-        time_limit: Seconds one mutant may take before it is stopped and counted as not tried.
-    """
-    jobs = worker_count(jobs, time_limit)
-    from verification.evidence import mutant_record as store
-
-    for name in rooms:
-        if name not in store.ROOMS:
-            near = did_you_mean(name, store.ROOMS)
-            raise CommandError(f"{name}: choose rooms of {', '.join(store.ROOMS)}{near}")
-    if count < 1 or seed < 0:
-        raise CommandError(f"--count = {count}, --seed = {seed}; only the seed may be zero, none negative")
-    if record and rooms:
-        raise CommandError("--record stores mutants of all rooms; leave the rooms out")
-    if not (store.ROOT / "tests").is_dir():
-        raise CommandError("this coatcheck has no unit tests beside it; run it in a source checkout")
-    require_gmsh()
-
-    from verification.credibility.mutation.trial import kept_trial, trial_task
-
-    chosen, silent = list(dict.fromkeys(rooms)) or list(store.ROOMS), quiet or as_json
-
-    def tried(work: Sequence[tuple[str, "Mutant | None"]], limits: dict[str, float]) -> list["MutantTrial"]:
-        kept = {one: trial for one in work if resume and (trial := kept_trial(*one, output))}
-        tasks = [trial_task(*one, output, limits[one[0]]) for one in work if one not in kept]
-        fresh = iter(solve(tasks, jobs, time_limit, silent))
-        return [kept.get(one) or next(fresh) for one in work]
-
-    started = datetime.datetime.now(datetime.UTC)
-    with locked(output):
-        checks = [store.ROOMS[name].checks for name in chosen]
-        _solve_clean(checks, output, jobs, time_limit, resume, silent)
-        controls = tried([(name, None) for name in chosen], dict.fromkeys(chosen, time_limit))
-        for one in controls:
-            if one.catch != "survived":
-                raise no_result(f"{one.room}: nothing changed, yet caught by {one.catch}: {one.by}")
-        trials = tried(store.drawn(chosen, count, seed), {one.room: 30 + 3 * one.seconds for one in controls})
-        info = run_info(f"coatcheck mutants {' '.join(rooms)} --count {count} --seed {seed}", started, jobs)
-        seconds = sum(trial.seconds for trial in (*controls, *trials))
-        found = store.MutantRecord(seed, store.annotated(trials), seconds, info)
-        for folder in (output, *([records] if record else [])):
-            store.write_record(folder / store.RECORD, found)
-    if as_json:
-        print_json(store.to_json(found))
-    elif not quiet:
-        _print_mutants(found)
-    return 0 if found.passed else 1
-
-
-def _print_mutants(found: "MutantRecord") -> None:
-    for trial, m in found.survivors:
-        text = f"{m.file}:{m.line} {m.function}: {m.change}  {trial.kind} {trial.reason}"
-        print_out(f"[bold red]{trial.catch}[/] {escape(text)}")
-    caught, count = found.score()
-    by = ", ".join(f"{number} {catch}" for catch, number in Counter(t.catch for t in found.trials).items())
-    print_out(f"{caught} of {count} mutants caught, equivalent ones apart ({by}); {found.info.seconds:.0f} s")

@@ -5,7 +5,7 @@ from pathlib import Path
 from rich.markup import escape
 
 from verification.commands.common.exit_codes import with_exit_code
-from verification.commands.common.shared_options import AsJson, Flag
+from verification.commands.common.shared_options import AsJson
 from verification.commands.common.terminal import print_json, print_out
 from verification.running.checked_files import write_atomically
 
@@ -15,27 +15,16 @@ def vectors(
     folder: Path = Path("vectors"),
     /,
     *,
-    compute: Flag = False,
-    semianalytic: int = 250,
-    elements: int = 60,
     as_json: AsJson = False,
 ) -> int:
     """Write the open digits: exact values of 500 problems as JSON with a schema and as CSV, licence CC0.
 
     Args:
         folder: Directory to write to.
-        compute: Solve every problem anew, which takes minutes, instead of writing what the package holds.
-        semianalytic: With --compute, how many problems the semi-analytical method checks.
-        elements: With --compute, how many problems the finite elements check.
     """
-    from verification.guests.vectors import making, open_digits
+    from verification.guests.vectors import open_digits
 
-    if compute:
-        samples = {"semianalytic": semianalytic, "fem_reference": elements}
-        found = making.make(folder / "work", samples, lambda line: print_out(escape(line)))
-        write_atomically(folder / open_digits.FILE.name, open_digits.packed(found))
-    else:
-        found = open_digits.shipped()
+    found = open_digits.shipped()
     for name, text in open_digits.texts(found).items():
         write_atomically(folder / name, text)
     wide = sorted(open_digits.uncertain(found))

@@ -10,20 +10,6 @@ from verification.regression.baseline_change import Drift
 from verification.regression.manifest import Difference, manifest_message
 from verification.sources.source_registry import CLOSED, EXACT
 
-# The columns of the matrix of faults: title and what is compared.
-COLUMNS = {
-    "bare, closed form": "uncoated cases, Hertz or Hamilton on one side",
-    "bare, exact": "uncoated cases, the integral equation on one side, no closed form on the other",
-    "bare, methods": "uncoated cases, method against method",
-    "coated, exact": "coated cases, the integral equation on one side",
-    "coated, methods": "coated cases, method against method",
-    "invariants": "invariants that one solution must satisfy by itself",
-    "published": "tables published by others (coatcheck run published)",
-    "self-tests": "known answers of the harness itself",
-    "manifest": "less that is judged: points, lines, invariants, or a wider cap or scale",
-    "baseline": "numbers that changed; counted only where no other check can detect the fault",
-}
-
 
 @dataclass(frozen=True)
 class Check:

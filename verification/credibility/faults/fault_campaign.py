@@ -9,16 +9,15 @@ from typing import Any
 
 from verification.cases.case_file import Case, read_case, shipped_cases
 from verification.credibility.faults.fault_catalogue import CONTROLS, FAULTS
+from verification.credibility.faults.fault_outcome import row_of
 from verification.credibility.faults.fault_planting import Fault
 from verification.credibility.faults.fault_trial import Trial, clean_path, try_fault
-from verification.evidence.fault_record import Record, row_of
+from verification.evidence.fault_record import Record
 from verification.running.case_result import CaseResult
 from verification.running.checked_files import StoreError, read_checked, write_checked
 from verification.running.json_records import decode, encode
 from verification.running.pool.pool_task import Task
 from verification.running.provenance import fingerprint
-
-RECORD = "faults.json"  # its name in a folder of records
 
 
 def clean_folder(output: Path) -> Path:

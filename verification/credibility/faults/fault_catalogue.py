@@ -6,30 +6,18 @@ from typing import Any
 
 from verification.cases.toml_file import load_toml
 from verification.credibility.faults.fault_planting import Constant, Edit, Fault
+from verification.evidence.fault_record import GROUPS
 from verification.running.json_records import decode
 
 LISTS = Path(__file__).parent / "lists"
-_ORDER = (
-    "material",
-    "ball",
-    "frf",
-    "conversion_fft",
-    "conjugate_gradients",
-    "stress",
-    "finite_elements",
-    "fields",
-    "references",
-    "harness",
-    "coverage",
-)
 
 
-def _listed(group: str) -> tuple[str, dict[str, Fault]]:
-    """Title of a group, and its faults by name; what a fault leaves out is that of its group."""
+def _listed(group: str) -> dict[str, Fault]:
+    """The faults of a group by name; each key that a fault leaves out is that of its group."""
     _, content = load_toml((LISTS / f"{group}.toml").read_bytes())
     common = {"group": group, "where": content["where"], "cases": content["cases"]}
     faults = [_fault(common | entry) for entry in content["fault"]]
-    return content["title"], {fault.name: fault for fault in faults}
+    return {fault.name: fault for fault in faults}
 
 
 def _fault(entry: dict[str, Any]) -> Fault:
@@ -42,12 +30,9 @@ def _fault(entry: dict[str, Any]) -> Fault:
     return decode(Fault, entry | {"changes": changes})
 
 
-_GROUPS = {group: _listed(group) for group in _ORDER}
-# The title of each group, in the order of the matrix.
-GROUPS = {group: title for group, (title, _) in _GROUPS.items()}
-FAULTS = {name: fault for _, faults in _GROUPS.values() for name, fault in faults.items()}
+FAULTS = {name: fault for group in GROUPS for name, fault in _listed(group).items()}
 # No check that catches a fault may fail in these trials.
-CONTROLS = _listed("control")[1]
+CONTROLS = _listed("control")
 
 
 def chosen(names: tuple[str, ...], group: str | None) -> list[Fault]:

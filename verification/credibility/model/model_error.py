@@ -162,7 +162,7 @@ def _percent(size: float) -> str:
 def _read(maps: AssumptionMaps, name: str, problem: CoatedContact) -> tuple[Change, Change]:
     found = maps.of(name)
     if found is None:
-        raise ValueError(f"its map was not measured; coatcheck assumptions {name} --record makes it")
+        raise ValueError(f"its map was not measured; run: python tests/tools assumptions {name} --record")
     return ASSUMPTIONS[name].read(problem, found.at)
 
 

@@ -1,7 +1,7 @@
 """The assumptions that all sources share: the model that drops each, the axes of its map.
 
-A further assumption is one more entry of ``ASSUMPTIONS``: ``coatcheck assumptions`` measures its map, and
-``model_error``, the report, the manual show it.
+A further assumption is one more entry of ``ASSUMPTIONS``: ``tests/tools assumptions`` measures its map, and
+``model_error``, the report and the manual show it.
 """
 
 from collections.abc import Callable, Iterator, Mapping

@@ -1,7 +1,8 @@
 """The exact reference held against proven enclosures, of a few problems that are quickly solved."""
 
+from verification.credibility.enclosure_distance import distances
 from verification.credibility.self_tests.known_answers import Answers
-from verification.evidence.enclosure_record import SHIPPED, WIDTH, distances, read_record
+from verification.evidence.enclosure_record import SHIPPED, WIDTH, read_record
 from verification.problem.coated_contact import keywords
 from verification.sources.references import integral_equation
 

@@ -7,7 +7,6 @@ from typing import Any
 import verification.guests
 from verification.page.number_text import seconds
 from verification.page.page_parts import Part, Section, Table, number, row, tally, words
-from verification.report.report_material import Material
 
 __all__ = ["COLUMNS", "examined", "section"]
 
@@ -27,7 +26,7 @@ def examined() -> list[dict[str, Any]]:
     return json.loads(RECORD.read_text(encoding="utf-8"))
 
 
-def section(material: Material) -> Section:
+def section() -> Section:
     """The largest differences, time and memory of each code; the same for every run."""
     rows = []
     for one in examined():

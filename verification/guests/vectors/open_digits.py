@@ -7,20 +7,14 @@ import io
 import json
 from collections.abc import Iterator, Sequence
 from itertools import groupby
-from math import ceil, floor, log10
 from pathlib import Path
 from typing import Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from verification.guests.vectors.open_problems import VectorProblem
-from verification.guests.vectors.open_values import Row
-from verification.problem.coated_contact import CoatedContact
-
 VERSION: Literal["coatcheck-vectors/1"] = "coatcheck-vectors/1"
 FILE = Path(__file__).parents[1] / "shipped" / "vectors.json.gz"
 README = Path(__file__).parent / "README.md"
-DIGITS = 12  # significant, of values
 LICENCE: Literal["CC0-1.0"] = "CC0-1.0"
 CITE = (
     "coatcheck open digits, version 1 (2026): exact values of coated point contact and of layered "
@@ -106,56 +100,6 @@ class VectorSet(_Strict):
     problems: list[Vector]
 
 
-def vector(problem: VectorProblem, rows: Sequence[Row]) -> dict[str, Any]:
-    """The content of one problem."""
-    contact: dict[str, list[float]] = {}
-    points: list[dict[str, Any]] = []
-    for row in rows:
-        value, U = zip(
-            *(_written(v, u) for v, u in zip(row.value, row.uncertainty, strict=True)), strict=True
-        )
-        if row.x.size == 1 and row.x[0] == row.z[0] == 0 and row.quantity in CONTACT:
-            contact[row.quantity] = [value[0], U[0]]
-            continue
-        place = {"layer": row.layer, "x": row.x.tolist(), "z": row.z.tolist()}
-        if not points or {k: points[-1][k] for k in place} != place:
-            points.append(place | {"values": {}, "uncertainty": {}})
-        points[-1]["values"][row.quantity] = list(value)
-        points[-1]["uncertainty"][row.quantity] = list(U)
-    return {
-        "name": problem.name,
-        "group": problem.group,
-        "problem": _entry(problem),
-        "contact": contact,
-        "points": points,
-    }
-
-
-CONTACT = ("contact_radius", "approach", "peak_pressure")
-
-
-def _entry(problem: VectorProblem) -> dict[str, Any]:
-    given = problem.problem
-    load = ("radius", "load") if isinstance(given, CoatedContact) else ("pressure", "load_radius")
-    E, nu = given.substrate
-    return {
-        **{name: getattr(given, name) for name in load},
-        "friction": given.friction,
-        "coatings": [{"E": E1, "nu": nu1, "thickness": h} for E1, nu1, h in given.coatings],
-        "substrate": {"E": E, "nu": nu},
-    }
-
-
-def _written(value: float, uncertainty: float) -> tuple[float, float]:
-    """``value`` with ``DIGITS`` digits; its uncertainty, rounding included, with two, rounded up."""
-    shown = float(f"{value:.{DIGITS}g}")
-    U = float(uncertainty) + abs(shown - float(value))
-    if U == 0:
-        return shown, 0.0
-    step = 10.0 ** (floor(log10(U)) - 1)
-    return shown, float(f"{ceil(U / step) * step:.2g}")
-
-
 def csv_texts(vectors: Sequence[dict[str, Any]]) -> dict[str, str]:
     """The same content as ``problems.csv`` and ``values.csv``."""
     most = max(len(v["problem"]["coatings"]) for v in vectors)
@@ -189,34 +133,10 @@ def _csv(rows: list[list[Any]]) -> str:
     return out.getvalue()
 
 
-def data_set(
-    vectors: Sequence[dict[str, Any]], checked: Sequence[dict[str, Any]], made_by: dict[str, str]
-) -> dict[str, Any]:
-    """The whole data set as JSON content, checked against its schema. Raises ValueError."""
-    sums = {name: hashlib.sha256(text.encode()).hexdigest() for name, text in csv_texts(vectors).items()}
-    content = {
-        "schema": VERSION,
-        "licence": LICENCE,
-        "cite": CITE,
-        "conventions": CONVENTIONS,
-        "made_by": made_by,
-        "checked": list(checked),
-        "sha256": sums,
-        "problems": list(vectors),
-    }
-    VectorSet.model_validate_json(json.dumps(content))
-    return content
-
-
 def shipped() -> dict[str, Any]:
     """The data set of the package."""
     found: dict[str, Any] = json.loads(gzip.decompress(FILE.read_bytes()))
     return found
-
-
-def packed(content: dict[str, Any]) -> bytes:
-    """``content`` as the package holds it; the same bytes each time."""
-    return gzip.compress(json.dumps(content, separators=(",", ":")).encode(), 9, mtime=0)
 
 
 def texts(content: dict[str, Any]) -> dict[str, str]:

@@ -35,7 +35,7 @@ from verification.report.sections.accuracy_section import accuracies, coverage_t
 from verification.running.case_result import CaseResult
 
 ANCHOR = "credibility"
-NO_RECORD = ("Not measured: there is no record of {}; make one with: coatcheck {} --record", "not measured")
+NO_RECORD = ("Not measured: there is no record of {}; make one with: {} --record", "not measured")
 ASSUMED = (
     "A rigid, parabolic sphere, much larger than the contact; small strains; linear, isotropic, elastic "
     "layers with nu < 1/2, perfectly bonded, on a half-space; no adhesion, no roughness; Coulomb friction "
@@ -206,7 +206,7 @@ def _enclosed(evidence: Evidence, *, short: bool = False) -> str:
     """What is proven of the exact reference, with what this run found of it."""
     record = evidence.enclosures
     if record is None:
-        return NO_RECORD[short].format("enclosures", "certify")
+        return NO_RECORD[short].format("enclosures", "coatcheck certify")
     values = [bounds for one in record.enclosures for bounds in one.bounds]
     text = (
         f"Proven bounds hold {len(values)} values of {len(record.enclosures)} problems, relative width "
@@ -253,7 +253,7 @@ def _short_independence(evidence: Evidence) -> str:
 def _faults(evidence: Evidence, *, short: bool = False) -> str:
     record = evidence.faults
     if record is None:
-        return NO_RECORD[short].format("planted faults", "faults")
+        return NO_RECORD[short].format("planted faults", "coatcheck faults")
     text = (
         f"{record.caught} of {len(record.rows)} planted faults are detected, "
         f"{plain(100 * record.share, 3)} %; {record.as_predicted} of them by the predicted check."
@@ -270,7 +270,7 @@ def _faults(evidence: Evidence, *, short: bool = False) -> str:
 def _mutants(evidence: Evidence, *, short: bool = False) -> str:
     record = evidence.mutants
     if record is None:
-        return NO_RECORD[short].format("mutants", "mutants")
+        return NO_RECORD[short].format("mutants", "python tests/tools mutants")
     text = mutants_message(record)
     return text if short else f"Apart from these, changes at random places: {text} Measured {_when(record)}."
 
@@ -301,7 +301,7 @@ def _histograms(evidence: Evidence) -> Gallery | None:
 def _alarms(evidence: Evidence, *, short: bool = False) -> str:
     record = evidence.alarms
     if record is None:
-        return NO_RECORD[short].format("false alarms", "alarms")
+        return NO_RECORD[short].format("false alarms", "coatcheck alarms")
     text = (
         f"{len(record.alarms)} false alarms in {record.comparisons} comparisons and {record.invariants} "
         f"invariants of {record.problems} clean random problems; {record.agreeing} of the problems agree "

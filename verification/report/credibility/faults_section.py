@@ -3,9 +3,7 @@
 from collections import Counter
 from collections.abc import Sequence
 
-from verification.credibility.faults.default_checks import COLUMNS
-from verification.credibility.faults.fault_catalogue import GROUPS
-from verification.evidence.fault_record import Catch, Record, Tally
+from verification.evidence.fault_record import COLUMNS, GROUPS, Catch, Record, Tally
 from verification.evidence.fault_record import Row as Fault
 from verification.page.html_page import render_sections
 from verification.page.number_text import plain, scientific, seconds

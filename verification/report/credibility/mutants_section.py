@@ -1,6 +1,6 @@
 """Mutation testing: score of each room, survivors with the reason of each."""
 
-from verification.evidence.mutant_record import ROOMS, Catch, MutantRecord
+from verification.evidence.mutant_record import REQUIRED, Catch, MutantRecord
 from verification.page.number_text import plain, seconds
 from verification.page.page_parts import Part, Section, Table, number, row, words
 from verification.report.report_material import Material
@@ -29,11 +29,11 @@ def section(material: Material) -> Section | None:
     )
     shown = [catch for catch in Catch if any(trial.catch is catch for trial in record.trials)]
     scores = []
-    for name, room in ROOMS.items():
+    for name, required in REQUIRED.items():
         caught, count = record.score(name)
         if count:
             by = [sum((t.room, t.catch) == (name, catch) for t in record.trials) for catch in shown]
-            share = f"{plain(100 * caught / count, 3)} %, {plain(100 * room.asked, 3)} % required"
+            share = f"{plain(100 * caught / count, 3)} %, {plain(100 * required, 3)} % required"
             scores.append(row(name, *(number(n, str) for n in by), words(share)))
     parts = [Part(method, [Table("Mutants of each room.", ["room", *map(str, shown), "caught"], scores)])]
     if record.survivors:

@@ -8,12 +8,13 @@ import numpy as np
 
 from verification.judging.verdict import Claim
 from verification.page.number_text import factor, plain, scientific
-from verification.page.page_parts import Cell, Part, Section, Table, case_cell, number, row, tally, words
+from verification.page.page_parts import Cell, Part, Section, Table, number, row, tally, words
 from verification.page.source_labels import source_label, symbol_of
 from verification.problem.quantity import PEAKS, QUANTITIES, SCALARS, SLOPES
 from verification.report.report_material import Material
 from verification.report.tables.case_lookup import (
     GROUPS,
+    case_cell,
     difference,
     group_of,
     judged,

@@ -4,7 +4,7 @@ from typing import Any
 
 from verification.credibility.model.model_error import ModelError
 from verification.judging.verdict import Outcome
-from verification.page.embedded_csv import embedded, line_csv
+from verification.page.embedded_csv import embedded
 from verification.page.number_text import scientific
 from verification.page.source_labels import OUTCOMES, pair_style, source_label, source_style, symbol_of
 from verification.page.symbol_text import typeset
@@ -26,6 +26,7 @@ from verification.report.tables.case_tables import (
     failing_table,
     layer_table,
 )
+from verification.report.tables.line_csv import line_csv
 from verification.running.case_result import CaseResult
 
 # A failed source fails every comparison; the list before the figures stays short.

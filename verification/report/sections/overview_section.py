@@ -7,7 +7,6 @@ from verification.page.page_parts import (
     Part,
     Section,
     Table,
-    case_cell,
     number,
     outcome_cell,
     row,
@@ -16,6 +15,7 @@ from verification.page.page_parts import (
 from verification.page.source_labels import source_label, symbol_of
 from verification.regression import baseline_section
 from verification.report.report_material import Material
+from verification.report.tables.case_lookup import case_cell
 from verification.running.case_result import SourceResult
 
 

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from verification.judging.verdict import Claim
+from verification.page.page_parts import Cell
 from verification.problem.coated_contact import BALL, FLAT
 from verification.problem.line_profile import ON_BALL, Profile, coordinate_of
 from verification.problem.quantity import QUANTITIES
@@ -135,3 +136,8 @@ def divisor(result: CaseResult, quantity: str, value: Any) -> np.float64:
 def slug(text: str) -> str:
     """``text`` as part of an anchor or a file name: letters, digits and hyphens only."""
     return re.sub(r"[^a-z0-9]+", "-", text.lower()).strip("-")[:60] or "case"
+
+
+def case_cell(result: CaseResult, href: str) -> Cell:
+    """The title of a case as the head of a row, with its name for a pointer."""
+    return Cell(result.title, note=f"{result.title} ({result.name})", href=href)

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from verification.guests.vectors.open_problems import rounded
+from open_digits_made.problems import rounded
 from verification.problem.array_types import Array
 from verification.problem.coated_contact import CoatedContact, PrescribedLoad, stress_with_uncertainty
 from verification.problem.quantity import IN_PLANE

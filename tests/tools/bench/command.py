@@ -1,4 +1,4 @@
-"""coatcheck bench: both methods timed over another commit, beside other codes."""
+"""Both methods timed over another commit, beside other codes."""
 
 import datetime
 import sys
@@ -13,10 +13,10 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
-from verification.bench.checkout import checkout
-from verification.bench.device import LIBRARY, not_measured
-from verification.bench.figures import PEERS, Figure, Other, Part, groups, measure
-from verification.bench.history import BenchRun, append, read
+from bench.checkout import checkout
+from bench.device import LIBRARY, not_measured
+from bench.figures import PEERS, Figure, Other, Part, groups, measure
+from bench.history import BenchRun, append, read
 from verification.commands.common.exit_codes import EXIT, CommandError, with_exit_code
 from verification.commands.common.known_folders import require_format
 from verification.commands.common.shared_options import AsJson, Flag
@@ -75,7 +75,7 @@ def bench(
     failed = False
     if show:
         if not runs:
-            raise CommandError(f"{history}: holds no run of coatcheck bench")
+            raise CommandError(f"{history}: holds no run of python tests/tools bench")
     else:
         figures, failed = _measured(parts, against, python, sizes, threads, rounds)
         date = datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds")
@@ -85,7 +85,7 @@ def bench(
         runs = append(history, run) if history is not None and figures else (run,)
         missed = [figure for figure in figures if figure.missed]
     if plot is not None and runs[-1].figures:
-        from verification.report.figures.speed import write
+        from bench.speed_figure import write
 
         write(runs, plot)
     if as_json:

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from verification.bench.turns import HERE
+from bench.turns import HERE
 from verification.running.provenance import commit
 
 __all__ = ["checkout"]

@@ -12,12 +12,14 @@ import shutil
 import subprocess
 import sys
 import tempfile
+from functools import partial
 from pathlib import Path
 from typing import Any
 
+from mutation.campaign import ROOMS, ROOT
+from mutation.sites import mutated
 from verification.credibility.faults.fault_trial import try_fault
-from verification.credibility.mutation.sites import Mutant, mutated
-from verification.evidence.mutant_record import ROOMS, ROOT, Catch, Trial
+from verification.evidence.mutant_record import Catch, Mutant, Trial
 from verification.judging.outcome import Outcome
 from verification.running.checked_files import StoreError, read_checked, write_checked
 from verification.running.json_records import decode, encode
@@ -35,13 +37,12 @@ PYTEST = ("-m", "pytest", "-x", "-q", "--tb=line", "--hypothesis-seed=0", "-p", 
 def trial_task(room: str, mutant: Mutant | None, output: Path, limit: float) -> Task[Trial]:
     """The trial of ``mutant``, each of its two steps limited to ``limit`` seconds of the processor."""
     path = _path(room, mutant, output)
-    content = json.dumps(encode(mutant)) if mutant else ""
-    words = (room, content, str((output / "clean").absolute()), str(limit), str(path))
+    work = partial(main, room, mutant, (output / "clean").absolute(), limit, path)
 
     def failed(reason: str, seconds: float) -> Trial:
         return Trial(room, mutant, Catch.NOT_TRIED, reason, seconds=seconds)
 
-    return Task(path.stem, (f"{__name__}:main", *words), path, _stored, failed)
+    return Task(path.stem, work, path, _stored, failed)
 
 
 def kept_trial(room: str, mutant: Mutant | None, output: Path) -> Trial | None:
@@ -67,15 +68,14 @@ def _stored(data: dict[str, Any]) -> Trial:
     return decode(Trial, data["trial"])
 
 
-def main(room: str, mutant: str, clean: str, limit: str, path: str) -> None:
-    """Try the ``mutant`` of ``room`` given as JSON, "" for none, and store its trial at ``path``."""
+def main(room: str, changed: Mutant | None, clean: Path, limit: float, path: Path) -> None:
+    """Try the mutant of ``room``, None for no change, and store its trial at ``path``."""
     made_by = _made_by()  # before the source can change
-    changed = decode(Mutant, json.loads(mutant)) if mutant else None
     if changed and not _namespace() and "kill" in (ROOT / changed.file).read_text("utf-8"):
         trial = Trial(room, changed, Catch.NOT_TRIED, "may kill other processes: unshare(1) is needed")
     else:
-        trial = try_mutant(room, changed, Path(clean), float(limit))
-    write_checked(Path(path), {"made_by": made_by[trial.caught], "trial": encode(trial)})
+        trial = try_mutant(room, changed, clean, limit)
+    write_checked(path, {"made_by": made_by[trial.caught], "trial": encode(trial)})
 
 
 def try_mutant(room: str, mutant: Mutant | None, clean: Path, limit: float, root: Path = ROOT) -> Trial:
@@ -118,7 +118,11 @@ def _run(words: tuple[str, ...], copy: Path, limit: float, failed: Catch) -> tup
     """What a process in ``copy`` found, ``failed`` for exit code 1, with the lines that it printed."""
     # the shell survives what is killed in the namespace, and returns its signal
     limited = ("sh", "-c", f'ulimit -t {limit:.0f}; "$@"; exit $?', "sh", sys.executable, *words)
-    env = os.environ | dict.fromkeys(THREAD_VARIABLES, "1") | {"PYTHONPATH": str(copy)}
+    env = (
+        os.environ
+        | dict.fromkeys(THREAD_VARIABLES, "1")
+        | {"PYTHONPATH": os.pathsep.join((str(copy), str(copy / "tests" / "tools")))}
+    )
     try:
         done = subprocess.run(
             (*_namespace(), *limited),

@@ -11,9 +11,9 @@ from pathlib import Path
 from statistics import median
 from typing import Literal
 
-from verification.bench.device import LIBRARY
-from verification.bench.judge import LIMIT
-from verification.bench.turns import HERE, Work, in_turn
+from bench.device import LIBRARY
+from bench.judge import LIMIT
+from bench.turns import HERE, Work, in_turn
 
 __all__ = [
     "ASKED_SIZES",

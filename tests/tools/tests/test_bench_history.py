@@ -4,11 +4,11 @@ import json
 
 import numpy as np
 import pytest
+from bench import speed_figure
+from bench.figures import Figure
+from bench.history import BenchRun, append, read
+from cyclopts import App
 
-from verification.bench.figures import Figure
-from verification.bench.history import BenchRun, append, read
-from verification.cli import app
-from verification.report.figures import speed
 from verification.running.checked_files import StoreError
 
 
@@ -48,13 +48,17 @@ def test_a_line_of_another_program_is_named(kept, line):
         read(kept)
 
 
+app = App(result_action="return_value")
+app.command("bench.command:bench")
+
+
 def command(*words):
-    return app(["bench", *map(str, words)], result_action="return_value")
+    return app(["bench", *map(str, words)])
 
 
 def test_the_history_is_shown_as_table_and_figure(kept, capsys, monkeypatch):
     saved = {}
-    monkeypatch.setattr(speed, "save", lambda drawn, path: saved.update({path: drawn()}))
+    monkeypatch.setattr(speed_figure, "save", lambda drawn, path: saved.update({path: drawn()}))
     plot = kept.with_suffix(".svg")
     assert command("--history", kept, "--show", "--plot", plot) == 0
     table = capsys.readouterr().out
@@ -85,7 +89,7 @@ def test_what_cannot_be_measured_is_refused(words, message, capsys):
 
 
 def test_missed_figures_are_named_in_the_end_and_a_failure_keeps_the_rest(monkeypatch, tmp_path, capsys):
-    from verification.commands.credibility import bench
+    from bench import command as bench
 
     def measured(group, rounds, progress):
         if "N = 64, 1 thread" not in next(iter(group.works)):
@@ -107,7 +111,7 @@ def test_missed_figures_are_named_in_the_end_and_a_failure_keeps_the_rest(monkey
 
 
 def test_the_part_gpu_is_left_out_with_a_line_where_no_device_computes(monkeypatch, capsys):
-    from verification.commands.credibility import bench
+    from bench import command as bench
 
     monkeypatch.setattr(bench, "not_measured", lambda: "cupy is not installed")
     monkeypatch.setattr(bench, "measure", lambda group, rounds, progress: [solve(0.2)])

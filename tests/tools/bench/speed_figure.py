@@ -7,7 +7,7 @@ from pathlib import Path
 from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator
 
-from verification.bench.history import BenchRun
+from bench.history import BenchRun
 from verification.desk.answer_figure import COLOURS, save
 
 __all__ = ["draw", "write"]

@@ -26,6 +26,7 @@ from statistics import median
 from types import ModuleType
 from typing import Any
 
+sys.path.append(str(Path(__file__).resolve().parents[1]))  # beside the packages that are measured
 Prepared = Callable[[], Any]  # what is timed
 
 RADIUS, LOAD, FRICTION = 10e-3, 20.0, 0.3  # m, N
@@ -105,14 +106,14 @@ def default_run(turn: int, *cases: str) -> Prepared:
 
 
 def sphere(turn: int, solver: str, patches: int, threads: int) -> Prepared:
-    """A sphere on a homogeneous half-space by one of ``verification.bench.peers``; turn 0 is a small one."""
-    solved = import_module("verification.bench.peers").SOLVERS[solver]
+    """A sphere on a homogeneous half-space by one of ``bench.peers``; turn 0 is a small one."""
+    solved = import_module("bench.peers").SOLVERS[solver]
     return lambda: solved(patches if turn else 64, threads)
 
 
 def more_threads(turn: int, patches: int, few: int, many: int) -> Prepared:
     """Seconds of ``contact`` on ``many`` threads over those on ``few``, the median of ``LONG`` seconds."""
-    solved = import_module("verification.bench.peers").SOLVERS["contact"]
+    solved = import_module("bench.peers").SOLVERS["contact"]
 
     def seconds(threads: int) -> float:
         began = time.perf_counter()
@@ -133,7 +134,7 @@ def more_threads(turn: int, patches: int, few: int, many: int) -> Prepared:
 
 def library(turn: int, name: str, patches: int, threads: int) -> Prepared:
     """The sphere on arrays of a library; turn 0 is a small one, and one above ``JUDGED`` is not judged."""
-    solved = import_module("verification.bench.peers").uneven
+    solved = import_module("bench.peers").uneven
     if not turn:
         return lambda: solved(64, threads, name)
     return lambda: (
@@ -142,10 +143,10 @@ def library(turn: int, name: str, patches: int, threads: int) -> Prepared:
 
 
 def judge(result: Any) -> float:
-    """Worst residual of pressures of a sphere, 0 of any other result; see ``verification.bench.judge``."""
+    """Worst residual of pressures of a sphere, 0 of any other result; see ``bench.judge``."""
     if not hasattr(result, "shape"):
         return 0.0
-    return float(import_module("verification.bench.judge").residual(result))
+    return float(import_module("bench.judge").residual(result))
 
 
 def processor_seconds() -> float:

@@ -12,9 +12,9 @@ Left alone are annotations, decorators, messages of errors, assertions, text, an
 import ast
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass
-from hashlib import sha256
 from typing import Any
+
+from verification.evidence.mutant_record import Mutant
 
 _BECOMES = (
     "Add Sub, Sub Add, Mult Div, Div Mult, Pow Mult, FloorDiv Mult, Mod FloorDiv, MatMult Mult, "
@@ -30,33 +30,6 @@ _SPEAKING = {"join", "format", "warn", "TypeVar", "ParamSpec", "isinstance"}  # 
 _TYPES = {"int", "float", "str", "bool", "list", "tuple", "dict"}
 _SKIPPED = (ast.Raise, ast.Assert, ast.JoinedStr, ast.arg, ast.Import, ast.ImportFrom)
 _OPERANDS = (ast.AugAssign, ast.Call, ast.Constant, ast.Name, ast.Attribute, ast.Subscript)
-
-
-@dataclass(frozen=True)
-class Mutant:
-    """The lines ``before`` of ``file``, from ``line`` on, become ``after``, changed at ``column``.
-
-    function : what encloses them, "" in the module itself.
-    """
-
-    file: str
-    function: str
-    operator: str
-    line: int
-    column: int
-    before: str
-    after: str
-
-    @property
-    def name(self) -> str:
-        """Its place with a digest, as the name of a file."""
-        place = self.file.removesuffix(".py").replace("/", ".")
-        return f"{place}_{self.line}_{sha256(repr(self).encode()).hexdigest()[:8]}"
-
-    @property
-    def change(self) -> str:
-        """Both in one line."""
-        return " ".join(f"{self.before} -> {self.after}".split())
 
 
 def mutated(source: str, mutant: Mutant) -> str:

@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 
-from verification.guests.vectors.open_digits import data_set, vector
-from verification.guests.vectors.open_problems import SEED, VectorProblem, problems
-from verification.guests.vectors.open_values import compared, exact_rows
+from open_digits_made.content import data_set, vector
+from open_digits_made.problems import SEED, VectorProblem, problems
+from open_digits_made.values import compared, exact_rows
 from verification.running.checked_files import write_atomically
 from verification.running.provenance import machine, versions
 from verification.sources.source_registry import METHODS, SOURCES

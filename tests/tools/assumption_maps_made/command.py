@@ -1,4 +1,4 @@
-"""coatcheck assumptions: what the assumptions of the model cost, over its parameters."""
+"""Measure what the assumptions of the model cost, over its parameters."""
 
 import datetime
 import time
@@ -8,6 +8,7 @@ import numpy as np
 from rich.console import Console
 from rich.markup import escape
 
+from assumption_maps_made.measuring import assembled, measure, with_map
 from verification.commands.common.exit_codes import CommandError, with_exit_code
 from verification.commands.common.known_folders import RECORDS, require_checkout
 from verification.commands.common.shared_options import AsJson, Flag, Quiet, RecordsFolder
@@ -18,8 +19,6 @@ from verification.evidence.assumption_maps import (
     WORDS,
     AssumptionMap,
     AssumptionMaps,
-    assembled,
-    measure,
     read_maps,
     write_maps,
 )
@@ -48,9 +47,9 @@ def assumptions(
     made = AssumptionMaps(())
     for name in names or ASSUMPTIONS:
         new = _measured(name, silent=quiet or as_json)
-        made = made.with_map(new)
+        made = with_map(made, new)
         if record:  # each as soon as it is made
-            stored = write_maps(records, (read_maps(records) or AssumptionMaps(())).with_map(new))
+            stored = write_maps(records, with_map(read_maps(records) or AssumptionMaps(()), new))
     if as_json:
         print_json(encode(made))
     elif not quiet:
@@ -73,7 +72,7 @@ def _measured(name: str, *, silent: bool) -> AssumptionMap:
         for place in places:
             found.append(measure(name, place))
             bar.update(task, advance=1)
-    info = run_info(f"coatcheck assumptions {name}", started, 1)
+    info = run_info(f"tests/tools assumptions {name}", started, 1)
     return assembled(name, found, replace(info, seconds=round(time.process_time() - began, 1)))
 
 

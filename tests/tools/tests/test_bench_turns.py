@@ -7,12 +7,11 @@ from itertools import count
 import ducc0
 import numpy as np
 import pytest
-
-from verification.bench import checkout as places
-from verification.bench import child, turns
-from verification.bench.judge import LIMIT, centres, residual
-from verification.bench.peers import SOLVERS
-from verification.bench.turns import Work, in_turn
+from bench import checkout as places
+from bench import child, turns
+from bench.judge import LIMIT, centres, residual
+from bench.peers import SOLVERS
+from bench.turns import Work, in_turn
 
 PACKAGE = """
 from pathlib import Path

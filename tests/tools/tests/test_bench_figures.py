@@ -3,11 +3,10 @@
 import re
 
 import pytest
-
-from verification.bench import figures
-from verification.bench.device import not_measured
-from verification.bench.figures import ASKED_SIZES, REFERENCE, ROOMS, Figure, Other, groups, measure
-from verification.bench.turns import HERE, Times
+from bench import figures
+from bench.device import not_measured
+from bench.figures import ASKED_SIZES, REFERENCE, ROOMS, Figure, Other, groups, measure
+from bench.turns import HERE, Times
 
 
 def planned(name=REFERENCE, root=HERE, **options):

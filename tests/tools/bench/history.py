@@ -4,7 +4,7 @@ import json
 from dataclasses import dataclass
 from pathlib import Path
 
-from verification.bench.figures import Figure
+from bench.figures import Figure
 from verification.running.checked_files import MAX_BYTES, StoreError, read_bounded, write_atomically
 from verification.running.json_records import decode, encode
 

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from verification.bench.judge import E_STAR, RADIUS, A, W, gap
+from bench.judge import E_STAR, RADIUS, A, W, gap
 from verification.problem.array_types import FloatArray
 
 __all__ = ["SOLVERS"]

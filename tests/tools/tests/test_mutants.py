@@ -1,24 +1,24 @@
 """Mutants: the set of a small source, trials of a toy, the draw, the record, the command."""
 
-import json
 import os
 from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from mutation import campaign, trial
+from mutation.campaign import ROOMS, ROOT, annotated, drawn
+from mutation.command import mutants as command
+from mutation.sites import mutants, mutated
+from mutation.trial import kept_trial, main, try_mutant
 from synthetic_results import INFO
 
-from verification.commands.credibility.faults import mutants as command
-from verification.credibility.mutation import trial
-from verification.credibility.mutation.sites import mutants, mutated
-from verification.credibility.mutation.trial import kept_trial, main, try_mutant
 from verification.evidence import mutant_record as records
-from verification.evidence.mutant_record import ROOMS, ROOT, Catch, MutantRecord, Trial, annotated, drawn
+from verification.evidence.mutant_record import Catch, MutantRecord, Trial
 from verification.report.credibility import mutants_section as page
 from verification.report.report_material import Evidence, Material
 from verification.report.sections.first_page import worth
 from verification.running.checked_files import StoreError, read_checked
-from verification.running.json_records import decode, encode
+from verification.running.json_records import decode
 
 GUARD = "verification/running/pool/fork_guard.py"
 SMALL = '''"""A module of 3 words."""
@@ -114,12 +114,14 @@ def toy(tmp_path_factory):
     for name, text in {
         "pyproject.toml": "[tool.pytest.ini_options]\n",
         "semianalytic/__init__.py": TOY,
-        "verification/credibility/mutation/trial.py": CHECKS,
+        "tests/tools/mutation/__init__.py": "",
+        "tests/tools/mutation/trial.py": CHECKS,
         "tests/semianalytic/test_toy.py": "from semianalytic import area\n\n\ndef test_area():\n"
         "    assert area(0, 3) < 1e-9\n    assert area(-0.5, 4) == 2\n",
     }.items():
         (root / name).parent.mkdir(parents=True, exist_ok=True)
         (root / name).write_text(text)
+    (root / "verification").mkdir()
     (root / "fem_reference").mkdir()
     return root
 
@@ -161,7 +163,7 @@ def test_a_trial_that_waits_for_ever_ends(tmp_path, monkeypatch):
 def test_a_mutant_that_may_kill_others_is_not_tried_where_they_are_in_sight(toy, tmp_path, monkeypatch):
     monkeypatch.setattr(trial, "_namespace", tuple)
     mutant = next(m for m in mutants((ROOT / GUARD).read_text("utf-8"), GUARD) if "killpg" in m.after)
-    main("running", json.dumps(encode(mutant)), str(toy), "1", str(tmp_path / "trial.json"))
+    main("running", mutant, toy, 1.0, tmp_path / "trial.json")
     assert "unshare" in decode(Trial, read_checked(tmp_path / "trial.json")["trial"]).by
 
 
@@ -197,13 +199,12 @@ def test_survivors_that_were_read_keep_their_reason_and_equivalent_ones_do_not_c
     assert record.score() == record.score("judging") == (1, 2)
     assert not record.passed
     assert replace(record, trials=record.trials[::2]).passed
-    path = tmp_path / records.RECORD
-    records.write_record(path, record)
-    assert records.read_record(path) == record
+    path = records.write_record(tmp_path, record)
+    assert records.read_record(tmp_path) == record
     assert records.read_record(tmp_path / "nowhere") is None
     path.write_text(path.read_text().replace('"judging"', '"judgment"'))
     with pytest.raises(StoreError, match=r"mutants\.json"):
-        records.read_record(path)
+        records.read_record(tmp_path)
 
 
 def test_the_section_shows_score_and_survivors(tmp_path):
@@ -220,7 +221,7 @@ def test_the_section_shows_score_and_survivors(tmp_path):
 
 
 def test_survivors_on_record_are_of_this_source():
-    for row in records.load_toml(records.SURVIVORS.read_bytes())[1].get("survivor", []):
+    for row in campaign.load_toml(campaign.SURVIVORS.read_bytes())[1].get("survivor", []):
         known = mutants((ROOT / row["file"]).read_text("utf-8"), row["file"])
         assert (row["function"], row["change"]) in {(m.function, m.change) for m in known}
         assert row["kind"] in ("equivalent", "harmless")
@@ -245,18 +246,15 @@ def test_a_wrong_question_is_bad_input_and_writes_nothing(words, tmp_path, capsy
 
 
 def test_a_trial_is_kept_for_the_same_code_and_a_survivor_for_the_same_tests(tmp_path, monkeypatch):
-    module, path = (
-        "verification.credibility.mutation.trial",
-        str(tmp_path / "trials" / "control_judging.json"),
-    )
+    module, path = "mutation.trial", tmp_path / "trials" / "control_judging.json"
     survived = Trial("judging", None, Catch.SURVIVED, seconds=1.0)
     for one, code in ((survived, "code, tests"), (replace(survived, catch=Catch.TESTS), "code")):
         monkeypatch.setattr(f"{module}.try_mutant", lambda *_, found=one: found)
         monkeypatch.setattr(
             f"{module}.fingerprint", lambda modules: "code" + ", tests" * ("tests" in modules)
         )
-        main("judging", "", "clean", "5", path)
-        assert read_checked(Path(path))["made_by"] == code
+        main("judging", None, Path("clean"), 5.0, path)
+        assert read_checked(path)["made_by"] == code
         assert kept_trial("judging", None, tmp_path) == one
         assert kept_trial("sampling", None, tmp_path) is None
         monkeypatch.setattr(

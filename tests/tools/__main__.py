@@ -1,0 +1,20 @@
+"""Campaigns that maintainers run: python tests/tools COMMAND, with --help for what each does."""
+
+import os
+import sys
+from pathlib import Path
+
+from cyclopts import App
+
+HERE = str(Path(__file__).resolve().parent)
+sys.path.insert(0, HERE)
+os.environ["PYTHONPATH"] = os.pathsep.join((HERE, os.environ.get("PYTHONPATH", "")))  # for child processes
+
+app = App(name="tests/tools", help=__doc__, help_format="plaintext")
+app.command("bench.command:bench")
+app.command("mutation.command:mutants")
+app.command("open_digits_made.command:vectors")
+app.command("assumption_maps_made.command:assumptions")
+
+if __name__ == "__main__":
+    sys.exit(app(result_action="return_value"))
