@@ -84,6 +84,7 @@ class Solution:
     _body: Body = field(repr=False)
     stiffness: float | None = None
     stiffness_uncertainty: float | None = None
+    relative: bool = False
 
     @classmethod
     def of_levels(
@@ -130,6 +131,14 @@ class Solution:
             _level=level,
             _body=body,
         )
+
+    @property
+    def relative_to_edge(self) -> "Solution":
+        """The same for points meant as x/a: uncertainties of fields leave out that of the contact radius.
+
+        At a fixed x next to the edge that is all of them: p changes by q sqrt(2 da/a).
+        """
+        return replace(self, relative=True)
 
     def with_friction(self, friction: float) -> "Solution":
         """The same contact sliding with another friction coefficient, which leaves the pressure unchanged.
@@ -219,19 +228,18 @@ class Solution:
         """The second part of ``displacement_with_uncertainty``."""
         return self.displacement_with_uncertainty(x, y, z, body)[1]
 
-    def pressure_uncertainty(self, x: ArrayLike, y: ArrayLike = 0.0, *, own_edge: bool = False) -> Array:
+    def pressure_uncertainty(self, x: ArrayLike, y: ArrayLike = 0.0) -> Array:
         """Uncertainty of the pressure [Pa] from the coarser companions.
 
         With a smooth edge as that of the stress. Of patches alone the largest difference from the companion
         within two of its patches, times ``safety``, or a sixth of that of the next two; plus the changes of
         the peak by the other numerical parameters, twice, since they were varied on half the patches and the
         pressure due to a gap is proportional to the patches; plus ``RESOLUTION`` of the peak; twice the sum.
-        own_edge : as in ``stress_with_uncertainty``.
         Raises ValueError where no uncertainty was estimated.
         """
         coarser, floor = self._companion()
         if self._level.shape is not None:
-            return self._smooth_uncertainty(x, y, own_edge)
+            return self._smooth_uncertainty(x, y)
         i, j = self.nodes[:, None], self.nodes[None, :]
         second = coarser.pressure(i, j)
         ratio = len(self.nodes) / len(coarser.nodes)
@@ -251,7 +259,7 @@ class Solution:
         away = _at(self.nodes, (np.maximum(inside, outside) - 1.0)[1:-1, 1:-1], x, y, order=1) * d
         return highest * d / (d + np.hypot(away, z))
 
-    def _smooth_uncertainty(self, x: ArrayLike, y: ArrayLike, own_edge: bool) -> Array:
+    def _smooth_uncertainty(self, x: ArrayLike, y: ArrayLike) -> Array:
         """Uncertainty of the pressure [Pa] of a smooth edge: of its shape at the same x/a, and of its
         radius."""
         assert self.uncertainty is not None
@@ -267,7 +275,7 @@ class Solution:
         total = np.maximum(factor * np.abs(p - second), share * np.abs(second - third))
         _, floor = self._companion()
         total = total + self._floor + self._near_ripple(x, y) + floor * self.peak_pressure
-        if own_edge:
+        if self.relative:
             return total
         shift = self.uncertainty.contact_radius
         moved = [np.abs(fine.widened(s).pressure(x, y) - p) for s in (-shift, shift)]
@@ -296,15 +304,13 @@ class Solution:
         z: ArrayLike,
         layer: int | None = None,
         body: str = "flat",
-        *,
-        own_edge: bool = False,
     ) -> tuple[Array, Array]:
         """Stress and its uncertainty [Pa], shape (3, 3) + points each, the latter from coarser companions.
 
         The largest difference over the six components, for every component alike, of this level and the next,
         or of the next and the one after, at the same x/a of each. With a smooth edge twice that, or once;
         plus ``FLOOR`` of the peak pressure; or the change by the uncertain radius near the edge, where that
-        is larger, unless ``own_edge``: the points are meant relative to the edge, as x/a. Of patches alone
+        is larger, unless the solution is ``relative_to_edge``. Of patches alone
         times ``safety``, or a third, plus the error of the evaluation, ``EVALUATION`` of the peak pressure.
         Both with the changes of the peak pressure by the other numerical parameters.
         Raises ValueError where no uncertainty was estimated.
@@ -321,7 +327,7 @@ class Solution:
                 shallow = 1 / (1 + np.asarray(z) / (REACH * self.diagnostics.patch_size))
                 least = (self._floor + self._near_ripple(x, y)) * shallow
                 total = total + least + floor * self.peak_pressure
-                if not own_edge:
+                if not self.relative:
                     total = np.maximum(total, self._uncertain_edge(solid, x, y, z, layer))
             total = total + RINGS * self.peak_pressure
         else:

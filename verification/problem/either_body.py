@@ -36,6 +36,10 @@ class _OnBall:
         coarser = getattr(self.solution, "coarser", None)
         return None if coarser is None else _OnBall(coarser)
 
+    @property
+    def relative_to_edge(self) -> "_OnBall":
+        return _OnBall(getattr(self.solution, "relative_to_edge", self.solution))
+
     def stress(self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None) -> Array:
         return _turned(self.solution.stress(-np.asarray(x), -np.asarray(y), z, layer, body=BALL), _TENSOR)
 

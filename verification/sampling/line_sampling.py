@@ -12,7 +12,7 @@ from verification.problem.either_body import on_body
 from verification.problem.line_profile import Line, Profile
 from verification.problem.quantity import BALL_PEAKS, IN_PLANE, PEAKS, QUANTITIES, SCALARS, SLOPES
 from verification.sampling import oblique_sampling
-from verification.sampling.largest_tension import ENDS, Search, around_edge, edge_uncertainty
+from verification.sampling.largest_tension import BESIDE, ENDS, Search, around_edge, edge_uncertainty
 
 __all__ = ["edge_of", "positions", "sample", "sample_contact"]
 
@@ -88,8 +88,8 @@ def sample(
     Off the plane y = 0 see ``oblique``. On a line of the ball x is that of the flat.
 
     problem : on the surface also its largest tension with its place, as ``PEAKS`` of the contact.
-    edge : as of ``edge_of``; points of the surface at this radius [m] are evaluated at the solution's own
-           contact edge, where a value does not depend on the error of the radius.
+    edge : as of ``edge_of``; points within ``BESIDE`` of this radius [m] are evaluated at the same x/a of the
+           solution's own edge, where a value does not depend on the error of the radius.
     """
     if line.depth is None and line.coordinate != "z":
         return oblique_sampling.sample(solution, source, line, position)
@@ -98,9 +98,16 @@ def sample(
     x = turned * x
     stated = solution.uncertainty is not None
     surface = line.place == "surface"
-    at = np.flatnonzero(np.abs(position) == edge) if surface else np.arange(0)
+    a = float(solution.contact_radius)
+    own = getattr(solution, "relative_to_edge", solution)
+    near = np.zeros(x.shape, dtype=bool)
+    if edge is not None:
+        near = (np.abs(np.abs(position) - edge) <= BESIDE * edge) & (line.coordinate == "x")
+        x[near] *= a / edge
+    # of a solution that does not state its uncertainty relative to the edge, that of points on it is followed
+    at = np.flatnonzero(np.abs(position) == edge) if surface and own is solution else np.arange(0)
     side = np.sign(x[at])
-    x[at] = side * float(solution.contact_radius)
+    x[at] = side * a
     around = (side[:, None] * around_edge(solution)).ravel() if at.size and stated else np.zeros(0)
     search = Search(solution, problem.seen_from(line.body)) if problem is not None and surface else None
     # In one call, whose cost hardly depends on the number of points.
@@ -109,11 +116,15 @@ def sample(
     depth = np.concatenate([z, np.zeros(points.size - z.size)])
     sigma, U = stress_with_uncertainty(solution, points, 0.0, depth, layer=line.layer)
     ends = np.cumsum([part.size for part in parts])[:-1]
-    values, near, sought = np.split(sigma, ends, axis=-1)
-    wide, near_U, sought_U = (None,) * 3 if U is None else np.split(U, ends, axis=-1)
-    if wide is not None and near_U is not None and around.size:
+    values, edges, sought = np.split(sigma, ends, axis=-1)
+    wide, edges_U, sought_U = (None,) * 3 if U is None else np.split(U, ends, axis=-1)
+    if wide is not None and edges_U is not None and around.size:
         wide[..., at] = _at_edge(
-            solution, near, near_U, lambda one: one.stress(ENDS * one.contact_radius, 0.0, 0.0, layer=0)
+            solution, edges, edges_U, lambda one: one.stress(ENDS * one.contact_radius, 0.0, 0.0, layer=0)
+        )
+    if wide is not None and own is not solution and near.any():
+        values[..., near], wide[..., near] = stress_with_uncertainty(
+            own, x[near], 0.0, z[near], layer=line.layer
         )
     values[0, 2] = values[2, 0] = turned * values[0, 2]
     found = [(name, values[component], wide, component) for name, component in IN_PLANE.items()]
@@ -122,10 +133,14 @@ def sample(
         for name, value, U, component in found
     ]
     if line.name == "surface":  # the pressure is that of both bodies
-        spread = solution.pressure_uncertainty(x) if stated else None
+        spread = np.array(solution.pressure_uncertainty(x)) if stated else None
         if spread is not None and around.size:
-            near, near_U = solution.pressure(around), solution.pressure_uncertainty(around)
-            spread[at] = _at_edge(solution, near, near_U, lambda one: one.pressure(ENDS * one.contact_radius))
+            edges, edges_U = solution.pressure(around), solution.pressure_uncertainty(around)
+            spread[at] = _at_edge(
+                solution, edges, edges_U, lambda one: one.pressure(ENDS * one.contact_radius)
+            )
+        if spread is not None and own is not solution:
+            spread[near] = own.pressure_uncertainty(x[near])
         profiles.append(Profile("pressure", line.name, position, solution.pressure(x), source, spread))
     if search is not None:
         best = search.largest(sought[0, 0], None if sought_U is None else sought_U[0, 0])
