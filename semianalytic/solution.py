@@ -229,7 +229,7 @@ class Solution:
         return self.displacement_with_uncertainty(x, y, z, body)[1]
 
     def pressure_uncertainty(self, x: ArrayLike, y: ArrayLike = 0.0) -> Array:
-        """Uncertainty of the pressure [Pa] from the coarser companions.
+        """Uncertainty of the pressure [Pa] from the coarser companions; 0 of a given pressure.
 
         With a smooth edge as that of the stress. Of patches alone the largest difference from the companion
         within two of its patches, times ``safety``, or a sixth of that of the next two; plus the changes of
@@ -238,6 +238,8 @@ class Solution:
         Raises ValueError where no uncertainty was estimated.
         """
         coarser, floor = self._companion()
+        if self._level.given is not None:
+            return np.zeros(np.broadcast_shapes(np.shape(x), np.shape(y)))
         if self._level.shape is not None:
             return self._smooth_uncertainty(x, y)
         i, j = self.nodes[:, None], self.nodes[None, :]
