@@ -73,7 +73,7 @@ class Level:
 
     @property
     def staircase(self) -> float:
-        """Error of the radius [m] from the patches at the edge; at a smooth one of the second order in the patch.
+        """Error of the radius [m] from the patches at the edge; of the second order at a smooth one.
 
         Of patches alone a quarter of a patch all along the edge, whose length is that of the staircase times
         pi/4, its mean over all directions (Cauchy-Crofton).

@@ -108,8 +108,8 @@ def edge_patches(shape: Shape, p: Array, grid: Grid, window: Window) -> EdgePatc
 def _smooth_parts(quadratic: Array) -> Array:
     """Mean of f over PARTS x PARTS parts of every patch inside, (k, PARTS^2).
 
-    quadratic : f^2 = c0 + c1 x + c2 y + c3 x^2 + c4 x y + c5 y^2, in patches from the centre, (k, 6). The mean
-    follows from f^2 and its derivatives at the centre of a part.
+    quadratic : f^2 = c0 + c1 x + c2 y + c3 x^2 + c4 x y + c5 y^2, in patches from the centre, (k, 6).
+    The mean follows from f^2 and its derivatives at the centre of a part.
     """
     square = quadratic @ _terms(MIDDLES, MIDDLES)
     slope2 = (quadratic[:, 1] ** 2 + quadratic[:, 2] ** 2)[:, None]
