@@ -29,8 +29,6 @@ CORRECTED = "split conversion, corrected edge"
 # Patches alone: influence coefficients, DC-FFT, conjugate gradients against the exact solution.
 STAIRCASE = "split conversion, staircase edge"
 PLAIN = "plain conversion, staircase edge"
-# The edge profile does not depend on the grid: with it p0 and a are the same at every N, and the approach
-# differs by the tolerance of the patches.
 FINE = (41, 49, 65, 97, 129, 257)
 KEPT = 4  # solutions of a method, some 100 MB each of the finest meshes
 STEEL = (210e9, 0.3)

@@ -25,8 +25,8 @@ MOST_ROWS = 28  # strips of the first page; of more cases the worst have their o
 OWN_ROWS = 12
 _CLOSED = "closed forms of uncoated contacts."
 _METHODS = {
-    "semianalytic": "edge profile by collocation, then influence coefficients, conjugate gradients, discrete "
-    "convolution by FFT.",
+    "semianalytic": "pressures of surface patches by influence coefficients, conjugate gradients and DC-FFT; "
+    "stresses from these pressures by influence coefficients of point forces.",
     "fem_reference": "axisymmetric, fourth order, mesh fitted to the contact edge; sliding as a harmonic.",
     "integral_equation": "exact Fredholm equation of the layered contact.",
     "hertz": _CLOSED,
