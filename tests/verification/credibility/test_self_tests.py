@@ -3,7 +3,6 @@
 import pytest
 from synthetic_results import INFO, contact, result_of
 
-from verification.commands.common.exit_codes import EXIT
 from verification.commands.run import _code
 from verification.credibility import self_tests as room
 from verification.credibility.faults.fault_catalogue import FAULTS
@@ -11,6 +10,7 @@ from verification.credibility.faults.fault_planting import planted
 from verification.credibility.self_tests import SelfTest, self_tests
 from verification.judging.verdict import Outcome
 from verification.regression.baseline_change import Regression
+from verification.regression.run_exit_codes import EXIT
 from verification.report.credibility.self_tests_section import section
 from verification.report.report_material import Evidence, Material
 

@@ -13,7 +13,8 @@ from verification.credibility.self_tests import SelfTest
 from verification.evidence.alarm_record import write_record
 from verification.regression.baseline_change import regression, updated
 from verification.report.report_files import write_report
-from verification.report.report_material import Material, gather, rerun_command, stored_material
+from verification.report.report_material import Material, gather, stored_material
+from verification.report.sections.case_page import rerun_command
 from verification.running.case_result import to_json
 from verification.running.checked_files import write_checked
 from verification.running.stored_fields import plane_path, write_plane
@@ -47,7 +48,7 @@ def run(tmp_path):
         formulas=EffectiveStudy(failure="its process <died>"),
     )
     # As a run has them: each result read back from its file, in the order of the command.
-    write_report(Material(material.results[::-1], INFO, evidence, material.planes), folder)
+    write_report(Material(material.results[::-1], INFO, evidence, material.planes), folder, "")
     return folder
 
 
