@@ -13,6 +13,7 @@ from verification.regression.junit_xml import junit_xml
 from verification.report import report_files
 from verification.report.report_files import write_report
 from verification.report.report_material import Material
+from verification.running import checked_files
 from verification.running.case_result import SCHEMA, CaseResult, SourceResult, from_json
 from verification.running.checked_files import StoreError
 
@@ -42,7 +43,7 @@ def test_an_earlier_report_survives_whatever_goes_wrong(tmp_path, results, monke
         raise OSError(28, "No space left on device")
 
     with monkeypatch.context() as patched:
-        patched.setattr(report_files.os, "fsync", full)
+        patched.setattr(checked_files.os, "fsync", full)
         with pytest.raises(StoreError, match="No space left"):
             write_report(Material(results, INFO), tmp_path, JUNIT)
     with monkeypatch.context() as patched:

@@ -12,6 +12,7 @@ from verification.credibility.false_alarms import counted
 from verification.credibility.self_tests import SelfTest
 from verification.evidence.alarm_record import write_record
 from verification.regression.baseline_change import regression, updated
+from verification.regression.junit_xml import junit_xml
 from verification.report.report_files import write_report
 from verification.report.report_material import Material, gather, stored_material
 from verification.report.sections.case_page import rerun_command
@@ -48,7 +49,9 @@ def run(tmp_path):
         formulas=EffectiveStudy(failure="its process <died>"),
     )
     # As a run has them: each result read back from its file, in the order of the command.
-    write_report(Material(material.results[::-1], INFO, evidence, material.planes), folder, "")
+    results = material.results[::-1]
+    junit = junit_xml(results, INFO, evidence.baseline, {"reader": ""})
+    write_report(Material(results, INFO, evidence, material.planes), folder, junit)
     return folder
 
 
