@@ -3,7 +3,6 @@
 import datetime
 import shlex
 import time
-from collections import Counter
 from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import replace
@@ -12,15 +11,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import Parameter
-from rich.console import Console
-from rich.markup import escape
-from rich.table import Column, Table
 
-from verification.cases.case_file import Case, read_case, shipped_cases
-from verification.cases.published_file import PublishedCase, is_published, published_cases, read_published
-from verification.commands.common.exit_codes import STOPPED, run_code, with_exit_code
+from verification.cases.case_file import Case
+from verification.cases.published_file import PublishedCase
+from verification.commands.common.command_error import STOPPED
+from verification.commands.common.exit_codes import with_exit_code
 from verification.commands.common.known_folders import BASELINE, RECORDS, within_package
-from verification.commands.common.named_files import SHIPPED, path_of, require_distinct
+from verification.commands.common.named_files import chosen_cases
+from verification.commands.common.run_summary import print_run, run_json
 from verification.commands.common.shared_options import (
     AsJson,
     BaselineFolder,
@@ -41,31 +39,24 @@ from verification.commands.common.task_progress import (
     run_info,
     solve,
 )
-from verification.commands.common.terminal import (
-    STYLE,
-    one_line,
-    print_error,
-    print_json,
-    print_warnings,
-)
-from verification.credibility import accuracy_study as accuracy_study
+from verification.commands.common.terminal import print_error, print_json, print_warnings
+from verification.credibility import accuracy_study
 from verification.credibility.accuracy_study import AccuracyStudy
-from verification.credibility.self_tests import SelfTest, self_tests
-from verification.judging.outcome import DECIDED, Outcome
-from verification.regression.baseline_change import Regression, State, regression, regression_json
+from verification.credibility.self_tests import self_tests
+from verification.regression.baseline_change import regression
 from verification.regression.baseline_file import read_baseline
-from verification.regression.manifest import manifest_message
+from verification.regression.junit_xml import junit_xml
+from verification.regression.run_exit_codes import run_code
 from verification.running.case_result import CaseResult, RunInfo
-from verification.running.case_tasks import case_task, kept_result, published_task
+from verification.running.case_tasks import case_task, kept_result
 from verification.running.checked_files import StoreError, locked
 from verification.running.pool.pool_task import Task
-from verification.study import formula_errors as effective_study
+from verification.running.stored_fields import read_planes
+from verification.study import formula_errors
 from verification.study.formula_errors import EffectiveStudy
 
 if TYPE_CHECKING:
     from verification.report.report_material import Evidence
-
-NARROW = 80  # columns
 
 
 @with_exit_code
@@ -98,20 +89,12 @@ def run(
         fields: Also write the fields of each case, for ParaView and coatcheck view, into its folder fields.
         verbose: Print the seconds and iterations of every source as the cases finish.
     """
-    pool = pool_of(jobs, time_limit, scheduler)
-    chosen = _choose(cases)
+    pool, silent = pool_of(jobs, time_limit, scheduler), quiet or as_json
+    chosen = chosen_cases(cases)
     for case in chosen:
         if isinstance(case, Case):
-            print_warnings(case.warnings, case.name, strict=strict, silent=quiet or as_json)
+            print_warnings(case.warnings, case.name, strict=strict, silent=silent)
     require_gmsh()
-
-    @cache
-    def prepared() -> tuple[tuple[SelfTest, ...], "Evidence"]:
-        """Self-tests and evidence, neither of which depends on a result."""
-        from verification.report.report_material import gather
-
-        problems = {case.name: case.problem for case in chosen if isinstance(case, Case)}
-        return _self_tested(), gather(records, problems)
 
     begin, started = time.perf_counter(), datetime.datetime.now(datetime.UTC)
     try:
@@ -119,17 +102,18 @@ def run(
         with locked(output):
             kept = kept_results(chosen, output, fields=fields) if resume else {}
             accuracy = kept_study(output) if resume and not cases else None
-            tasks: list[Task[CaseResult | AccuracyStudy | EffectiveStudy]] = []
-            tasks += [_task(case, output, fields) for case in chosen if case.name not in kept]
+            tasks: list[Task[CaseResult | AccuracyStudy | EffectiveStudy]] = [
+                case_task(case, output, fields=fields) for case in chosen if case.name not in kept
+            ]
             tasks += [accuracy_study.task(output)] if not cases and accuracy is None else []
-            tasks += [effective_study.task(output)] if "published" in cases else []
-            solved = solve(tasks, pool, time_limit, quiet or as_json, verbose=verbose, meanwhile=prepared)
-            accuracy = next((found for found in solved if isinstance(found, AccuracyStudy)), accuracy)
-            formulas = next((found for found in solved if isinstance(found, EffectiveStudy)), None)
-            new = {found.name: found for found in solved if isinstance(found, CaseResult)}
-            results = [kept.get(case.name) or new[case.name] for case in chosen]
+            tasks += [formula_errors.task(output)] if "published" in cases else []
+            standing = cache(partial(_standing, chosen, records))
+            solved = solve(tasks, pool, time_limit, silent, verbose=verbose, meanwhile=standing)
+            found = kept | {one.name: one for one in solved if isinstance(one, CaseResult)}
+            results = [found[case.name] for case in chosen]
             info = run_info(shlex.join(["coatcheck", "run", *cases]), started, pool)
-            tests, evidence = prepared()
+            evidence = standing()
+            tests = evidence.self_tests
             beside = regression(
                 results,
                 known,
@@ -139,71 +123,46 @@ def run(
                 published="published" in cases,
                 self_tests={test.name: test.answers for test in tests},
             )
+            messages = {test.name: "" if test.passed else test.found for test in tests}
+            junit = junit_xml(results, info, beside, messages)
+            code = run_code(results, beside, passed=all(test.passed for test in tests))
             evidence = replace(
-                evidence, accuracy=accuracy, baseline=beside, self_tests=tests, formulas=formulas
+                evidence,
+                accuracy=next((one for one in solved if isinstance(one, AccuracyStudy)), accuracy),
+                formulas=next((one for one in solved if isinstance(one, EffectiveStudy)), None),
+                baseline=beside,
             )
-            page = _write_page(results, info, evidence, output)
+            page = _write(results, info, evidence, output, junit)
     except KeyboardInterrupt:
         return _stopped(chosen, output)
-    beyond = _beyond_model(results, evidence)
     if as_json:
-        print_json(_summary(results, page, beside, tests, beyond))
+        passed = {test.name: test.passed for test in tests}
+        print_json(run_json(results, page, beside, passed, evidence.beyond, code))
     elif not quiet:
-        _print_table(results, page, time.perf_counter() - begin, beside)
-    for name, lines in beyond.items():
-        print_warnings(lines, name, strict=False, silent=quiet or as_json)
-    return _code(results, beside, tests)
+        print_run(results, page, time.perf_counter() - begin, beside)
+    for name, lines in evidence.beyond.items():
+        print_warnings(lines, name, strict=False, silent=silent)
+    return code
 
 
-def _write_page(results: Sequence[CaseResult], info: RunInfo, evidence: "Evidence", output: Path) -> Path:
+def _write(
+    results: Sequence[CaseResult], info: RunInfo, evidence: "Evidence", output: Path, junit: str
+) -> Path:
     from verification.report.report_files import write_report
     from verification.report.report_material import Material
-    from verification.running.stored_fields import read_planes
 
-    return write_report(Material(results, info, evidence, read_planes(output, results)), output)
-
-
-def _beyond_model(results: Sequence[CaseResult], evidence: "Evidence") -> dict[str, tuple[str, ...]]:
-    """Warnings of what the assumptions of the model cost, by case."""
-    from verification.report.report_material import model_warnings
-
-    return {result.name: model_warnings(result, evidence) for result in results}
+    return write_report(Material(results, info, evidence, read_planes(output, results)), output, junit)
 
 
-def _self_tested() -> tuple[SelfTest, ...]:
-    """The self-tests of the harness, with a message for each that fails."""
+def _standing(chosen: Sequence[Case | PublishedCase], records: Path) -> "Evidence":
+    """Evidence that no result changes, self-tests among it; a message for each of these that fails."""
+    from verification.report.report_material import Modelled, gather
+
     tests = self_tests()
     for test in tests:
         if not test.passed:
             print_error(f"self-test of the {test.name}: {test.found}; the verdicts of this run are not valid")
-    return tests
-
-
-def _code(results: Sequence[CaseResult], beside: Regression, tests: Sequence[SelfTest]) -> int:
-    return run_code(results, beside, passed=all(test.passed for test in tests))
-
-
-def _choose(names: Sequence[str]) -> list[Case | PublishedCase]:
-    shipped, published = shipped_cases(), published_cases()
-    cases: list[Case | PublishedCase] = []
-    for name in names or shipped:
-        if name in shipped:
-            cases.append(read_case(shipped[name]))
-        elif name in published:
-            cases.append(read_published(published[name]))
-        elif name == "published":
-            cases += [read_published(path) for path in published.values()]
-        else:
-            path = path_of(name, {}, SHIPPED, [*shipped, *published, "published"])
-            cases.append(read_published(path) if is_published(path) else read_case(path))
-    require_distinct([case.name for case in cases])
-    return cases
-
-
-def _task(case: Case | PublishedCase, output: Path, fields: bool) -> Task[CaseResult]:
-    if isinstance(case, Case):
-        return case_task(case, output, fields=fields)
-    return published_task(case, output)
+    return gather(records, {case.name: Modelled.of(case) for case in chosen if isinstance(case, Case)}, tests)
 
 
 def _stopped(chosen: Sequence[Case | PublishedCase], output: Path) -> int:
@@ -217,85 +176,3 @@ def _stopped(chosen: Sequence[Case | PublishedCase], output: Path) -> int:
         f"or see what is there with coatcheck report {output}"
     )
     return STOPPED
-
-
-def _summary(
-    results: Sequence[CaseResult],
-    page: Path,
-    beside: Regression,
-    tests: Sequence[SelfTest],
-    beyond: dict[str, tuple[str, ...]],
-) -> dict[str, object]:
-    states = {case.name: case.state for case in beside.cases}
-    return {
-        "report": str(page),
-        "exit_code": _code(results, beside, tests),
-        "self_tests": {test.name: test.passed for test in tests},
-        "baseline": regression_json(beside),
-        "cases": {
-            result.name: {
-                "outcome": result.outcome,
-                "baseline": states.get(result.name),
-                "warnings": [*result.warnings, *beyond[result.name]],
-                "verdicts": {o: sum(v.outcome is o for _, v in result.verdicts) for o in DECIDED},
-                "invariants": {o: sum(law.outcome is o for law in result.invariants) for o in DECIDED},
-            }
-            for result in results
-        },
-    }
-
-
-def _print_table(results: Sequence[CaseResult], page: Path, seconds: float, beside: Regression) -> None:
-    console = Console()
-    # Fits 80 columns beside the longest name of a shipped case; letters where there are fewer.
-    heads = ["agrees", "dis-\nagrees", "incon-\nclusive", "no\nresult", "largest\ndifference"]
-    narrow = console.width < NARROW
-    if narrow:
-        heads = ["A", "D", "I", "N", "largest"]
-    # Without a baseline, or in a narrow terminal, the line below the table is enough.
-    states = beside.update is not None and not narrow
-    heads += ["baseline"] if states else []
-    table = Table(Column("case", overflow="fold"), box=None, header_style="bold", pad_edge=False)
-    for head in heads:
-        table.add_column(head, no_wrap=True, vertical="bottom")
-    for result in results:
-        worst = max((v.difference for _, v in result.verdicts if v.difference is not None), default=None)
-        count = Counter(verdict.outcome for _, verdict in result.verdicts)
-        counts = [f"[{STYLE[o]}]{count[o]}[/]" if count[o] else "." for o in DECIDED]
-        state = [_state(beside, result.name)] if states else []
-        table.add_row(escape(result.name), *counts, "-" if worst is None else f"{worst:.1e}", *state)
-    console.print(table)
-    # In a pipe each message stays on one line.
-    say = partial(console.print, highlight=False, soft_wrap=not console.is_terminal)
-    for result in results:
-        name = escape(result.name)
-        for source in result.sources:
-            if source.failure:
-                say(f"[bold red]{name}, {source.source}:[/] {escape(one_line(source.failure))}")
-        for law in result.invariants:
-            if law.outcome is not Outcome.AGREES:
-                what = f"{name}, {law.source}, {escape(law.name)}:"
-                say(f"[{STYLE[law.outcome]}]{what}[/] {escape(one_line(law.message))}")
-    laws = [law for result in results for law in result.invariants]
-    if laws:
-        say(f"{sum(law.outcome is Outcome.AGREES for law in laws)} of {len(laws)} invariants hold")
-    from verification.regression.baseline_section import baseline_message
-    from verification.report.sections.published_section import published_message
-
-    if published := [result for result in results if result.published]:
-        say(published_message(published))
-    known = f"baseline of {beside.update.when[:10]} in {beside.folder}: " if beside.update is not None else ""
-    say(escape(f"{known}{baseline_message(beside)}"))
-    for rows, style in ((beside.less, "bold red"), (beside.judged, "yellow")):
-        if message := manifest_message(rows):
-            say(f"[{style}]manifest:[/] {escape(message)}")
-            break
-    number = "1 case" if len(results) == 1 else f"{len(results)} cases"
-    say(f"{number} in {seconds:.0f} s; report: {escape(str(page))}")
-
-
-def _state(beside: Regression, name: str) -> str:
-    found = beside.of(name)
-    if found is None:
-        return "-"
-    return f"[{'green' if found.state is State.SAME else 'yellow'}]{found.state}[/]"

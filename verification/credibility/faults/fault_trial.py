@@ -7,8 +7,8 @@ from pathlib import Path
 import numpy as np
 
 from verification.cases.case_file import Case, read_case, shipped_cases
-from verification.cases.published_columns import PublishedColumn
 from verification.cases.published_file import PublishedCase, published_cases, read_published
+from verification.cases.published_table import PublishedColumn
 from verification.credibility.faults.default_checks import (
     Check,
     of_baseline,

@@ -18,7 +18,7 @@ from verification.page.number_text import plain
 from verification.page.page_parts import Gallery, Panel, Part, Section, Table, row, words
 from verification.page.source_labels import source_label
 from verification.page.svg_loglog import draw_histogram
-from verification.regression.baseline_section import baseline_message
+from verification.regression.baseline_change import baseline_message
 from verification.report.credibility.credibility_tables import (
     alarm_table,
     design_table,
