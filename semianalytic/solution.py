@@ -311,9 +311,9 @@ class Solution:
 
         The largest difference over the six components, for every component alike, of this level and the next,
         or of the next and the one after, at the same x/a of each. Under a smooth edge times ``INSIDE`` to
-        ``AT_EDGE``, or ``BEFORE``, plus ``FLOOR`` of the peak pressure; or the change by the uncertain radius
-        near the edge, where that is larger, unless the solution is ``relative_to_edge``. Of patches alone times
-        ``safety``, or a third, plus the error of the evaluation, ``EVALUATION`` of the peak pressure. Both with
+        ``AT_EDGE``, or ``BEFORE``, plus ``FLOOR`` of the peak; or the change by the uncertain radius
+        near the edge, where that is larger, unless the solution is ``relative_to_edge``. Of patches alone
+        times ``safety``, or a third, plus the error of the evaluation, ``EVALUATION`` of the peak. Both with
         the changes of the peak pressure by the other numerical parameters.
         Raises ValueError where no uncertainty was estimated.
         """

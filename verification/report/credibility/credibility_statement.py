@@ -46,12 +46,12 @@ COMMON_TITLES = (
     "What comparisons of a sphere test of the patches",
 )
 COMMON_EQUATION = (
-    "The semi-analytical method and the exact integral equation use the same frequency response of the layers, "
-    "derived and coded twice: the method from Papkovich potentials with reflection matrices, the reference "
-    "from state vectors with surface impedances. Otherwise they share no equation: the method finds pressures "
-    "of surface patches, the reference values of a potential along the radius, phi. Stresses of the method "
-    "are sums of point forces, those of the reference Hankel integrals over the wavenumber. The finite "
-    "elements share only the assumptions with both.",
+    "The semi-analytical method and the exact integral equation use the same frequency response of the "
+    "layers, derived and coded twice: the method from Papkovich potentials with reflection matrices, the "
+    "reference from state vectors with surface impedances. Otherwise they share no equation: the method "
+    "finds pressures of surface patches, the reference values of a potential along the radius, phi. "
+    "Stresses of the method are sums of point forces, those of the reference Hankel integrals over the "
+    "wavenumber. The finite elements share only the assumptions with both.",
     "Every number of the semi-analytical method comes from the pressures that influence coefficients, "
     "conjugate gradients and DC-FFT give to the patches: a change of the coefficients by 1 % changes contact "
     "radius, peak pressure, approach and stresses as the same change of the modulus would. The studies named "
@@ -100,7 +100,8 @@ def section(material: Material) -> Section | None:
         ),
         Part(
             "Every method states an uncertainty U for each number, estimated from coarser solutions of the "
-            "same problem: on fewer patches, or on a coarser mesh. U is checked where the exact solution is known: "
+            "same problem: on fewer patches, or on a coarser mesh. U is checked where the exact solution is "
+            "known: "
             f"{_bracketed(contacts)}",
             [coverage_table(contacts), parameter_table(contacts)],
             title="3. Solution verification",

@@ -67,7 +67,8 @@ def _grid_parts(studies: Sequence[Refinement]) -> list[Part]:
     return [
         Part(
             f"{PROBLEM[0].upper()}{PROBLEM[1:]}. With the corrected edge a smooth pressure is fitted to "
-            "the patches near the contact edge; the curves named staircase edge are of constant patches alone."
+            "the patches near the contact edge; the curves named staircase edge are of constant patches "
+            "alone."
         ),
         *map(Part, summary),
         Part("", [_refinement_table(studies, "patches per side")], gallery),
