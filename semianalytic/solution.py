@@ -34,7 +34,7 @@ INSIDE, AT_EDGE, BEFORE = 2.5, 5.0, 0.4
 # and of the peak pressure; felt to a depth of some patches
 FLOOR, REACH = (0.3, 5e-7), 8.0
 # likewise near the edge, of the ripple of the patches, which the shape averages; as far as they meet
-RIPPLE, TAPER = 0.6, 16.0
+RIPPLE, TAPER = 0.9, 16.0
 RESOLUTION = 1e-7  # of the pressure of patches: its response to the gap the iteration leaves
 
 
@@ -327,7 +327,7 @@ class Solution:
             if self._level.shape is not None:
                 shallow = 1 / (1 + np.asarray(z) / (REACH * self.diagnostics.patch_size)) ** 2
                 least = self._floor + self._near_ripple(x, y) + floor * self.peak_pressure
-                total = total + least * shallow
+                total = total + least * shallow + np.abs(sigma).max(axis=(0, 1)) * self._scale
                 if not self.relative:
                     total = np.maximum(total, self._uncertain_edge(solid, x, y, z, layer))
             total = total + RINGS * self.peak_pressure
@@ -338,6 +338,12 @@ class Solution:
             total += np.where(deep, *EVALUATION[::-1]) * self.peak_pressure
             total += self._rim(x, y, z)
         return sigma, np.broadcast_to(total, (3, 3, *change.shape)).copy()
+
+    @property
+    def _scale(self) -> float:
+        """Relative uncertainty of all pressures together, of fields far from the details of the contact."""
+        assert self.uncertainty is not None
+        return self.uncertainty.peak_pressure / self.peak_pressure
 
     def _change(self, last: Array, before: Array, x: ArrayLike, y: ArrayLike) -> Array:
         """Error by the patch size from the last change and the one before."""
