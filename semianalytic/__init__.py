@@ -1,10 +1,10 @@
 """Semi-analytical contact of a rigid or elastic indenter on a coated elastic half-space.
 
-For a sphere, an edge profile of the pressure is found by collocation of the exact deflection under it
-(``collocation``). The patches (influence coefficients, DC-FFT, conjugate gradients) then solve the contact on
-the grid, with the error of their deflection measured on the profile (``defect_correction``): they find what
-the profile leaves, and the approach. Any other indenter is solved by the patches, corrected where its contact
-has a smooth edge (``smooth_edge``); with ``edge_correction=False`` by the patches alone.
+Frequency response functions of the layers (``frf``) give influence coefficients of surface patches
+(``influence``). Constrained conjugate gradients (``contact``) with discrete convolution (``convolution``)
+find the pressures of the patches. A smooth edge between the patches is corrected from these pressures
+(``edge_correction``); the stresses below follow from the influence of point forces (``subsurface``). A sphere
+is an indenter with a round profile; with ``edge_correction=False`` the patches are left alone.
 
 >>> import semianalytic
 >>> steel = (210e9, 0.3)

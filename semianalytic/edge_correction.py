@@ -140,7 +140,7 @@ def _terms(problem: LevelProblem, axes: tuple[float, float]) -> int:
     depth = both.depth if both else np.inf
     terms = 0.6 * (6 + 6 * np.sqrt(a / depth))
     most = 12.0 if depth < 2 * d else MOST
-    return int(max(FEW, min(terms, most, a / (4 * d), 1.7 * np.sqrt(a / d))))
+    return int(max(FEW, min(terms, most, a / (4 * d), 1.5 * np.sqrt(a / d))))
 
 
 def _near_influence(problem: LevelProblem) -> Array:

@@ -21,7 +21,7 @@ __all__ = ["Indenter", "Level", "LevelProblem"]
 Array = NDArray[np.floating]
 
 SINGLE = 2**20  # patches, above which preconditioner and steps are of single precision,
-SMOOTH = 0.1  # error of the radius at a smooth edge, over d^2/a: observed at most 0.05
+SMOOTH = 0.02  # error of the radius at a smooth edge, over M d^2/a with M polynomials: observed at most 0.013
 RIPPLE = 3e-4  # of the peak pressure
 LOOSE = 1e-8  # at this tolerance or above: the iterations were measured to be as many; at 1e-12 more
 
@@ -73,14 +73,14 @@ class Level:
 
     @property
     def staircase(self) -> float:
-        """Error of the radius [m] from the patches at the edge: a tenth of a patch squared of a smooth one.
+        """Error of the radius [m] from the patches at the edge; of the second order at a smooth one.
 
         Of patches alone a quarter of a patch all along the edge, whose length is that of the staircase times
         pi/4, its mean over all directions (Cauchy-Crofton).
         """
         d = self.grid.d
         if self.shape is not None:
-            return SMOOTH * d * d / min(self.shape.axes)
+            return SMOOTH * len(self.shape.coefficients) * d * d / min(self.shape.axes)
         whole, count = self.grid.whole(self.found.pressure), namespace(self.found.pressure).count_nonzero
         touching = replace(self.grid, quarter=False).ringed(whole > 0)
         edges = int(count(touching[1:, :] ^ touching[:-1, :])) + int(

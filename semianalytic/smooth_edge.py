@@ -32,8 +32,14 @@ Indices = NDArray[np.intp]
 FULL, TAPER = 3, 8
 SHARES = np.concatenate([np.ones(FULL + 1), 1 - np.arange(1, TAPER + 1) / (TAPER + 1)])
 PARTS = 11  # of a patch a side, odd
-NEARLY = 4  # depth from which the pressure at the centre of a part is its mean, to 1e-6 of it
+NEARLY = 4  # depth from which a quadratic of f^2 gives the means of all parts, to 1e-6 of them
 NEAR = 4  # within which the deflection is that of the parts, beyond it that of their moments
+
+
+# Places in a patch, in patches from its centre: of the parts, their faces, two Gauss points in each.
+MIDDLES = (np.arange(PARTS) - PARTS // 2) / PARTS
+FACES = np.arange(PARTS + 1) / PARTS - 0.5
+ACROSS = (MIDDLES[:, None] + np.array([-0.5, 0.5]) / 3**0.5 / PARTS).ravel()
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,43 +92,50 @@ def edge_patches(shape: Shape, p: Array, grid: Grid, window: Window) -> EdgePatc
     at_edge = (depth[i, j] >= 1) & (depth[i, j] <= 2)
     missed = np.abs(held**2 - c)[at_edge] / slope[at_edge].max(initial=np.finfo(float).tiny)
     centre = np.sqrt(np.maximum(c, 0))
-    return EdgePatches(
-        i, j, centre, _parts(quadratic, depth[i, j] < NEARLY), share, float(missed.max(initial=0.0))
-    )
+    parts = _smooth_parts(quadratic)
+    # the edge cuts these along x, or along y
+    along_x = np.abs(quadratic[:, 1]) >= np.abs(quadratic[:, 2])
+    for group, swap in ((along_x, False), (~along_x, True)):
+        k = np.flatnonzero(group & (depth[i, j] < NEARLY))
+        at_x, at_y = (ACROSS, FACES) if swap else (FACES, ACROSS)
+        faces = shape.square(
+            x[i[k]][:, None, None] + at_x[:, None] * grid.d, y[j[k]][:, None, None] + at_y * grid.d
+        )
+        parts[k] = _cut_parts(faces.swapaxes(1, 2) if swap else faces, quadratic[k, 5 if swap else 3], swap)
+    return EdgePatches(i, j, centre, parts, share, float(missed.max(initial=0.0)))
 
 
-def _parts(quadratic: Array, near: NDArray[np.bool_]) -> Array:
-    """Mean of f over PARTS x PARTS parts of every patch, (k, PARTS^2).
+def _smooth_parts(quadratic: Array) -> Array:
+    """Mean of f over PARTS x PARTS parts of every patch inside, (k, PARTS^2).
 
     quadratic : f^2 = c0 + c1 x + c2 y + c3 x^2 + c4 x y + c5 y^2, in patches from the centre, (k, 6).
-    near : patches near the edge, of which the mean is exact for f^2 linear in the direction in which it
-    changes most, by two Gauss points across; elsewhere the mean follows from f^2 and its derivatives at the
-    part's centre.
+    The mean follows from f^2 and its derivatives at the centre of a part.
     """
-    middle = (np.arange(PARTS) - PARTS // 2) / PARTS
-    square = quadratic @ _terms(middle, middle)
+    square = quadratic @ _terms(MIDDLES, MIDDLES)
     slope2 = (quadratic[:, 1] ** 2 + quadratic[:, 2] ** 2)[:, None]
     bend = (quadratic[:, 3] + quadratic[:, 5])[:, None]
     square += (bend - slope2 / (4 * np.maximum(square, slope2 / 16))) / (12 * PARTS**2)
-    mean = np.sqrt(np.maximum(square, 0)).reshape(-1, PARTS, PARTS)
-    face = np.arange(PARTS + 1) / PARTS - 0.5
-    across = (middle[:, None] + np.array([-0.5, 0.5]) / 3**0.5 / PARTS).ravel()
-    terms = _terms(face, across)
-    along_x = np.abs(quadratic[:, 1]) >= np.abs(quadratic[:, 2])
-    for group, swap in ((along_x & near, False), (~along_x & near, True)):
-        c = quadratic[group][:, [0, 2, 1, 5, 4, 3]] if swap else quadratic[group]
-        square = (c @ terms).reshape(-1, PARTS + 1, 2 * PARTS)
-        square -= c[:, 3, None, None] / (6 * PARTS**2)  # its mean over the part is that of a chord
-        root = np.sqrt(np.maximum(square, 0))
-        u, v = root[:, :-1], root[:, 1:]
-        total = u + v
-        p = (total * total - u * v) / np.maximum(total, np.finfo(float).tiny)
-        low, high = square[:, :-1], square[:, 1:]
-        cut = (low > 0) != (high > 0)  # loaded on a part of its length
-        p[cut] *= (v[cut] ** 2 - u[cut] ** 2) / (high[cut] - low[cut])
-        p = (p[:, :, ::2] + p[:, :, 1::2]) / 3
-        mean[group] = p.transpose(0, 2, 1) if swap else p
-    return mean.reshape(-1, PARTS**2)
+    return np.sqrt(np.maximum(square, 0))
+
+
+def _cut_parts(square: Array, bend: Array, swap: bool) -> Array:
+    """The same of patches that the edge cuts, or nearly, from f^2 at the faces of the parts along one axis.
+
+    Exact for f^2 linear along that axis, with two Gauss points across.
+
+    square : f^2 at ``FACES`` and ``ACROSS``, (k, PARTS + 1, 2 PARTS).  bend : half its second derivative
+    along the axis, in patches, (k,).  swap : the axis is y.
+    """
+    square = square - bend[:, None, None] / (6 * PARTS**2)  # its mean over a part is that of a chord
+    root = np.sqrt(np.maximum(square, 0))
+    u, v = root[:, :-1], root[:, 1:]
+    total = u + v
+    p = (total * total - u * v) / np.maximum(total, np.finfo(float).tiny)
+    low, high = square[:, :-1], square[:, 1:]
+    cut = (low > 0) != (high > 0)  # loaded on a part of its length
+    p[cut] *= (v[cut] ** 2 - u[cut] ** 2) / (high[cut] - low[cut])
+    p = (p[:, :, ::2] + p[:, :, 1::2]) / 3
+    return (p.transpose(0, 2, 1) if swap else p).reshape(-1, PARTS**2)
 
 
 def _terms(x: Array, y: Array) -> Array:

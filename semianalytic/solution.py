@@ -327,8 +327,8 @@ class Solution:
             total = np.maximum(factor * change, share * before)
             if self._level.shape is not None:
                 shallow = 1 / (1 + np.asarray(z) / (REACH * self.diagnostics.patch_size))
-                least = (self._floor + self._near_ripple(x, y)) * shallow
-                total = total + least + floor * self.peak_pressure
+                least = self._floor + self._near_ripple(x, y) + floor * self.peak_pressure
+                total = total + least * shallow
                 if not self.relative:
                     total = np.maximum(total, self._uncertain_edge(solid, x, y, z, layer))
             total = total + RINGS * self.peak_pressure
