@@ -62,8 +62,8 @@ def faults(
 
     Args:
         names: Names of faults, see --list; all of them unless given.
-        group: Try one group: material, ball, frf, conversion_fft, conjugate_gradients, stress,
-            finite_elements, fields, references, harness, coverage.
+        group: Try one group: material, ball, frf, conversion_fft, conjugate_gradients, grids, edge,
+            stress, rings, finite_elements, fields, references, harness, coverage.
         listed: List the faults instead of trying them.
         output: Directory of the matrix, faults.html with faults.json, of the clean runs, of the trials.
         record: Store the matrix of all faults as RECORDS/faults.json, for the credibility page of a report.
