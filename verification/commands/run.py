@@ -51,6 +51,7 @@ from verification.commands.common.terminal import (
 from verification.credibility import accuracy_study as accuracy_study
 from verification.credibility.accuracy_study import AccuracyStudy
 from verification.credibility.self_tests import SelfTest, self_tests
+from verification.judging.invariants import Invariant
 from verification.judging.outcome import DECIDED, Outcome
 from verification.regression.baseline_change import Regression, State, regression, regression_json
 from verification.regression.baseline_file import read_baseline
@@ -147,12 +148,12 @@ def run(
         return _stopped(chosen, output)
     beyond = _beyond_model(results, evidence)
     if as_json:
-        print_json(_summary(results, page, beside, tests, beyond))
+        print_json(_summary(results, page, beside, tests, beyond, accuracy))
     elif not quiet:
-        _print_table(results, page, time.perf_counter() - begin, beside)
+        _print_table(results, page, time.perf_counter() - begin, beside, accuracy)
     for name, lines in beyond.items():
         print_warnings(lines, name, strict=False, silent=quiet or as_json)
-    return _code(results, beside, tests)
+    return _code(results, beside, tests, accuracy)
 
 
 def _write_page(results: Sequence[CaseResult], info: RunInfo, evidence: "Evidence", output: Path) -> Path:
@@ -179,8 +180,18 @@ def _self_tested() -> tuple[SelfTest, ...]:
     return tests
 
 
-def _code(results: Sequence[CaseResult], beside: Regression, tests: Sequence[SelfTest]) -> int:
-    return run_code(results, beside, passed=all(test.passed for test in tests))
+def _judged(accuracy: AccuracyStudy | None) -> tuple[Invariant, ...]:
+    return accuracy.verdicts if accuracy else ()
+
+
+def _code(
+    results: Sequence[CaseResult],
+    beside: Regression,
+    tests: Sequence[SelfTest],
+    accuracy: AccuracyStudy | None,
+) -> int:
+    studies = [law.outcome for law in _judged(accuracy)]
+    return run_code(results, beside, passed=all(test.passed for test in tests), studies=studies)
 
 
 def _choose(names: Sequence[str]) -> list[Case | PublishedCase]:
@@ -225,11 +236,13 @@ def _summary(
     beside: Regression,
     tests: Sequence[SelfTest],
     beyond: dict[str, tuple[str, ...]],
+    accuracy: AccuracyStudy | None,
 ) -> dict[str, object]:
     states = {case.name: case.state for case in beside.cases}
     return {
         "report": str(page),
-        "exit_code": _code(results, beside, tests),
+        "exit_code": _code(results, beside, tests, accuracy),
+        "studies": {law.name: law.outcome for law in _judged(accuracy)},
         "self_tests": {test.name: test.passed for test in tests},
         "baseline": regression_json(beside),
         "cases": {
@@ -245,7 +258,13 @@ def _summary(
     }
 
 
-def _print_table(results: Sequence[CaseResult], page: Path, seconds: float, beside: Regression) -> None:
+def _print_table(
+    results: Sequence[CaseResult],
+    page: Path,
+    seconds: float,
+    beside: Regression,
+    accuracy: AccuracyStudy | None,
+) -> None:
     console = Console()
     # Fits 80 columns beside the longest name of a shipped case; letters where there are fewer.
     heads = ["agrees", "dis-\nagrees", "incon-\nclusive", "no\nresult", "largest\ndifference"]
@@ -279,6 +298,12 @@ def _print_table(results: Sequence[CaseResult], page: Path, seconds: float, besi
     laws = [law for result in results for law in result.invariants]
     if laws:
         say(f"{sum(law.outcome is Outcome.AGREES for law in laws)} of {len(laws)} invariants hold")
+    studies = _judged(accuracy)
+    for law in studies:
+        if law.outcome is not Outcome.AGREES:
+            say(f"[{STYLE[law.outcome]}]study, {escape(law.name)}:[/] {escape(one_line(law.message))}")
+    if studies:
+        say(f"{sum(law.outcome is Outcome.AGREES for law in studies)} of {len(studies)} judged studies agree")
     from verification.regression.baseline_section import baseline_message
     from verification.report.sections.published_section import published_message
 
