@@ -1,8 +1,8 @@
 """Every number of the semi-analytical method follows from its coefficients.
 
 The surface coefficients times 1.01 are those of solids whose moduli are all 1.01 times smaller; the exact
-reference says what these, or another load, gap or compliance, do to contact radius, peak pressure and approach.
-A changed ``subsurface.stress`` changes every stress by 1 %. A few cases run in CI, all of them with
+reference says what these, or another load, gap or compliance, do to contact radius, peak pressure and
+approach. A changed ``subsurface.stress`` changes every stress by 1 %. A few cases run in CI, all of them with
 ``-m slow``.
 """
 
