@@ -125,10 +125,17 @@ def run(
             )
             messages = {test.name: "" if test.passed else test.found for test in tests}
             junit = junit_xml(results, info, beside, messages)
-            code = run_code(results, beside, passed=all(test.passed for test in tests))
+            accuracy = next((one for one in solved if isinstance(one, AccuracyStudy)), accuracy)
+            studies = accuracy.verdicts if accuracy else ()
+            code = run_code(
+                results,
+                beside,
+                passed=all(test.passed for test in tests),
+                studies=[study.outcome for study in studies],
+            )
             evidence = replace(
                 evidence,
-                accuracy=next((one for one in solved if isinstance(one, AccuracyStudy)), accuracy),
+                accuracy=accuracy,
                 formulas=next((one for one in solved if isinstance(one, EffectiveStudy)), None),
                 baseline=beside,
             )
@@ -137,9 +144,9 @@ def run(
         return _stopped(chosen, output)
     if as_json:
         passed = {test.name: test.passed for test in tests}
-        print_json(run_json(results, page, beside, passed, evidence.beyond, code))
+        print_json(run_json(results, page, beside, passed, evidence.beyond, code, studies))
     elif not quiet:
-        print_run(results, page, time.perf_counter() - begin, beside)
+        print_run(results, page, time.perf_counter() - begin, beside, studies)
     for name, lines in evidence.beyond.items():
         print_warnings(lines, name, strict=False, silent=silent)
     return code

@@ -8,6 +8,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any, TypeVar
 
+from verification.credibility.disc_errors import DiscError, disc_errors
 from verification.credibility.parameter_sweeps import Stated, Sweep, study
 from verification.credibility.refinement_studies import (
     Refinement,
@@ -15,6 +16,8 @@ from verification.credibility.refinement_studies import (
     refined_grid,
     refined_mesh,
 )
+from verification.credibility.study_verdicts import CORRECTED, PLAIN, STAIRCASE, verdicts
+from verification.judging.invariant_verdict import Invariant
 from verification.judging.invariants.influence_error import ConversionError, conversion_errors
 from verification.problem.coated_contact import CoatedContact
 from verification.running.checked_files import StoreError, read_checked, write_checked
@@ -25,15 +28,13 @@ from verification.sources.method_sources import sharing_pressure
 from verification.sources.source_registry import solvers
 
 SCHEMA = "coatcheck-accuracy/2"
-CORRECTED = "split conversion, corrected edge"
-# Patches alone: influence coefficients, DC-FFT, conjugate gradients against the exact solution.
-STAIRCASE = "split conversion, staircase edge"
-PLAIN = "plain conversion, staircase edge"
+# The error of the corrected edge is followed to the grid in use.
 FINE = (41, 49, 65, 97, 129, 257)
 KEPT = 4  # solutions of a method, some 100 MB each of the finest meshes
 STEEL = (210e9, 0.3)
 BARE = CoatedContact(10e-3, 20.0, (), STEEL)
 COATED = CoatedContact(10e-3, 20.0, ((4 * STEEL[0], 0.3, BARE.a_h),), STEEL)
+FRICTION = 0.25
 COST = 5.0  # of the whole study, over that of an uncoated contact
 PROBLEM = "a sphere of 10 mm under 20 N on steel, bare or with a coating of E1/E2 = 4, h = a_h"
 
@@ -44,7 +45,8 @@ T = TypeVar("T")
 class AccuracyStudy:
     """Errors of both methods with provenance; ``failures`` are messages on what could not be computed.
 
-    conversions, sweeps, stated : of the coated solid.   commit : None outside a checkout.
+    conversions, sweeps, stated : of the coated solid.   discs : under given pressures.
+    commit : None outside a checkout.
     """
 
     refinements: tuple[Refinement, ...]
@@ -55,6 +57,12 @@ class AccuracyStudy:
     versions: dict[str, str]
     sweeps: tuple[Sweep, ...] = ()
     stated: tuple[Stated, ...] = ()
+    discs: tuple[DiscError, ...] = ()
+
+    @property
+    def verdicts(self) -> tuple[Invariant, ...]:
+        """Each part of the semi-analytical method beside its limit."""
+        return verdicts(self.refinements, self.discs, self.conversions, self.failures)
 
 
 def measure() -> AccuracyStudy:
@@ -90,11 +98,35 @@ def measure() -> AccuracyStudy:
     sweeps, stated = attempt(
         "uncertainty by parameter", lambda: study(COATED, "coated", available=available), nothing
     )
+    discs: tuple[DiscError, ...] = attempt("discs", lambda: discs_of(), ())
     failures += [f"{sweep.method}, {sweep.parameter}, {sweep.failure}" for sweep in sweeps if sweep.failure]
     seconds = time.perf_counter() - begin
     return AccuracyStudy(
-        refinements, conversions, tuple(failures), seconds, commit(), versions(), sweeps, stated
+        refinements, conversions, tuple(failures), seconds, commit(), versions(), sweeps, stated, discs
     )
+
+
+def discs_of(patches: int = 129) -> tuple[DiscError, ...]:
+    """Given pressures on both solids, Hertz's sliding on the coated one."""
+    found = disc_errors(COATED, "coated", FRICTION, patches) + disc_errors(BARE, "uncoated", 0.0, patches)
+    return tuple(found)
+
+
+def quick() -> tuple[Invariant, ...]:
+    """The verdicts of a shorter study: fewer grids, no sweeps, no finite elements.
+
+    For trials of planted faults: whatever fails is a verdict without a result.
+    """
+    grid = partial(refined_grid, solve=solvers(COATED)["semianalytic"])
+    refinements = (
+        grid(COATED, (129,), solid="coated", setting=CORRECTED),
+        grid(COATED, (33, 65, 129), solid="coated", setting=STAIRCASE, edge_correction=False),
+    )
+    try:
+        discs = discs_of()
+    except Exception as error:
+        return verdicts(refinements, (), (), (f"discs: {failure_message(error)}",))
+    return verdicts(refinements, discs, ())
 
 
 def failed(reason: str, seconds: float) -> AccuracyStudy:

@@ -23,14 +23,21 @@ def exit_code(results: Sequence["CaseResult"]) -> int:
     return EXIT[Outcome.AGREES] if found else EXIT[Outcome.NO_RESULT]
 
 
-def run_code(results: Sequence["CaseResult"], beside: "Regression", *, passed: bool) -> int:
+def run_code(
+    results: Sequence["CaseResult"],
+    beside: "Regression",
+    *,
+    passed: bool,
+    studies: Sequence[Outcome] = (),
+) -> int:
     """That of the worst outcome; where all agree that of the self-tests, the manifest, the baseline.
 
-    passed : whether every self-test of the harness did.
+    passed : whether every self-test of the harness did.   studies : outcomes of the judged studies.
     """
     code = exit_code(results)
-    if code != EXIT[Outcome.AGREES]:
-        return code
+    for outcome in (Outcome.DISAGREES, Outcome.NO_RESULT, Outcome.INCONCLUSIVE):
+        if code == EXIT[outcome] or outcome in studies:
+            return EXIT[outcome]
     if not passed:
         return EXIT[Outcome.DISAGREES]
     return LESS if beside.less else DRIFTED if beside.unexplained else code

@@ -1,5 +1,7 @@
 """Influence coefficients are held against direct quadrature, and a poor conversion does not pass."""
 
+from types import SimpleNamespace
+
 import pytest
 
 import semianalytic
@@ -10,7 +12,15 @@ from verification.judging.invariants.influence_error import conversion_errors, i
 from verification.judging.verdict import Outcome
 from verification.problem.coated_contact import CoatedContact
 
+# The grid of a solution, all that the invariant takes from it.
+GRID = SimpleNamespace(diagnostics=SimpleNamespace(patches_per_side=65, patch_size=4e-6))
 POOR = {
+    "coefficients 1 % off": Edit(
+        "semianalytic.influence:surface_coefficients", "K *= 1 / (np.pi", "K *= 1.01 / (np.pi"
+    ),
+    "an image twice as deep": Edit(
+        "semianalytic.influence:surface_coefficients", "d, d, b, xp)", "d, d, 2 * b, xp)"
+    ),
     "a domain too small": Edit(
         "semianalytic.response:Response._transformed",
         "low, high = 1e-7 / max(b, self.total)",
@@ -22,10 +32,13 @@ POOR = {
 }
 
 
-@pytest.mark.parametrize("name", ["01_uncoated_steel", "12_polymer_glass", "15_dlc_chromium_sliding"])
+@pytest.mark.parametrize(
+    "name",
+    ["01_uncoated_steel", "12_polymer_glass", "15_dlc_chromium_sliding", "21_coated_carbide_dlc_steel"],
+)
 def test_the_default_conversion_meets_quadrature(name):
     problem = read_case(shipped_cases()[name]).problem
-    row = influence_coefficients(None, "semianalytic", problem)
+    row = influence_coefficients(GRID, "semianalytic", problem)
     assert row.outcome is Outcome.AGREES
     assert row.value < 1e-9
 
@@ -34,7 +47,7 @@ def test_the_default_conversion_meets_quadrature(name):
 def test_a_poor_conversion_does_not_pass(edit):
     problem = read_case(shipped_cases()["05_ratio_4"]).problem
     with planted((edit,)):
-        assert influence_coefficients(None, "semianalytic", problem).outcome is Outcome.DISAGREES
+        assert influence_coefficients(GRID, "semianalytic", problem).outcome is Outcome.DISAGREES
 
 
 def test_only_the_method_that_has_coefficients_is_asked():

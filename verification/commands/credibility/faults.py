@@ -63,8 +63,8 @@ def faults(
 
     Args:
         names: Names of faults, see --list; all of them unless given.
-        group: Try one group: material, ball, frf, conversion_fft, conjugate_gradients, stress,
-            finite_elements, fields, references, harness, coverage.
+        group: Try one group: material, ball, frf, conversion_fft, conjugate_gradients, grids, edge,
+            stress, rings, finite_elements, fields, references, harness, coverage.
         listed: List the faults instead of trying them.
         output: Directory of the matrix, faults.html with faults.json, of the clean runs, of the trials.
         record: Store the matrix of all faults as RECORDS/faults.json, for the credibility page of a report.
@@ -150,7 +150,7 @@ def _list(wanted: Sequence["Fault"], as_json: bool) -> None:
 
 
 def _print(found: "Record", page: Path) -> None:
-    from verification.evidence.fault_record import GROUPS, Catch
+    from verification.evidence.fault_record import COUNTED, GROUPS, Catch, Noticed
 
     shown = [catch for catch in Catch if any(row.catch is catch for row in found.rows)]
     table = named_table("group", "faults", *shown, "predicted check")
@@ -167,6 +167,10 @@ def _print(found: "Record", page: Path) -> None:
             f"{row.reason}; {row.remedy} would catch it" if row.reason else row.failure or "not explained"
         )
         print_out(f"[bold red]{row.catch}[/] {row.name}: {escape(row.description)}. {escape(reason)}")
+    for row in found.of_method:
+        if row.noticed not in COUNTED:
+            what = "no run executes it" if row.unused else f"first noticed by: {row.noticed}"
+            print_out(f"[yellow]{row.name}[/] {escape(row.description)}: {what}")
     for row in found.idle:
         print_out(f"[bold red]changes nothing[/] {row.name}")
     for row in found.alarms:
@@ -175,6 +179,10 @@ def _print(found: "Record", page: Path) -> None:
         print_out(f"[bold red]fails without a fault[/] {escape(failure)}")
     text = f"{found.caught} of {len(found.rows)} faults caught ({100 * found.share:.0f} %), "
     text += f"{found.as_predicted} by the predicted check"
+    if method := found.of_method:
+        by = ", ".join(f"{found.noticed_by(kind)} {kind}" for kind in Noticed if found.noticed_by(kind))
+        counted = found.noticed_by(*COUNTED)
+        text += f"; of the method's {len(method)} {counted} by comparison, invariant or study (first: {by})"
     if found.controls:
         text += f"; {len(found.alarms)} alarms in {len(found.controls)} negative controls"
     print_out(f"{text}; {found.seconds:.0f} s; matrix: {escape(str(page))}")

@@ -56,6 +56,11 @@ def of_invariant(row: Invariant, case: str) -> Check:
     return Check("invariants", name, case, detail, row.outcome, row.message)
 
 
+def of_study(row: Invariant) -> Check:
+    """A judged study."""
+    return Check("studies", row.name, "", "", row.outcome, row.message)
+
+
 def of_baseline(row: Drift, case: str, same: bool) -> Check:
     """A profile compared with the baseline."""
     outcome = Outcome.AGREES if same else Outcome.DISAGREES

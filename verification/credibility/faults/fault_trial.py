@@ -9,6 +9,7 @@ import numpy as np
 from verification.cases.case_file import Case, read_case, shipped_cases
 from verification.cases.published_file import PublishedCase, published_cases, read_published
 from verification.cases.published_table import PublishedColumn
+from verification.credibility import accuracy_study
 from verification.credibility.faults.default_checks import (
     Check,
     of_baseline,
@@ -16,6 +17,7 @@ from verification.credibility.faults.default_checks import (
     of_invariant,
     of_manifest,
     of_self_test,
+    of_study,
 )
 from verification.credibility.faults.fault_planting import Fault, planted
 from verification.credibility.self_tests import self_tests
@@ -37,6 +39,7 @@ from verification.sources.source_registry import METHODS
 
 Profiles = dict[tuple[str, str, str], Profile]
 Columns = list[tuple[PublishedColumn, np.ndarray]]  # each with the values the methods are compared with
+BESIDE = ("baseline", "manifest")  # columns that do not spare the studies
 FOR_PUBLISHED = METHODS[:1]  # published tables are compared with the faster method only
 
 
@@ -86,6 +89,8 @@ def try_fault(fault: Fault, clean_folder: Path) -> Trial:
             found, moved = _published(name, published[name])
             checks += found
             changes.append(moved)
+        if fault.where == METHODS[0] and all(check.passed or check.column in BESIDE for check in checks):
+            checks += [of_study(row) for row in accuracy_study.quick()]
         tests = self_tests()
     checks += [of_self_test(test) for test in tests]
     failed = [test.name for test in tests if not test.passed]

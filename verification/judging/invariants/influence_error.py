@@ -4,6 +4,7 @@ import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
+from typing import Any
 
 import numpy as np
 
@@ -11,10 +12,10 @@ from verification.judging.invariant_verdict import Invariant, decide
 from verification.problem.array_types import FloatArray
 from verification.problem.coated_contact import CoatedContact, Solution
 from verification.sources.exact_sources import solve_exactly
+from verification.sources.references.integral_equation import solids_of
 from verification.sources.references.patch_displacement import surface_coefficient
 
-PATCHES = 33
-BOUND = 1e-7  # that the default conversion has to meet; its error is 1e-10
+BOUND = 1e-8  # that the default conversion has to meet; its error is 1e-10
 
 
 @dataclass(frozen=True)
@@ -44,48 +45,40 @@ def conversion_errors(
     The grid fits the contact; the patches judged are the loaded one, some along a row, some along the
     diagonal, out to the corner.
     """
-    from semianalytic import frf, halfspace, influence
-    from semianalytic.response import Response
+    from semianalytic import frf, influence
+    from semianalytic.inputs import Numerics
 
     a = solve_exactly(problem, {"estimate_uncertainty": False}).contact_radius
     n, d = patches, 2.24 * a / patches
-    E, nu = problem.coatings[0][:2] if problem.coatings else problem.substrate
-    scale = (1 - nu**2) / (np.pi * E)
-    thickness = [h for _, _, h in problem.coatings]
-    steps = np.unique(np.round(np.geomspace(1, n - 1, 9)).astype(int))
-    places = [(0, 0), *((int(i), 0) for i in steps), *((int(i), int(i)) for i in steps)]
-    places.sort(key=lambda place: np.hypot(*place))
-    exact = np.array(
-        [surface_coefficient(i * d, j * d, d, problem.coatings, problem.substrate) for i, j in places]
-    )
+    body = _body(problem)
+    scale = 1 / (np.pi * body.contact_modulus)
+    places = _places(n)
+    exact = _by_quadrature(problem, places, d)
     distance = tuple(float(np.hypot(i, j) * d / a) for i, j in places)
 
     def excess(k: FloatArray) -> FloatArray:
         return frf.compliance_excess(k, problem.coatings, problem.substrate)
 
-    layers = Response(excess, thickness[0] if thickness else 0.0, sum(thickness))
+    def in_use(conversion: str, wide: int) -> FloatArray:
+        return influence.surface_coefficients(
+            n, d, body, Numerics(conversion=conversion, enlarge=max(wide, 1))
+        )
 
-    def split(wide: int) -> FloatArray:
-        C = halfspace.surface_deflection(n, n, d, d)
-        if not problem.coatings:
-            return C
-        c, b = layers.image
-        C = C + c * halfspace.surface_deflection(n, n, d, d, b)
-        return C + influence.remainder_coefficients(n, d, layers, enlarge=wide)
+    def without_aliases(wide: int) -> FloatArray:
+        return scale * influence.plain_coefficients(n, d, excess, enlarge=wide, aliases=0)
 
-    def plain(wide: int, aliases: int) -> FloatArray:
-        return influence.plain_coefficients(n, d, excess, enlarge=wide, aliases=aliases)
-
-    wanted: list[tuple[str, int, int, Callable[[], FloatArray]]] = [("split", 0, 0, partial(split, 0))]
+    wanted: list[tuple[str, int, int, Callable[[], FloatArray]]] = [
+        ("split", 0, 0, partial(in_use, "split", 0))
+    ]
     for wide in enlarge:
-        wanted.append(("plain", wide, 0, partial(plain, wide, 0)))
-        wanted.append(("plain", wide, 2, partial(plain, wide, 2)))
+        wanted.append(("plain", wide, 0, partial(without_aliases, wide)))
+        wanted.append(("plain", wide, 2, partial(in_use, "plain", wide)))
         if problem.coatings:
-            wanted.append(("split-fft", wide, 2, partial(split, wide)))
+            wanted.append(("split-fft", wide, 2, partial(in_use, "split-fft", wide)))
     found = []
     for conversion, wide, aliases, convert in wanted:
         begin = time.perf_counter()
-        K = scale * convert()
+        K = convert()
         seconds = time.perf_counter() - begin
         gap = np.abs(np.array([K[place] for place in places]) - exact)
         error = tuple(float(e) for e in gap / exact)
@@ -95,10 +88,45 @@ def conversion_errors(
 
 
 def influence_coefficients(solution: Solution, source: str, problem: CoatedContact) -> Invariant:
-    """The default conversion on a grid over the contact, at near and far patches, over the largest.
+    """The coefficients in use, of patches and of their parts at the edge, at near and far offsets.
 
-    Checked by themselves, since the edge profile of a sphere hides the error of a poor conversion.
+    ``surface_coefficients`` is called as the solution calls it: on its grid, for both bodies. The quadrature
+    is that of the response of the layers in the references, around the edge of each patch.
     """
-    found = conversion_errors(problem, PATCHES, ())[0]
-    law = f"influence coefficients at {len(found.error)} patches are those of direct quadrature"
-    return decide("influence coefficients", source, law, found.largest, BOUND)
+    from semianalytic import influence, smooth_edge
+    from semianalytic.inputs import Numerics
+
+    body, diagnostics = _body(problem), solution.diagnostics
+    n, d, parts = diagnostics.patches_per_side, diagnostics.patch_size, smooth_edge.PARTS
+    errors = []
+    for size, side in ((n, d), ((smooth_edge.NEAR + 1) * parts, d / parts)):
+        K = influence.surface_coefficients(size, side, body, Numerics())
+        places = _places(size)
+        exact = _by_quadrature(problem, places, side)
+        errors.append((np.array([K[place] for place in places]) - exact) / exact[0])
+    error = np.concatenate(errors)
+    law = f"influence coefficients at {error.size} patches and parts are those of direct quadrature"
+    return decide("influence coefficients", source, law, error, BOUND)
+
+
+def _body(problem: CoatedContact) -> Any:
+    """The bodies in contact as the method holds them."""
+    from semianalytic.inputs import Body
+
+    ball = None if problem.ball is None else Body.of_ball(problem.ball, problem.friction)
+    return Body(problem.coatings, problem.substrate, problem.friction, ball)
+
+
+def _places(n: int) -> list[tuple[int, int]]:
+    """The loaded patch, some along a row, some along the diagonal, nearest first."""
+    steps = np.unique(np.round(np.geomspace(1, n - 1, 9)).astype(int))
+    places = {(0, 0), *((int(i), 0) for i in steps), *((int(i), int(i)) for i in steps)}
+    return sorted(places, key=lambda place: float(np.hypot(*place)))
+
+
+def _by_quadrature(problem: CoatedContact, places: Sequence[tuple[int, int]], side: float) -> FloatArray:
+    """The approach of both surfaces at each offset under unit pressure on a patch [m/Pa]."""
+    solids = solids_of(problem.coatings, problem.substrate, problem.ball)
+    return np.array(
+        [sum(surface_coefficient(i * side, j * side, side, *one) for one in solids) for i, j in places]
+    )

@@ -3,7 +3,7 @@
 from collections import Counter
 from collections.abc import Sequence
 
-from verification.evidence.fault_record import COLUMNS, GROUPS, Catch, Record, Tally
+from verification.evidence.fault_record import COLUMNS, COUNTED, GROUPS, METHOD, Catch, Noticed, Record, Tally
 from verification.evidence.fault_record import Row as Fault
 from verification.page.html_page import render_sections
 from verification.page.number_text import plain, scientific, seconds
@@ -33,6 +33,14 @@ def faults_message(record: Record) -> str:
         f"({plain(100 * record.share, 3)} %), "
         f"{record.as_predicted} of them by the check predicted before the trial"
     )
+    if method := record.of_method:
+        by = ", ".join(f"{record.noticed_by(kind)} by a {kind}" for kind in COUNTED).replace(
+            "a inv", "an inv"
+        )
+        text += (
+            f". Of {len(method)} in the semi-analytical method {record.noticed_by(*COUNTED)} are noticed by "
+            f"comparisons, invariants and judged studies ({by} first)"
+        )
     if record.controls:
         text += (
             f"; of {len(record.controls)} negative controls {len(record.alarms) or 'none'} raised an alarm"
@@ -56,6 +64,17 @@ def faults_section(record: Record) -> Section:
         "core."
     )
     parts = [Part(method), Part(faults_message(record), [_score(record)])]
+    if record.of_method:
+        text = (
+            "Faults in the semi-analytical method, by the check that notices them first, in this order: a "
+            "comparison with another source, an invariant, a judged study, then what does not count."
+        )
+        parts.append(Part(text, [_first_noticed(record)]))
+    if unused := [row for row in record.of_method if row.unused]:
+        names = "; ".join(f"{row.name}: {row.description}" for row in unused)
+        parts.append(
+            Part(f"No run executes what these faults change, an argument for a further case. {names}.")
+        )
     if survivors := _survivors(record):
         parts.append(
             Part("Faults that were not detected, with the reason and a possible check.", [survivors])
@@ -151,6 +170,20 @@ def _score(record: Record) -> Table:
         ["group", "faults", *(str(catch) for catch in shown), "detected", "predicted check"],
         rows,
     )
+
+
+def _first_noticed(record: Record) -> Table:
+    groups = [(title, rows) for title, rows in _groups(record) if rows[0].group in METHOD]
+    groups.append(("All", list(record.of_method)))
+    rows = []
+    for title, members in groups:
+        count = Counter(fault.noticed for fault in members)
+        counted = sum(count[kind] for kind in COUNTED) / len(members)
+        cells = [Cell(str(count[kind] or "–"), count[kind]) for kind in Noticed]
+        share = number(counted, lambda share: f"{plain(100 * share, 3)} %")
+        rows.append(row(title, number(len(members), str), *cells, share))
+    columns = ["group", "faults", *(str(kind) for kind in Noticed), "counted"]
+    return Table("What notices a fault first; the first three kinds are counted.", columns, rows)
 
 
 def _survivors(record: Record) -> Table:

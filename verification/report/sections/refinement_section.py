@@ -4,8 +4,11 @@ from collections.abc import Sequence
 
 from verification.credibility.accuracy_study import CORRECTED, PLAIN, PROBLEM, STAIRCASE
 from verification.credibility.refinement_studies import QUANTITIES, Refinement, settled
+from verification.judging.invariants import Invariant
+from verification.judging.outcome import Outcome
 from verification.page.number_text import factor, scientific, seconds
 from verification.page.page_parts import Cell, Gallery, Part, Section, Table, number, row
+from verification.page.source_labels import OUTCOMES, row_css
 from verification.page.svg_loglog import DASHES, DOTS, MIXED, UNKNOWN, Plot, Trail, panels
 from verification.problem.quantity import QUANTITIES as QUANTITY
 from verification.problem.quantity import SCALARS
@@ -41,7 +44,9 @@ def semianalytic_section(material: Material) -> Section | None:
     parts = _grid_parts(grids) if any(one.levels for one in grids) else []
     if study.conversions:
         parts.append(conversion_part(study.conversions))
-    failures = tuple(f for f in study.failures if not f.startswith("fem_reference"))
+    parts = [*_judged_parts(study.verdicts), *parts]
+    failures = [f for f in study.failures if not f.startswith("fem_reference")]
+    failures += [one.message for one in study.verdicts if one.outcome is Outcome.DISAGREES]
     return Section("semi-analytical-accuracy", "Semi-analytical accuracy", parts, failures)
 
 
@@ -54,6 +59,31 @@ def finite_element_section(material: Material) -> Section | None:
     parts = _element_parts(elements) if any(one.levels for one in elements) else []
     failures = tuple(f for f in study.failures if f.startswith("fem_reference"))
     return Section("finite-element-accuracy", "Finite element accuracy", parts, failures)
+
+
+def _judged_parts(found: Sequence[Invariant]) -> list[Part]:
+    """Each part of the method beside its limit, which counts for the exit code of the run."""
+    if not found:
+        return []
+    rows = [
+        row(
+            one.name,
+            Cell(one.message, css="reason"),
+            Cell(OUTCOMES[one.outcome].mark, one.share, f"verdict {OUTCOMES[one.outcome].css}"),
+            css=row_css(one.outcome),
+        )
+        for one in sorted(found, key=lambda one: OUTCOMES[one.outcome].rank)
+    ]
+    held = sum(one.outcome is Outcome.AGREES for one in found)
+    text = (
+        f"{held} of {len(found)} judged errors of the method's parts are within their limits: patches alone, "
+        "patches with a corrected edge, given pressures on a disc, influence coefficients, each against an "
+        "exact solution. A limit that is exceeded makes the run exit with 1."
+    )
+    table = Table(
+        "The parts of the method beside their limits.", ["part", "error", "verdict"], rows, css="verdicts"
+    )
+    return [Part(text, [table])]
 
 
 def _grid_parts(studies: Sequence[Refinement]) -> list[Part]:

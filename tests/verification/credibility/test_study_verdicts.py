@@ -1,0 +1,100 @@
+"""The parts of the method are judged: each meets its limit, and what spoils a part does not."""
+
+from dataclasses import replace
+from types import SimpleNamespace
+
+import pytest
+from synthetic_study import study
+
+from verification.credibility import accuracy_study as accuracy_study
+from verification.credibility.disc_errors import HERTZ, DiscError
+from verification.credibility.faults.fault_planting import Edit, planted
+from verification.credibility.refinement_studies import Level, Refinement
+from verification.credibility.study_verdicts import STAIRCASE, verdicts
+from verification.judging.outcome import Outcome
+from verification.regression.run_exit_codes import run_code
+
+FINE = {"p0": 1e-6, "a": 1e-6, "approach": 1e-6, "pressure": 1e-4, "stress": 1e-6}
+
+
+def staircase(last=FINE):
+    """A staircase study of second order, of first order in the pressure."""
+    levels = [
+        Level(
+            f"N = {n}",
+            float(n),
+            1.0,
+            {q: e * (257 / n) ** (1 if q == "pressure" else 2) for q, e in FINE.items()},
+        )
+        for n in (33, 65, 129)
+    ]
+    return Refinement(
+        "semianalytic", "coated", STAIRCASE, (*levels, Level("N = 257", 257.0, 1.0, dict(last)))
+    )
+
+
+@pytest.fixture(scope="module")
+def clean():
+    return accuracy_study.quick()
+
+
+def test_every_part_meets_its_limit(clean):
+    assert [row.name for row in clean if row.outcome is not Outcome.AGREES] == []
+    assert {row.name.partition(":")[0] for row in clean} == {"coated", "uncoated"}
+
+
+@pytest.mark.parametrize(
+    ("edit", "part"),
+    [
+        (
+            Edit("semianalytic.influence:surface_coefficients", "K *= 1 / (np.pi", "K *= 1.0001 / (np.pi"),
+            "central deflection",
+        ),
+        (
+            Edit(
+                "semianalytic.rings:_panels",
+                "weight.append(measure * rho)",
+                "weight.append(1.0001 * measure * rho)",
+            ),
+            "stress, inside",
+        ),
+        (
+            Edit("semianalytic.nodal_convolution:samples", "/ 24", "/ 12"),
+            "stress on a plane",
+        ),
+    ],
+    ids=["coefficients", "rings", "patches"],
+)
+def test_a_spoiled_part_does_not(edit, part):
+    with planted((edit,)):
+        bad = [row.name for row in accuracy_study.quick() if row.outcome is Outcome.DISAGREES]
+    assert any(name.endswith(part) for name in bad), bad
+
+
+def test_an_error_beyond_its_limit_and_an_order_below_disagree():
+    assert {row.outcome for row in verdicts([staircase()], [], [])} == {Outcome.AGREES}
+    rows = verdicts([staircase(FINE | {"p0": 1e-4, "pressure": 1e-3})], [], [])
+    bad = {row.name.rpartition(": ")[2] for row in rows if row.outcome is Outcome.DISAGREES}
+    assert bad == {"p0, N = 257", "order of p0", "order of pressure"}
+    (disc,) = verdicts([], [DiscError(HERTZ, "coated", "stress, inside", 2e-8)], [])
+    assert disc.outcome is Outcome.DISAGREES
+
+
+def test_a_study_that_fails_is_no_result():
+    failed = replace(staircase(), failure="N = 257: not settled")
+    outcomes = [row.outcome for row in verdicts([failed], [], [], ("discs: no grid fits",))]
+    assert outcomes == [Outcome.NO_RESULT, Outcome.NO_RESULT]
+
+
+def test_the_exit_code_of_a_run_counts_the_studies():
+    fine = SimpleNamespace(less=(), unexplained=())
+    one = [SimpleNamespace(outcome=Outcome.AGREES)]
+    assert run_code(one, fine, passed=True, studies=[Outcome.AGREES]) == 0
+    assert run_code(one, fine, passed=True, studies=[Outcome.AGREES, Outcome.DISAGREES]) == 1
+    assert run_code(one, fine, passed=True, studies=[Outcome.NO_RESULT]) == 3
+
+
+def test_a_stored_study_is_judged_when_it_is_read_again():
+    found = study("conversions: no grid fits")
+    back = accuracy_study.from_json(accuracy_study.to_json(found))
+    assert [row.name for row in back.verdicts] == [row.name for row in found.verdicts]

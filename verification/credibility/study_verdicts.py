@@ -1,0 +1,128 @@
+"""Verdicts on the parts of the semi-analytical method: errors against exact solutions, beside their limits.
+
+Patches alone, patches with a corrected edge, given pressures on a disc, influence coefficients. A limit on an
+error holds on the finest grid of a study; one on an order holds over its grids. With d the side of a patch,
+d/a = 0.009 at 257 patches:
+
+    staircase    of first order in the pressure, of second in what it integrates: 0.1 d/a, (d/a)^2 / 3
+    its radius   a patch along an edge is loaded or not: d/4
+    corrected    p0 and approach 0.03 (d/a)^2, radius and stress 0.1 (d/a)^2, pressure, steep at the edge, 0.3
+    plain        the conversion errs by 0.4 % at the loaded patch, and more far away
+    discs        the quadratures of rings and tables promise 1e-8; patches carry a step of the pressure to
+                 second order, and a pressure that falls to zero to third
+"""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import numpy as np
+
+from verification.credibility.disc_errors import DiscError
+from verification.credibility.refinement_studies import Refinement
+from verification.judging.invariant_verdict import Invariant, absent, decide
+from verification.judging.invariants.influence_error import BOUND, ConversionError
+from verification.judging.outcome import Outcome
+
+__all__ = ["CORRECTED", "PLAIN", "STAIRCASE", "verdicts"]
+
+CORRECTED = "split conversion, corrected edge"
+# Patches alone: influence coefficients, DC-FFT, conjugate gradients against the exact solution.
+STAIRCASE = "split conversion, staircase edge"
+PLAIN = "plain conversion, staircase edge"
+SOURCE = "semianalytic"
+
+
+@dataclass(frozen=True)
+class Limits:
+    """Largest error by quantity on ``patches`` a side, least order by quantity.
+
+    On fewer patches a limit is larger: by (257/patches) to the power ``falls``.
+    """
+
+    error: dict[str, float]
+    order: dict[str, float]
+    falls: dict[str, float]
+
+
+SECOND = {"p0": 2.0, "a": 2.0, "approach": 2.0, "pressure": 2.0, "stress": 2.0}
+STAIRS = SECOND | {"a": 1.0, "pressure": 1.0}
+FIXED = dict.fromkeys(SECOND, 0.0)
+OF_GRID = 257
+LIMITS = {
+    CORRECTED: Limits(
+        {"p0": 2e-6, "a": 1e-5, "approach": 2e-6, "pressure": 2e-5, "stress": 1e-5}, {"p0": 1.5}, SECOND
+    ),
+    STAIRCASE: Limits(
+        {"p0": 3e-5, "a": 2.2e-3, "approach": 3e-5, "pressure": 2e-3, "stress": 1e-4},
+        {"p0": 1.5, "approach": 1.5, "pressure": 0.8, "stress": 1.5},
+        STAIRS,
+    ),
+    PLAIN: Limits(
+        {"p0": 2e-3, "a": 5e-3, "approach": 1e-2, "pressure": 5e-3, "stress": 5e-3}, {"pressure": 0.8}, FIXED
+    ),
+}
+RINGS, PATCHES = 1e-8, 1e-6
+DISCS = {
+    "stress, surface": RINGS,
+    "stress, inside": RINGS,
+    "displacement": RINGS,
+    "central deflection": 2 * PATCHES,
+    "stress on a plane": PATCHES,
+    "displacement on a plane": PATCHES,
+}
+
+
+def verdicts(
+    refinements: Iterable[Refinement],
+    discs: Iterable[DiscError],
+    conversions: Iterable[ConversionError],
+    failures: Iterable[str] = (),
+) -> tuple[Invariant, ...]:
+    """A verdict on each part of the method: the error of its study is below its limit."""
+    found: list[Invariant] = []
+    for one in refinements:
+        if one.method == SOURCE and one.setting in LIMITS:
+            found += _of_refinement(one, LIMITS[one.setting])
+    for disc in discs:
+        found.append(
+            _below(f"{disc.solid}: disc, {disc.pressure}: {disc.quantity}", disc.error, DISCS[disc.quantity])
+        )
+    for conversion in conversions:
+        if conversion.conversion == "split":
+            found.append(_below("coated: influence coefficients", conversion.largest, BOUND))
+    found += [
+        absent(text.partition(":")[0], SOURCE, text)
+        for text in failures
+        if not text.startswith("fem_reference")
+    ]
+    return tuple(found)
+
+
+def _of_refinement(one: Refinement, limits: Limits) -> list[Invariant]:
+    name = f"{one.solid}: {one.setting}"
+    if one.failure or not one.levels:
+        return [absent(name, SOURCE, one.failure or f"{name}: nothing was computed")]
+    last = one.levels[-1]
+    coarser = OF_GRID / last.resolution
+    found = [
+        _below(f"{name}: {q}, {last.name}", last.errors[q], limit * coarser ** limits.falls[q])
+        for q, limit in limits.error.items()
+    ]
+    for q, least in limits.order.items():
+        order, label = one.order(q), f"{name}: order of {q}"
+        if len(one.levels) < 3:
+            continue
+        if order is None:
+            found.append(Invariant(label, SOURCE, None, None, Outcome.DISAGREES, "the error does not fall"))
+            continue
+        outcome = Outcome.AGREES if order >= least else Outcome.DISAGREES
+        message = f"order {order:.2f}, at least {least:g} is required"
+        # as a residual: the side of a patch at this order over that at the least one
+        found.append(
+            Invariant(label, SOURCE, least, order, outcome, message, cap=np.inf, points=len(one.levels))
+        )
+    return found
+
+
+def _below(name: str, error: float, limit: float) -> Invariant:
+    return decide(name, SOURCE, "error against the exact solution", error, limit, cap=np.inf)
