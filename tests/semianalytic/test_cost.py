@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import semianalytic
-from semianalytic import subsurface
+from semianalytic import patch_field
 from semianalytic.inputs import Body
 
 
@@ -47,7 +47,7 @@ def test_stresses_of_a_plane_hold_few_arrays_at_a_time():
     x = (np.arange(n) - (n - 1) / 2) * (2.2 / n)
     pressure = np.sqrt(np.maximum(1 - x[:, None] ** 2 - x[None, :] ** 2, 0))
     body = Body(((4.0, 0.3, 0.3),), (1.0, 0.3), 0.25)
-    plane = subsurface.stress_plane(0.3, 0, grid_x=x, grid_y=x, body=body)
+    plane = patch_field.stress_plane(0.3, 0, grid_x=x, body=body)
     tracemalloc.start()
     result = plane(pressure)
     peak = tracemalloc.get_traced_memory()[1]

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import semianalytic
-from semianalytic import nested, smooth_edge
+from semianalytic import edge_correction, nested
 
 R, W = 10e-3, 20.0
 STEEL = (210e9, 0.3)
@@ -89,17 +89,19 @@ def test_contact_that_reaches_the_rim_of_its_window_is_solved_on_the_whole_squar
         assert indent(ellipsoid).approach == pytest.approx(expected.approach, rel=1e-7)
 
 
-def test_edge_that_is_lost_in_the_second_round_is_left_to_the_patches(monkeypatch):
-    expected, fit, calls = indent(ellipsoid, edge_correction=False), smooth_edge.fit, []
+def test_edge_that_is_lost_on_the_finest_grid_is_left_to_the_patches(monkeypatch):
+    expected, rounds, found = indent(ellipsoid, edge_correction=False), edge_correction._rounds, []
 
-    def once(*given, **options):
-        calls.append(None)
-        return fit(*given, **options) if len(calls) < 2 else None
+    def lost(problem, *given):
+        found.append(problem.grid.n)
+        return None if problem.grid.n == 129 else rounds(problem, *given)
 
-    monkeypatch.setattr(smooth_edge, "fit", once)
-    found = indent(ellipsoid)
-    assert len(calls) == 2
-    np.testing.assert_array_equal(found.patch_pressure, expected.patch_pressure)
+    monkeypatch.setattr(edge_correction, "_rounds", lost)
+    s = indent(ellipsoid)
+    assert found.count(129) > 1  # from the coarser shape, then from the patches
+    assert s.contact_radius == expected.contact_radius
+    # both to the tolerance of the iteration
+    np.testing.assert_allclose(s.patch_pressure, expected.patch_pressure, rtol=0, atol=1e-6 * P_H)
 
 
 @pytest.mark.parametrize("level", [0.0, 1.0])

@@ -142,7 +142,10 @@ def test_surface_tractions_are_minus_p_and_minus_q(body):
 
 def test_layers_of_equal_moduli_are_no_layers():
     x, y = np.array([0.0, 0.4, -0.8, 1.0, 1.7]), np.array([0.1, 0.0, 0.3, 0.0, -2.2])
-    for body in (Body(((1.0, NU, 0.02), (1.0, NU, 0.7)), (1.0, NU), F), replace(BARE, coatings=((1, NU, 1),))):
+    for body in (
+        Body(((1.0, NU, 0.02), (1.0, NU, 0.7)), (1.0, NU), F),
+        replace(BARE, coatings=((1.0, NU, 1.0),)),
+    ):
         interfaces = np.cumsum(body.thickness)
         for z in (0.0, 0.013, interfaces[0], 0.1, interfaces[-1], 3.0):
             layer = int(np.searchsorted(interfaces, z))

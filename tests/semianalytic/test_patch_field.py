@@ -1,0 +1,74 @@
+"""Fields below patches: those of the rings, away from the edge; planes; few depths for many."""
+
+import numpy as np
+import pytest
+
+from semianalytic import patch_field, subsurface
+from semianalytic.inputs import Body
+from semianalytic.prescribed import Prescribed, patch_mean
+from semianalytic.rings import Disc
+
+N = 129
+D = 2.24 / N
+X = (np.arange(N) - N // 2) * D
+HERTZ = Prescribed(1.0, lambda r: np.sqrt(np.maximum(1 - r**2, 0)))
+GRID = {"grid_x": X, "pressure": patch_mean(HERTZ, X, D)}
+BODIES = {
+    "bare": Body((), (1.0, 0.3), 0.3),
+    "two coatings": Body(((4.0, 0.25, 0.3), (0.3, 0.4, 0.15)), (1.0, 0.3), 0.3),
+    "thin and stiff": Body(((10.0, 0.3, 0.05),), (1.0, 0.3), 0.3),
+    "half a patch": Body(((4.0, 0.2, D / 2),), (1.0, 0.3), 0.3),
+}
+
+
+@pytest.mark.parametrize("name", BODIES)
+@pytest.mark.parametrize("field", ["stress", "displacement"])
+def test_field_is_that_of_the_rings(name, field):
+    body = BODIES[name]
+    rng = np.random.default_rng(5)
+    r, angle = rng.uniform(0, 2, 60), rng.uniform(0, 2 * np.pi, 60)
+    r[np.abs(r - 1) < 4 * D] = 0.5
+    r[:3] = 10, 0, 30
+    depths = np.concatenate([[0], np.cumsum(body.thickness), np.geomspace(0.003, 10, 8)])
+    z = rng.choice(depths, r.size)
+    points = r * np.cos(angle), r * np.sin(angle), z, body.layer_of(z, None)
+    disc = Disc(1.0, HERTZ.of_square)
+    exact = getattr(subsurface, field)(*points, pressure=disc, body=body)
+    found = getattr(patch_field, field)(*points, **GRID, body=body)
+    # of stress 2e-4 at f = 1 more than three patches from the edge, on half the default grid
+    tolerance = {"stress": 1e-4, "displacement": 2e-5}[field] * max(1.0, np.abs(exact).max())
+    np.testing.assert_allclose(found, exact, rtol=0, atol=tolerance)
+
+
+@pytest.mark.parametrize(("z", "layer"), [(0.0, 0), (0.02, 0), (0.3, 0), (0.3, 1), (1.0, 2)])
+@pytest.mark.parametrize("field", ["stress", "displacement"])
+def test_plane_is_the_field_at_the_patch_centres(field, z, layer):
+    body = BODIES["two coatings"]
+    plane = getattr(patch_field, field + "_plane")(z, layer, grid_x=X, body=body)
+    whole = plane(GRID["pressure"])
+    i, j = np.array([64, 3, 90, 128, 0]), np.array([64, 10, 70, 128, 77])
+    at_points = getattr(patch_field, field)(X[i], X[j], z, layer, **GRID, body=body)
+    np.testing.assert_allclose(whole[:, i, j], at_points, atol=2e-6)  # coarser lattices deep down
+
+
+def test_plane_refuses_a_pressure_of_another_grid():
+    plane = patch_field.stress_plane(1.0, 0, grid_x=X, body=BODIES["bare"])
+    with pytest.raises(ValueError, match=r"\(3, 3\)"):
+        plane(np.zeros((3, 3)))
+
+
+def test_many_depths_are_interpolated_to_what_each_gives_alone():
+    body = Body(((4.0, 0.25, 0.02), (0.3, 0.4, 0.15)), (1.0, 0.3), 0.3)
+    rng = np.random.default_rng(11)
+    x, y = rng.uniform(-0.6, 0.6, (2, 30))
+    # shallow ones to 1e-6; with few depths those below to 1e-3
+    for few, scale, atol in ((False, 0.02, 2e-6), (True, 2.0, 1e-3)):
+        z = scale * rng.uniform(0, 1, 30)
+        layer = body.layer_of(z, None)
+        together = patch_field.stress(x, y, z, layer, **GRID, body=body, few_depths=few)
+        alone = [patch_field.stress(x[i], y[i], z[i], layer[i], **GRID, body=body) for i in range(5)]
+        np.testing.assert_allclose(together[:, :5], np.stack(alone, axis=-1), rtol=0, atol=atol)
+
+
+def test_no_points_give_no_stress():
+    assert patch_field.stress(np.zeros(0), 0.0, 0.0, 0, **GRID, body=BODIES["bare"]).shape == (6, 0)
