@@ -28,6 +28,7 @@ MISFIT, COARSE_MISFIT = (
     0.3,
     2.0,
 )  # patches by which the pressures near a smooth edge may miss f; in the first rounds
+LOST = 0.2  # of the load, the most that constant patches miss of a pressure with a smooth edge
 OUTER_TERMS = 6  # polynomials of a pressure that is fitted near the edge alone
 NARROW = 5  # patches between centre and edge, below which the edge is not resolved
 FEW, MOST = 3, 60  # polynomials
@@ -88,6 +89,8 @@ def _rounds(problem: LevelProblem, gap: Array, shape: Shape, p: Array | None) ->
         if not edge.misfit < COARSE_MISFIT and number >= HELD:
             return None
         u, missing = smooth_edge.beyond_centres(edge, p, grid, deflection, near)
+        if not abs(missing) < LOST * grid.force(p):
+            return None
         problem.gap = gap + xp.asarray(u)
         level = problem.solve(0.0, missing, start=xp.asarray(p))
         convolutions += level.convolutions + 1

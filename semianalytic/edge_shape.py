@@ -21,6 +21,7 @@ from functools import cached_property
 import numpy as np
 from numpy.polynomial import legendre
 from numpy.typing import ArrayLike, NDArray
+from scipy.ndimage import maximum_filter
 
 __all__ = ["EVEN", "FULL", "ROUND", "Shape", "Step", "fitted", "start"]
 
@@ -36,6 +37,8 @@ FADED = (
 )  # t over which a pressure fitted near the edge alone fades towards the inside; so does its fit
 BLUNT = 0.7  # patches from the edge, nearer than which the column of the edge, infinite there, is constant
 SLACK = 0.15  # patches by which the edge may pass the centre of a loaded or of an unloaded patch
+FAR = -0.6  # t beyond which the contour is an ellipse
+WIDEST = 0.3  # largest change of an axis, as a coefficient c
 ANGLES = 256  # at which a contour that is no ellipse is sampled
 
 
@@ -85,9 +88,12 @@ class Shape:
         power = {0: np.ones(s2.shape, dtype=complex)}
         for n in range(1, max(map(abs, self.harmonics)) + 1):
             power[n] = power[n - 1] * (u + 1j * v)
-        for k, (n, c) in enumerate(zip(self.harmonics, self.contour, strict=True)):
+        for k, n in enumerate(self.harmonics):
             H[k] = power[n].real if n >= 0 else power[-n].imag
-            t = t + 2 * c * H[k]
+        high = np.abs(self.harmonics) > 2
+        t = t + 2 * np.tensordot(np.where(high, 0.0, self.contour), H, 1)
+        # far away the higher harmonics would make t positive again
+        t = np.where(t > FAR, t + 2 * np.tensordot(np.where(high, self.contour, 0.0), H, 1), t)
         return t, s2, H
 
     def polynomials(self, x: ArrayLike, y: ArrayLike) -> tuple[Array, Array, Array]:
@@ -146,7 +152,10 @@ class Shape:
         k = len(self.harmonics)
         by = dict(zip(self.harmonics, x[-k:], strict=True))
         c0, c2 = by.get(0, 0.0), by.get(2, 0.0)
-        A, B = (w / float(np.sqrt(1 - 2 * c)) for w, c in zip(self.axes, (c0 + c2, c0 - c2), strict=True))
+        A, B = (
+            w / float(np.sqrt(1 - 2 * np.clip(c, -WIDEST, WIDEST)))
+            for w, c in zip(self.axes, (c0 + c2, c0 - c2), strict=True)
+        )
         centre = self.centre[0] + A * by.get(1, 0.0), self.centre[1] + B * by.get(-1, 0.0)
         kept = [n not in (0, 1, -1, 2) for n in self.harmonics]
         contour = self.contour + np.where(kept, x[-k:], 0.0)
@@ -261,8 +270,9 @@ def fitted(
 def _between_centres(shape: Shape, loaded: NDArray[np.bool_], x: Array, y: Array, patch: float) -> Shape:
     """The shape with its edge outside the centres of loaded patches and inside those of unloaded ones."""
     t = shape.polynomials(x, y)[0]
+    beside = maximum_filter(loaded, 3) & ~loaded
     slack = 2 * SLACK * patch / min(shape.axes)
-    low, high = float(t[loaded].min()), float(t[~loaded].max(initial=-np.inf))
+    low, high = float(t[loaded].min()), float(t[beside].max(initial=-np.inf))
     change = np.zeros((len(shape.coefficients) + 1) * len(shape.harmonics))
     if low < -slack:
         change[-len(shape.harmonics)] = (-slack - low) / 2

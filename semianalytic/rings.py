@@ -36,6 +36,7 @@ Step = Callable[[float], float]
 LEAST = 1e-9  # distance from the edge, over the width of the contact, below which a point lies on it
 AROUND = 128  # angles at which a contour that is no circle is sampled,
 RING = 48  # and a ring around a point
+FLAT = 1e-9  # relative change of t along a ring that has no nearest place to the edge
 AT_ONCE = 400_000  # points of the pressure held at a time
 
 
@@ -265,7 +266,8 @@ def _segments(
     """
     before, after = np.roll(sampled, 1, axis=1), np.roll(sampled, -1, axis=1)
     lows, highs = (sampled < before) & (sampled <= after), (sampled > before) & (sampled >= after)
-    flat = ~lows.any(axis=1) | ~highs.any(axis=1)
+    flat = np.ptp(sampled, axis=1) < FLAT * np.abs(sampled).max(axis=1)
+    flat |= ~lows.any(axis=1) | ~highs.any(axis=1)
     lows[flat], highs[flat] = False, False
     lows[flat, 0] = highs[flat, RING // 2] = True
     ring, k = np.nonzero(lows | highs)

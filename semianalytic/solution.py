@@ -157,16 +157,14 @@ class Solution:
         With a smooth edge that of its shape, fitted to the patches; of patches alone interpolated between
         them by p^2.
         """
-        if self._level.smooth() is not None:
-            return self._smooth_pressure(self._level, x, y)
-        square = self.patch_pressure**2
-        touched = _at(self.nodes, square, x, y, order=1) > 0  # the cubic may oscillate beyond
-        return np.sqrt(np.maximum(np.where(touched, _at(self.nodes, square, x, y), 0), 0))
+        return self._pressure_of(self._level, x, y)
 
     @staticmethod
-    def _smooth_pressure(level: Level, x: ArrayLike, y: ArrayLike) -> Array:
-        smooth = level.smooth()
-        assert smooth is not None
+    def _pressure_of(level: Level, x: ArrayLike, y: ArrayLike) -> Array:
+        smooth, pressure = level.smooth(), level.grid.whole(level.found.pressure)
+        if smooth is None:
+            touched = _at(level.nodes, pressure**2, x, y, order=1) > 0  # the cubic may oscillate beyond
+            return np.sqrt(np.maximum(np.where(touched, _at(level.nodes, pressure**2, x, y), 0), 0))
         value = smooth.pressure(x, y)
         if level.rest is not None:
             value = value + _at(level.nodes, level.grid.whole(level.rest), x, y)
@@ -269,7 +267,7 @@ class Solution:
         fine = self._level.shape
         assert fine is not None
         p, second, third = (
-            self._smooth_pressure(
+            self._pressure_of(
                 level, np.asarray(x) * level.radius / fine.radius, np.asarray(y) * level.radius / fine.radius
             )
             for level in self._levels
@@ -380,6 +378,8 @@ class Solution:
             for one in shapes
         ]
         share, least = FLOOR
+        if len(p) < 2:  # patches alone on the coarser grid
+            return least * self.peak_pressure
         return share * float(np.sqrt(np.mean((p[0] - p[1]) ** 2))) + least * self.peak_pressure
 
     def _uncertain_edge(

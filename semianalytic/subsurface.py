@@ -107,10 +107,12 @@ def _displacement(E: float, nu: float, f: float, rho: Array, z: Array) -> Array:
 
 def _summed(x, y, z, layer, pressure: RingPressure, body: Body, response: _Response, kept: Tables) -> Array:
     """Components (n,) + points: the sum over the rings around each point."""
+    if not z.size:
+        return np.zeros((response.components, 0))
     feet, foot = np.unique(np.stack([x, y]), axis=1, return_inverse=True)
     foot = foot.ravel()
     first = body.thickness[0] if body.coatings else np.inf
-    scale = np.full(feet.shape[1], first)
+    scale = np.full(feet.shape[1], first, dtype=float)
     np.minimum.at(scale, foot[z > 0], z[z > 0])
     rings = pressure.rings(feet[0], feet[1], scale)
     begin = np.searchsorted(rings.foot, np.arange(feet.shape[1] + 1))

@@ -14,7 +14,7 @@ from semianalytic.level import Indenter, Level
 __all__ = ["WIDER", "Uncertainty", "change", "of_contact", "other_conversion", "safety"]
 
 WIDER = 1.25  # the box that tests the domain over the box in use
-SMOOTH = (2.5, 0.7)  # times the last change, or the one before, of a contact with a smooth edge
+SMOOTH = (3.0, 0.8)  # times the last change, or the one before, of a contact with a smooth edge
 PATCHES = 1 / 2  # of the change before, of patches alone, whose edge changes erratically
 
 

@@ -21,8 +21,8 @@ STIFF = ((4 * E, 0.25, 0.5 * A_H),)
 
 
 def solve(coatings=(), *, radius=R, load: float | None = W, substrate=STEEL, patches=129, **options):
-    """Without its uncertainty, a third of the time, unless ``estimate_uncertainty`` is given."""
-    options = {"estimate_uncertainty": False} | options
+    """On these patches, without its uncertainty, unless ``accuracy`` or ``estimate_uncertainty`` is given."""
+    options = {"estimate_uncertainty": False, "accuracy": None} | options
     return semianalytic.solve(
         radius=radius, load=load, coatings=coatings, substrate=substrate, patches=patches, **options
     )

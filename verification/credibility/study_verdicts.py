@@ -103,7 +103,7 @@ def _of_refinement(one: Refinement, limits: Limits) -> list[Invariant]:
     if one.failure or not one.levels:
         return [absent(name, SOURCE, one.failure or f"{name}: nothing was computed")]
     last = one.levels[-1]
-    coarser = OF_GRID / last.resolution
+    coarser = OF_GRID / last.resolution if last.resolution else float("inf")
     found = [
         _below(f"{name}: {q}, {last.name}", last.errors[q], limit * coarser ** limits.falls[q])
         for q, limit in limits.error.items()

@@ -66,7 +66,8 @@ def test_semianalytical_stress_confirms_the_change_of_tension_by_the_sphere():
         for gap in ("parabola", "sphere")
     )
     tension = [one.stress(-one.contact_radius, 0.0, 0.0)[0, 0] for one in (parabola, sphere)]
-    assert tension[1] / tension[0] - 1 == pytest.approx(of_sphere(problem)[0].tension, rel=1e-4)
+    # 65 patches err by 1e-5 of the tension, alike for both gaps but for a tenth of it
+    assert tension[1] / tension[0] - 1 == pytest.approx(of_sphere(problem)[0].tension, abs=2e-6)
 
 
 def test_coupling_changes_scalars_as_the_square_of_friction_and_stresses_in_proportion():

