@@ -216,6 +216,13 @@ def displacement_with_uncertainty(
     return _with_uncertainty(solution, "displacement", x, y, z, **of)
 
 
+def relative_to_edge(solution: Solution) -> Solution:
+    """The solution for points meant as x/a, with uncertainties of its own for them where it states such."""
+    # Looked up in the type, as below.
+    view = getattr(type(solution), "relative_to_edge", None)
+    return solution if view is None else view.fget(solution)
+
+
 def _with_uncertainty(
     solution: Solution, field: str, *points: ArrayLike, **of: Any
 ) -> tuple[Array, Array | None]:

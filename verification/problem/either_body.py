@@ -7,7 +7,13 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from verification.problem.array_types import Array
-from verification.problem.coated_contact import BALL, FLAT, Solution, stress_with_uncertainty
+from verification.problem.coated_contact import (
+    BALL,
+    FLAT,
+    Solution,
+    relative_to_edge,
+    stress_with_uncertainty,
+)
 
 __all__ = ["on_body"]
 
@@ -38,7 +44,8 @@ class _OnBall:
 
     @property
     def relative_to_edge(self) -> "_OnBall":
-        return _OnBall(getattr(self.solution, "relative_to_edge", self.solution))
+        own = relative_to_edge(self.solution)
+        return self if own is self.solution else _OnBall(own)
 
     def stress(self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None) -> Array:
         return _turned(self.solution.stress(-np.asarray(x), -np.asarray(y), z, layer, body=BALL), _TENSOR)

@@ -7,7 +7,14 @@ import numpy as np
 
 from verification.judging.invariants.companion_uncertainty import followed
 from verification.problem.array_types import Array
-from verification.problem.coated_contact import BALL, FLAT, CoatedContact, Solution, stress_with_uncertainty
+from verification.problem.coated_contact import (
+    BALL,
+    FLAT,
+    CoatedContact,
+    Solution,
+    relative_to_edge,
+    stress_with_uncertainty,
+)
 from verification.problem.either_body import on_body
 from verification.problem.line_profile import Line, Profile
 from verification.problem.quantity import BALL_PEAKS, IN_PLANE, PEAKS, QUANTITIES, SCALARS, SLOPES
@@ -99,13 +106,13 @@ def sample(
     stated = solution.uncertainty is not None
     surface = line.place == "surface"
     a = float(solution.contact_radius)
-    own = getattr(solution, "relative_to_edge", solution)
+    relative = relative_to_edge(solution)
     near = np.zeros(x.shape, dtype=bool)
     if edge is not None:
         near = (np.hypot(np.abs(position) - edge, z) <= BESIDE * edge) & (line.coordinate == "x")
         x[near] *= a / edge
     # of a solution that does not state its uncertainty relative to the edge, that of points on it is followed
-    at = np.flatnonzero(np.abs(position) == edge) if surface and own is solution else np.arange(0)
+    at = np.flatnonzero(np.abs(position) == edge) if surface and relative is solution else np.arange(0)
     side = np.sign(x[at])
     x[at] = side * a
     around = (side[:, None] * around_edge(solution)).ravel() if at.size and stated else np.zeros(0)
@@ -122,9 +129,9 @@ def sample(
         wide[..., at] = _at_edge(
             solution, edges, edges_U, lambda one: one.stress(ENDS * one.contact_radius, 0.0, 0.0, layer=0)
         )
-    if wide is not None and own is not solution and near.any():
+    if wide is not None and relative is not solution and near.any():
         values[..., near], wide[..., near] = stress_with_uncertainty(
-            own, x[near], 0.0, z[near], layer=line.layer
+            relative, x[near], 0.0, z[near], layer=line.layer
         )
     values[0, 2] = values[2, 0] = turned * values[0, 2]
     found = [(name, values[component], wide, component) for name, component in IN_PLANE.items()]
@@ -139,8 +146,8 @@ def sample(
             spread[at] = _at_edge(
                 solution, edges, edges_U, lambda one: one.pressure(ENDS * one.contact_radius)
             )
-        if spread is not None and own is not solution:
-            spread[near] = own.pressure_uncertainty(x[near])
+        if spread is not None and relative is not solution:
+            spread[near] = relative.pressure_uncertainty(x[near])
         profiles.append(Profile("pressure", line.name, position, solution.pressure(x), source, spread))
     if search is not None:
         best = search.largest(sought[0, 0], None if sought_U is None else sought_U[0, 0])
