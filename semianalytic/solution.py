@@ -18,7 +18,7 @@ from scipy.ndimage import distance_transform_cdt, maximum_filter
 from semianalytic import fields
 from semianalytic.inputs import Body, check_finite
 from semianalytic.level import Level
-from semianalytic.uncertainty import SMOOTH, Uncertainty, safety
+from semianalytic.uncertainty import Uncertainty, safety
 
 __all__ = ["Diagnostics", "Solution"]
 
@@ -28,11 +28,13 @@ Array = NDArray[np.floating]
 EVALUATION = (5e-6, 5e-7)
 RINGS = 2e-8  # likewise on rings
 NEAR = 8.0  # patches from the edge, within which the error of its radius is felt
+# of fields under a smooth edge: times the last change, more next to the edge, or the change before
+INSIDE, AT_EDGE, BEFORE = 2.5, 5.0, 0.4
 # what the refinement of a smooth edge does not show: of the root mean square of the change of the pressure,
 # and of the peak pressure; felt to a depth of some patches
-FLOOR, REACH = (1.0, 2e-6), 8.0
+FLOOR, REACH = (0.3, 5e-7), 8.0
 # likewise near the edge, of the ripple of the patches, which the shape averages; as far as they meet
-RIPPLE, TAPER = 0.6, 16.0
+RIPPLE, TAPER = 0.9, 16.0
 RESOLUTION = 1e-7  # of the pressure of patches: its response to the gap the iteration leaves
 
 
@@ -109,7 +111,7 @@ class Solution:
         level = replace(level, found=replace(found, gap=np.empty((0, 0))))
         beyond = max(int(np.ceil((2.05 * level.radius - grid.x[-1]) / grid.d)), 0)
         return cls(
-            **scalars,
+            **scalars,  # type: ignore[arg-type]
             surface_nodes=grid.x[0] + grid.d * np.arange(-beyond, grid.n + beyond),
             diagnostics=Diagnostics(
                 iterations=found.iterations,
@@ -218,8 +220,7 @@ class Solution:
             return u, np.full(u.shape, self.uncertainty.approach)
         u, second, third = fields.displacement(self._levels, self._body.named(body), x, y, z)
         last, before = (np.abs(one - other).max(axis=0) for one, other in ((u, second), (second, third)))
-        factor, share = SMOOTH
-        total = np.maximum(factor * last, share * before) + RINGS * self.approach
+        total = self._change(last, before, x, y) + RINGS * self.approach
         if self._level.shape is not None:
             total = total + self.uncertainty.approach
         return u, np.broadcast_to(total, u.shape).copy()
@@ -273,8 +274,7 @@ class Solution:
             )
             for level in self._levels
         )
-        factor, share = SMOOTH
-        total = np.maximum(factor * np.abs(p - second), share * np.abs(second - third))
+        total = self._change(np.abs(p - second), np.abs(second - third), x, y)
         _, floor = self._companion()
         total = total + self._floor + self._near_ripple(x, y) + floor * self.peak_pressure
         if self.relative:
@@ -310,11 +310,11 @@ class Solution:
         """Stress and its uncertainty [Pa], shape (3, 3) + points each, the latter from coarser companions.
 
         The largest difference over the six components, for every component alike, of this level and the next,
-        or of the next and the one after, at the same x/a of each. With a smooth edge twice that, or once;
-        plus ``FLOOR`` of the peak pressure; or the change by the uncertain radius near the edge, where that
-        is larger, unless the solution is ``relative_to_edge``. Of patches alone
-        times ``safety``, or a third, plus the error of the evaluation, ``EVALUATION`` of the peak pressure.
-        Both with the changes of the peak pressure by the other numerical parameters.
+        or of the next and the one after, at the same x/a of each. Under a smooth edge times ``INSIDE`` to
+        ``AT_EDGE``, or ``BEFORE``, plus ``FLOOR`` of the peak; or the change by the uncertain radius
+        near the edge, where that is larger, unless the solution is ``relative_to_edge``. Of patches alone
+        times ``safety``, or a third, plus the error of the evaluation, ``EVALUATION`` of the peak. Both with
+        the changes of the peak pressure by the other numerical parameters.
         Raises ValueError where no uncertainty was estimated.
         """
         coarser, floor = self._companion()
@@ -323,12 +323,11 @@ class Solution:
         change = np.abs(sigma - second).max(axis=(0, 1))
         before = np.abs(second - third[0]).max(axis=(0, 1)) if third else np.zeros_like(change)
         if self._level.smooth() is not None:
-            factor, share = SMOOTH
-            total = np.maximum(factor * change, share * before)
+            total = self._change(change, before, x, y)
             if self._level.shape is not None:
-                shallow = 1 / (1 + np.asarray(z) / (REACH * self.diagnostics.patch_size))
+                shallow = 1 / (1 + np.asarray(z) / (REACH * self.diagnostics.patch_size)) ** 2
                 least = self._floor + self._near_ripple(x, y) + floor * self.peak_pressure
-                total = total + least * shallow
+                total = total + least * shallow + np.abs(sigma).max(axis=(0, 1)) * self._scale
                 if not self.relative:
                     total = np.maximum(total, self._uncertain_edge(solid, x, y, z, layer))
             total = total + RINGS * self.peak_pressure
@@ -339,6 +338,21 @@ class Solution:
             total += np.where(deep, *EVALUATION[::-1]) * self.peak_pressure
             total += self._rim(x, y, z)
         return sigma, np.broadcast_to(total, (3, 3, *change.shape)).copy()
+
+    @property
+    def _scale(self) -> float:
+        """Relative uncertainty of all pressures together, of fields far from the details of the contact."""
+        assert self.uncertainty is not None
+        return self.uncertainty.peak_pressure / self.peak_pressure
+
+    def _change(self, last: Array, before: Array, x: ArrayLike, y: ArrayLike) -> Array:
+        """Error by the patch size from the last change and the one before."""
+        share: Array | float = 0.0
+        if self._level.shape is not None:
+            near = self._to_edge(x, y) / (2 * self.diagnostics.patch_size)
+            share = 1 / (1 + near * near)
+        change: Array = np.maximum((INSIDE + (AT_EDGE - INSIDE) * share) * last, BEFORE * before)
+        return change
 
     def _near_ripple(self, x: ArrayLike, y: ArrayLike) -> Array:
         away = self._to_edge(x, y) / (TAPER * self.diagnostics.patch_size)

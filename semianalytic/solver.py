@@ -110,7 +110,7 @@ def solve(
     if touches_rim(levels[-1].found.pressure, levels[-1].grid.quarter):
         raise NotConverged(f"the contact reaches the rim of the grid, fill = {fill:g}; enlarge it")
     estimate = uncertainty.of_contact(levels, sphere, body, numerics) if estimate_uncertainty else None
-    while estimate and accuracy and levels[-1].shape and estimate.relative_to(levels[-1].scalars) > accuracy:
+    while estimate and accuracy and edge_correction and estimate.relative_to(levels[-1].scalars) > accuracy:
         n = odd(FINER * levels[-1].grid.n)
         if n > LARGEST_GRID:
             break

@@ -93,7 +93,7 @@ def of_contact(levels: list[Level], indenter: Indenter, body: Body, numerics: Nu
         "domain": _by_other_coefficients(varied, body, numerics, numerics, WIDER),
         "iteration": _of_iteration(last, indenter),
     }
-    factor, share = SMOOTH if last.shape else (safety(numerics.patches / levels[-2].grid.n), PATCHES)
+    factor, share = SMOOTH if last.shape else (safety(last.grid.n / levels[-2].grid.n), PATCHES)
     return Uncertainty.from_levels(
         fine, middle, coarse, variations, factor=factor, share=share, edge=last.staircase
     )

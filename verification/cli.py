@@ -9,7 +9,7 @@ from typing import Literal
 
 from cyclopts import App, CycloptsError
 
-from verification.commands.common.exit_codes import BAD_INPUT, STOPPED
+from verification.commands.common.command_error import BAD_INPUT, STOPPED
 from verification.commands.common.terminal import print_error
 
 CODES = (

@@ -13,7 +13,8 @@ from pathlib import Path
 from kill_default_run import largest_difference
 
 from verification.cases.case_file import read_case, shipped_cases
-from verification.running.case_tasks import run_cases
+from verification.running.case_tasks import case_task
+from verification.running.pool.process_pool import run_tasks
 
 __all__ = ["LIMIT", "main", "repeated"]
 
@@ -28,7 +29,8 @@ def repeated(names: tuple[str, ...], output: Path, times: int, jobs: tuple[int, 
     cases = [read_case(shipped.get(name, Path(name))) for name in names]
     differences = []
     for n in range(times):
-        run_cases(cases, output / f"{n}", jobs=jobs[n % len(jobs)], time_limit=3600)
+        tasks = [case_task(case, output / f"{n}") for case in cases]
+        run_tasks(tasks, jobs=jobs[n % len(jobs)], time_limit=3600)
         difference, compared = largest_difference(output / "0", output / f"{n}")
         differences.append(difference)
         sys.stdout.write(

@@ -13,7 +13,7 @@ from planted_worker import end_kept_processes, kept_processes
 from scheduler_by_hand import hand_started, wait_until
 from test_failing_workers import REASONS, alive, gone, task
 
-from verification.commands.common.exit_codes import CommandError
+from verification.commands.common.command_error import CommandError
 from verification.commands.common.task_progress import pool_of, run_info
 from verification.running.checked_files import StoreError, read_checked, write_checked
 from verification.running.pool import dask_cluster, remote_tasks

@@ -8,7 +8,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
-from verification.cases.published_columns import RECOMPUTED, PublishedColumn
+from verification.cases.published_table import RECOMPUTED, PublishedColumn
 from verification.judging.verdict import Claim, Outcome, compare, judge
 from verification.problem.line_profile import Profile
 

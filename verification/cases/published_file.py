@@ -8,9 +8,17 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from verification.cases.published_columns import PublishedColumn, columns_of, si_of
+from verification.cases.case_file import Case, parse_case
 from verification.cases.published_schema import LayerEntry, ProblemEntry, PublishedFile
-from verification.cases.published_table import FOLDER, UNITS, PublishedError, read_table
+from verification.cases.published_table import (
+    FOLDER,
+    UNITS,
+    PublishedColumn,
+    PublishedError,
+    columns_of,
+    read_table,
+    si_of,
+)
 from verification.cases.toml_file import CaseError, load_toml, read_bounded, read_toml
 from verification.cases.unit_numbers import of_file
 from verification.judging.verdict import Claim
@@ -45,12 +53,18 @@ def published_cases() -> dict[str, Path]:
     return {path.stem: path for path in sorted(FOLDER.glob("*.toml"))}
 
 
-def is_published(path: Path) -> bool:
-    """True where a case file has tables, which only a published case has."""
+def is_published(raw: bytes) -> bool:
+    """True where the content of a case file has tables, which only a published case has."""
     try:
-        return "table" in load_toml(read_bounded(path, "case", "one problem"))[1]
+        return "table" in load_toml(raw)[1]
     except ValueError:
         return False
+
+
+def read_any_case(path: Path) -> Case | PublishedCase:
+    """Read a case file of either kind. Raises CaseError naming file and key."""
+    raw = read_bounded(path, "case", "one problem")
+    return (parse_published if is_published(raw) else parse_case)(raw, path)
 
 
 def read_published(path: Path) -> PublishedCase:

@@ -1,7 +1,10 @@
-"""Published tables in CSV files: notes, columns, numbers with their digits.
+"""Published tables: CSV files, and their columns as profiles on lines with the uncertainty of the source.
 
-The first lines, marked #, are notes on the source. Cells are kept as published; ``columns`` converts units
-and signs.
+The first lines of a file, marked #, are notes on the source. Cells are kept as published, then converted in
+unit and sign. The uncertainty of a cell is what the source printed (half of its last digit) or a digitisation
+uncertainty stated by the case file. It depends on no value of the table and is at most ``CEILING`` of the
+scale. Neither the disagreement of several programs nor the error of a program is part of it: a cell that is
+off by more is a departure of the source and listed with its size.
 """
 
 import csv
@@ -9,6 +12,18 @@ import io
 from dataclasses import dataclass, replace
 from math import floor, isfinite, log10
 from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from verification.cases.published_schema import ColumnEntry, PositionEntry, TableEntry
+from verification.problem.array_types import Array
+from verification.problem.coated_contact import PrescribedLoad
+from verification.problem.evaluation_points import Points
+from verification.problem.line_profile import Profile
+from verification.problem.loading_curve import CONTROLS, LoadingCurve, Problem
+from verification.problem.quantity import CURVES, EXTREMES, PEAKS, QUANTITIES, SCALARS, SLOPES
+from verification.sources.source_registry import PUBLISHED
 
 FOLDER = Path(__file__).parent / "shipped" / "published"
 MAX_BYTES = 1_000_000
@@ -18,6 +33,9 @@ _STRESSES = {"Pa": 1.0, "kPa": 1e3, "MPa": 1e6, "GPa": 1e9, "psi": PSI, "ksi": 1
 _LENGTHS = {"m": 1.0, "mm": 1e-3, "um": 1e-6, "in": INCH}
 # SI value of each unit of a table.
 UNITS = _STRESSES | _LENGTHS | {"N": 1.0, "1": 1.0, "microstrain": 1e-6}
+CEILING = 0.01  # largest uncertainty of a cell as a fraction of the scale, unless the case file states why
+DEPARTURE = "_departure"  # a column of this ending lists the departures of the column named before it
+RECOMPUTED = "recomputed"  # value of ``seen`` for tables that the source does not print
 
 
 class PublishedError(ValueError):
@@ -135,3 +153,189 @@ def _last_digit(cell: str) -> float:
     mantissa, _, exponent = cell.lower().partition("e")
     # Of a zero the exponent may be anything.
     return 10.0 ** min(int(exponent or 0) - len(mantissa.partition(".")[2]), 308)
+
+
+@dataclass(frozen=True, eq=False)
+class PublishedColumn:
+    """One column of a table on one line.
+
+    profile : as published, in SI, tension positive, with its uncertainty.   at : the points of its values.
+    departure : exact solution less published value [SI], 0 where none is listed.
+    rows : their lines in ``file``, with their ``labels``.   text : the cells as published, in ``unit``.
+    to_si : SI value of a published 1, with its sign.   seen : what was seen of the source.
+    scale : divisor of differences [SI].   series : coefficients of a power series, see ``ColumnEntry``.
+    """
+
+    profile: Profile
+    departure: Array
+    at: Points
+    file: str
+    column: str
+    rows: tuple[int, ...]
+    text: tuple[str, ...]
+    labels: tuple[str, ...]
+    unit: str
+    to_si: float
+    seen: str
+    scale: float
+    series: tuple[float, ...] = ()
+
+    @property
+    def reference(self) -> Profile:
+        """The profile with the listed departures added, to which the methods are compared."""
+        return replace(self.profile, value=self.profile.value + self.departure)
+
+    @property
+    def departs(self) -> NDArray[np.bool_]:
+        """True for the rows with a listed departure."""
+        return self.departure != 0
+
+    @property
+    def counted(self) -> NDArray[np.bool_]:
+        """True for the rows that count as published values: not recomputed, without a departure."""
+        return ~self.departs & (self.seen != RECOMPUTED)
+
+
+def si_of(name: str, units: dict[str, float], where: str) -> float:
+    """SI value of the unit ``name`` among ``units``. Raises ValueError naming ``where`` it is used."""
+    if name not in units:
+        raise ValueError(f"{where}: unit {name!r} is unknown; known are {', '.join(units)}")
+    if not (isfinite(units[name]) and units[name] > 0):
+        raise ValueError(f"{where}: unit {name!r} is {units[name]:g} in this problem; give another unit")
+    return units[name]
+
+
+def columns_of(
+    table: TableEntry, content: PublishedTable, units: dict[str, float], problem: Problem, key: str
+) -> list[PublishedColumn]:
+    """The columns of a table, line by line. Raises PublishedError, or ValueError that names a key."""
+    content = content.where(table.rows) if table.rows else content
+    labels = content.text(table.label) if table.label else ("",) * len(content.rows)
+    found = []
+    for i, column in enumerate(table.column):
+        here = f"{table.file}, column {column.name}"
+        named = f"{here}: quantity {column.quantity!r}"
+        known = [name for name in QUANTITIES if name not in PEAKS + SLOPES]
+        if column.quantity not in known:
+            raise PublishedError(f"{named} is unknown; known are {', '.join(known)}")
+        fits = (column.quantity in CURVES) == isinstance(problem, LoadingCurve)
+        if not fits and column.quantity not in SCALARS:
+            raise PublishedError(
+                f"{named} does not go with this problem; {', '.join(CURVES)} belong to a sphere without a "
+                "load, all others to a load"
+            )
+        at = column.at or table.at
+        if at is None and column.quantity not in SCALARS + EXTREMES:
+            raise ValueError(f"{key}.column.{i}: has no positions; give at")
+        try:
+            to_si = column.factor * si_of(column.unit, units, here)
+        except ValueError as error:
+            raise PublishedError(str(error)) from None
+        points = _points(at, content, units, problem, here)
+        value = np.array(content.numbers(column.name)) * to_si
+        U = _uncertainty(column, content) * abs(to_si)
+        scale = _scale(column, table, content, units, problem)
+        _check_ceiling(table, content, U / scale if scale else np.full(len(U), np.inf), here)
+        departure = _departure(column, content) * to_si
+        _check_departures(content, departure, U, here)
+        for name, rows in points.lines():
+            line = f"{name}, {content.path.stem}, column {column.name}"
+            part = points.part(rows)
+            profile = Profile(column.quantity, line, part.along, value[rows], PUBLISHED, U[rows])
+            found.append(
+                PublishedColumn(
+                    profile,
+                    departure[rows],
+                    part,
+                    table.file,
+                    column.name,
+                    tuple(content.lines[n] for n in rows),
+                    tuple(content.text(column.name)[n] for n in rows),
+                    tuple(labels[n] for n in rows),
+                    column.unit,
+                    to_si,
+                    table.seen,
+                    scale,
+                    tuple(column.series),
+                )
+            )
+    return found
+
+
+def _points(
+    at: PositionEntry | None, content: PublishedTable, units: dict[str, float], problem: Problem, where: str
+) -> Points:
+    n = len(content.rows)
+    if at is None:
+        return Points.origin(n)
+    try:
+        unit = si_of(at.unit, units, "at")
+
+        def metres(given: str | float) -> Array:
+            value = np.array(content.numbers(given)) if isinstance(given, str) else np.full(n, given)
+            if not np.all(abs(value) <= np.finfo(float).max / max(unit, 1.0)):
+                raise ValueError(
+                    f"at: {given} in {at.unit!r} is too large for floating point; give another unit"
+                )
+            return value * unit
+
+        if isinstance(problem, LoadingCurve):
+            for control in CONTROLS:
+                if (given := getattr(at, control)) is not None:
+                    return Points.on_curve(control, metres(given), at.unit, unit)
+            raise ValueError(f"at: give {' or '.join(CONTROLS)}, for the sphere has no load")
+        x, y, z = (metres(v) for v in (at.x, at.y, at.z))
+        return Points.of(x, y, z, problem.coatings, at.layer, at.unit, unit)
+    except ValueError as error:
+        raise PublishedError(f"{where}: {error}") from None
+
+
+def _uncertainty(column: ColumnEntry, content: PublishedTable) -> Array:
+    """Uncertainty of every row in the unit of the column: of digitisation, or half of the last digit."""
+    if column.uncertainty is not None:
+        return np.full(len(content.rows), column.uncertainty)
+    return np.array(content.half_digits(column.name, column.significant))
+
+
+def _departure(column: ColumnEntry, content: PublishedTable) -> Array:
+    """Listed departure of every row in the unit of the column, 0 where none is listed."""
+    name = column.name + DEPARTURE
+    if name not in content.columns:
+        return np.zeros(len(content.rows))
+    return np.array(content.numbers(name, empty=0.0))
+
+
+def _check_departures(content: PublishedTable, departure: Array, U: Array, where: str) -> None:
+    """Raise PublishedError naming the first row whose listed departure is no larger than its uncertainty."""
+    for line, size, least in zip(content.lines, abs(departure), U, strict=True):
+        if 0 < size <= least:
+            raise PublishedError(f"{where}, line {line}: the departure is within the uncertainty; remove it")
+
+
+def _check_ceiling(table: TableEntry, content: PublishedTable, fraction: Array, where: str) -> None:
+    """Raise PublishedError naming the first row whose uncertainty exceeds the ceiling."""
+    ceiling = CEILING if table.ceiling is None else table.ceiling.fraction
+    for line, found in zip(content.lines, fraction, strict=True):
+        if not found <= ceiling:
+            raise PublishedError(
+                f"{where}, line {line}: the uncertainty is {found:.2g} of the scale, above the ceiling "
+                f"{ceiling:g}; give ceiling = {{ fraction, why }} where the source supports no less"
+            )
+
+
+def _scale(
+    column: ColumnEntry, table: TableEntry, content: PublishedTable, units: dict[str, float], problem: Problem
+) -> float:
+    """Stresses over the pressure; displacements and strains over the largest of their kind in the table."""
+    kind = QUANTITIES[column.quantity].kind
+    if kind in ("stress", "pressure") and not isinstance(problem, LoadingCurve):
+        return problem.pressure if isinstance(problem, PrescribedLoad) else problem.p_h
+    known = {name for name, quantity in QUANTITIES.items() if quantity.kind == kind}
+    alike = [c for c in table.column if c.quantity in known and c.unit in units]
+    if kind in ("scalar", "curve"):
+        alike = [column]
+    largest = 0.0
+    for c in alike:
+        published = np.abs(content.numbers(c.name))
+        largest = max(largest, float(published.max() * abs(c.factor) * units[c.unit]))
+    return largest

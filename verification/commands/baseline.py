@@ -9,7 +9,8 @@ from pathlib import Path
 from rich.markup import escape
 
 from verification.cases.case_file import shipped_cases
-from verification.commands.common.exit_codes import CommandError, with_exit_code
+from verification.commands.common.command_error import CommandError
+from verification.commands.common.exit_codes import with_exit_code
 from verification.commands.common.known_folders import BASELINE, require_checkout
 from verification.commands.common.shared_options import AsJson, BaselineFolder, Quiet
 from verification.commands.common.terminal import named_table, print_json, print_out

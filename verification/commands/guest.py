@@ -14,7 +14,8 @@ from cyclopts import Parameter
 from rich.markup import escape
 
 from verification.cases.case_file import Case, read_case, shipped_cases
-from verification.commands.common.exit_codes import EXIT, CommandError, with_exit_code
+from verification.commands.common.command_error import CommandError
+from verification.commands.common.exit_codes import with_exit_code
 from verification.commands.common.known_folders import PACKAGE
 from verification.commands.common.named_files import SHIPPED, path_of, require_distinct
 from verification.commands.common.shared_options import AsJson, Flag, Jobs, Quiet, Scheduler
@@ -36,6 +37,7 @@ from verification.judging.outcome import Outcome
 from verification.page.number_text import engineering
 from verification.problem.quantity import unit_of
 from verification.regression.junit_xml import junit_xml
+from verification.regression.run_exit_codes import EXIT
 from verification.running.case_result import CaseResult, RunInfo, to_json
 from verification.running.checked_files import locked, write_atomically
 from verification.running.pool.pool_task import Task

@@ -6,13 +6,16 @@ from typing import Annotated, Literal
 
 from cyclopts import Parameter
 
-from verification.commands.common.exit_codes import CommandError, exit_code, no_result, with_exit_code
+from verification.commands.common.command_error import CommandError, no_result
+from verification.commands.common.exit_codes import with_exit_code
 from verification.commands.common.known_folders import BASELINE, RECORDS, nearest_run, within_package
 from verification.commands.common.shared_options import AsJson, Flag, Quiet
 from verification.commands.common.terminal import print_files
 from verification.credibility.self_tests import self_tests
 from verification.regression.baseline_change import regression
 from verification.regression.baseline_file import read_baseline
+from verification.regression.junit_xml import junit_xml
+from verification.regression.run_exit_codes import exit_code
 from verification.running.checked_files import locked
 
 
@@ -52,15 +55,17 @@ def report(
             material, whole = stored_material(folder)
             evidence = material.evidence
             if records is not None or not whole:
-                found = gather(RECORDS if records is None else records, material.problems)
+                place, tests = RECORDS if records is None else records, evidence.self_tests or self_tests()
                 kept = {name: getattr(evidence, name) for name in ("accuracy", "baseline", "formulas")}
-                evidence = replace(found, **kept, self_tests=evidence.self_tests or self_tests())
+                evidence = replace(gather(place, material.modelled, tests), **kept)
             if baseline is not None or not whole:
                 place = BASELINE if baseline is None else baseline
                 known, name = read_baseline(place), within_package(place)
                 compared = regression(material.results, known, name, material.info)
                 evidence = replace(evidence, baseline=compared)
-            files = [write_report(replace(material, evidence=evidence), folder)]
+            messages = {test.name: "" if test.passed else test.found for test in evidence.self_tests}
+            junit = junit_xml(material.results, material.info, evidence.baseline, messages)
+            files = [write_report(replace(material, evidence=evidence), folder, junit)]
             if pdf:
                 files.append(printed(files[0], folder / "report.pdf", time_limit, paper))
     except NoBrowser as error:

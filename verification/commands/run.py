@@ -3,7 +3,6 @@
 import datetime
 import shlex
 import time
-from collections import Counter
 from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import replace
@@ -12,15 +11,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import Parameter
-from rich.console import Console
-from rich.markup import escape
-from rich.table import Column, Table
 
-from verification.cases.case_file import Case, read_case, shipped_cases
-from verification.cases.published_file import PublishedCase, is_published, published_cases, read_published
-from verification.commands.common.exit_codes import STOPPED, run_code, with_exit_code
+from verification.cases.case_file import Case
+from verification.cases.published_file import PublishedCase
+from verification.commands.common.command_error import STOPPED
+from verification.commands.common.exit_codes import with_exit_code
 from verification.commands.common.known_folders import BASELINE, RECORDS, within_package
-from verification.commands.common.named_files import SHIPPED, path_of, require_distinct
+from verification.commands.common.named_files import chosen_cases
+from verification.commands.common.run_summary import print_run, run_json
 from verification.commands.common.shared_options import (
     AsJson,
     BaselineFolder,
@@ -41,32 +39,31 @@ from verification.commands.common.task_progress import (
     run_info,
     solve,
 )
-from verification.commands.common.terminal import (
-    STYLE,
-    one_line,
-    print_error,
-    print_json,
-    print_warnings,
-)
-from verification.credibility import accuracy_study as accuracy_study
+from verification.commands.common.terminal import print_error, print_json, print_warnings
+from verification.credibility import accuracy_study
 from verification.credibility.accuracy_study import AccuracyStudy
+<<<<<<< HEAD
 from verification.credibility.self_tests import SelfTest, self_tests
 from verification.judging.invariants import Invariant
 from verification.judging.outcome import DECIDED, Outcome
 from verification.regression.baseline_change import Regression, State, regression, regression_json
+=======
+from verification.credibility.self_tests import self_tests
+from verification.regression.baseline_change import regression
+>>>>>>> ic
 from verification.regression.baseline_file import read_baseline
-from verification.regression.manifest import manifest_message
+from verification.regression.junit_xml import junit_xml
+from verification.regression.run_exit_codes import run_code
 from verification.running.case_result import CaseResult, RunInfo
-from verification.running.case_tasks import case_task, kept_result, published_task
+from verification.running.case_tasks import case_task, kept_result
 from verification.running.checked_files import StoreError, locked
 from verification.running.pool.pool_task import Task
-from verification.study import formula_errors as effective_study
+from verification.running.stored_fields import read_planes
+from verification.study import formula_errors
 from verification.study.formula_errors import EffectiveStudy
 
 if TYPE_CHECKING:
     from verification.report.report_material import Evidence
-
-NARROW = 80  # columns
 
 
 @with_exit_code
@@ -99,20 +96,12 @@ def run(
         fields: Also write the fields of each case, for ParaView and coatcheck view, into its folder fields.
         verbose: Print the seconds and iterations of every source as the cases finish.
     """
-    pool = pool_of(jobs, time_limit, scheduler)
-    chosen = _choose(cases)
+    pool, silent = pool_of(jobs, time_limit, scheduler), quiet or as_json
+    chosen = chosen_cases(cases)
     for case in chosen:
         if isinstance(case, Case):
-            print_warnings(case.warnings, case.name, strict=strict, silent=quiet or as_json)
+            print_warnings(case.warnings, case.name, strict=strict, silent=silent)
     require_gmsh()
-
-    @cache
-    def prepared() -> tuple[tuple[SelfTest, ...], "Evidence"]:
-        """Self-tests and evidence, neither of which depends on a result."""
-        from verification.report.report_material import gather
-
-        problems = {case.name: case.problem for case in chosen if isinstance(case, Case)}
-        return _self_tested(), gather(records, problems)
 
     begin, started = time.perf_counter(), datetime.datetime.now(datetime.UTC)
     try:
@@ -120,17 +109,18 @@ def run(
         with locked(output):
             kept = kept_results(chosen, output, fields=fields) if resume else {}
             accuracy = kept_study(output) if resume and not cases else None
-            tasks: list[Task[CaseResult | AccuracyStudy | EffectiveStudy]] = []
-            tasks += [_task(case, output, fields) for case in chosen if case.name not in kept]
+            tasks: list[Task[CaseResult | AccuracyStudy | EffectiveStudy]] = [
+                case_task(case, output, fields=fields) for case in chosen if case.name not in kept
+            ]
             tasks += [accuracy_study.task(output)] if not cases and accuracy is None else []
-            tasks += [effective_study.task(output)] if "published" in cases else []
-            solved = solve(tasks, pool, time_limit, quiet or as_json, verbose=verbose, meanwhile=prepared)
-            accuracy = next((found for found in solved if isinstance(found, AccuracyStudy)), accuracy)
-            formulas = next((found for found in solved if isinstance(found, EffectiveStudy)), None)
-            new = {found.name: found for found in solved if isinstance(found, CaseResult)}
-            results = [kept.get(case.name) or new[case.name] for case in chosen]
+            tasks += [formula_errors.task(output)] if "published" in cases else []
+            standing = cache(partial(_standing, chosen, records))
+            solved = solve(tasks, pool, time_limit, silent, verbose=verbose, meanwhile=standing)
+            found = kept | {one.name: one for one in solved if isinstance(one, CaseResult)}
+            results = [found[case.name] for case in chosen]
             info = run_info(shlex.join(["coatcheck", "run", *cases]), started, pool)
-            tests, evidence = prepared()
+            evidence = standing()
+            tests = evidence.self_tests
             beside = regression(
                 results,
                 known,
@@ -140,43 +130,55 @@ def run(
                 published="published" in cases,
                 self_tests={test.name: test.answers for test in tests},
             )
+            messages = {test.name: "" if test.passed else test.found for test in tests}
+            junit = junit_xml(results, info, beside, messages)
+            code = run_code(results, beside, passed=all(test.passed for test in tests))
             evidence = replace(
-                evidence, accuracy=accuracy, baseline=beside, self_tests=tests, formulas=formulas
+                evidence,
+                accuracy=next((one for one in solved if isinstance(one, AccuracyStudy)), accuracy),
+                formulas=next((one for one in solved if isinstance(one, EffectiveStudy)), None),
+                baseline=beside,
             )
-            page = _write_page(results, info, evidence, output)
+            page = _write(results, info, evidence, output, junit)
     except KeyboardInterrupt:
         return _stopped(chosen, output)
-    beyond = _beyond_model(results, evidence)
     if as_json:
+<<<<<<< HEAD
         print_json(_summary(results, page, beside, tests, beyond, accuracy))
     elif not quiet:
         _print_table(results, page, time.perf_counter() - begin, beside, accuracy)
     for name, lines in beyond.items():
         print_warnings(lines, name, strict=False, silent=quiet or as_json)
     return _code(results, beside, tests, accuracy)
+=======
+        passed = {test.name: test.passed for test in tests}
+        print_json(run_json(results, page, beside, passed, evidence.beyond, code))
+    elif not quiet:
+        print_run(results, page, time.perf_counter() - begin, beside)
+    for name, lines in evidence.beyond.items():
+        print_warnings(lines, name, strict=False, silent=silent)
+    return code
+>>>>>>> ic
 
 
-def _write_page(results: Sequence[CaseResult], info: RunInfo, evidence: "Evidence", output: Path) -> Path:
+def _write(
+    results: Sequence[CaseResult], info: RunInfo, evidence: "Evidence", output: Path, junit: str
+) -> Path:
     from verification.report.report_files import write_report
     from verification.report.report_material import Material
-    from verification.running.stored_fields import read_planes
 
-    return write_report(Material(results, info, evidence, read_planes(output, results)), output)
-
-
-def _beyond_model(results: Sequence[CaseResult], evidence: "Evidence") -> dict[str, tuple[str, ...]]:
-    """Warnings of what the assumptions of the model cost, by case."""
-    from verification.report.report_material import model_warnings
-
-    return {result.name: model_warnings(result, evidence) for result in results}
+    return write_report(Material(results, info, evidence, read_planes(output, results)), output, junit)
 
 
-def _self_tested() -> tuple[SelfTest, ...]:
-    """The self-tests of the harness, with a message for each that fails."""
+def _standing(chosen: Sequence[Case | PublishedCase], records: Path) -> "Evidence":
+    """Evidence that no result changes, self-tests among it; a message for each of these that fails."""
+    from verification.report.report_material import Modelled, gather
+
     tests = self_tests()
     for test in tests:
         if not test.passed:
             print_error(f"self-test of the {test.name}: {test.found}; the verdicts of this run are not valid")
+<<<<<<< HEAD
     return tests
 
 
@@ -215,6 +217,9 @@ def _task(case: Case | PublishedCase, output: Path, fields: bool) -> Task[CaseRe
     if isinstance(case, Case):
         return case_task(case, output, fields=fields)
     return published_task(case, output)
+=======
+    return gather(records, {case.name: Modelled.of(case) for case in chosen if isinstance(case, Case)}, tests)
+>>>>>>> ic
 
 
 def _stopped(chosen: Sequence[Case | PublishedCase], output: Path) -> int:
@@ -228,6 +233,7 @@ def _stopped(chosen: Sequence[Case | PublishedCase], output: Path) -> int:
         f"or see what is there with coatcheck report {output}"
     )
     return STOPPED
+<<<<<<< HEAD
 
 
 def _summary(
@@ -324,3 +330,5 @@ def _state(beside: Regression, name: str) -> str:
     if found is None:
         return "-"
     return f"[{'green' if found.state is State.SAME else 'yellow'}]{found.state}[/]"
+=======
+>>>>>>> ic

@@ -13,7 +13,8 @@ from rich.table import Table
 
 from verification.cases.case_file import Case, parse_case, read_case, shipped_cases
 from verification.cases.plausibility import beyond_limits
-from verification.commands.common.exit_codes import EXIT, CommandError, no_result, with_exit_code
+from verification.commands.common.command_error import CommandError, no_result
+from verification.commands.common.exit_codes import with_exit_code
 from verification.commands.common.known_folders import require_format
 from verification.commands.common.named_files import SHIPPED, path_of
 from verification.commands.common.shared_options import AsJson, Flag, Strict
@@ -26,6 +27,7 @@ from verification.desk.contact_answer import Answer, Difference, answer, differe
 from verification.judging.outcome import Outcome
 from verification.problem.coated_contact import BALL, FLAT
 from verification.problem.quantity import QUANTITIES
+from verification.regression.run_exit_codes import EXIT
 from verification.running.case_result import describe, message_of
 from verification.running.json_records import encode
 from verification.sources.source_registry import METHODS

@@ -14,7 +14,8 @@ from rich.console import Console
 from rich.markup import escape
 from rich.progress import TaskID
 
-from verification.commands.common.exit_codes import EXIT, STOPPED, CommandError, with_exit_code
+from verification.commands.common.command_error import STOPPED, CommandError
+from verification.commands.common.exit_codes import with_exit_code
 from verification.commands.common.named_files import path_of
 from verification.commands.common.shared_options import AsJson, Jobs, Output, Quiet, Scheduler, Strict
 from verification.commands.common.task_progress import progress_bar, require_gmsh
@@ -25,6 +26,7 @@ from verification.commands.common.terminal import (
     print_warnings,
 )
 from verification.judging.verdict import Outcome
+from verification.regression.run_exit_codes import EXIT
 from verification.running.provenance import commit, cores, hardware
 from verification.sources.source_registry import SOURCES
 from verification.study.study_plan import Study, read_study_file, shipped_studies

@@ -10,7 +10,8 @@ from typing import Annotated
 from cyclopts import Parameter
 
 from verification.cases.case_file import shipped_cases
-from verification.commands.common.exit_codes import CommandError, no_result, with_exit_code
+from verification.commands.common.command_error import CommandError, no_result
+from verification.commands.common.exit_codes import with_exit_code
 from verification.commands.common.shared_options import Output
 from verification.commands.common.terminal import did_you_mean
 from verification.problem.quantity import STRESSES

@@ -1,17 +1,14 @@
 """Extension of Sphinx: formulas as MathML, docstrings as they are written here."""
 
 import re
+from textwrap import indent
 from typing import Any
 
-# A list of parameters: ``name, name : what it is [unit].   other : what``
-NAME = r"\*{0,2}\w+(?: \[[^\]]*\])?"
-PARAMETER = re.compile(rf"^({NAME}(?:, {NAME})*) : ")
-PARAMETERS = re.compile(rf" {{2,}}(?={NAME}(?:, {NAME})*(?: : | \[))")
+# Code between backticks, or a character that reStructuredText would read as markup.
+MARKUP = re.compile(r"(``.+?``)|[\\*`|_]")
 ARRAY = re.compile(
     r"(?:numpy\.)?ndarray\[(?:tuple\[(?:typing\.)?Any, \.\.\.\]|[^\[\],]*), dtype\[(?:numpy\.)?\w+\]\]"
 )
-LITERAL = re.compile(r"(``.+?``|`[^`]+?`)")
-SPECIAL = re.compile(r"([\\*`|_])")
 
 
 def setup(app: Any) -> dict[str, bool]:
@@ -66,62 +63,7 @@ def _signature(
 
 
 def restructured(text: str) -> str:
-    """A docstring in plain text as reStructuredText.
-
-    Indented blocks are formulas, kept as they are; lists of parameters become lists.
-    """
-    parts: list[str] = []
-    for block in re.split(r"\n\s*\n", text.strip("\n")):
-        lines = [line for line in block.splitlines() if line.strip()]
-        if not lines:
-            continue
-        if all(line.startswith("  ") for line in lines):
-            parts.append("::\n\n" + "\n".join(f"    {line}" for line in lines))
-            continue
-        paragraph: list[str] = []
-        for line in lines:
-            indented = line.startswith("    ") and not _lists(paragraph)
-            if indented:
-                parts += _flowing(paragraph)
-                paragraph = []
-                parts.append("::\n\n    " + line)
-            else:
-                paragraph.append(line)
-        parts += _flowing(paragraph)
-    return "\n\n".join(parts)
-
-
-def _lists(lines: list[str]) -> bool:
-    """Whether the lines hold a parameter, whose description may go on indented."""
-    return any(PARAMETER.match(line) for line in lines)
-
-
-def _flowing(lines: list[str]) -> list[str]:
-    """Paragraphs of running text, lists of parameters."""
-    if not lines:
-        return []
-    items: list[list[str]] = [[]]
-    for line in lines:
-        for i, piece in enumerate(PARAMETERS.split(line.strip())):
-            if PARAMETER.match(piece) or i:
-                items.append([])
-            items[-1].append(piece)
-    text = [" ".join(item) for item in items]
-    found = [_escaped(text[0])] if text[0] else []
-    listed = []
-    for item in text[1:]:
-        name, _, what = item.partition(" : ")
-        # A sentence on what is raised ends a list without being part of it.
-        what, raises, rest = what.partition(" Raises ")
-        listed.append(f"- **{_escaped(name)}** : {_escaped(what)}")
-        if raises:
-            listed.append("\nRaises " + _escaped(rest) + "\n")
-    return [*found, "\n".join(listed)] if listed else found
-
-
-def _escaped(text: str) -> str:
-    """Text with what reStructuredText would read as markup escaped, names in backticks as code."""
-    parts = LITERAL.split(text)
-    for i, part in enumerate(parts):
-        parts[i] = f"``{part.strip('`')}``" if i % 2 else SPECIAL.sub(r"\\\1", part)
-    return "".join(parts)
+    """A docstring as reStructuredText: its first paragraph, then the rest as it is written."""
+    first, _, rest = text.strip("\n").partition("\n\n")
+    summary = MARKUP.sub(lambda found: found[0] if found[1] else "\\" + found[0], " ".join(first.split()))
+    return f"{summary}\n\n::\n\n{indent(rest, '    ')}\n" if rest.strip() else summary

@@ -26,6 +26,7 @@ def _environment(folder: Path) -> Environment:
         trim_blocks=True,
         lstrip_blocks=True,
     )
+    made.policies["json.dumps_kwargs"] = {"separators": (",", ":"), "ensure_ascii": False}
     made.filters |= {"symbols": typeset, "unicode": unicode, "embedded": embedded}
     return made
 

@@ -2,6 +2,7 @@
 
 import base64
 import gzip
+import io
 import os
 import re
 import shutil
@@ -65,30 +66,19 @@ def printed(page: Path, path: Path, time_limit: float, paper: str = "A4") -> Pat
 
 
 def page_numbers(pdf: bytes) -> dict[str, int]:
-    """Page of every named place of a PDF as Chromium writes it, from 1; empty of any other."""
-    kids = {
-        int(n): body for n, body in re.findall(rb"\n(\d+) 0 obj\n<</Type /Pages\b(.*?)>>\nendobj", pdf, re.S)
-    }
-    nodes = {
-        n: [int(k) for k in re.findall(rb"(\d+) 0 R", listed[1])]
-        for n, body in kids.items()
-        if (listed := re.search(rb"/Kids \[(.*?)\]", body, re.S))
-    }
-    roots = [n for n, body in kids.items() if b"/Parent" not in body and n in nodes]
-    if len(roots) != 1:
+    """Page of every named place of a PDF, from 1; empty where it cannot be read."""
+    from pypdf import PdfReader
+    from pypdf.errors import PyPdfError
+
+    try:
+        reader = PdfReader(io.BytesIO(pdf))
+        pages = {
+            name.removeprefix("/"): reader.get_destination_page_number(place)
+            for name, place in reader.named_destinations.items()
+        }
+    except PyPdfError:
         return {}
-    order: dict[int, int] = {}
-
-    def walk(node: int) -> None:
-        if node in nodes:
-            for kid in nodes[node]:
-                walk(kid)
-        else:
-            order[node] = len(order) + 1
-
-    walk(roots[0])
-    places = re.findall(rb"/([\w.~-]+) \[(\d+) 0 R /XYZ", pdf)
-    return {name.decode(): order[int(n)] for name, n in places if int(n) in order}
+    return {name: page + 1 for name, page in pages.items() if page is not None and page >= 0}
 
 
 def with_numbers(text: str, numbers: Mapping[str, int]) -> str:

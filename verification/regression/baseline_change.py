@@ -5,11 +5,14 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field
 from typing import Any
 
+from verification.page.number_text import scientific
 from verification.regression.manifest import Difference, Manifest, differences, differing_tests, manifest_of
 from verification.regression.number_drift import Drift, Numbers, State, drift, edges_of, measured
 from verification.regression.usual_uncertainty import Ability, abilities
 from verification.running.case_result import CaseResult, RunInfo
 from verification.running.json_records import plain
+
+COUNTED = (State.SAME, State.DRIFTED, State.GONE, State.NEW)
 
 
 @dataclass(frozen=True)
@@ -197,6 +200,17 @@ def differing(then: Mapping[str, str], now: Mapping[str, str]) -> tuple[tuple[st
     """(name, then, now) of each text that differs, "none" where one side lacks it."""
     pairs = ((name, then.get(name, "none"), now.get(name, "none")) for name in dict.fromkeys([*then, *now]))
     return tuple(pair for pair in pairs if pair[1] != pair[2])
+
+
+def baseline_message(found: Regression) -> str:
+    """Comparison of the run with its baseline, in one sentence."""
+    if found.update is None:
+        return f"There is no baseline in {found.folder}, so this run was not compared."
+    counts = {state: sum(case.count(state) for case in found.cases) for state in State}
+    parts = [f"{counts[state]} {state}" for state in COUNTED]
+    largest = max((c.change for c in found.cases if c.change is not None), default=None)
+    by = f"; the largest change is {scientific(largest)} of its scale" if largest is not None else ""
+    return f"{', '.join(parts)}, of {sum(counts.values())} numbers{by}."
 
 
 def regression_json(found: Regression) -> dict[str, Any]:

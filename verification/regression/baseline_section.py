@@ -6,7 +6,7 @@ from math import isfinite
 from verification.page.number_text import scientific
 from verification.page.page_parts import Cell, Part, Section, Table, number, row, words
 from verification.page.source_labels import source_label
-from verification.regression.baseline_change import CaseDrift, Regression
+from verification.regression.baseline_change import COUNTED, CaseDrift, Regression, baseline_message
 from verification.regression.manifest import manifest_message
 from verification.regression.number_drift import FACTOR, RELATIVE, TOLERANCE, Drift, State
 
@@ -19,7 +19,6 @@ _STATES = {
     State.NEW: ("+", "", 2),
     State.SAME: ("=", "agrees", 3),
 }
-_COUNTED = (State.SAME, State.DRIFTED, State.GONE, State.NEW)
 _RULE = (
     f"A number is the same where it differs by at most {scientific(RELATIVE, 1)} of the largest magnitude of "
     "its profile, an uncertainty where it differs by at most 10 %. On another machine or with other versions "
@@ -36,17 +35,6 @@ def state_cell(case: CaseDrift, *, short: bool = False) -> Cell:
     mark, css, rank = _STATES[case.state]
     note = f"{case.state}: {case.message or f'largest change {scientific(case.change)} of the scale'}"
     return Cell(mark if short else f"{mark} {case.state}", float(rank), f"verdict {css}".strip(), note)
-
-
-def baseline_message(found: Regression) -> str:
-    """Comparison of the run with its baseline, in one sentence."""
-    if found.update is None:
-        return f"There is no baseline in {found.folder}, so this run was not compared."
-    counts = {state: sum(case.count(state) for case in found.cases) for state in State}
-    parts = [f"{counts[state]} {state}" for state in _COUNTED]
-    largest = max((c.change for c in found.cases if c.change is not None), default=None)
-    by = f"; the largest change is {scientific(largest)} of its scale" if largest is not None else ""
-    return f"{', '.join(parts)}, of {sum(counts.values())} numbers{by}."
 
 
 def section(found: Regression | None, anchors: Mapping[str, str]) -> Section | None:
@@ -130,7 +118,7 @@ def case_table(cases: Sequence[CaseDrift], anchors: Mapping[str, str], caption: 
     for case in cases:
         place = anchors.get(case.name)
         head = Cell(case.title, note=case.name, href=f"#{place}" if place else "")
-        counts = [number(case.count(state), str) for state in _COUNTED]
+        counts = [number(case.count(state), str) for state in COUNTED]
         rows.append(row(head, state_cell(case), *counts, _change(case.change), case.message))
     return Table(caption, ["case", "state", "same", "drifted", "gone", "new", "largest change", ""], rows)
 

@@ -1,17 +1,15 @@
 """Material of a report: results, provenance, other evidence, of a run or read back from one."""
 
 import json
-import shlex
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, fields
 from datetime import UTC, datetime
 from functools import cached_property, partial
-from pathlib import Path, PurePath
+from pathlib import Path
 from typing import Any, TypeVar
 
-from verification.cases.case_file import shipped_cases
-from verification.cases.published_file import published_cases
+from verification.cases.case_file import Case
 from verification.credibility import accuracy_study
 from verification.credibility.accuracy_study import AccuracyStudy
 from verification.credibility.import_independence import Part, parts
@@ -50,6 +48,7 @@ class Evidence:
     formulas : effective-modulus formulas.
     baseline : the change of each number since the baseline.
     maps : what the assumptions of the model cost.   models : the same of each case, by its name.
+    beyond : by case, a line for each assumption that costs too much of what the case judges.
     """
 
     orders: tuple[DesignOrder, ...] = ()
@@ -65,14 +64,31 @@ class Evidence:
     enclosures: EnclosureRecord | None = None
     maps: AssumptionMaps | None = None
     models: Mapping[str, ModelError] = field(default_factory=dict)
+    beyond: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
 
 
-def gather(records: Path, problems: Mapping[str, CoatedContact] | None = None) -> Evidence:
-    """Evidence of credibility; what is recorded from the directory ``records``.
+@dataclass(frozen=True)
+class Modelled:
+    """A contact of the run: its problem, the quantities that are judged, the warnings about its file."""
 
-    problems : the contacts of the run by the name of their case, of which the error of the model is found.
+    problem: CoatedContact
+    quantities: frozenset[str]
+    warnings: tuple[str, ...] = ()
+
+    @classmethod
+    def of(cls, case: Case) -> "Modelled":
+        """That of a case file."""
+        return cls(case.problem, frozenset(claim.quantity for claim in case.claims), case.warnings)
+
+
+def gather(
+    records: Path, contacts: Mapping[str, Modelled] | None = None, self_tests: Sequence[SelfTest] = ()
+) -> Evidence:
+    """Evidence that no result changes: measured, read from the directory ``records``, or modelled.
+
+    contacts : the contacts of the run by the name of their case, of which the error of the model is found.
     """
-    failures: list[str] = []
+    found, failures = contacts or {}, list[str]()
 
     def attempt(what: str, measure: Callable[[], T], otherwise: T) -> T:
         try:
@@ -86,8 +102,8 @@ def gather(records: Path, problems: Mapping[str, CoatedContact] | None = None) -
     enclosed = attempt("enclosures", lambda: enclosure_record.read_record(records), None)
     maps = attempt("maps of the assumptions", lambda: read_maps(records), None)
     models = {
-        name: attempt(f"error of the model, {name}", partial(model_error, problem, maps), ModelError(()))
-        for name, problem in (problems or {}).items()
+        name: attempt(f"error of the model, {name}", partial(model_error, one.problem, maps), ModelError(()))
+        for name, one in found.items()
     }
     return Evidence(
         attempt("manufactured solutions", design_orders, ()),
@@ -97,18 +113,13 @@ def gather(records: Path, problems: Mapping[str, CoatedContact] | None = None) -
         tuple(failures),
         mutants=mutants,
         enclosures=enclosed,
+        self_tests=tuple(self_tests),
         maps=maps,
         models=models,
-    )
-
-
-def model_warnings(result: CaseResult, evidence: Evidence) -> tuple[str, ...]:
-    """A line for each assumption that costs too much of what ``result`` judges, if it is not said yet."""
-    found = evidence.models.get(result.name)
-    if found is None:
-        return ()
-    return found.warnings(
-        judged_quantities({claim.quantity for claim, _ in result.verdicts}), result.warnings
+        beyond={
+            name: models[name].warnings(judged_quantities(one.quantities), one.warnings)
+            for name, one in found.items()
+        },
     )
 
 
@@ -127,11 +138,15 @@ class Material:
         return [result for result in self.results if not result.published]
 
     @property
-    def problems(self) -> dict[str, CoatedContact]:
-        """The problems of ``contacts`` by the names of their cases."""
+    def modelled(self) -> dict[str, Modelled]:
+        """The contacts by the names of their cases, as ``gather`` takes them."""
         names = {one.name for one in fields(CoatedContact)}
         return {
-            result.name: decode(CoatedContact, {k: v for k, v in result.problem.items() if k in names})
+            result.name: Modelled(
+                decode(CoatedContact, {k: v for k, v in result.problem.items() if k in names}),
+                frozenset(claim.quantity for claim, _ in result.verdicts),
+                result.warnings,
+            )
             for result in self.contacts
         }
 
@@ -205,23 +220,3 @@ def _last_report(folder: Path) -> dict[str, Any]:
         return data if isinstance(data, dict) and all(isinstance(c, dict) for c in data["cases"]) else {}
     except (StoreError, ValueError, KeyError, TypeError, RecursionError):
         return {}
-
-
-def rerun_command(name: str, command: str) -> str:
-    """The command, quoted for a shell, that solves the case ``name`` again.
-
-    command : that of the run, which tells where a file of the user's own was read from. Where it does not,
-    as after a run that was stopped, the file is named alone.
-    """
-    try:
-        words = shlex.split(command)[2:]
-    except ValueError:
-        words = []
-    own = [word for word in words if PurePath(word).stem == name and PurePath(word).name != name]
-    if own:
-        word = own[0]
-    elif name in words or name in shipped_cases() or name in published_cases():
-        word = name
-    else:
-        word = f"{name}.toml"
-    return f"coatcheck run {shlex.quote(f'./{word}' if word.startswith('-') else word)}"

@@ -1,7 +1,6 @@
 """Cases as tasks of the process pool, and the results stored by an earlier run."""
 
 import os
-from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -17,7 +16,6 @@ from verification.running.checked_files import StoreError, read_checked
 from verification.running.contact_run import failed
 from verification.running.json_records import plain
 from verification.running.pool.pool_task import Task
-from verification.running.pool.process_pool import run_tasks
 from verification.running.provenance import fingerprint
 from verification.running.stored_fields import plane_path, read_fields, read_plane
 from verification.sources.source_registry import METHODS, SOURCES
@@ -30,8 +28,13 @@ def result_path(folder: Path, case: Case | PublishedCase) -> Path:
     return folder / "cases" / f"{case.name}.json"
 
 
-def case_task(case: Case, folder: Path, *, fields: bool = False) -> Task[CaseResult]:
-    """Solving ``case`` with its result stored under ``folder``, and its ``fields`` where they are wanted.
+def case_task(case: Case | PublishedCase, folder: Path, *, fields: bool = False) -> Task[CaseResult]:
+    """Solving ``case``, its result stored under ``folder``, and its ``fields`` where they are wanted."""
+    return contact_task(case, folder, fields) if isinstance(case, Case) else published_task(case, folder)
+
+
+def contact_task(case: Case, folder: Path, fields: bool) -> Task[CaseResult]:
+    """As ``case_task``, for a contact.
 
     Cases that differ in friction alone share a process, and so the solution without friction.
     """
@@ -99,8 +102,3 @@ def kept_result(folder: Path, case: Case | PublishedCase, *, fields: bool = Fals
         if fields:
             read_fields(folder, case.name, case.text)
     return result if result.outcome is not Outcome.NO_RESULT else None
-
-
-def run_cases(cases: Sequence[Case], folder: Path, *, jobs: int, time_limit: float) -> list[CaseResult]:
-    """Run ``cases`` as ``run_tasks`` does; their results in order, stored under ``folder``."""
-    return run_tasks([case_task(case, folder) for case in cases], jobs=jobs, time_limit=time_limit)

@@ -7,7 +7,7 @@ import os
 import re
 import stat
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
@@ -56,6 +56,35 @@ def write_checked(path: Path, payload: dict[str, Any]) -> None:
     body = json.dumps(payload, sort_keys=True, allow_nan=False)
     content = f'{{"sha256": "{_digest(body)}", "payload": {body}}}\n'
     write_atomically(path, lzma.compress(content.encode()) if path.suffix == ".xz" else content)
+
+
+def write_together(folder: Path, texts: Mapping[str, str]) -> None:
+    """Write ``texts`` by their names into ``folder``; each replaces its predecessor once all are written.
+
+    An error leaves the earlier files as they were. Raises StoreError where the folder cannot be written.
+    """
+    ready: dict[Path, Path] = {}
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        for name, text in texts.items():
+            handle, path = tempfile.mkstemp(prefix=f".{name}.", suffix=PART, dir=folder)
+            ready[Path(path)] = folder / name
+            with os.fdopen(handle, "wb") as file:
+                # A lone surrogate in an untrusted title must not cost the whole report.
+                file.write(text.encode("utf-8", errors="replace"))
+                file.flush()
+                os.fsync(file.fileno())
+            os.chmod(path, 0o644)
+        for temporary, final in ready.items():
+            os.replace(temporary, final)
+    except OSError as error:
+        raise StoreError(
+            f"{folder}: the report cannot be written ({error.strerror or error}); free space, then continue "
+            "with --resume"
+        ) from None
+    finally:
+        for temporary in ready:
+            temporary.unlink(missing_ok=True)
 
 
 def read_checked(path: Path) -> dict[str, Any]:

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 
 from verification.cases.digit_changes import digit_changes
-from verification.cases.published_columns import PublishedColumn
 from verification.cases.published_file import PublishedCase
+from verification.cases.published_table import PublishedColumn
 from verification.judging.verdict import Outcome, Verdict, compare, judge
 from verification.problem.coated_contact import Solution
 from verification.problem.line_profile import Profile

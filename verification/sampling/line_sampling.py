@@ -88,7 +88,7 @@ def sample(
     Off the plane y = 0 see ``oblique``. On a line of the ball x is that of the flat.
 
     problem : on the surface also its largest tension with its place, as ``PEAKS`` of the contact.
-    edge : as of ``edge_of``; points within ``BESIDE`` of this radius [m] are evaluated at the same x/a of the
+    edge : as of ``edge_of``; points within ``BESIDE`` of that edge [m] are evaluated at the same x/a of the
            solution's own edge, where a value does not depend on the error of the radius.
     """
     if line.depth is None and line.coordinate != "z":
@@ -102,7 +102,7 @@ def sample(
     own = getattr(solution, "relative_to_edge", solution)
     near = np.zeros(x.shape, dtype=bool)
     if edge is not None:
-        near = (np.abs(np.abs(position) - edge) <= BESIDE * edge) & (line.coordinate == "x")
+        near = (np.hypot(np.abs(position) - edge, z) <= BESIDE * edge) & (line.coordinate == "x")
         x[near] *= a / edge
     # of a solution that does not state its uncertainty relative to the edge, that of points on it is followed
     at = np.flatnonzero(np.abs(position) == edge) if surface and own is solution else np.arange(0)

@@ -76,9 +76,8 @@ def _reduced(keyword: str, label: str, values: tuple[float, ...], **fixed: Any) 
     return tuple((label.format(v), {keyword: v, **fixed}, v) for v in values)
 
 
-# The patches of a sphere with an edge profile leave nothing that its numerical parameters could change: their
-# refinement studies are those of patches alone (`credibility.accuracy`). All parameters but the size of the
-# elements are varied on a coarser mesh, to save time.
+# The refinement studies of the patches are in `credibility.accuracy_study`. All parameters but the size of
+# the elements are varied on a coarser mesh, to save time.
 _FEM = partial(NumericalParameter, "fem_reference")
 ELEMENTS = (
     _FEM("element size", _reduced("size", "size {}", (0.36, 0.27, 0.19, 0.12), order=4), order=4.0),

@@ -9,7 +9,8 @@ from rich.console import Console
 from rich.markup import escape
 
 from assumption_maps_made.measuring import assembled, measure, with_map
-from verification.commands.common.exit_codes import CommandError, with_exit_code
+from verification.commands.common.command_error import CommandError
+from verification.commands.common.exit_codes import with_exit_code
 from verification.commands.common.known_folders import RECORDS, require_checkout
 from verification.commands.common.shared_options import AsJson, Flag, Quiet, RecordsFolder
 from verification.commands.common.task_progress import progress_bar, run_info

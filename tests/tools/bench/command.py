@@ -17,12 +17,14 @@ from bench.checkout import checkout
 from bench.device import LIBRARY, not_measured
 from bench.figures import PEERS, Figure, Other, Part, groups, measure
 from bench.history import BenchRun, append, read
-from verification.commands.common.exit_codes import EXIT, CommandError, with_exit_code
+from verification.commands.common.command_error import CommandError
+from verification.commands.common.exit_codes import with_exit_code
 from verification.commands.common.known_folders import require_format
 from verification.commands.common.shared_options import AsJson, Flag
 from verification.commands.common.task_progress import progress_bar
 from verification.commands.common.terminal import named_table, print_error, print_json, print_out
 from verification.judging.outcome import Outcome
+from verification.regression.run_exit_codes import EXIT
 from verification.running.json_records import encode
 from verification.running.provenance import PACKAGES, commit, machine, versions
 

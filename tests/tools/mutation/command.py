@@ -9,7 +9,8 @@ from rich.markup import escape
 
 from mutation.campaign import ROOMS, ROOT, annotated, drawn
 from mutation.trial import kept_trial, trial_task
-from verification.commands.common.exit_codes import CommandError, no_result, with_exit_code
+from verification.commands.common.command_error import CommandError, no_result
+from verification.commands.common.exit_codes import with_exit_code
 from verification.commands.common.known_folders import RECORDS
 from verification.commands.common.shared_options import (
     AsJson,

@@ -12,8 +12,8 @@ from quick_case import COMMAND, QUICK, coatcheck
 
 from verification.cases.case_file import read_case, shipped_cases
 from verification.cases.published_file import published_cases
-from verification.commands.common.exit_codes import exit_code
 from verification.judging.verdict import Claim, Outcome, Verdict
+from verification.regression.run_exit_codes import exit_code
 from verification.running.case_result import CaseResult
 from verification.running.case_tasks import case_task
 from verification.running.pool.process_pool import run_tasks
@@ -76,10 +76,10 @@ def test_case_that_exceeds_its_time_is_no_result_and_the_others_finish(tmp_path)
     (tmp_path / "quick.toml").write_text(QUICK)
     quick = read_case(tmp_path / "quick.toml")
     # Importing the methods alone takes longer than this.
-    results = run_cases([slow, quick], tmp_path, jobs=2, time_limit=0.2)
+    results = run_tasks([case_task(one, tmp_path) for one in (slow, quick)], jobs=2, time_limit=0.2)
     assert [r.outcome for r in results] == [Outcome.NO_RESULT, Outcome.NO_RESULT]
     assert "not finished after" in results[0].verdicts[0][1].reason
-    results = run_cases([quick], tmp_path, jobs=1, time_limit=100)
+    results = run_tasks([case_task(quick, tmp_path)], jobs=1, time_limit=100)
     assert results[0].outcome is Outcome.AGREES
 
 

@@ -126,7 +126,7 @@ def test_completion_works_in_the_shell_itself(capsys, tmp_path, shell, words):
 
 @pytest.mark.parametrize("width", [40, 80])
 def test_the_table_stands_in_a_narrow_terminal(stored, capsys, monkeypatch, width):
-    from verification.commands.run import _print_table
+    from verification.commands.common.run_summary import print_run
     from verification.regression.baseline_change import Update, regression
     from verification.running.stored_run import read_run
 
@@ -134,7 +134,7 @@ def test_the_table_stands_in_a_narrow_terminal(stored, capsys, monkeypatch, widt
     monkeypatch.setenv("TERM", "dumb")
     results = [replace(result, name="15_dlc_chromium_sliding") for result in read_run(stored).results[:1]]
     beside = regression(results, None, "reports/baseline", INFO, whole=False)
-    _print_table(
+    print_run(
         results,
         stored / "report.html",
         1.0,

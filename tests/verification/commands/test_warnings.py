@@ -7,7 +7,7 @@ import pytest
 from quick_case import coatcheck
 from synthetic_results import INFO, contact, result_of
 
-from verification.commands.common.exit_codes import CommandError
+from verification.commands.common.command_error import CommandError
 from verification.commands.common.terminal import print_warnings
 from verification.report.report_material import Material
 from verification.report.report_page import render

@@ -12,7 +12,7 @@ from quick_case import solved_here
 from synthetic_study import study
 
 from verification.commands import run as command
-from verification.commands.common import task_progress
+from verification.commands.common import named_files, task_progress
 from verification.credibility import accuracy_study as accuracy_study
 from verification.credibility.accuracy_study import BARE, COATED, AccuracyStudy, from_json, to_json
 from verification.credibility.refinement_studies import (
@@ -217,7 +217,7 @@ def one_case(tmp_path, monkeypatch):
         "[[claim]]\nquantity = 'peak_pressure'\nline = 'contact'\n"
         "between = ['integral_equation', 'hertz']\ncap = 1e-6\nwhy = 'no method, so nothing else can fail'\n"
     )
-    monkeypatch.setattr(command, "shipped_cases", lambda: {"quick": case})
+    monkeypatch.setattr(named_files, "shipped_cases", lambda: {"quick": case})
     return {"quiet": True, "baseline": tmp_path / "none", "records": tmp_path / "none"}
 
 

@@ -3,14 +3,13 @@
 import pytest
 from synthetic_results import INFO, contact, result_of
 
-from verification.commands.common.exit_codes import EXIT
-from verification.commands.run import _code
 from verification.credibility import self_tests as room
 from verification.credibility.faults.fault_catalogue import FAULTS
 from verification.credibility.faults.fault_planting import planted
 from verification.credibility.self_tests import SelfTest, self_tests
 from verification.judging.verdict import Outcome
 from verification.regression.baseline_change import Regression
+from verification.regression.run_exit_codes import EXIT, run_code
 from verification.report.credibility.self_tests_section import section
 from verification.report.report_material import Evidence, Material
 
@@ -42,10 +41,10 @@ def test_a_run_is_no_better_than_its_harness(tmp_path):
     agreeing = result_of(contact())
     assert agreeing.outcome is Outcome.AGREES
     nothing = Regression(tmp_path, None, ())
-    assert _code([agreeing], nothing, [PASSED]) == EXIT[Outcome.AGREES]
-    assert _code([agreeing], nothing, [PASSED, FAILED]) == EXIT[Outcome.DISAGREES]
+    assert run_code([agreeing], nothing, passed=True) == EXIT[Outcome.AGREES]
+    assert run_code([agreeing], nothing, passed=False) == EXIT[Outcome.DISAGREES]
     lost = result_of(contact(), failures={"semianalytic": "did not converge"})
-    assert _code([lost], nothing, [FAILED]) == EXIT[Outcome.NO_RESULT]
+    assert run_code([lost], nothing, passed=False) == EXIT[Outcome.NO_RESULT]
 
 
 def test_the_report_says_which_answer_was_wrong():

@@ -28,7 +28,7 @@ def report(tmp_path_factory):
     plane = sample_plane(tuple(problem["interfaces"]), {"semianalytic": hertz, "fem_reference": hertz})
     failed = "order 3: the mesh has no triangles"
     return write_report(
-        Material(results, INFO, Evidence(accuracy=study(failed)), {results[0].name: plane}), folder
+        Material(results, INFO, Evidence(accuracy=study(failed)), {results[0].name: plane}), folder, ""
     )
 
 

@@ -7,7 +7,6 @@ from synthetic_results import INFO, STEEL, contact, result_of
 from synthetic_study import study
 
 from verification.credibility.false_alarms import counted
-from verification.credibility.faults import fault_campaign
 from verification.credibility.import_independence import PARTS, imports_of, parts, shared
 from verification.credibility.self_tests import SelfTest
 from verification.credibility.self_tests.known_enclosures import TEST
@@ -132,7 +131,7 @@ def test_the_fault_score_and_its_survivors_come_from_the_record(tmp_path):
     record = Record(
         tuple(rows), (), "2026-10-09T08:00:00+00:00", 60.0, 90.0, "c0ffee123456", "m", dict(INFO.versions)
     )
-    write_record(tmp_path / fault_campaign.RECORD, record)
+    write_record(tmp_path, record)
     found = gather(tmp_path)
     assert found.failures == ()
     text = said(part(section(found), STEPS[5]))
@@ -222,7 +221,7 @@ def test_the_page_takes_the_section_and_escapes_it(evidence, tmp_path):
 
 
 def test_other_codes_have_their_differences_in_the_report(evidence):
-    (table,) = guests_section.section(Material(RESULTS, INFO, evidence)).parts[0].tables
+    (table,) = guests_section.section().parts[0].tables
     rows = {one.head.text: [cell.sort for cell in one.cells] for one in table.rows}
     assert len(rows) == 4
     assert rows["tamaas"][3] == pytest.approx(5.4e-6, rel=0.1)  # p0

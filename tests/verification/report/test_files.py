@@ -13,9 +13,11 @@ from verification.regression.junit_xml import junit_xml
 from verification.report import report_files
 from verification.report.report_files import write_report
 from verification.report.report_material import Material
+from verification.running import checked_files
 from verification.running.case_result import SCHEMA, CaseResult, SourceResult, from_json
 from verification.running.checked_files import StoreError
 
+JUNIT = junit_xml([], INFO)
 NAMES = {"report.html", "report.json", "junit.xml"}
 
 
@@ -27,50 +29,50 @@ def results():
 
 
 def test_a_report_is_three_files_and_nothing_else(tmp_path, results):
-    page = write_report(Material(results, INFO), tmp_path / "new" / "folder")
+    page = write_report(Material(results, INFO), tmp_path / "new" / "folder", JUNIT)
     assert page == tmp_path / "new" / "folder" / "report.html"
     assert {path.name for path in page.parent.iterdir()} == NAMES
     assert all(path.stat().st_size > 100 for path in page.parent.iterdir())
 
 
 def test_an_earlier_report_survives_whatever_goes_wrong(tmp_path, results, monkeypatch):
-    write_report(Material([], INFO), tmp_path)
+    write_report(Material([], INFO), tmp_path, JUNIT)
     before = {path.name: path.read_bytes() for path in tmp_path.iterdir()}
 
     def full(_):
         raise OSError(28, "No space left on device")
 
     with monkeypatch.context() as patched:
-        patched.setattr(report_files.os, "fsync", full)
+        patched.setattr(checked_files.os, "fsync", full)
         with pytest.raises(StoreError, match="No space left"):
-            write_report(Material(results, INFO), tmp_path)
+            write_report(Material(results, INFO), tmp_path, JUNIT)
     with monkeypatch.context() as patched:
         patched.setattr(report_files, "render", lambda _: 1 / 0)
         with pytest.raises(ZeroDivisionError):
-            write_report(Material(results, INFO), tmp_path)
+            write_report(Material(results, INFO), tmp_path, JUNIT)
     assert {path.name: path.read_bytes() for path in tmp_path.iterdir()} == before
 
 
 def test_a_title_that_is_no_text_costs_no_report(tmp_path):
     # Lone surrogates are legal in JSON, so they can come back from a stored result.
-    write_report(Material([result_of(contact(), title="half \ud800 pair", points=11)], INFO), tmp_path)
+    write_report(Material([result_of(contact(), title="half \ud800 pair", points=11)], INFO), tmp_path, JUNIT)
     assert "half ? pair" in (tmp_path / "report.html").read_text(encoding="utf-8")
 
 
 def test_a_name_from_a_stranger_is_no_path(tmp_path):
     folder = tmp_path / "out"
-    write_report(Material([result_of(contact(), name="../../evil", points=11)], INFO), folder)
+    write_report(Material([result_of(contact(), name="../../evil", points=11)], INFO), folder, JUNIT)
     assert {path.name for path in tmp_path.iterdir()} == {"out"}
     assert {path.name for path in folder.iterdir()} == NAMES
 
 
 def test_report_files_can_be_read_by_others(tmp_path):
-    page = write_report(Material([], INFO), tmp_path)
+    page = write_report(Material([], INFO), tmp_path, JUNIT)
     assert oct(os.stat(page).st_mode & 0o777) == "0o644"
 
 
 def test_json_is_strict_versioned_and_complete(tmp_path, results):
-    write_report(Material(results, INFO), tmp_path)
+    write_report(Material(results, INFO), tmp_path, JUNIT)
     text = (tmp_path / "report.json").read_text()
 
     def refuse(word):

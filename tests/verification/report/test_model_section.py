@@ -6,13 +6,14 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from assumption_maps_made.measuring import with_map
 from synthetic_results import INFO, contact, result_of
 
 from verification.commands.common.known_folders import RECORDS
 from verification.credibility.model.model_error import LIMIT, Cost, ModelError, judged_quantities
 from verification.evidence.assumption_maps import read_maps
 from verification.report.credibility.model_section import LEVELS, section
-from verification.report.report_material import Evidence, Material, model_warnings
+from verification.report.report_material import Evidence, Material
 from verification.report.report_page import render
 
 RESULT = result_of(contact(), points=5)
@@ -34,7 +35,7 @@ def test_no_record_has_no_section():
 
 def test_section_has_every_assumption_of_the_record(maps):
     other = replace(maps.maps[0], assumption="other", title="yet another assumption")
-    shown = section_of(maps.with_map(other))
+    shown = section_of(with_map(maps, other))
     heads = [line.head.text for line in shown.parts[0].tables[0].rows]
     for one in (*maps.maps, other):
         assert sum(head.startswith(f"{one.title}, ") for head in heads) == 1
@@ -77,6 +78,13 @@ def test_map_with_holes_is_drawn(maps):
     assert len(holed.parts[1].gallery.panels) == 4
 
 
+def model_warnings(result, evidence):
+    found = evidence.models.get(result.name, ModelError(()))
+    return found.warnings(
+        judged_quantities({claim.quantity for claim, _ in result.verdicts}), result.warnings
+    )
+
+
 def model_of(size, assumption=TITLES[1], quantity="tension"):
     return Evidence(models={RESULT.name: ModelError((Cost(assumption, quantity, size, 0.0),))})
 
@@ -103,7 +111,7 @@ def test_only_judged_quantities_are_warned_of():
 
 
 def test_page_of_a_case_states_the_error_of_the_model(maps):
-    evidence = replace(model_of(0.1), maps=maps)
+    evidence = replace(model_of(0.1), maps=maps, beyond={RESULT.name: model_warnings(RESULT, model_of(0.1))})
     page = render(Material([RESULT], INFO, evidence))
     assert "The model itself is good to 10 % of the tension at the trailing edge (Goodman" in page
     assert "<strong>Beyond the model:</strong> Goodman" in page

@@ -1,8 +1,5 @@
 """Pictures of the stresses below the contact: true to the plane, drawn whatever its numbers."""
 
-import base64
-import gzip
-
 import matplotlib as mpl
 import numpy as np
 import pytest
@@ -76,7 +73,7 @@ def test_a_thin_layer_is_drawn_thick_enough_to_be_seen():
 
 def test_the_numbers_behind_are_those_of_the_plane(plane):
     found = pictures(RESULT, plane)
-    rows = gzip.decompress(base64.b64decode(found.csv.partition(",")[2])).decode().splitlines()
+    rows = found.csv.splitlines()
     heads = rows[0].split(",")
     assert heads[:3] == ["layer", "x [m]", "z [m]"]
     table = np.array([[float(v) for v in row.split(",")] for row in rows[1:]])

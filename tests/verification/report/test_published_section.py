@@ -13,9 +13,9 @@ from verification.cases.published_file import published_cases, read_published
 from verification.regression.junit_xml import junit_xml
 from verification.report.report_material import Material
 from verification.report.report_page import render
-from verification.report.sections.published_section import counts, published_message
 from verification.running.case_result import RunInfo, from_json
 from verification.running.checked_files import read_checked
+from verification.running.published_counts import counts, published_message
 from verification.running.published_run import failed, run, with_digits
 from verification.sources.source_registry import solvers
 

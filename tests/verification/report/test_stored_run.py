@@ -12,8 +12,10 @@ from verification.credibility.false_alarms import counted
 from verification.credibility.self_tests import SelfTest
 from verification.evidence.alarm_record import write_record
 from verification.regression.baseline_change import regression, updated
+from verification.regression.junit_xml import junit_xml
 from verification.report.report_files import write_report
-from verification.report.report_material import Material, gather, rerun_command, stored_material
+from verification.report.report_material import Material, gather, stored_material
+from verification.report.sections.case_page import rerun_command
 from verification.running.case_result import to_json
 from verification.running.checked_files import write_checked
 from verification.running.stored_fields import plane_path, write_plane
@@ -47,7 +49,9 @@ def run(tmp_path):
         formulas=EffectiveStudy(failure="its process <died>"),
     )
     # As a run has them: each result read back from its file, in the order of the command.
-    write_report(Material(material.results[::-1], INFO, evidence, material.planes), folder)
+    results = material.results[::-1]
+    junit = junit_xml(results, INFO, evidence.baseline, {"reader": ""})
+    write_report(Material(results, INFO, evidence, material.planes), folder, junit)
     return folder
 
 

@@ -10,7 +10,7 @@ import pytest
 import fem_reference
 import semianalytic
 from verification.cases.case_file import parse_case
-from verification.commands.common.exit_codes import CommandError
+from verification.commands.common.command_error import CommandError
 from verification.commands.view import _picture, view
 from verification.problem.quantity import STRESSES
 from verification.running.checked_files import StoreError

@@ -3,7 +3,7 @@
 from pathlib import Path
 
 import verification
-from verification.commands.common.exit_codes import CommandError
+from verification.commands.common.command_error import CommandError
 from verification.commands.common.terminal import did_you_mean
 
 PACKAGE = Path(verification.__file__).parent

@@ -1,4 +1,4 @@
-"""What a name on the command line stands for: a shipped file or a path."""
+"""The files that names on the command line stand for: shipped ones by name, others by path."""
 
 import os
 import unicodedata
@@ -6,12 +6,31 @@ from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 
+from verification.cases.case_file import Case, shipped_cases
+from verification.cases.published_file import PublishedCase, published_cases, read_any_case
 from verification.cases.toml_file import CaseError
 from verification.commands.common.terminal import did_you_mean
 
-__all__ = ["SHIPPED", "path_of", "require_distinct"]
+__all__ = ["SHIPPED", "chosen_cases", "path_of", "require_distinct"]
 
 SHIPPED = "case (see coatcheck list)"
+
+
+def chosen_cases(names: Sequence[str]) -> list[Case | PublishedCase]:
+    """The cases that ``names`` stand for, all shipped contacts without any; "published" names a group.
+
+    Raises CaseError for an unknown name, a file that cannot be used, or two cases of one name.
+    """
+    shipped, published = shipped_cases(), published_cases()
+    cases: list[Case | PublishedCase] = []
+    for name in names or shipped:
+        if name == "published":
+            cases += [read_any_case(path) for path in published.values()]
+        else:
+            path = path_of(name, shipped | published, SHIPPED, ["published"])
+            cases.append(read_any_case(path))
+    require_distinct([case.name for case in cases])
+    return cases
 
 
 def path_of(name: str, shipped: Mapping[str, Path], kind: str, others: Iterable[str] = ()) -> Path:

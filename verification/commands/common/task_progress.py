@@ -23,7 +23,7 @@ from rich.text import Text
 
 from verification.cases.case_file import Case
 from verification.cases.published_file import PublishedCase
-from verification.commands.common.exit_codes import CommandError, no_result
+from verification.commands.common.command_error import CommandError, no_result
 from verification.commands.common.terminal import STYLE, one_line, print_error
 from verification.credibility import accuracy_study as accuracy_study
 from verification.credibility.accuracy_study import AccuracyStudy

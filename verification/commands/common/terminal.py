@@ -10,6 +10,7 @@ from difflib import get_close_matches
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from verification.commands.common.command_error import CommandError
 from verification.judging.outcome import Outcome
 
 if TYPE_CHECKING:
@@ -35,8 +36,6 @@ def print_warnings(warnings: Iterable[str], name: str, *, strict: bool, silent: 
 
     strict : raise CommandError with the first instead.
     """
-    from verification.commands.common.exit_codes import CommandError
-
     for message in warnings:
         if strict:
             raise CommandError(f"{name}: {message}")

@@ -8,7 +8,8 @@ from rich.markup import escape
 
 from verification.cases.case_file import Case, parse_case
 from verification.cases.random_problems import draw
-from verification.commands.common.exit_codes import CommandError, exit_code, with_exit_code
+from verification.commands.common.command_error import CommandError
+from verification.commands.common.exit_codes import with_exit_code
 from verification.commands.common.known_folders import RECORDS, require_checkout
 from verification.commands.common.shared_options import (
     AsJson,
@@ -24,6 +25,8 @@ from verification.commands.common.task_progress import kept_results, pool_of, re
 from verification.commands.common.terminal import STYLE, named_table, one_line, print_json, print_out
 from verification.credibility.false_alarms import counted
 from verification.evidence.alarm_record import AlarmRecord, write_record
+from verification.regression.junit_xml import junit_xml
+from verification.regression.run_exit_codes import exit_code
 from verification.running.case_tasks import case_task
 from verification.running.checked_files import locked, write_atomically
 from verification.running.json_records import plain
@@ -77,7 +80,7 @@ def alarms(
         solved = {r.name: r for r in solve(tasks, pool, time_limit, quiet or as_json)}
         results = [kept.get(case.name) or solved[case.name] for case in cases]
         info = run_info(f"coatcheck alarms --count {count} --seed {seed}", started, pool)
-        page = write_report(Material(results, info), output)
+        page = write_report(Material(results, info), output, junit_xml(results, info))
         found = counted(results, seed, info)
         stored = write_record(records, found) if record else None
     if as_json:

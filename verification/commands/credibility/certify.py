@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 
 from rich.markup import escape
 
-from verification.commands.common.exit_codes import EXIT, CommandError, no_result, with_exit_code
+from verification.commands.common.command_error import CommandError, no_result
+from verification.commands.common.exit_codes import with_exit_code
 from verification.commands.common.known_folders import RECORDS, require_checkout
 from verification.commands.common.shared_options import AsJson, Flag, Quiet, RecordsFolder
 from verification.commands.common.task_progress import run_info
@@ -28,6 +29,7 @@ from verification.evidence.enclosure_record import (
 )
 from verification.judging.outcome import Outcome
 from verification.problem.coated_contact import CoatedContact
+from verification.regression.run_exit_codes import EXIT
 from verification.running.json_records import plain
 from verification.sources.enclosures.enclosed_problems import problems, profile_radii
 

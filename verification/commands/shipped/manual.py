@@ -2,7 +2,8 @@
 
 from pathlib import Path
 
-from verification.commands.common.exit_codes import CommandError, no_result, with_exit_code
+from verification.commands.common.command_error import CommandError, no_result
+from verification.commands.common.exit_codes import with_exit_code
 from verification.commands.common.shared_options import AsJson, Flag, Output, Quiet
 from verification.commands.common.terminal import print_files
 

@@ -96,6 +96,11 @@ class ModelError:
         return f"the model itself is good to {' and '.join(self.parts)}"
 
     @property
+    def sentences(self) -> str:
+        """The message with its notes."""
+        return " ".join(f"{line[0].upper()}{line[1:]}." for line in (self.message(), *self.notes))
+
+    @property
     def notes(self) -> tuple[str, ...]:
         """A line for each assumption that dominates nowhere, for each whose cost is not known here."""
         unknown = (f"not known here: {assumption} ({reason})" for assumption, reason in self.missing)

@@ -18,7 +18,7 @@ from verification.page.number_text import plain
 from verification.page.page_parts import Gallery, Panel, Part, Section, Table, row, words
 from verification.page.source_labels import source_label
 from verification.page.svg_loglog import draw_histogram
-from verification.regression.baseline_section import baseline_message
+from verification.regression.baseline_change import baseline_message
 from verification.report.credibility.credibility_tables import (
     alarm_table,
     design_table,
@@ -46,24 +46,17 @@ COMMON_TITLES = (
     "What comparisons of a sphere test of the patches",
 )
 COMMON_EQUATION = (
-    "For a sphere, the semi-analytical method and the exact integral equation discretise one equation, "
-    "without common code: the deflection under a pressure given by its Abel potential phi, of the surface "
-    "material alone plus a Hankel integral of the layers' response, closes the gap. The method closes it "
-    "at Gauss points of 1 - (r/a)^2; its unknowns are the approach and the coefficients of phi over 1 - "
-    "(x/a)^2; a follows by secant steps. The reference inverts Abel's integral to a Fredholm equation of "
-    "the second kind; its unknowns are the values of phi at Gauss points of x/a (Nystrom); phi(a) = 0 "
-    "gives the approach, Brent's method a. The method has the layers' response from Papkovich potentials "
-    "with reflection matrices, the reference from state vectors with surface impedances; their panels in "
-    "the wavenumber differ. The part of the homogeneous solid in the stresses of the first coating is a "
-    "contour integral in the method, Hankel quadrature in the reference, with a closed form on the "
-    "surface. Both use even Legendre series with spherical Bessel functions for the transform of the "
-    "pressure. Agreement of these two therefore says less than agreement of either with the finite "
-    "elements, which share only the assumptions.",
-    "The patches of a sphere find what its edge profile leaves, usually nothing above their tolerance, "
-    "and the approach: comparisons of a sphere hardly test influence coefficients, conjugate gradients "
-    "and DC-FFT. The studies without the profile, named staircase edge, compare these with the exact "
-    "solution in the section Semi-analytical accuracy of every default run; an invariant of every case "
-    "compares the influence coefficients with direct quadrature.",
+    "The semi-analytical method and the exact integral equation use the same frequency response of the "
+    "layers, derived and coded twice: the method from Papkovich potentials with reflection matrices, the "
+    "reference from state vectors with surface impedances. Otherwise they share no equation: the method "
+    "finds pressures of surface patches, the reference values of a potential along the radius, phi. "
+    "Stresses of the method are sums of point forces, those of the reference Hankel integrals over the "
+    "wavenumber. The finite elements share only the assumptions with both.",
+    "Every number of the semi-analytical method comes from the pressures that influence coefficients, "
+    "conjugate gradients and DC-FFT give to the patches: a change of the coefficients by 1 % changes contact "
+    "radius, peak pressure, approach and stresses as the same change of the modulus would. The studies named "
+    "staircase edge compare patches without the correction of the edge with the exact solution; an "
+    "invariant of every case compares the influence coefficients with direct quadrature.",
 )
 NOT_CLAIMED = (
     "Validity for a real coating: nothing was compared with an experiment, so this is verification, not "
@@ -107,8 +100,8 @@ def section(material: Material) -> Section | None:
         ),
         Part(
             "Every method states an uncertainty U for each number, estimated from coarser solutions of the "
-            "same problem: for a sphere from fewer terms of the edge profile, for finite elements from a "
-            "coarser mesh. U is checked where the exact solution is known: "
+            "same problem: on fewer patches, or on a coarser mesh. U is checked where the exact solution is "
+            "known: "
             f"{_bracketed(contacts)}",
             [coverage_table(contacts), parameter_table(contacts)],
             title="3. Solution verification",

@@ -6,7 +6,7 @@ from itertools import zip_longest
 
 import numpy as np
 
-from verification.page.embedded_csv import embedded, written
+from verification.page.embedded_csv import written
 from verification.page.number_text import plain, scientific
 from verification.page.page_parts import Panel
 from verification.page.source_labels import source_label
@@ -46,11 +46,29 @@ def pictures(result: CaseResult, plane: Plane | None) -> Pictures | None:
     sources = [name for name in METHODS if name in plane.stress]
     bottoms = [float(z[-1]) / a_h for z in plane.depths]
     frame = Frame(float(plane.x[-1]) / a_h, bottoms[-1], tuple(bottoms[:-1]), plane.radius / a_h)
-    rows = [_panels(plane, quantity, sources, frame, a_h, p_h) for quantity in SHOWN]
+    rows = [_quantity_drawn(plane, quantity, sources, p_h) for quantity in SHOWN]
+    caption, table = _caption(sources, frame), plane_csv(plane)
+    x, depths = plane.x / a_h, [z / a_h for z in plane.depths]
+    panels = [
+        Panel(
+            one.title,
+            draw_field(
+                rasterised(x, depths, one.values, frame, smooth=one.smooth),
+                frame,
+                one.colours,
+                label=one.label,
+                lines=one.smooth,
+            ),
+            one.note,
+            "",
+        )
+        for some in zip(*rows, strict=True)
+        for one in some
+    ]
     return Pictures(
-        tuple(panel for some in zip(*rows, strict=True) for panel in some),
-        _caption(plane, sources, frame),
-        embedded(plane_csv(plane)),
+        tuple(panels),
+        caption,
+        table,
         f"{slug(result.name)}-plane.csv",
         failures,
     )
@@ -75,27 +93,28 @@ def _quantity(sigma: Array, name: str) -> Array:
     return von_mises(sigma) if name == "von_mises" else sigma[list(IN_PLANE).index(name)]
 
 
-def _panels(
-    plane: Plane, quantity: str, sources: Sequence[str], frame: Frame, a_h: float, p_h: float
-) -> list[Panel]:
+@dataclass(frozen=True, eq=False)
+class _Drawn:
+    """A field to draw: values layer by layer.   smooth : between points, with level lines."""
+
+    title: str
+    values: Sequence[Array]
+    colours: Scale
+    label: str
+    note: str
+    smooth: bool = True
+
+
+def _quantity_drawn(plane: Plane, quantity: str, sources: Sequence[str], p_h: float) -> list[_Drawn]:
     """The field of the first method, then its difference from the other."""
-    x, depths = plane.x / a_h, [z / a_h for z in plane.depths]
     fields = {s: [_quantity(sigma, quantity) / p_h for sigma in plane.stress[s]] for s in sources}
     source, shown = next(iter(fields.items()))
-    title = f"{TITLES.get(quantity, quantity)} / p_h"
+    title, name = f"{TITLES.get(quantity, quantity)} / p_h", source_label(source)
     values = np.concatenate([f.ravel() for f in shown])
     known = values[np.isfinite(values)]
     span = f"{plain(known.min(), 3)} to {plain(known.max(), 3)}" if known.size else "not finite"
-    drawn = draw_field(
-        rasterised(x, depths, shown, frame),
-        frame,
-        _colours(quantity, shown),
-        label=f"{title} by {source_label(source)}",
-    )
-    panels = [Panel(title, drawn, f"{source_label(source)}, {span}", "")]
-    if len(sources) == 2:
-        panels.append(_difference(fields, x, depths, frame, title))
-    return panels
+    first = _Drawn(title, shown, _colours(quantity, shown), f"{title} by {name}", f"{name}, {span}")
+    return [first, _difference(fields, title)] if len(sources) == 2 else [first]
 
 
 def plane_difference(plane: Plane, scale: float) -> tuple[float, str] | None:
@@ -110,27 +129,20 @@ def plane_difference(plane: Plane, scale: float) -> tuple[float, str] | None:
     return float(largest.max()), list(IN_PLANE)[int(largest.argmax())]
 
 
-def _difference(
-    fields: dict[str, list[Array]],
-    x: Array,
-    depths: Sequence[Array],
-    frame: Frame,
-    title: str,
-) -> Panel:
+def _difference(fields: dict[str, list[Array]], title: str) -> _Drawn:
     gaps = [np.abs(one - other) for one, other in zip(*fields.values(), strict=True)]
     largest = max((float(g.max()) for g in gaps), default=0.0)
     with np.errstate(divide="ignore"):
         exponents = [np.log10(np.maximum(g, 10.0 ** (FLOOR - 1))) for g in gaps]
     top = max(TOP, float(np.ceil(np.log10(largest)))) if 0 < largest < np.inf else TOP
-    colours = Scale(FLOOR, top, DIFFERENCE, logarithmic=True)
-    drawn = draw_field(
-        rasterised(x, depths, exponents, frame, smooth=False),
-        frame,
-        colours,
-        label=f"difference of both methods in {title}, logarithmic",
-        lines=False,
+    return _Drawn(
+        f"difference in {title}",
+        exponents,
+        Scale(FLOOR, top, DIFFERENCE, logarithmic=True),
+        f"difference of both methods in {title}, logarithmic",
+        f"largest {scientific(largest)}",
+        smooth=False,
     )
-    return Panel(f"difference in {title}", drawn, f"largest {scientific(largest)}", "")
 
 
 def _colours(quantity: str, values: Sequence[Array]) -> Scale:
@@ -144,7 +156,7 @@ def _colours(quantity: str, values: Sequence[Array]) -> Scale:
     return Scale(-largest, largest, DIVERGING)
 
 
-def _caption(plane: Plane, sources: Sequence[str], frame: Frame) -> str:
+def _caption(sources: Sequence[str], frame: Frame) -> str:
     text = (
         "Plane y = 0; the red bar is the contact, lines across are interfaces, where stresses may jump. "
         "Level lines at the ticks of the colour bar. "

@@ -1,10 +1,12 @@
 """Page of one case: problem, numbers of the contact, figures, all comparisons, statements of its sources."""
 
+import shlex
+from pathlib import PurePath
 from typing import Any
 
-from verification.credibility.model.model_error import ModelError
+from verification.cases.case_file import shipped_cases
+from verification.cases.published_file import published_cases
 from verification.judging.verdict import Outcome
-from verification.page.embedded_csv import embedded
 from verification.page.number_text import scientific
 from verification.page.source_labels import OUTCOMES, pair_style, source_label, source_style, symbol_of
 from verification.page.symbol_text import typeset
@@ -13,7 +15,7 @@ from verification.report.figures.field_pictures import pictures
 from verification.report.figures.line_panels import case_figures
 from verification.report.figures.problem_sketch import sketch
 from verification.report.figures.verdict_strips import Item, axis_of, draw_axis, draw_strip, ordered
-from verification.report.report_material import Material, model_warnings, rerun_command
+from verification.report.report_material import Material
 from verification.report.sections import invariants_section, published_section
 from verification.report.tables.case_lookup import contact_radius, divisor, layers, lines, scale, slug
 from verification.report.tables.case_tables import (
@@ -53,16 +55,16 @@ def contents(material: Material, result: CaseResult) -> dict[str, Any]:
     file = slug(result.name)
     broken = [one for one in result.invariants if one.outcome is not Outcome.AGREES]
     return common | {
+        "strips": _strips(result, material.anchors[result]),
         "sketch": sketch(result),
         "contact": contact_tables(result),
         "pictures": pictures(result, material.planes.get(result.name)),
         "figures": case_figures(result),
-        "strips": _strips(result, material.anchors[result]),
-        "beyond": model_warnings(result, material.evidence),
+        "beyond": material.evidence.beyond.get(result.name, ()),
         "maps": material.evidence.maps is not None,
-        "model": _model(material.evidence.models.get(result.name)),
+        "model": material.evidence.models.get(result.name),
         "files": [
-            (line, embedded(line_csv(result, line)), f"{file}-{slug(line)}.csv")
+            (line, line_csv(result, line), f"{file}-{slug(line)}.csv")
             for line in (*(("contact",) if result.profiles else ()), *lines(result))
         ],
         "broken": invariants_section.invariant_table(broken),
@@ -70,11 +72,24 @@ def contents(material: Material, result: CaseResult) -> dict[str, Any]:
     }
 
 
-def _model(found: ModelError | None) -> str:
-    """What the assumptions cost, in sentences."""
-    if found is None:
-        return ""
-    return " ".join(f"{line[0].upper()}{line[1:]}." for line in (found.message(), *found.notes))
+def rerun_command(name: str, command: str) -> str:
+    """The command, quoted for a shell, that solves the case ``name`` again.
+
+    command : that of the run, which tells where a file of the user's own was read from. Where it does not,
+    as after a run that was stopped, the file is named alone.
+    """
+    try:
+        words = shlex.split(command)[2:]
+    except ValueError:
+        words = []
+    own = [word for word in words if PurePath(word).stem == name and PurePath(word).name != name]
+    if own:
+        word = own[0]
+    elif name in words or name in shipped_cases() or name in published_cases():
+        word = name
+    else:
+        word = f"{name}.toml"
+    return f"coatcheck run {shlex.quote(f'./{word}' if word.startswith('-') else word)}"
 
 
 def summary(result: CaseResult) -> str:

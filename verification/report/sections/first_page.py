@@ -1,8 +1,9 @@
 """First page of a report: problem, sources, outcome, its credibility, limits of the claim."""
 
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 from markupsafe import Markup
 
@@ -11,22 +12,23 @@ from verification.page.number_text import scientific
 from verification.page.source_labels import OUTCOMES, OutcomeStyle, source_label, symbol_of
 from verification.problem.coated_contact import BALL
 from verification.problem.quantity import QUANTITIES
-from verification.regression import baseline_section
+from verification.regression.baseline_change import State, baseline_message
+from verification.regression.manifest import manifest_message
 from verification.report.figures.field_pictures import plane_difference
 from verification.report.figures.verdict_strips import Axis, Item, axis_of, draw_axis, draw_strip, worst
 from verification.report.report_material import Material
 from verification.report.sections.accuracy_section import accuracies
-from verification.report.sections.published_section import counts
 from verification.report.tables.case_lookup import divisor, layers
 from verification.running.case_result import CaseResult
+from verification.running.published_counts import counts
 from verification.sources.source_registry import SOURCES
 
 MOST_ROWS = 28  # strips of the first page; of more cases the worst have their own, the others share some
 OWN_ROWS = 12
 _CLOSED = "closed forms of uncoated contacts."
 _METHODS = {
-    "semianalytic": "edge profile by collocation, then influence coefficients, conjugate gradients, discrete "
-    "convolution by FFT.",
+    "semianalytic": "pressures of surface patches by influence coefficients, conjugate gradients and DC-FFT; "
+    "stresses from these pressures by influence coefficients of point forces.",
     "fem_reference": "axisymmetric, fourth order, mesh fitted to the contact edge; sliding as a harmonic.",
     "integral_equation": "exact Fredholm equation of the layered contact.",
     "hertz": _CLOSED,
@@ -72,8 +74,9 @@ class Chart:
     grouped: int
 
 
-def answered(results: Sequence[CaseResult]) -> list[tuple[str, str]]:
+def answered(material: Material) -> list[tuple[str, str]]:
     """(labels, sentence) of the sources of the run, in the order of the registry."""
+    results = material.results
     found = {name for result in results for claim, _ in result.verdicts for name in claim.between}
     known = [name for name in SOURCES if name in found]
     texts: dict[str, list[str]] = {}
@@ -82,8 +85,9 @@ def answered(results: Sequence[CaseResult]) -> list[tuple[str, str]]:
     return [(", ".join(labels), text) for text, labels in texts.items()]
 
 
-def headline(results: Sequence[CaseResult]) -> str:
+def headline(material: Material) -> str:
     """The outcome of the run."""
+    results = material.results
     if not results:
         return "No case was run."
     total = sum(len(result.verdicts) for result in results)
@@ -95,8 +99,9 @@ def headline(results: Sequence[CaseResult]) -> str:
     return f"{bad} of {cases} do not agree: {total - agreeing} of {total} comparisons"
 
 
-def asked(results: Sequence[CaseResult]) -> str:
+def asked(material: Material) -> str:
     """What was compared, in one sentence."""
+    results = material.results
     contacts = sum(not result.published for result in results)
     published = len(results) - contacts
     texts = [f"{_counted(contacts, 'contact')} of a sphere with a coated solid"] if contacts else []
@@ -239,8 +244,9 @@ def _kind(result: CaseResult) -> str:
     return ", ".join(parts)
 
 
-def tallies(results: Sequence[CaseResult]) -> list[tuple[OutcomeStyle, int]]:
+def tallies(material: Material) -> list[tuple[OutcomeStyle, int]]:
     """How many comparisons have each verdict, the agreeing ones first."""
+    results = material.results
     counted = Counter(verdict.outcome for result in results for _, verdict in result.verdicts)
     return [(OUTCOMES[o], counted[o]) for o in reversed(OUTCOMES) if counted[o] or o is Outcome.AGREES]
 
@@ -275,8 +281,8 @@ def worth(material: Material) -> list[Worth]:
         found.append(Worth("false alarms, random problems", value, "#credibility", None))
     regression = evidence.baseline
     if regression is not None and regression.update is not None:
-        same = sum(case.count(baseline_section.State.SAME) for case in regression.cases)
-        total = sum(case.count(state) for case in regression.cases for state in baseline_section.State)
+        same = sum(case.count(State.SAME) for case in regression.cases)
+        total = sum(case.count(state) for case in regression.cases for state in State)
         found.append(
             Worth(
                 "numbers as in the baseline",
@@ -295,3 +301,29 @@ def worth(material: Material) -> list[Worth]:
 
 def _share(name: str, good: int, total: int, href: str) -> Worth:
     return Worth(name, f"{good} of {total}" if total else "none", href, bool(total) and good == total)
+
+
+def alarms(material: Material) -> list[str]:
+    """What fails although every verdict may agree: self-tests, the manifest, the baseline."""
+    failed = [test.name for test in material.evidence.self_tests if not test.passed]
+    messages = [f"self-tests of the harness: {', '.join(failed)}"] if failed else []
+    found = material.evidence.baseline
+    if found is not None and found.less:
+        messages.append(manifest_message(found.less))
+    if found is not None and found.unexplained:
+        messages.append(f"numbers differ from the baseline: {baseline_message(found)}")
+    return messages
+
+
+# By the name that the template knows a block of the page by.
+FIRST_PAGE: Mapping[str, Callable[[Material], Any]] = {
+    "asked": asked,
+    "headline": headline,
+    "largest": largest,
+    "tallies": tallies,
+    "alarms": alarms,
+    "answered": answered,
+    "chart": chart,
+    "worth": worth,
+    "not_claimed": not_claimed,
+}

@@ -13,7 +13,7 @@ from verification.page.page_parts import (
     tally,
 )
 from verification.page.source_labels import source_label, symbol_of
-from verification.regression import baseline_section
+from verification.regression.baseline_section import state_cell
 from verification.report.report_material import Material
 from verification.report.tables.case_lookup import case_cell
 from verification.running.case_result import SourceResult
@@ -25,7 +25,7 @@ def section(material: Material) -> Section | None:
     if not results:
         return None
     found = material.evidence.baseline
-    states = {one.name: baseline_section.state_cell(one) for one in found.cases} if found else {}
+    states = {one.name: state_cell(one) for one in found.cases} if found else {}
     rows = []
     for result in results:
         agreeing = sum(v.outcome is Outcome.AGREES for _, v in result.verdicts)

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from verification.cases.published_columns import RECOMPUTED
+from verification.cases.published_table import RECOMPUTED
 from verification.page.number_text import plain, scientific
 from verification.page.page_parts import Cell, Part, Section, Table, number, outcome_cell, row, tally
 from verification.page.source_labels import row_css, source_label
@@ -14,6 +14,7 @@ from verification.problem.line_profile import Profile
 from verification.problem.quantity import QUANTITIES
 from verification.report.report_material import Material
 from verification.running.case_result import CaseResult
+from verification.running.published_counts import counts
 from verification.sources.source_registry import EXACT, METHODS, PUBLISHED, REFERENCES
 
 
@@ -33,27 +34,6 @@ def section(material: Material) -> Section | None:
         Part("Changed digits", [_digits(material)]),
     ]
     return Section("published", "Published results", [part for part in parts if any(part.tables)])
-
-
-def counts(results: Sequence[CaseResult]) -> tuple[int, int, int]:
-    """Published values that count, published values that depart, values of recomputed tables."""
-    items = [item for result in results for item in result.published["columns"]]
-    total = sum(len(item["counted"]) for item in items)
-    counted = sum(sum(item["counted"]) for item in items)
-    recomputed = sum(len(item["counted"]) for item in items if item["seen"] == RECOMPUTED)
-    return counted, total - counted - recomputed, recomputed
-
-
-def published_message(results: Sequence[CaseResult]) -> str:
-    """Counts of published values, departures, recomputed values, changed digits in one line."""
-    counted, departing, recomputed = counts(results)
-    text = f"{counted} published values count, {departing} depart and are listed, {recomputed} are recomputed"
-    groups = [result.published["digits"]["groups"] for result in results if "digits" in result.published]
-    changed = [group["counted"] for group in groups if "counted" in group]
-    if changed:
-        noticed, changes = (sum(count[key] for count in changed) for key in ("noticed", "changes"))
-        text += f"; {noticed} of {changes} changed digits of those that count are noticed"
-    return text
 
 
 def _overview(material: Material) -> Table:

@@ -96,9 +96,9 @@ def _grid_parts(studies: Sequence[Refinement]) -> list[Part]:
     summary = _grid_summary([one for one in studies if one.levels])
     return [
         Part(
-            f"{PROBLEM[0].upper()}{PROBLEM[1:]}. With the corrected edge the edge profile gives p0, a and "
-            "the stresses, the same on every grid; the curves named staircase edge are of the patches alone "
-            "and test influence coefficients, conjugate gradients and DC-FFT."
+            f"{PROBLEM[0].upper()}{PROBLEM[1:]}. With the corrected edge a smooth pressure is fitted to "
+            "the patches near the contact edge; the curves named staircase edge are of constant patches "
+            "alone."
         ),
         *map(Part, summary),
         Part("", [_refinement_table(studies, "patches per side")], gallery),
@@ -126,7 +126,7 @@ def _grid_summary(studies: Sequence[Refinement]) -> list[str]:
         speed = "converges" if stairs.falls("pressure") else "does not converge"
         speed += "" if order is None else f" at order {order:.1f}"
         found.append(
-            "Without the edge profile, the contact edge a staircase of patches, the pressure on the "
+            "Without the correction the contact edge is a staircase of patches; the pressure on the "
             f"{stairs.solid} solid {speed}, to {scientific(there)} at {stairs.levels[-1].name}; the "
             f"error with the corrected edge is {scientific(here)} at {best.levels[-1].name}, a factor of "
             f"{factor(there, here)}."
