@@ -42,15 +42,8 @@ from verification.commands.common.task_progress import (
 from verification.commands.common.terminal import print_error, print_json, print_warnings
 from verification.credibility import accuracy_study
 from verification.credibility.accuracy_study import AccuracyStudy
-<<<<<<< HEAD
-from verification.credibility.self_tests import SelfTest, self_tests
-from verification.judging.invariants import Invariant
-from verification.judging.outcome import DECIDED, Outcome
-from verification.regression.baseline_change import Regression, State, regression, regression_json
-=======
 from verification.credibility.self_tests import self_tests
 from verification.regression.baseline_change import regression
->>>>>>> ic
 from verification.regression.baseline_file import read_baseline
 from verification.regression.junit_xml import junit_xml
 from verification.regression.run_exit_codes import run_code
@@ -132,10 +125,17 @@ def run(
             )
             messages = {test.name: "" if test.passed else test.found for test in tests}
             junit = junit_xml(results, info, beside, messages)
-            code = run_code(results, beside, passed=all(test.passed for test in tests))
+            accuracy = next((one for one in solved if isinstance(one, AccuracyStudy)), accuracy)
+            studies = accuracy.verdicts if accuracy else ()
+            code = run_code(
+                results,
+                beside,
+                passed=all(test.passed for test in tests),
+                studies=[study.outcome for study in studies],
+            )
             evidence = replace(
                 evidence,
-                accuracy=next((one for one in solved if isinstance(one, AccuracyStudy)), accuracy),
+                accuracy=accuracy,
                 formulas=next((one for one in solved if isinstance(one, EffectiveStudy)), None),
                 baseline=beside,
             )
@@ -143,22 +143,13 @@ def run(
     except KeyboardInterrupt:
         return _stopped(chosen, output)
     if as_json:
-<<<<<<< HEAD
-        print_json(_summary(results, page, beside, tests, beyond, accuracy))
-    elif not quiet:
-        _print_table(results, page, time.perf_counter() - begin, beside, accuracy)
-    for name, lines in beyond.items():
-        print_warnings(lines, name, strict=False, silent=quiet or as_json)
-    return _code(results, beside, tests, accuracy)
-=======
         passed = {test.name: test.passed for test in tests}
-        print_json(run_json(results, page, beside, passed, evidence.beyond, code))
+        print_json(run_json(results, page, beside, passed, evidence.beyond, code, studies))
     elif not quiet:
-        print_run(results, page, time.perf_counter() - begin, beside)
+        print_run(results, page, time.perf_counter() - begin, beside, studies)
     for name, lines in evidence.beyond.items():
         print_warnings(lines, name, strict=False, silent=silent)
     return code
->>>>>>> ic
 
 
 def _write(
@@ -178,48 +169,7 @@ def _standing(chosen: Sequence[Case | PublishedCase], records: Path) -> "Evidenc
     for test in tests:
         if not test.passed:
             print_error(f"self-test of the {test.name}: {test.found}; the verdicts of this run are not valid")
-<<<<<<< HEAD
-    return tests
-
-
-def _judged(accuracy: AccuracyStudy | None) -> tuple[Invariant, ...]:
-    return accuracy.verdicts if accuracy else ()
-
-
-def _code(
-    results: Sequence[CaseResult],
-    beside: Regression,
-    tests: Sequence[SelfTest],
-    accuracy: AccuracyStudy | None,
-) -> int:
-    studies = [law.outcome for law in _judged(accuracy)]
-    return run_code(results, beside, passed=all(test.passed for test in tests), studies=studies)
-
-
-def _choose(names: Sequence[str]) -> list[Case | PublishedCase]:
-    shipped, published = shipped_cases(), published_cases()
-    cases: list[Case | PublishedCase] = []
-    for name in names or shipped:
-        if name in shipped:
-            cases.append(read_case(shipped[name]))
-        elif name in published:
-            cases.append(read_published(published[name]))
-        elif name == "published":
-            cases += [read_published(path) for path in published.values()]
-        else:
-            path = path_of(name, {}, SHIPPED, [*shipped, *published, "published"])
-            cases.append(read_published(path) if is_published(path) else read_case(path))
-    require_distinct([case.name for case in cases])
-    return cases
-
-
-def _task(case: Case | PublishedCase, output: Path, fields: bool) -> Task[CaseResult]:
-    if isinstance(case, Case):
-        return case_task(case, output, fields=fields)
-    return published_task(case, output)
-=======
     return gather(records, {case.name: Modelled.of(case) for case in chosen if isinstance(case, Case)}, tests)
->>>>>>> ic
 
 
 def _stopped(chosen: Sequence[Case | PublishedCase], output: Path) -> int:
@@ -233,102 +183,3 @@ def _stopped(chosen: Sequence[Case | PublishedCase], output: Path) -> int:
         f"or see what is there with coatcheck report {output}"
     )
     return STOPPED
-<<<<<<< HEAD
-
-
-def _summary(
-    results: Sequence[CaseResult],
-    page: Path,
-    beside: Regression,
-    tests: Sequence[SelfTest],
-    beyond: dict[str, tuple[str, ...]],
-    accuracy: AccuracyStudy | None,
-) -> dict[str, object]:
-    states = {case.name: case.state for case in beside.cases}
-    return {
-        "report": str(page),
-        "exit_code": _code(results, beside, tests, accuracy),
-        "studies": {law.name: law.outcome for law in _judged(accuracy)},
-        "self_tests": {test.name: test.passed for test in tests},
-        "baseline": regression_json(beside),
-        "cases": {
-            result.name: {
-                "outcome": result.outcome,
-                "baseline": states.get(result.name),
-                "warnings": [*result.warnings, *beyond[result.name]],
-                "verdicts": {o: sum(v.outcome is o for _, v in result.verdicts) for o in DECIDED},
-                "invariants": {o: sum(law.outcome is o for law in result.invariants) for o in DECIDED},
-            }
-            for result in results
-        },
-    }
-
-
-def _print_table(
-    results: Sequence[CaseResult],
-    page: Path,
-    seconds: float,
-    beside: Regression,
-    accuracy: AccuracyStudy | None,
-) -> None:
-    console = Console()
-    # Fits 80 columns beside the longest name of a shipped case; letters where there are fewer.
-    heads = ["agrees", "dis-\nagrees", "incon-\nclusive", "no\nresult", "largest\ndifference"]
-    narrow = console.width < NARROW
-    if narrow:
-        heads = ["A", "D", "I", "N", "largest"]
-    # Without a baseline, or in a narrow terminal, the line below the table is enough.
-    states = beside.update is not None and not narrow
-    heads += ["baseline"] if states else []
-    table = Table(Column("case", overflow="fold"), box=None, header_style="bold", pad_edge=False)
-    for head in heads:
-        table.add_column(head, no_wrap=True, vertical="bottom")
-    for result in results:
-        worst = max((v.difference for _, v in result.verdicts if v.difference is not None), default=None)
-        count = Counter(verdict.outcome for _, verdict in result.verdicts)
-        counts = [f"[{STYLE[o]}]{count[o]}[/]" if count[o] else "." for o in DECIDED]
-        state = [_state(beside, result.name)] if states else []
-        table.add_row(escape(result.name), *counts, "-" if worst is None else f"{worst:.1e}", *state)
-    console.print(table)
-    # In a pipe each message stays on one line.
-    say = partial(console.print, highlight=False, soft_wrap=not console.is_terminal)
-    for result in results:
-        name = escape(result.name)
-        for source in result.sources:
-            if source.failure:
-                say(f"[bold red]{name}, {source.source}:[/] {escape(one_line(source.failure))}")
-        for law in result.invariants:
-            if law.outcome is not Outcome.AGREES:
-                what = f"{name}, {law.source}, {escape(law.name)}:"
-                say(f"[{STYLE[law.outcome]}]{what}[/] {escape(one_line(law.message))}")
-    laws = [law for result in results for law in result.invariants]
-    if laws:
-        say(f"{sum(law.outcome is Outcome.AGREES for law in laws)} of {len(laws)} invariants hold")
-    studies = _judged(accuracy)
-    for law in studies:
-        if law.outcome is not Outcome.AGREES:
-            say(f"[{STYLE[law.outcome]}]study, {escape(law.name)}:[/] {escape(one_line(law.message))}")
-    if studies:
-        say(f"{sum(law.outcome is Outcome.AGREES for law in studies)} of {len(studies)} judged studies agree")
-    from verification.regression.baseline_section import baseline_message
-    from verification.report.sections.published_section import published_message
-
-    if published := [result for result in results if result.published]:
-        say(published_message(published))
-    known = f"baseline of {beside.update.when[:10]} in {beside.folder}: " if beside.update is not None else ""
-    say(escape(f"{known}{baseline_message(beside)}"))
-    for rows, style in ((beside.less, "bold red"), (beside.judged, "yellow")):
-        if message := manifest_message(rows):
-            say(f"[{style}]manifest:[/] {escape(message)}")
-            break
-    number = "1 case" if len(results) == 1 else f"{len(results)} cases"
-    say(f"{number} in {seconds:.0f} s; report: {escape(str(page))}")
-
-
-def _state(beside: Regression, name: str) -> str:
-    found = beside.of(name)
-    if found is None:
-        return "-"
-    return f"[{'green' if found.state is State.SAME else 'yellow'}]{found.state}[/]"
-=======
->>>>>>> ic

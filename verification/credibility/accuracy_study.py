@@ -28,14 +28,7 @@ from verification.sources.method_sources import sharing_pressure
 from verification.sources.source_registry import solvers
 
 SCHEMA = "coatcheck-accuracy/2"
-<<<<<<< HEAD
 # The error of the corrected edge is followed to the grid in use.
-=======
-CORRECTED = "split conversion, corrected edge"
-# Patches alone: influence coefficients, DC-FFT, conjugate gradients against the exact solution.
-STAIRCASE = "split conversion, staircase edge"
-PLAIN = "plain conversion, staircase edge"
->>>>>>> ic
 FINE = (41, 49, 65, 97, 129, 257)
 KEPT = 4  # solutions of a method, some 100 MB each of the finest meshes
 STEEL = (210e9, 0.3)
