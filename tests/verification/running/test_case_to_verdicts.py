@@ -101,7 +101,7 @@ def test_source_that_raises_is_no_result_with_its_sentence_and_the_others_go_on(
     result = run(case, sources(semianalytic=broken))
     assert all(0 <= source.seconds <= time.perf_counter() - begin for source in result.sources)
     assert {v.outcome for v in verdicts(result, "semianalytic")} == {Outcome.NO_RESULT}
-    assert all("load balance off by 3e-3" in v.reason for v in verdicts(result, "semianalytic"))
+    assert all("balance" in v.reason for v in verdicts(result, "semianalytic"))
     others = [v for claim, v in result.verdicts if "semianalytic" not in claim.between]
     assert {v.outcome for v in others} == {Outcome.AGREES}
 

@@ -142,7 +142,7 @@ def test_semianalytical_contact_confirms_the_disc(monkeypatch):
 
 
 def test_coatings_as_thick_as_a_body_are_refused():
-    with pytest.raises(ValueError, match="make the disc thicker"):
+    with pytest.raises(ValueError, match="thicker"):
         of_half_spaces(contact(0.1, coating=(2.0, 11.0)))
     with pytest.raises(ValueError, match="as thick as the ball"):
         of_half_spaces(contact(0.1, (E, NU, ((E, NU, R),))))

@@ -91,5 +91,5 @@ def test_uncoated_edge_has_the_closed_moment():
 
 def test_points_of_the_contact_are_refused():
     first = SlidingExpansion(BARE).first
-    with pytest.raises(ValueError, match="lies in the contact"):
+    with pytest.raises(ValueError, match="contact"):
         first_harmonic(first, (), (E, NU), np.array([0.5 * A]), 0.0, 0)

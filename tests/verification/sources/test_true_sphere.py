@@ -64,7 +64,7 @@ def test_difference_vanishes_as_the_square_of_the_contact_radius(ratio):
 
 
 def test_sphere_wider_than_it_may_be_is_refused():
-    with pytest.raises(ValueError, match="carried by no contact radius"):
+    with pytest.raises(ValueError, match="carried"):
         integral_equation.solve(radius=R, load=load_at(1.3), coatings=(), substrate=(E, NU), gap=SPHERE)
 
 

@@ -162,7 +162,7 @@ def _closed(request, f):
         ("from = 4", "from = 40", "give from < to"),
         ("from = 4", 'from = "4 Pa"', "'Pa' is no unit of force"),
         ("coating = {", BALL + "coating = {",
-         "not with coatings on the ball"),
+         "coatings"),
         ("2e-5", "2e-7", "value 1 is"),
     ],
 )  # fmt: skip

@@ -11,6 +11,7 @@ from rich.markup import escape
 from rich.table import Column, Table
 
 from verification.commands.common.terminal import STYLE, one_line
+from verification.judging.invariant_verdict import Invariant
 from verification.judging.outcome import DECIDED, Outcome
 from verification.regression.baseline_change import Regression, State, baseline_message, regression_json
 from verification.regression.manifest import manifest_message
@@ -27,12 +28,17 @@ def run_json(
     passed: Mapping[str, bool],
     beyond: Mapping[str, tuple[str, ...]],
     code: int,
+    studies: Sequence[Invariant] = (),
 ) -> dict[str, Any]:
-    """The outcome of a run as JSON.   passed : of each self-test.   beyond : see ``Evidence``."""
+    """The outcome of a run as JSON.
+
+    passed : of each self-test.   beyond : see ``Evidence``.   studies : the judged studies.
+    """
     states = {case.name: case.state for case in beside.cases}
     return {
         "report": str(page),
         "exit_code": code,
+        "studies": {study.name: study.outcome for study in studies},
         "self_tests": dict(passed),
         "baseline": regression_json(beside),
         "cases": {
@@ -48,7 +54,13 @@ def run_json(
     }
 
 
-def print_run(results: Sequence[CaseResult], page: Path, seconds: float, beside: Regression) -> None:
+def print_run(
+    results: Sequence[CaseResult],
+    page: Path,
+    seconds: float,
+    beside: Regression,
+    studies: Sequence[Invariant] = (),
+) -> None:
     """Print a table of the cases, then a line for each failure and for the run as a whole."""
     console = Console()
     console.print(_table(results, beside, narrow=console.width < NARROW))
@@ -66,6 +78,11 @@ def print_run(results: Sequence[CaseResult], page: Path, seconds: float, beside:
     laws = [law for result in results for law in result.invariants]
     if laws:
         say(f"{sum(law.outcome is Outcome.AGREES for law in laws)} of {len(laws)} invariants hold")
+    for study in studies:
+        if study.outcome is not Outcome.AGREES:
+            say(f"[{STYLE[study.outcome]}]study, {escape(study.name)}:[/] {escape(one_line(study.message))}")
+    if studies:
+        say(f"{sum(one.outcome is Outcome.AGREES for one in studies)} of {len(studies)} judged studies agree")
     if published := [result for result in results if result.published]:
         say(published_message(published))
     known = f"baseline of {beside.update.when[:10]} in {beside.folder}: " if beside.update is not None else ""
