@@ -11,7 +11,7 @@ from verification.cases.case_file import read_case, shipped_cases
 from verification.credibility import accuracy_study
 from verification.credibility.faults.fault_catalogue import FAULTS
 from verification.credibility.faults.fault_planting import PlantError, planted
-from verification.evidence.fault_record import METHOD
+from verification.credibility.faults.first_notice import METHOD
 from verification.regression.run_exit_codes import run_code
 from verification.running.contact_run import judge_case, solve_case
 from verification.sources.source_registry import solvers
