@@ -38,8 +38,6 @@ COLUMNS = {
     "manifest": "less that is judged: points, lines, invariants, or a wider cap or scale",
     "baseline": "numbers that changed; counted only where no other check can detect the fault",
 }
-# Groups of faults in the semi-analytical method itself.
-METHOD = ("conversion_fft", "conjugate_gradients", "grids", "edge", "stress", "rings")
 SMALLEST_CHANGE = 1e-12  # of its scale; a smaller change is rounding
 
 
@@ -53,32 +51,6 @@ class Catch(StrEnum):
     SURVIVED = "survived"
     NOT_TRIED = "not tried"
 
-
-class Noticed(StrEnum):
-    """What noticed a fault first, in this order; the first three count in the headline."""
-
-    COMPARISON = "comparison"
-    INVARIANT = "invariant"
-    STUDY = "study"
-    HARNESS = "published, self-test or manifest"
-    STOPPED = "no result"
-    BASELINE = "baseline"
-    NOTHING = "unit tests at most"
-
-
-COUNTED = (Noticed.COMPARISON, Noticed.INVARIANT, Noticed.STUDY)
-_NOTICED = {
-    Noticed.COMPARISON: (
-        "bare, closed form",
-        "bare, exact",
-        "bare, methods",
-        "coated, exact",
-        "coated, methods",
-    ),
-    Noticed.INVARIANT: ("invariants",),
-    Noticed.STUDY: ("studies",),
-    Noticed.HARNESS: ("published", "self-tests", "manifest"),
-}
 
 CAUGHT = (Catch.DISAGREES, Catch.INCONCLUSIVE, Catch.DRIFTED)
 
@@ -124,23 +96,6 @@ class Row:
     @property
     def caught(self) -> bool:
         return self.catch in CAUGHT
-
-    @property
-    def noticed(self) -> Noticed:
-        """The first kind of check that reports the fault: it disagrees, or U exceeds its cap."""
-        for kind, columns in _NOTICED.items():
-            found = [self.columns[name] for name in columns if name in self.columns]
-            if any(tally.disagree or tally.inconclusive for tally in found):
-                return kind
-        if any(tally.no_result for tally in self.columns.values()):
-            return Noticed.STOPPED
-        baseline = self.columns.get("baseline")
-        return Noticed.BASELINE if baseline is not None and baseline.disagree else Noticed.NOTHING
-
-    @property
-    def unused(self) -> bool:
-        """True where the fault changes no number of any run: an argument for a further case."""
-        return not self.failure and self.change <= SMALLEST_CHANGE and self.noticed is Noticed.NOTHING
 
     @property
     def compared(self) -> bool:
@@ -190,20 +145,9 @@ class Record:
         return tuple(row for row in self.survivors if not (row.reason and row.remedy))
 
     @property
-    def of_method(self) -> tuple[Row, ...]:
-        """The faults in the parts of the semi-analytical method."""
-        return tuple(row for row in self.rows if row.group in METHOD)
-
-    def noticed_by(self, *kinds: Noticed) -> int:
-        """Faults of the method that checks of these ``kinds`` noticed first."""
-        return sum(row.noticed in kinds for row in self.of_method)
-
-    @property
     def idle(self) -> tuple[Row, ...]:
-        """Faults that survive or that a comparison reports though no compared number changed.
-
-        Invariants and published values have numbers of their own, which a fault may change alone.
-        """
+        """Faults that survive or that a comparison reports though no compared number changed."""
+        # invariants and published values have numbers of their own, which a fault may change alone
         return tuple(
             row
             for row in self.rows
@@ -234,8 +178,6 @@ class Record:
             "controls": len(self.controls),
             "alarms": len(self.alarms),
             "passed": self.passed,
-            "of_method": len(self.of_method),
-            "noticed_by": {kind: self.noticed_by(kind) for kind in Noticed},
         }
 
 

@@ -150,7 +150,15 @@ def _list(wanted: Sequence["Fault"], as_json: bool) -> None:
 
 
 def _print(found: "Record", page: Path) -> None:
-    from verification.evidence.fault_record import COUNTED, GROUPS, Catch, Noticed
+    from verification.credibility.faults.first_notice import (
+        COUNTED,
+        Noticed,
+        noticed,
+        noticed_by,
+        of_method,
+        unused,
+    )
+    from verification.evidence.fault_record import GROUPS, Catch
 
     shown = [catch for catch in Catch if any(row.catch is catch for row in found.rows)]
     table = named_table("group", "faults", *shown, "predicted check")
@@ -167,9 +175,9 @@ def _print(found: "Record", page: Path) -> None:
             f"{row.reason}; {row.remedy} would catch it" if row.reason else row.failure or "not explained"
         )
         print_out(f"[bold red]{row.catch}[/] {row.name}: {escape(row.description)}. {escape(reason)}")
-    for row in found.of_method:
-        if row.noticed not in COUNTED:
-            what = "no run executes it" if row.unused else f"first noticed by: {row.noticed}"
+    for row in of_method(found):
+        if noticed(row) not in COUNTED:
+            what = "no run executes it" if unused(row) else f"first noticed by: {noticed(row)}"
             print_out(f"[yellow]{row.name}[/] {escape(row.description)}: {what}")
     for row in found.idle:
         print_out(f"[bold red]changes nothing[/] {row.name}")
@@ -179,9 +187,9 @@ def _print(found: "Record", page: Path) -> None:
         print_out(f"[bold red]fails without a fault[/] {escape(failure)}")
     text = f"{found.caught} of {len(found.rows)} faults caught ({100 * found.share:.0f} %), "
     text += f"{found.as_predicted} by the predicted check"
-    if method := found.of_method:
-        by = ", ".join(f"{found.noticed_by(kind)} {kind}" for kind in Noticed if found.noticed_by(kind))
-        counted = found.noticed_by(*COUNTED)
+    if method := of_method(found):
+        by = ", ".join(f"{noticed_by(found, kind)} {kind}" for kind in Noticed if noticed_by(found, kind))
+        counted = noticed_by(found, *COUNTED)
         text += f"; of the method's {len(method)} {counted} by comparison, invariant or study (first: {by})"
     if found.controls:
         text += f"; {len(found.alarms)} alarms in {len(found.controls)} negative controls"

@@ -1,6 +1,7 @@
 """One planted fault tried against the checks of the default run."""
 
 import time
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -9,7 +10,7 @@ import numpy as np
 from verification.cases.case_file import Case, read_case, shipped_cases
 from verification.cases.published_file import PublishedCase, published_cases, read_published
 from verification.cases.published_table import PublishedColumn
-from verification.credibility import accuracy_study
+from verification.credibility import accuracy_study as accuracy_study
 from verification.credibility.faults.default_checks import (
     Check,
     of_baseline,
@@ -23,6 +24,8 @@ from verification.credibility.faults.fault_planting import Fault, planted
 from verification.credibility.self_tests import self_tests
 from verification.judging.invariant_verdict import Invariant
 from verification.judging.invariants import check as invariants_of
+from verification.judging.invariants import resolved
+from verification.judging.invariants.resolved_invariants import NAMES
 from verification.judging.verdict import Claim
 from verification.problem.coated_contact import Solution
 from verification.problem.line_profile import Profile
@@ -35,11 +38,12 @@ from verification.running.case_result import CaseResult, SourceResult, from_json
 from verification.running.checked_files import read_checked
 from verification.sampling.line_sampling import sample, sample_contact
 from verification.sampling.stress_plane import plane_invariants, sample_plane
+from verification.sources.source_record import Solver
 from verification.sources.source_registry import METHODS
 
 Profiles = dict[tuple[str, str, str], Profile]
 Columns = list[tuple[PublishedColumn, np.ndarray]]  # each with the values the methods are compared with
-BESIDE = ("baseline", "manifest")  # columns that do not spare the studies
+BESIDE = ("baseline", "manifest")  # columns that do not spare the resolved invariants, the studies
 FOR_PUBLISHED = METHODS[:1]  # published tables are compared with the faster method only
 
 
@@ -81,15 +85,20 @@ def try_fault(fault: Fault, clean_folder: Path) -> Trial:
     changes: list[tuple[float, str]] = []
     failing = {check.key: check for result in clean.values() for check in _of_clean(result)}
     with planted(fault.changes):
-        for name in fault.cases:
-            found, profiles = _judged(read_case(shipped_cases()[name]), clean[name], fault)
+        cases = [read_case(shipped_cases()[name]) for name in fault.cases]
+        for case in cases:
+            found, profiles = _judged(case, clean[case.name], fault)
             checks += found
-            changes += _changes(clean[name], profiles)
+            changes += _changes(clean[case.name], profiles)
+        # further solves, only where nothing before noticed the fault
+        for case in cases:
+            if case.resolve and _staged(fault) and not _noticed(checks):
+                checks += [of_invariant(row, case.name) for row in resolved(case.problem, _available(fault))]
         for name in fault.published:
             found, moved = _published(name, published[name])
             checks += found
             changes.append(moved)
-        if fault.where == METHODS[0] and all(check.passed or check.column in BESIDE for check in checks):
+        if _staged(fault) and not _noticed(checks):
             checks += [of_study(row) for row in accuracy_study.quick()]
         tests = self_tests()
     checks += [of_self_test(test) for test in tests]
@@ -101,6 +110,20 @@ def try_fault(fault: Fault, clean_folder: Path) -> Trial:
     failing_clean = tuple(sorted({failing[c.key].message for c in checks if c.key in failing}))
     evidence = tuple(check for check in checks if check.key not in failing)
     return Trial(fault.name, evidence, change, changed, seconds, failing_clean=failing_clean)
+
+
+def _noticed(checks: Sequence[Check]) -> bool:
+    return any(not check.passed and check.column not in BESIDE for check in checks)
+
+
+def _staged(fault: Fault) -> bool:
+    """Whether the checks that need further solves are made only where the others pass: of the method."""
+    return fault.where == METHODS[0]
+
+
+def _available(fault: Fault) -> dict[str, Solver]:
+    solve = fault.solve or (fault.where,)
+    return {name: solver for name, solver in run.solvers().items() if name in solve}
 
 
 def _of_clean(result: CaseResult) -> list[Check]:
@@ -116,8 +139,9 @@ def _judged(case: Case, clean: CaseResult, fault: Fault) -> tuple[list[Check], P
     solve = fault.solve or (fault.where,)
     profiles: Profiles = {(p.quantity, p.line, p.source): p for p in clean.profiles if p.source not in solve}
     outcomes = {source.source: source for source in clean.sources}
-    available = {name: solver for name, solver in run.solvers().items() if name in solve}
-    solved = run.solve_case(case, available)
+    available = _available(fault)
+    staged = _staged(fault)
+    solved = run.solve_case(replace(case, resolve=case.resolve and not staged), available)
     outcomes |= solved.outcomes
     fresh: Profiles = {}
     checks: list[Check] = []
@@ -130,8 +154,8 @@ def _judged(case: Case, clean: CaseResult, fault: Fault) -> tuple[list[Check], P
             continue
         fresh |= {(p.quantity, p.line, source): p for p in found}
         invariants += invariants_of(solution, source, case.problem)
-    invariants += solved.resolved
     drawn = sample_plane(case.problem.interfaces, solved.solutions)
+    invariants += solved.resolved
     invariants += plane_invariants(drawn, solved.solutions, case.problem)
     profiles |= fresh
     checks += [of_invariant(row, case.name) for row in invariants]
@@ -151,7 +175,11 @@ def _judged(case: Case, clean: CaseResult, fault: Fault) -> tuple[list[Check], P
     before = replace(
         clean,
         verdicts=tuple((claim, verdict) for claim, verdict in clean.verdicts if concerned(claim)),
-        invariants=tuple(row for row in clean.invariants if row.source in solved.solutions),
+        invariants=tuple(
+            row
+            for row in clean.invariants
+            if row.source in solved.solutions and not (staged and row.name in NAMES)
+        ),
     )
     checks.append(of_manifest(differences(now, manifest_of(before)), clean.name))
     return checks, fresh

@@ -15,6 +15,7 @@ from verification.sources.exact_sources import solve_exactly
 from verification.sources.references.integral_equation import solids_of
 from verification.sources.references.patch_displacement import surface_coefficient
 
+PATCHES = 33  # of a solution that does not state its own
 BOUND = 1e-8  # that the default conversion has to meet; its error is 1e-10
 
 
@@ -96,8 +97,9 @@ def influence_coefficients(solution: Solution, source: str, problem: CoatedConta
     from semianalytic import influence, smooth_edge
     from semianalytic.inputs import Numerics
 
-    body, diagnostics = _body(problem), solution.diagnostics
-    n, d, parts = diagnostics.patches_per_side, diagnostics.patch_size, smooth_edge.PARTS
+    body, stated, parts = _body(problem), solution.diagnostics, smooth_edge.PARTS
+    n = getattr(stated, "patches_per_side", PATCHES)
+    d = getattr(stated, "patch_size", None) or 2.24 * solution.contact_radius / n
     errors = []
     for size, side in ((n, d), ((smooth_edge.NEAR + 1) * parts, d / parts)):
         K = influence.surface_coefficients(size, side, body, Numerics())

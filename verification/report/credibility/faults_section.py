@@ -3,7 +3,16 @@
 from collections import Counter
 from collections.abc import Sequence
 
-from verification.evidence.fault_record import COLUMNS, COUNTED, GROUPS, METHOD, Catch, Noticed, Record, Tally
+from verification.credibility.faults.first_notice import (
+    COUNTED,
+    METHOD,
+    Noticed,
+    noticed,
+    noticed_by,
+    of_method,
+    unused,
+)
+from verification.evidence.fault_record import COLUMNS, GROUPS, Catch, Record, Tally
 from verification.evidence.fault_record import Row as Fault
 from verification.page.html_page import render_sections
 from verification.page.number_text import plain, scientific, seconds
@@ -33,12 +42,12 @@ def faults_message(record: Record) -> str:
         f"({plain(100 * record.share, 3)} %), "
         f"{record.as_predicted} of them by the check predicted before the trial"
     )
-    if method := record.of_method:
-        by = ", ".join(f"{record.noticed_by(kind)} by a {kind}" for kind in COUNTED).replace(
+    if method := of_method(record):
+        by = ", ".join(f"{noticed_by(record, kind)} by a {kind}" for kind in COUNTED).replace(
             "a inv", "an inv"
         )
         text += (
-            f". Of {len(method)} in the semi-analytical method {record.noticed_by(*COUNTED)} are noticed by "
+            f". Of {len(method)} in the semi-analytical method {noticed_by(record, *COUNTED)} are noticed by "
             f"comparisons, invariants and judged studies ({by} first)"
         )
     if record.controls:
@@ -64,14 +73,14 @@ def faults_section(record: Record) -> Section:
         "core."
     )
     parts = [Part(method), Part(faults_message(record), [_score(record)])]
-    if record.of_method:
+    if of_method(record):
         text = (
             "Faults in the semi-analytical method, by the check that notices them first, in this order: a "
             "comparison with another source, an invariant, a judged study, then what does not count."
         )
         parts.append(Part(text, [_first_noticed(record)]))
-    if unused := [row for row in record.of_method if row.unused]:
-        names = "; ".join(f"{row.name}: {row.description}" for row in unused)
+    if never := [row for row in of_method(record) if unused(row)]:
+        names = "; ".join(f"{row.name}: {row.description}" for row in never)
         parts.append(
             Part(f"No run executes what these faults change, an argument for a further case. {names}.")
         )
@@ -174,10 +183,10 @@ def _score(record: Record) -> Table:
 
 def _first_noticed(record: Record) -> Table:
     groups = [(title, rows) for title, rows in _groups(record) if rows[0].group in METHOD]
-    groups.append(("All", list(record.of_method)))
+    groups.append(("All", list(of_method(record))))
     rows = []
     for title, members in groups:
-        count = Counter(fault.noticed for fault in members)
+        count = Counter(noticed(fault) for fault in members)
         counted = sum(count[kind] for kind in COUNTED) / len(members)
         cells = [Cell(str(count[kind] or "–"), count[kind]) for kind in Noticed]
         share = number(counted, lambda share: f"{plain(100 * share, 3)} %")

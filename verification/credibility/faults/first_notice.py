@@ -1,0 +1,63 @@
+"""What notices a fault of the semi-analytical method first, from a comparison down to the unit tests."""
+
+from enum import StrEnum
+
+from verification.evidence.fault_record import SMALLEST_CHANGE, Record, Row
+
+__all__ = ["COUNTED", "METHOD", "Noticed", "noticed", "noticed_by", "of_method", "unused"]
+
+METHOD = ("conversion_fft", "conjugate_gradients", "grids", "edge", "stress", "rings")  # groups of its faults
+
+
+class Noticed(StrEnum):
+    """What noticed a fault first, in this order; the first three count in the headline."""
+
+    COMPARISON = "comparison"
+    INVARIANT = "invariant"
+    STUDY = "study"
+    HARNESS = "published, self-test or manifest"
+    STOPPED = "no result"
+    BASELINE = "baseline"
+    NOTHING = "unit tests at most"
+
+
+COUNTED = (Noticed.COMPARISON, Noticed.INVARIANT, Noticed.STUDY)
+_NOTICED = {
+    Noticed.COMPARISON: (
+        "bare, closed form",
+        "bare, exact",
+        "bare, methods",
+        "coated, exact",
+        "coated, methods",
+    ),
+    Noticed.INVARIANT: ("invariants",),
+    Noticed.STUDY: ("studies",),
+    Noticed.HARNESS: ("published", "self-tests", "manifest"),
+}
+
+
+def noticed(row: Row) -> Noticed:
+    """The first kind of check that reports the fault: it disagrees, or U exceeds its cap."""
+    for kind, columns in _NOTICED.items():
+        found = [row.columns[name] for name in columns if name in row.columns]
+        if any(tally.disagree or tally.inconclusive for tally in found):
+            return kind
+    if any(tally.no_result for tally in row.columns.values()):
+        return Noticed.STOPPED
+    baseline = row.columns.get("baseline")
+    return Noticed.BASELINE if baseline is not None and baseline.disagree else Noticed.NOTHING
+
+
+def unused(row: Row) -> bool:
+    """Whether the fault changes no number of any run: an argument for a further case."""
+    return not row.failure and row.change <= SMALLEST_CHANGE and noticed(row) is Noticed.NOTHING
+
+
+def of_method(record: Record) -> tuple[Row, ...]:
+    """The faults in the parts of the method."""
+    return tuple(row for row in record.rows if row.group in METHOD)
+
+
+def noticed_by(record: Record, *kinds: Noticed) -> int:
+    """Faults of the method that checks of these ``kinds`` notice first."""
+    return sum(noticed(row) in kinds for row in of_method(record))
