@@ -137,7 +137,8 @@ def test_contact_is_that_of_numpy(name):
     assert theirs.diagnostics.iterations == ours.diagnostics.iterations
     assert theirs.diagnostics.convolutions == ours.diagnostics.convolutions
     assert type(theirs.patch_pressure) is np.ndarray
-    assert theirs.patch_pressure == pytest.approx(ours.patch_pressure, abs=1e-10 * ours.peak_pressure)
+    # rounding of the two libraries, through rounds of fit and contact
+    assert theirs.patch_pressure == pytest.approx(ours.patch_pressure, abs=1e-9 * ours.peak_pressure)
     for quantity in ("contact_radius", "approach", "peak_pressure"):
         value = getattr(ours, quantity)
         assert getattr(theirs, quantity) == pytest.approx(value, rel=1e-12)
