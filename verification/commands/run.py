@@ -43,7 +43,7 @@ from verification.commands.common.terminal import print_error, print_json, print
 from verification.credibility import accuracy_study
 from verification.credibility.accuracy_study import AccuracyStudy
 from verification.credibility.self_tests import self_tests
-from verification.regression.baseline_change import regression
+from verification.regression.baseline_change import regression, regression_json
 from verification.regression.baseline_file import read_baseline
 from verification.regression.junit_xml import junit_xml
 from verification.regression.run_exit_codes import run_code
@@ -125,6 +125,7 @@ def run(
             )
             messages = {test.name: "" if test.passed else test.found for test in tests}
             junit = junit_xml(results, info, beside, messages)
+            compared = regression_json(beside)
             code = run_code(results, beside, passed=all(test.passed for test in tests))
             evidence = replace(
                 evidence,
@@ -137,7 +138,7 @@ def run(
         return _stopped(chosen, output)
     if as_json:
         passed = {test.name: test.passed for test in tests}
-        print_json(run_json(results, page, beside, passed, evidence.beyond, code))
+        print_json(run_json(results, page, compared, passed, evidence.beyond, code))
     elif not quiet:
         print_run(results, page, time.perf_counter() - begin, beside)
     for name, lines in evidence.beyond.items():
