@@ -125,8 +125,8 @@ def run(
             )
             messages = {test.name: "" if test.passed else test.found for test in tests}
             junit = junit_xml(results, info, beside, messages)
-            compared = regression_json(beside)
             code = run_code(results, beside, passed=all(test.passed for test in tests))
+            compared = regression_json(beside)
             evidence = replace(
                 evidence,
                 accuracy=next((one for one in solved if isinstance(one, AccuracyStudy)), accuracy),
