@@ -43,7 +43,7 @@ from verification.commands.common.terminal import print_error, print_json, print
 from verification.credibility import accuracy_study
 from verification.credibility.accuracy_study import AccuracyStudy
 from verification.credibility.self_tests import self_tests
-from verification.regression.baseline_change import regression
+from verification.regression.baseline_change import regression, regression_json
 from verification.regression.baseline_file import read_baseline
 from verification.regression.junit_xml import junit_xml
 from verification.regression.run_exit_codes import run_code
@@ -133,6 +133,7 @@ def run(
                 passed=all(test.passed for test in tests),
                 studies=[study.outcome for study in studies],
             )
+            compared = regression_json(beside)
             evidence = replace(
                 evidence,
                 accuracy=accuracy,
@@ -144,7 +145,7 @@ def run(
         return _stopped(chosen, output)
     if as_json:
         passed = {test.name: test.passed for test in tests}
-        print_json(run_json(results, page, beside, passed, evidence.beyond, code, studies))
+        print_json(run_json(results, page, compared, passed, evidence.beyond, code, studies))
     elif not quiet:
         print_run(results, page, time.perf_counter() - begin, beside, studies)
     for name, lines in evidence.beyond.items():

@@ -22,7 +22,6 @@ class _Stored:
 
 
 Array = Annotated[NDArray[np.float64], _Stored(float)]
-Mask = Annotated[NDArray[np.bool_], _Stored(bool)]
 FloatArray = NDArray[np.floating]  # as the methods return them
 Coatings = tuple[tuple[float, float, float], ...]
 Ball = tuple[float, float, Coatings]  # E [Pa], nu of its substrate; coatings from its surface inwards

@@ -77,8 +77,6 @@ def test_the_catalogue_holds_every_fault_that_was_asked_for():
 
 @pytest.mark.parametrize("fault", FAULTS.values(), ids=lambda fault: fault.name)
 def test_a_fault_says_what_is_wrong_where_it_sits_what_should_catch_it(fault):
-    assert len(fault.description.split()) > 2
-    assert not fault.description.endswith(".")
     assert fault.changes
     assert fault.predicted
     assert set(fault.cases) <= set(shipped_cases())

@@ -20,10 +20,10 @@ from skfem.helpers import grad
 
 import semianalytic
 from verification.problem.coated_contact import CoatedContact, keywords
+from verification.problem.gauss_legendre import gauss_legendre
 from verification.sources.assumptions.contact_change import FLOOR
 from verification.sources.assumptions.elastic_ball import ElasticBall
 from verification.sources.assumptions.finite_bodies import RESOLUTIONS, change_at, of_half_spaces, on_disc
-from verification.sources.references.gauss_legendre import gauss_legendre
 from verification.sources.references.integral_equation import compliance, kernel_wavenumbers
 
 E, NU, R = 210e9, 0.3, 10e-3

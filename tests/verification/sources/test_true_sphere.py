@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from true_sphere import SphereOnHalfSpace
 
 import fem_reference
 import semianalytic
@@ -9,7 +10,6 @@ from fem_reference.axisymmetric import Discretisation
 from fem_reference.contact import solve_at_radius
 from fem_reference.mesh import Grading, meridian_mesh
 from fem_reference.scaling import LayeredSolid
-from verification.sources.assumptions.true_sphere import SphereOnHalfSpace
 from verification.sources.references import integral_equation
 from verification.sources.references.integral_equation import PARABOLA, SPHERE
 

@@ -13,7 +13,7 @@ from rich.table import Column, Table
 from verification.commands.common.terminal import STYLE, one_line
 from verification.judging.invariant_verdict import Invariant
 from verification.judging.outcome import DECIDED, Outcome
-from verification.regression.baseline_change import Regression, State, baseline_message, regression_json
+from verification.regression.baseline_change import Regression, State, baseline_message
 from verification.regression.manifest import manifest_message
 from verification.running.case_result import CaseResult
 from verification.running.published_counts import published_message
@@ -24,7 +24,7 @@ NARROW = 80  # columns
 def run_json(
     results: Sequence[CaseResult],
     page: Path,
-    beside: Regression,
+    baseline: Mapping[str, Any],
     passed: Mapping[str, bool],
     beyond: Mapping[str, tuple[str, ...]],
     code: int,
@@ -32,15 +32,16 @@ def run_json(
 ) -> dict[str, Any]:
     """The outcome of a run as JSON.
 
-    passed : of each self-test.   beyond : see ``Evidence``.   studies : the judged studies.
+    baseline : comparison with it.   passed : of each self-test.   beyond : see ``Evidence``.
+    studies : the judged studies.
     """
-    states = {case.name: case.state for case in beside.cases}
+    states = {case["name"]: case["state"] for case in baseline["cases"]}
     return {
         "report": str(page),
         "exit_code": code,
         "studies": {study.name: study.outcome for study in studies},
         "self_tests": dict(passed),
-        "baseline": regression_json(beside),
+        "baseline": baseline,
         "cases": {
             result.name: {
                 "outcome": result.outcome,

@@ -16,20 +16,6 @@ VERSION: Literal["coatcheck-vectors/1"] = "coatcheck-vectors/1"
 FILE = Path(__file__).parents[1] / "shipped" / "vectors.json.gz"
 README = Path(__file__).parent / "README.md"
 LICENCE: Literal["CC0-1.0"] = "CC0-1.0"
-CITE = (
-    "coatcheck open digits, version 1 (2026): exact values of coated point contact and of layered "
-    "half-spaces under a uniform disc; CC0 1.0"
-)
-CONVENTIONS = {
-    "units": "SI",
-    "axes": "origin at first contact, x along sliding, z into the solid, surface z = 0; all points at y = 0",
-    "signs": "stress positive in tension, pressure and load in compression; on the surface sigma_zz = -p and "
-    "sigma_xz = -friction p",
-    "problem": "rigid parabolic sphere, or uniform pressure on a disc; coatings from the surface down, "
-    "bonded; friction does not change the pressure",
-    "layer": "0 is the first below the surface; on an interface it picks the side",
-    "approach": "of the sphere; of a disc u_z at the origin, positive into the solid",
-}
 
 
 class _Strict(BaseModel):

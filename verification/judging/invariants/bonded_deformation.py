@@ -1,7 +1,6 @@
 """Invariants of deformation: perfect bonds, Hooke's law, the sphere's shape under the contact."""
 
 import numpy as np
-from numpy.polynomial import legendre
 from scipy.special import ellipk
 
 from verification.judging.invariant_verdict import Invariant, decide, layer_name
@@ -15,6 +14,7 @@ from verification.problem.coated_contact import (
     stress_with_uncertainty,
 )
 from verification.problem.either_body import on_body
+from verification.problem.gauss_legendre import gauss_legendre
 
 RADII = np.array([0.0, 0.5, 0.9, 1.4])
 ANGLE = 0.35
@@ -152,7 +152,7 @@ def _under_uncertainty(
 ) -> Array:
     """Displacement under U_p [m] of the part of the contact within ``reach`` of its radius."""
     a = solution.contact_radius
-    t, w = legendre.leggauss(64)
+    t, w = gauss_legendre(64)
     phi = np.pi / 4 * (t + 1)
     # The uncertainty is largest at the edge, and extends beyond it.
     s = a * np.concatenate([np.sin(phi), 1 + 0.05 * (t + 1)])

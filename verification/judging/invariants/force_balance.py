@@ -1,13 +1,13 @@
 """Invariants of forces: load balance, surface tractions, equilibrium inside each layer."""
 
 import numpy as np
-from numpy.polynomial import legendre
 
 from verification.judging.invariant_verdict import Invariant, decide, layer_name
 from verification.judging.invariants.central_differences import Stencil
 from verification.judging.invariants.companion_uncertainty import INNER, followed
 from verification.problem.array_types import Array
 from verification.problem.coated_contact import CoatedContact, Solution, stress_with_uncertainty
+from verification.problem.gauss_legendre import gauss_legendre
 
 # Of the contact radius.
 SURFACE = np.array([-1.2, -0.9, -0.5, 0.0, 0.25, 0.5, 0.75, 0.9, 1.1, 1.3])
@@ -40,7 +40,7 @@ def _load(solution: Solution, problem: CoatedContact, n: int, reach: float = np.
     By Gauss points in phi of r = a sin(phi) and in an outer ring.
     """
     a = solution.contact_radius
-    s, w = legendre.leggauss(n)
+    s, w = gauss_legendre(n)
     phi = np.pi / 4 * (s + 1)
     ring = a * (1 + 0.05 * (s + 1))
     r = np.concatenate([a * np.sin(phi), ring])

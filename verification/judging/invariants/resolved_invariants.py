@@ -12,7 +12,6 @@ from functools import partial
 from typing import Any
 
 import numpy as np
-from numpy.polynomial import legendre
 
 from verification.judging.invariant_verdict import Invariant, decide, failed
 from verification.judging.invariants.bonded_deformation import displacement_bound
@@ -27,6 +26,7 @@ from verification.problem.coated_contact import (
     stress_with_uncertainty,
 )
 from verification.problem.either_body import on_body
+from verification.problem.gauss_legendre import gauss_legendre
 from verification.problem.quantity import QUANTITIES, SCALARS
 from verification.sources.references.hamilton import Hamilton
 from verification.sources.source_registry import METHODS, SOURCES
@@ -223,7 +223,7 @@ def _reciprocity(base: Solve, solve: Solve, source: str, problem: CoatedContact)
     work = problem.load * contact.approach
 
     def works(n: int) -> tuple[float, float]:
-        t, w = legendre.leggauss(n)
+        t, w = gauss_legendre(n)
         phi = np.pi / 4 * (t + 1)
         r = contact.contact_radius * np.sin(phi)
         area = 2 * np.pi * r * contact.contact_radius * np.pi / 4 * w * np.cos(phi) / work

@@ -6,7 +6,7 @@ M(k) is the compliance over that of a half-space of the coating's material, as c
 import numpy as np
 
 from verification.problem.coated_contact import CoatedContact
-from verification.sources.references.gauss_legendre import on_panels
+from verification.problem.gauss_legendre import on_panels
 from verification.sources.references.layered_half_space import LayeredHalfSpace
 
 

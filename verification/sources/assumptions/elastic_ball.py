@@ -34,7 +34,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from verification.problem.array_types import Array
-from verification.sources.references.gauss_legendre import wavenumber_panels
+from verification.problem.gauss_legendre import wavenumber_panels
 from verification.sources.references.integral_equation import Solid, compliance, kernel_wavenumbers
 from verification.sources.references.layered_half_space import contact_modulus
 

@@ -16,11 +16,11 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.polynomial import legendre
 from scipy.sparse import coo_array, csc_array
 from scipy.sparse.linalg import splu
 
 from verification.problem.array_types import Array, Coatings
+from verification.problem.gauss_legendre import gauss_legendre
 from verification.sources.assumptions import neo_hooke
 from verification.sources.assumptions.meridian_elements import Meridian, lagrange
 
@@ -267,7 +267,7 @@ class SphereContact:
         There the stretches along the surface give it, with that along the normal from sigma_nn = 0. The
         second to the fourth element are used, since the first has the error of the edge.
         """
-        N, _ = lagrange(self.mesh.nodes, x := legendre.leggauss(self.mesh.degree)[0])
+        N, _ = lagrange(self.mesh.nodes, x := gauss_legendre(self.mesh.degree)[0])
         near = slice(self.mesh.ends + 1, self.mesh.ends + 4)
         by_r, by_z, hoop = (part[near].ravel() for part in self._along(state, 0, x))
         distance = (self.mesh.of_elements(self.mesh.rho)[near] @ N.T).ravel() - 1

@@ -16,6 +16,7 @@ from numpy.polynomial import legendre
 from scipy.interpolate import BarycentricInterpolator
 
 from verification.problem.array_types import Array
+from verification.problem.gauss_legendre import gauss_legendre
 
 AXIS = 4  # elements in place of the one next to the axis, which the grading leaves too wide
 
@@ -61,7 +62,7 @@ class Meridian:
         nodes = number[columns[:, None, :, None], rows[None, :, None, :]].reshape(self.layer.size, -1)
         self.unknowns = (2 * nodes[..., None] + np.arange(2)).reshape(self.layer.size, -1)
 
-        x, w = legendre.leggauss(degree + 1)
+        x, w = gauss_legendre(degree + 1)
         N, D = lagrange(self.nodes, x)
         r, dr, dz = across @ N.T, across @ D.T, down @ D.T
 
@@ -97,7 +98,7 @@ class Meridian:
 
         The traction in equilibrium with nodal forces, by the quadrature of these.
         """
-        x, w = legendre.leggauss(self.degree + 1)
+        x, w = gauss_legendre(self.degree + 1)
         N, D = lagrange(self.nodes, x)
         at, mass = self.of_elements(r), np.zeros((r.size, r.size))
         for members, weight in zip(self._members(r.size), w * (at @ N.T) * (at @ D.T), strict=True):

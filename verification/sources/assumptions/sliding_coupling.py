@@ -41,8 +41,8 @@ from scipy.optimize import minimize_scalar
 
 from verification.problem.array_types import Array
 from verification.problem.coated_contact import CoatedContact, keywords
+from verification.problem.gauss_legendre import gauss_legendre
 from verification.sources.references import integral_equation
-from verification.sources.references.gauss_legendre import gauss_legendre
 from verification.sources.references.integral_equation import Solid
 from verification.sources.references.layered_half_space import LayeredHalfSpace
 

@@ -8,6 +8,7 @@ from numpy.polynomial import legendre
 from numpy.typing import NDArray
 
 from verification.problem.array_types import Array
+from verification.problem.gauss_legendre import gauss_legendre
 
 Numbers = NDArray[np.intp]
 _HERMITE = np.array([[2, -3, 0, 1], [2, 3, 0, -1], [1, -1, -1, 1], [-1, -1, 1, 1]]) / 4
@@ -23,7 +24,7 @@ class Points:
 
     @classmethod
     def gauss(cls, knots: Array, each: int) -> "Points":
-        return cls(knots, *legendre.leggauss(each))
+        return cls(knots, *gauss_legendre(each))
 
     @cached_property
     def place(self) -> Array:

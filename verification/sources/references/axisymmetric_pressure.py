@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike
 from scipy.optimize import minimize_scalar
 
 from verification.problem.array_types import Array
-from verification.sources.references.gauss_legendre import gauss_legendre
+from verification.problem.gauss_legendre import gauss_legendre
 
 NEAR_AXIS = 0.1  # of a
 

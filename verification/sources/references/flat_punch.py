@@ -16,7 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from verification.problem.array_types import Coatings
-from verification.sources.references.gauss_legendre import gauss_legendre, on_panels
+from verification.problem.gauss_legendre import gauss_legendre, on_panels
 from verification.sources.references.layered_half_space import LayeredHalfSpace, contact_modulus
 
 

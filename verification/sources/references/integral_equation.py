@@ -27,8 +27,8 @@ from scipy.optimize import brentq
 
 from verification.problem.array_types import Array, Ball, Coatings
 from verification.problem.coated_contact import BALL, FLAT, Uncertainty
+from verification.problem.gauss_legendre import gauss_legendre, wavenumber_panels
 from verification.sources.references.axisymmetric_pressure import AbelPressure
-from verification.sources.references.gauss_legendre import gauss_legendre, wavenumber_panels
 from verification.sources.references.hankel_field import HankelField
 from verification.sources.references.layered_half_space import (
     LayeredHalfSpace,

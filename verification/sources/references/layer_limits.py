@@ -12,7 +12,7 @@ Mechanics (2018), chapter 18. Thick: Hertz of the coating, then what the interfa
 import numpy as np
 
 from verification.problem.array_types import Coatings
-from verification.sources.references.gauss_legendre import wavenumber_panels
+from verification.problem.gauss_legendre import wavenumber_panels
 from verification.sources.references.layered_half_space import LayeredHalfSpace, bending_length
 
 

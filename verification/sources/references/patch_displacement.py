@@ -17,7 +17,7 @@ import numpy as np
 from scipy.special import j1
 
 from verification.problem.array_types import Array, Coatings
-from verification.sources.references.gauss_legendre import gauss_legendre, wavenumber_panels
+from verification.problem.gauss_legendre import gauss_legendre, wavenumber_panels
 from verification.sources.references.layered_half_space import (
     LayeredHalfSpace,
     bending_length,
