@@ -31,7 +31,7 @@ class Numerics:
     patches : per side of the finest grid.  tolerance : gap and penetration over the approach.
     conversion : "split", with ``hankel_points``; "split-fft" or "plain", with ``enlarge``.
     fill : half-width of the grid over the contact radius.
-    edge_correction : False for the patches alone, without the edge profile.
+    edge_correction : False for the patches alone.
     """
 
     patches: int = 257

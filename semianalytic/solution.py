@@ -1,8 +1,8 @@
 """Solution of the semi-analytical method.
 
-A ``Solution`` carries its coarser companion, the same problem on fewer patches and, of a sphere, with fewer
-terms of the edge profile. The uncertainty of a field is estimated from the difference of the two at the
-points required, widened so that a chance agreement of the two does not count as accuracy.
+A ``Solution`` carries its coarser companion, the same problem on fewer patches. The uncertainty of a field
+is estimated from the difference of the two at the points required, widened so that a chance agreement of
+the two does not count as accuracy.
 """
 
 import time
@@ -18,6 +18,7 @@ from scipy.ndimage import distance_transform_cdt, maximum_filter
 from semianalytic import fields
 from semianalytic.inputs import Body, check_finite
 from semianalytic.level import Level
+from semianalytic.neighbours import Neighbours
 from semianalytic.uncertainty import Uncertainty, safety
 
 __all__ = ["Diagnostics", "Solution"]
@@ -70,7 +71,7 @@ class Solution:
     contact_radius [m] : where p vanishes; of a contact that is no disc, the radius of the disc of its area.
     approach [m].  peak_pressure [Pa] : largest pressure, which sits off the axis under stiff thin coatings.
     surface_nodes [m] : x on y = 0 at which no pressure is interpolated, past 2 contact radii.
-    stiffness [N/m] : d load / d approach, from neighbouring contacts; None of patches alone.
+    neighbours : contacts that give ``stiffness``; None for patches alone.
     """
 
     contact_radius: float
@@ -84,8 +85,7 @@ class Solution:
     coarser: "Solution | None" = field(repr=False)
     _level: Level = field(repr=False)
     _body: Body = field(repr=False)
-    stiffness: float | None = None
-    stiffness_uncertainty: float | None = None
+    neighbours: Neighbours | None = field(default=None, repr=False)
     relative: bool = False
 
     @classmethod
@@ -133,6 +133,16 @@ class Solution:
             _level=level,
             _body=body,
         )
+
+    @property
+    def stiffness(self) -> float | None:
+        """d load / d approach [N/m], from contacts solved on first use; None for patches alone."""
+        return None if self.neighbours is None else self.neighbours.stiffness[0]
+
+    @property
+    def stiffness_uncertainty(self) -> float | None:
+        """Uncertainty of ``stiffness`` [N/m]; None where none was estimated."""
+        return None if self.neighbours is None else self.neighbours.stiffness[1]
 
     @property
     def relative_to_edge(self) -> "Solution":

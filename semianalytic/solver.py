@@ -24,9 +24,9 @@ from semianalytic.inputs import (
     check_finite,
     check_positive,
     check_truth_value,
-    undeformed_gap,
 )
 from semianalytic.level import Indenter, Level
+from semianalytic.neighbours import Neighbours, Sphere, hertz_radius
 from semianalytic.solution import Solution
 from semianalytic.uncertainty import WIDER, Uncertainty
 
@@ -43,7 +43,6 @@ ROUGH, ROOMY = (
     1.5,
 )  # patches a side of the grid that finds the contact radius, and its half-width over that
 FINER, LARGEST_GRID = 1.4, 725  # patches a side of the next grid over the last; of the last for ``accuracy``
-STEPS = 0.05, 0.1  # of the load, to the neighbouring contacts that give the stiffness
 
 
 def solve(
@@ -101,36 +100,32 @@ def solve(
         edge_correction=edge_correction,
         threads=threads,
     )
-    undeformed = undeformed_gap(gap, radius)
-    sphere = Indenter(
-        lambda grid: undeformed(grid.radius), load, approach, round=True, edge_correction=edge_correction
-    )
-    half_width = fill * _contact_radius(radius, sphere, body, numerics)
-    levels = nested.levels(half_width, sphere, body, numerics, estimate_uncertainty)
+    sphere = Sphere(radius, gap)
+    pressed = sphere.indenter(load, approach, edge_correction)
+    half_width = fill * _contact_radius(radius, pressed, body, numerics)
+    levels = nested.levels(half_width, pressed, body, numerics, estimate_uncertainty)
     if touches_rim(levels[-1].found.pressure, levels[-1].grid.quarter):
         raise NotConverged(f"the contact reaches the rim of the grid, fill = {fill:g}; enlarge it")
-    estimate = uncertainty.of_contact(levels, sphere, body, numerics) if estimate_uncertainty else None
+    estimate = uncertainty.of_contact(levels, pressed, body, numerics) if estimate_uncertainty else None
     while estimate and accuracy and edge_correction and estimate.relative_to(levels[-1].scalars) > accuracy:
         n = odd(FINER * levels[-1].grid.n)
         if n > LARGEST_GRID:
             break
         grid = replace(levels[-1].grid, n=n, d=2 * half_width / n)
-        levels.append(nested.solve_on(grid, levels[-1], sphere, body, numerics))
-        estimate = uncertainty.of_contact(levels, sphere, body, numerics)
+        levels.append(nested.solve_on(grid, levels[-1], pressed, body, numerics))
+        estimate = uncertainty.of_contact(levels, pressed, body, numerics)
     solution = Solution.of_levels(levels[-3:], body, estimate, began)
     if levels[-1].shape is None:
         return solution
-    stiffness, error = _stiffness(radius, levels, sphere, body, numerics)
-    if estimate is None:
-        return replace(solution, stiffness=stiffness)
-    # those of the approaches, over the largest of their differences
-    error += stiffness * estimate.approach / solution.approach / float(np.log1p(STEPS[-1]))
-    return replace(solution, stiffness=stiffness, stiffness_uncertainty=error)
+    level = next(one for one in levels[-3:] if one.shape)
+    error = estimate.approach if estimate else None
+    beside = Neighbours(sphere, level, levels[-1].load, solution.approach, error, body, numerics)
+    return replace(solution, neighbours=beside)
 
 
 def _contact_radius(radius: float, sphere: Indenter, body: Body, numerics: Numerics) -> float:
     """Contact radius [m] to a few per cent, on a coarse grid of patches alone."""
-    a = _hertz_radius(radius, sphere.load, sphere.approach, body)
+    a = hertz_radius(radius, sphere.load, sphere.approach, body)
     coarse = replace(numerics, tolerance=max(1e-3, numerics.tolerance), edge_correction=False)
     pressed = replace(sphere, edge_correction=False)
     for _ in range(20):
@@ -149,59 +144,6 @@ def _contact_radius(radius: float, sphere: Indenter, body: Body, numerics: Numer
         else:
             return found
     raise NotConverged(f"no contact radius near {a:g} m carries the load; check the moduli")
-
-
-def _hertz_radius(radius: float, load: float | None, approach: float | None, body: Body) -> float:
-    """Hertz's contact radius [m] on a solid as compliant as the layers at the wavelength of the contact."""
-    if load is None:
-        return float((radius * (approach or 0.0)) ** 0.5)
-    both, a = body.response, radius
-    for _ in range(200):
-        M = 1 + float(both.excess(np.array([2 / a]))[0]) if both else 1.0
-        if not M > 0:
-            raise NotConverged(f"the layers' compliance is {M:g} of the first one's; check the moduli")
-        a, last = (a * a * 0.75 * load * radius * M / body.contact_modulus) ** 0.2, a
-        if abs(a - last) < 1e-12 * a:
-            break
-    return a
-
-
-def _stiffness(
-    radius: float, levels: list[Level], indenter: Indenter, body: Body, numerics: Numerics
-) -> tuple[float, float]:
-    """d load / d approach [N/m] and its uncertainty, from contacts at two neighbouring loads.
-
-    d ln W / d ln delta by central differences, which Hertz's contact makes exact. The patches grow with the
-    contact, so that its edge cuts them alike and their errors cancel.
-    """
-    level, fine = next(one for one in levels[-3:] if one.shape), levels[-1]
-    here = _hertz_radius(radius, level.load, None, body)
-    slopes = []
-    for step in STEPS:
-        beside = []
-        for factor in (1 + step, 1 / (1 + step)):
-            size = level.grid.d * _hertz_radius(radius, level.load * factor, None, body) / here
-            pressed = replace(indenter, load=level.load * factor, approach=None)
-            start = _stretched(level, size, factor)
-            beside.append(nested.solve_on(replace(level.grid, d=size), start, pressed, body, numerics))
-        ends = np.log([(one.load, one.found.approach) for one in beside])
-        slopes.append(float(np.divide(*(ends[0] - ends[1]))))
-    slope = slopes[0] + (slopes[0] - slopes[1]) * STEPS[0] ** 2 / (STEPS[1] ** 2 - STEPS[0] ** 2)
-    stiffness = slope * fine.load / fine.found.approach
-    error = abs(slope - slopes[0]) / slope + abs(fine.found.approach / level.found.approach - 1)
-    return stiffness, stiffness * error
-
-
-def _stretched(level: Level, size: float, factor: float) -> Level:
-    """A level at ``factor`` times its load on patches of another size [m], to start from."""
-    assert level.shape is not None
-    ratio = size / level.grid.d
-    A, B = (axis * ratio for axis in level.shape.axes)
-    shape = replace(level.shape, axes=(A, B), coefficients=level.shape.coefficients * (factor / ratio**2))
-    found = replace(
-        level.found, pressure=level.found.pressure * (factor / ratio**2), gap=level.found.gap * ratio**2
-    )
-    return replace(level, grid=replace(level.grid, d=size), found=found, shape=shape)
 
 
 def indent(
@@ -235,16 +177,16 @@ def indent(
 
     An ellipsoid x^2/2A + y^2/2B, a cone, a punch with a round edge, a measured surface are profiles;
     contact_radius is that of the disc with the contact's area.
-    edge_correction : the patches, whose edge is a staircase, are corrected for a smooth edge wherever the
-    pressure shows one on them (the rule: ``smooth_edge.fit``): of second order in the patch size, ellipses
-    of axes up to 5 : 1 at 257 patches within 7e-6 in peak pressure, 4e-6 in approach. Where it shows none,
-    under a rough surface, at a corner, or with False: patches alone, of first order at the edge.
+    edge_correction : for the square root of the pressure at a smooth edge (``edge_correction``), wherever
+    the pressure shows one: ellipses of axes up to 5 : 1 on 257 patches within 4e-6 in peak pressure. Where
+    it shows none, under a rough surface, at a corner, or with False: patches alone, of first order at the
+    edge.
 
     Heights that are even in x and in y to the last digit are solved on a quarter of the square.
 
     array_namespace : a module with the functions of the Python array API standard, such as ``cupy``, on whose
     arrays the contact is solved, on a GPU; z is then called with its arrays. By default that of the heights,
-    NumPy for z(x, y). A smooth edge is fitted by NumPy. The solution's arrays are of NumPy.
+    NumPy for z(x, y). The edge is fitted by NumPy. The solution's arrays are of NumPy.
 
     Raises ValueError for input without meaning, NotConverged when the iteration stops short.
     """

@@ -130,7 +130,7 @@ def _of_iteration(level: Level, indenter: Indenter) -> dict[str, float]:
     """Changes by a further step of the iteration.
 
     The gap g that is left in contact changes the approach by its mean, weighted with the pressure of a flat
-    punch, which is nowhere negative (``perturbation``): by no more than the largest |g|. The pressure changes
+    punch, which is nowhere negative: by no more than the largest |g|. The pressure changes
     by A^-1 g, about P g, and the radius by no larger a part.
     """
     found = level.found

@@ -1,0 +1,110 @@
+"""Stiffness of a round contact, from contacts at neighbouring loads."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from semianalytic import nested
+from semianalytic.contact import NotConverged
+from semianalytic.grid import Grid
+from semianalytic.inputs import Body, Numerics, undeformed_gap
+from semianalytic.level import Indenter, Level
+
+__all__ = ["Neighbours", "Sphere", "hertz_radius"]
+
+Array = NDArray[np.floating]
+
+STEPS = 0.05, 0.1  # of the load, to the neighbouring contacts
+
+
+@dataclass(frozen=True)
+class Sphere:
+    """A sphere of ``radius`` [m] with the ``gap`` "parabola" or "sphere"."""
+
+    radius: float
+    gap: str
+
+    def indenter(self, load: float | None, approach: float | None, edge_correction: bool) -> Indenter:
+        undeformed: Callable[[Array], Array] = undeformed_gap(self.gap, self.radius)
+
+        def gap(grid: Grid) -> Array:
+            return undeformed(grid.radius)
+
+        return Indenter(gap, load, approach, round=True, edge_correction=edge_correction)
+
+
+@dataclass(frozen=True, eq=False)
+class Neighbours:
+    """Contacts at loads next to that of a solution.
+
+    level : a coarser grid of the refinement study, whose edge is smooth.  approach, uncertainty : of the
+    finest grid [m], the latter None where it was not estimated.
+    """
+
+    sphere: Sphere
+    level: Level
+    load: float
+    approach: float
+    uncertainty: float | None
+    body: Body
+    numerics: Numerics
+
+    @cached_property
+    def stiffness(self) -> tuple[float, float | None]:
+        """d load / d approach [N/m] and its uncertainty.
+
+        d ln W / d ln delta by central differences, which Hertz's contact makes exact. The patches grow with
+        the contact, so that its edge cuts them alike and their errors cancel.
+        """
+        level, body = self.level, self.body
+        here = hertz_radius(self.sphere.radius, level.load, None, body)
+        slopes = []
+        for step in STEPS:
+            beside = []
+            for factor in (1 + step, 1 / (1 + step)):
+                size = level.grid.d * hertz_radius(self.sphere.radius, level.load * factor, None, body) / here
+                pressed = self.sphere.indenter(level.load * factor, None, edge_correction=True)
+                start = _stretched(level, size, factor)
+                beside.append(
+                    nested.solve_on(replace(level.grid, d=size), start, pressed, body, self.numerics)
+                )
+            ends = np.log([(one.load, one.found.approach) for one in beside])
+            slopes.append(float(np.divide(*(ends[0] - ends[1]))))
+        slope = slopes[0] + (slopes[0] - slopes[1]) * STEPS[0] ** 2 / (STEPS[1] ** 2 - STEPS[0] ** 2)
+        stiffness = slope * self.load / self.approach
+        if self.uncertainty is None:
+            return stiffness, None
+        error = abs(slope - slopes[0]) / slope + abs(self.approach / level.found.approach - 1)
+        # those of the approaches, over the largest of their differences
+        error += self.uncertainty / self.approach / float(np.log1p(STEPS[-1]))
+        return stiffness, stiffness * error
+
+
+def hertz_radius(radius: float, load: float | None, approach: float | None, body: Body) -> float:
+    """Hertz's contact radius [m] on a solid as compliant as the layers at the wavelength of the contact."""
+    if load is None:
+        return float((radius * (approach or 0.0)) ** 0.5)
+    both, a = body.response, radius
+    for _ in range(200):
+        M = 1 + float(both.excess(np.array([2 / a]))[0]) if both else 1.0
+        if not M > 0:
+            raise NotConverged(f"the layers' compliance is {M:g} of the first one's; check the moduli")
+        a, last = (a * a * 0.75 * load * radius * M / body.contact_modulus) ** 0.2, a
+        if abs(a - last) < 1e-12 * a:
+            break
+    return a
+
+
+def _stretched(level: Level, size: float, factor: float) -> Level:
+    """A level at ``factor`` times its load on patches of another size [m], to start from."""
+    assert level.shape is not None
+    ratio = size / level.grid.d
+    A, B = (axis * ratio for axis in level.shape.axes)
+    shape = replace(level.shape, axes=(A, B), coefficients=level.shape.coefficients * (factor / ratio**2))
+    found = replace(
+        level.found, pressure=level.found.pressure * (factor / ratio**2), gap=level.found.gap * ratio**2
+    )
+    return replace(level, grid=replace(level.grid, d=size), found=found, shape=shape)
