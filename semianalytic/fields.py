@@ -29,23 +29,29 @@ def stress(
     """
     points = _points(body, x, y, z, layer)
     out = np.zeros((len(levels), 6, points[0].size))
-    of_rings: subsurface.Tables = {}  # a point force does not depend on the grid
-    of_patches: patch_field.Tables = {}
-    for number, (total, level) in enumerate(zip(out, levels, strict=True)):
-        at = _scaled(points, level, levels[0])
-        smooth = level.smooth(number)
-        if smooth is not None:
-            total += subsurface.stress(*at, pressure=smooth, body=body, kept=of_rings)
-        rough = level.mean if smooth is None else level.rest
+    ratios = [_ratio(level, levels[0]) for level in levels]
+    smooth = [level.smooth(number) for number, level in enumerate(levels)]
+    edged = [k for k, one in enumerate(smooth) if one is not None]
+    if edged:
+        pressures = [one for one in smooth if one is not None]
+        out[edged] = subsurface.stress(
+            *points, pressures=pressures, body=body, ratios=[ratios[k] for k in edged]
+        )
+    x0, y0, z0, where = points
+    of_patches: patch_field.Tables = {}  # a point force does not depend on the grid
+    for total, level, one, ratio in zip(out, levels, smooth, ratios, strict=True):
+        rough = level.mean if one is None else level.rest
         if rough is not None:
-            few = smooth is not None
             total += patch_field.stress(
-                *at,
+                x0 * ratio,
+                y0 * ratio,
+                z0,
+                where,
                 grid_x=level.nodes,
                 pressure=level.grid.whole(rough),
                 body=body,
                 kept=of_patches,
-                few_depths=few,
+                few_depths=one is not None,
             )
     shape = np.broadcast_shapes(*(np.shape(v) for v in (x, y, z)))
     return np.array([patch_field.tensor(one) for one in out]).reshape(len(levels), 3, 3, *shape)
@@ -56,10 +62,9 @@ def stress_of_uncertain_edge(
 ) -> Array:
     """Largest change of a stress [Pa] when a smooth edge widens or narrows by ``shift`` [m], (n,)."""
     points = _points(body, x, y, z, layer)
-    kept: subsurface.Tables = {}
     assert level.shape is not None
     moved = [rings_of(level.shape.widened(s)) for s in (0.0, -shift, shift)]
-    here, *others = (subsurface.stress(*points, pressure=one, body=body, kept=kept) for one in moved)
+    here, *others = subsurface.stress(*points, pressures=moved, body=body)
     return np.max([np.abs(other - here).max(axis=0) for other in others], axis=0)
 
 
@@ -67,16 +72,16 @@ def displacement(levels: Sequence[Level], body: Body, x: ArrayLike, y: ArrayLike
     """Displacement [m] of each level at points [m], broadcast; shape (len(levels), 3) + points."""
     points = _points(body, x, y, z, None)
     out = np.zeros((len(levels), 3, points[0].size))
-    kept: subsurface.Tables = {}
-    for number, (total, level) in enumerate(zip(out, levels, strict=True)):
-        smooth = level.smooth(number)
-        if smooth is not None:
-            total += subsurface.displacement(*points, pressure=smooth, body=body, kept=kept)
-        rough = level.mean if smooth is None else level.rest
+    smooth = [level.smooth(number) for number, level in enumerate(levels)]
+    edged = [k for k, one in enumerate(smooth) if one is not None]
+    if edged:
+        pressures = [one for one in smooth if one is not None]
+        out[edged] = subsurface.displacement(*points, pressures=pressures, body=body)
+    for total, level, one in zip(out, levels, smooth, strict=True):
+        rough = level.mean if one is None else level.rest
         if rough is not None:
-            total += patch_field.displacement(
-                *points, grid_x=level.nodes, pressure=level.grid.whole(rough), body=body
-            )
+            pressure = level.grid.whole(rough)
+            total += patch_field.displacement(*points, grid_x=level.nodes, pressure=pressure, body=body)
     return out.reshape(len(levels), 3, *np.broadcast_shapes(*(np.shape(v) for v in (x, y, z))))
 
 
@@ -105,10 +110,8 @@ def _points(
     return x.ravel(), y.ravel(), z.ravel(), where.ravel()
 
 
-def _scaled(points: tuple[Array, Array, Array, NDArray[np.intp]], level: Level, first: Level):  # noqa: ANN202
-    """The points at the same x/a and y/a of another level with a smooth edge."""
-    if level.shape is None or first.shape is None or level is first:
-        return points
-    x, y, z, where = points
-    ratio = level.shape.radius / first.shape.radius
-    return x * ratio, y * ratio, z, where
+def _ratio(level: Level, first: Level) -> float:
+    """Of x under a level with a smooth edge to the same x/a under the first."""
+    if level.shape is None or first.shape is None:
+        return 1.0
+    return level.shape.radius / first.shape.radius

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -54,33 +54,36 @@ class Neighbours:
 
     @cached_property
     def stiffness(self) -> tuple[float, float | None]:
-        """d load / d approach [N/m] and its uncertainty.
+        """d load / d approach [N/m] and its uncertainty."""
+        return _stiffness(self)
 
-        d ln W / d ln delta by central differences, which Hertz's contact makes exact. The patches grow with
-        the contact, so that its edge cuts them alike and their errors cancel.
-        """
-        level, body = self.level, self.body
-        here = hertz_radius(self.sphere.radius, level.load, None, body)
-        slopes = []
-        for step in STEPS:
-            beside = []
-            for factor in (1 + step, 1 / (1 + step)):
-                size = level.grid.d * hertz_radius(self.sphere.radius, level.load * factor, None, body) / here
-                pressed = self.sphere.indenter(level.load * factor, None, edge_correction=True)
-                start = _stretched(level, size, factor)
-                beside.append(
-                    nested.solve_on(replace(level.grid, d=size), start, pressed, body, self.numerics)
-                )
-            ends = np.log([(one.load, one.found.approach) for one in beside])
-            slopes.append(float(np.divide(*(ends[0] - ends[1]))))
-        slope = slopes[0] + (slopes[0] - slopes[1]) * STEPS[0] ** 2 / (STEPS[1] ** 2 - STEPS[0] ** 2)
-        stiffness = slope * self.load / self.approach
-        if self.uncertainty is None:
-            return stiffness, None
-        error = abs(slope - slopes[0]) / slope + abs(self.approach / level.found.approach - 1)
-        # those of the approaches, over the largest of their differences
-        error += self.uncertainty / self.approach / float(np.log1p(STEPS[-1]))
-        return stiffness, stiffness * error
+
+def _stiffness(beside: Neighbours) -> tuple[float, float | None]:
+    """d ln W / d ln delta by central differences, which Hertz's contact makes exact.
+
+    The patches grow with the contact, so that its edge cuts them alike and their errors cancel.
+    """
+    level, body = beside.level, beside.body
+    radius = partial(hertz_radius, beside.sphere.radius, approach=None, body=body)
+    slopes = []
+    for step in STEPS:
+        ends = []
+        for factor in (1 + step, 1 / (1 + step)):
+            load = level.load * factor
+            size = level.grid.d * radius(load) / radius(level.load)
+            start, grid = _stretched(level, size, factor), replace(level.grid, d=size)
+            pressed = beside.sphere.indenter(load, None, edge_correction=True)
+            one = nested.solve_on(grid, start, pressed, body, beside.numerics)
+            ends.append(np.log([one.load, one.found.approach]))
+        slopes.append(float(np.divide(*(ends[0] - ends[1]))))
+    slope = slopes[0] + (slopes[0] - slopes[1]) * STEPS[0] ** 2 / (STEPS[1] ** 2 - STEPS[0] ** 2)
+    stiffness = slope * beside.load / beside.approach
+    if beside.uncertainty is None:
+        return stiffness, None
+    error = abs(slope - slopes[0]) / slope + abs(beside.approach / level.found.approach - 1)
+    # those of the approaches, over the largest of their differences
+    error += beside.uncertainty / beside.approach / float(np.log1p(STEPS[-1]))
+    return stiffness, stiffness * error
 
 
 def hertz_radius(radius: float, load: float | None, approach: float | None, body: Body) -> float:

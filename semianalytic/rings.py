@@ -17,7 +17,7 @@ Panels of rho shrink towards the radii at which a ring touches the edge, and to 
 Against closed forms: 1e-8 of the peak pressure, at the edge itself too.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from itertools import pairwise
@@ -28,7 +28,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from semianalytic.edge_shape import Shape
 
-__all__ = ["Disc", "RingPressure", "Rings", "SmoothContour", "rings_of"]
+__all__ = ["Disc", "RingPressure", "Rings", "SmoothContour", "rings_around", "rings_of"]
 
 Array = NDArray[np.floating]
 Step = Callable[[float], float]
@@ -91,42 +91,67 @@ class Disc:
 
     def rings(self, x: Array, y: Array, scale: Array) -> Rings:
         """As in `RingPressure`."""
-        r0, a = np.hypot(x, y), self.radius
-        # points at the same distance from the axis share their rings
-        r, same = np.unique(r0, return_inverse=True)
-        least = np.full(r.size, np.inf)
-        np.minimum.at(least, same, scale)
-        marks = [([abs(a - one), a + one], one < a) for one in r]
-        of_distance = self._around(r, _panels(marks, least, self.radial))
-        return _turned(of_distance, same, np.arctan2(y, x))
+        return _around([self], x, y, scale)[0]
 
-    def _around(self, r0: Array, panels: tuple[NDArray[np.intp], Array, Array]) -> Rings:
-        """Rings around points on the x axis, at x = r0."""
-        foot, radius, weight = panels
-        harmonics = np.zeros((7, foot.size))
-        s, w = _gauss(self.angular)
-        for begin in range(0, foot.size, AT_ONCE // self.angular):
-            part = slice(begin, begin + AT_ONCE // self.angular)
-            r, rho = r0[foot[part]], radius[part]
-            # the direction -x inwards; kappa = cos of the crossing from there
-            product = 2 * r * rho
-            kappa = np.full(rho.shape, -1e3)
-            np.divide(r * r + rho * rho - self.radius**2, product, out=kappa, where=product > 0)
-            crossing = kappa > -1
-            delta = np.where(
-                crossing, np.pi - np.arccos(np.clip(kappa, -1, 1)), np.arccosh(np.maximum(-kappa, 1.0))
-            )
-            beta, slope = _from_gap(delta, np.full(rho.shape, np.pi), crossing, s)
-            cosine = np.cos(beta)
-            square = (r - rho)[:, None] ** 2 + 2 * product[:, None] * np.cos(beta / 2) ** 2
-            p = self.of_square(np.minimum(square, self.radius**2)) * (2 * slope * w)
+
+def rings_around(
+    pressures: Sequence[RingPressure], ratios: Sequence[float], x: Array, y: Array, scale: Array
+) -> list[Rings]:
+    """Rings of each pressure around points x, y [m], (n,), times its ratio; ``scale`` as in `RingPressure`.
+
+    Round pressures of the same x/a share the places of the rings over a.
+    """
+    discs = [p for p in pressures if isinstance(p, Disc)]
+    alike = len(discs) == len(pressures) and all(
+        abs(disc.radius / (ratio * discs[0].radius) - 1) < 1e-12
+        for disc, ratio in zip(discs, ratios, strict=True)
+    )
+    # one pressure on fewer points shows the error of these
+    if alike and not any(disc.of_square == discs[0].of_square for disc in discs[1:]):
+        return _around(discs, x, y, scale)
+    return [p.rings(x * ratio, y * ratio, scale) for p, ratio in zip(pressures, ratios, strict=True)]
+
+
+def _around(discs: Sequence[Disc], x: Array, y: Array, scale: Array) -> list[Rings]:
+    """Rings around points x, y [m] of the first disc, and at the same x/a and y/a of the others."""
+    first = discs[0]
+    a = first.radius
+    # points at the same distance from the axis, but for rounding, share their rings
+    r0, same = np.unique(np.round(np.hypot(x, y) / a, 14), return_inverse=True)
+    r0 *= a
+    least = np.full(r0.size, np.inf)
+    np.minimum.at(least, same, scale)
+    marks = [([abs(a - one), a + one], one < a) for one in r0]
+    foot, radius, weight = _panels(marks, least, first.radial)
+    harmonics = np.zeros((len(discs), 7, foot.size))
+    s, w = _gauss(first.angular)
+    for begin in range(0, foot.size, AT_ONCE // first.angular):
+        part = slice(begin, begin + AT_ONCE // first.angular)
+        r, rho = r0[foot[part]], radius[part]
+        # the direction -x inwards; kappa = cos of the crossing from there
+        product = 2 * r * rho
+        kappa = np.full(rho.shape, -1e3)
+        np.divide(r * r + rho * rho - a**2, product, out=kappa, where=product > 0)
+        crossing = kappa > -1
+        delta = np.where(
+            crossing, np.pi - np.arccos(np.clip(kappa, -1, 1)), np.arccosh(np.maximum(-kappa, 1.0))
+        )
+        beta, slope = _from_gap(delta, np.full(rho.shape, np.pi), crossing, s)
+        cosine = np.cos(beta)
+        square = np.minimum((r - rho)[:, None] ** 2 + product[:, None] * (1 + cosine), a**2)
+        measure = 2 * slope * w
+        twice = 2 * cosine**2 - 1
+        waves = (None, -cosine, twice, -cosine * (2 * twice - 1))
+        for disc, held in zip(discs, harmonics, strict=True):
+            p = disc.of_square(square * (disc.radius / a) ** 2) * measure
             p[kappa >= 1] = 0
-            twice = 2 * cosine**2 - 1
-            harmonics[0, part] = p.sum(axis=1)
-            harmonics[1, part] = -(p * cosine).sum(axis=1)
-            harmonics[3, part] = (p * twice).sum(axis=1)
-            harmonics[5, part] = -(p * cosine * (2 * twice - 1)).sum(axis=1)
-        return Rings(foot, radius, weight, harmonics)
+            for m, wave in enumerate(waves):
+                held[max(2 * m - 1, 0), part] = p.sum(axis=1) if wave is None else np.vecdot(p, wave)
+    found = []
+    for disc, held in zip(discs, harmonics, strict=True):
+        k = disc.radius / a
+        found.append(_turned(Rings(foot, radius * k, weight * k * k, held), same, np.arctan2(y, x)))
+    return found
 
 
 @dataclass(frozen=True, eq=False)
@@ -252,7 +277,8 @@ def _from_gap(delta: Array, width: Array, crossing: NDArray[np.bool_], s: Array)
     ratio = width / delta
     top = np.where(crossing, np.arccosh(np.maximum(ratio, 1)), np.arcsinh(ratio))[:, None]
     mu = top * s
-    c, h = np.cosh(mu), np.sinh(mu)
+    e = np.exp(mu)
+    c, h = (e + 1 / e) / 2, (e - 1 / e) / 2
     of_gap = crossing[:, None]
     return delta[:, None] * np.where(of_gap, c, h), delta[:, None] * top * np.where(of_gap, h, c)
 

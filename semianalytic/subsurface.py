@@ -13,7 +13,7 @@ p/2 (Johnson 1985, section 3.4).
 Rough pressures, and planes of many points: ``patch_field``.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
 from typing import Any
@@ -31,17 +31,15 @@ from semianalytic.point_force import (
     half_space_stress,
     stress_below,
 )
-from semianalytic.rings import RingPressure
+from semianalytic.rings import RingPressure, Rings, rings_around
 
-__all__ = ["Tables", "displacement", "stress"]
+__all__ = ["displacement", "stress"]
 
 Array = NDArray[Any]
-Tables = dict[tuple[bytes, int, float, int], list[PointForce]]
 
 PAIRS = 200_000  # points times rings held at a time
 # Chebyshev depths within an octave of the reach, 3e-10 of the field; fewer depths are taken as they are
 DEPTHS = 10
-KEPT = 64  # depths of which tables are kept, half a megabyte each
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,21 +60,24 @@ def stress(
     z: Array,
     layer: Array,
     *,
-    pressure: RingPressure,
+    pressures: Sequence[RingPressure],
     body: Body,
-    kept: Tables | None = None,
+    ratios: Sequence[float] | None = None,
 ) -> Array:
-    """Stress xx, yy, zz, xy, xz, yz [Pa] at points x, y, z [m] of the layers named, (n,) each; (6, n).
+    """Stress xx, yy, zz, xy, xz, yz [Pa] under each pressure, (pressures, 6, n).
 
-    layer : picks the side of an interface.  kept : tables of other calls for the same body; new ones are
-    added.
+    x, y, z : points [m] of the layers named, (n,) each.  layer : picks the side of an interface.
+    ratios : of x and y under each pressure to those given; 1 by default.
     """
     nu, f = body.materials[0][1], body.friction
     response = _Response(6, partial(_stress, nu, f), partial(stress_below, body=body), combine_stress)
-    total = _summed(x, y, z, layer, pressure, body, response, {} if kept is None else kept)
-    p = np.where((z == 0) & (layer == 0), pressure.pressure(x, y), 0.0)
+    ratios = [1.0] * len(pressures) if ratios is None else ratios
+    total = _summed(x, y, z, layer, pressures, ratios, body, response)
     local = np.array([-(1 + 2 * nu) / 2, -(1 + 2 * nu) / 2, -1.0, 0.0, -f, 0.0])
-    return total + local[:, None] * p
+    surface = (z == 0) & (layer == 0)
+    for out, pressure, ratio in zip(total, pressures, ratios, strict=True):
+        out[:, surface] += local[:, None] * pressure.pressure(x[surface] * ratio, y[surface] * ratio)
+    return total
 
 
 def displacement(
@@ -85,16 +86,15 @@ def displacement(
     z: Array,
     layer: Array,
     *,
-    pressure: RingPressure,
+    pressures: Sequence[RingPressure],
     body: Body,
-    kept: Tables | None = None,
 ) -> Array:
-    """Displacement u_x, u_y, u_z [m], (3, n); arguments as in `stress`."""
+    """Displacement u_x, u_y, u_z [m], (pressures, 3, n); arguments as in `stress`."""
     E, nu, f = *body.materials[0][:2], body.friction
     response = _Response(
         3, partial(_displacement, E, nu, f), partial(displacement_below, body=body), combine_displacement
     )
-    return _summed(x, y, z, layer, pressure, body, response, {} if kept is None else kept)
+    return _summed(x, y, z, layer, pressures, [1.0] * len(pressures), body, response)
 
 
 def _stress(nu: float, f: float, rho: Array, z: Array) -> Array:
@@ -105,40 +105,66 @@ def _displacement(E: float, nu: float, f: float, rho: Array, z: Array) -> Array:
     return half_space_displacement(rho, z, E, nu, f)
 
 
-def _summed(x, y, z, layer, pressure: RingPressure, body: Body, response: _Response, kept: Tables) -> Array:
-    """Components (n,) + points: the sum over the rings around each point."""
+def _summed(
+    x: Array,
+    y: Array,
+    z: Array,
+    layer: Array,
+    pressures: Sequence[RingPressure],
+    ratios: Sequence[float],
+    body: Body,
+    response: _Response,
+) -> Array:
+    """Components (pressures, components, n): the sums over the rings around each point."""
+    out = np.zeros((len(pressures), response.components, z.size))
     if not z.size:
-        return np.zeros((response.components, 0))
+        return out
     feet, foot = np.unique(np.stack([x, y]), axis=1, return_inverse=True)
     foot = foot.ravel()
     first = body.thickness[0] if body.coatings else np.inf
     scale = np.full(feet.shape[1], first, dtype=float)
     np.minimum.at(scale, foot[z > 0], z[z > 0])
-    rings = pressure.rings(feet[0], feet[1], scale)
-    begin = np.searchsorted(rings.foot, np.arange(feet.shape[1] + 1))
-    count = np.diff(begin)[foot]
-    out = np.zeros((response.components, z.size))
+    around = rings_around(pressures, ratios, feet[0], feet[1], scale)
     for number in np.unique(layer):
         members = np.flatnonzero(layer == number)
         members = members[np.argsort(z[members], kind="stable")]
-        tables = _Tables.of(z[members], int(number), body, response, kept)
-        ends = np.cumsum(count[members])
-        start = 0
-        while start < members.size:
-            held = ends[start - 1] if start else 0
-            stop = max(start + 1, int(np.searchsorted(ends, held + PAIRS, side="right")))
-            some = members[start:stop]
-            which = np.repeat(np.arange(some.size), count[some])
-            ring = np.arange(which.size) + np.repeat(
-                begin[foot[some]] - (ends[start:stop] - count[some] - held), count[some]
+        tables = _Tables.of(z[members], int(number), body, response)
+        for total, rings in zip(out, around, strict=True):
+            total[:, members] = _at_depths(
+                rings, foot[members], z[members], int(number), tables, body, response
             )
-            depth = z[some][which]
-            rho = rings.radius[ring]
-            closed = [response.closed(rho, depth)] if number == 0 else []
-            table = sum([tables(rho, depth)] if tables else [], start=sum(closed, start=np.zeros(1)))
-            parts = response.combine(table, rings.harmonics[:, ring] * rings.weight[ring], body.friction)
-            out[:, some] = [np.bincount(which, part, minlength=some.size) for part in parts]
-            start = stop
+    return out
+
+
+def _at_depths(
+    rings: Rings,
+    foot: NDArray[np.intp],
+    z: Array,
+    layer: int,
+    tables: "_Tables | None",
+    body: Body,
+    response: _Response,
+) -> Array:
+    """Components (components, n) at points of one layer with the rings ``foot`` and depths z, ascending."""
+    begin = np.searchsorted(rings.foot, np.arange(foot.max() + 2))
+    count = np.diff(begin)[foot]
+    ends = np.cumsum(count)
+    out = np.empty((response.components, z.size))
+    start = 0
+    while start < z.size:
+        held = ends[start - 1] if start else 0
+        stop = max(start + 1, int(np.searchsorted(ends, held + PAIRS, side="right")))
+        some = slice(start, stop)
+        which = np.repeat(np.arange(stop - start), count[some])
+        ring = np.arange(which.size) + np.repeat(
+            begin[foot[some]] - (ends[some] - count[some] - held), count[some]
+        )
+        depth, rho = z[some][which], rings.radius[ring]
+        closed = [response.closed(rho, depth)] if layer == 0 else []
+        table = sum([tables(rho, depth)] if tables else [], start=sum(closed, start=np.zeros(1)))
+        parts = response.combine(table, rings.harmonics[:, ring] * rings.weight[ring], body.friction)
+        out[:, some] = [np.bincount(which, part, minlength=stop - start) for part in parts]
+        start = stop
     return out
 
 
@@ -152,7 +178,7 @@ class _Tables:
     logarithm: bool
 
     @classmethod
-    def of(cls, z: Array, layer: int, body: Body, response: _Response, kept: Tables) -> "_Tables | None":
+    def of(cls, z: Array, layer: int, body: Body, response: _Response) -> "_Tables | None":
         """For the depths z [m], ascending, of one layer; None of an uncoated body."""
         if not body.coatings:
             return None
@@ -164,12 +190,8 @@ class _Tables:
             between.append(depths.size > DEPTHS)
             if between[-1]:
                 depths = _chebyshev(depths[0], depths[-1], layer > 0)
-            key = (depths.tobytes(), layer, float(power), response.components)
-            if key not in kept:
-                if depths.size + sum(len(tables) for tables in kept.values()) > KEPT:
-                    kept.clear()
-                kept[key] = response.below(depths, layer, 2.0**power, excess=layer == 0)
-            groups.append((float(z[octave == power][0]), depths, kept[key]))
+            tables = response.below(depths, layer, 2.0**power, excess=layer == 0)
+            groups.append((float(z[octave == power][0]), depths, tables))
         return cls(groups, between, layer > 0)
 
     def __call__(self, rho: Array, z: Array) -> Array:

@@ -37,8 +37,8 @@ def stress(x, y, z, layer=0, *, pressure=DISC, body=BARE):
     """The tensor, of points broadcast."""
     x, y, z, layer = np.broadcast_arrays(x, y, z, layer)
     six = subsurface.stress(
-        *(np.ravel(v).astype(float) for v in (x, y, z)), layer.ravel(), pressure=pressure, body=body
-    )
+        *(np.ravel(v).astype(float) for v in (x, y, z)), layer.ravel(), pressures=[pressure], body=body
+    )[0]
     tensor = np.empty((3, 3, x.size))
     tensor[SIX], tensor[SIX[::-1]] = six, six
     return tensor.reshape(3, 3, *x.shape)
@@ -47,7 +47,8 @@ def stress(x, y, z, layer=0, *, pressure=DISC, body=BARE):
 def displacement(x, y, z, layer=0, *, pressure=DISC, body=BARE):
     x, y, z, layer = np.broadcast_arrays(x, y, z, layer)
     flat = (np.ravel(v).astype(float) for v in (x, y, z))
-    return subsurface.displacement(*flat, layer.ravel(), pressure=pressure, body=body).reshape(3, *x.shape)
+    found = subsurface.displacement(*flat, layer.ravel(), pressures=[pressure], body=body)
+    return found.reshape(3, *x.shape)
 
 
 def ellipse(a, b, centre=(0.0, 0.0)):

@@ -11,7 +11,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from semianalytic import frf, influence, point_force, solver, subsurface
+from semianalytic import frf, influence, neighbours, point_force, subsurface
 from verification.cases.case_file import read_case, shipped_cases
 from verification.problem.either_body import on_body
 from verification.sources.exact_sources import solve_exactly
@@ -97,8 +97,8 @@ def test_the_load_acts_as_in_the_exact_contact(case, solved, exact):
 def test_the_gap_acts_as_the_radius(case, solved, exact, monkeypatch):
     sharper = replace(case.problem, radius=case.problem.radius / STEP)
     wanted = changes(exact, solve_exactly(sharper, NUMERICS))
-    of_name = solver.undeformed_gap
-    monkeypatch.setattr(solver, "undeformed_gap", lambda *given: times(of_name(*given)))
+    of_name = neighbours.undeformed_gap
+    monkeypatch.setattr(neighbours, "undeformed_gap", lambda *given: times(of_name(*given)))
     found = changes(solved, solve_semianalytic(case.problem, NUMERICS))
     assert found == pytest.approx(wanted, rel=WITHIN)
 
