@@ -11,7 +11,8 @@ from collections.abc import Callable
 
 import numpy as np
 
-from .axisymmetric import Discretisation, constrained_solve
+from .axisymmetric import Discretisation
+from .linear_system import constrained_solve
 from .scaling import LayeredSolid
 
 __all__ = ["resultant", "solve_traction"]
@@ -51,8 +52,7 @@ def solve_traction(
     for field in on_axis:
         given[field * N + d.axis] = 0.0
     fixed = [field * N + d.outer for field, _ in fixed_fields] + [field * N + d.axis for field in on_axis]
-    K = d.stiffness(solid.materials, harmonic)
-    return constrained_solve(K, given, np.unique(np.concatenate(fixed)), load)
+    return constrained_solve(d.stiffness(solid.materials, harmonic), given, np.concatenate(fixed), load).u
 
 
 def _inside(d: Discretisation) -> np.ndarray:

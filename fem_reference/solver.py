@@ -36,11 +36,11 @@ Coatings = tuple[tuple[float, float, float], ...]
 Ball = tuple[float, float, Coatings]
 
 # Triangle size over its distance from the contact edge.
-QUALITY = {"fast": 0.27, "default": 0.12, "fine": 0.1}
+QUALITY = {"fast": 0.27, "default": 0.15, "fine": 0.1}
 # The same where the moduli of neighbouring layers differ by more than this factor.
 CONTRASTS = {
-    10.0: {"fast": 0.17, "default": 0.1, "fine": 0.1},
-    100.0: {"fast": 0.15, "default": 0.085, "fine": 0.085},
+    10.0: {"fast": 0.17, "default": 0.12, "fine": 0.1},
+    100.0: {"fast": 0.15, "default": 0.1, "fine": 0.085},
 }
 LOAD_TOLERANCE = 1e-8
 
