@@ -38,7 +38,7 @@ from skfem import (
 from .location import Locator
 from .mesh import MeridianMesh
 
-__all__ = ["ELEMENTS", "Discretisation", "elasticity", "strain_operator"]
+__all__ = ["ELEMENTS", "Discretisation", "Skeleton", "elasticity", "strain_operator"]
 
 ELEMENTS = {2: ElementTriP2, 3: ElementTriP3, 4: ElementTriP4}
 
@@ -151,38 +151,57 @@ class Discretisation:
 
             v^T K u = int eps(v) : D(layer) eps(u) r dr dz
 
-        That factor is 2 pi for harmonic 0, pi for others. ``materials`` = (E, nu) per layer. With
-        s = (dphi/dr, dphi/dz, phi/r) of the shape functions and a, b = r, z, 0, the fields f and g of the
-        functions i and j are coupled by
+        That factor is 2 pi for harmonic 0, pi for others. ``materials`` = (E, nu) per layer.
+        """
+        return _assembled(*self._elements(materials, harmonic))
 
-            K_if,jg = sum_ab (A_a^T D A_b)_fg int s_ai s_bj r dr dz.
+    def skeleton(self, materials: tuple[tuple[float, float], ...], harmonic: int) -> "Skeleton":
+        """The same without the unknowns inside the triangles."""
+        K, numbers = self._elements(materials, harmonic)
+        fields = numbers.shape[1] // self.basis.Nbfun
+        inside = np.arange(self.basis.Nbfun) >= self.basis.Nbfun - self.basis.elem.interior_dofs
+        i, o = np.flatnonzero(np.tile(inside, fields)), np.flatnonzero(np.tile(~inside, fields))
+        K_io = K[:, i[:, None], o]
+        extension = -np.linalg.solve(K[:, i[:, None], i], K_io)
+        K_o = K[:, o[:, None], o]
+        del K  # large, as is what follows
+        K_o += K_io.transpose(0, 2, 1) @ extension
+        inner, outer = numbers[:, i], numbers[:, o]
+        return Skeleton(_assembled(K_o, outer, fields * self.N), inner, outer, extension)
 
-        Quadrature is exact but for the terms in 1/r.
+    def _elements(
+        self, materials: tuple[tuple[float, float], ...], harmonic: int
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Stiffness (m, size, size) of the triangles and the numbers (m, size) of their unknowns.
+
+        With s = (dphi/dr, dphi/dz, phi/r) of the shape functions and a, b = r, z, 0, the fields f and g of
+        the functions i and j are coupled by
+
+            K_fi,gj = sum_ab (A_a^T D A_b)_fg int s_ai s_bj r dr dz,
+
+        by quadrature that is exact but for the terms in 1/r.
         """
         basis = Basis(self.triangulation, ELEMENTS[self.order](), intorder=2 * self.order)
         r = np.asarray(basis.global_coordinates())[0]
         root = np.sqrt(r * basis.dx)
-        s = np.empty((3, *basis.dx.shape, basis.Nbfun))
+        s = np.empty((3, len(r), basis.Nbfun, r.shape[1]))
         for i, (phi,) in enumerate(basis.basis):
-            s[:, ..., i] = np.stack([phi.grad[0], phi.grad[1], phi / r]) * root
+            s[:, :, i] = np.stack([phi.grad[0], phi.grad[1], phi / r]) * root
 
         A = np.stack(strain_operator(harmonic))
         D = np.stack([elasticity(E, nu, harmonic) for E, nu in materials])
         coupling = np.einsum("asf,lst,btg->lfgab", A, D, A, optimize=True)[self.mesh.layer]
         fields = A.shape[2]
-        K = np.zeros((fields, fields, len(coupling), basis.Nbfun, basis.Nbfun))
+        K = np.zeros((len(r), fields, basis.Nbfun, fields, basis.Nbfun))
         for a, b in product(range(3), repeat=2):
-            integral = s[a].transpose(0, 2, 1) @ s[b]
+            integral = s[a] @ s[b].transpose(0, 2, 1)
             for f, g in product(range(fields), repeat=2):
                 if np.any(coupling[:, f, g, a, b]):
-                    K[f, g] += coupling[:, f, g, a, b, None, None] * integral
-
-        field = basis.N * np.arange(fields, dtype=np.int32)
-        nodes = np.asarray(basis.element_dofs, dtype=np.int32).T
-        rows = field[:, None, None, None, None] + nodes[:, :, None]
-        columns = field[:, None, None, None] + nodes[:, None, :]
-        where = tuple(np.broadcast_to(one, K.shape).ravel() for one in (rows, columns))
-        return sp.coo_matrix((K.ravel(), where), shape=(fields * basis.N,) * 2).tocsc()
+                    K[:, f, :, g] += coupling[:, f, g, a, b, None, None] * integral
+        field = basis.N * np.arange(fields, dtype=np.int32)[:, None]
+        numbers = field + np.asarray(basis.element_dofs, dtype=np.int32).T[:, None]
+        size = fields * basis.Nbfun
+        return K.reshape(-1, size, size), numbers.reshape(-1, size)
 
     def surface_basis(self, facets: np.ndarray) -> FacetBasis:
         """Shape functions on surface edges, with quadrature exact for products of two and r."""
@@ -204,3 +223,34 @@ class Discretisation:
 @BilinearForm
 def _mass(u: Any, v: Any, w: Any) -> Any:
     return u * v * w.x[0]
+
+
+@dataclass(frozen=True, eq=False)
+class Skeleton:
+    """Stiffness of the unknowns o on the sides of triangles, from which those i inside follow.
+
+        K_oo - K_oi K_ii^-1 K_io,     u_i = -K_ii^-1 K_io u_o
+
+    for loads on the sides alone. E. L. Wilson, Int. J. Numer. Meth. Engng 8 (1974) 198-203.
+
+    matrix : (n, n), whose rows and columns i are empty
+    inner, outer : numbers (m, k) of the unknowns i and (m, l) of o by triangle.  extension : (m, k, l)
+    """
+
+    matrix: sp.csc_matrix
+    inner: np.ndarray
+    outer: np.ndarray
+    extension: np.ndarray
+
+    def extended(self, u: np.ndarray) -> np.ndarray:
+        """The field vectors ``u`` (n, columns) with their values inside the triangles."""
+        u = u.copy()
+        u[self.inner] = self.extension @ u[self.outer]
+        return u
+
+
+def _assembled(elements: np.ndarray, numbers: np.ndarray, n: int | None = None) -> sp.csc_matrix:
+    """Sum (n, n) of the matrices ``elements`` (m, size, size) of the unknowns ``numbers`` (m, size)."""
+    n = int(numbers.max()) + 1 if n is None else n
+    rows, columns = np.broadcast_arrays(numbers[:, :, None], numbers[:, None, :])
+    return sp.coo_matrix((elements.ravel(), (rows.ravel(), columns.ravel())), shape=(n, n)).tocsc()

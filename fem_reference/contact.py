@@ -209,9 +209,10 @@ def _under_rigid(
     u_r, u_z = solid.far_displacement(*d.locations[:, d.outer])
     given[d.outer], given[N + d.outer] = u_r[:, None] * far, u_z[:, None] * far
     given[d.axis] = 0.0
-    fixed = np.concatenate([d.axis, d.outer, N + d.outer, N + d.contact])
-    solved = constrained_solve(d.stiffness(solid.materials, 0), given, fixed, factor=factor)
-    return solved.u, solved.force[N + d.contact], solved
+    K = d.skeleton(solid.materials, 0)
+    fixed = np.concatenate([d.axis, d.outer, N + d.outer, N + d.contact, K.inner.ravel()])
+    solved = constrained_solve(K.matrix, given, fixed, factor=factor)
+    return K.extended(solved.u), solved.force[N + d.contact], solved
 
 
 def complementarity(contact: FixedRadiusContact) -> tuple[float, float]:

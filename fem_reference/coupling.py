@@ -61,12 +61,11 @@ class Coupling:
         n_flat, n_ball, n = 2 * flat.N, 2 * ball.N, int(numbers.max()) + 1
         sign = np.repeat([1.0, -1.0], ball.N)
         T = sp.csc_matrix((sign, (np.arange(n_ball), numbers)), shape=(n_ball, n))
-        K_flat, K_ball = (d.stiffness(of.materials, 0) for d, of in zip((flat, ball), solids, strict=True))
-        on_flat = K_flat[:, flat.N + flat.contact].T  # K is symmetric
-        K_flat.resize(n, n)
+        K_flat, K_ball = (d.skeleton(of.materials, 0) for d, of in zip((flat, ball), solids, strict=True))
+        on_flat = K_flat.matrix[:, flat.N + flat.contact].T  # K is symmetric
 
         given = np.zeros((n, far.size))
-        fixed = []
+        fixed = [K_flat.inner.ravel(), numbers[K_ball.inner.ravel()]]
         sides = ((flat, np.arange(n_flat), 1.0), (ball, numbers, -1.0))
         for (d, number, axial), solid in zip(sides, solids, strict=True):
             u_r, u_z = solid.far_displacement(*d.locations[:, d.outer])
@@ -76,7 +75,10 @@ class Coupling:
             fixed += [number[d.outer], number[d.N + d.outer], number[d.axis]]
         apart = np.zeros((n_ball, far.size))
         apart[ball.N + ball.contact] = jump
-        load = -(T.T @ (K_ball @ apart))
-        solved = constrained_solve(K_flat + T.T @ K_ball @ T, given, np.concatenate(fixed), load, factor)
+        load = -(T.T @ (K_ball.matrix @ apart))
+        K = T.T @ K_ball.matrix @ T
+        K_flat.matrix.resize(n, n)
+        solved = constrained_solve(K + K_flat.matrix, given, np.concatenate(fixed), load, factor)
         of_flat = solved.u[:n_flat]
-        return of_flat, T @ solved.u + apart, on_flat @ of_flat, solved
+        of_ball = T @ solved.u + apart
+        return K_flat.extended(of_flat), K_ball.extended(of_ball), on_flat @ of_flat, solved

@@ -1,11 +1,15 @@
-"""Linear systems with given values: scikit-fem condenses them, SciPy's SuperLU factorises them.
+"""Linear systems with given values: scikit-fem condenses them, SciPy's SuperLU or Pardiso factorises them.
 
 SuperLU, X. S. Li, ACM Trans. Math. Softw. 31 (2005) 302-325, works in its symmetric mode: pivots on the
-diagonal, in an order of minimum degree.
+diagonal, in an order of minimum degree. Pardiso, O. Schenk and K. Gaertner, Future Gener. Comput. Syst. 20
+(2004) 475-487, takes its place where the extra ``fast`` brings pypardiso, Cholesky in such an order.
 """
 
+import os
+import weakref
 from collections.abc import Callable
 from dataclasses import dataclass
+from importlib.util import find_spec
 
 import numpy as np
 import scipy.sparse as sp
@@ -23,8 +27,28 @@ _SLOWEST = 0.03
 
 def factorised(matrix: sp.csc_matrix) -> Factor:
     """Factor of a symmetric positive definite ``matrix``."""
+    if find_spec("pypardiso") is not None:
+        return _by_pardiso(sp.triu(matrix, format="csr"))
     options = {"SymmetricMode": True}
     return sla.splu(matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options=options).solve
+
+
+def _by_pardiso(upper: sp.csr_matrix) -> Factor:
+    """Factor of the symmetric positive definite matrix with this ``upper`` triangle."""
+    from pypardiso import PyPardisoSolver
+
+    solver = PyPardisoSolver(mtype=2)
+    os.environ.setdefault("PYPARDISO_MKL_RT", solver.libmkl._name)  # which it would look for each time
+    solver.libmkl.MKL_Set_Threading_Layer(1)  # sequential: threads wait for each other in systems this small
+    solver.set_iparm(1, 1)  # what follows is set, not the defaults
+    solver.set_iparm(2, 0)  # order of minimum degree: nested dissection takes longer than it saves
+    solver.factorize(upper)
+
+    def solve(load: np.ndarray) -> np.ndarray:
+        return np.asarray(solver.solve(upper, load))
+
+    weakref.finalize(solve, solver.free_memory, everything=True)
+    return solve
 
 
 @dataclass(frozen=True, eq=False)

@@ -51,8 +51,11 @@ def solve_traction(
         given[field * N + d.outer] = values
     for field in on_axis:
         given[field * N + d.axis] = 0.0
+    K = d.skeleton(solid.materials, harmonic)
     fixed = [field * N + d.outer for field, _ in fixed_fields] + [field * N + d.axis for field in on_axis]
-    return constrained_solve(d.stiffness(solid.materials, harmonic), given, np.concatenate(fixed), load).u
+    fixed.append(K.inner.ravel())
+    solved = constrained_solve(K.matrix, given[:, None], np.concatenate(fixed), load[:, None])
+    return K.extended(solved.u)[:, 0]
 
 
 def _inside(d: Discretisation) -> np.ndarray:

@@ -132,7 +132,7 @@ def estimated(companion, residual=0.0):
     one, s = replace(contact(), residual=residual), solved("sphere")
     states = (ElasticState.of_contact(s.state.solid, one),)
     (found,), stiffness = contact_estimates(
-        ContactLevels(one, companion, 3.0, ()), states, s.units, one.load, 0.5
+        ContactLevels(one, companion, ()), states, s.units, one.load, 0.5
     )
     return budget(found), stiffness
 
