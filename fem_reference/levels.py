@@ -26,7 +26,8 @@ __all__ = [
     "solve_levels",
 ]
 
-_COARSE = 0.5
+# One row of triangles in a coating: the radius is good to 1e-4, from where the companion takes two solves.
+_COARSE = Grading.of(0.5, rows=1.0)
 COMPANION = 1.4  # size of the companion over that of the final mesh
 
 
@@ -74,7 +75,7 @@ def solve_levels(
     curvature : of the gap, as in `contact.undeformed_gap`
     Raises NotConverged when the load is not reached on one of the levels.
     """
-    levels = [_Level("coarse", Grading.of(_COARSE), 1e-3)]
+    levels = [_Level("coarse", _COARSE, 1e-3)]
     if with_companion:
         levels.append(_Level("companion", companion_grading(size), tolerance))
     levels.append(_Level("final", final_grading(size), tolerance))

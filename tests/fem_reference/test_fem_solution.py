@@ -131,9 +131,7 @@ def estimated(companion, residual=0.0):
     """Budget and uncertainty of the stiffness if ``companion`` were the contact on the coarser mesh."""
     one, s = replace(contact(), residual=residual), solved("sphere")
     states = (ElasticState.of_contact(s.state.solid, one),)
-    (found,), stiffness = contact_estimates(
-        ContactLevels(one, companion, ()), states, s.units, one.load, 0.5
-    )
+    (found,), stiffness = contact_estimates(ContactLevels(one, companion, ()), states, s.units, one.load, 0.5)
     return budget(found), stiffness
 
 

@@ -27,7 +27,7 @@ from verification.running.provenance import PACKAGES, commit, machine, versions
 from verification.running.records import encode
 
 Numbers = Annotated[tuple[int, ...], Parameter(consume_multiple=True, negative="")]
-FASTER = "mkl"  # distribution of the extra "fast"
+FASTER = "pypardiso"  # distribution of the extra "fast"
 SHOWN = 4  # runs in the table of the history
 
 
