@@ -83,7 +83,7 @@ def constrained_solve(
     del K  # large, as is its factor
     found = None if factor is None else _refined(A, b, factor)
     if factor is None or found is None:
-        factor = factorised(A)
+        factor = factorised(A.tocsc())
         found = factor(b)
         found += factor(b - A @ found)  # for the rounding of the factor
     u, force, residual = u.copy(), np.zeros_like(given), np.zeros_like(given)
