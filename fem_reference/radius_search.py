@@ -1,8 +1,8 @@
 """Search for the contact radius at a given load.
 
 The load of a rigid paraboloid rises with the contact radius, W ~ a^3 on a homogeneous solid, so log W is
-nearly linear in log a and Newton's method with the exact slope d log W / d log a, which every solution gives
-(``contact``), converges in a few steps. Small steps stretch the mesh, large ones generate a new one.
+nearly linear in log a and Newton's method with the slope d log W / d log a, which every solution gives to a
+hundredth (``contact``), converges in a few steps. Small steps stretch the mesh, large ones generate a new one.
 """
 
 import math
