@@ -2,7 +2,7 @@
 
 The load of a rigid paraboloid rises with the contact radius, W ~ a^3 on a homogeneous solid, so log W is
 nearly linear in log a and Newton's method with the slope d log W / d log a, which every solution gives to a
-hundredth (``contact``), converges in a few steps. Small steps stretch the mesh, large ones generate a new one.
+hundredth (``contact``), converges in a few steps. Small steps stretch the mesh, large ones make a new one.
 """
 
 import math
