@@ -1,23 +1,24 @@
-"""Linear elasticity of a body of revolution under loads of Fourier harmonic 0 or 1.
+"""Linear elasticity of a body of revolution under loads of one angular harmonic m.
 
-Harmonic 0 has two fields on the meridian plane, harmonic 1 has three:
+On a body of revolution a load of harmonic m gives displacements of that harmonic,
 
-    0:  u_r = U,             u_theta = 0,             u_z = Z
-    1:  u_r = U cos(theta),  u_theta = V sin(theta),  u_z = Z cos(theta),     with S = U + V
+    u_r = U cos(m theta),   u_theta = V sin(m theta),   u_z = Z cos(m theta),
 
-Harmonic 1 is solved for (S, V, Z): regularity on the axis, u_theta = -u_r and u_z = 0, then reads S = Z = 0,
-and only fields that vanish there are divided by r. Each strain is linear in the fields,
+so a field is a few scalar fields on the meridian plane: U, Z for m = 0 (V is torsion, which no load here
+excites), and S = U + V, V, Z for m >= 1. Regularity on the axis reads S = Z = 0 for m = 1, S = V = Z = 0 for
+m >= 2, and only fields that vanish there are divided by r. Each strain is linear in the fields,
 
     eps = A_r du/dr + A_z du/dz + A_0 u / r,
 
-with engineering shear. Components in the order rr, theta theta, zz, rz (harmonic 0), then r theta, theta z
-(harmonic 1, these two times sin(theta), the others times cos(theta)).
+with engineering shear. Components in the order rr, theta theta, zz, rz, then for m >= 1 r theta, theta z
+(these two times sin(m theta), the others times cos(m theta)).
 O. C. Zienkiewicz and R. L. Taylor, The Finite Element Method for Solid and Structural Mechanics, ch. 9.
 """
 
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import product
 from typing import Any
 
 import numpy as np
@@ -25,38 +26,37 @@ import scipy.sparse as sp
 from skfem import (
     Basis,
     BilinearForm,
+    ElementTriP2,
+    ElementTriP3,
+    ElementTriP4,
     FacetBasis,
     LinearForm,
     MeshTri,
     asm,
 )
 
-from .dissection import bisected, unknowns
-from .factorisation import Elimination, elimination, factorised
-from .integrals import ELEMENTS, reference_integrals
 from .location import Locator
 from .mesh import MeridianMesh
 
-__all__ = ["ELEMENTS", "Discretisation", "Stiffness", "constrained_solve", "elasticity", "strain_operator"]
+__all__ = ["ELEMENTS", "Discretisation", "Skeleton", "elasticity", "strain_operator"]
+
+ELEMENTS = {2: ElementTriP2, 3: ElementTriP3, 4: ElementTriP4}
 
 
 def strain_operator(harmonic: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """The matrices (A_r, A_z, A_0), each of shape (strains, fields).
 
-    Harmonic 0, fields (U, Z):  rr = U,r   tt = U/r   zz = Z,z   rz = U,z + Z,r
-    Harmonic 1, fields (S, V, Z), U = S - V:
-        rr = U,r   tt = S/r   zz = Z,z   rz = U,z + Z,r   rt = V,r - S/r   tz = V,z - Z/r
+        rr = U,r            tt = (U + m V)/r            zz = Z,z
+        rz = U,z + Z,r      rt = V,r - (V + m U)/r      tz = V,z - m Z/r
+
+    with U = S - V in the fields (S, V, Z). For harmonic m = 0 the first four strains of the fields (U, Z).
     """
-    if harmonic == 0:
-        A_r, A_z, A_0 = np.zeros((3, 4, 2))
-        A_r[0, 0] = A_r[3, 1] = 1
-        A_z[2, 1] = A_z[3, 0] = 1
-        A_0[1, 0] = 1
-        return A_r, A_z, A_0
-    A_r, A_z, A_0 = np.zeros((3, 6, 3))
-    A_r[0, 0], A_r[0, 1], A_r[3, 2], A_r[4, 1] = 1, -1, 1, 1
-    A_z[2, 2], A_z[3, 0], A_z[3, 1], A_z[5, 1] = 1, 1, -1, 1
-    A_0[1, 0], A_0[4, 0], A_0[5, 2] = 1, -1, -1
+    m = harmonic
+    A_r, A_z, A_0 = A = np.zeros((3, 6, 3))
+    A_r[0], A_r[3], A_r[4] = (1, -1, 0), (0, 0, 1), (0, 1, 0)
+    A_z[2], A_z[3], A_z[5] = (0, 0, 1), (1, -1, 0), (0, 1, 0)
+    A_0[1], A_0[4], A_0[5] = (1, m - 1, 0), (-m, m - 1, 0), (0, 0, -m)
+    A_r, A_z, A_0 = A if m else A[:, :4, [0, 2]]
     return A_r, A_z, A_0
 
 
@@ -67,7 +67,7 @@ def elasticity(E: float, nu: float, harmonic: int) -> np.ndarray:
     """
     G = E / (2 * (1 + nu))
     lame = 2 * G * nu / (1 - 2 * nu)
-    D = np.diag([2 * G] * 3 + [G] * (1 if harmonic == 0 else 3))
+    D = np.diag([2 * G] * 3 + [G] * (3 if harmonic else 1))
     D[:3, :3] += lame
     return D
 
@@ -86,14 +86,6 @@ class Discretisation:
     def __getstate__(self) -> dict[str, object]:
         # pickled without the cached properties, which are computed again on use: a hundred times smaller
         return {"mesh": self.mesh, "order": self.order}
-
-    def moved(self, mesh: MeridianMesh) -> "Discretisation":
-        """The same elements on another ``mesh``; one of the same triangles keeps the order of elimination."""
-        d = Discretisation(mesh, self.order)
-        if mesh.triangles is self.mesh.triangles:
-            kept = vars(self)
-            vars(d).update({name: kept[name] for name in ("leaf", "elimination") if name in kept})
-        return d
 
     @cached_property
     def triangulation(self) -> MeshTri:
@@ -154,49 +146,62 @@ class Discretisation:
         far = self.locations.max(axis=1)[:, None] * (1 - 1e-9)
         return self.unknowns_on(self.facets(lambda x: np.any(x >= far, axis=0)))
 
-    @cached_property
-    def leaf(self) -> np.ndarray:
-        """Leaf of each triangle in a tree of bisections, (triangles,)."""
-        xi, zeta = self.mesh.plane(*self.mesh.points[:, self.triangulation.t].mean(axis=1))
-        return bisected(self.triangulation.t, np.stack([xi, zeta, np.hypot(xi, zeta)]))
-
-    @cached_property
-    def elimination(self) -> Elimination:
-        """Order of elimination of the unknowns of one field."""
-        return elimination(np.asarray(self.basis.element_dofs).T, lambda: self.leaf)
-
-    def stiffness(self, materials: tuple[tuple[float, float], ...], harmonic: int) -> "Stiffness":
-        """Stiffness matrix with its order of elimination, see ``element_stiffness``."""
-        nodes = np.asarray(self.basis.element_dofs).T
-        return Stiffness(self.element_stiffness(materials, harmonic), nodes, self.elimination)
-
-    def element_stiffness(
-        self, materials: tuple[tuple[float, float], ...], harmonic: int, out: np.ndarray | None = None
-    ) -> np.ndarray:
-        """Stiffness of the triangles: virtual work over the angular factor common to all terms.
+    def stiffness(self, materials: tuple[tuple[float, float], ...], harmonic: int) -> sp.csc_matrix:
+        """Stiffness matrix, (n, n) for field vectors (n,): virtual work over the angular factor of all terms.
 
             v^T K u = int eps(v) : D(layer) eps(u) r dr dz
 
-        That factor is 2 pi for harmonic 0, pi for harmonic 1. ``materials`` = (E, nu) per layer. With
-        s = (dphi/dr, dphi/dz, phi/r) of the shape functions and a, b = r, z, 0, the fields f and g of the
-        functions i and j are coupled by
-
-            K_if,jg = sum_ab (A_a^T D A_b)_fg int s_ai s_bj r dr dz.
-
-        Returns shape (triangles, size, size), unknowns by node, then field; in ``out`` where that is given.
+        That factor is 2 pi for harmonic 0, pi for others. ``materials`` = (E, nu) per layer.
         """
+        return _assembled(*self._elements(materials, harmonic))
+
+    def skeleton(self, materials: tuple[tuple[float, float], ...], harmonic: int) -> "Skeleton":
+        """The same without the unknowns inside the triangles."""
+        K, numbers = self._elements(materials, harmonic)
+        fields = numbers.shape[1] // self.basis.Nbfun
+        inside = np.arange(self.basis.Nbfun) >= self.basis.Nbfun - self.basis.elem.interior_dofs
+        i, o = np.flatnonzero(np.tile(inside, fields)), np.flatnonzero(np.tile(~inside, fields))
+        K_io = K[:, i[:, None], o]
+        extension = -np.linalg.solve(K[:, i[:, None], i], K_io)
+        K_o = K[:, o[:, None], o]
+        del K  # large, as is what follows
+        K_o += K_io.transpose(0, 2, 1) @ extension
+        inner, outer = numbers[:, i], numbers[:, o]
+        return Skeleton(_assembled(K_o, outer, fields * self.N), inner, outer, extension)
+
+    def _elements(
+        self, materials: tuple[tuple[float, float], ...], harmonic: int
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Stiffness (m, size, size) of the triangles and the numbers (m, size) of their unknowns.
+
+        With s = (dphi/dr, dphi/dz, phi/r) of the shape functions and a, b = r, z, 0, the fields f and g of
+        the functions i and j are coupled by
+
+            K_fi,gj = sum_ab (A_a^T D A_b)_fg int s_ai s_bj r dr dz,
+
+        by quadrature that is exact but for the terms in 1/r.
+        """
+        basis = Basis(self.triangulation, ELEMENTS[self.order](), intorder=2 * self.order)
+        r = np.asarray(basis.global_coordinates())[0]
+        root = np.sqrt(r * basis.dx)
+        s = np.empty((3, len(r), basis.Nbfun, r.shape[1]))
+        for i, (phi,) in enumerate(basis.basis):
+            s[:, :, i] = np.stack([phi.grad[0], phi.grad[1], phi / r]) * root
+
         A = np.stack(strain_operator(harmonic))
-        integrals = reference_integrals(self.order)
-        factors = integrals.factors(self.mesh.points, self.triangulation.t)
-        size = self.basis.Nbfun * A.shape[2]
-        K = np.empty((len(factors), size, size)) if out is None else out
-        layer = self.mesh.layer
-        begins = np.flatnonzero(np.diff(layer, prepend=-1))
-        for begin, end in zip(begins, [*begins[1:], layer.size], strict=True):
-            E, nu = materials[layer[begin]]
-            coupling = np.einsum("asf,st,btg->abfg", A, elasticity(E, nu, harmonic), A, optimize=True)
-            np.matmul(factors[begin:end], integrals.coupled(coupling), out=K[begin:end].reshape(-1, size**2))
-        return K
+        D = np.stack([elasticity(E, nu, harmonic) for E, nu in materials])
+        coupling = np.einsum("asf,lst,btg->lfgab", A, D, A, optimize=True)[self.mesh.layer]
+        fields = A.shape[2]
+        K = np.zeros((len(r), fields, basis.Nbfun, fields, basis.Nbfun))
+        for a, b in product(range(3), repeat=2):
+            integral = s[a] @ s[b].transpose(0, 2, 1)
+            for f, g in product(range(fields), repeat=2):
+                if np.any(coupling[:, f, g, a, b]):
+                    K[:, f, :, g] += coupling[:, f, g, a, b, None, None] * integral
+        field = basis.N * np.arange(fields, dtype=np.int32)[:, None]
+        numbers = field + np.asarray(basis.element_dofs, dtype=np.int32).T[:, None]
+        size = fields * basis.Nbfun
+        return K.reshape(-1, size, size), numbers.reshape(-1, size)
 
     def surface_basis(self, facets: np.ndarray) -> FacetBasis:
         """Shape functions on surface edges, with quadrature exact for products of two and r."""
@@ -221,45 +226,31 @@ def _mass(u: Any, v: Any, w: Any) -> Any:
 
 
 @dataclass(frozen=True, eq=False)
-class Stiffness:
-    """Symmetric positive definite matrix as the sum of those of its triangles.
+class Skeleton:
+    """Stiffness of the unknowns o on the sides of triangles, from which those i inside follow.
 
-    elements : (triangles, size, size), unknowns by node, then field
-    nodes : (triangles, nodes) of one field
-    elimination : its order, shared by all matrices on the same triangles
+        K_oo - K_oi K_ii^-1 K_io,     u_i = -K_ii^-1 K_io u_o
+
+    for loads on the sides alone. E. L. Wilson, Int. J. Numer. Meth. Engng 8 (1974) 198-203.
+
+    matrix : (n, n), whose rows and columns i are empty
+    inner, outer : numbers (m, k) of the unknowns i and (m, l) of o by triangle.  extension : (m, k, l)
     """
 
-    elements: np.ndarray
-    nodes: np.ndarray
-    elimination: Elimination
+    matrix: sp.csc_matrix
+    inner: np.ndarray
+    outer: np.ndarray
+    extension: np.ndarray
 
-    @property
-    def fields(self) -> int:
-        return self.elements.shape[1] // self.nodes.shape[1]
-
-    def __matmul__(self, u: np.ndarray) -> np.ndarray:
-        """Product with a field vector or several, (n,) or (n, columns)."""
-        columns = u.reshape(len(u), -1)
-        numbers = unknowns(self.nodes, self.fields, len(u) // self.fields)
-        force = self.elements @ columns[numbers]
-        total = [np.bincount(numbers.ravel(), one.ravel(), len(u)) for one in np.moveaxis(force, 2, 0)]
-        return np.stack(total, axis=1).reshape(u.shape)
+    def extended(self, u: np.ndarray) -> np.ndarray:
+        """The field vectors ``u`` (n, columns) with their values inside the triangles."""
+        u = u.copy()
+        u[self.inner] = self.extension @ u[self.outer]
+        return u
 
 
-def constrained_solve(
-    K: Stiffness, given: np.ndarray, fixed: np.ndarray, load: np.ndarray | None = None
-) -> np.ndarray:
-    """Solve K u = load with u = ``given`` at the unknowns ``fixed``; several columns share one factorisation.
-
-    given, load : (n,) or (n, columns).  Returns u of the shape of ``given``.
-    Raises numpy.linalg.LinAlgError where K is not positive definite on the other unknowns.
-    """
-    held = np.zeros(len(given), dtype=bool)
-    held[fixed] = True
-    factor = factorised(K.elimination, K.elements, held)
-    u = np.where(held[:, None] if given.ndim == 2 else held, given, 0.0)
-    for _ in range(2):  # the second time for the rounding of the factor
-        residual = -(K @ u) if load is None else load - K @ u
-        residual[held] = 0.0
-        u += factor.solve(residual)
-    return u
+def _assembled(elements: np.ndarray, numbers: np.ndarray, n: int | None = None) -> sp.csc_matrix:
+    """Sum (n, n) of the matrices ``elements`` (m, size, size) of the unknowns ``numbers`` (m, size)."""
+    n = int(numbers.max()) + 1 if n is None else n
+    rows, columns = np.broadcast_arrays(numbers[:, :, None], numbers[:, None, :])
+    return sp.coo_matrix((elements.ravel(), (rows.ravel(), columns.ravel())), shape=(n, n)).tocsc()

@@ -15,6 +15,12 @@ small one. (Dividing reactions by nodal weights instead would fail on the axis, 
 delta and W follow from p(a) = 0 and int p = W, so one factorisation with three right-hand sides, flat punch,
 paraboloid and far field, gives everything. Of an elastic ball u_z is the sum of both bodies' (``coupling``),
 delta the approach of points far from the contact in both.
+
+The same solution gives the growth of the contact. A load dW indents like a flat punch of radius a, with
+dW = S d delta. Near the edge, d = a - r, the pressure is K d^(1/2), that of the punch k d^(-1/2) d delta; the
+pressure of the contact of radius a + da is K (d + da)^(1/2), K/2 d^(-1/2) da more, hence
+
+    d delta / da = K / 2k,     d log W / d log a = (a / W) S K / 2k.
 """
 
 from collections.abc import Callable
@@ -26,8 +32,11 @@ import scipy.sparse as sp
 import scipy.sparse.linalg as sla
 from scipy.optimize import minimize_scalar
 
-from .axisymmetric import Discretisation, constrained_solve
+from .axisymmetric import Discretisation
 from .coupling import Coupling
+from .linear_system import Constrained, Factor, constrained_solve
+from .mesh import EDGE_SIZE, MeridianMesh
+from .recovery import EDGE_SERIES, edge_distances
 from .scaling import LayeredSolid
 
 __all__ = ["Ball", "FixedRadiusContact", "Multiplier", "complementarity", "peak", "solve_at_radius"]
@@ -88,9 +97,11 @@ class FixedRadiusContact:
     pressure   : contact pressure of r
     approach, load : of the paraboloid with this contact_radius
     stiffness  : d load / d approach at fixed contact radius
+    growth     : d log load / d log contact_radius
     residual   : largest out-of-balance nodal force over the load
     ball       : None where it is rigid
     curvature  : of the gap, as in `undeformed_gap`
+    factor     : of the stiffness matrix, for contacts of nearly this radius on the same triangles
     """
 
     discretisation: Discretisation
@@ -100,9 +111,16 @@ class FixedRadiusContact:
     load: float
     contact_radius: float
     stiffness: float
+    growth: float
     residual: float
     ball: Ball | None = None
     curvature: float = 0.0
+    factor: Factor | None = None
+
+    def radius_at(self, load: float) -> float:
+        """Contact radius at a ``load`` near that of this contact; at most a factor of two away."""
+        growth = min(max(self.growth, 0.5), 12.0)
+        return self.contact_radius * float(np.clip((load / self.load) ** (1 / growth), 0.5, 2.0))
 
 
 def undeformed_gap(r: np.ndarray, curvature: float = 0.0) -> np.ndarray:
@@ -118,11 +136,13 @@ def solve_at_radius(
     discretisation: Discretisation,
     ball: tuple[LayeredSolid, Coupling] | None = None,
     curvature: float = 0.0,
+    factor: Factor | None = None,
 ) -> FixedRadiusContact:
     """Solve the contact whose edge is the mesh's contact radius.
 
     ball : layers of an elastic ball, and its discretisation coupled to that of the flat
     curvature : of the gap, as in `undeformed_gap`
+    factor : of the contact of a nearby radius on the same triangles, or None
     """
     d, contact = discretisation, discretisation.contact
     a = d.mesh.contact_radius
@@ -132,9 +152,9 @@ def solve_at_radius(
     shape = np.stack([np.ones_like(nodes), -undeformed_gap(nodes, curvature), np.zeros_like(nodes)], axis=1)
     far = np.array([0.0, 0.0, 1.0])
     if ball is None:
-        u, reaction, balance = _under_rigid(solid, d, shape, far)
+        u, reaction, solved = _under_rigid(solid, d, shape, far, factor)
     else:
-        u, of_ball, reaction, balance = ball[1].solve((solid, ball[0]), shape, far)
+        u, of_ball, reaction, solved = ball[1].solve((solid, ball[0]), shape, far, factor)
 
     mass = d.surface_mass(edges)[contact][:, contact]
     even = _even_at_the_axis(nodes, d.order)
@@ -146,41 +166,53 @@ def solve_at_radius(
     combine = np.array([delta, 1.0, W])
     values = p @ combine
     values[-1] = 0.0
+    pressure = Multiplier(nodes, values, d.order)
+    stiffness = loads[0] / (1 - loads[2])
+    punch = Multiplier(nodes, p[:, 0] + stiffness * p[:, 2], d.order)
+    (_, K), (k, _) = (edge_coefficients(one, d.mesh) for one in (pressure, punch))
     return FixedRadiusContact(
         discretisation=d,
         fields=u @ combine,
-        pressure=Multiplier(nodes, values, d.order),
+        pressure=pressure,
         approach=float(delta),
         load=float(W),
         contact_radius=a,
-        stiffness=float(loads[0] / (1 - loads[2])),
-        residual=float(2 * np.pi * np.abs(balance @ combine).max() / abs(W)),
+        stiffness=float(stiffness),
+        growth=float(a / W * stiffness * K / (2 * k)),
+        residual=float(2 * np.pi * np.abs(solved.residual @ combine).max() / abs(W)),
         ball=None if ball is None else Ball(*ball, of_ball @ combine),
         curvature=curvature,
+        factor=solved.factor,
     )
 
 
+def edge_coefficients(pressure: Multiplier, mesh: MeridianMesh) -> tuple[float, float]:
+    """Coefficients of d^(-1/2) and d^(1/2) in the ``pressure`` at the distance d inside the contact edge."""
+    unit = EDGE_SERIES[0] * EDGE_SIZE * mesh.contact_radius
+    distance = edge_distances(mesh)
+    terms = distance[:, None] ** np.array([-0.5, 0.5, 1.5, 2.5])
+    c = np.linalg.lstsq(terms, pressure(mesh.contact_radius - unit * distance), rcond=None)[0]
+    return float(c[0] * unit**0.5), float(c[1] / unit**0.5)
+
+
 def _under_rigid(
-    solid: LayeredSolid, d: Discretisation, shape: np.ndarray, far: np.ndarray
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    solid: LayeredSolid, d: Discretisation, shape: np.ndarray, far: np.ndarray, factor: Factor | None
+) -> tuple[np.ndarray, np.ndarray, Constrained]:
     """Displacement with u_z = ``shape`` (nodes, columns) on the contact; ``far`` as in ``Coupling.solve``.
 
-    Returns the field vectors (2 N, columns), the nodal forces on the contact (nodes, columns), the forces out
-    of balance (2 N, columns).
+    Returns the field vectors (2 N, columns), the nodal forces on the contact (nodes, columns), and how they
+    were found.
     """
     N = d.N
-    K = d.stiffness(solid.materials, 0)
     given = np.zeros((2 * N, far.size))
     given[N + d.contact] = shape
     u_r, u_z = solid.far_displacement(*d.locations[:, d.outer])
     given[d.outer], given[N + d.outer] = u_r[:, None] * far, u_z[:, None] * far
     given[d.axis] = 0.0
-    fixed = np.concatenate([d.axis, d.outer, N + d.outer, N + d.contact])
-    u = constrained_solve(K, given, fixed)
-    force = K @ u
-    balance = force.copy()
-    balance[fixed] = 0.0
-    return u, force[N + d.contact], balance
+    K = d.skeleton(solid.materials, 0)
+    fixed = np.concatenate([d.axis, d.outer, N + d.outer, N + d.contact, K.inner.ravel()])
+    solved = constrained_solve(K.matrix, given, fixed, factor=factor)
+    return K.extended(solved.u), solved.force[N + d.contact], solved
 
 
 def complementarity(contact: FixedRadiusContact) -> tuple[float, float]:

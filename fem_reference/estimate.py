@@ -13,7 +13,7 @@ point: a thin coating, an interface, the axis keep the mesher from the ratio tha
 surface and on interfaces the estimate is at least that of the triangles beside them.
 
 Both solutions miss the given load within its tolerance, by amounts that are known. Changes between meshes are
-therefore taken at the given load: W ~ a^slope, d delta = dW / stiffness.
+therefore taken at the given load: W ~ a^growth, d delta = dW / stiffness.
 
 A contact radius in error by da displaces the whole field, which changes the values at fixed points next to
 the edge by up to the square root of da. The change of the field under that displacement is part of the
@@ -32,11 +32,10 @@ from functools import cached_property
 import numpy as np
 
 from .axisymmetric import Discretisation
-from .contact import FixedRadiusContact, peak
+from .contact import FixedRadiusContact, edge_coefficients, peak
 from .levels import COMPANION, ContactLevels
 from .location import LocatedPoints
-from .mesh import EDGE_SIZE
-from .recovery import EDGE_SERIES, HarmonicField, edge_distances
+from .recovery import HarmonicField
 from .scaling import Units
 from .state import ElasticState
 
@@ -344,9 +343,7 @@ def contact_estimates(
     """
     final, companion = levels.final, levels.companion
     assert companion is not None
-    (a, approach), (other_a, other_approach) = (
-        _at_load(contact, load, levels.slope) for contact in (final, companion)
-    )
+    (a, approach), (other_a, other_approach) = (_at_load(contact, load) for contact in (final, companion))
     # a force out of balance is a load that the solution does not carry: rounding, across a large contrast
     load_residual = abs(final.load / load - 1) + final.residual
     bodies = (None, companion.ball)
@@ -477,18 +474,13 @@ def _edge_displacement(contact: FixedRadiusContact) -> float:
 
     p ~ sqrt(a + displacement - r) is c [d^(1/2) + displacement/2 d^(-1/2)] at distances d = a - r beyond it.
     """
-    a, unit = contact.contact_radius, EDGE_SERIES[0] * EDGE_SIZE * contact.contact_radius
-    distance = edge_distances(contact.discretisation.mesh)
-    powers = np.array([-0.5, 0.5, 1.5, 2.5])
-    c = np.linalg.lstsq(distance[:, None] ** powers, contact.pressure(a - unit * distance), rcond=None)[0]
-    return float(2 * c[0] / c[1] * unit)
+    singular, root = edge_coefficients(contact.pressure, contact.discretisation.mesh)
+    return 2 * singular / root
 
 
-def _at_load(contact: FixedRadiusContact, load: float, slope: float) -> tuple[float, float]:
+def _at_load(contact: FixedRadiusContact, load: float) -> tuple[float, float]:
     """Contact radius and approach of the ``contact`` if it had exactly the ``load``."""
-    missing = load - contact.load
-    radius = contact.contact_radius * (load / contact.load) ** (1 / slope)
-    return float(radius), contact.approach + missing / contact.stiffness
+    return contact.radius_at(load), contact.approach + (load - contact.load) / contact.stiffness
 
 
 def _samples(vertices: np.ndarray) -> np.ndarray:

@@ -1,8 +1,8 @@
 """Sequence of mesh levels on which the contact radius is found.
 
-A rough and a coarse mesh find the contact radius approximately. A companion, somewhat coarser than the final
-mesh, finds it closely and is the reference of the error estimate. The final mesh gives the result. A vertex
-lies at the contact radius of every level.
+A coarse mesh finds the contact radius approximately. A companion, somewhat coarser than the final mesh, finds
+it closely and is the reference of the error estimate. The final mesh gives the result. A vertex lies at the
+contact radius of every level.
 """
 
 from dataclasses import dataclass
@@ -11,6 +11,7 @@ from functools import partial
 from .axisymmetric import Discretisation
 from .contact import FixedRadiusContact, solve_at_radius
 from .coupling import Coupling
+from .linear_system import Factor
 from .mesh import EDGE_SIZE, Grading, MeridianMesh, Meshes, meridian_mesh
 from .radius_search import find_contact_radius
 from .scaling import LayeredSolid, first_radius
@@ -25,8 +26,8 @@ __all__ = [
     "solve_levels",
 ]
 
-_COARSE = 0.5
-_ROUGH_SOLVES = 8
+# One row of triangles in a coating: the radius is good to 1e-4, from where the companion takes two solves.
+_COARSE = Grading.of(0.5, rows=1.0)
 COMPANION = 1.4  # size of the companion over that of the final mesh
 
 
@@ -38,20 +39,18 @@ class NotConverged(Exception):
 class _Level:
     name: str
     grading: Grading
-    order: int
     tolerance: float
 
 
 @dataclass(frozen=True, eq=False)
 class ContactLevels:
-    """Contacts on the last levels, d log W / d log a, and (level, a, W) of every solve; scaled units.
+    """Contacts on the last levels, and (level, a, W) of every solve; scaled units.
 
     companion : None without an error estimate
     """
 
     final: FixedRadiusContact
     companion: FixedRadiusContact | None
-    slope: float
     history: tuple[tuple[str, float, float], ...]
 
 
@@ -76,41 +75,33 @@ def solve_levels(
     curvature : of the gap, as in `contact.undeformed_gap`
     Raises NotConverged when the load is not reached on one of the levels.
     """
-    levels = [_Level("rough", Grading.of(0.6), 2, 0.02), _Level("coarse", Grading.of(_COARSE), order, 1e-3)]
+    levels = [_Level("coarse", _COARSE, 1e-3)]
     if with_companion:
-        levels.append(_Level("companion", companion_grading(size), order, tolerance))
-    levels.append(_Level("final", final_grading(size), order, tolerance))
-    start = first_radius(solids, load), 3.0
-    a, slope = start
+        levels.append(_Level("companion", companion_grading(size), tolerance))
+    levels.append(_Level("final", final_grading(size), tolerance))
+    a = first_radius(solids, load)
     history: list[tuple[str, float, float]] = []
     found: dict[str, FixedRadiusContact] = {}
     for level in levels:
         search = find_contact_radius(
             load,
             start=a,
-            slope=slope,
             tolerance=level.tolerance,
-            max_iterations=min(max_iterations, _ROUGH_SOLVES) if level.name == "rough" else max_iterations,
+            max_iterations=max_iterations,
             mesh_at=partial(_meshes_at, solids, level.grading),
-            solve_on=partial(_solve_on, solids, level.order, curvature),
+            solve_on=partial(_solve_on, solids, order, curvature),
         )
         history += [(level.name, *entry) for entry in search.history]
-        a, W = search.history[-1]
-        if not search.converged and level.name == "rough":
-            # order 2 is too stiff for the bending of a hard thin film; the next level can do without this one
-            a, slope = start
-            continue
         if not search.converged:
+            a, W = search.history[-1]
             raise NotConverged(
                 f"the contact radius did not converge on the {level.name} mesh: after "
                 f"{len(search.history)} solves, at {a:.4g} a_h, the load is {W / load:.6g} of the required "
                 "one; raise max_iterations, or check the thicknesses and the ratio of the moduli"
             )
-        slope = search.slope
-        # the next level starts at the radius where this one has exactly the load
-        a *= (load / W) ** (1 / slope)
         found[level.name] = search.contact
-    return ContactLevels(found["final"], found.get("companion"), slope, tuple(history))
+        a = search.contact.radius_at(load)
+    return ContactLevels(found["final"], found.get("companion"), tuple(history))
 
 
 def final_grading(size: float) -> Grading:
@@ -153,16 +144,8 @@ def _meshes_at(solids: Solids, grading: Grading, contact_radius: float) -> Meshe
 
 
 def _solve_on(
-    solids: Solids, order: int, curvature: float, meshes: Meshes, previous: FixedRadiusContact | None
+    solids: Solids, order: int, curvature: float, meshes: Meshes, factor: Factor | None
 ) -> FixedRadiusContact:
-    flat, *others = meshes.of
-    d = Discretisation(flat, order) if previous is None else previous.discretisation.moved(flat)
-    if not others:
-        return solve_at_radius(solids[0], d, curvature=curvature)
-    known = None if previous is None or previous.ball is None else previous.ball.coupling
-    if others[0] is flat:
-        ball = d
-    else:
-        ball = Discretisation(others[0], order) if known is None else known.ball.moved(others[0])
-    coupling = Coupling(d, ball) if known is None else known.moved(d, ball)
-    return solve_at_radius(solids[0], d, (solids[1], coupling), curvature)
+    flat, *others = (Discretisation(mesh, order) for mesh in meshes.of)
+    ball = (solids[1], Coupling(flat, others[0])) if others else None
+    return solve_at_radius(solids[0], flat, ball, curvature, factor)

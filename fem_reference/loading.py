@@ -11,7 +11,8 @@ from collections.abc import Callable
 
 import numpy as np
 
-from .axisymmetric import Discretisation, constrained_solve
+from .axisymmetric import Discretisation
+from .linear_system import constrained_solve
 from .scaling import LayeredSolid
 
 __all__ = ["resultant", "solve_traction"]
@@ -50,9 +51,11 @@ def solve_traction(
         given[field * N + d.outer] = values
     for field in on_axis:
         given[field * N + d.axis] = 0.0
+    K = d.skeleton(solid.materials, harmonic)
     fixed = [field * N + d.outer for field, _ in fixed_fields] + [field * N + d.axis for field in on_axis]
-    K = d.stiffness(solid.materials, harmonic)
-    return constrained_solve(K, given, np.unique(np.concatenate(fixed)), load)
+    fixed.append(K.inner.ravel())
+    solved = constrained_solve(K.matrix, given[:, None], np.concatenate(fixed), load[:, None])
+    return K.extended(solved.u)[:, 0]
 
 
 def _inside(d: Discretisation) -> np.ndarray:

@@ -22,7 +22,6 @@ from functools import cached_property
 import numpy as np
 
 from .axisymmetric import Discretisation, elasticity, strain_operator
-from .integrals import shape_functions
 from .location import LocatedPoints
 from .mesh import EDGE_SIZE, MeridianMesh
 
@@ -106,18 +105,14 @@ class HarmonicField:
 
     def _fields_and_strains(self, at: LocatedPoints) -> tuple[np.ndarray, np.ndarray]:
         """Fields (fields, n) and strains (strains, n)."""
-        d, cells, X = self.discretisation, at.cells, at.X
-        corners = d.mesh.points[:, d.triangulation.t[:, cells]]
-        J = np.stack([corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]], axis=1)
-        det = J[0, 0] * J[1, 1] - J[0, 1] * J[1, 0]
-        numbers = np.asarray(d.basis.element_dofs)[:, cells]
+        d, basis = self.discretisation, self.discretisation.basis
+        u = self.fields.reshape(-1, d.N)[:, np.asarray(basis.element_dofs)[:, at.cells]]
+        values, d_r, d_z = np.zeros((3, len(u), at.r.size))
+        for i in range(basis.Nbfun):
+            (phi,) = basis.elem.gbasis(basis.mapping, at.X[:, :, None], i, tind=at.cells)
+            for total, shape in ((values, np.asarray(phi)), (d_r, phi.grad[0]), (d_z, phi.grad[1])):
+                total += u[:, i] * shape[:, 0]
         A_r, A_z, A_0 = strain_operator(self.harmonic)
-        count = A_r.shape[1]
-        u = self.fields.reshape(count, -1)[:, numbers]
-        phi, by_X, by_Y = shape_functions(d.order, X)
-        values, along_X, along_Y = (np.einsum("fin,in->fn", u, shape) for shape in (phi, by_X, by_Y))
-        d_r = (along_X * J[1, 1] - along_Y * J[1, 0]) / det
-        d_z = (along_Y * J[0, 0] - along_X * J[0, 1]) / det
         return values, A_r @ d_r + A_z @ d_z + A_0 @ (values / at.r)
 
     @cached_property

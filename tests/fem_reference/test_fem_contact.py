@@ -225,6 +225,19 @@ def test_extreme_coatings_are_solved_with_positive_pressure_and_gap(ratio, thick
     assert min(A_H, a_coating) * 0.999 < s.contact_radius < max(A_H, a_coating) * 1.001
 
 
+@pytest.mark.parametrize(("ratio", "thickness"), [(1.0, 0.5), (4.0, 1.0), (0.1, 0.1), (100.0, 0.02)])
+def test_the_load_grows_with_the_radius_as_one_solution_says(ratio, thickness):
+    solid = LayeredSolid(materials=((ratio, NU), (1.0, NU)), thicknesses=(thickness,), far=1000.0)
+    mesh = meridian_mesh(contact_radius=1.0, thicknesses=(thickness,), far=1000.0, grading=Grading.of(0.4))
+    one, two = (solve_at_radius(solid, Discretisation(mesh.stretched(a), 4)) for a in (1.0, 1.001))
+    growth = np.log(two.load / one.load) / np.log(1.001)
+    # polynomials of the last triangles give the coefficients at the edge to a hundredth; Hertz: W ~ a^3
+    assert one.growth == pytest.approx(growth, rel=1.5e-2)
+    assert two.radius_at(one.load) == pytest.approx(1.0, rel=1.5e-5)
+    if ratio == 1.0:
+        assert growth == pytest.approx(3.0, rel=1e-4)
+
+
 # Contacts at a given radius 1, on a coarse mesh
 
 SOFT, HARD = (((1.0, 0.3), (2.0, 0.2)), (0.5,)), (((4.0, 0.25), (1.0, 0.1)), (0.3,))

@@ -131,9 +131,7 @@ def estimated(companion, residual=0.0):
     """Budget and uncertainty of the stiffness if ``companion`` were the contact on the coarser mesh."""
     one, s = replace(contact(), residual=residual), solved("sphere")
     states = (ElasticState.of_contact(s.state.solid, one),)
-    (found,), stiffness = contact_estimates(
-        ContactLevels(one, companion, 3.0, ()), states, s.units, one.load, 0.5
-    )
+    (found,), stiffness = contact_estimates(ContactLevels(one, companion, ()), states, s.units, one.load, 0.5)
     return budget(found), stiffness
 
 
@@ -161,8 +159,8 @@ def test_a_change_from_the_companion_counts_by_roaches_factor_more_on_coarse_tri
     factor, change = 3 / (1.4**2 - 1) * 0.5 / 0.18, 1e-3
     softer, _ = estimated(replace(one, approach=one.approach * (1 + change)))
     assert softer["approach", "element size"] == pytest.approx(factor * change * s.approach, rel=1e-6, abs=0)
-    # with the load the radius at one load: a ~ W^(1/3) here
-    larger, _ = estimated(replace(one, load=one.load * (1 + change) ** 3))
+    # with the load the radius at one load: W ~ a^growth
+    larger, _ = estimated(replace(one, load=one.load * (1 + change) ** one.growth))
     radius = factor * change / (1 + change) * s.contact_radius
     assert larger["contact_radius", "element size"] == pytest.approx(radius, rel=1e-6, abs=0)
     _, stiffer = estimated(replace(one, stiffness=one.stiffness * (1 + change)))

@@ -54,6 +54,7 @@ def hide(name: str) -> None:
         return from_name(wanted)
 
     Distribution.from_name = found  # type: ignore[method-assign, assignment]
+    sys.modules[name] = None  # type: ignore[assignment]
 
 
 def problem(turn: int) -> dict[str, Any]:
@@ -81,7 +82,8 @@ def stress(turn: int) -> Prepared:
 def elements(turn: int, friction: float, fast: bool) -> Prepared:
     """Finite elements at their defaults, with the factorisation of the extra "fast" or without it."""
     if not fast:
-        hide("mkl")
+        hide("mkl")  # of versions before 0.3
+        hide("pypardiso")
     fem_reference = public("fem_reference")
     return lambda: fem_reference.solve(**problem(turn), friction=friction)
 

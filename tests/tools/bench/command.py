@@ -29,7 +29,7 @@ from verification.running.json_records import encode
 from verification.running.provenance import PACKAGES, commit, machine, versions
 
 Numbers = Annotated[tuple[int, ...], Parameter(consume_multiple=True, negative="")]
-FASTER = "mkl"  # distribution of the extra "fast"
+FASTER = "pypardiso"  # distribution of the extra "fast"
 SHOWN = 4  # runs in the table of the history
 
 

@@ -121,11 +121,11 @@ def test_a_plant_is_taken_out_when_the_trial_fails():
 
 
 def test_a_function_imported_by_name_is_exchanged_there_too():
-    from fem_reference import axisymmetric, contact, loading
+    from fem_reference import contact, linear_system, loading
 
-    change = Edit("fem_reference.axisymmetric:constrained_solve", "u += factor", "u += 2 * factor")
+    change = Edit("fem_reference.linear_system:constrained_solve", "found += factor", "found += 2 * factor")
     with planted((change,)):
-        assert contact.constrained_solve is loading.constrained_solve is axisymmetric.constrained_solve
+        assert contact.constrained_solve is loading.constrained_solve is linear_system.constrained_solve
         assert "planted" in contact.constrained_solve.__code__.co_filename
     assert "planted" not in contact.constrained_solve.__code__.co_filename
 

@@ -1,0 +1,116 @@
+"""Constrained solves: by dense matrices, by the factor of a nearby matrix, by Pardiso of the extra `fast`."""
+
+from importlib.util import find_spec
+
+import numpy as np
+import pytest
+
+from fem_reference import linear_system, solve
+from fem_reference.axisymmetric import Discretisation
+from fem_reference.linear_system import constrained_solve
+from verification.credibility.manufactured_solutions import MATERIALS, unit_square
+
+
+def problem(harmonic, stretch=1.0, order=3):
+    """Matrix, given values, unknowns held, load."""
+    d = Discretisation(unit_square(4, skew=0.3).stretched(stretch), order)
+    K = d.stiffness(MATERIALS, harmonic)
+    fields = K.shape[0] // d.N
+    fixed = np.concatenate([field * d.N + d.outer for field in range(fields)] + [d.axis])
+    given, load = np.random.default_rng(2).normal(size=(2, K.shape[0], 3))
+    return K, given, fixed, load
+
+
+def dense(K, given, fixed, load):
+    free = np.setdiff1d(np.arange(len(given)), fixed)
+    A, u = K.toarray(), given.copy()
+    u[free] = np.linalg.solve(A[np.ix_(free, free)], load[free] - A[np.ix_(free, fixed)] @ given[fixed])
+    return u
+
+
+@pytest.mark.parametrize("order", [2, 3, 4])
+@pytest.mark.parametrize("harmonic", [0, 1])
+def test_given_values_are_held_by_forces(order, harmonic):
+    K, given, fixed, load = problem(harmonic, order=order)
+    found = constrained_solve(K, given, fixed, load)
+    # condition of the stiffness matrix, about 1e4, times rounding
+    np.testing.assert_allclose(found.u, dense(K, given, np.unique(fixed), load), rtol=0, atol=1e-11)
+    np.testing.assert_array_equal(found.u[fixed], given[fixed])
+    np.testing.assert_allclose(K @ found.u, load + found.force + found.residual, rtol=0, atol=1e-11)
+    free = np.setdiff1d(np.arange(len(given)), fixed)
+    assert not found.force[free].any()
+    assert not found.residual[fixed].any()
+    assert np.abs(found.residual).max() < 1e-11
+    one = constrained_solve(K, given[:, 0], fixed, load[:, 0])
+    np.testing.assert_allclose(one.u, found.u[:, 0], rtol=0, atol=1e-13 * np.abs(found.u).max())
+
+
+@pytest.mark.parametrize("order", [2, 3, 4])
+@pytest.mark.parametrize("harmonic", [0, 1])
+def test_unknowns_inside_triangles_follow_from_those_on_their_sides(order, harmonic):
+    d = Discretisation(unit_square(4, skew=0.3), order)
+    K, given, fixed, load = problem(harmonic, order=order)
+    skeleton = d.skeleton(MATERIALS, harmonic)
+    inner = skeleton.inner.ravel()
+    assert inner.size == d.mesh.layer.size * (K.shape[0] // d.N) * (order - 1) * (order - 2) // 2
+    load[inner] = given[inner] = 0.0
+    expected = constrained_solve(K, given, fixed, load)
+    found = constrained_solve(skeleton.matrix, given, np.concatenate([fixed, inner]), load)
+    np.testing.assert_allclose(skeleton.extended(found.u), expected.u, rtol=0, atol=1e-11)
+    held = np.unique(fixed)
+    np.testing.assert_allclose(found.force[held], expected.force[held], rtol=0, atol=1e-11)
+
+
+def test_the_factor_of_a_nearby_matrix_gives_the_same_solution():
+    factor = constrained_solve(*problem(0)).factor
+    K, given, fixed, load = problem(0, stretch=1.001)
+    by_own, by_nearby = (constrained_solve(K, given, fixed, load, one) for one in (None, factor))
+    assert by_nearby.factor is factor
+    np.testing.assert_allclose(by_nearby.u, by_own.u, rtol=0, atol=1e-12)
+
+
+def test_the_factor_of_a_distant_matrix_is_not_used():
+    factor = constrained_solve(*problem(0)).factor
+    K, given, fixed, load = problem(0, stretch=1.3)
+    found = constrained_solve(K, given, fixed, load, factor)
+    assert found.factor is not factor
+    np.testing.assert_allclose(found.u, constrained_solve(K, given, fixed, load).u, rtol=0, atol=1e-13)
+
+
+needs_pardiso = pytest.mark.skipif(
+    find_spec("pypardiso") is None, reason="Pardiso is not compared: pypardiso is missing (extra fast)"
+)
+
+
+@needs_pardiso
+@pytest.mark.parametrize("harmonic", [0, 1])
+def test_pardiso_solves_as_superlu(harmonic, monkeypatch):
+    by_pardiso = constrained_solve(*problem(harmonic))
+    monkeypatch.setattr(linear_system, "find_spec", lambda name: None)
+    by_superlu = constrained_solve(*problem(harmonic))
+    np.testing.assert_allclose(by_pardiso.u, by_superlu.u, rtol=0, atol=1e-11)
+    # either keeps its factor while others are made
+    K, _, fixed, _ = problem(harmonic)
+    free = np.setdiff1d(np.arange(K.shape[0]), fixed)
+    x = by_pardiso.factor(np.ones(free.size))
+    np.testing.assert_allclose(x, by_superlu.factor(np.ones(free.size)), rtol=0, atol=1e-11 * np.abs(x).max())
+
+
+@needs_pardiso
+@pytest.mark.parametrize("ball", [None, (300e9, 0.22, ((250e9, 0.25, 20e-6),))], ids=["rigid", "coated"])
+def test_a_contact_has_the_same_numbers_by_either_factorisation(ball, monkeypatch):
+    def solved():
+        coatings, steel = ((420e9, 0.25, 70e-6),), (210e9, 0.3)
+        problem = {"radius": 10e-3, "load": 20.0, "coatings": coatings, "substrate": steel, "ball": ball}
+        contact = solve(**problem, friction=0.25, order=2, size=0.5)
+        x = np.linspace(-2, 2, 9) * contact.contact_radius
+        scalars = contact.contact_radius, contact.approach, contact.stiffness, contact.peak_pressure
+        bodies = ("flat",) if ball is None else ("flat", "ball")
+        stresses = [contact.stress(x, 0.0, np.abs(x), body=body) / contact.peak_pressure for body in bodies]
+        return np.array(scalars), np.array(stresses)
+
+    scalars, stresses = solved()
+    monkeypatch.setattr(linear_system, "find_spec", lambda name: None)
+    expected, expected_stresses = solved()
+    np.testing.assert_allclose(scalars, expected, rtol=1e-9, atol=0)
+    np.testing.assert_allclose(stresses, expected_stresses, rtol=0, atol=1e-9)
