@@ -1,10 +1,12 @@
 """Uncertainty estimated from a coarser companion solution.
 
+By hand: scikit-fem has no estimate of the error of stresses at a point.
+
 The difference of two solutions crosses zero along lines where neither is exact, so it is not used point by
 point: the estimate at a vertex is the largest difference in the rings of triangles around it, further rings
 counting by the shares of ``REACH``, and between vertices it is linear. Triangles grow with the distance from
-the contact edge and with depth, and so does the neighbourhood. The largest difference is
-multiplied with Roache's factor of two meshes (P. J. Roache, J. Fluids Eng. 116 (1994) 405-413, eq. 9),
+the contact edge and with depth, and so does the neighbourhood. The largest difference is multiplied by
+Roache's factor for two meshes (P. J. Roache, J. Fluids Eng. 116 (1994) 405-413, eq. 9),
 
     U = SAFETY |difference| / (ratio^order - 1),
 
@@ -26,12 +28,12 @@ approach, due to the whole mesh, counts everywhere.
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 
-from .axisymmetric import Discretisation
+from .companion_points import REACH, ComparisonPoints, Pair, Uncached, largest_around, samples
 from .contact import FixedRadiusContact, edge_coefficients, peak
 from .levels import COMPANION, ContactLevels
 from .location import LocatedPoints
@@ -46,28 +48,15 @@ SAFETY = 3.0
 # Triangles above this size do not reach the order of the elements. The factor then grows with the size, that
 # of pressures and stresses with its square: on the axis of a fast solution 2.6 times were needed.
 _ASYMPTOTIC_SIZE = 0.18
-# Shares of the largest difference in rings of triangles, or cells of a line, by their distance from a point.
-REACH = (1.0, 1.0, 1.0, 0.7, 0.5, 0.35, 0.25)
 # The displacement of the field is part of the estimate within this distance of the edge over the radius.
 _STRIP = 0.3
 # At some places the final mesh is the worse one: its error is all the difference, or somewhat more.
 _LEAST_FACTOR = 1.25
-# Of sizes of triangles, below which their local ratio is that of two irregular meshes.
-_LEAST_RATIO = 1.08
 # zz, rz, tz: one value on both sides of an interface, in error by that of either side
 _TRACTIONS, _IN_PLANE = [2, 3, 5], [0, 1, 4]
 # On a plane the estimate of the triangles beside it counts up to this factor: of nearly incompressible layers
 # theirs is that of the mean stress, which the plane does not have.
 _BESIDE = 3.0
-
-# corners, middles and centre of the reference triangle: the hoop strain is worst on the axis itself
-_SAMPLES = np.array([[0, 1, 0, 1 / 2, 1 / 2, 0, 1 / 3], [0, 0, 1, 0, 1 / 2, 1 / 2, 1 / 3]])
-# Moved this far towards the centre, those of triangles in depth: none lies on a plane with a formula of its
-# own, nor at a vertex of a plane, where two cells have two stresses.
-_INWARDS = 1e-7
-_CELL_SAMPLES = 7
-
-_Pair = tuple[LocatedPoints, LocatedPoints]  # on the final mesh, on that of the companion
 
 
 @dataclass(frozen=True)
@@ -99,8 +88,8 @@ class PressureEstimate:
 
     @cached_property
     def _at_vertices(self) -> np.ndarray:
-        r = _samples(self.vertices)
-        return _largest(self.factor * np.abs(self.pressure(r) - self.companion(r)), self.vertices.size)
+        r = samples(self.vertices)
+        return largest_around(self.factor * np.abs(self.pressure(r) - self.companion(r)), self.vertices.size)
 
     def __call__(self, r: np.ndarray) -> np.ndarray:
         p = self.pressure(r)
@@ -111,66 +100,7 @@ class PressureEstimate:
 
 
 @dataclass(frozen=True, eq=False)
-class _Uncached:
-    """A dataclass that is pickled without its cached properties."""
-
-    def __getstate__(self) -> dict[str, object]:
-        return {f.name: getattr(self, f.name) for f in fields(self)}
-
-
-@dataclass(frozen=True, eq=False)
-class _ComparisonPoints(_Uncached):
-    """Points at which two solutions are compared, located on the meshes of both."""
-
-    final: Discretisation
-    companion: Discretisation
-
-    @cached_property
-    def _sizes(self) -> tuple[np.ndarray, np.ndarray]:
-        """Size of the triangles around each triangle of either mesh: roots of their areas."""
-        return _triangle_sizes(self.final), _triangle_sizes(self.companion)
-
-    def ratio(self, points: _Pair) -> np.ndarray:
-        """Size of the companion's triangles over that of the final mesh at ``points``, (n,)."""
-        final, companion = (size[at.cells] for size, at in zip(self._sizes, points, strict=True))
-        return np.maximum(companion / final, _LEAST_RATIO)
-
-    def _on_both(self, r: np.ndarray, z: np.ndarray, layer: np.ndarray) -> _Pair:
-        return self.final.locator.points(r, z, layer), self.companion.locator.points(r, z, layer)
-
-    @cached_property
-    def triangles(self) -> _Pair:
-        """``_SAMPLES`` of every triangle of the final mesh, shape (7 * triangles,)."""
-        d = self.final
-        s1, s2 = _SAMPLES
-        shape = np.stack([1 - s1 - s2, s1, s2])
-        corners = d.mesh.points[:, d.triangulation.t]
-        r, z = np.einsum("cp,dct->dpt", shape, corners)
-        z = z + _INWARDS * (corners[1].mean(axis=0) - z)
-        layer = np.broadcast_to(d.mesh.layer, r.shape)
-        reach = self.companion.mesh.points.max()
-        return self._on_both(np.minimum(r, reach).ravel(), np.minimum(z, reach).ravel(), layer.ravel())
-
-    @cached_property
-    def planes(self) -> dict[tuple[float, int], tuple[np.ndarray, _Pair]]:
-        """Vertices and points between them on the surface and both sides of interfaces, by (depth, layer)."""
-        mesh = self.final.mesh
-        reach = 0.9 * self.companion.mesh.far
-        sides = [(0.0, 0)]
-        for upper, depth in enumerate(mesh.depths):
-            sides += [(float(depth), upper), (float(depth), upper + 1)]
-        planes = {}
-        for depth, layer in sides:
-            vertices = np.sort(mesh.points[0, mesh.points[1] == depth])
-            vertices = vertices[vertices < reach]
-            r = _samples(vertices)
-            points = self._on_both(r, np.full(r.shape, depth), np.full(r.shape, layer))
-            planes[depth, layer] = vertices, points
-        return planes
-
-
-@dataclass(frozen=True, eq=False)
-class StressEstimate(_Uncached):
+class StressEstimate(Uncached):
     """Estimated error of the stress of one harmonic as a function of position.
 
     safety : on the difference from the companion over ratio^order - 1
@@ -182,7 +112,7 @@ class StressEstimate(_Uncached):
 
     field: HarmonicField
     companion: HarmonicField
-    points: _ComparisonPoints
+    points: ComparisonPoints
     safety: float
     radius_error: float
     relative: float
@@ -193,14 +123,14 @@ class StressEstimate(_Uncached):
         """Estimate (3, n) of the displacement ``u`` (3, n) at points."""
         return self._between(self._corners[6:], at) + self.far + self.relative * np.abs(u)
 
-    def _error(self, points: _Pair, layer: int | None = None) -> np.ndarray:
+    def _error(self, points: Pair, layer: int | None = None) -> np.ndarray:
         """Estimate (6, n) at points of comparison, before the largest in a neighbourhood is taken.
 
         layer : of points on a plane z = const, whose stresses follow from strains and tractions of the plane
         """
         return self._compared(points, layer)[:6]
 
-    def _compared(self, points: _Pair, layer: int | None = None) -> np.ndarray:
+    def _compared(self, points: Pair, layer: int | None = None) -> np.ndarray:
         """``_error``, then that of the displacement, whose order is higher by one; (9, n)."""
         (u, final), (other, companion) = (
             f(at) for f, at in zip((self.field, self.companion), points, strict=True)
@@ -251,7 +181,7 @@ class StressEstimate(_Uncached):
         surface the tractions are given, and a series replaces the triangles next to the edge.
         """
         found = {
-            key: (vertices, _largest(self._error(points, key[1]), vertices.size))
+            key: (vertices, largest_around(self._error(points, key[1]), vertices.size))
             for key, (vertices, points) in self.points.planes.items()
         }
         mesh = self.field.discretisation.mesh
@@ -353,7 +283,7 @@ def contact_estimates(
     ]
     edge, other_edge = (_edge_displacement(contact) for contact in (final, companion))
     # what the displaced edges leave of the difference of the radii is due to all other triangles
-    changes = abs(a + edge - other_a - other_edge), abs(approach - other_approach)
+    changes = abs((a - other_a) + (edge - other_edge)), abs(approach - other_approach)
     found = tuple(
         estimates(state, coarse, units, changes, load_residual, abs(edge), size, states)
         for state, coarse in zip(states, coarser, strict=True)
@@ -423,7 +353,7 @@ def estimates(
     )
     budget = tuple((quantity, origin, float(value)) for quantity, origin, value in rows)
     total = {name: sum(value for quantity, _, value in budget if quantity == name) for name, _, _ in budget}
-    points = _ComparisonPoints(d, companion.discretisation)
+    points = ComparisonPoints(d, companion.discretisation)
     relative = load_residual + radius_error / a + share
     normal = StressEstimate(
         state.normal,
@@ -458,17 +388,6 @@ def _coarseness(size: float) -> float:
     return max(1.0, size / _ASYMPTOTIC_SIZE)
 
 
-def _triangle_sizes(d: Discretisation) -> np.ndarray:
-    """Mean size of the triangles within two rings of each triangle, either side of interfaces."""
-    t = d.triangulation.t
-    (r0, z0), (r1, z1), (r2, z2) = (d.mesh.points[:, corner] for corner in t)
-    size = np.sqrt(0.5 * np.abs((r1 - r0) * (z2 - z0) - (r2 - r0) * (z1 - z0)))
-    for _ in range(2):  # one ring holds too few triangles on the axis
-        around = np.bincount(t.ravel(), np.tile(size, 3)) / np.bincount(t.ravel())
-        size = around[t].mean(axis=0)
-    return size
-
-
 def _edge_displacement(contact: FixedRadiusContact) -> float:
     """Distance by which the last triangles displace the edge of the pressure, outwards.
 
@@ -481,22 +400,3 @@ def _edge_displacement(contact: FixedRadiusContact) -> float:
 def _at_load(contact: FixedRadiusContact, load: float) -> tuple[float, float]:
     """Contact radius and approach of the ``contact`` if it had exactly the ``load``."""
     return contact.radius_at(load), contact.approach + (load - contact.load) / contact.stiffness
-
-
-def _samples(vertices: np.ndarray) -> np.ndarray:
-    """Points in each of the cells between increasing ``vertices``, next to both ends included."""
-    t = np.linspace(_INWARDS, 1 - _INWARDS, _CELL_SAMPLES)
-    return (vertices[:-1, None] + np.diff(vertices)[:, None] * t).ravel()
-
-
-def _largest(values: np.ndarray, vertices: int) -> np.ndarray:
-    """The largest value in the cells around each of the ``vertices``, by the shares of ``REACH``.
-
-    values : (..., n) at ``_samples``.  Returns shape (..., vertices).
-    """
-    worst = values.reshape(*values.shape[:-1], -1, _CELL_SAMPLES).max(axis=-1)
-    side = ((0, 0),) * (worst.ndim - 1)
-    padded = np.pad(worst, (*side, (len(REACH), len(REACH))))
-    both = [(len(REACH) - 1 - ring, len(REACH) + ring) for ring in range(len(REACH))]
-    rings = [np.maximum(*(padded[..., k : k + vertices] for k in cells)) for cells in both]
-    return np.max([share * ring for share, ring in zip(REACH, rings, strict=True)], axis=0)

@@ -1,4 +1,8 @@
-"""Triangles that hold given points of the meridian plane."""
+"""Triangles that hold given points of the meridian plane.
+
+By hand: scikit-fem's search does not know on which side of an interface a point lies, and takes twenty times
+as long for 10,000 points.
+"""
 
 from dataclasses import dataclass
 from functools import cached_property

@@ -1,5 +1,7 @@
 """Meridian plane of a coated half-space, meshed by gmsh with grading to the contact edge.
 
+The sizes are by hand: gmsh grades a mesh, but does not know where the stresses of a contact need it.
+
 The mesher works in a stretched plane (xi, zeta) in which the whole problem has one length scale,
 
     r - a = l sinh(xi),      z = l sinh(zeta),      l = sqrt(a min(a, h)),   h: thickness of the top coating,

@@ -1,5 +1,7 @@
 """Fields of one Fourier harmonic at any point of the meridian plane.
 
+By hand: on planes and at the contact edge, derivatives of the shape functions alone lose digits.
+
 Strains are the derivatives of the shape functions in the triangle that holds the point, so each side of an
 interface keeps its own value. On a plane z = const whose tractions are known more accurately than by
 differentiation, the other components follow from the in-plane strains, derivatives along the plane only:

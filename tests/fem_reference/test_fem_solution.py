@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 
 from fem_reference import solve, solve_prescribed
+from fem_reference.companion_points import samples
 from fem_reference.contact import solve_at_radius
-from fem_reference.estimate import SAFETY, _samples, contact_estimates, estimates
+from fem_reference.estimate import SAFETY, contact_estimates, estimates
 from fem_reference.levels import COMPANION, ContactLevels, companion_grading, final_grading
 from fem_reference.state import ElasticState
 
@@ -247,7 +248,7 @@ def test_estimate_is_at_least_five_quarters_of_the_change_from_the_companion():
     assert np.all(found._error((final, companion)) >= 1.25 * change)
     # a vertex of a plane has the stresses of two cells, of which samples next to it see either
     vertices = found.points.final.contact_vertices
-    cells = _samples(vertices).reshape(vertices.size - 1, -1)
+    cells = samples(vertices).reshape(vertices.size - 1, -1)
     assert np.all((vertices[:-1, None] < cells) & (cells < vertices[1:, None]))
     np.testing.assert_allclose(cells[:, [0, -1]].T, [vertices[:-1], vertices[1:]], rtol=0, atol=1e-6)
 

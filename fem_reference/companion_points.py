@@ -1,0 +1,116 @@
+"""Points at which a solution is compared with its coarser companion, and the largest values around them.
+
+By hand: scikit-fem compares no fields on two unrelated meshes.
+"""
+
+from dataclasses import dataclass, fields
+from functools import cached_property
+
+import numpy as np
+
+from .axisymmetric import Discretisation
+from .location import LocatedPoints
+
+__all__ = ["REACH", "ComparisonPoints", "Pair", "Uncached", "largest_around", "samples"]
+
+# Shares of the largest difference in rings of triangles, or cells of a line, by their distance from a point.
+REACH = (1.0, 1.0, 1.0, 0.7, 0.5, 0.35, 0.25)
+# Of sizes of triangles, below which their local ratio is that of two irregular meshes.
+_LEAST_RATIO = 1.08
+# corners, middles and centre of the reference triangle: the hoop strain is worst on the axis itself
+_SAMPLES = np.array([[0, 1, 0, 1 / 2, 1 / 2, 0, 1 / 3], [0, 0, 1, 0, 1 / 2, 1 / 2, 1 / 3]])
+# Moved this far towards the centre, those of triangles in depth: none lies on a plane with a formula of its
+# own, nor at a vertex of a plane, where two cells have two stresses.
+_INWARDS = 1e-7
+_CELL_SAMPLES = 7
+
+Pair = tuple[LocatedPoints, LocatedPoints]  # on the final mesh, on that of the companion
+
+
+@dataclass(frozen=True, eq=False)
+class Uncached:
+    """A dataclass that is pickled without its cached properties."""
+
+    def __getstate__(self) -> dict[str, object]:
+        return {f.name: getattr(self, f.name) for f in fields(self)}
+
+
+@dataclass(frozen=True, eq=False)
+class ComparisonPoints(Uncached):
+    """Points at which two solutions are compared, located on the meshes of both."""
+
+    final: Discretisation
+    companion: Discretisation
+
+    @cached_property
+    def _sizes(self) -> tuple[np.ndarray, np.ndarray]:
+        """Size of the triangles around each triangle of either mesh: roots of their areas."""
+        return _triangle_sizes(self.final), _triangle_sizes(self.companion)
+
+    def ratio(self, points: Pair) -> np.ndarray:
+        """Size of the companion's triangles over that of the final mesh at ``points``, (n,)."""
+        final, companion = (size[at.cells] for size, at in zip(self._sizes, points, strict=True))
+        return np.maximum(companion / final, _LEAST_RATIO)
+
+    def _on_both(self, r: np.ndarray, z: np.ndarray, layer: np.ndarray) -> Pair:
+        return self.final.locator.points(r, z, layer), self.companion.locator.points(r, z, layer)
+
+    @cached_property
+    def triangles(self) -> Pair:
+        """``_SAMPLES`` of every triangle of the final mesh, shape (7 * triangles,)."""
+        d = self.final
+        s1, s2 = _SAMPLES
+        shape = np.stack([1 - s1 - s2, s1, s2])
+        corners = d.mesh.points[:, d.triangulation.t]
+        r, z = np.einsum("cp,dct->dpt", shape, corners)
+        z = z + _INWARDS * (corners[1].mean(axis=0) - z)
+        layer = np.broadcast_to(d.mesh.layer, r.shape)
+        reach = self.companion.mesh.points.max()
+        return self._on_both(np.minimum(r, reach).ravel(), np.minimum(z, reach).ravel(), layer.ravel())
+
+    @cached_property
+    def planes(self) -> dict[tuple[float, int], tuple[np.ndarray, Pair]]:
+        """Vertices and points between them on the surface and both sides of interfaces, by (depth, layer)."""
+        mesh = self.final.mesh
+        reach = 0.9 * self.companion.mesh.far
+        sides = [(0.0, 0)]
+        for upper, depth in enumerate(mesh.depths):
+            sides += [(float(depth), upper), (float(depth), upper + 1)]
+        planes = {}
+        for depth, layer in sides:
+            vertices = np.sort(mesh.points[0, mesh.points[1] == depth])
+            vertices = vertices[vertices < reach]
+            r = samples(vertices)
+            points = self._on_both(r, np.full(r.shape, depth), np.full(r.shape, layer))
+            planes[depth, layer] = vertices, points
+        return planes
+
+
+def _triangle_sizes(d: Discretisation) -> np.ndarray:
+    """Mean size of the triangles within two rings of each triangle, either side of interfaces."""
+    t = d.triangulation.t
+    (r0, z0), (r1, z1), (r2, z2) = (d.mesh.points[:, corner] for corner in t)
+    size = np.sqrt(0.5 * np.abs((r1 - r0) * (z2 - z0) - (r2 - r0) * (z1 - z0)))
+    for _ in range(2):  # one ring holds too few triangles on the axis
+        around = np.bincount(t.ravel(), np.tile(size, 3)) / np.bincount(t.ravel())
+        size = around[t].mean(axis=0)
+    return size
+
+
+def samples(vertices: np.ndarray) -> np.ndarray:
+    """Points in each of the cells between increasing ``vertices``, next to both ends included."""
+    t = np.linspace(_INWARDS, 1 - _INWARDS, _CELL_SAMPLES)
+    return (vertices[:-1, None] + np.diff(vertices)[:, None] * t).ravel()
+
+
+def largest_around(values: np.ndarray, vertices: int) -> np.ndarray:
+    """The largest value in the cells around each of the ``vertices``, by the shares of ``REACH``.
+
+    values : (..., n) at ``samples``.  Returns shape (..., vertices).
+    """
+    worst = values.reshape(*values.shape[:-1], -1, _CELL_SAMPLES).max(axis=-1)
+    side = ((0, 0),) * (worst.ndim - 1)
+    padded = np.pad(worst, (*side, (len(REACH), len(REACH))))
+    both = [(len(REACH) - 1 - ring, len(REACH) + ring) for ring in range(len(REACH))]
+    rings = [np.maximum(*(padded[..., k : k + vertices] for k in cells)) for cells in both]
+    return np.max([share * ring for share, ring in zip(REACH, rings, strict=True)], axis=0)
