@@ -11,6 +11,7 @@ from verification.regression.number_drift import Drift, Numbers, State, drift, e
 from verification.regression.usual_uncertainty import Ability, abilities
 from verification.running.case_result import CaseResult, RunInfo
 from verification.running.json_records import plain
+from verification.running.provenance import NOT_INSTALLED
 
 COUNTED = (State.SAME, State.DRIFTED, State.GONE, State.NEW)
 
@@ -197,8 +198,9 @@ def regression(
 
 
 def differing(then: Mapping[str, str], now: Mapping[str, str]) -> tuple[tuple[str, str, str], ...]:
-    """(name, then, now) of each text that differs, "none" where one side lacks it."""
-    pairs = ((name, then.get(name, "none"), now.get(name, "none")) for name in dict.fromkeys([*then, *now]))
+    """(name, then, now) of each text that differs; a package without a version is not installed."""
+    names = dict.fromkeys([*then, *now])
+    pairs = ((name, then.get(name, NOT_INSTALLED), now.get(name, NOT_INSTALLED)) for name in names)
     return tuple(pair for pair in pairs if pair[1] != pair[2])
 
 

@@ -44,6 +44,9 @@ GMSH_LIBRARIES = {
 }
 
 
+NOT_INSTALLED = "not installed"
+
+
 def versions(packages: Iterable[str] = PACKAGES) -> dict[str, str]:
     """Version of Python and of each package, by default of those that results depend on."""
     return {"python": platform.python_version()} | {name: _version(name) for name in packages}
@@ -55,7 +58,7 @@ def _version(name: str) -> str:
     try:
         return version(name)
     except PackageNotFoundError:
-        return "not installed"
+        return NOT_INSTALLED
 
 
 def commit(here: Path = ROOT) -> str | None:
