@@ -212,7 +212,7 @@ def baseline_message(found: Regression) -> str:
     parts = [f"{counts[state]} {state}" for state in COUNTED]
     largest = max((c.change for c in found.cases if c.change is not None), default=None)
     by = f"; the largest change is {scientific(largest)} of its scale" if largest is not None else ""
-    return f"{', '.join(parts)}, of {sum(counts.values())} numbers{by}."
+    return f"{', '.join(parts)}, of the {sum(counts.values())} numbers of these cases{by}."
 
 
 def regression_json(found: Regression) -> dict[str, Any]:
