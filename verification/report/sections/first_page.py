@@ -30,8 +30,8 @@ MOST_ROWS = 28  # strips of the first page; of more cases the worst have their o
 OWN_ROWS = 12
 _CLOSED = "closed forms of uncoated contacts."
 _METHODS = {
-    "semianalytic": "pressures of surface patches by influence coefficients, conjugate gradients and DC-FFT; "
-    "stresses from these pressures by influence coefficients of point forces.",
+    "semianalytic": "influence coefficients of surface patches, conjugate gradients, DC-FFT; stresses "
+    "are sums of point forces.",
     "fem_reference": "axisymmetric, fourth order, mesh fitted to the contact edge; sliding as a harmonic.",
     "integral_equation": "exact Fredholm equation of the layered contact.",
     "hertz": _CLOSED,
@@ -137,18 +137,14 @@ def largest(material: Material) -> list[str]:
             f"The largest difference is {scientific(item.difference)} {_scale(item.claim)}: "
             f"{_place(item.claim)}, {result.title}."
         )
-    planes = [
-        (gap, result)
+    gaps = [
+        gap[0]
         for result in material.contacts
         if (plane := material.planes.get(result.name)) is not None
         and (gap := plane_difference(plane, float(divisor(result, "sigma_xx", 0.0)))) is not None
     ]
-    if planes:
-        (widest, quantity), result = max(planes, key=lambda pair: pair[0][0])
-        texts.append(
-            f"In the pictures of the plane y = 0, which are not judged, it is {scientific(widest)}: "
-            f"{symbol_of(quantity)}, {result.title}."
-        )
+    if gaps:
+        texts.append(f"In the pictures, which are not judged, it is {scientific(max(gaps))}.")
     return texts
 
 
@@ -162,7 +158,7 @@ def not_claimed(material: Material) -> list[str]:
             "comparisons."
         )
     elif material.contacts:
-        texts.append("No point is left out of the comparisons, the contact edge included.")
+        texts.append("No point is left out, the contact edge included.")
     texts.append("U is an estimate, no bound; other problems and faults may fare worse.")
     return texts
 
@@ -280,7 +276,7 @@ def worth(material: Material) -> list[Worth]:
         made = _made(material, "faults", record.started, record.commit)
         value = f"{record.caught} of {len(record.rows)}"
         found.append(Worth("planted faults detected", value, "#faults", None, *made))
-        if record.controls:
+        if record.alarms:
             count = len(record.controls)
             found.append(_share("negative controls left alone", count - len(record.alarms), count, "#faults"))
     if evidence.mutants is not None:
@@ -330,7 +326,7 @@ def _independent(material: Material) -> list[Worth]:
 def _made(material: Material, name: str, started: str, commit: str | None) -> tuple[str, bool]:
     """Date and commit of a record, and whether the code that it judges has changed since."""
     older = name in material.evidence.older
-    return f"{started[:10]}, {(commit or 'no commit')[:8]}{', older than the code' if older else ''}", older
+    return f"{started[:10]}, {(commit or 'no commit')[:8]}{', older than code' if older else ''}", older
 
 
 def _share(name: str, good: int, total: int, href: str) -> Worth:
