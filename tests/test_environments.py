@@ -24,7 +24,7 @@ EXTRAS = re.compile(r"pip install .*?-e '?\.(?:\[([\w,]+)\])?'?")
 # What takes minutes is run in part; what waits for a person, a scheduler, or writes the baseline is not run.
 QUICK = {
     r"run$": "run 01_uncoated_steel",
-    r"run published$": "run hertz_1882",
+    r"run published$": "run ahlvin_ulery_1962",
     r"faults$": "faults --list",
     r"alarms$": "alarms --count 1",
     r"certify$": "certify --help",

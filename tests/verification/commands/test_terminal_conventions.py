@@ -2,6 +2,7 @@
 
 import io
 import json
+import os
 import re
 import shutil
 import signal
@@ -167,6 +168,28 @@ def screen(monkeypatch):
         return lambda: re.sub(r"\x1b\[[0-9;]*m", "", written.getvalue())
 
     return of_width
+
+
+def test_the_list_fits_80_columns(screen):
+    from verification.commands.shipped.list_cases import list_cases
+
+    shown = screen(80)
+    list_cases()
+    lines = shown().splitlines()
+    assert max(len(line.rstrip()) for line in lines) <= 80
+    assert {line.split()[0] for line in lines if line.split()} >= {*shipped_cases(), *published_cases()}
+
+
+def test_the_table_of_a_run_keeps_names_whole_in_a_pipe(stored, capsys, monkeypatch):
+    from verification.commands.common.run_summary import print_run
+    from verification.regression.baseline_change import regression
+    from verification.running.stored_run import read_run
+
+    monkeypatch.setattr(os, "environ", {k: v for k, v in os.environ.items() if k != "COLUMNS"})
+    name = "a_case_of_mine_with_a_name_that_is_longer_than_forty_letters"
+    results = [replace(result, name=name) for result in read_run(stored).results[:1]]
+    print_run(results, stored / "report.html", 1.0, regression(results, None, "b", INFO, whole=False))
+    assert any(line.split()[:1] == [name] for line in capsys.readouterr().out.splitlines())
 
 
 @pytest.mark.parametrize("width", [80, 120])
