@@ -92,5 +92,7 @@ def test_a_command_runs_with_the_extras_that_its_line_names(extras, words, folde
         capture_output=True,
         text=True,
     )
-    assert done.returncode == 0, done.stdout[-2000:] + done.stderr[-2000:]
+    # 5: the runs that are compared are of different cases here
+    usual = (0, 5) if words.startswith("compare") else (0,)
+    assert done.returncode in usual, done.stdout[-2000:] + done.stderr[-2000:]
     assert "\x1b" not in done.stdout + done.stderr

@@ -197,10 +197,12 @@ def regression(
     return Regression(folder, then, cases, other, tuple(judged), usual)
 
 
-def differing(then: Mapping[str, str], now: Mapping[str, str]) -> tuple[tuple[str, str, str], ...]:
-    """(name, then, now) of each text that differs; a package without a version is not installed."""
+def differing(
+    then: Mapping[str, str], now: Mapping[str, str], missing: str = NOT_INSTALLED
+) -> tuple[tuple[str, str, str], ...]:
+    """(name, then, now) of each text that differs, ``missing`` where one side lacks it."""
     names = dict.fromkeys([*then, *now])
-    pairs = ((name, then.get(name, NOT_INSTALLED), now.get(name, NOT_INSTALLED)) for name in names)
+    pairs = ((name, then.get(name, missing), now.get(name, missing)) for name in names)
     return tuple(pair for pair in pairs if pair[1] != pair[2])
 
 

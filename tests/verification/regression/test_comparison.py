@@ -88,7 +88,7 @@ def test_cases_versions_and_times_of_one_run_only_are_told():
     assert dict((name, (then, now)) for name, then, now in found.versions) == {
         "commit": (INFO.commit, "0123456789ab"),
         "numpy": ("2.4.0", "2.5.0"),
-        "extra": ("not installed", "1"),
+        "extra": ("none", "1"),
     }
     # what only one of them ran is told by its numbers
     assert found.drifted
