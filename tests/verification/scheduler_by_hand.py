@@ -35,7 +35,8 @@ def hand_started(folder, workers=2, threads=1, **variables):
         subprocess.Popen([dask, "scheduler", *common, "--port", "0"], env=environment, cwd=folder, **quiet)
     ]
     try:
-        wait_until(there.exists, "a scheduler", 60)
+        # The file is there before its content is.
+        wait_until(lambda: there.exists() and there.read_text().strip().endswith("}"), "a scheduler", 60)
         for _ in range(workers):
             words = [dask, "worker", *common, "--nworkers", "1", "--nthreads", str(threads)]
             words += ["--local-directory", str(folder)]
