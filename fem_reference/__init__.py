@@ -9,6 +9,7 @@ True
 
 from .estimate import Uncertainty
 from .levels import NotConverged
+from .off_axis import PressedSolid, check_pressure
 from .solution import Diagnostics, Solution
 from .solver import solve, solve_prescribed
 from .vtu import PlaneMesh, plane_mesh, write_vtu
@@ -17,8 +18,10 @@ __all__ = [
     "Diagnostics",
     "NotConverged",
     "PlaneMesh",
+    "PressedSolid",
     "Solution",
     "Uncertainty",
+    "check_pressure",
     "plane_mesh",
     "solve",
     "solve_prescribed",

@@ -79,7 +79,7 @@ class HarmonicField:
     def __call__(self, at: LocatedPoints) -> tuple[np.ndarray, np.ndarray]:
         """Displacement (3, n) as (u_r, u_theta, u_z) and stress (6, n) as (rr, tt, zz, rz, rt, tz).
 
-        Amplitudes of cos(theta) or sin(theta) for harmonic 1.
+        Amplitudes of cos(m theta), of u_theta, rt and tz of sin(m theta).
         """
         values, strain = self._fields_and_strains(at)
         stress = self._hooke(strain, at.layer)
@@ -100,9 +100,10 @@ class HarmonicField:
             displacement[:] = values[0] - values[1], values[1], values[2]
         # Nearer to the axis than ``at.r``: what is odd in r vanishes in proportion.
         inwards = at.r_given / at.r
-        odd, odd_stresses = _ODD[self.harmonic]
-        displacement[odd] *= inwards
-        stress[odd_stresses] *= inwards
+        if self.harmonic < len(_ODD):
+            odd, odd_stresses = _ODD[self.harmonic]
+            displacement[odd] *= inwards
+            stress[odd_stresses] *= inwards
         return displacement, stress
 
     def _fields_and_strains(self, at: LocatedPoints) -> tuple[np.ndarray, np.ndarray]:
@@ -145,7 +146,7 @@ class HarmonicField:
         value = np.hstack([np.ones((inside.size, 1)), *terms]) @ self._series[kept]
         strain = strain.copy()
         # u_r / r is continuous and smooth enough as it is
-        for row in (0, 4) if self.harmonic == 1 else (0,):
+        for row in (0, 4) if self.harmonic else (0,):
             strain[row, near] = value[:, row]
         return strain
 
@@ -186,5 +187,5 @@ class HarmonicField:
         zz, rz, tz = tractions
         rr = E / (1 - nu**2) * (strain[0] + nu * strain[1]) + nu / (1 - nu) * zz
         tt = E / (1 - nu**2) * (strain[1] + nu * strain[0]) + nu / (1 - nu) * zz
-        rt = E / (2 * (1 + nu)) * strain[4] if self.harmonic == 1 else np.zeros(rr.shape)
+        rt = E / (2 * (1 + nu)) * strain[4] if self.harmonic else np.zeros(rr.shape)
         return np.stack([rr, tt, zz, rz, rt, tz])

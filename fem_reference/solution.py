@@ -13,7 +13,7 @@ from .scaling import Units
 from .state import ElasticState
 from .validation import check_friction
 
-__all__ = ["BodyFields", "Diagnostics", "Solution"]
+__all__ = ["BodyFields", "Diagnostics", "Solution", "cartesian", "tensor"]
 
 
 @dataclass(frozen=True)
@@ -196,7 +196,7 @@ class Solution:
                 u += angle * amplitude
                 if estimate is not None:
                     error += np.abs(angle) * estimate.displacement(amplitude, points.located)
-        x = np.stack([u[0] * cos - u[1] * sin, u[0] * sin + u[1] * cos, u[2]])
+        x = cartesian(u, cos, sin)
         cos, sin = np.abs(cos), np.abs(sin)
         U = np.stack([error[0] * cos + error[1] * sin, error[0] * sin + error[1] * cos, error[2]])
         unit = self.units.displacement
@@ -227,7 +227,7 @@ class Solution:
         if state.tangential is not None:
             _, sliding = state.tangential(points.located)
             sigma = sigma + sliding * np.stack([cos] * 4 + [sin] * 2)
-        return _tensor(sigma * self.units.pressure, cos, sin).reshape(3, 3, *points.shape)
+        return tensor(sigma * self.units.pressure, cos, sin).reshape(3, 3, *points.shape)
 
     def _stress_uncertainty(self, estimates: Estimates, points: SolidPoints) -> np.ndarray:
         cos, sin = np.abs(points.cos), np.abs(points.sin)
@@ -235,10 +235,15 @@ class Solution:
         if estimates.tangential is not None:
             error = error + estimates.tangential(points.located) * np.stack([cos] * 4 + [sin] * 2)
         # absolute values of all products in the rotation add up
-        return _tensor(error * self.units.pressure, cos, sin, sign=1.0).reshape(3, 3, *points.shape)
+        return tensor(error * self.units.pressure, cos, sin, sign=1.0).reshape(3, 3, *points.shape)
 
 
-def _tensor(s: np.ndarray, cos: np.ndarray, sin: np.ndarray, sign: float = -1.0) -> np.ndarray:
+def cartesian(u: np.ndarray, cos: np.ndarray, sin: np.ndarray) -> np.ndarray:
+    """Turn (u_r, u_theta, u_z) to x, y, z."""
+    return np.stack([u[0] * cos - u[1] * sin, u[0] * sin + u[1] * cos, u[2]])
+
+
+def tensor(s: np.ndarray, cos: np.ndarray, sin: np.ndarray, sign: float = -1.0) -> np.ndarray:
     """Rotate (rr, tt, zz, rz, rt, tz) to x, y, z; ``sign`` = 1 adds where a rotation subtracts."""
     rr, tt, zz, rz, rt, tz = s
     cross = cos * sin

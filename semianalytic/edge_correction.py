@@ -15,9 +15,10 @@ from numpy.typing import NDArray
 from semianalytic import edge_shape, influence, smooth_edge
 from semianalytic.arrays import namespace, to_numpy
 from semianalytic.edge_shape import Shape, Step
+from semianalytic.inputs import Body
 from semianalytic.level import Level, LevelProblem
 
-__all__ = ["corrected"]
+__all__ = ["corrected", "unresolved"]
 
 Array = NDArray[np.floating]
 
@@ -142,8 +143,13 @@ def _terms(problem: LevelProblem, axes: tuple[float, float]) -> int:
     both, d, a = problem.body.response, problem.grid.d, min(axes)
     depth = both.depth if both else np.inf
     terms = 0.6 * (6 + 6 * np.sqrt(a / depth))
-    most = 12.0 if depth < 2 * d else MOST
+    most = 12.0 if unresolved(problem.body, d) else MOST
     return int(max(FEW, min(terms, most, a / (4 * d), 1.5 * np.sqrt(a / d))))
+
+
+def unresolved(body: Body, d: float) -> bool:
+    """Whether patches of side ``d`` [m] are too large for what happens within the thickness of a film."""
+    return body.response is not None and body.response.depth < 2 * d
 
 
 def _near_influence(problem: LevelProblem) -> Array:

@@ -33,9 +33,10 @@ NEAR = 8.0  # patches from the edge, within which the error of its radius is fel
 INSIDE, AT_EDGE, BEFORE = 2.5, 5.0, 0.4
 # what the refinement of a smooth edge does not show: of the root mean square of the change of the pressure,
 # and of the peak pressure; felt to a depth of some patches
-FLOOR, REACH = (0.3, 5e-7), 8.0
-# likewise near the edge, of the ripple of the patches, which the shape averages; as far as they meet
-RIPPLE, TAPER = 0.9, 16.0
+FLOOR, REACH = (0.35, 6e-7), 8.0
+# likewise near the edge, of the ripple of the patches, which the shape averages, and of the largest change
+# there; as far as patches and shape meet
+RIPPLE, WANDERING, TAPER = 0.9, 1.0, 16.0
 RESOLUTION = 1e-7  # of the pressure of patches: its response to the gap the iteration leaves
 
 
@@ -364,7 +365,21 @@ class Solution:
 
     def _near_ripple(self, x: ArrayLike, y: ArrayLike) -> Array:
         away = self._to_edge(x, y) / (TAPER * self.diagnostics.patch_size)
-        return RIPPLE * self._level.ripple / (1 + away * away)
+        return (RIPPLE * self._level.ripple + WANDERING * self._edge_change) / (1 + away * away)
+
+    @cached_property
+    def _edge_change(self) -> float:
+        """Largest last change of the pressure [Pa] within ``TAPER`` patches of a smooth edge, at equal x/a.
+
+        The change crosses zero there, at places that differ from grid to grid.
+        """
+        shapes = [level.shape for level in self._levels[:2] if level.shape is not None]
+        if len(shapes) < 2:
+            return 0.0
+        width = TAPER * self.diagnostics.patch_size / min(shapes[0].axes)
+        s = np.linspace(max(1 - width, 0.0), 1.0, 33)
+        p = [one.pressure(one.centre[0] + one.axes[0] * s, one.centre[1]) for one in shapes]
+        return float(np.abs(p[0] - p[1]).max())
 
     def _to_edge(self, x: ArrayLike, y: ArrayLike) -> Array:
         """Distance of points from a smooth edge [m], about."""
@@ -388,8 +403,9 @@ class Solution:
             for one in shapes
         ]
         share, least = FLOOR
-        if len(p) < 2:  # patches alone on the coarser grid
-            return least * self.peak_pressure
+        if len(p) < 2:  # patches alone on the coarser grid: the pressure is as uncertain as the radius
+            assert self.uncertainty is not None
+            return share * self.peak_pressure * self.uncertainty.contact_radius / self.contact_radius
         return share * float(np.sqrt(np.mean((p[0] - p[1]) ** 2))) + least * self.peak_pressure
 
     def _uncertain_edge(

@@ -112,7 +112,10 @@ def solve(
         if n > LARGEST_GRID:
             break
         grid = replace(levels[-1].grid, n=n, d=2 * half_width / n)
-        levels.append(nested.solve_on(grid, levels[-1], pressed, body, numerics))
+        try:
+            levels.append(nested.solve_on(grid, levels[-1], pressed, body, numerics))
+        except NotConverged:  # the last solution states what it reached
+            break
         estimate = uncertainty.of_contact(levels, pressed, body, numerics)
     solution = Solution.of_levels(levels[-3:], body, estimate, began)
     if levels[-1].shape is None:

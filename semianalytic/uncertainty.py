@@ -7,6 +7,7 @@ import numpy as np
 
 from semianalytic import convolution, influence
 from semianalytic.arrays import namespace
+from semianalytic.edge_correction import unresolved
 from semianalytic.grid import odd
 from semianalytic.inputs import Body, Numerics
 from semianalytic.level import Indenter, Level
@@ -15,6 +16,7 @@ __all__ = ["WIDER", "Uncertainty", "change", "of_contact", "other_conversion", "
 
 WIDER = 1.25  # the box that tests the domain over the box in use
 SMOOTH = (3.0, 0.8)  # times the last change, or the one before, of a contact with a smooth edge
+UNRESOLVED = 0.03  # patches by which the edge of a film thinner than two of them may be wrong
 PATCHES = 1 / 2  # of the change before, of patches alone, whose edge changes erratically
 
 
@@ -93,10 +95,11 @@ def of_contact(levels: list[Level], indenter: Indenter, body: Body, numerics: Nu
         "domain": _by_other_coefficients(varied, body, numerics, numerics, WIDER),
         "iteration": _of_iteration(last, indenter),
     }
+    edge = last.staircase
+    if last.shape and unresolved(body, last.grid.d):
+        edge = max(edge, UNRESOLVED * last.grid.d)
     factor, share = SMOOTH if last.shape else (safety(last.grid.n / levels[-2].grid.n), PATCHES)
-    return Uncertainty.from_levels(
-        fine, middle, coarse, variations, factor=factor, share=share, edge=last.staircase
-    )
+    return Uncertainty.from_levels(fine, middle, coarse, variations, factor=factor, share=share, edge=edge)
 
 
 def _by_other_coefficients(

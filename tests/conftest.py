@@ -1,8 +1,10 @@
 """One thread a process; the slow tests in parts."""
 
+import os
 import zlib
 
 import pytest
+from rich.console import Console
 from threadpoolctl import threadpool_limits
 
 SLOW_PARTS = 7
@@ -15,6 +17,17 @@ def _one_thread():
         yield
 
 
+@pytest.fixture
+def environment(monkeypatch):
+    """Variables as this process sees them; putenv is unsafe while other threads read the environment."""
+
+    def given(**variables):
+        monkeypatch.setattr(os, "environ", {**os.environ, **variables})
+        monkeypatch.setattr(Console, "_environ", os.environ)
+
+    return given
+
+
 def pytest_addoption(parser):
     parser.addoption(
         "--slow-part", type=int, choices=range(SLOW_PARTS), help="of the slow tests one part alone"
@@ -22,6 +35,9 @@ def pytest_addoption(parser):
 
 
 def pytest_collection_modifyitems(config, items):
+    for item in items:
+        if item.get_closest_marker("slow") or item.get_closest_marker("cases"):
+            item.add_marker(pytest.mark.timeout(3600))
     part = config.getoption("--slow-part")
     if part is None:
         return

@@ -55,6 +55,13 @@ def test_nothing_that_installs_names_a_place_on_the_network_or_on_one_machine():
         assert not re.search(r"://|index-url|find-links|/opt/|/root/", path.read_text()), path.name
 
 
+def test_no_test_changes_the_environment_of_a_process_with_threads():
+    """putenv moves the variables while another thread may read them: ``environment`` replaces os.environ."""
+    changing = re.compile(r"monkeypatch\.(set|del)env|os\.environ\[[^]]*\] =|os\.putenv|processes=False")
+    files = [path for path in (ROOT / "tests").rglob("test_*.py") if path != Path(__file__)]
+    assert [path.name for path in files if changing.search(path.read_text())] == []
+
+
 def test_every_file_of_the_packages_is_installed():
     patterns = tomllib.loads((ROOT / "pyproject.toml").read_text())["tool"]["setuptools"]["package-data"]
     for package in ("semianalytic", "fem_reference", "verification"):

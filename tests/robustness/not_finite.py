@@ -76,6 +76,7 @@ PLACES = (
     Place("semianalytic.smooth_edge", "beyond_centres", 0),
     Place("semianalytic.smooth_edge", "near_influence"),
     Place("semianalytic.subsurface", "stress"),
+    Place("semianalytic.fields", "stress"),
     Place("semianalytic.point_force", "half_space_stress"),
     Place("semianalytic.solution", "Solution.pressure"),
     Place("semianalytic.solution", "Solution.stress_with_uncertainty", 0),

@@ -37,9 +37,9 @@ REASONS = {
 
 
 @pytest.fixture(autouse=True)
-def _planted(monkeypatch):
+def _planted(environment):
     places = [str(HERE), str(HERE.parent / "verification"), os.environ.get("PYTHONPATH", "")]
-    monkeypatch.setenv("PYTHONPATH", os.pathsep.join(places))
+    environment(PYTHONPATH=os.pathsep.join(places))
 
 
 def task(how: str, folder: Path, number: int = 0) -> Task[str]:
@@ -103,14 +103,14 @@ def test_hanging_worker_is_stopped_with_what_it_started(tmp_path):
 
 
 @pytest.mark.slow
-def test_worker_that_the_kernel_stops_for_want_of_memory_is_one_sentence(tmp_path, monkeypatch):
+def test_worker_that_the_kernel_stops_for_want_of_memory_is_one_sentence(tmp_path, environment):
     group = Path("/sys/fs/cgroup/memory/coatcheck-greed")
     try:
         group.mkdir()
         (group / "memory.limit_in_bytes").write_text("150000000")
     except OSError as error:
         pytest.skip(f"no memory control group can be made here ({error})")
-    monkeypatch.setenv("PLANTED_GROUP", str(group))
+    environment(PLANTED_GROUP=str(group))
     try:
         tasks = [task("greed", tmp_path, n) for n in range(10)]
         *reasons, good = run_tasks([*tasks, task("good", tmp_path)], jobs=2, time_limit=300)
@@ -180,7 +180,8 @@ def orphans_of(folder: Path) -> float:
             "-c",
             "import sys, test_failing_workers as t; t.hang_in(sys.argv[1])",
             str(folder),
-        ]
+        ],
+        env=os.environ,
     )
     said = [folder / f"hang-{n}.json.pids" for n in range(2)]
     begin = time.monotonic()

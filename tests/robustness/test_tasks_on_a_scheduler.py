@@ -174,14 +174,12 @@ def test_files_too_large_to_send_are_refused(tmp_path, monkeypatch):
         dask_cluster._contents(large)
 
 
-def test_no_worker_is_one_message(monkeypatch):
-    from distributed import LocalCluster
-
+def test_no_worker_is_one_message(monkeypatch, tmp_path):
     monkeypatch.setattr(dask_cluster, "WAIT", 0.05)
     with (
-        LocalCluster(n_workers=0, processes=False, dashboard_address="127.0.0.1:0") as empty,
+        hand_started(tmp_path, 0) as (empty, _),
         pytest.raises(SchedulerError, match="scheduler"),
-        dask_cluster.connected(empty.scheduler_address, None),
+        dask_cluster.connected(empty, None),
     ):
         pass
 

@@ -1,5 +1,6 @@
 """Contact on one grid: what the iteration leaves, the staircase, single precision, memory."""
 
+import gc
 import tracemalloc
 from dataclasses import replace
 
@@ -71,6 +72,7 @@ def small(monkeypatch):
 
 def memory_of(indenter, n, **numerics):
     """Bytes a patch at the peak, and the contact."""
+    gc.collect()
     tracemalloc.start()
     given = Numerics(patches=n, edge_correction=False, tolerance=1e-4, **numerics)
     found = levels(1.0, indenter, Body((), (1.0, 0.0), 0.0), given, False)[-1]

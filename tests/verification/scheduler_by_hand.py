@@ -21,10 +21,10 @@ def wait_until(condition, what, seconds=300):
 
 
 @contextmanager
-def hand_started(folder, workers=2, **variables):
+def hand_started(folder, workers=2, threads=1, **variables):
     """``dask scheduler`` with ``dask worker``, as a person starts them; its address, the workers.
 
-    variables : of their environment, beside those of this process.
+    threads : of each worker.   variables : of their environment, beside those of this process.
     """
     environment = ENVIRONMENT | variables
     there = folder / "scheduler.json"
@@ -35,9 +35,10 @@ def hand_started(folder, workers=2, **variables):
         subprocess.Popen([dask, "scheduler", *common, "--port", "0"], env=environment, cwd=folder, **quiet)
     ]
     try:
-        wait_until(there.exists, "a scheduler", 60)
+        # The file is there before its content is.
+        wait_until(lambda: there.exists() and there.read_text().strip().endswith("}"), "a scheduler", 60)
         for _ in range(workers):
-            words = [dask, "worker", *common, "--nworkers", "1", "--nthreads", "1"]
+            words = [dask, "worker", *common, "--nworkers", "1", "--nthreads", str(threads)]
             words += ["--local-directory", str(folder)]
             started.append(subprocess.Popen(words, env=environment, cwd=folder, **quiet))
         yield json.loads(there.read_text())["address"], started[1:]

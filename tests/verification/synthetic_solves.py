@@ -25,11 +25,11 @@ cross_check = 5
 """
 
 
-def made_up(request: Mapping[str, Any]) -> dict[str, Any]:
+def made_up(request: Mapping[str, Any], crashing: float = CRASHING) -> dict[str, Any]:
     """Hertz on the coating's material; slower for thin coatings, so that answers arrive out of order."""
     E, nu, thickness = request["coating"]
     time.sleep(2e-7 / thickness)
-    if thickness == CRASHING:
+    if thickness == crashing:
         raise RuntimeError("the worker's own trouble")
     hertz = Hertz(request["radius"], request["load"], E, nu)
     rows = [

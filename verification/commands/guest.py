@@ -47,7 +47,7 @@ UNCOATED, COATED = ("01_uncoated_steel", "13_uncoated_sliding"), ("05_ratio_4", 
 SHOWN = (Outcome.AGREES, Outcome.DISAGREES, Outcome.INCONCLUSIVE, Outcome.NO_RESULT, Outcome.UNSUPPORTED)
 MOST_SHOWN = 12
 REPORT = "coatcheck-guest-report/1"
-EXAMPLES = PACKAGE / "guests" / "examples"
+EXAMPLES, PROTOCOL = (PACKAGE / "guests" / name for name in ("examples", "PROTOCOL.md"))
 PACKED = """name = "my results"
 results = "answers"               # directory of the files to fill in
 claim = 0.01                      # relative; needed where no uncertainty is given
@@ -73,7 +73,7 @@ def init(folder: Path, /, *, program: Flag = False) -> int:
             raise CommandError(f"{folder / name}: is there already; choose another directory")
     name = "".join(c for c in folder.resolve().name if c.isprintable() and c not in '"\\')[:60] or "my code"
     text = (source / FILE).read_text(encoding="utf-8")
-    text = f'name = "{name}"\n{text.partition(chr(10))[2]}'
+    text = f'name = "{name}"\n{text.partition(chr(10))[2]}\n# all keys, and the protocol: {PROTOCOL}\n'
     parse_guest(text.encode(), folder / FILE)
     write_atomically(folder / FILE, text)
     write_atomically(folder / "adapter.py", (source / "adapter.py").read_bytes())
@@ -127,12 +127,13 @@ def run(
 
     Args:
         guest: Directory with a guest.toml, that file, or the entry point of an installed guest.
-        cases: Names of shipped cases, see coatcheck list, or .toml files; all shipped ones unless given.
+        cases: Names of shipped cases, see coatcheck list, or .toml files; unless given all shipped
+            ones, for files those that were packed.
         output: Directory of report.html, report.json, junit.xml, badge.svg; GUEST/report unless given.
     """
     pool = pool_of(jobs, 1.0, scheduler)
     host = read_guest(guest)
-    chosen = _chosen(cases)
+    chosen = _chosen(cases or _packed(host))
     folder = output or host.folder / "report"
     begin, started = time.perf_counter(), datetime.datetime.now(datetime.UTC)
 
@@ -190,23 +191,29 @@ def check(guest: str, /, *, output: Folder = None, jobs: Jobs = None, as_json: A
         named = {r.name: [str(slip) for slip in slips(r, host.name)] for r in found.results}
         print_json({"guest": host.name, "exit_code": code, "slips": named})
         return code
-    for result in found.results:
-        _show(host, result)
     total = outcome_counts(found.results)
     answered = sum(total[o] for o in SHOWN[:-1])
     line = f"{host.name}: {total[Outcome.AGREES]} of {answered} comparisons agree"
     print_out(escape(line + ("; next: coatcheck guest run " + shlex.quote(guest) if not code else "")))
+    for result in found.results:
+        _show(host, result)
     return code
 
 
 def _show(guest: Guest, result: CaseResult) -> None:
-    """The answers of a guest about one case beside the exact ones, then the slips."""
+    """The likely slips, then the answers about one case that they do not explain, beside the exact ones."""
     print_out(f"\n[bold]{escape(result.title)}[/] ({escape(result.name)})")
+    likely = slips(result, guest.name)
+    for slip in likely:
+        print_out(f"[bold]->[/] {escape(one_line(str(slip)))}")
+    explained = {place for slip in likely if slip.explains for place in slip.places}
     table = named_table("quantity", "line", "at", "guest", "exact", "difference", "verdict")
     for claim, verdict in result.verdicts:
         mine = result.profile_of.get((claim.quantity, claim.line, guest.name))
         exact = result.profile_of.get((claim.quantity, claim.line, REFERENCE))
         if verdict.outcome is Outcome.UNSUPPORTED or mine is None or exact is None:
+            continue
+        if (claim.quantity, claim.line) in explained:
             continue
         # The point that decides, or where the exact value is largest.
         worst = verdict.worst if verdict.worst is not None else exact.position[np.abs(exact.value).argmax()]
@@ -225,8 +232,6 @@ def _show(guest: Guest, result: CaseResult) -> None:
     missing = Counter(v.reason for _, v in result.verdicts if v.outcome is Outcome.UNSUPPORTED)
     for reason, count in missing.items():
         print_out(f"[dim]{count} comparisons unsupported: {escape(one_line(reason))}[/]")
-    for slip in slips(result, guest.name):
-        print_out(f"[bold]->[/] {escape(one_line(str(slip)))}")
 
 
 def report_json(found: Examined, info: RunInfo) -> str:
@@ -252,6 +257,19 @@ def _chosen(names: Sequence[str]) -> list[Case]:
     cases = [read_case(path_of(name, shipped, SHIPPED)) for name in names or shipped]
     require_distinct([case.name for case in cases])
     return cases
+
+
+def _packed(guest: Guest) -> list[str]:
+    """The shipped cases whose files were written for ``guest`` to fill in; none of a guest that is called."""
+    if guest.results is None:
+        return []
+    place = guest.folder / guest.results
+    found = [name for name in shipped_cases() if (place / name).is_dir()]
+    if not found:
+        raise CommandError(
+            f"{place}: holds no shipped case; run coatcheck guest pack, or name the case files"
+        )
+    return found
 
 
 def _print(found: Examined, seconds: float, page: Path) -> None:
@@ -285,8 +303,14 @@ def _messages(found: Examined) -> list[str]:
         lines.append(f"[bold red]{escape(name)}:[/] listed as a known failure ({escape(reason)}), but agrees")
     for result in found.results:
         seen: Counter[str] = Counter()
+        likely = slips(result, found.guest.name)
+        lines += [f"[bold]->[/] {escape(result.name)}: {escape(one_line(str(slip)))}" for slip in likely]
+        places = {place for slip in likely for place in slip.places}
         for claim, verdict in result.verdicts:
-            if verdict.outcome in (Outcome.AGREES, Outcome.UNSUPPORTED):
+            if (
+                verdict.outcome in (Outcome.AGREES, Outcome.UNSUPPORTED)
+                or (claim.quantity, claim.line) in places
+            ):
                 continue
             where = "" if claim.line == "contact" else f" on {claim.line}"
             key = (
@@ -298,5 +322,4 @@ def _messages(found: Examined) -> list[str]:
             lines.append(f"[bold red]{escape(result.name)}:[/] {escape(one_line(text))}{more}")
         if len(seen) > MOST_SHOWN:
             lines.append(f"{escape(result.name)}: {len(seen) - MOST_SHOWN} more, see the report")
-        lines += [f"[bold]->[/] {escape(one_line(str(slip)))}" for slip in slips(result, found.guest.name)]
     return lines

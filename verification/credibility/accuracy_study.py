@@ -1,4 +1,4 @@
-"""The accuracy study of a default run: convergence of both methods on two solids of known solution."""
+"""The accuracy study of a default run: convergence on two solids of known solution, discs and ellipses."""
 
 import os
 import time
@@ -8,7 +8,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any, TypeVar
 
-from verification.credibility.disc_errors import DiscError, disc_errors
+from verification.credibility.exact_errors import ExactError, between_methods, disc_errors, turned_ellipse
 from verification.credibility.parameter_sweeps import Stated, Sweep, study
 from verification.credibility.refinement_studies import (
     Refinement,
@@ -27,15 +27,15 @@ from verification.running.provenance import commit, versions
 from verification.sources.method_sources import sharing_pressure
 from verification.sources.source_registry import solvers
 
-SCHEMA = "coatcheck-accuracy/2"
+SCHEMA = "coatcheck-accuracy/3"
 # The error of the corrected edge is followed to the grid in use.
 FINE = (41, 49, 65, 97, 129, 257)
 KEPT = 4  # solutions of a method, some 100 MB each of the finest meshes
 STEEL = (210e9, 0.3)
 BARE = CoatedContact(10e-3, 20.0, (), STEEL)
 COATED = CoatedContact(10e-3, 20.0, ((4 * STEEL[0], 0.3, BARE.a_h),), STEEL)
-FRICTION = 0.25
-COST = 5.0  # of the whole study, over that of an uncoated contact
+SLIDING = CoatedContact(10e-3, 20.0, ((4 * STEEL[0], 0.3, BARE.a_h / 2),), STEEL, friction=0.25)
+COST = 7.0  # of the whole study, over that of an uncoated contact
 PROBLEM = "a sphere of 10 mm under 20 N on steel, bare or with a coating of E1/E2 = 4, h = a_h"
 
 T = TypeVar("T")
@@ -45,7 +45,8 @@ T = TypeVar("T")
 class AccuracyStudy:
     """Errors of both methods with provenance; ``failures`` are messages on what could not be computed.
 
-    conversions, sweeps, stated : of the coated solid.   discs : under given pressures.
+    conversions, sweeps, stated : of the coated solid.   discs : under given pressures.   ellipses : contacts
+    that are no discs.
     commit : None outside a checkout.
     """
 
@@ -57,12 +58,13 @@ class AccuracyStudy:
     versions: dict[str, str]
     sweeps: tuple[Sweep, ...] = ()
     stated: tuple[Stated, ...] = ()
-    discs: tuple[DiscError, ...] = ()
+    discs: tuple[ExactError, ...] = ()
+    ellipses: tuple[ExactError, ...] = ()
 
     @property
     def verdicts(self) -> tuple[Invariant, ...]:
         """Each part of the semi-analytical method beside its limit."""
-        return verdicts(self.refinements, self.discs, self.conversions, self.failures)
+        return verdicts(self.refinements, self.discs + self.ellipses, self.conversions, self.failures)
 
 
 def measure() -> AccuracyStudy:
@@ -98,22 +100,39 @@ def measure() -> AccuracyStudy:
     sweeps, stated = attempt(
         "uncertainty by parameter", lambda: study(COATED, "coated", available=available), nothing
     )
-    discs: tuple[DiscError, ...] = attempt("discs", lambda: discs_of(), ())
+    discs: tuple[ExactError, ...] = attempt("discs", lambda: discs_of(), ())
+    ellipses: tuple[ExactError, ...] = attempt("ellipses", lambda: ellipses_of(), ())
     failures += [f"{sweep.method}, {sweep.parameter}, {sweep.failure}" for sweep in sweeps if sweep.failure]
     seconds = time.perf_counter() - begin
     return AccuracyStudy(
-        refinements, conversions, tuple(failures), seconds, commit(), versions(), sweeps, stated, discs
+        refinements,
+        conversions,
+        tuple(failures),
+        seconds,
+        commit(),
+        versions(),
+        sweeps,
+        stated,
+        discs,
+        ellipses,
     )
 
 
-def discs_of(patches: int = 129) -> tuple[DiscError, ...]:
+def discs_of(patches: int = 129) -> tuple[ExactError, ...]:
     """Given pressures on both solids, Hertz's sliding on the coated one."""
-    found = disc_errors(COATED, "coated", FRICTION, patches) + disc_errors(BARE, "uncoated", 0.0, patches)
+    found = disc_errors(COATED, "coated", SLIDING.friction, patches) + disc_errors(
+        BARE, "uncoated", 0.0, patches
+    )
     return tuple(found)
 
 
+def ellipses_of() -> tuple[ExactError, ...]:
+    """Contacts that are no discs, beside Hertz's and between the methods."""
+    return (*turned_ellipse(BARE), *between_methods(SLIDING))
+
+
 def quick() -> tuple[Invariant, ...]:
-    """The verdicts of a shorter study: fewer grids, no sweeps, no finite elements.
+    """The verdicts of a shorter study: fewer grids, no sweeps, no refinement of finite elements.
 
     For trials of planted faults: whatever fails is a verdict without a result.
     """
@@ -123,9 +142,9 @@ def quick() -> tuple[Invariant, ...]:
         grid(COATED, (33, 65, 129), solid="coated", setting=STAIRCASE, edge_correction=False),
     )
     try:
-        discs = discs_of()
+        discs = discs_of() + ellipses_of()
     except Exception as error:
-        return verdicts(refinements, (), (), (f"discs: {failure_message(error)}",))
+        return verdicts(refinements, (), (), (f"discs and ellipses: {failure_message(error)}",))
     return verdicts(refinements, discs, ())
 
 

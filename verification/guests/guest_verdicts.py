@@ -11,6 +11,7 @@ from verification.guests.grid_convergence import LEAST, estimated
 from verification.guests.guest_description import Guest
 from verification.judging.verdict import Claim, Outcome, Verdict
 from verification.problem.line_profile import Profile
+from verification.problem.quantity import BALL_PEAKS, PEAKS
 from verification.running.case_result import CaseResult, SourceResult, describe
 from verification.running.contact_run import decide
 
@@ -33,7 +34,8 @@ def judged(guest: Guest, case: Subject, exam: CaseResult, replies: Sequence[Solv
     outcomes = {guest.name: mine, REFERENCE: exact}
     verdicts = []
     for claim in claims_of(case, guest):
-        verdict = _refused(guest, claim, last.unsupported, found if last.values is not None else None)
+        reason = last.unsupported or _at_the_edge(guest, claim, exam)
+        verdict = _refused(guest, claim, reason, found if last.values is not None else None)
         if verdict is None:
             verdict = decided(guest, claim, decide(claim, profiles, outcomes, case.problem))
         verdicts.append((claim, verdict))
@@ -73,6 +75,18 @@ def decided(guest: Guest, claim: Claim, verdict: Verdict) -> Verdict:
         outcome=Outcome.AGREES if within else Outcome.DISAGREES,
         reason=f"{reason}; the guest states no uncertainty",
     )
+
+
+def _at_the_edge(guest: Guest, claim: Claim, exam: CaseResult) -> str | None:
+    """Why a largest tension is not asked for: it lies at the contact edge, which the guest leaves out."""
+    for names in (PEAKS, BALL_PEAKS):
+        if guest.edge and claim.quantity in names:
+            place, a = (
+                exam.profile_of[q, "contact", REFERENCE].value[0] for q in (names[1], "contact_radius")
+            )
+            if abs(abs(place) - a) < guest.edge * a:
+                return f"at the contact edge, where the guest gives no stress (edge = {guest.edge:g})"
+    return None
 
 
 def _refused(

@@ -120,7 +120,7 @@ def _settings(style: str) -> dict[str, Any]:
         "autodoc_class_signature": "separated",
         "python_maximum_signature_line_length": 90,
         "add_module_names": False,
-        "toc_object_entries_show_parents": "hide",
+        "toc_object_entries": False,  # the contents beside each page, copied for every other page
         "exclude_patterns": ["_static"],
         # A record that three packages name alike, in an annotation: no link, rather than one of the three.
         "suppress_warnings": ["ref.python"],

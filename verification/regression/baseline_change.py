@@ -11,6 +11,7 @@ from verification.regression.number_drift import Drift, Numbers, State, drift, e
 from verification.regression.usual_uncertainty import Ability, abilities
 from verification.running.case_result import CaseResult, RunInfo
 from verification.running.json_records import plain
+from verification.running.provenance import NOT_INSTALLED
 
 COUNTED = (State.SAME, State.DRIFTED, State.GONE, State.NEW)
 
@@ -196,9 +197,12 @@ def regression(
     return Regression(folder, then, cases, other, tuple(judged), usual)
 
 
-def differing(then: Mapping[str, str], now: Mapping[str, str]) -> tuple[tuple[str, str, str], ...]:
-    """(name, then, now) of each text that differs, "none" where one side lacks it."""
-    pairs = ((name, then.get(name, "none"), now.get(name, "none")) for name in dict.fromkeys([*then, *now]))
+def differing(
+    then: Mapping[str, str], now: Mapping[str, str], missing: str = NOT_INSTALLED
+) -> tuple[tuple[str, str, str], ...]:
+    """(name, then, now) of each text that differs, ``missing`` where one side lacks it."""
+    names = dict.fromkeys([*then, *now])
+    pairs = ((name, then.get(name, missing), now.get(name, missing)) for name in names)
     return tuple(pair for pair in pairs if pair[1] != pair[2])
 
 
@@ -210,7 +214,7 @@ def baseline_message(found: Regression) -> str:
     parts = [f"{counts[state]} {state}" for state in COUNTED]
     largest = max((c.change for c in found.cases if c.change is not None), default=None)
     by = f"; the largest change is {scientific(largest)} of its scale" if largest is not None else ""
-    return f"{', '.join(parts)}, of {sum(counts.values())} numbers{by}."
+    return f"{', '.join(parts)}, of the {sum(counts.values())} numbers of these cases{by}."
 
 
 def regression_json(found: Regression) -> dict[str, Any]:

@@ -68,7 +68,7 @@ def compare_runs(a: StoredRun, b: StoredRun) -> RunComparison:
         (a.info.started, b.info.started),
         against(b.results, first, whole=True, published=True),
         tuple(chain.from_iterable(changes)),
-        differing(_provenance(a), _provenance(b)),
+        differing(_provenance(a), _provenance(b), "none"),
         tuple(
             (name, one.seconds if one else None, two.seconds if two else None)
             for name, (one, two) in found.items()

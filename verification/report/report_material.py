@@ -29,13 +29,29 @@ from verification.report.tables.case_lookup import slug
 from verification.running.case_result import CaseResult, RunInfo, from_json, to_json
 from verification.running.checked_files import MAX_BYTES, StoreError, read_bounded, read_checked
 from verification.running.json_records import decode
-from verification.running.provenance import machine
+from verification.running.provenance import changed_since, machine
 from verification.running.stored_fields import read_planes
 from verification.sampling.stress_plane import Plane
 from verification.study import formula_errors
 from verification.study.formula_errors import EffectiveStudy
 
 T = TypeVar("T")
+_METHODS = ("semianalytic", "fem_reference", "verification/sources")
+_HARNESS = ("verification/judging", "verification/sampling")
+# The code that each record judges.
+JUDGED = {
+    "faults": (*_METHODS, *_HARNESS, "verification/credibility/faults"),
+    "alarms": (*_METHODS, *_HARNESS),
+    "mutants": (*_METHODS, *_HARNESS, "verification/running"),
+    "enclosures": ("verification/sources/enclosures", "verification/sources/references"),
+    "maps": ("verification/sources/assumptions",),
+}
+
+
+def made_with(maps: AssumptionMaps) -> tuple[str, str | None]:
+    """Date and commit of the oldest map."""
+    oldest = min(maps.maps, key=lambda one: one.started)
+    return oldest.started, oldest.commit
 
 
 @dataclass(frozen=True)
@@ -48,6 +64,7 @@ class Evidence:
     formulas : effective-modulus formulas.
     baseline : the change of each number since the baseline.
     maps : what the assumptions of the model cost.   models : the same of each case, by its name.
+    older : names of the records that were made before the code they judge changed, see ``JUDGED``.
     beyond : by case, a line for each assumption that costs too much of what the case judges.
     """
 
@@ -63,6 +80,7 @@ class Evidence:
     mutants: MutantRecord | None = None
     enclosures: EnclosureRecord | None = None
     maps: AssumptionMaps | None = None
+    older: tuple[str, ...] = ()
     models: Mapping[str, ModelError] = field(default_factory=dict)
     beyond: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
 
@@ -105,16 +123,26 @@ def gather(
         name: attempt(f"error of the model, {name}", partial(model_error, one.problem, maps), ModelError(()))
         for name, one in found.items()
     }
+    faults = attempt("planted faults", lambda: read_record(records), None)
+    alarms = attempt("false alarms", lambda: alarm_record.read_record(records), None)
+    made = {
+        "faults": faults.commit if faults else None,
+        "alarms": alarms.commit if alarms else None,
+        "mutants": mutants.info.commit if mutants else None,
+        "enclosures": enclosed.commit if enclosed else None,
+        "maps": made_with(maps)[1] if maps and maps.maps else None,
+    }
     return Evidence(
         attempt("manufactured solutions", design_orders, ()),
         attempt("imports", parts, ()),
-        attempt("planted faults", lambda: read_record(records), None),
-        attempt("false alarms", lambda: alarm_record.read_record(records), None),
+        faults,
+        alarms,
         tuple(failures),
         mutants=mutants,
         enclosures=enclosed,
         self_tests=tuple(self_tests),
         maps=maps,
+        older=tuple(name for name, commit in made.items() if changed_since(commit, JUDGED[name])),
         models=models,
         beyond={
             name: models[name].warnings(judged_quantities(one.quantities), one.warnings)

@@ -5,6 +5,7 @@ address behind "#". Without the script, and on paper, all pages follow one after
 """
 
 from collections.abc import Callable
+from dataclasses import replace
 from itertools import groupby
 from pathlib import Path
 
@@ -13,7 +14,7 @@ import numpy as np
 from verification.guests.pages import guests_section
 from verification.page.html_page import rendered
 from verification.page.number_text import seconds
-from verification.page.page_parts import Section
+from verification.page.page_parts import Part, Section
 from verification.regression import baseline_section
 from verification.report.credibility import (
     credibility_statement,
@@ -68,13 +69,31 @@ SECTIONS: tuple[tuple[str, Callable[[Material], Section | None]], ...] = (
 )
 
 
+# The page of each record that may be older than the code it judges.
+RECORDS = {"faults": "faults", "mutants": "mutants", "model": "maps"}
+
+
+def _dated(material: Material, section: Section | None) -> Section | None:
+    """``section``, where its record is older than the code with a sentence that says so."""
+    if section is None or RECORDS.get(section.anchor) not in material.evidence.older:
+        return section
+    text = (
+        "This record is older than the code that it judges: it was made before the last change of that code."
+    )
+    return replace(section, parts=[Part(text), *section.parts])
+
+
 def render(material: Material) -> str:
     """The whole page as text. Every string of a result is escaped: a title "<script>" stays text."""
     # Results may hold numbers that overflow or are not finite; the page shows them as they are.
     with np.errstate(all="ignore"):
         first = {name: block(material) for name, block in FIRST_PAGE.items()}
         cases = [contents(material, result) for result in material.results]
-        sections = [(group, found) for group, make in SECTIONS if (found := make(material)) is not None]
+        sections = [
+            (group, found)
+            for group, make in SECTIONS
+            if (found := _dated(material, make(material))) is not None
+        ]
         groups = [
             (group, [section for _, section in some])
             for group, some in groupby(sections, key=lambda pair: pair[0])

@@ -44,6 +44,9 @@ GMSH_LIBRARIES = {
 }
 
 
+NOT_INSTALLED = "not installed"
+
+
 def versions(packages: Iterable[str] = PACKAGES) -> dict[str, str]:
     """Version of Python and of each package, by default of those that results depend on."""
     return {"python": platform.python_version()} | {name: _version(name) for name in packages}
@@ -55,7 +58,7 @@ def _version(name: str) -> str:
     try:
         return version(name)
     except PackageNotFoundError:
-        return "not installed"
+        return NOT_INSTALLED
 
 
 def commit(here: Path = ROOT) -> str | None:
@@ -72,6 +75,17 @@ def commit(here: Path = ROOT) -> str | None:
         return git("rev-parse", "--short=12", "HEAD") + ("+" if git("status", "--porcelain", "-uno") else "")
     except (OSError, subprocess.SubprocessError):
         return None
+
+
+def changed_since(made: str | None, places: Iterable[str], here: Path = ROOT) -> bool:
+    """Whether source in ``places`` is newer than the commit ``made``; False where that cannot be known."""
+    if not made or not (here / ".git").exists():
+        return False
+    words = ["git", "-C", str(here), "diff", "--quiet", made.removesuffix("+"), "--", *places]
+    try:
+        return subprocess.run(words, capture_output=True, timeout=10).returncode == 1
+    except (OSError, subprocess.SubprocessError):
+        return False
 
 
 @cache

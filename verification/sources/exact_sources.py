@@ -6,7 +6,7 @@ from typing import Any
 
 from verification.problem.coated_contact import CoatedContact, PrescribedLoad, keywords
 from verification.problem.loading_curve import LoadingCurve, Problem
-from verification.sources.source_record import Kind, Source, Style
+from verification.sources.source_record import RESPONSE, Kind, Source, Style
 
 CODE = "verification.sources.references"
 
@@ -58,7 +58,16 @@ _EXACT, _CLOSED = Style("exact", (), 5.0, 0.35, "+"), Style("hertz", (1.0, 1.4),
 _smooth, _sliding = partial(_closed_accepts, sliding=False), partial(_closed_accepts, sliding=True)
 # The exact curve lies below the methods' as a broad grey band.
 REFERENCE_SOURCES = (
-    Source("integral_equation", Kind.EXACT, "integral equation", _EXACT, solve_exactly, _exact_accepts, CODE),
+    Source(
+        "integral_equation",
+        Kind.EXACT,
+        "integral equation",
+        _EXACT,
+        solve_exactly,
+        _exact_accepts,
+        CODE,
+        RESPONSE,
+    ),
     Source("hertz", Kind.CLOSED, "Hertz", _CLOSED, hertz, _smooth, CODE),
     Source("hamilton", Kind.CLOSED, "Hamilton", _CLOSED, hamilton, _sliding, CODE),
 )

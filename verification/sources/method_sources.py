@@ -8,7 +8,7 @@ from typing import Any
 
 from verification.problem.coated_contact import CoatedContact, PrescribedLoad, keywords
 from verification.problem.loading_curve import LoadingCurve, Problem
-from verification.sources.source_record import Kind, NumericalParameter, Solver, Source, Style
+from verification.sources.source_record import RESPONSE, Kind, NumericalParameter, Solver, Source, Style
 
 # Element size on a loading curve, which needs many solves; it leaves 1e-7 of the approach.
 CURVE_SIZE = 0.28
@@ -94,6 +94,7 @@ METHOD_SOURCES = (
         Style("semi"),
         solve_semianalytic,
         package="semianalytic",
+        equation=RESPONSE,
         coarse={"patches": 129},
         coarse_stress={"patches": 129},
         fields="boxes",

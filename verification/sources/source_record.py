@@ -7,7 +7,17 @@ from typing import Any
 
 from verification.problem.loading_curve import Problem
 
+RESPONSE = "frequency response of the layers"  # an equation that two sources solve
 Solver = Callable[..., Any]  # (problem, numerics) -> Solution, of a LoadingCurve a Loading
+
+
+class Independence(StrEnum):
+    """What the two sources of a comparison have in common, the most independent first."""
+
+    NOTHING = "methods that share nothing"
+    EQUATION = "methods that share an equation"
+    CLOSED = "closed forms"
+    PRINT = "printed tables"
 
 
 class Kind(StrEnum):
@@ -61,6 +71,7 @@ class Source:
     package : module or package that the fingerprint of its stored solutions is taken of.
     parameters : numerical parameters of a refinement study.
     coarse, coarse_stress : keywords of the coarse solves of the invariants, for scalars and for stresses.
+    equation : what it solves, where another source solves it too, in code of its own.
     fields : how its fields are written for ParaView, "mesh" or "boxes"; "" where they are not.
     """
 
@@ -71,6 +82,7 @@ class Source:
     solve: Solver | None = None
     accepts: Callable[[Any, str], bool] = _everything
     package: str = ""
+    equation: str = ""
     parameters: tuple[NumericalParameter, ...] = ()
     coarse: Mapping[str, Any] = field(default_factory=dict)
     coarse_stress: Mapping[str, Any] = field(default_factory=dict)

@@ -5,7 +5,7 @@ from itertools import combinations
 from verification.problem.loading_curve import Problem
 from verification.sources.exact_sources import REFERENCE_SOURCES
 from verification.sources.method_sources import METHOD_SOURCES
-from verification.sources.source_record import Kind, Solver, Source, Style
+from verification.sources.source_record import Independence, Kind, Solver, Source, Style
 
 PUBLISHED = "published"  # source of the profiles of a published table
 _OTHER = Style("other", (5.0, 1.5, 1.0, 1.5))
@@ -37,6 +37,18 @@ def solvers(problem: Problem | None = None) -> dict[str, Solver]:
 def sources_of(problem: Problem, kind: str = "stress") -> tuple[str, ...]:
     """The sources that give quantities of ``kind`` of ``problem``."""
     return tuple(source.name for source in SOURCES.values() if source.supports(problem, kind))
+
+
+def independence(between: tuple[str, ...]) -> Independence:
+    """What two sources that are compared have in common."""
+    pair = [SOURCES[name] for name in between if name in SOURCES]
+    kinds = {source.kind for source in pair}
+    if Kind.PUBLISHED in kinds:
+        return Independence.PRINT
+    if Kind.CLOSED in kinds:
+        return Independence.CLOSED
+    shared = len({source.equation for source in pair}) < len(pair) and pair[0].equation
+    return Independence.EQUATION if shared else Independence.NOTHING
 
 
 def pairs_of(sources: tuple[str, ...]) -> tuple[tuple[str, str], ...]:

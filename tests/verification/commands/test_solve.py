@@ -58,8 +58,8 @@ def test_bad_words_end_in_one_message(words, message, tmp_path):
     assert done.stdout == ""
 
 
-def test_table_fits_a_hundred_columns(tmp_path, monkeypatch):
-    monkeypatch.setenv("COLUMNS", "100")
+def test_table_fits_a_hundred_columns(tmp_path, environment):
+    environment(COLUMNS="100")
     done = coatcheck(*FAST, cwd=tmp_path)
     assert (done.returncode, done.stderr) == (0, "")
     lines = done.stdout.splitlines()

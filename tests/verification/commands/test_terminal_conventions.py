@@ -2,6 +2,7 @@
 
 import io
 import json
+import os
 import re
 import shutil
 import signal
@@ -125,13 +126,12 @@ def test_completion_works_in_the_shell_itself(capsys, tmp_path, shell, words):
 
 
 @pytest.mark.parametrize("width", [40, 80])
-def test_the_table_stands_in_a_narrow_terminal(stored, capsys, monkeypatch, width):
+def test_the_table_stands_in_a_narrow_terminal(stored, capsys, environment, width):
     from verification.commands.common.run_summary import print_run
     from verification.regression.baseline_change import Update, regression
     from verification.running.stored_run import read_run
 
-    monkeypatch.setenv("COLUMNS", str(width))
-    monkeypatch.setenv("TERM", "dumb")
+    environment(COLUMNS=str(width), TERM="dumb")
     results = [replace(result, name="15_dlc_chromium_sliding") for result in read_run(stored).results[:1]]
     beside = regression(results, None, "reports/baseline", INFO, whole=False)
     print_run(
@@ -168,6 +168,28 @@ def screen(monkeypatch):
         return lambda: re.sub(r"\x1b\[[0-9;]*m", "", written.getvalue())
 
     return of_width
+
+
+def test_the_list_fits_80_columns(screen):
+    from verification.commands.shipped.list_cases import list_cases
+
+    shown = screen(80)
+    list_cases()
+    lines = shown().splitlines()
+    assert max(len(line.rstrip()) for line in lines) <= 80
+    assert {line.split()[0] for line in lines if line.split()} >= {*shipped_cases(), *published_cases()}
+
+
+def test_the_table_of_a_run_keeps_names_whole_in_a_pipe(stored, capsys, monkeypatch):
+    from verification.commands.common.run_summary import print_run
+    from verification.regression.baseline_change import regression
+    from verification.running.stored_run import read_run
+
+    monkeypatch.setattr(os, "environ", {k: v for k, v in os.environ.items() if k != "COLUMNS"})
+    name = "a_case_of_mine_with_a_name_that_is_longer_than_forty_letters"
+    results = [replace(result, name=name) for result in read_run(stored).results[:1]]
+    print_run(results, stored / "report.html", 1.0, regression(results, None, "b", INFO, whole=False))
+    assert any(line.split()[:1] == [name] for line in capsys.readouterr().out.splitlines())
 
 
 @pytest.mark.parametrize("width", [80, 120])
@@ -218,8 +240,8 @@ def test_a_name_like_no_other_gets_no_suggestion(capsys):
     assert (code, "did you mean" in error) == (2, False)
 
 
-def test_what_is_piped_has_no_colours(tmp_path, monkeypatch):
-    monkeypatch.setenv("TERM", "xterm-256color")
+def test_what_is_piped_has_no_colours(tmp_path, environment):
+    environment(TERM="xterm-256color")
     (tmp_path / "quick.toml").write_text(QUICK)
     done = coatcheck("run", "quick.toml", "-v", cwd=tmp_path)
     assert done.returncode == 0, done.stderr
@@ -300,8 +322,8 @@ def test_no_run_is_one_sentence(tmp_path, capsys):
     assert not list(tmp_path.iterdir())
 
 
-def test_printing_without_a_browser_is_one_sentence(stored, capsys, monkeypatch):
-    monkeypatch.setenv("PATH", "")
+def test_printing_without_a_browser_is_one_sentence(stored, capsys, environment):
+    environment(PATH="")
     code, _, complaint = asked(capsys, "report", stored, "--pdf")
     assert code == 3
     assert "--pdf needs Chromium or Chrome" in complaint
@@ -313,12 +335,12 @@ def test_printing_without_a_browser_is_one_sentence(stored, capsys, monkeypatch)
     ("script", "time_limit", "said"),
     [("exit 7", 60.0, "ended with code 7"), ("exec sleep 60", 0.2, "did not print")],
 )
-def test_a_browser_that_fails_is_one_sentence(tmp_path, monkeypatch, script, time_limit, said):
+def test_a_browser_that_fails_is_one_sentence(tmp_path, environment, script, time_limit, said):
     program = tmp_path / "bin" / "chromium"
     program.parent.mkdir()
     program.write_text(f"#!/bin/sh\n{script}\n")
     program.chmod(0o755)
-    monkeypatch.setenv("PATH", f"{program.parent}:/usr/bin:/bin")
+    environment(PATH=f"{program.parent}:/usr/bin:/bin")
     (tmp_path / "page.html").write_text("<p>a page</p>")
     with pytest.raises(NoBrowser, match=said):
         printed(tmp_path / "page.html", tmp_path / "page.pdf", time_limit)

@@ -7,7 +7,7 @@ import pytest
 from synthetic_study import study
 
 from verification.credibility import accuracy_study as accuracy_study
-from verification.credibility.disc_errors import HERTZ, DiscError
+from verification.credibility.exact_errors import HERTZ, ExactError
 from verification.credibility.faults.fault_planting import Edit, planted
 from verification.credibility.refinement_studies import Level, Refinement
 from verification.credibility.study_verdicts import STAIRCASE, verdicts
@@ -76,7 +76,7 @@ def test_an_error_beyond_its_limit_and_an_order_below_disagree():
     rows = verdicts([staircase(FINE | {"p0": 1e-4, "pressure": 1e-3})], [], [])
     bad = {row.name.rpartition(": ")[2] for row in rows if row.outcome is Outcome.DISAGREES}
     assert bad == {"p0, N = 257", "order of p0", "order of pressure"}
-    (disc,) = verdicts([], [DiscError(HERTZ, "coated", "stress, inside", 2e-8)], [])
+    (disc,) = verdicts([], [ExactError(HERTZ, "coated", "stress, inside", 2e-8)], [])
     assert disc.outcome is Outcome.DISAGREES
 
 

@@ -13,6 +13,7 @@ from verification.guests.guest_description import Guest, Supports
 from verification.guests.guest_protocol import VERSION, Answer
 from verification.guests.guest_verdicts import judged
 from verification.guests.slip_diagnosis import slips
+from verification.judging.verdict import Outcome
 from verification.problem.coated_contact import CoatedContact
 from verification.running.case_result import from_json
 from verification.running.checked_files import read_checked
@@ -180,6 +181,16 @@ def test_the_other_side_of_an_interface_is_named(exams):
         upper["sigma_xx"], lower["sigma_xx"] = lower["sigma_xx"], upper["sigma_xx"]
 
     assert "the other layer?" in messages(exams, COATED, change)[0]
+
+
+def test_a_largest_tension_in_the_zone_that_is_left_out_is_not_asked_for(exams):
+    case, exam = exams[SLIDING]
+    values = {"contact": {"largest_tension": 1.0, "tension_place": 0.0, "contact_radius": 1.0}}
+    reply = [Solved(Answer(protocol=VERSION, id="x", values=values), 0.0)]
+    for edge, outcome in ((0.0, Outcome.DISAGREES), (0.05, Outcome.UNSUPPORTED)):
+        found = {c.quantity: v for c, v in judged(replace(GUEST, edge=edge), case, exam, reply).verdicts}
+        assert {found[q].outcome for q in ("largest_tension", "tension_place")} == {outcome}
+        assert found["contact_radius"].outcome is Outcome.DISAGREES
 
 
 def test_the_reference_is_exact():

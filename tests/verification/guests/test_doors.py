@@ -114,6 +114,14 @@ def test_init_writes_a_guest_that_runs_as_it_is(tmp_path):
     assert coatcheck("guest", "init", "mine", cwd=tmp_path).returncode == 2
 
 
+def test_judge_judges_what_was_packed(tmp_path):
+    assert coatcheck("guest", "pack", "mine", "01_uncoated_steel", cwd=tmp_path).returncode == 0
+    done = coatcheck("guest", "judge", "mine", "--json", cwd=tmp_path)
+    assert json.loads(done.stdout)["cases"].keys() == {"01_uncoated_steel"}
+    shutil.rmtree(tmp_path / "mine" / "answers")
+    assert coatcheck("guest", "judge", "mine", cwd=tmp_path).returncode == 2
+
+
 @pytest.mark.parametrize(
     ("text", "words"),
     [

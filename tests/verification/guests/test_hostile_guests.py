@@ -276,6 +276,16 @@ def test_answers_out_of_order_are_refused(hertz, tmp_path):
     assert "question" in replies[0].answer.error
 
 
+def test_a_program_that_keeps_its_answer_in_a_buffer_is_told_to_flush(hertz, tmp_path):
+    program = "import sys, time; print('COATCHECK {}', flush=False); sys.stdin.readline(); time.sleep(100)"
+    (tmp_path / "hostile.py").write_text(program)
+    case, exam, _ = hertz
+    host = guest(tmp_path, command=(sys.executable, "-S", "-E", "hostile.py"), time_limit=1.0)
+    question = question_of(case, exam, host, claims_of(case, host), {})
+    (reply,) = answered(host, case, [question])
+    assert all(word in reply.answer.error for word in ("no answer", "read the question", "flush"))
+
+
 def test_a_program_that_is_not_there_is_one_message(tmp_path):
     with pytest.raises(ProtocolError, match="no_such_program"):
         Program(("no_such_program",), tmp_path)

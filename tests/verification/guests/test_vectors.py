@@ -73,7 +73,7 @@ def test_problems_computed_anew_have_the_same_digits(shipped, number):
 def folder(tmp_path_factory):
     """What the command writes."""
     place = tmp_path_factory.mktemp("vectors")
-    done = coatcheck("vectors", "digits", cwd=place)
+    done = coatcheck("vectors", "--output", "digits", cwd=place)
     assert done.returncode == 0, done.stderr
     return place / "digits"
 

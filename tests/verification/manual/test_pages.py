@@ -1,13 +1,17 @@
 """Pages of the manual: what is kept, what is generated, how docstrings and formulas are typeset."""
 
+import json
 import re
 
 import pytest
 
+from verification.guests.vectors.open_digits import FILE, shipped
 from verification.manual import manual_build, manual_pdf
+from verification.manual.baseline_numbers import baseline, largest
 from verification.manual.generated_blocks import BLOCKS
 from verification.manual.sphinx_extension import restructured
 from verification.manual.worked_examples import WORKED
+from verification.page.number_text import scientific
 
 SLOW = ("solved", *WORKED)  # solve problems
 
@@ -56,6 +60,23 @@ def test_the_page_to_be_printed_loads_no_file_and_lists_its_chapters(tmp_path):
 def test_every_block_of_the_manual_has_content():
     empty = [name for name, block in BLOCKS.items() if name not in SLOW and not block().strip()]
     assert empty in ([], ["more_pages"])  # no page is added beyond those that the index names
+
+
+def test_the_numbers_of_the_readme_are_those_of_the_baseline_and_the_records():
+    text = " ".join((manual_build.SOURCE.parents[2] / "README.md").read_text(encoding="utf-8").split())
+    known = baseline()
+    contacts = [name for name in known.cases if not known.published(name)]
+    comparisons = sum(len(c.pairs) for name in contacts for c in known.manifests[name].comparisons)
+    invariants = sum(len(known.manifests[name].invariants) for name in contacts)
+    assert f"all {comparisons} comparisons and all {invariants} invariants agree" in text
+    between = ("fem_reference", "integral_equation")
+    error = max(largest(name, between, "stress") or 0.0 for name in contacts)
+    assert re.search(r"by at most (\S+) of the smaller of p_h", text)[1] == scientific(error, 2)
+    assert f"exact values of {len(shipped()['problems'])} problems" in text
+    guests = json.loads((FILE.parent / "guests.json").read_text(encoding="utf-8"))
+    for name, stated in re.findall(r"(tamaas|slippy|CalculiX)[^,.]*? (\de-\d)", text):
+        (found,) = (one for one in guests if one["guest"].startswith(name))
+        assert f"{found['differences']['peak_pressure']:.0e}".replace("e-0", "e-") == stated
 
 
 @pytest.mark.slow

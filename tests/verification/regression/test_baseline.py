@@ -17,6 +17,7 @@ from verification.regression.baseline_change import (
     Baseline,
     against,
     case_drift,
+    differing,
     regression,
     regression_json,
     updated,
@@ -337,3 +338,8 @@ def test_the_shipped_baseline_is_whole_small_and_has_its_reasons():
     assert set(stored.manifests) == set(stored.cases)
     assert path_in(BASELINE).stat().st_size < 1_000_000  # 200,000 numbers take half of it
     assert all(update.why and update.when and update.versions for update in stored.history)
+
+
+def test_a_package_that_is_not_named_is_not_installed():
+    assert differing({"python": "3.13"}, {"python": "3.13", "mkl": "not installed"}) == ()
+    assert differing({"mkl": "1"}, {}) == (("mkl", "1", "not installed"),)

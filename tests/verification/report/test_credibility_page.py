@@ -1,5 +1,6 @@
 """The credibility page: every figure computed or from a record, what is missing said, imports really read."""
 
+import subprocess
 from dataclasses import replace
 
 import pytest
@@ -22,7 +23,11 @@ from verification.report.credibility.credibility_statement import figures
 from verification.report.credibility.faults_section import faults_section
 from verification.report.report_material import Evidence, Material, gather
 from verification.report.report_page import render
+from verification.report.sections import first_page
 from verification.running.case_result import CaseResult
+from verification.running.provenance import changed_since
+from verification.sources.source_record import Independence
+from verification.sources.source_registry import independence
 
 E, NU = STEEL
 RESULTS = [
@@ -226,3 +231,43 @@ def test_other_codes_have_their_differences_in_the_report(evidence):
     assert len(rows) == 4
     assert rows["tamaas"][3] == pytest.approx(5.4e-6, rel=0.1)  # p0
     assert all(0 < found[0] <= 1 for found in rows.values())
+
+
+def test_a_record_is_older_than_the_code_only_where_that_has_changed_since(tmp_path):
+    def git(*words):
+        identity = ("-c", "user.name=a", "-c", "user.email=a@b")
+        return subprocess.run(
+            ["git", *identity, *words], cwd=tmp_path, check=True, capture_output=True, text=True
+        ).stdout.strip()
+
+    for name in ("judged", "other"):
+        (tmp_path / name).write_text("1")
+    git("init", "-q")
+    git("add", ".")
+    git("commit", "-qm", "first")
+    made = git("rev-parse", "--short=12", "HEAD")
+    (tmp_path / "other").write_text("2")
+    assert not changed_since(made, ["judged"], tmp_path)
+    assert changed_since(made + "+", ["other"], tmp_path)
+    assert not changed_since("c0ffee123456", ["other"], tmp_path)  # a commit that is not known here
+    assert not changed_since(None, ["other"], tmp_path)
+
+
+def test_an_old_record_is_marked_on_its_page_and_on_the_first(evidence):
+    record = Record((), (), "2026-10-09T08:00:00+00:00", 60.0, 90.0, "c0ffee123456", "m", {})
+    for older in ((), ("faults",)):
+        text = render(Material(RESULTS, INFO, replace(evidence, faults=record, older=older)))
+        assert text.count("older than the code") == (2 if older else 0)
+        assert text.count("older than code") == (1 if older else 0)
+        assert "2026-10-09, c0ffee12" in text
+
+
+def test_comparisons_are_counted_by_what_their_sources_share():
+    counted = {item.name: item.value for item in first_page.worth(Material(RESULTS, INFO))}
+    total = sum(len(result.verdicts) for result in RESULTS)
+    named = [int(counted[kind].split()[-1]) for kind in Independence if kind in counted]
+    assert sum(named) == total
+    assert independence(("semianalytic", "integral_equation")) is Independence.EQUATION
+    assert independence(("semianalytic", "fem_reference")) is Independence.NOTHING
+    assert independence(("fem_reference", "hertz")) is Independence.CLOSED
+    assert independence(("fem_reference", "published")) is Independence.PRINT

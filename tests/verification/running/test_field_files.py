@@ -187,9 +187,8 @@ def test_rendering_that_crashes_or_hangs_is_one_message(tmp_path, program, time_
         ({"case": "one"}, 3, "display"),
     ],
 )
-def test_what_cannot_be_viewed_is_one_sentence(folder, capsys, monkeypatch, words, code, said):
-    for name in ("DISPLAY", "WAYLAND_DISPLAY"):
-        monkeypatch.delenv(name, raising=False)
+def test_what_cannot_be_viewed_is_one_sentence(folder, capsys, environment, monkeypatch, words, code, said):
+    environment(DISPLAY="", WAYLAND_DISPLAY="")
     monkeypatch.setattr("sys.platform", "linux")
     options = {name: value for name, value in words.items() if name != "case"}
     if "screenshot" in options:

@@ -1,13 +1,14 @@
 """The engine of a study on made-up answers: nothing lost, nothing solved twice, the same table always."""
 
-import gc
 import json
+import os
 from contextlib import contextmanager
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 import pytest
-import synthetic_solves
+from scheduler_by_hand import hand_started
 from synthetic_solves import CRASHING, FAILING, STUDY, made_up
 
 from verification.running.checked_files import StoreError, locked
@@ -19,6 +20,7 @@ from verification.study.study_plan import parse_study
 from verification.study.study_point import answer
 from verification.study.study_table import COLUMNS, read_columns, read_study
 
+HELPERS = Path(__file__).parents[1]  # imported by the workers too
 SOLVES = 6 + 2 * 3  # curves and their checks
 
 
@@ -30,23 +32,23 @@ def plan(**replaced):
 
 
 @contextmanager
-def threads(n):
-    """A cluster within this process."""
-    from distributed import Client, LocalCluster
+def threads(n, folder):
+    """A client of a worker with ``n`` threads, in a process of its own."""
+    from distributed import Client
 
-    gc.collect()  # as `connected` does
+    folder.mkdir(exist_ok=True)
+    places = os.pathsep.join([str(HELPERS), os.environ.get("PYTHONPATH", "")])
     with (
-        LocalCluster(
-            n_workers=1, threads_per_worker=n, processes=False, dashboard_address="127.0.0.1:0"
-        ) as cluster,
-        Client(cluster, set_as_default=False) as client,
+        hand_started(folder, 1, n, PYTHONPATH=places) as (address, _),
+        Client(address, set_as_default=False) as client,
     ):
+        client.wait_for_workers(1)
         yield client
 
 
 @pytest.fixture(scope="module")
-def cluster():
-    with threads(3) as client:
+def cluster(tmp_path_factory):
+    with threads(3, tmp_path_factory.mktemp("worker")) as client:
         yield client
 
 
@@ -85,7 +87,7 @@ def test_every_point_is_a_row_with_its_full_input(tmp_path, client):
 
 
 def test_order_of_the_answers_leaves_no_trace(tmp_path, client):
-    with threads(1) as alone:
+    with threads(1, tmp_path / "worker") as alone:
         one = run_study(plan(), tmp_path / "one", lambda: client_of(alone), solve=made_up)
     three = run_study(plan(), tmp_path / "three", client, solve=made_up)
     assert one.table.read_bytes() == three.table.read_bytes()
@@ -174,14 +176,13 @@ def test_a_point_that_fails_is_a_row_with_its_sentence(tmp_path, client):
     assert run_study(study, tmp_path, client, solve=made_up).done == 0
 
 
-def test_what_a_worker_could_not_answer_is_a_row_now_tried_again_later(tmp_path, client, monkeypatch):
+def test_what_a_worker_could_not_answer_is_a_row_now_tried_again_later(tmp_path, client):
     study = plan(thickness=f"[4e-5, {CRASHING}]", cross_check="0")
     came = run_study(study, tmp_path, client, solve=made_up)
     assert came.failed == 4
     assert set(came.lost.values()) == {"RuntimeError: the worker's own trouble"}
     assert any("RuntimeError" in (one or "") for one in read_columns(came.table)["failure"].tolist())
-    monkeypatch.setattr(synthetic_solves, "CRASHING", 0.0)
-    again = run_study(study, tmp_path, client, solve=made_up)
+    again = run_study(study, tmp_path, client, solve=partial(made_up, crashing=0.0))
     assert (again.failed, again.done) == (0, 2)
 
 

@@ -1,5 +1,6 @@
 """What a run found, on the terminal and as JSON."""
 
+import os
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from functools import partial
@@ -10,7 +11,7 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Column, Table
 
-from verification.commands.common.terminal import STYLE, one_line
+from verification.commands.common.terminal import STYLE, UNBROKEN, one_line
 from verification.judging.invariant_verdict import Invariant
 from verification.judging.outcome import DECIDED, Outcome
 from verification.regression.baseline_change import Regression, State, baseline_message
@@ -64,6 +65,8 @@ def print_run(
 ) -> None:
     """Print a table of the cases, then a line for each failure and for the run as a whole."""
     console = Console()
+    if not console.is_terminal and "COLUMNS" not in os.environ:
+        console = Console(width=UNBROKEN)
     console.print(_table(results, beside, narrow=console.width < NARROW))
     # In a pipe each message stays on one line.
     say = partial(console.print, highlight=False, soft_wrap=not console.is_terminal)

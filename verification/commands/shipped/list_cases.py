@@ -1,4 +1,4 @@
-"""coatcheck list: the shipped cases with their sources."""
+"""coatcheck list: the shipped cases and published results."""
 
 from rich.markup import escape
 
@@ -9,7 +9,7 @@ from verification.commands.common.terminal import named_table, print_json, print
 
 
 def list_cases(*, as_json: AsJson = False) -> int:
-    """List the shipped cases with title and source, then the published results with their year."""
+    """List the shipped cases with their title, then the published results; sources with --json."""
     cases = [read_case(path) for path in shipped_cases().values()]
     published = [read_published(path) for path in published_cases().values()]
     if as_json:
@@ -17,14 +17,13 @@ def list_cases(*, as_json: AsJson = False) -> int:
         rows = [_listed(case) for case in cases]
         print_json(rows + [_listed(p) | {key: p.citation[key] for key in keys} for p in published])
         return 0
-    table = named_table("case", "title", "claims", "source")
+    table = named_table("case", "claims", "title")
     for case in cases:
-        table.add_row(case.name, escape(case.title), str(len(case.claims)), escape(case.source))
-    results = named_table("published", "title", "values", "year", "source")
+        table.add_row(case.name, str(len(case.claims)), escape(case.title))
+    results = named_table("published", "values", "year", "title")
     for result in published:
         values = sum(int(item.counted.sum()) for item in result.columns)
-        cells = (result.title, str(values), str(result.citation["year"]), result.source)
-        results.add_row(result.name, *map(escape, cells))
+        results.add_row(result.name, str(values), str(result.citation["year"]), escape(result.title))
     print_out(table, "", results)
     return 0
 

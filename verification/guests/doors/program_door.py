@@ -75,7 +75,8 @@ class Program:
         # In a thread, since a program may write before it reads all of the question; to a descriptor of its
         # own, since ``end`` may close the other one meanwhile.
         pipe = os.dup(self.process.stdin.fileno())
-        threading.Thread(target=_write, args=(pipe, line), daemon=True).start()
+        self._writing = threading.Thread(target=_write, args=(pipe, line), daemon=True)
+        self._writing.start()
         content = self._answer_line(begin + time_limit, time_limit)
         return Solved(parse_answer(content, question), time.monotonic() - begin, self._memory())
 
@@ -96,7 +97,7 @@ class Program:
                 self._seen = len(self.unread)
                 left = until - time.monotonic()
                 if left <= 0 or not ready.select(left):
-                    raise ProtocolError(f"no answer after {time_limit:.3g} s; see time_limit in guest.toml")
+                    raise ProtocolError(self._silence(time_limit, count))
                 more = os.read(self.process.stdout.fileno(), CHUNK)
                 count += len(more)
                 if count > MOST_BYTES:
@@ -104,6 +105,13 @@ class Program:
                 if not more:
                     raise ProtocolError(self._end())
                 self.unread += more
+
+    def _silence(self, time_limit: float, count: int) -> str:
+        """What a program that is still at work has read and written since the question."""
+        read = "it has read the question" if not self._writing.is_alive() else "it has not read the question"
+        wrote = f"written {count} bytes without an answer" if count else "written nothing"
+        flush = "flush the output after each answer, or raise time_limit in guest.toml"
+        return f"no answer after {time_limit:.3g} s; {read} and {wrote}; {flush}"
 
     def _end(self) -> str:
         """How a program that closed its output ended."""

@@ -12,6 +12,8 @@ from typing import Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
+from verification.problem.quantity import unit_of
+
 VERSION: Literal["coatcheck-vectors/1"] = "coatcheck-vectors/1"
 FILE = Path(__file__).parents[1] / "shipped" / "vectors.json.gz"
 README = Path(__file__).parent / "README.md"
@@ -89,10 +91,13 @@ class VectorSet(_Strict):
 def csv_texts(vectors: Sequence[dict[str, Any]]) -> dict[str, str]:
     """The same content as ``problems.csv`` and ``values.csv``."""
     most = max(len(v["problem"]["coatings"]) for v in vectors)
-    layers = [f"{name}{k}" for k in range(1, most + 1) for name in ("E", "nu", "thickness")]
-    heads = ("radius", "load", "pressure", "load_radius", "friction")
-    problems: list[list[Any]] = [["name", "group", *heads, "E", "nu", *layers]]
-    values: list[list[Any]] = [["problem", "quantity", "x", "z", "layer", "value", "uncertainty"]]
+    layers = [name for k in range(1, most + 1) for name in (f"E{k} [Pa]", f"nu{k}", f"thickness{k} [m]")]
+    heads = {"radius": "m", "load": "N", "pressure": "Pa", "load_radius": "m", "friction": ""}
+    named = [f"{name} [{unit}]" if unit else name for name, unit in heads.items()]
+    problems: list[list[Any]] = [["name", "group", *named, "E [Pa]", "nu", *layers]]
+    values: list[list[Any]] = [
+        ["problem", "quantity", "unit", "x [m]", "z [m]", "layer", "value", "uncertainty"]
+    ]
     for v in vectors:
         p = v["problem"]
         row = [
@@ -105,11 +110,13 @@ def csv_texts(vectors: Sequence[dict[str, Any]]) -> dict[str, str]:
         for coating in p["coatings"]:
             row += [coating["E"], coating["nu"], coating["thickness"]]
         problems.append(row + [""] * (len(problems[0]) - len(row)))
-        values += [[v["name"], q, 0.0, 0.0, 0, *found] for q, found in v["contact"].items()]
+        values += [[v["name"], q, unit_of(q), 0.0, 0.0, 0, *found] for q, found in v["contact"].items()]
         for points in v["points"]:
             for q, found in points["values"].items():
                 places = zip(points["x"], points["z"], found, points["uncertainty"][q], strict=True)
-                values += [[v["name"], q, x, z, points["layer"], value, U] for x, z, value, U in places]
+                values += [
+                    [v["name"], q, unit_of(q), x, z, points["layer"], value, U] for x, z, value, U in places
+                ]
     return {"problems.csv": _csv(problems), "values.csv": _csv(values)}
 
 

@@ -6,6 +6,8 @@ of the result, evidence for each.
 """
 
 from collections.abc import Sequence
+from math import isfinite
+from statistics import median
 
 from verification.credibility.import_independence import shared
 from verification.credibility.self_tests.known_enclosures import TEST
@@ -37,9 +39,9 @@ from verification.running.case_result import CaseResult
 ANCHOR = "credibility"
 NO_RECORD = ("Not measured: there is no record of {}; make one with: {} --record", "not measured")
 ASSUMED = (
-    "A rigid, parabolic sphere, much larger than the contact; small strains; linear, isotropic, elastic "
-    "layers with nu < 1/2, perfectly bonded, on a half-space; no adhesion, no roughness; Coulomb friction "
-    "q = f p that leaves p unchanged."
+    "A parabolic sphere, rigid or elastic, much larger than the contact; small strains; linear, isotropic, "
+    "elastic layers with nu < 1/2, perfectly bonded, on a half-space; no adhesion, no roughness; Coulomb "
+    "friction q = f p that leaves p unchanged."
 )
 COMMON_TITLES = (
     "What the semi-analytical method and the integral equation share",
@@ -143,19 +145,27 @@ def _overview(material: Material) -> Table:
         refinements = f"{len(evidence.accuracy.refinements)} refinement studies on exact solutions"
     if evidence.baseline is not None:
         regression = baseline_message(evidence.baseline)
+
+    def older(name: str) -> str:
+        return ", older than the code" if name in evidence.older else ""
+
     held = f"{holding} of {len(invariants)} invariants hold" if invariants else "not measured"
     rows = [
         ("Code verification", f"{design}; {refinements}", here),
         ("Solution verification", _bracketed(material.contacts), here),
         ("Invariants of each solution", held, here),
-        ("Exact reference", _enclosed(evidence, short=True), _when(evidence.enclosures)),
+        (
+            "Exact reference",
+            _enclosed(evidence, short=True),
+            _when(evidence.enclosures) + older("enclosures"),
+        ),
         ("Comparison", f"{agreeing} of {total} comparisons agree", here),
         ("What was judged", short_message(material), here),
         ("Independence", _short_independence(evidence), here),
         ("Regression", regression, here),
-        ("Fault detection", _faults(evidence, short=True), _when(evidence.faults)),
-        ("Mutation testing", _mutants(evidence, short=True), _when(evidence.mutants)),
-        ("False alarms", _alarms(evidence, short=True), _when(evidence.alarms)),
+        ("Fault detection", _faults(evidence, short=True), _when(evidence.faults) + older("faults")),
+        ("Mutation testing", _mutants(evidence, short=True), _when(evidence.mutants) + older("mutants")),
+        ("False alarms", _alarms(evidence, short=True), _when(evidence.alarms) + older("alarms")),
     ]
     return Table(
         "Overview of the evidence.",
@@ -179,9 +189,11 @@ def _bracketed(results: Sequence[CaseResult]) -> str:
     if not found:
         return "not measured: no case of this run has an exact reference."
     good = sum(item.covered for item in found)
+    ratios = [item.ratio for item in found if item.ratio is not None and isfinite(item.ratio)]
+    wide = f"; the median of U over the error is {plain(median(ratios), 2)}" if ratios else ""
     return (
         f"U covers the true error at every judged point in {good} of {len(found)} quantities "
-        f"({plain(100 * good / len(found), 3)} %)."
+        f"({plain(100 * good / len(found), 3)} %){wide}."
     )
 
 

@@ -21,7 +21,7 @@ from verification.sources.assumptions.contact_change import SCALARS
 ANCHOR = "model"
 LEVELS = (0.001, 0.01, 0.05)
 SHADES = (0.15, 0.4, 0.75)
-COLOUR = "fem"
+COLOUR, NO_ANSWER = "fem", 0.45
 ACROSS, UP = "thickness", "ratio"
 WIDTH, HEIGHT = 320, 250
 BOX = (48.0, 5.0, 266.0, 207.5)  # left, top, width, height
@@ -131,14 +131,17 @@ def _part(one: AssumptionMap) -> Part:
         for quantity, plane in zip(one.quantities, planes, strict=True)
         if np.isfinite(plane).any()
     ]
-    legend = [(_tint(shade), f"above {_percent(level)}") for level, shade in zip(LEVELS, SHADES, strict=True)]
+    legend = [
+        (_tint(0.0), f"below {_percent(LEVELS[0])}"),
+        (_tint(NO_ANSWER, "muted"), "no answer of the model"),
+    ]
+    legend += [
+        (_tint(shade), f"above {_percent(level)}") for level, shade in zip(LEVELS, SHADES, strict=True)
+    ]
     fixed = ", ".join(
         f"{WORDS[name]} = {at[name]:g}" for name in at if name in drawable and name not in (ACROSS, UP)
     )
-    caption = (
-        f"Relative change{f' at {fixed}' if fixed else ''}, linear between the nodes. White: below "
-        f"{_percent(LEVELS[0])}, or the model had no answer."
-    )
+    caption = f"Relative change{f' at {fixed}' if fixed else ''}, linear between the nodes."
     return Part(text, [_largest(one)], Gallery(legend, panels, caption, _csv(one)), title)
 
 
@@ -159,6 +162,9 @@ def _slice(one: AssumptionMap) -> dict[str, float]:
 
 def _draw(x: Array, y: Array, plane: Array, label: str) -> Markup:
     axes, size = Axes(BOX, (x[0], x[-1]), (y[0], y[-1])), np.ma.masked_invalid(np.abs(plane))
+    known = np.where(size.mask, 0.0, 1.0) if np.ma.is_masked(size) else np.ones_like(plane)
+    if not known.all():
+        axes.filled(x, y, known, -1.0, 0.999, "muted", NO_ANSWER)
     for (low, high), shade in zip(pairwise((*LEVELS, 1e9)), SHADES, strict=True):
         if (size > low).any():
             axes.filled(x, y, size, low, high, COLOUR, shade)
@@ -193,11 +199,11 @@ def _percent(value: float) -> str:
     return f"{100 * value:.2g} %".replace("-", "−")
 
 
-def _tint(shade: float) -> Markup:
+def _tint(shade: float, colour: str = COLOUR) -> Markup:
     return Markup(
         '<svg class="swatch" viewBox="0 0 36 10" aria-hidden="true"><rect x="1" y="0" width="34" height="10" '
-        'class="f-{}" fill-opacity="{}"/></svg>'
-    ).format(COLOUR, shade)
+        'class="f-{} s-muted" stroke-width="1" fill-opacity="{}"/></svg>'
+    ).format(colour, shade)
 
 
 def _rows(one: AssumptionMap) -> list[list[str]]:

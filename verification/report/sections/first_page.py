@@ -2,13 +2,15 @@
 
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from math import isfinite
+from statistics import median
 from typing import Any
 
 from markupsafe import Markup
 
 from verification.judging.verdict import Claim, Outcome
-from verification.page.number_text import scientific
+from verification.page.number_text import plain, scientific
 from verification.page.source_labels import OUTCOMES, OutcomeStyle, source_label, symbol_of
 from verification.problem.coated_contact import BALL
 from verification.problem.quantity import QUANTITIES
@@ -16,19 +18,20 @@ from verification.regression.baseline_change import State, baseline_message
 from verification.regression.manifest import manifest_message
 from verification.report.figures.field_pictures import plane_difference
 from verification.report.figures.verdict_strips import Axis, Item, axis_of, draw_axis, draw_strip, worst
-from verification.report.report_material import Material
+from verification.report.report_material import Material, made_with
 from verification.report.sections.accuracy_section import accuracies
 from verification.report.tables.case_lookup import divisor, layers
 from verification.running.case_result import CaseResult
 from verification.running.published_counts import counts
-from verification.sources.source_registry import SOURCES
+from verification.sources.source_record import Independence
+from verification.sources.source_registry import SOURCES, independence
 
 MOST_ROWS = 28  # strips of the first page; of more cases the worst have their own, the others share some
 OWN_ROWS = 12
 _CLOSED = "closed forms of uncoated contacts."
 _METHODS = {
-    "semianalytic": "pressures of surface patches by influence coefficients, conjugate gradients and DC-FFT; "
-    "stresses from these pressures by influence coefficients of point forces.",
+    "semianalytic": "influence coefficients of surface patches, conjugate gradients, DC-FFT; stresses "
+    "are sums of point forces.",
     "fem_reference": "axisymmetric, fourth order, mesh fitted to the contact edge; sliding as a harmonic.",
     "integral_equation": "exact Fredholm equation of the layered contact.",
     "hertz": _CLOSED,
@@ -57,12 +60,17 @@ class StripRow:
 
 @dataclass(frozen=True)
 class Worth:
-    """One figure of what the verdicts are worth; ``good`` is None where it is neither good nor bad."""
+    """One figure of what the verdicts are worth; ``good`` is None where it is neither good nor bad.
+
+    note : what else is known of it; of a record its date and commit.   older : a record older than the code.
+    """
 
     name: str
     value: str
     href: str
     good: bool | None
+    note: str = ""
+    older: bool = False
 
 
 @dataclass(frozen=True)
@@ -129,18 +137,14 @@ def largest(material: Material) -> list[str]:
             f"The largest difference is {scientific(item.difference)} {_scale(item.claim)}: "
             f"{_place(item.claim)}, {result.title}."
         )
-    planes = [
-        (gap, result)
+    gaps = [
+        gap[0]
         for result in material.contacts
         if (plane := material.planes.get(result.name)) is not None
         and (gap := plane_difference(plane, float(divisor(result, "sigma_xx", 0.0)))) is not None
     ]
-    if planes:
-        (widest, quantity), result = max(planes, key=lambda pair: pair[0][0])
-        texts.append(
-            f"In the pictures of the plane y = 0, which are not judged, it is {scientific(widest)}: "
-            f"{symbol_of(quantity)}, {result.title}."
-        )
+    if gaps:
+        texts.append(f"In the pictures, which are not judged, it is {scientific(max(gaps))}.")
     return texts
 
 
@@ -154,7 +158,7 @@ def not_claimed(material: Material) -> list[str]:
             "comparisons."
         )
     elif material.contacts:
-        texts.append("No point is left out of the comparisons, the contact edge included.")
+        texts.append("No point is left out, the contact edge included.")
     texts.append("U is an estimate, no bound; other problems and faults may fare worse.")
     return texts
 
@@ -253,32 +257,41 @@ def tallies(material: Material) -> list[tuple[OutcomeStyle, int]]:
 
 def worth(material: Material) -> list[Worth]:
     """What is known about the verdicts besides the comparisons: each figure with the page it is on."""
-    results, evidence, found = material.results, material.evidence, []
+    results, evidence, found = material.results, material.evidence, [*_independent(material)]
     invariants = [one for result in results for one in result.invariants]
     if invariants:
         holding = sum(one.outcome is Outcome.AGREES for one in invariants)
         found.append(_share("invariants hold", holding, len(invariants), "#invariants"))
-    covered = [item.covered for result in material.contacts for item in accuracies(result)]
-    if covered:
-        found.append(_share("true error within U", sum(covered), len(covered), "#accuracy"))
+    known = [item for result in material.contacts for item in accuracies(result)]
+    if known:
+        ratios = [item.ratio for item in known if item.ratio is not None and isfinite(item.ratio)]
+        note = f"median U / error {plain(median(ratios), 2)}" if ratios else ""
+        covered = sum(item.covered for item in known)
+        found.append(replace(_share("true error within U", covered, len(known), "#accuracy"), note=note))
     if material.published:
         counted, _, _ = counts(material.published)
         found.append(Worth("published values counted", str(counted), "#published", None))
     record = evidence.faults
     if record is not None:
-        found.append(
-            Worth("planted faults detected", f"{record.caught} of {len(record.rows)}", "#faults", None)
-        )
-        if record.controls:
+        made = _made(material, "faults", record.started, record.commit)
+        value = f"{record.caught} of {len(record.rows)}"
+        found.append(Worth("planted faults detected", value, "#faults", None, *made))
+        if record.alarms:
             count = len(record.controls)
             found.append(_share("negative controls left alone", count - len(record.alarms), count, "#faults"))
     if evidence.mutants is not None:
         caught, count = evidence.mutants.score()
-        found.append(Worth("mutants detected", f"{caught} of {count}", "#mutants", None))
+        info = evidence.mutants.info
+        made = _made(material, "mutants", info.started, info.commit)
+        found.append(Worth("mutants detected", f"{caught} of {count}", "#mutants", None, *made))
     if evidence.alarms is not None:
-        made = evidence.alarms.comparisons + evidence.alarms.invariants
-        value = f"{len(evidence.alarms.alarms)} of {made}"
-        found.append(Worth("false alarms, random problems", value, "#credibility", None))
+        judged = evidence.alarms.comparisons + evidence.alarms.invariants
+        value = f"{len(evidence.alarms.alarms)} of {judged}"
+        made = _made(material, "alarms", evidence.alarms.started, evidence.alarms.commit)
+        found.append(Worth("false alarms, random problems", value, "#credibility", None, *made))
+    if evidence.maps is not None and evidence.maps.maps:
+        made = _made(material, "maps", *made_with(evidence.maps))
+        found.append(Worth("assumptions with a map", str(len(evidence.maps.maps)), "#model", None, *made))
     regression = evidence.baseline
     if regression is not None and regression.update is not None:
         same = sum(case.count(State.SAME) for case in regression.cases)
@@ -297,6 +310,23 @@ def worth(material: Material) -> list[Worth]:
             _share("self-tests passed", sum(test.passed for test in tests), len(tests), "#self-tests")
         )
     return found
+
+
+def _independent(material: Material) -> list[Worth]:
+    """Comparisons that agree, by what their two sources have in common."""
+    agreed: dict[Independence, list[bool]] = {}
+    for result in material.results:
+        for claim, verdict in result.verdicts:
+            of_kind = agreed.setdefault(independence(claim.between), [])
+            of_kind.append(verdict.outcome is Outcome.AGREES)
+    kinds = [kind for kind in Independence if kind in agreed]
+    return [_share(f"{kind}", sum(agreed[kind]), len(agreed[kind]), "#cases") for kind in kinds]
+
+
+def _made(material: Material, name: str, started: str, commit: str | None) -> tuple[str, bool]:
+    """Date and commit of a record, and whether the code that it judges has changed since."""
+    older = name in material.evidence.older
+    return f"{started[:10]}, {(commit or 'no commit')[:8]}{', older than code' if older else ''}", older
 
 
 def _share(name: str, good: int, total: int, href: str) -> Worth:

@@ -1,0 +1,98 @@
+"""Commands of the README and the manual, each in an environment with exactly the extras that its line names.
+
+The environments are built once, in COATCHECK_ENVIRONMENTS or build/environments, for each content of
+constraints.txt and pyproject.toml. Long commands run on one case, see ``QUICK``.
+"""
+
+import hashlib
+import os
+import re
+import shlex
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from verification.cli import COMMANDS
+
+ROOT = Path(__file__).resolve().parent.parent
+PAGES = [ROOT / "README.md", *sorted((ROOT / "verification" / "manual" / "source").glob("*.md"))]
+KEPT = Path(os.environ.get("COATCHECK_ENVIRONMENTS", ROOT / "build" / "environments"))
+LINE = re.compile(r"^(?:\| `|    |\$ )?((?:[^`|\n]*&& *)?(?:\.venv/bin/)?coatcheck [^`|\n]*)", re.MULTILINE)
+EXTRAS = re.compile(r"pip install .*?-e '?\.(?:\[([\w,]+)\])?'?")
+# What takes minutes is run in part; what waits for a person, a scheduler, or writes the baseline is not run.
+QUICK = {
+    r"run$": "run 01_uncoated_steel",
+    r"run published$": "run ahlvin_ulery_1962",
+    r"faults$": "faults --list",
+    r"alarms$": "alarms --count 1",
+    r"certify$": "certify --help",
+    r"assumptions$": "assumptions --help",
+    r"(study \w+).*": r"\1 --help",
+    r"completion .*": "completion bash",
+}
+NOT_RUN = ("--scheduler", "baseline update", "view ", "<")
+
+
+def commands() -> list[tuple[str, str]]:
+    """(extras, words) of every command of coatcheck on a page, in the order of the pages."""
+    found = {}
+    for page in PAGES:
+        text = re.sub(r" \\\n +", " ", page.read_text(encoding="utf-8"))
+        for line in LINE.findall(text):
+            extras = EXTRAS.search(line)
+            words = line.rpartition("coatcheck ")[2].partition("  #")[0].strip().rstrip(")")
+            known = words.split()[0] in {name.split()[0] for name in COMMANDS}
+            if known and not any(part in words for part in NOT_RUN):
+                for pattern, quick in QUICK.items():
+                    words = re.sub(f"^{pattern}", quick, words)
+                found[(extras and extras[1]) or "", words] = None
+    return list(found)
+
+
+def environment(extras: str) -> Path:
+    """The programs of an environment with ``extras``, made where it is not there yet."""
+    content = [(ROOT / name).read_bytes() for name in ("constraints.txt", "pyproject.toml")]
+    key = hashlib.sha256(b"".join(content) + sys.version.encode() + str(ROOT).encode()).hexdigest()[:12]
+    place = KEPT / f"{extras or 'none'}-{key}"
+    if not (place / "complete").exists():
+        subprocess.run([sys.executable, "-m", "venv", "--clear", str(place)], check=True)
+        named = f"{ROOT}[{extras}]" if extras else str(ROOT)
+        words = [place / "bin" / "pip", "install", "-q", "-c", ROOT / "constraints.txt", "-e", named]
+        subprocess.run(words, check=True)
+        (place / "complete").touch()
+    return place / "bin"
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    """Commands of a page use what those before them wrote, and the case file of CONTRIBUTING.md."""
+    place = tmp_path_factory.mktemp("newcomer")
+    text = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
+    (place / "my_coating.toml").write_text(text.partition("```toml\n")[2].partition("```")[0])
+    return place
+
+
+def test_commands_of_the_pages_are_found():
+    found = commands()
+    assert {extras for extras, _ in found} >= {"", "manual"}
+    assert len(found) > 20
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("extras", "words"), commands())
+def test_a_command_runs_with_the_extras_that_its_line_names(extras, words, folder):
+    programs = environment(extras)
+    variables = {k: v for k, v in os.environ.items() if k != "PYTHONPATH"} | {"OMP_NUM_THREADS": "1"}
+    done = subprocess.run(
+        [programs / "coatcheck", *shlex.split(words)],
+        cwd=folder,
+        env=variables,
+        capture_output=True,
+        text=True,
+    )
+    # 5: the runs that are compared are of different cases here
+    usual = (0, 5) if words.startswith("compare") else (0,)
+    assert done.returncode in usual, done.stdout[-2000:] + done.stderr[-2000:]
+    assert "\x1b" not in done.stdout + done.stderr

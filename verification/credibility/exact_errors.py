@@ -1,0 +1,194 @@
+"""Errors of the semi-analytical method: discs under given pressures, elliptical contacts.
+
+A uniform pressure and Hertz's, which slides, on the surface, inside, on both sides of each interface. Nothing
+is iterated, so the error is that of the stress coefficients, of the influence coefficients and of the
+convolution, each apart.
+
+Two ellipses: the axes of the first are turned, so that the contact has no mirror plane in common with the
+grid; it is Hertz's. The second slides on a stiff coating; finite elements have its pressure, harmonic by
+harmonic, and give the stresses and the approach at which the gap under the indenter vanishes in the mean.
+"""
+
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from verification.problem.array_types import Array
+from verification.problem.coated_contact import CoatedContact
+from verification.problem.line_profile import lines_of
+from verification.sources.references.axisymmetric_pressure import AbelPressure
+from verification.sources.references.hankel_field import HankelField
+from verification.sources.references.hertz_ellipse import HertzEllipse
+from verification.sources.references.uniform_disc import UniformDisc
+
+UNIFORM, HERTZ = "uniform pressure", "Hertz's pressure"
+# Of the radius: beside the rim, where the stress under a uniform pressure is infinite, not on it.
+SURFACE = np.array([-1.7, -1.15, -0.97, -0.8, -0.5, -0.2, 0.0, 0.3, 0.6, 0.9, 1.02, 1.3])
+DEPTHS = (0.02, 0.15, 0.48, 1.2, 2.5)
+PLANE = 0.6  # depth of the plane by FFT, over ten patches, where patches of a pressure without steps suffice
+TURNED, SLIDING = "ellipse 2 : 1, turned", "ellipse 2 : 1, sliding"
+ANGLE = 0.4  # of the long axis from x
+WIDE = 1.15  # half-width of the grid over the long semi-axis
+HARMONICS, SIZE = 14, 0.2  # of the finite elements
+BELOW = (0.5, 0.5, 0.9, 1.6)  # depths over a_h: in the coating, below it
+ALONG = np.linspace(-1.5, 1.5, 13)  # of the long semi-axis, beside the plane of symmetry
+
+
+@dataclass(frozen=True)
+class ExactError:
+    """Largest ``error`` of ``quantity`` under ``pressure`` on ``solid``: stress and plane over the largest
+    pressure, displacements over the exact one at the centre, scalars of an ellipse over themselves."""
+
+    pressure: str
+    solid: str
+    quantity: str
+    error: float
+
+
+def disc_errors(problem: CoatedContact, solid: str, friction: float, patches: int = 257) -> list[ExactError]:
+    """Errors under both pressures on a disc as wide as the contact of Hertz, Hertz's with ``friction``."""
+    a, p_h = problem.a_h, problem.p_h
+    hertz = AbelPressure(a, p_h * a / 3 * np.array([1.0, -1.0]))
+    found = []
+    for name, disc, f in ((UNIFORM, UniformDisc(a, p_h), 0.0), (HERTZ, hertz, friction)):
+        exact = HankelField(disc, problem.coatings, problem.substrate, f)
+        found += [
+            ExactError(name, solid, quantity, error)
+            for quantity, error in _errors(replace(problem, friction=f), exact, p_h, patches).items()
+        ]
+    return found
+
+
+def _errors(problem: CoatedContact, exact: HankelField, p_h: float, patches: int) -> dict[str, float]:
+    import semianalytic
+
+    a = exact.pressure.a
+    given = exact.pressure.pressure
+    solution = semianalytic.solve_prescribed(
+        pressure=p_h if isinstance(exact.pressure, UniformDisc) else given,
+        load_radius=a,
+        coatings=problem.coatings,
+        substrate=problem.substrate,
+        friction=problem.friction,
+        patches=patches,
+        estimate_uncertainty=False,
+    )
+    angle = 0.35  # off the mirror planes
+    x, y = a * SURFACE * np.cos(angle), a * SURFACE * np.sin(angle)
+    places: list[tuple[Array, int | None]] = [
+        (np.full(x.shape, z), line.layer) for line in lines_of(problem) if (z := line.depth) is not None
+    ]
+    places += [(np.full(x.shape, z * a), None) for z in DEPTHS]
+    stress = [solution.stress(x, y, z, k) - exact.stress(x, y, z, k) for z, k in places]
+    u = [solution.displacement(x, y, z) - exact.displacement(x, y, z) for z, _ in places]
+    sink = float(exact.displacement(0.0, 0.0, 0.0)[2])
+    errors = {
+        "stress, surface": _largest(stress[:1]) / p_h,
+        "stress, inside": _largest(stress[1:]) / p_h,
+        "displacement": _largest(u) / sink,
+        "central deflection": abs(solution.approach - sink) / sink,
+    }
+    if not isinstance(exact.pressure, UniformDisc):
+        i, j = (
+            np.array([[0.1, 0.3, 0.5, 0.62, 0.87], [0.5, 0.15, 0.62, 0.25, 0.94]]) * (patches - 1)
+        ).astype(int)
+        z = PLANE * a
+        at = solution.nodes[i], solution.nodes[j], np.full(i.shape, z)
+        errors["stress on a plane"] = (
+            _largest([solution.stress_plane(z)[:, :, i, j] - exact.stress(*at)]) / p_h
+        )
+        plane = solution.displacement_plane(z)[:, i, j]
+        errors["displacement on a plane"] = _largest([plane - exact.displacement(*at)]) / sink
+    return errors
+
+
+def turned_ellipse(problem: CoatedContact, patches: int = 129) -> list[ExactError]:
+    """Errors of a contact of the load and modulus of ``problem``, uncoated, under that load and approach."""
+    import semianalytic
+
+    a, b = 2**0.5 * problem.a_h, problem.a_h / 2**0.5
+    exact = HertzEllipse(a, b, problem.p_h, problem.E_star)
+    (A, B), c, s = exact.curvatures, np.cos(ANGLE), np.sin(ANGLE)
+
+    def height(x: Any, y: Any) -> Any:
+        return A * (c * x + s * y) ** 2 + B * (c * y - s * x) ** 2
+
+    found = []
+    for load, approach in ((exact.load, None), (None, exact.approach)):
+        one = semianalytic.indent(
+            profile=height,
+            half_width=WIDE * a,
+            load=load,
+            approach=approach,
+            coatings=(),
+            substrate=problem.substrate,
+            patches=patches,
+            estimate_uncertainty=False,
+        )
+        errors = {
+            "peak pressure": one.peak_pressure / exact.p0 - 1,
+            "contact radius": one.contact_radius / problem.a_h - 1,
+            "approach": one.approach / exact.approach - 1 if approach is None else 0.0,
+            "load": one.diagnostics.load / exact.load - 1,
+        }
+        what = TURNED if approach is None else f"{TURNED}, given approach"
+        found += [ExactError(what, "uncoated", name, abs(error)) for name, error in errors.items()]
+    return found
+
+
+def between_methods(problem: CoatedContact, patches: int = 129) -> list[ExactError]:
+    """Differences of both methods under a sliding ellipsoid, along its long axis and across.
+
+    problem : the solid, load and friction; the product of both radii is that of the sphere's, squared.
+    """
+    import fem_reference
+    import semianalytic
+
+    found = []
+    for name, ratio in (("along the long axis", 1.5), ("across the long axis", 1 / 1.5)):
+        R_x, R_y = problem.radius * ratio, problem.radius / ratio
+
+        def height(x: Any, y: Any, R_x: float = R_x, R_y: float = R_y) -> Any:
+            return x**2 / (2 * R_x) + y**2 / (2 * R_y)
+
+        patch = semianalytic.indent(
+            profile=height,
+            half_width=1.5 * problem.a_h,
+            load=problem.load,
+            patches=patches,
+            estimate_uncertainty=False,
+            coatings=problem.coatings,
+            substrate=problem.substrate,
+            friction=problem.friction,
+        )
+        x = np.linspace(0, 1.5 * problem.a_h, 600)
+        reach = max(
+            float(along[patch.pressure(*at) > 0].max()) for along, at in ((x, (x, 0 * x)), (x, (0 * x, x)))
+        )
+        elements = fem_reference.check_pressure(
+            pressure=patch.pressure,
+            reach=1.01 * reach,
+            harmonics=HARMONICS,
+            size=SIZE,
+            estimate_uncertainty=False,
+            coatings=problem.coatings,
+            substrate=problem.substrate,
+            friction=problem.friction,
+        )
+        X, Y = ALONG * reach, np.full(ALONG.shape, 0.2 * problem.a_h)
+        layers = (0, *(1,) * (len(BELOW) - 1))
+        difference = [
+            patch.stress(X, Y, z * problem.a_h, layer=k) - elements.stress(X, Y, z * problem.a_h, layer=k)
+            for z, k in zip(BELOW, layers, strict=True)
+        ]
+        errors = {
+            "stress by finite elements": float(np.max(np.abs(difference))) / patch.peak_pressure,
+            "approach by finite elements": abs(elements.approach_of(height) / patch.approach - 1),
+        }
+        found += [ExactError(f"{SLIDING}, {name}", "coated", what, error) for what, error in errors.items()]
+    return found
+
+
+def _largest(fields: list[Array]) -> float:
+    return float(np.max([np.abs(field).max() for field in fields]))
