@@ -11,11 +11,12 @@ from verification.cases.digit_changes import digit_changes
 from verification.cases.published_file import PublishedCase
 from verification.cases.published_table import PublishedColumn
 from verification.judging.verdict import Outcome, Verdict, compare, judge
-from verification.problem.coated_contact import Solution
+from verification.problem.coated_contact import CoatedContact, Solution
 from verification.problem.line_profile import Profile
 from verification.problem.loading_curve import Problem
 from verification.problem.quantity import POINTWISE, QUANTITIES
 from verification.running.case_result import CaseResult, SourceResult, describe, diagnostics_of, message_of
+from verification.sampling.beside_edge import BesideEdge
 from verification.sampling.point_values import values
 from verification.sampling.tabulated_solution import tabulated
 from verification.sources.loading_solution import Loading
@@ -44,6 +45,8 @@ def run(case: PublishedCase, available: Mapping[str, Solver] | None = None) -> C
             solution = solve(case.problem)
             if not isinstance(solution, Loading):
                 points = [i.at for i in case.columns if QUANTITIES[i.profile.quantity].kind in POINTWISE]
+                if isinstance(case.problem, CoatedContact) and case.problem.homogeneous:
+                    solution = BesideEdge(solution, case.problem.a_h)
                 solution = tabulated(solution, points)
             claimed = {(c.quantity, c.line) for c in case.claims if source in c.between}
             found = [
