@@ -4,7 +4,7 @@ import tomllib
 from pathlib import Path
 from typing import Annotated, Any, TypeVar
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError
 
 Checked = TypeVar("Checked", bound=BaseModel)
 
@@ -27,7 +27,15 @@ class Strict(BaseModel):
 
 
 Positive = Annotated[float, Field(gt=0)]
-Poisson = Annotated[float, Field(gt=-1, lt=0.5)]
+
+
+def _compressible(nu: float) -> float:
+    if nu == 0.5:
+        raise ValueError("must be below 0.5, where the material is incompressible; use 0.49")
+    return nu
+
+
+Poisson = Annotated[float, Field(gt=-1, le=0.5), AfterValidator(_compressible)]
 Friction = Annotated[float, Field(ge=0, le=2)]
 Text = Annotated[str, Field(min_length=1, max_length=500)]
 
@@ -92,6 +100,10 @@ def first_error(error: ValidationError) -> str:
         "float_type": "must be a number",
         "int_type": "must be a whole number",
         "string_type": "must be text",
+        "greater_than": f"must be above {first.get('ctx', {}).get('gt')}",
+        "greater_than_equal": f"must be at least {first.get('ctx', {}).get('ge')}",
+        "less_than": f"must be below {first.get('ctx', {}).get('lt')}",
+        "less_than_equal": f"must be at most {first.get('ctx', {}).get('le')}",
     }.get(first["type"], message[0].lower() + message[1:])
     if first["type"] not in ("missing", "extra_forbidden") and not isinstance(first["input"], dict | list):
         text += f", not {_shown(first['input'])}"

@@ -22,6 +22,7 @@ from verification.cases.case_file import (
     BallEntry,
     Limited,
     Material,
+    Sized,
     Stressed,
     TemperatureChange,
     refuse_unfit_scales,
@@ -170,8 +171,7 @@ class _Coating(Limited, Stressed):
     nu: Poisson
 
 
-class _Problem(Strict):
-    radius: Metres
+class _Problem(Sized):
     load: Newtons | None = None
     substrate: Material
     coating: _Coating
@@ -269,7 +269,7 @@ def parse_study(raw: bytes, path: Path) -> Study:
     load = p.load if p.load is not None else sweep.load.to  # type: ignore[union-attr]
     try:
         substrate = (p.substrate.E, p.substrate.nu)
-        bare = CoatedContact(p.radius, load, (), substrate, ball=p.ball.bare if p.ball else None)
+        bare = CoatedContact(p.size, load, (), substrate, ball=p.ball.bare if p.ball else None)
         ball = p.ball.coated(bare.a_h) if p.ball else None
     except ValueError as error:
         raise CaseError(f"{path}: problem: {error}") from None
@@ -307,7 +307,7 @@ def parse_study(raw: bytes, path: Path) -> Study:
     study = Study(
         name=path.stem,
         title=checked.title,
-        radius=p.radius,
+        radius=p.size,
         load=load,
         substrate=bare.substrate,
         coating_nu=p.coating.nu,

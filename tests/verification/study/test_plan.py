@@ -58,7 +58,7 @@ def test_every_kth_point_is_checked_by_both_others():
     ("old", "new", "said"),
     [
         ("radius = 10e-3", "radius = -1.0", "problem.radius"),
-        ("radius = 10e-3", "radios = 10e-3", "problem.radius"),
+        ("radius = 10e-3", "radios = 10e-3", "problem.radios"),
         ("load = 20.0", 'load = "heavy"', "problem.load"),
         ("load = 20.0", "load = inf", "problem.load"),
         ("load = 20.0", "load = 1e12", "problem.load"),
