@@ -27,6 +27,7 @@ from verification.problem.line_profile import Line, line_of, lines_of, oblique_l
 from verification.sources.source_registry import METHODS, sources_of
 
 CONTRAST = 1e4  # of moduli, beyond which a method loses digits, and a ball deforms by less than 1e-4
+SUPPORTED = (1e-3, 1e3)  # h / a_h, by both methods
 CASES = Path(__file__).parent / "shipped" / "contact"
 
 
@@ -356,9 +357,11 @@ def refuse_unfit_scales(path: Path, problem: CoatedContact) -> None:
     for body in problem.bodies:
         seen, key = problem.seen_from(body), f"{path}: problem{'.ball' if body == BALL else ''}"
         for i, (_, _, h) in enumerate(seen.coatings):
-            if not 1e-3 <= h / a_h <= 1e3:
+            if not SUPPORTED[0] <= h / a_h <= SUPPORTED[1]:
                 reason = (
-                    f"{h / a_h:.3g} times the contact radius {a_h:.3g} m; both methods support 1e-3 to 1e3"
+                    f"{h * 1e6:.3g} um is {h / a_h:.3g} times the contact radius; both methods support "
+                    f"{SUPPORTED[0]:g} to {SUPPORTED[1]:g}, {SUPPORTED[0] * a_h * 1e6:.3g} um to "
+                    f"{SUPPORTED[1] * a_h * 1e6:.3g} um"
                 )
                 raise CaseError(f"{key}.coatings.{i}.thickness: {reason}{slips}")
         moduli = [*(E for E, _, _ in seen.coatings), seen.substrate[0]]
