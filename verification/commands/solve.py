@@ -113,8 +113,9 @@ def solve(
     print_warnings(costs, case.name, strict=strict, silent=as_json)
     if plot is not None:
         from verification.desk.answer_figure import write
+        from verification.desk.section_field import section
 
-        write(first, f"{stack(case)}\n{conditions(case.problem)}", plot)
+        write(first, f"{stack(case)}\n{conditions(case.problem)}", plot, section(case.problem, case.residual))
     if as_json:
         print_json(_content(case, (*case.warnings, *late, *costs), beyond, first, second, apart, halved))
     else:

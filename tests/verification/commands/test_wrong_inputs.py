@@ -70,7 +70,7 @@ WRONG = [
     ({"--coating": "2 um, 180 GPa"}, "thickness, E, nu"),
     ({"--coating": "0,2 um, 180 GPa, 0.2"}, "with a point"),
     ({"--coating": "2 um, 2 MPa, 0.49"}, "raise the smallest"),
-    ({"--coating": "1 nm, 180 GPa, 0.2"}, "0.11 um"),
+    ({"--coating": "1 nm, 180 GPa, 0.2"}, "0.109 um"),
     ({"--plot": "missing/stress.png"}, "create it"),
     ({"--plot": "stress.gif"}, ".png"),
 ]
