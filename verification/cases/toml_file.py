@@ -76,20 +76,28 @@ def load_toml(raw: bytes) -> tuple[str, dict[str, Any]]:
         raise ValueError(f"not TOML: {error}") from None
 
 
-def read_toml(raw: bytes, path: Path, model: type[Checked]) -> tuple[str, Checked]:
-    """The text of a TOML file with its content checked against ``model``. Raises CaseError."""
+def read_toml(raw: bytes, path: Path, model: type[Checked], *, listed: int = 1) -> tuple[str, Checked]:
+    """The text of a TOML file with its content checked against ``model``. Raises CaseError.
+
+    listed : errors that the message names at most.
+    """
     try:
         text, content = load_toml(raw)
         return text, model.model_validate(content)
     except ValidationError as error:
-        raise CaseError(f"{path}: {first_error(error)}") from None
+        raise CaseError(f"{path}: {first_error(error, listed)}") from None
     except ValueError as error:
         raise CaseError(f"{path}: {error}") from None
 
 
-def first_error(error: ValidationError) -> str:
-    """The first error of a case file with its key and value, in one line."""
-    first = error.errors(include_url=False)[0]
+def first_error(error: ValidationError, listed: int = 1) -> str:
+    """The first errors of a case file with key and value, at most ``listed``, in one line."""
+    told = [_told(one) for one in error.errors(include_url=False)[:listed]]
+    more = error.error_count() - len(told)
+    return "; ".join(told) + (f" (and {more} more)" if more else "")
+
+
+def _told(first: Any) -> str:
     key = ".".join(_shortened(str(part)) for part in first["loc"]) or "top level"
     renamed = RENAMED.get(key, "")
     message = first["msg"].removeprefix("Value error, ")
@@ -107,8 +115,7 @@ def first_error(error: ValidationError) -> str:
     }.get(first["type"], message[0].lower() + message[1:])
     if first["type"] not in ("missing", "extra_forbidden") and not isinstance(first["input"], dict | list):
         text += f", not {_shown(first['input'])}"
-    more = error.error_count() - 1
-    return f"{key} {text}" + (f" (and {more} more)" if more else "")
+    return f"{key} {text}"
 
 
 def _shown(value: object) -> str:

@@ -129,7 +129,7 @@ def solve(
 
 def _times(first: Answer, second: Answer | None, total: float) -> str:
     elements = f", finite elements {second.seconds:.1f} s" if second else ""
-    return f"time: semi-analytical {first.seconds:.1f} s{elements}; with the error of the model {total:.1f} s"
+    return f"time: semi-analytical {first.seconds:.1f} s{elements}; in all {total:.1f} s"
 
 
 def _checked(case: Case, bar: Progress, *, silent: bool) -> Answer:

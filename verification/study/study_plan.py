@@ -40,6 +40,7 @@ from verification.study.solve_cache import solve_key
 from verification.study.study_table import SOURCES
 
 STUDIES = Path(__file__).parent.parent / "cases" / "shipped" / "studies"
+LISTED = 10  # errors of a file in one message
 MOST_POINTS = 1_000_000
 
 
@@ -299,7 +300,7 @@ def read_study_file(path: Path) -> Study:
 
 def parse_study(raw: bytes, path: Path) -> Study:
     """Check the content of a study file; ``path`` names it in messages. Raises CaseError."""
-    text, checked = read_toml(raw, path, _StudyFile)
+    text, checked = read_toml(raw, path, _StudyFile, listed=LISTED)
     p, sweep = checked.problem, checked.sweep
     coatings = p.ball.coatings if p.ball else []
     if any(c.residual_stress or c.expansion for c in coatings):
