@@ -104,12 +104,26 @@ app.command(
 )
 
 
+def _remedy(text: str, command: Sequence[str]) -> str:
+    """What to try after the ``text`` of an error in the words of a ``command``."""
+    meant = COMMANDS[command[0]].get("meant", {}) if command and command[0] in COMMANDS else {}
+    unknown = re.search(r"--?(\w+)", text)
+    if text.startswith("Unknown option") and unknown and unknown[1] in meant:
+        return f"Try: {meant[unknown[1]]}"
+    if "requires an argument" in text:
+        return "Give its value, which must be above 0; a word that begins with - is read as an option."
+    if re.search(r"\d,\d", text):
+        return "Write decimals with a point, such as 0.15."
+    return f"Try: coatcheck {' '.join([*(one for one in command if one in COMMANDS), '--help'])}"
+
+
 def main() -> None:
     """Entry of the ``coatcheck`` command."""
     try:
         code = app(sys.argv[1:], exit_on_error=False, print_error=False, result_action="return_value")
     except CycloptsError as error:
-        print_error(" ".join(str(error).split()) + " Try: coatcheck --help")
+        text = " ".join(str(error).split())
+        print_error(f"{text} {_remedy(text, sys.argv[1:2])}")
         code = BAD_INPUT
     except KeyboardInterrupt:
         sys.stderr.write("\ncoatcheck: stopped; finished cases are kept, go on with --resume\n")

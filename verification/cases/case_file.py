@@ -18,7 +18,7 @@ from verification.cases.toml_file import (
     read_bounded,
     read_toml,
 )
-from verification.cases.unit_numbers import AnyPascals, Metres, Newtons, Pascals
+from verification.cases.unit_numbers import AnyPascals, InSI, Metres, Newtons, Pascals
 from verification.judging.standard_claims import standard_claims
 from verification.judging.verdict import Claim
 from verification.problem.array_types import Ball, Coatings
@@ -26,6 +26,8 @@ from verification.problem.coated_contact import BALL, FLAT, CoatedContact
 from verification.problem.line_profile import Line, line_of, lines_of, oblique_lines
 from verification.sources.source_registry import METHODS, sources_of
 
+CONTRAST = 1e4  # of moduli, beyond which a method loses digits, and a ball deforms by less than 1e-4
+SUPPORTED = (1e-3, 1e3)  # h / a_h, by both methods
 CASES = Path(__file__).parent / "shipped" / "contact"
 
 
@@ -37,6 +39,7 @@ class Case:
     warnings : of implausible numbers, a line each.   limits : hardness, yield strength [Pa] by their keys.
     residual : equibiaxial stress [Pa] of each coating by body, no part of ``problem``; {} without any.
     layers : number of sub-layers of each coating by body; {} where no coating is graded.
+    names : those of the coatings of each body, then that of the body itself; "" where none is given.
     resolve : whether it is also solved scaled, with equal moduli, thick and thin (``invariants.resolved``).
     """
 
@@ -52,6 +55,7 @@ class Case:
     limits: dict[str, float] = field(default_factory=dict)
     residual: dict[str, tuple[float, ...]] = field(default_factory=dict)
     layers: dict[str, tuple[int, ...]] = field(default_factory=dict)
+    names: dict[str, tuple[str, ...]] = field(default_factory=dict)
 
     @property
     def lines(self) -> tuple[Line, ...]:
@@ -64,8 +68,9 @@ TemperatureChange = Annotated[float, Field(ge=-5000, le=5000)]
 
 
 class Limited(Strict):
-    """Stresses of a material beyond which the contact is not elastic."""
+    """A material by ``name``, with stresses beyond which the contact is not elastic."""
 
+    name: Annotated[str, Field(min_length=1, max_length=30)] = ""
     hardness: Pascals | None = None
     yield_strength: Pascals | None = None
 
@@ -169,8 +174,28 @@ def _in_metres(coatings: list[_Coating], a_h: float, over: int = 1) -> Coatings:
     return found
 
 
-class _Problem(Strict):
-    radius: Metres
+class Sized(Strict):
+    """A problem with a ball of given ``radius`` or ``diameter``."""
+
+    radius: Metres | None = None
+    diameter: Metres | None = None
+
+    @model_validator(mode="after")
+    def _one_size(self) -> "Sized":
+        if (self.radius is None) == (self.diameter is None):
+            raise ValueError("needs exactly one of problem.radius or problem.diameter")
+        return self
+
+    @property
+    def size(self) -> float:
+        """The radius [m], which knows whether it was given with a unit."""
+        if self.radius is not None:
+            return self.radius
+        half = (self.diameter or 0.0) / 2
+        return InSI.given_in(half, self.diameter.unit) if isinstance(self.diameter, InSI) else half
+
+
+class _Problem(Sized):
     load: Newtons
     friction: Friction = 0.0
     substrate: Material
@@ -210,11 +235,16 @@ class _Problem(Strict):
         over : divisor of the number of sub-layers.
         """
         ball, substrate = self.ball, (self.substrate.E, self.substrate.nu)
-        bare = CoatedContact(
-            self.radius, self.load, (), substrate, self.friction, ball.bare if ball else None
-        )
+        bare = CoatedContact(self.size, self.load, (), substrate, self.friction, ball.bare if ball else None)
         given = ball.coated(bare.a_h, over) if ball else None
         return replace(bare, coatings=_in_metres(self.coatings, bare.a_h, over), ball=given)
+
+    def names(self) -> dict[str, tuple[str, ...]]:
+        """Names of the coatings of each body, then of the body itself."""
+        found = {FLAT: (*(c.name for c in self.coatings), self.substrate.name)}
+        if self.ball:
+            found[BALL] = (*(c.name for c in self.ball.coatings), self.ball.name)
+        return found
 
     def limits(self) -> dict[str, float]:
         """Hardness and yield strength [Pa] of every material that has one, by their keys."""
@@ -274,6 +304,7 @@ def parse_case(raw: bytes, path: Path, over: int = 1) -> Case:
     except (ValueError, OverflowError, ZeroDivisionError) as error:
         raise CaseError(f"{path}: problem: {error}") from None
     refuse_unfit_scales(path, problem)
+    problem, treated = _rigid(problem)
     if checked.resolve and not problem.coatings:
         raise CaseError(f"{path}: resolve: requires a coating; add one, or leave resolve out")
     numerics = {
@@ -294,11 +325,24 @@ def parse_case(raw: bytes, path: Path, over: int = 1) -> Case:
         numerics,
         text,
         checked.resolve,
-        (*warnings_of(problem, limits), *residual_warnings(residual)),
+        (*treated, *warnings_of(problem, limits), *residual_warnings(residual)),
         limits,
         residual,
         checked.problem.layers(over),
+        checked.problem.names(),
     )
+
+
+def _rigid(problem: CoatedContact) -> tuple[CoatedContact, tuple[str, ...]]:
+    """The problem with an uncoated ball beyond ``CONTRAST`` as a rigid one, and the warning that says so."""
+    stiffest = max([E for E, _, _ in problem.coatings] + [problem.substrate[0]])
+    if problem.ball is None or problem.ball[2] or problem.ball[0] <= CONTRAST * stiffest:
+        return problem, ()
+    contrast = problem.ball[0] / stiffest
+    told = (
+        f"ball.E is {contrast:.2g} times that of the flat, above {CONTRAST:g}; the ball is treated as rigid"
+    )
+    return replace(problem, ball=None), (told,)
 
 
 def refuse_unfit_scales(path: Path, problem: CoatedContact) -> None:
@@ -313,15 +357,21 @@ def refuse_unfit_scales(path: Path, problem: CoatedContact) -> None:
     for body in problem.bodies:
         seen, key = problem.seen_from(body), f"{path}: problem{'.ball' if body == BALL else ''}"
         for i, (_, _, h) in enumerate(seen.coatings):
-            if not 1e-3 <= h / a_h <= 1e3:
+            if not SUPPORTED[0] <= h / a_h <= SUPPORTED[1]:
                 reason = (
-                    f"{h / a_h:.3g} times the contact radius {a_h:.3g} m; both methods support 1e-3 to 1e3"
+                    f"{h * 1e6:.3g} um is {h / a_h:.3g} times the contact radius; both methods support "
+                    f"{SUPPORTED[0]:g} to {SUPPORTED[1]:g}, {SUPPORTED[0] * a_h * 1e6:.3g} um to "
+                    f"{SUPPORTED[1] * a_h * 1e6:.3g} um"
                 )
                 raise CaseError(f"{key}.coatings.{i}.thickness: {reason}{slips}")
         moduli = [*(E for E, _, _ in seen.coatings), seen.substrate[0]]
         contrast = max(moduli) / min(moduli)
-        if contrast > 1e4:
-            raise CaseError(f"{key}: moduli differ {contrast:.3g} times; at most 1e4 is supported{slips}")
+        if contrast > CONTRAST:
+            reason = (
+                f"moduli differ {contrast:.3g} times; at most {CONTRAST:g} is supported, which is as good as "
+                "rigid; lower the largest or raise the smallest"
+            )
+            raise CaseError(f"{key}: {reason}{slips}")
 
 
 def _claims(path: Path, checked: _CaseFile, problem: CoatedContact) -> tuple[Claim, ...]:

@@ -9,7 +9,7 @@ from collections.abc import Iterator, Mapping
 from verification.cases.unit_numbers import InSI
 from verification.problem.coated_contact import BALL, CoatedContact
 
-__all__ = ["beyond_limits", "likely_slips", "residual_warnings", "warnings_of"]
+__all__ = ["beyond_limits", "likely_slips", "refused", "residual_warnings", "warnings_of"]
 
 MODULI = (1e6, 2e12)  # Pa
 USUAL_MODULI = (1e9, 1.3e12)  # Pa, polymers to diamond
@@ -17,9 +17,12 @@ USUAL_THICKNESSES = (1e-8, 2e-4)  # m
 LARGEST_RADIUS = 1.0  # m
 WIDEST = 0.1  # a_h / R
 THICKEST = 20.0  # h / a_h; beyond it the substrate has no part in the contact
+COATING = 1e-3  # m, thicker than coatings are
 STRAIN = 0.05  # p_h / E*
+THINNER = 0.2  # of the layer below it: an interlayer, that hardly lies at the surface
 RESIDUAL = (1e6, 2e10)  # Pa, magnitude of a residual stress
 YIELD = 1.6  # p0 over the yield strength where yielding begins below the surface. Johnson (6.9)
+LIKELY = "looks like"
 _MODULUS_UNITS = {"GPa": 1e9, "MPa": 1e6, "kPa": 1e3}
 _LENGTH_UNITS = {"um": 1e-6, "mm": 1e-3, "nm": 1e-9}
 
@@ -31,7 +34,18 @@ def warnings_of(problem: CoatedContact, limits: Limits | None = None) -> tuple[s
 
     limits : hardness and yield strength [Pa] by their keys, as ``beyond_limits`` has them.
     """
-    return (*_numbers(problem), *_contact(problem), *beyond_limits(problem.p_h, limits or {}))
+    return (
+        *_numbers(problem),
+        *_thick(problem),
+        *_order(problem),
+        *_contact(problem),
+        *beyond_limits(problem.p_h, limits or {}),
+    )
+
+
+def refused(problem: CoatedContact) -> tuple[str, ...]:
+    """Those lines of ``warnings_of`` that name a number of another unit, or beyond any material or ball."""
+    return (*_numbers(problem), *(line for line in _thick(problem) if LIKELY in line))
 
 
 def beyond_limits(p0: float, limits: Limits) -> tuple[str, ...]:
@@ -60,7 +74,7 @@ def residual_warnings(residual: Mapping[str, tuple[float, ...]]) -> tuple[str, .
 
 def likely_slips(problem: CoatedContact) -> str:
     """ "; KEY = NUMBER looks like UNIT" for what a refusal may come from; "" where nothing looks so."""
-    slips = [line.split("; ")[-1] for line in _numbers(problem) if "looks like" in line]
+    slips = [line.split("; ")[-1] for line in (*_numbers(problem), *_thick(problem)) if LIKELY in line]
     return "".join(f"; {slip}" for slip in slips[:2])
 
 
@@ -83,10 +97,36 @@ def _numbers(problem: CoatedContact) -> Iterator[str]:
             slip = _slip(key, h, _LENGTH_UNITS, USUAL_THICKNESSES)
             if h > problem.radius:
                 yield f"{key} = {h:g} m is beyond the radius of the ball, {problem.radius:g} m" + slip
-            elif h > THICKEST * problem.a_h:
-                yield (
-                    f"{key} = {h:g} m is {h / problem.a_h:.3g} contact radii; what lies below has no part"
-                ) + slip
+
+
+def _thick(problem: CoatedContact) -> Iterator[str]:
+    """Lines for coatings below which nothing takes part in the contact."""
+    for body in problem.bodies:
+        for i, (_, _, h) in enumerate(problem.seen_from(body).coatings):
+            key = f"{f'{BALL}.' if body == BALL else ''}coatings.{i}.thickness"
+            if h > problem.radius or h <= min(THICKEST * problem.a_h, COATING):
+                continue
+            reason = f"is {h / problem.a_h:.3g} contact radii; what lies below has no part"
+            if h <= THICKEST * problem.a_h:
+                reason = f"is above {COATING:g} m, thick for a coating"
+            yield f"{key} = {h:g} m {reason}" + _slip(key, h, _LENGTH_UNITS, USUAL_THICKNESSES)
+
+
+def _order(problem: CoatedContact) -> Iterator[str]:
+    """A line where the surface layer is by far the thinnest: a stack given from the substrate up."""
+    for body in problem.bodies:
+        coatings = problem.seen_from(body).coatings
+        if (
+            len(coatings) == 2
+            and coatings[0][2] < THINNER * coatings[1][2]
+            and coatings[0][0] != coatings[1][0]
+        ):
+            of = f"{BALL}." if body == BALL else ""
+            ratio = coatings[0][2] / coatings[1][2]
+            yield (
+                f"{of}coatings.0, at the surface, has {ratio:.2g} of the thickness of {of}coatings.1 below "
+                "it; coatings are listed from the surface down"
+            )
 
 
 def _contact(problem: CoatedContact) -> Iterator[str]:

@@ -4,7 +4,7 @@ import tomllib
 from pathlib import Path
 from typing import Annotated, Any, TypeVar
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError
 
 Checked = TypeVar("Checked", bound=BaseModel)
 
@@ -27,7 +27,15 @@ class Strict(BaseModel):
 
 
 Positive = Annotated[float, Field(gt=0)]
-Poisson = Annotated[float, Field(gt=-1, lt=0.5)]
+
+
+def _compressible(nu: float) -> float:
+    if nu == 0.5:
+        raise ValueError("must be below 0.5, where the material is incompressible; use 0.49")
+    return nu
+
+
+Poisson = Annotated[float, Field(gt=-1, le=0.5), AfterValidator(_compressible)]
 Friction = Annotated[float, Field(ge=0, le=2)]
 Text = Annotated[str, Field(min_length=1, max_length=500)]
 
@@ -68,20 +76,28 @@ def load_toml(raw: bytes) -> tuple[str, dict[str, Any]]:
         raise ValueError(f"not TOML: {error}") from None
 
 
-def read_toml(raw: bytes, path: Path, model: type[Checked]) -> tuple[str, Checked]:
-    """The text of a TOML file with its content checked against ``model``. Raises CaseError."""
+def read_toml(raw: bytes, path: Path, model: type[Checked], *, listed: int = 1) -> tuple[str, Checked]:
+    """The text of a TOML file with its content checked against ``model``. Raises CaseError.
+
+    listed : errors that the message names at most.
+    """
     try:
         text, content = load_toml(raw)
         return text, model.model_validate(content)
     except ValidationError as error:
-        raise CaseError(f"{path}: {first_error(error)}") from None
+        raise CaseError(f"{path}: {first_error(error, listed)}") from None
     except ValueError as error:
         raise CaseError(f"{path}: {error}") from None
 
 
-def first_error(error: ValidationError) -> str:
-    """The first error of a case file with its key and value, in one line."""
-    first = error.errors(include_url=False)[0]
+def first_error(error: ValidationError, listed: int = 1) -> str:
+    """The first errors of a case file with key and value, at most ``listed``, in one line."""
+    told = [_told(one) for one in error.errors(include_url=False)[:listed]]
+    more = error.error_count() - len(told)
+    return "; ".join(told) + (f" (and {more} more)" if more else "")
+
+
+def _told(first: Any) -> str:
     key = ".".join(_shortened(str(part)) for part in first["loc"]) or "top level"
     renamed = RENAMED.get(key, "")
     message = first["msg"].removeprefix("Value error, ")
@@ -92,11 +108,14 @@ def first_error(error: ValidationError) -> str:
         "float_type": "must be a number",
         "int_type": "must be a whole number",
         "string_type": "must be text",
+        "greater_than": f"must be above {first.get('ctx', {}).get('gt')}",
+        "greater_than_equal": f"must be at least {first.get('ctx', {}).get('ge')}",
+        "less_than": f"must be below {first.get('ctx', {}).get('lt')}",
+        "less_than_equal": f"must be at most {first.get('ctx', {}).get('le')}",
     }.get(first["type"], message[0].lower() + message[1:])
     if first["type"] not in ("missing", "extra_forbidden") and not isinstance(first["input"], dict | list):
         text += f", not {_shown(first['input'])}"
-    more = error.error_count() - 1
-    return f"{key} {text}" + (f" (and {more} more)" if more else "")
+    return f"{key} {text}"
 
 
 def _shown(value: object) -> str:

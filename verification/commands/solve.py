@@ -1,7 +1,11 @@
 """coatcheck solve: the answer to one problem in MPa with places in um."""
 
 import math
-from collections.abc import Sequence
+import threading
+import time
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from functools import partial
 from pathlib import Path
 from textwrap import wrap
 from typing import Annotated, Any
@@ -9,23 +13,25 @@ from typing import Annotated, Any
 from cyclopts import Parameter
 from rich.console import Console
 from rich.markup import escape
+from rich.progress import Progress
 from rich.table import Table
 
 from verification.cases.case_file import Case, parse_case, read_case, shipped_cases
-from verification.cases.plausibility import beyond_limits
+from verification.cases.plausibility import beyond_limits, refused
 from verification.commands.common.command_error import CommandError, no_result
 from verification.commands.common.exit_codes import with_exit_code
 from verification.commands.common.known_folders import require_format
 from verification.commands.common.named_files import SHIPPED, path_of
 from verification.commands.common.shared_options import AsJson, Flag, Strict
 from verification.commands.common.task_progress import progress_bar, require_gmsh
-from verification.commands.common.terminal import print_json, print_out, print_warnings
+from verification.commands.common.terminal import print_error, print_json, print_out, print_warnings
 from verification.credibility.model.model_error import ModelError, model_error
-from verification.desk.answer_summary import summary
+from verification.desk.answer_summary import agreement, summary
 from verification.desk.case_wording import case_text
-from verification.desk.contact_answer import Answer, Difference, answer, differences
+from verification.desk.contact_answer import Answer, Difference, answer, differences, usual_seconds
+from verification.desk.stack_text import body_label, conditions, described, outside_verified, stack
 from verification.judging.outcome import Outcome
-from verification.problem.coated_contact import BALL, FLAT
+from verification.problem.coated_contact import FLAT
 from verification.problem.quantity import QUANTITIES
 from verification.regression.run_exit_codes import EXIT
 from verification.running.case_result import describe, message_of
@@ -50,6 +56,7 @@ def solve(
     ball_coating: Annotated[list[str] | None, Parameter(negative="")] = None,
     check: Flag = False,
     plot: Path | None = None,
+    force: Flag = False,
     strict: Strict = False,
     as_json: AsJson = False,
 ) -> int:
@@ -60,48 +67,97 @@ def solve(
 
     Args:
         file: A case file (.toml) or the name of a shipped case; or give the problem by options.
-        ball: "RADIUS" of a rigid ball, "RADIUS, E, NU" of an elastic one: "10 mm, 210 GPa, 0.3".
+        ball: "RADIUS" of a rigid ball, "RADIUS, E, NU" of an elastic one: "10 mm, 210 GPa, 0.3"; the size may
+            also be "d = DIAMETER".
         load: "20 N"; bare numbers are SI here and in all other options.
-        coating: "THICKNESS, E, NU", such as "3 um, 450 GPa, 0.22"; once for each, from the surface down.
-        substrate: "E, NU", such as "210 GPa, 0.3".
+        coating: "THICKNESS, E, NU", such as "3 um, 450 GPa, 0.22"; once for each, from the surface down. A
+            name may come first: "DLC 3 um, 450 GPa, 0.22".
+        substrate: "E, NU", such as "210 GPa, 0.3" or "steel 210 GPa, 0.3".
         friction: Coefficient f; the ball slides in +x, and the trailing edge is at x < 0.
         ball_coating: The same of a coating on the ball, from its surface inwards.
         check: Solve by finite elements too and show their difference.
-        plot: Write a figure of the stresses along x, FILE.png, FILE.pdf or FILE.svg.
+        plot: Write a figure of the stresses, FILE.png, FILE.pdf or FILE.svg.
+        force: Solve although a number looks like a slip of its unit.
     """
+    begin = time.perf_counter()
     given = (ball, load, coating, substrate, friction, ball_coating)
     case = _from_file(file, given) if file is not None else _from_options(*given)
     if plot is not None:
         require_format(plot)
-    beyond = model_error(case.problem)
-    warnings = (*case.warnings, *beyond.warnings(told=case.warnings))
-    print_warnings(warnings, case.name, strict=strict, silent=as_json)
+    if not force:
+        for line in refused(case.problem):
+            raise CommandError(f"{case.name}: {line}; correct it, or solve it as it is with --force")
+    print_warnings(case.warnings, case.name, strict=strict, silent=as_json)
     if check:
         require_gmsh()
-    stages = 1 + check + bool(case.layers)
-    bar = progress_bar(Console(stderr=True), silent=as_json)
-    with bar:
-        task = bar.add_task("semi-analytical", total=stages)
+    bars = partial(progress_bar, Console(stderr=True), silent=as_json)
+    with bars() as bar:
+        task = bar.add_task("semi-analytical", total=1 + bool(case.layers))
         first = _answer(case, METHOD)
         bar.update(task, advance=1, description="half of the sub-layers")
         halved = _halved(case, first)
-        bar.update(task, advance=bool(case.layers), description="finite elements, ten times as long")
-        second = _answer(case, SECOND) if check else None
+        bar.update(task, advance=bool(case.layers))
+    second = _checked(case, bars(), silent=as_json) if check else None
     # Before the solve the peak pressure was that of Hertz.
     told = any(line.startswith("peak pressure") for line in case.warnings)
     late = () if told else beyond_limits(first.numbers["peak_pressure"][0], case.limits)
     print_warnings(late, case.name, strict=strict, silent=as_json)
     apart = differences(first, second) if second is not None else ()
+    if not (as_json or strict):
+        _print(case, first, second, apart, halved)
+    with bars() as bar:
+        task = bar.add_task("error of the model", total=1)
+        beyond = model_error(case.problem)
+        bar.update(task, advance=1)
+    costs = beyond.warnings(told=case.warnings)
+    print_warnings(costs, case.name, strict=strict, silent=as_json)
     if plot is not None:
         from verification.desk.answer_figure import write
+        from verification.desk.section_field import section
 
-        write(first, case.title, plot)
+        write(first, f"{stack(case)}\n{conditions(case.problem)}", plot, section(case.problem, case.residual))
     if as_json:
-        print_json(_content(case, (*warnings, *late), beyond, first, second, apart, halved))
+        print_json(_content(case, (*case.warnings, *late, *costs), beyond, first, second, apart, halved))
     else:
-        _print(case, beyond, first, second, apart, halved)
+        if strict:
+            _print(case, first, second, apart, halved)
+        _print_model(case, beyond)
+        print_out(_times(first, second, time.perf_counter() - begin))
     agree = all(difference.within for difference in apart)
     return EXIT[Outcome.AGREES if agree else Outcome.DISAGREES]
+
+
+def _times(first: Answer, second: Answer | None, total: float) -> str:
+    elements = f", finite elements {second.seconds:.1f} s" if second else ""
+    return f"time: semi-analytical {first.seconds:.1f} s{elements}; in all {total:.1f} s"
+
+
+def _checked(case: Case, bar: Progress, *, silent: bool) -> Answer:
+    """The answer by finite elements, its usual time announced before, with a bar of seconds."""
+    expected = usual_seconds(case.problem)
+    if not silent:
+        print_error(f"finite elements: about {expected:.0f} s of processor time")
+    with bar, _ticking(bar, expected):
+        return _answer(case, SECOND)
+
+
+@contextmanager
+def _ticking(bar: Progress, seconds: float) -> Iterator[None]:
+    """A task of ``bar`` that counts the seconds, up to those expected."""
+    task, stop = bar.add_task("finite elements [s]", total=math.ceil(seconds)), threading.Event()
+
+    def tick() -> None:
+        begin = time.perf_counter()
+        while not stop.wait(1.0):
+            bar.update(task, completed=min(int(time.perf_counter() - begin), math.ceil(seconds)))
+
+    thread = threading.Thread(target=tick, daemon=True)
+    thread.start()
+    try:
+        yield
+    finally:
+        stop.set()
+        thread.join()
 
 
 def _from_file(file: str, given: Sequence[Any]) -> Case:
@@ -169,7 +225,6 @@ def _content(
 
 def _print(
     case: Case,
-    beyond: ModelError,
     first: Answer,
     second: Answer | None,
     apart: Sequence[Difference],
@@ -187,14 +242,14 @@ def _print(
 
     numbers = Table(box=None, header_style="bold", pad_edge=False)
     table = Table(box=None, header_style="bold", pad_edge=False)
-    for head in ("contact", ""):
+    for head in ("contact", "unit"):
         numbers.add_column(head)
     for head in ("largest", "place"):
         table.add_column(head)
     more = ["elements − this"] * (second is not None) + ["half the sub-layers − this"] * bool(halved)
     for head in ("value", "±", *more):
         numbers.add_column(head, justify="right", no_wrap=True)
-    for head in ("MPa", "±", "x um", "z um", *more):
+    for head in ("MPa", "± MPa", "x um", "z um", *(f"{head} MPa" for head in more)):
         table.add_column(head, justify="right", no_wrap=True)
     for name, (value, stated) in first.numbers.items():
         unit, scale = ("MPa", 1e6) if QUANTITIES[name].unit == "Pa" else ("um", 1e-6)
@@ -205,68 +260,42 @@ def _print(
         if at.body != body:
             table.add_row("")
             body = at.body
-        where = at.where if body == FLAT else f"{body}, {at.where}"
+        where = body_label(case.problem, at.body, at.where)
         key = (at.body, at.quantity, at.where)
         places = ["-", "-"] if math.isnan(at.x) else [f"{at.x * 1e6:.2f}", f"{at.z * 1e6:.2f}"]
         shown = [_value(at.value / 1e6, at.uncertainty / 1e6), _spread(at.uncertainty, 1e6)]
         table.add_row(at.quantity, where, *shown, *places, *checked(key, 1e6))
-    seconds = f"semi-analytical {first.seconds:.1f} s" + (
-        f", finite elements {second.seconds:.1f} s" if second else ""
-    )
+    said = (summary(case.problem, first), agreement(first, tuple(apart)))
     print_out(
         f"[bold]{escape(case.title)}[/]",
-        *(escape(line) for line in _given(case)),
+        escape(stack(case)),
         "",
-        *map(escape, wrap(summary(case.problem, first), COLUMNS)),
+        *(escape(line) for text in said for line in wrap(text, COLUMNS)),
+        "",
+        *(escape(line) for line in described(case)),
         "",
         numbers,
         "",
         table,
         "",
-        f"tension positive, in the plane y = 0, x along sliding, z into each body; {seconds}",
+        "tension positive, in the plane y = 0, x along sliding, z into each body",
     )
-    head = "the model itself is good to" if beyond.parts else beyond.message()
-    print_out(*map(escape, (head, *(f"  {part}" for part in beyond.parts), *beyond.notes)))
+
+
+def _print_model(case: Case, beyond: ModelError) -> None:
+    """What the answer is good for: error of the model, range of the verification."""
+    if beyond.parts:
+        head = "the model itself is good to"
+        print_out(*map(escape, (head, *(f"  {part}" for part in beyond.parts), *beyond.notes)))
+    else:
+        reasons = ", ".join(dict.fromkeys(reason for _, reason in beyond.missing))
+        print_out(escape(f"{beyond.message()}: {reasons}"))
+    if outside := outside_verified(case):
+        print_out(escape(f"beyond the range in which both methods were compared: {outside}; try --check"))
     if case.residual:
         print_out(
             "with residual stress; the shear of an interface near a free edge of its coating is not covered"
         )
-    outside = [difference for difference in apart if not difference.within]
-    if second is not None:
-        total = f"{len(apart) - len(outside)} of {len(apart)} numbers of the finite elements"
-        print_out(f"{total} are within both uncertainties")
-
-
-def _given(case: Case) -> list[str]:
-    """The problem, a line for each body, load and coating."""
-    problem = case.problem
-
-    def solid(E: float, nu: float) -> str:
-        return f"E = {E / 1e9:.4g} GPa, nu = {nu:g}"
-
-    kind = "rigid" if problem.ball is None else solid(*problem.ball[:2])
-    size = f"R = {problem.radius * 1e3:.4g} mm, {kind}"
-    lines = [f"ball        {size}; W = {problem.load:.4g} N, f = {problem.friction:g}"]
-    for body in problem.bodies:
-        seen, begin = problem.seen_from(body), 0
-        for i, n in enumerate(case.layers.get(body) or (1,) * len(seen.coatings), start=1):
-            layers, on = seen.coatings[begin : begin + n], "coating" if body == FLAT else f"on the {BALL}"
-            stress = sorted(case.residual[body][begin : begin + n]) if case.residual else [0.0]
-            (E, nu, _), last = layers[0], layers[-1][0]
-            course = f", E to {last / 1e9:.4g} GPa in {n} sub-layers" if n > 1 else ""
-            more = f", residual stress {_range(stress[0] / 1e6, stress[-1] / 1e6)} MPa" if any(stress) else ""
-            lines.append(
-                f"{on} {i}   "[:12]
-                + f"{sum(h for *_, h in layers) * 1e6:.4g} um, {solid(E, nu)}{course}{more}"
-            )
-            begin += n
-        if body == FLAT:
-            lines.append(f"substrate   {solid(*seen.substrate)}")
-    return lines
-
-
-def _range(low: float, high: float) -> str:
-    return f"{low:.4g}" if low == high else f"{low:.4g} to {high:.4g}"
 
 
 def _value(value: float, spread: float | None) -> str:

@@ -7,7 +7,7 @@ from contextlib import contextmanager
 from dataclasses import asdict, dataclass, replace
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 from cyclopts import Parameter
 from rich.console import Console
@@ -84,6 +84,30 @@ def load(plan: str = "dlc_load", *, options: Options = DEFAULT) -> int:
         plan: Name of a shipped study with sweep.load, or the path of a .toml study file.
     """
     return _study(plan, options, loads=True)
+
+
+TEMPLATES = {"thickness": "dlc_on_chromium", "load": "dlc_load", "stiffness": "default"}
+
+
+@with_exit_code
+def init(kind: Literal["thickness", "load", "stiffness"], file: Path | None = None, /) -> int:
+    """Write a commented study file that runs as it is, to be changed.
+
+    Args:
+        kind: What the study is to find.
+        file: Where to write it; my_KIND.toml unless given. A file that exists is left as it is.
+    """
+    path = file or Path(f"my_{kind}.toml")
+    try:
+        with path.open("x", encoding="utf-8") as written:
+            written.write(shipped_studies()[TEMPLATES[kind]].read_text(encoding="utf-8"))
+    except FileExistsError:
+        raise CommandError(f"{path}: exists already; give another name") from None
+    except OSError as error:
+        raise CommandError(f"{path}: {error.strerror}; give a path that can be written") from None
+    command = "load" if kind == "load" else "thickness"
+    print_out(escape(f"{path} is written; change it, then run: coatcheck study {command} {path}"))
+    return EXIT[Outcome.AGREES]
 
 
 def _study(plan: str, options: Options, *, loads: bool) -> int:

@@ -1,15 +1,18 @@
 """Figure of one answer: stresses along x in MPa over um, on the surface, at each interface."""
 
 import io
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
 import matplotlib as mpl
+import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from verification.desk.answer_stresses import Course
 from verification.desk.contact_answer import Answer
+from verification.desk.section_field import Section
 from verification.problem.coated_contact import FLAT
 from verification.running.checked_files import write_atomically
 
@@ -18,12 +21,13 @@ __all__ = ["COLOURS", "FORMATS", "draw", "save", "write"]
 FORMATS = (".png", ".pdf", ".svg")
 # Okabe and Ito's colours, distinct for the colour-blind.
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00", "#000000")
+STYLES = ("-", "--", "-.", ":", (0, (6, 1)), (0, (3, 1, 1, 1, 1, 1)), (0, (1, 3)))
 _SETTINGS: Any = {"font.size": 9, "axes.grid": True, "grid.alpha": 0.3, "savefig.facecolor": "white"}
 
 
-def write(answer: Answer, title: str, path: Path) -> None:
-    """Write the figure; see ``save``."""
-    save(lambda: draw(answer, title), path)
+def write(answer: Answer, title: str, path: Path, below: Section | None = None) -> None:
+    """Write the figure; see ``save``, ``draw``."""
+    save(lambda: draw(answer, title, below), path)
 
 
 def save(drawn: Callable[[], Figure], path: Path) -> None:
@@ -40,39 +44,79 @@ def save(drawn: Callable[[], Figure], path: Path) -> None:
     write_atomically(path, content.getvalue())
 
 
-def draw(answer: Answer, title: str) -> Figure:
-    """sigma_xx with its largest values as dots; below it sigma_xz and sigma_zz at each interface.
+def draw(answer: Answer, title: str, below: Section | None = None) -> Figure:
+    """Stresses along x: sigma_xx with its largest values as dots; sigma_xz, sigma_zz at each interface.
 
-    Of an uncoated body those of the surface, sigma_zz = -p.
+    Of an uncoated body those of the surface, sigma_zz = -p.   below : the section on top, if given.
     """
-    figure = Figure(figsize=(8.0, 6.4), layout="constrained")
-    upper, lower = figure.subplots(2, 1, sharex=True)
-    for course, colour in zip(answer.courses, _cycle(len(answer.courses)), strict=True):
-        upper.plot(course.x * 1e6, course.stress[0] / 1e6, color=colour, label=_name(course))
+    figure = Figure(figsize=(8.5, 9.0 if below else 6.4), layout="constrained")
+    panels = figure.subplots(3 if below else 2, 1, sharex=True)
+    upper, lower = panels[-2:]
+    a = answer.numbers["contact_radius"][0] * 1e6
+    if below:
+        _section(figure, panels[0], below, a)
+    for course, colour, style in _cycle(answer.courses):
+        upper.plot(course.x * 1e6, course.stress[0] / 1e6, linestyle=style, color=colour, label=_name(course))
         for at in answer.extremes:
             if (at.body, at.where, at.quantity) == (course.body, course.where, "sigma_xx"):
                 upper.plot(at.x * 1e6, at.value / 1e6, "o", color=colour, markersize=4)
-    below = [c for c in answer.courses if c.where.startswith("base")] or answer.courses
-    for course, colour in zip(below, _cycle(len(below)), strict=True):
-        lower.plot(course.x * 1e6, course.stress[3] / 1e6, color=colour, label=f"$σ_{{xz}}$, {_name(course)}")
-        lower.plot(
-            course.x * 1e6, course.stress[2] / 1e6, "--", color=colour, label=f"$σ_{{zz}}$, {_name(course)}"
-        )
-    upper.set_title(title)
+    upper.plot([], [], "o", color="#777777", markersize=4, label="largest")
+    bases = [c for c in answer.courses if c.where.startswith("base")] or answer.courses
+    for number, name in ((3, "$σ_{xz}$"), (2, "$σ_{zz}$")):
+        for course, colour, style in _cycle(bases):
+            width = 1.8 if number == 3 else 0.9
+            label = f"{name}, {_name(course)}"
+            y = course.stress[number] / 1e6
+            lower.plot(course.x * 1e6, y, linestyle=style, color=colour, label=label, linewidth=width)
+    figure.suptitle(title, fontsize=10)
     upper.set_ylabel("$σ_{xx}$ [MPa], tension positive")
     lower.set_ylabel("stress [MPa]")
     lower.set_xlabel("x [µm], along sliding")
-    a = answer.numbers["contact_radius"][0] * 1e6
     for axes in (upper, lower):
         for edge in (-a, a):
             axes.axvline(edge, color="#777777", linewidth=0.8, linestyle=":")
+        axes.axvspan(-a, a, color="#000000", alpha=0.05, linewidth=0, label="contact")
         axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False)
     return figure
+
+
+def _section(figure: Figure, axes: Axes, below: Section, a: float) -> None:
+    """First principal stress of each layer as a field, with its boundaries and the contact."""
+    least, most = (float(end([end(s) for s in below.stress])) / 1e6 for end in (np.min, np.max))
+    for z, stress in zip(below.z, below.stress, strict=True):
+        field = axes.pcolormesh(
+            below.x * 1e6,
+            z * 1e6,
+            stress / 1e6,
+            cmap="cividis",  # from dark to bright in grey too
+            vmin=least,
+            vmax=most,
+            shading="gouraud",
+            rasterized=True,
+        )
+        axes.contour(below.x * 1e6, z * 1e6, stress, levels=[0.0], colors="white", linewidths=1.0)
+        axes.axhline(z[0] * 1e6, color="black", linewidth=0.8)
+    highest = max(
+        (float(s.max()), float(below.x[s.max(axis=0).argmax()]), float(z[s.max(axis=1).argmax()]))
+        for z, s in zip(below.z, below.stress, strict=True)
+    )
+    axes.plot(highest[1] * 1e6, highest[2] * 1e6, "k^", markersize=6, clip_on=False)
+    axes.plot([-a, a], [0, 0], color="black", linewidth=4, solid_capstyle="butt", clip_on=False)
+    axes.set_ylim(float(below.z[-1][-1]) * 1e6, 0.0)
+    axes.set_ylabel("z [µm]")
+    axes.grid(visible=False)
+    axes.set_title(
+        "section of the flat: bar contact, lines interfaces, white no tension, triangle largest tension",
+        fontsize=8,
+    )
+    figure.colorbar(field, ax=axes, label="$σ_1$ [MPa]", fraction=0.05)
 
 
 def _name(course: Course) -> str:
     return course.where if course.body == FLAT else f"{course.body}, {course.where}"
 
 
-def _cycle(count: int) -> Sequence[str]:
-    return [COLOURS[i % len(COLOURS)] for i in range(count)]
+def _cycle(courses: Sequence[Course]) -> Iterator[tuple[Course, str, Any]]:
+    """Each course with its colour and line style, which differ without colour too."""
+    for i, course in enumerate(courses):
+        yield course, COLOURS[i % len(COLOURS)], STYLES[i % len(STYLES)]

@@ -10,8 +10,10 @@ from verification.problem.coated_contact import CoatedContact
 from verification.problem.quantity import QUANTITIES
 from verification.sources.source_registry import SOURCES
 
-__all__ = ["NUMBERS", "Answer", "Difference", "answer", "differences"]
+__all__ = ["NUMBERS", "Answer", "Difference", "answer", "differences", "usual_seconds"]
 
+# Measured on one core of 2.5 GHz, an elastic ball with two thin films within 5 %.
+BODY_SECONDS, FILM_SECONDS, THIN = 4.0, 8.0, 0.1
 NUMBERS = ("peak_pressure", "contact_radius", "approach")
 
 
@@ -76,3 +78,9 @@ def differences(first: Answer, second: Answer) -> tuple[Difference, ...]:
     return tuple(
         Difference(key, b - a, abs(b - a) <= U_a + U_b) for key, ((a, U_a), (b, U_b)) in pairs.items()
     )
+
+
+def usual_seconds(problem: CoatedContact) -> float:
+    """Usual processor time [s] of the answer by finite elements, with the mesh of each body and thin film."""
+    thin = [h < THIN * problem.a_h for body in problem.bodies for *_, h in problem.seen_from(body).coatings]
+    return BODY_SECONDS * len(problem.bodies) + FILM_SECONDS * sum(thin)

@@ -49,7 +49,7 @@ def transcript(words: Sequence[str], work: Path, prompt: str = "") -> str:
         check=True,
     )
     # The time of one solve on a busy machine tells nothing.
-    printed = re.sub(r"; semi-analytical \S+ s$", "", done.stdout.strip(), flags=re.MULTILINE)
+    printed = re.sub(r"^time: .*\n?", "", done.stdout.strip(), flags=re.MULTILINE)
     lines = [line.rstrip() for line in (*done.stderr.splitlines(), *printed.splitlines())]
     wrapped = [textwrap.fill(line, 88) if len(line) > 88 else line for line in lines]
     return "\n".join(["```text", *filter(None, [prompt]), *wrapped, "```"])

@@ -7,6 +7,7 @@ depths, then evaluated by the solution itself.
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from itertools import pairwise
 from typing import Literal, get_args
 
 import numpy as np
@@ -46,12 +47,17 @@ class Located:
 
 
 def quantities(
-    solution: Solution, problem: CoatedContact, frictions: Sequence[float], residual: Sequence[float] = (0.0,)
+    solution: Solution,
+    problem: CoatedContact,
+    frictions: Sequence[float],
+    residual: Sequence[float] = (0.0,),
+    swept: int = 0,
 ) -> dict[tuple[float, float], dict[str, Located]]:
     """Every stress of ``QUANTITIES`` by residual stress and friction, from one ``solution``.
 
-    solution : of ``problem``, which has one coating, at friction 1, or at 0 where no other is asked for.
-    residual : equibiaxial stresses [Pa] of the coating, each added to sigma_xx, sigma_yy within it.
+    solution : of ``problem``, which is coated, at friction 1, or at 0 where no other is asked for. Of several
+    coatings and interfaces the largest counts.
+    residual : equibiaxial stresses [Pa] of coating ``swept``, each added to sigma_xx, sigma_yy within it.
     A tensile stress that is nowhere positive has value 0 and position NaN. Without friction, where the field
     is symmetric in x, the position is on the trailing side.
     Raises ValueError where a friction is given and the solution has none, or what ``solution.stress`` raises.
@@ -59,38 +65,51 @@ def quantities(
     if any(frictions) and not problem.friction:
         raise ValueError("the solution has no friction; solve with friction=1")
     parts = Parts(solution, problem.friction)
-    a, h = float(solution.contact_radius), problem.interfaces[0]
-    knots = crowded(a, 0.5 * min(a, h), a + 2.5 * h)
-    top = surface(parts, a, h, min(a + 2 * h, 7 * a))
-    upper, lower = plane(parts, knots, h, 0), plane(parts, knots, h, 1)
-    near = crowded(a, 0.5 * min(a, h), 0.5 * (a + h))
-    above = [plane(parts, near, z, 0) for z in depths(0.0, h, 0.5 * a)[1:-1]]
-    below = [plane(parts, near, z, 1) for z in depths(h, 1.5 * h + 2 * a, 0.5 * max(a / 2, h))[1:]]
-    lines: dict[str, tuple[Plane, Measure]] = {
-        "sigma_xx_surface": (top, lambda s: s[XX]),
-        "sigma_xx_base": (upper, lambda s: s[XX]),
-        "sigma_xx_substrate": (lower, lambda s: s[XX]),
-        "sigma_xz_interface": (upper, lambda s: np.abs(s[XZ])),
-        "sigma_zz_interface": (upper, lambda s: s[ZZ]),
+    a, z = float(solution.contact_radius), problem.interfaces
+    tops, bases, within, near = [surface(parts, a, z[0], min(a + 2 * z[0], 7 * a))], [], [], []
+    for k, (above, h) in enumerate(pairwise((0.0, *z))):
+        knots = crowded(a, 0.5 * min(a, h), a + 2.5 * h)
+        bases.append(plane(parts, knots, h, k))
+        tops.append(plane(parts, knots, h, k + 1))
+        near.append(crowded(a, 0.5 * min(a, h), 0.5 * (a + h)))
+        within.append([plane(parts, near[k], at, k) for at in depths(above, h, 0.5 * a)[1:-1]])
+    h, n = z[-1], len(z)
+    deep = depths(h, 1.5 * h + 2 * a, 0.5 * max(a / 2, h))[1:]
+    below = [tops[-1], *(plane(parts, near[-1], at, n) for at in deep)]
+    lines: dict[str, tuple[list[Plane], Measure]] = {
+        "sigma_xx_surface": (tops[:1], lambda s: s[XX]),
+        "sigma_xx_base": (bases, lambda s: s[XX]),
+        "sigma_xx_substrate": (tops[-1:], lambda s: s[XX]),
+        "sigma_xz_interface": (bases, lambda s: np.abs(s[XZ])),
+        "sigma_zz_interface": (bases, lambda s: s[ZZ]),
     }
-    layers = {"von_mises_coating": [top, *above, upper], "von_mises_substrate": [lower, *below]}
+    layers = {
+        "von_mises_coating": [[tops[k], *within[k], bases[k]] for k in range(n)],
+        "von_mises_substrate": [below],
+    }
     found: dict[tuple[float, float], dict[str, Located]] = {}
     for f in frictions:
-        alone = {name: largest(line, measure, f) for name, (line, measure) in lines.items()}
+        alone = {
+            name: [(line.layer, largest(line, measure, f)) for line in many]
+            for name, (many, measure) in lines.items()
+        }
         for stress in residual:
-            added = {name: stress for name in ("sigma_xx_surface", "sigma_xx_base")}
-            here = {
-                name: tensile(replace(at, value=at.value + added.get(name, 0.0)))
-                for name, at in alone.items()
-            }
-            for name, planes in layers.items():
+            here = {}
+            for name, places in alone.items():
+                added = stress if name in ("sigma_xx_surface", "sigma_xx_base") else 0.0
+                total = [replace(at, value=at.value + added * (layer == swept)) for layer, at in places]
+                here[name] = tensile(max(total, key=lambda place: place.value))
+            for name, bodies in layers.items():
                 if name == "von_mises_substrate" and (residual[0], f) in found:
                     here[name] = found[residual[0], f][name]
                     continue
-                measure = with_residual(von_mises, stress if name == "von_mises_coating" else 0.0)
-                candidates = [largest(planes[0], measure, f), largest(planes[-1], measure, f)]
-                within = inside(parts, planes, near, f, measure)
-                here[name] = max([*candidates, *within], key=lambda place: place.value)
+                candidates = []
+                for planes in bodies:
+                    layer = planes[0].layer
+                    measure = with_residual(von_mises, stress if layer == swept else 0.0)
+                    candidates += [largest(planes[0], measure, f), largest(planes[-1], measure, f)]
+                    candidates += inside(parts, planes, near[min(layer, n - 1)], f, measure)
+                here[name] = max(candidates, key=lambda place: place.value)
             found[stress, f] = here
     return found
 

@@ -27,6 +27,7 @@ from verification.study.study_table import SOURCES, write_table
 
 PAUSE = 5.0  # s between two writings of the table
 USUAL = dict(zip(SOURCES, (0.25, 1.6, 0.5), strict=True))  # s
+THIN, PER_FILM = 0.1, 4.5  # h/a_h below which a film takes so many times as long as ``USUAL``, measured
 SHARE = 0.02  # of the time, at most, is spent on writing the table while it grows
 
 Report = Callable[[str, int, int], None]  # source, points done, points in all
@@ -74,10 +75,17 @@ def forecast(study: Study, folder: Path, limit: int | None = None) -> dict[str, 
         counts[one.source][0] += 1
         counts[one.source][1] += not cache.has(one.key)
     return {
-        source: Forecast(count[0], count[1], seconds.get(source, USUAL[source]))
+        source: Forecast(count[0], count[1], seconds.get(source, USUAL[source] * _effort(study)))
         for source, count in counts.items()
         if count[0]
     }
+
+
+def _effort(study: Study) -> float:
+    """Usual time of a solve of ``study`` over ``USUAL``, by its thin films, at the middle thickness."""
+    on_ball = study.ball[2] if study.ball else ()
+    held = [h for *_, h in (*study.above, *study.below, *on_ball)]
+    return 1 + PER_FILM * sum(h < THIN * study.bare.a_h for h in (median(study.thicknesses), *held))
 
 
 def _recorded(ledger: Path) -> dict[str, float]:

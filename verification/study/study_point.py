@@ -28,8 +28,9 @@ from verification.study.study_table import SCALARS, SCALES
 def answer(request: Mapping[str, Any]) -> dict[str, Any]:
     """Solve ``request`` and find every quantity at each of its frictions.
 
-    request : source, numerics (its own keywords), frictions, radius, load, coating (E, nu, thickness),
-    residual (stresses of the coating [Pa]), substrate (E, nu), ball (E, nu, coatings) unless it is rigid.
+    request : source, numerics (its own keywords), frictions, radius, load, coating (E, nu, thickness), above
+    and below (fixed coatings on either side of it), residual (stresses of the coating [Pa]), substrate
+    (E, nu), ball (E, nu, coatings) unless it is rigid.
     Returns {"rows": [one dictionary for each residual stress, then friction], "seconds", "versions", "code",
     "memory" [bytes]}; a solve that fails leaves its message in every row.
     """
@@ -42,7 +43,8 @@ def answer(request: Mapping[str, Any]) -> dict[str, Any]:
             solve = SOURCES[request["source"]].solve
             assert solve is not None
             solution = solve(problem, request["numerics"])
-            rows = _rows(solution, problem, frictions, request["residual"])
+            swept = len(request.get("above", ()))
+            rows = _rows(solution, problem, frictions, request["residual"], swept)
     except Exception as error:  # a point that fails is a row with its message
         rows = failed_rows(request, message_of(error))
     return {
@@ -76,7 +78,9 @@ def problem_of(request: Mapping[str, Any], friction: float) -> CoatedContact:
     if ball is not None:
         E, nu, coatings = ball
         ball = E, nu, tuple(tuple(layer) for layer in coatings)
-    return CoatedContact(request["radius"], request["load"], (coating,), substrate, friction, ball)
+    above, below = (tuple(map(tuple, request.get(side, ()))) for side in ("above", "below"))
+    coatings = (*above, coating, *below)
+    return CoatedContact(request["radius"], request["load"], coatings, substrate, friction, ball)
 
 
 def table_rows(
@@ -136,7 +140,7 @@ def _scaled(row: Mapping[str, Any], solved: CoatedContact, bare: CoatedContact) 
 
 
 def _rows(
-    solution: Any, problem: CoatedContact, frictions: list[float], residual: list[float]
+    solution: Any, problem: CoatedContact, frictions: list[float], residual: list[float], swept: int
 ) -> list[dict[str, Any]]:
     common: dict[str, Any] = {}
     for name, scale in SCALARS.items():
@@ -148,7 +152,7 @@ def _rows(
         if spread is not None:
             common[f"{name}_uncertainty"] = spread
     rows = []
-    found = quantities(solution, problem, frictions, residual)
+    found = quantities(solution, problem, frictions, residual, swept)
     for stress, f in product(residual, frictions):
         located = found[stress, f]
         row: dict[str, Any] = {"friction": f, "status": "solved", "failure": None, **common}

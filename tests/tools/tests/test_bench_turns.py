@@ -86,6 +86,7 @@ def test_the_quickest_of_the_calls_begun_in_a_short_time_counts(enough, calls, m
 
 def test_a_hidden_distribution_is_not_installed(monkeypatch):
     monkeypatch.setattr(metadata.Distribution, "from_name", metadata.Distribution.from_name)
+    monkeypatch.setitem(sys.modules, "numpy", sys.modules["numpy"])
     child.hide("numpy")
     assert metadata.version("scipy")
     with pytest.raises(metadata.PackageNotFoundError, match="numpy"):

@@ -64,7 +64,7 @@ def test_thickness_may_be_given_in_contact_radii():
         ("load = 20", "load = [20]", "problem.load"),
         ('title = "Stiff coating"', "", "missing"),
         ('title = "Stiff coating"', "title = 7", "title must be text"),
-        ("[problem]", "[problems]", "problem.radius"),
+        ("[problem]", "[problems]", "problem.load"),
         ("E = 420e9", "E = 420e20", "moduli differ"),
         (
             "[problem]",

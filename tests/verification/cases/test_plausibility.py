@@ -113,7 +113,9 @@ def test_nothing_is_told_of_the_shipped_files():
             {"coatings": ((450e9, 0.22, 11e-3),)},
             "thickness = 0.011 m",
         ),
-        ({"coatings": ((450e9, 0.22, 2e-3),)}, "contact"),
+        ({"coatings": ((450e9, 0.22, 3e-3),)}, "contact"),
+        ({"coatings": ((450e9, 0.22, 1.5e-3),)}, "thick for a coating"),
+        ({"coatings": ((279e9, 0.21, 2e-7), (450e9, 0.22, 2e-6))}, "from the surface down"),
         ({"load": 2e4}, "strain"),
     ],
 )

@@ -163,7 +163,7 @@ def _closed(request, f):
         ("from = 4", 'from = "4 Pa"', "'Pa' is no unit of force"),
         ("coating = {", BALL + "coating = {",
          "coatings"),
-        ("2e-5", "2e-7", "value 1 is"),
+        ("2e-5", "2e-8", "value 1 is"),
     ],
 )  # fmt: skip
 def test_bad_load_sweep_is_one_message(old, new, message):

@@ -58,7 +58,7 @@ def test_every_kth_point_is_checked_by_both_others():
     ("old", "new", "said"),
     [
         ("radius = 10e-3", "radius = -1.0", "problem.radius"),
-        ("radius = 10e-3", "radios = 10e-3", "problem.radius"),
+        ("radius = 10e-3", "radios = 10e-3", "problem.radios"),
         ("load = 20.0", 'load = "heavy"', "problem.load"),
         ("load = 20.0", "load = inf", "problem.load"),
         ("load = 20.0", "load = 1e12", "problem.load"),
@@ -98,3 +98,12 @@ def test_bad_study_is_one_sentence_with_file_and_key(old, new, said):
     assert message.startswith("mine.toml")
     assert said in message
     assert "\n" not in message
+
+
+def test_all_errors_of_a_file_are_one_message():
+    text = STUDY.replace("nu = 0.25", "nu = 0.5").replace("load = 20.0", "load = -1.0")
+    text = text.replace("cross_check = 5", "cross_check = 2.5")
+    with pytest.raises(CaseError) as caught:
+        parse_study(text.encode(), PATH)
+    for key in ("problem.coating.nu", "problem.load", "sweep.cross_check"):
+        assert key in str(caught.value)

@@ -35,8 +35,10 @@ def require_checkout(folder: Path, option: str) -> None:
 
 
 def require_format(plot: Path) -> None:
-    """Raises CommandError where the name of a figure does not end in one of its formats."""
+    """Raises CommandError where a figure has no name of one of its formats, or no folder."""
     from verification.desk.answer_figure import FORMATS
 
     if plot.suffix.lower() not in FORMATS:
         raise CommandError(f"--plot = {plot}; the name has to end in {', '.join(FORMATS)}")
+    if not plot.parent.is_dir():
+        raise CommandError(f"--plot = {plot}; there is no folder {plot.parent}; create it, or name another")

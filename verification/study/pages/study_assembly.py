@@ -107,6 +107,11 @@ def inputs_section(study: Study) -> Section:
         row("load", load_text(study)),
         row("substrate", _solid(*study.substrate)),
         row("coating", f"E = {moduli} GPa (E1/E2 = {ratios}), nu = {study.coating_nu:g}"),
+        *(
+            row(f"{side} it", ", ".join(f"{_solid(E, nu)}, {units.shown_length(h)}" for E, nu, h in fixed))
+            for side, fixed in study.fixed.items()
+            if fixed
+        ),
         row("thickness", swept),
         row("friction", ", ".join(f"{f:g}" for f in study.frictions)),
         row(

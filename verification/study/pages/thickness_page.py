@@ -243,7 +243,9 @@ def _near_cells(judgement: Judged, h: float, mode: str, units: Units) -> list[Ce
 
 
 def _maps(study: Study, found: Sequence[Curve], failures: list[str]) -> list[Drawn]:
-    """Contours of the most compliant and the stiffest coating at the middle friction."""
+    """Contours of the most compliant and the stiffest coating at the middle friction; none of a stack."""
+    if study.above or study.below:
+        return []
     frictions = sorted({c.friction for c in found})
     middle = [c for c in found if c.friction == frictions[len(frictions) // 2]]
     chosen = {min(c.ratio for c in middle), max(c.ratio for c in middle)}

@@ -1,0 +1,101 @@
+"""Wrong inputs of coatcheck solve, each one message that names the remedy; nothing is written."""
+
+import pytest
+from quick_case import coatcheck
+
+GIVEN = {
+    "--ball": "10 mm, 210 GPa, 0.3",
+    "--load": "20 N",
+    "--coating": "2 um, 180 GPa, 0.2",
+    "--substrate": "210 GPa, 0.3",
+    "--friction": "0.15",
+}
+
+# Options changed (None leaves one out), and a word of the remedy.
+WRONG = [
+    ({"--radius": "10 mm"}, "--ball"),
+    ({"--diameter": "20 mm"}, "d = 20 mm"),
+    ({"--sphere": "20 mm"}, "--ball"),
+    ({"--mu": "0.1"}, "--friction"),
+    ({"-f": "0.1"}, "--friction"),
+    ({"--film": "2 um"}, "--coating"),
+    ({"--layer": "2 um"}, "--coating"),
+    ({"--interlayer": "2 um"}, "--coating"),
+    ({"--thickness": "2 um"}, "--coating"),
+    ({"--modulus": "2 um"}, "--substrate"),
+    ({"--E": "2 um"}, "--substrate"),
+    ({"--base": "steel"}, "--substrate"),
+    ({"--nonsense": "1"}, "solve --help"),
+    ({"--ball": None}, "--ball"),
+    ({"--load": None}, "--load"),
+    ({"--substrate": None}, "--substrate"),
+    ({"--friction": "0,15"}, "with a point"),
+    ({"--friction": "f"}, "solve --help"),
+    ({"--friction": "-0.1"}, "at least 0"),
+    ({"--friction": "3"}, "at most 2"),
+    ({"--friction": "nan"}, "finite"),
+    ({"--load": "-20"}, "above 0"),
+    ({"--load": "-20 N"}, "above 0"),
+    ({"--load": "0"}, "above 0"),
+    ({"--load": "20,5 N"}, "decimal point"),
+    ({"--load": "20 kg"}, "20 N"),
+    ({"--load": "20 um"}, "20 N"),
+    ({"--load": "heavy"}, "20 N"),
+    ({"--load": "20 n"}, "did you mean N"),
+    ({"--load": "inf"}, "finite"),
+    ({"--load": "1e9 N"}, "lower the load"),
+    ({"--ball": "2,5 mm"}, "with a point"),
+    ({"--ball": "10,5 mm, 210 GPa, 0,3"}, "with a point"),
+    ({"--ball": "10 mm, 210 GPa"}, "radius, E, nu"),
+    ({"--ball": "10 mm, 0.3, 210 GPa"}, "nu must be a number"),
+    ({"--ball": "10 m, 210 GPa, 0.3"}, "--force"),
+    ({"--ball": "10, 210e9, 0.3"}, "looks like mm"),
+    ({"--ball": "d = 20, 210e9, 0.3"}, "looks like mm"),
+    ({"--ball": "10 mm, 210, 0.3"}, "looks like GPa"),
+    ({"--ball": "10 mm, 210 GPa, 0.5"}, "use 0.49"),
+    ({"--ball": "-10 mm, 210 GPa, 0.3"}, "above 0"),
+    ({"--substrate": "210, 0.3"}, "looks like GPa"),
+    ({"--substrate": "210000, 0.3"}, "looks like MPa"),
+    ({"--substrate": "210 GPa"}, "E, nu"),
+    ({"--substrate": "210 GPa, 0,3"}, "with a point"),
+    ({"--substrate": "210 GPa, 0.5"}, "use 0.49"),
+    ({"--substrate": "210 GPa, 0.6"}, "at most 0.5"),
+    ({"--substrate": "210 gpa, 0.3"}, "did you mean GPa"),
+    ({"--substrate": "steel, 0.3"}, "210 GPa"),
+    ({"--substrate": "5 TPa, 0.3"}, "--force"),
+    ({"--coating": "2, 180e9, 0.2"}, "looks like um"),
+    ({"--coating": "0.002, 180e9, 0.2"}, "looks like mm"),
+    ({"--coating": "20 mm, 180 GPa, 0.2"}, "--force"),
+    ({"--coating": "2 um, 180, 0.2"}, "looks like GPa"),
+    ({"--coating": "2 um, 180 GPa"}, "thickness, E, nu"),
+    ({"--coating": "0,2 um, 180 GPa, 0.2"}, "with a point"),
+    ({"--coating": "2 um, 2 MPa, 0.49"}, "raise the smallest"),
+    ({"--coating": "1 nm, 180 GPa, 0.2"}, "0.109 um"),
+    ({"--plot": "missing/stress.png"}, "create it"),
+    ({"--plot": "stress.gif"}, ".png"),
+]
+
+
+@pytest.mark.parametrize(("changed", "remedy"), WRONG, ids=lambda value: str(value)[:60])
+def test_a_wrong_input_is_one_message_with_its_remedy(changed, remedy, tmp_path):
+    words = [word for option in (GIVEN | changed).items() if option[1] is not None for word in option]
+    done = coatcheck("solve", *words, cwd=tmp_path)
+    assert (done.returncode, done.stdout, list(tmp_path.iterdir())) == (2, "", [])
+    errors = [line for line in done.stderr.splitlines() if "warning" not in line]
+    assert len(errors) == 1
+    assert remedy in errors[0]
+
+
+def test_implausible_numbers_are_solved_with_force_and_a_warning(tmp_path):
+    words = ["solve", "--ball", "2 m", "--load", "20 N", "--substrate", "210 GPa, 0.3"]
+    assert coatcheck(*words, cwd=tmp_path).returncode == 2
+    done = coatcheck(*words, "--force", cwd=tmp_path)
+    assert done.returncode == 0
+    assert "radius = 2 m" in done.stderr
+
+
+def test_a_ball_far_stiffer_than_the_flat_is_rigid(tmp_path):
+    words = ["solve", "--load", "1 mN", "--substrate", "2 MPa, 0.49", "--friction", "0.1", "--ball"]
+    elastic = coatcheck(*words, "10 mm, 210 GPa, 0.3", cwd=tmp_path)
+    assert (elastic.returncode, elastic.stderr.count("treated as rigid")) == (0, 1)
+    assert "rigid ball / substrate" in elastic.stdout

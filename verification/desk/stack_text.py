@@ -1,0 +1,107 @@
+"""A contact in words: the stack in one line, each body and coating in a line of its own."""
+
+from itertools import pairwise
+
+from verification.cases.case_file import Case
+from verification.cases.random_problems import RATIO, THICKNESS
+from verification.problem.coated_contact import BALL, FLAT, CoatedContact
+
+__all__ = ["body_label", "conditions", "described", "outside_verified", "stack"]
+
+
+def stack(case: Case) -> str:
+    """The layers from the ball to the substrate: "ball / DLC 2 um / Cr 0.2 um / steel"."""
+    problem = case.problem
+    found = [case.names.get(BALL, ("",))[-1]]
+    found = [f"{found[0]} ball".strip() if problem.ball else "rigid ball"]
+    if problem.ball:
+        found += reversed(_layers(case, BALL))
+    base = case.names.get(FLAT, ("",))[-1]
+    return " / ".join([*found, *_layers(case, FLAT), base or f"substrate {_gpa(problem.substrate[0])}"])
+
+
+def _layers(case: Case, body: str) -> list[str]:
+    """Each coating of ``body`` with its thickness, from its surface inwards."""
+    names, found = case.names.get(body, ()), []
+    for i, layers in enumerate(_coatings(case.problem.seen_from(body), case.layers.get(body))):
+        thickness = f"{sum(h for *_, h in layers) * 1e6:.4g} um"
+        name = names[i] if i < len(names) else ""
+        found.append(f"{name} {thickness}" if name else f"{thickness} of {_gpa(layers[0][0])}")
+    return found
+
+
+def described(case: Case) -> list[str]:
+    """The problem, a line for each body, load and coating."""
+    problem = case.problem
+    kind = "rigid" if problem.ball is None else _solid(*problem.ball[:2])
+    size = f"R = {problem.radius * 1e3:.4g} mm (diameter {2e3 * problem.radius:.4g} mm), {kind}"
+    lines = [f"ball        {size}; W = {problem.load:.4g} N, f = {problem.friction:g}"]
+    for body in problem.bodies:
+        seen, begin = problem.seen_from(body), 0
+        for i, layers in enumerate(_coatings(seen, case.layers.get(body)), start=1):
+            on, n = "coating" if body == FLAT else f"on the {BALL}", len(layers)
+            stress = sorted(case.residual[body][begin : begin + n]) if case.residual else [0.0]
+            (E, nu, _), last = layers[0], layers[-1][0]
+            course = f", E to {_gpa(last)} in {n} sub-layers" if n > 1 else ""
+            more = f", residual stress {_range(stress[0] / 1e6, stress[-1] / 1e6)} MPa" if any(stress) else ""
+            thickness = f"{sum(h for *_, h in layers) * 1e6:.4g} um"
+            lines.append(f"{on} {i}   "[:12] + f"{thickness}, {_solid(E, nu)}{course}{more}")
+            begin += n
+        if body == FLAT:
+            lines.append(f"substrate   {_solid(*seen.substrate)}")
+    return lines
+
+
+def conditions(problem: CoatedContact) -> str:
+    """Ball, load and friction in one line."""
+    return f"R = {problem.radius * 1e3:.4g} mm, W = {problem.load:.4g} N, f = {problem.friction:g}"
+
+
+def body_label(problem: CoatedContact, body: str, where: str) -> str:
+    """A place with its body: "coating 1", "ball, coating 1", "ball" of a ball without coatings."""
+    if body == FLAT:
+        return where
+    return body if not problem.seen_from(body).coatings and where == "substrate" else f"{body}, {where}"
+
+
+def outside_verified(case: Case) -> str:
+    """What lies outside the ranges of the random problems of both methods; "" for nothing."""
+    problem, found = case.problem, []
+    for body in problem.bodies:
+        seen, of = problem.seen_from(body), "" if body == FLAT else f" on the {body}"
+        for i, layers in enumerate(_coatings(seen, case.layers.get(body)), start=1):
+            h = sum(h for *_, h in layers) / problem.a_h
+            if not THICKNESS[0] * (1 - 1e-3) <= h <= THICKNESS[1] * (1 + 1e-3):
+                found.append(f"coating {i}{of}, h = {h:.2g} a_h, outside {_between(THICKNESS)}")
+            ratios = [E / seen.substrate[0] for E, _, _ in layers]
+            if not RATIO[0] <= min(ratios) <= max(ratios) <= RATIO[1]:
+                found.append(
+                    f"coating {i}{of}, E = {ratios[0]:.2g} of the substrate's, outside {_between(RATIO)}"
+                )
+    return "; ".join(found)
+
+
+def _between(bounds: tuple[float, float]) -> str:
+    return f"{bounds[0]:g} to {bounds[1]:g}"
+
+
+def _coatings(
+    seen: CoatedContact, layers: tuple[int, ...] | None
+) -> list[tuple[tuple[float, float, float], ...]]:
+    """The sub-layers of each coating."""
+    ends = [0]
+    for n in layers or (1,) * len(seen.coatings):
+        ends.append(ends[-1] + n)
+    return [seen.coatings[begin:end] for begin, end in pairwise(ends)]
+
+
+def _solid(E: float, nu: float) -> str:
+    return f"E = {_gpa(E)}, nu = {nu:g}"
+
+
+def _gpa(E: float) -> str:
+    return f"{E / 1e9:.4g} GPa"
+
+
+def _range(low: float, high: float) -> str:
+    return f"{low:.4g}" if low == high else f"{low:.4g} to {high:.4g}"
