@@ -1,6 +1,7 @@
 """Children of the benchmark: in turn, each on the packages of its own commit, failures with their message."""
 
 import subprocess
+import sys
 from importlib import metadata
 from itertools import count
 
