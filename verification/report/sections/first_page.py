@@ -262,6 +262,10 @@ def worth(material: Material) -> list[Worth]:
     if invariants:
         holding = sum(one.outcome is Outcome.AGREES for one in invariants)
         found.append(_share("invariants hold", holding, len(invariants), "#invariants"))
+    studies = evidence.accuracy.verdicts if evidence.accuracy is not None else ()
+    if studies:
+        agreeing = sum(one.outcome is Outcome.AGREES for one in studies)
+        found.append(_share("judged studies agree", agreeing, len(studies), "#semi-analytical-accuracy"))
     known = [item for result in material.contacts for item in accuracies(result)]
     if known:
         ratios = [item.ratio for item in known if item.ratio is not None and isfinite(item.ratio)]
