@@ -10,6 +10,7 @@ True
 from .estimate import Uncertainty
 from .levels import NotConverged
 from .off_axis import PressedSolid, check_pressure
+from .shaped_contact import ShapedContact, solve_shape
 from .solution import Diagnostics, Solution
 from .solver import solve, solve_prescribed
 from .vtu import PlaneMesh, plane_mesh, write_vtu
@@ -19,11 +20,13 @@ __all__ = [
     "NotConverged",
     "PlaneMesh",
     "PressedSolid",
+    "ShapedContact",
     "Solution",
     "Uncertainty",
     "check_pressure",
     "plane_mesh",
     "solve",
     "solve_prescribed",
+    "solve_shape",
     "write_vtu",
 ]

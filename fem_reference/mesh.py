@@ -32,6 +32,8 @@ _NEAR, _GROWTH = 3.0, 0.4
 # Films buried at many times their thickness are left to flat triangles: the least size for the sake of a
 # coating over the usual one.
 _LEAST_ROW = 0.25
+# Growth of triangles below an evenly divided surface, and beyond the contact, a unit of the stretched plane.
+_BELOW, _BEYOND = 0.3, 0.5
 # The largest sizes at the edge, far away and in coatings. A film of one row of triangles as high as the last
 # makes the contact too stiff by up to 1e-5.
 _LARGEST_AT_EDGE, _LARGEST_FAR, _LARGEST_IN_FILM = 0.6, 0.7, 0.47
@@ -50,6 +52,7 @@ class Grading:
     film_size : the same in the coatings
     rows      : triangles across each coating at least, near the contact; fewer where they would be smaller
         than ``_LEAST_ROW`` times size
+    surface   : size on the surface of the contact over its radius, growing below it; 0 leaves it to the others
     """
 
     size: float = 0.4
@@ -59,6 +62,7 @@ class Grading:
     far_size: float = 0.8
     film_size: float = 0.8
     rows: float = 2.0
+    surface: float = 0.0
 
     @classmethod
     def of(cls, size: float, edge_size: float = EDGE_SIZE, rows: float = 2.8) -> "Grading":
@@ -222,6 +226,9 @@ def _triangulate(
             # p(0) has no neighbours on its other side: finer triangles at the point of first contact
             f"{_literal(grading.axis_size)}+0.3*{origin}",
         ]
+        if grading.surface:  # dr = l cosh(xi) dxi
+            even = f"{_literal(grading.surface * scale)}/Cosh(Min(x,0))"
+            sizes.append(f"{even}+{_literal(_BELOW)}*y+{_literal(_BEYOND)}*Max(0,x)")
         for upper, lower in films:
             away = f"Max(0,Max(y-({_literal(lower)}),{_literal(upper)}-y))"
             row = max((lower - upper) / grading.rows, _LEAST_ROW * grading.size)

@@ -1,15 +1,10 @@
-"""A coated half-space under any pressure that is even in y: one meridian problem for each angular harmonic.
+"""A coated half-space under any pressure that is even in y, as a sum of angular harmonics.
 
-On a body of revolution a load of harmonic m gives displacements of that harmonic (``axisymmetric``). With
-
-    p(r, theta) = sum_m p_m(r) cos(m theta),        q = f p in +x,
-
-the tractions of harmonic m on the surface are, with p_-m = p_m and p_0 counted twice,
-
-    p_m,   q_r = f (p_(m-1) + p_(m+1))/2,   q_theta = -f (p_(m-1) - p_(m+1))/2,        m >= 1,
-
-and p_0, q_r = f p_1/2 for m = 0. One matrix each; the fields are their sum. So a contact without symmetry,
-solved by another method, is checked: under its pressure the gap has to vanish inside it.
+On a body of revolution a load of harmonic m gives displacements of that harmonic (``axisymmetric``), so the
+fields under p(r, theta) = sum_m p_m(r) cos(m theta), which may slide along x, are a sum over meridian problems
+(``harmonic_compliance``). What the tractions themselves add to the stress on the surface is not split into
+harmonics. A contact without symmetry, solved by another method, is checked by it: under its pressure the gap
+has to vanish inside.
 """
 
 from collections.abc import Callable
@@ -18,10 +13,9 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from skfem import FacetBasis, LinearForm, asm
 
-from .axisymmetric import ELEMENTS, Discretisation
-from .linear_system import constrained_solve
+from .axisymmetric import Discretisation
+from .harmonic_compliance import HarmonicCompliance, harmonic_compliance
 from .mesh import Grading, MeridianMesh, meridian_mesh
 from .points import SolidPoints, solid_points
 from .recovery import HarmonicField
@@ -29,15 +23,15 @@ from .scaling import LayeredSolid, Units
 from .solution import cartesian, tensor
 from .validation import check_choice, check_materials, check_positive, check_proportions
 
-__all__ = ["PressedSolid", "check_pressure"]
+__all__ = ["OffAxisFields", "PressedSolid", "check_pressure", "discretised"]
 
 Pressure = Callable[[Any, Any], Any]
 Coatings = tuple[tuple[float, float, float], ...]
 
-ANGLES = 4096  # midpoints on half a circle: p falls to zero like a square root there
-RADIAL = 95  # degree up to which an edge of the surface is integrated: p_m has kinks inside it
+ANGLES = 2048  # midpoints on half a circle: p falls to zero like a square root there
+RADIAL = 48  # points between two vertices of the surface: p_m has kinks there
 COARSER = 1.4  # triangles of the companion over those of the mesh
-NEGLIGIBLE = 1e-9  # of the largest pressure: a harmonic below is left out
+NEGLIGIBLE = 1e-9  # of the largest: a harmonic of the pressure below is left out
 # What lies beyond the last harmonic, over what the last third of them adds: of the deflection, whose terms
 # fall as m^-5/2, of the stress, m^-3/2.
 BEYOND = 1.2, 4.5
@@ -50,9 +44,9 @@ def check_pressure(
     coatings: Coatings,
     substrate: tuple[float, float],
     friction: float = 0.0,
-    harmonics: int = 24,
+    harmonics: int = 48,
     order: int = 4,
-    size: float = 0.16,
+    size: float = 0.3,
     far: float = 1000.0,
     estimate_uncertainty: bool = True,
 ) -> "PressedSolid":
@@ -61,7 +55,7 @@ def check_pressure(
     pressure : p(x, y) [Pa] of arrays [m], even in y.  reach [m] : distance from the origin without pressure
     coatings ((E, nu, thickness), ...), substrate (E, nu), friction f in q = f p : as in ``solve``
     harmonics : the last angular harmonic of the pressure
-    size : of the triangles below the pressure, over ``reach``; they grow beyond
+    size : of the triangles over the distance from the pressure; on the surface below it a fifth of ``reach``
     far : distance of the outer boundary over (reach + thickness of all coatings)
     Raises ValueError for bad input, for a pressure that is not even in y or reaches farther.
     """
@@ -73,26 +67,29 @@ def check_pressure(
     angular = AngularPressure.of(pressure, reach)
     unit = Units(length=reach, pressure=angular.scale, modulus=substrate[0])
 
-    def under(size: float, last: int) -> _Fields:
-        mesh = meridian_mesh(
-            contact_radius=1.0,
-            thicknesses=solid.thicknesses,
-            far=solid.far,
-            grading=Grading(
-                size,
-                1.9 * size,
-                size,
-                size,
-                far_size=min(2 * size, 0.7),
-                film_size=2 * size,
-                rows=0.35 / size,
-            ),
-        )
-        return _Fields.of(solid, Discretisation(mesh, order), angular, friction, last)
+    def under(size: float) -> OffAxisFields:
+        d = discretised(solid, size, size / 5, order)
+        compliance = harmonic_compliance(solid, d, int(harmonics), 1)
+        return OffAxisFields.of(compliance, angular.loads(compliance), friction, angular)
 
-    fine = under(size, int(harmonics))
-    coarse = under(COARSER * size, int(harmonics)) if estimate_uncertainty else None
-    return PressedSolid(fine, coarse, unit, pressure)
+    fine = under(size)
+    return PressedSolid(fine, under(COARSER * size) if estimate_uncertainty else None, unit)
+
+
+def discretised(solid: LayeredSolid, size: float, surface: float, order: int) -> Discretisation:
+    """Elements of a mesh without a contact edge: below the radius 1 the surface is divided evenly."""
+    grading = Grading(
+        size,
+        1.9 * size,
+        size,
+        size,
+        far_size=min(2 * size, 0.7),
+        film_size=2 * size,
+        rows=0.35 / size,
+        surface=surface,
+    )
+    mesh = meridian_mesh(contact_radius=1.0, thicknesses=solid.thicknesses, far=solid.far, grading=grading)
+    return Discretisation(mesh, order)
 
 
 @dataclass(frozen=True, eq=False)
@@ -121,6 +118,22 @@ class AngularPressure:
             raise ValueError(f"the pressure is {beyond:g} Pa beyond reach = {reach:g} m; enlarge it")
         return cls(pressure, reach, scale)
 
+    def __call__(self, x: np.ndarray, y: np.ndarray) -> np.ndarray:
+        """p; x and y over ``reach``."""
+        return np.asarray(self.pressure(self.reach * x, self.reach * y), dtype=float) / self.scale
+
+    def loads(self, compliance: HarmonicCompliance) -> np.ndarray:
+        """Its products with the shape functions, (harmonics, nodes)."""
+        node, weight = np.polynomial.legendre.leggauss(RADIAL)
+        vertices = compliance.nodes[:: compliance.discretisation.order]
+        half = np.diff(vertices)[:, None] / 2
+        r = (vertices[:-1, None] + half * (1 + node)).ravel()
+        p = self.harmonics(r, compliance.last)[compliance.harmonics] * (half * weight).ravel() * r
+        found = np.pi * compliance.products(r, p)
+        found[0] *= 2
+        largest = np.abs(found).max()
+        return np.where(np.abs(found).max(axis=1, keepdims=True) > NEGLIGIBLE * largest, found, 0.0)
+
     def at(self, r: np.ndarray) -> np.ndarray:
         """p at the angles of ``ANGLES`` on half circles of radius r, shape of r + (ANGLES,)."""
         theta = np.pi * (np.arange(ANGLES) + 0.5) / ANGLES
@@ -140,155 +153,77 @@ class AngularPressure:
         return found.reshape(last + 1, *r.shape)
 
 
-def tractions(p: np.ndarray, friction: float) -> np.ndarray:
-    """Normal p, q_r and q_theta of each harmonic under p_m, (harmonics,) + points; one harmonic more.
-
-    Returns shape (harmonics + 1, 3) + points.
-    """
-    found = np.zeros((len(p) + 1, 3, *p.shape[1:]))
-    found[: len(p), 0] = p
-    if friction:
-        halves = np.zeros((len(p) + 2, *p.shape[1:]))
-        halves[: len(p)] = p / 2
-        halves[0] *= 2
-        below, above = halves[:-2], halves[2:]
-        found[1:, 1] = friction * (below + above)
-        found[1:, 2] = -friction * (below - above)
-        found[0, 1] = friction * halves[1]
-    return found
-
-
 @dataclass(frozen=True, eq=False)
-class _HarmonicOfLoad(HarmonicField):
-    """Field of one harmonic under ``tractions`` of r: p, q_r, q_theta, (3, n)."""
-
-    tractions: Callable[[np.ndarray], np.ndarray]
-
-    def _surface_tractions(self, r: np.ndarray) -> np.ndarray:
-        return -self.tractions(r)
-
-
-@dataclass(frozen=True, eq=False)
-class _Fields:
+class OffAxisFields:
     """The fields of all harmonics on one mesh, in scaled units.
 
-    work : int p u_z dA.  load : int p dA
+    loads : of the normal pressure, (harmonics, nodes).   pressure : p (x, y)
     """
 
-    discretisation: Discretisation
-    fields: tuple[_HarmonicOfLoad, ...]
-    last: int
-    load: float
-    work: float
-    angular: AngularPressure
-    radii: np.ndarray
-    weights: np.ndarray
+    compliance: HarmonicCompliance
+    fields: tuple[HarmonicField, ...]
+    loads: np.ndarray
+    friction: float
+    pressure: Pressure
 
     @classmethod
     def of(
-        cls, solid: LayeredSolid, d: Discretisation, angular: AngularPressure, friction: float, last: int
-    ) -> "_Fields":
-        facets = d.facets(lambda x: (x[1] == 0) & (x[0] < 1))
-        basis = FacetBasis(d.triangulation, ELEMENTS[d.order](), facets=facets, intorder=RADIAL)
-        r = np.asarray(basis.global_coordinates())[0]
-        weights = r * np.asarray(basis.dx)
-        p = angular.harmonics(r, last)
-        of_load = tractions(p, friction)
-        largest = np.abs(of_load).max(axis=(1, 2, 3))
-        load = 2 * np.pi * float((p[0] * weights).sum())
-        fields, work = [], 0.0
-        for m in np.flatnonzero(largest > NEGLIGIBLE):
-            forces = [_surface_load(basis, one) for one in of_load[m]]
-            u = _solved(solid, d, int(m), forces, load, friction)
-            count = 2 if m == 0 else 3
-            angle = 2 * np.pi if m == 0 else np.pi
-            work += angle * float(forces[0] @ u.reshape(count, -1)[-1])
+        cls, compliance: HarmonicCompliance, loads: np.ndarray, friction: float, pressure: Pressure
+    ) -> "OffAxisFields":
+        d, materials = compliance.discretisation, compliance.solid.materials
+        found = compliance.displacements(loads)
+        if friction:
+            for m, u in compliance.sliding(loads, friction).items():
+                found[m] = found[m] + u if m in found else u
+        fields = tuple(HarmonicField(d, u, materials, m, np.zeros_like, 0.0, False) for m, u in found.items())
+        return cls(compliance, fields, loads, friction, pressure)
 
-            def at(r: np.ndarray, m: int = int(m)) -> np.ndarray:
-                inside = r < 1
-                found = np.zeros((3, r.size))
-                found[:, inside] = tractions(angular.harmonics(r[inside], last), friction)[m]
-                return found
+    @property
+    def discretisation(self) -> Discretisation:
+        return self.compliance.discretisation
 
-            fields.append(_HarmonicOfLoad(d, u, solid.materials, int(m), _none, 0.0, False, at))
-        return cls(d, tuple(fields), last, load, work, angular, r, weights)
+    @property
+    def load(self) -> float:
+        """int p dA."""
+        return float(self.loads[0].sum())
+
+    @property
+    def work(self) -> float:
+        """int p u_z dA."""
+        return float(np.einsum("mi,mij,mj->", self.loads, self.compliance.matrices, self.loads))
 
     def __call__(self, points: SolidPoints) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
         """Displacement (3, n) and stress (6, n), cylindrical, and what the last third of harmonics adds."""
-        theta = np.arctan2(points.sin, points.cos)
+        theta, at = np.arctan2(points.sin, points.cos), points.located
         u, s = np.zeros((3, theta.size)), np.zeros((6, theta.size))
         late_u, late_s = np.zeros_like(u), np.zeros_like(s)
         for field in self.fields:
             cos, sin = np.cos(field.harmonic * theta), np.sin(field.harmonic * theta)
-            displacement, stress = field(points.located)
+            displacement, stress = field(at)
             displacement *= np.stack([cos, sin, cos])
             stress *= np.stack([cos] * 4 + [sin] * 2)
             u += displacement
             s += stress
-            if field.harmonic > 2 * self.last / 3:
+            if field.harmonic > 2 * self.compliance.last / 3:
                 late_u += displacement
                 late_s += stress
+        surface = at.z == 0
+        p = np.where(surface, self.pressure(at.r_given * points.cos, at.r_given * points.sin), 0.0)
+        nu, f = self.compliance.solid.materials[0][1], self.friction
+        s[:2] -= nu / (1 - nu) * p
+        s[2] -= p
+        s[3] -= f * p * points.cos
+        s[5] += f * p * points.sin
         return u, s, late_u, late_s
-
-    def mean(self, field: Callable[[np.ndarray, np.ndarray], np.ndarray]) -> float:
-        """Mean of a field of x and y [reach], even in y, weighted with the pressure."""
-        theta = np.pi * (np.arange(ANGLES) + 0.5) / ANGLES
-        total = 0.0
-        for r, w in zip(self.radii, self.weights, strict=True):
-            p = self.angular.at(r)
-            values = field(r[:, None] * np.cos(theta), r[:, None] * np.sin(theta))
-            total += float(w @ (p * values).sum(axis=1)) * 2 * np.pi / ANGLES
-        return total / self.load
-
-
-def _none(r: np.ndarray) -> np.ndarray:
-    return np.zeros(r.shape)
-
-
-def _surface_load(basis: FacetBasis, traction: np.ndarray) -> np.ndarray:
-    """int traction v r dr over the edges of ``basis``, of values at its points of quadrature."""
-    form = LinearForm(lambda v, w: w.traction * v * w.x[0])
-    return np.asarray(asm(form, basis, traction=traction))
-
-
-def _solved(
-    solid: LayeredSolid, d: Discretisation, m: int, forces: list[np.ndarray], load: float, friction: float
-) -> np.ndarray:
-    """Field vector of harmonic m under the load vectors of p, q_r, q_theta.
-
-    On the outer boundary the displacement due to the resultant: normal for m = 0, tangential for m = 1.
-    """
-    normal, radial, angular = forces
-    if m == 0:
-        b = np.concatenate([radial, normal])
-        far = list(load * solid.far_displacement(*d.locations[:, d.outer]))
-        axis: tuple[int, ...] = (0,)
-    else:  # virtual work q_r U + q_theta V + p Z with U = S - V
-        b = np.concatenate([radial, angular - radial, normal])
-        U, V, Z = friction * load * (m == 1) * solid.far_sliding(*d.locations[:, d.outer])
-        far = [U + V, V, Z]
-        axis = (0, 2) if m == 1 else (0, 1, 2)
-    K = d.skeleton(solid.materials, m)
-    given = np.zeros(b.size)
-    for field, values in enumerate(far):
-        given[field * d.N + d.outer] = values
-    for field in axis:
-        given[field * d.N + d.axis] = 0.0
-    fixed = [field * d.N + d.outer for field in range(len(far))] + [field * d.N + d.axis for field in axis]
-    solved = constrained_solve(
-        K.matrix, given[:, None], np.concatenate([*fixed, K.inner.ravel()]), b[:, None]
-    )
-    return K.extended(solved.u)[:, 0]
 
 
 @dataclass(frozen=True, eq=False)
 class PressedSolid:
     """A coated half-space under a given pressure; x along sliding, z into it, tension positive, SI."""
 
-    _fine: _Fields
-    _coarse: _Fields | None
+    _fine: OffAxisFields
+    _coarse: OffAxisFields | None
     _units: Units
-    _pressure: Pressure
 
     @property
     def load(self) -> float:
@@ -300,8 +235,10 @@ class PressedSolid:
         return self._fine.discretisation.mesh
 
     def pressure(self, x: Any, y: Any = 0.0) -> np.ndarray:
-        """The given pressure [Pa]; x, y [m], broadcast."""
-        return np.asarray(self._pressure(*np.broadcast_arrays(x, y)), dtype=float)
+        """The pressure [Pa]; x, y [m], broadcast."""
+        x, y = np.broadcast_arrays(np.asarray(x, dtype=float), np.asarray(y, dtype=float))
+        unit = self._units
+        return np.asarray(self._fine.pressure(x / unit.length, y / unit.length)) * unit.pressure
 
     def displacement(self, x: Any, y: Any, z: Any) -> np.ndarray:
         """Displacement (u_x, u_y, u_z) [m], shape (3,) + points; x, y, z [m], broadcast."""
@@ -340,8 +277,10 @@ class PressedSolid:
 
     def approach_of(self, height: Callable[[Any, Any], Any]) -> float:
         """Approach [m] at which the gap vanishes in the mean, weighted with the pressure."""
-        reach = self._units.length
-        lifted = self._fine.mean(lambda x, y: np.asarray(height(reach * x, reach * y)) / reach) * reach
+        r, theta = (np.arange(400) + 0.5) / 400, np.pi * (np.arange(800) + 0.5) / 800
+        x, y = (self._units.length * np.outer(r, wave(theta)) for wave in (np.cos, np.sin))
+        weight = self.pressure(x, y) * r[:, None]
+        lifted = float((weight * height(x, y)).sum() / weight.sum())
         return lifted + self._fine.work / self._fine.load * self._units.displacement
 
     def _sums(

@@ -17,6 +17,7 @@ from semianalytic import contact, convolution, influence, nested, prescribed, un
 from semianalytic.arrays import check_namespace, namespace
 from semianalytic.contact import NotConverged
 from semianalytic.grid import Grid, odd, touches_rim
+from semianalytic.indenter_profile import Shape, profile_of
 from semianalytic.inputs import (
     Body,
     Numerics,
@@ -37,6 +38,7 @@ Coatings = tuple[tuple[float, float, float], ...]
 Substrate = tuple[float, float]
 Ball = tuple[float, float, Coatings]
 
+WIDER_SHAPE = 2.0  # first half-width under an indenter that is no sphere, over Hertz's radius
 LARGEST = 0.9  # contact radius over that of the sphere
 ROUGH, ROOMY = (
     49,
@@ -66,6 +68,7 @@ def solve(
     threads: int = 1,
     gap: str = "parabola",
     accuracy: float | None = 1e-5,
+    indenter: Shape | None = None,
 ) -> Solution:
     """Press a sphere of ``radius`` [m] with ``load`` [N] on a coated half-space.
 
@@ -81,6 +84,8 @@ def solve(
     refined beyond ``patches`` to at most 725 a side; the solution states what it reached. None : no
     refinement.
     gap : "parabola" r^2/2R or "sphere" R - sqrt(R^2 - r^2).
+    indenter : another shape than a sphere, (name, numbers [m]) as in ``indenter_profile``, pressed as by
+    ``indent`` over a square that is found; without ``accuracy``.
 
     Raises ValueError for input without meaning and for a contact as wide as the sphere, NotConverged when the
     iteration stops short.
@@ -100,6 +105,27 @@ def solve(
         edge_correction=edge_correction,
         threads=threads,
     )
+    if indenter is not None:
+        return _shaped(
+            profile_of(indenter, radius),
+            fill * WIDER_SHAPE * hertz_radius(radius, load, approach, body),
+            fill,
+            load=load,
+            approach=approach,
+            coatings=coatings,
+            substrate=substrate,
+            friction=friction,
+            ball=ball,
+            patches=patches,
+            tolerance=max(tolerance, 1e-8),
+            max_iterations=max_iterations,
+            conversion=conversion,
+            hankel_points=hankel_points,
+            enlarge=enlarge,
+            edge_correction=edge_correction,
+            estimate_uncertainty=estimate_uncertainty,
+            threads=threads,
+        )
     sphere = Sphere(radius, gap)
     pressed = sphere.indenter(load, approach, edge_correction)
     half_width = fill * _contact_radius(radius, pressed, body, numerics)
@@ -124,6 +150,25 @@ def solve(
     error = estimate.approach if estimate else None
     beside = Neighbours(sphere, level, levels[-1].load, solution.approach, error, body, numerics)
     return replace(solution, neighbours=beside)
+
+
+def _shaped(
+    profile: Callable[[Array, Array], Array], half_width: float, fill: float, **of: Any
+) -> Solution:
+    """Press an indenter over a square ``fill`` times as wide as its contact, which coarse grids find."""
+    coarse = of | {"patches": ROUGH, "tolerance": 1e-4, "edge_correction": False, "estimate_uncertainty": False}
+    for _ in range(20):
+        try:
+            found = indent(profile=profile, half_width=half_width, **coarse)
+        except NotConverged:
+            half_width *= 1.5
+            continue
+        loaded = np.argwhere(found.patch_pressure > 0)
+        extent = float(np.abs(found.nodes[loaded]).max()) + found.diagnostics.patch_size
+        if extent > half_width / 3:
+            return indent(profile=profile, half_width=fill * extent, **of)
+        half_width = ROOMY * extent
+    raise NotConverged(f"no contact within {half_width:g} m carries the load; check the indenter")
 
 
 def _contact_radius(radius: float, sphere: Indenter, body: Body, numerics: Numerics) -> float:

@@ -1,0 +1,196 @@
+"""Compliance of the surface of a layered solid to each angular harmonic of a pressure.
+
+By hand: many pressures on one mesh are needed, and more harmonics than it is worth to factorise matrices for.
+
+Finite elements see a pressure as its products with the shape functions phi_i on the surface,
+
+    L_mi = int p cos(m theta) phi_i(r) dA,        u_z(r, theta) = sum_m cos(m theta) sum_ij phi_i(r) S_m,ij L_mj,
+
+with one matrix S_m for each harmonic, found by as many right-hand sides as there are nodes below the pressure.
+So  int p u_z' dA = sum_m L_m . S_m L'_m  holds for any two pressures without a further solution.
+
+The stiffness matrix is a polynomial in m, so S_m depends smoothly on m, which need not be an integer: beyond
+``DIRECT`` m S_m is interpolated in log m between Chebyshev's points. A shorter wave is stiffer in proportion.
+
+Friction along x, q = f p, has the products with the shape functions of u_r and u_theta
+
+    R_m = f (L_(m-1) + L_(m+1))/2,      T_m = -f (L_(m-1) - L_(m+1))/2,      L_-1 = L_1.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import scipy.sparse as sp
+
+from .axisymmetric import Discretisation
+from .linear_system import constrained_solve
+from .scaling import LayeredSolid
+
+__all__ = ["HarmonicCompliance", "harmonic_compliance"]
+
+DIRECT = 8  # harmonics below are solved one by one
+POINTS = 7  # of the interpolation beyond: 1e-4 of the deflection by a harmonic, 4e-7 of that of a contact
+
+
+@dataclass(frozen=True, eq=False)
+class HarmonicCompliance:
+    """Response to the pressures that act within the contact radius of one mesh.
+
+    solved : m of each solution.  fields : field vectors by unit loads of it, (field vector, nodes).
+    last, fold : harmonics 0, fold, 2 fold, .., last
+    """
+
+    solid: LayeredSolid
+    discretisation: Discretisation
+    solved: tuple[float, ...]
+    fields: tuple[np.ndarray, ...]
+    last: int
+    fold: int
+
+    @cached_property
+    def nodes(self) -> np.ndarray:
+        """Radii of the unknowns below the pressure."""
+        return self.discretisation.locations[0, self.discretisation.contact]
+
+    @cached_property
+    def harmonics(self) -> np.ndarray:
+        """m of the pressure."""
+        return np.arange(0, self.last + 1, self.fold)
+
+    @cached_property
+    def matrices(self) -> np.ndarray:
+        """S_m, (harmonics, nodes, nodes)."""
+        d = self.discretisation
+        deflection = [u[-d.N :][d.contact] for u in self.fields]
+        return np.array([sum(w * deflection[k] for k, w in self.weights(m)) for m in self.harmonics])
+
+    def weights(self, m: int) -> list[tuple[int, float]]:
+        """Solutions, by number, whose weighted sum is that of harmonic m."""
+        return _weights(self.solved, m)
+
+    def loads(self, x: np.ndarray, y: np.ndarray, forces: np.ndarray) -> np.ndarray:
+        """L of ``forces`` (points, columns) at points of the surface, (harmonics, nodes, columns)."""
+        onto = self._shapes(np.hypot(x, y)).T.tocsr()
+        theta = np.arctan2(y, x)
+        return np.array([onto @ (forces * np.cos(m * theta)[:, None]) for m in self.harmonics])
+
+    def products(self, r: np.ndarray, values: np.ndarray) -> np.ndarray:
+        """sum_k values_mk phi_i(r_k), (harmonics, nodes), of values (harmonics, radii)."""
+        return (self._shapes(r).T @ values.T).T
+
+    def deflection(self, loads: np.ndarray, x: np.ndarray, y: np.ndarray) -> np.ndarray:
+        """u_z at points of the surface within the last node under ``loads`` (harmonics, nodes)."""
+        at, theta = self._shapes(np.hypot(x, y)), np.arctan2(y, x)
+        u = np.zeros(x.shape)
+        for m, S, L in zip(self.harmonics, self.matrices, loads, strict=True):
+            u += np.cos(m * theta) * (at @ (S @ L))
+        return u
+
+    def displacements(self, loads: np.ndarray) -> dict[int, np.ndarray]:
+        """Field vector of every harmonic under a pressure of ``loads`` (harmonics, nodes)."""
+        return {
+            int(m): np.sum([w * (self.fields[k] @ L) for k, w in self.weights(m)], axis=0)
+            for m, L in zip(self.harmonics, loads, strict=True)
+            if L.any()
+        }
+
+    def sliding(self, loads: np.ndarray, friction: float) -> dict[int, np.ndarray]:
+        """The same under the traction ``friction`` times the pressure along x."""
+        L = np.zeros((self.last + 3, self.nodes.size))
+        L[self.harmonics] = loads
+        of: dict[int, np.ndarray] = {}
+        for m in range(self.last + 2):
+            below, above = L[abs(m - 1)], L[m + 1]
+            tractions = friction / 2 * np.array([0 * below, below + above, above - below])
+            if tractions.any():
+                of[m] = tractions
+        low = [m for m in of if m < DIRECT]
+        solved = (*low, *_high([m for m in of if m >= DIRECT]))
+        found = {m: np.zeros((2 if m == 0 else 3) * self.discretisation.N) for m in of}
+        for k, one in enumerate(solved):
+            shares = [(m, w) for m in of for j, w in _weights(solved, m) if j == k]
+            columns = np.stack([w * of[m] for m, w in shares], axis=-1)
+            for (m, _), u in zip(shares, _fields(self.solid, self.discretisation, one, columns).T, strict=True):
+                found[m] += u
+        return found
+
+    def _shapes(self, r: np.ndarray) -> sp.csr_matrix:
+        """phi_i(r), (points, nodes); r within the last node."""
+        order = self.discretisation.order
+        vertices = self.nodes[::order]
+        cell = np.clip(np.searchsorted(vertices, r, side="right") - 1, 0, vertices.size - 2)
+        t = order * (r - vertices[cell]) / (vertices[cell + 1] - vertices[cell])
+        knots = np.arange(order + 1)
+        values = [
+            np.prod([(t - k) / (i - k) for k in knots if k != i], axis=0) for i in knots
+        ]
+        columns, rows = cell[:, None] * order + knots, np.arange(r.size + 1) * (order + 1)
+        return sp.csr_matrix(
+            (np.stack(values, axis=1).ravel(), columns.ravel(), rows), shape=(r.size, self.nodes.size)
+        )
+
+
+def harmonic_compliance(
+    solid: LayeredSolid, d: Discretisation, last: int, fold: int
+) -> HarmonicCompliance:
+    """Compliance to pressures within the mesh's contact radius, of harmonics 0, fold, .. to ``last``."""
+    wanted = range(0, last + 1, fold)
+    solved = (*(m for m in wanted if m < DIRECT), *_high([m for m in wanted if m >= DIRECT]))
+    normal = np.zeros((3, d.contact.size, d.contact.size))
+    normal[0] = np.eye(d.contact.size)
+    fields = tuple(_fields(solid, d, m, normal) for m in solved)
+    return HarmonicCompliance(solid, d, solved, fields, last, fold)
+
+
+def _high(wanted: list[int]) -> list[float]:
+    """m of the solutions from which those ``wanted`` follow: these, or Chebyshev's points in log m."""
+    if len(wanted) <= POINTS:
+        return list(wanted)
+    span = np.log(wanted[0]), np.log(wanted[-1])
+    inner = (1 - np.cos(np.pi * np.arange(1, POINTS - 1) / (POINTS - 1))) / 2
+    return [wanted[0], *np.exp(span[0] + (span[1] - span[0]) * inner).tolist(), wanted[-1]]
+
+
+def _weights(solved: tuple[float, ...], m: int) -> list[tuple[int, float]]:
+    """Numbers of the solutions whose weighted sum is that of m: itself, or Lagrange's of m times them."""
+    if m in solved:
+        return [(solved.index(m), 1.0)]
+    first = sum(one < DIRECT for one in solved)
+    x = np.log(solved[first:])
+    away = np.log(m) - x
+    lagrange = [np.prod(np.delete(away, k)) / np.prod(np.delete(x[k] - x, k)) for k in range(x.size)]
+    return [(first + k, float(w) * solved[first + k] / m) for k, w in enumerate(lagrange)]
+
+
+def _fields(solid: LayeredSolid, d: Discretisation, m: float, loads: np.ndarray) -> np.ndarray:
+    """Field vectors (n, columns) under ``loads`` (3, nodes, columns): normal, radial, angular products.
+
+    Far away the displacement due to the resultant: normal for m = 0, tangential for m = 1.
+    """
+    far, count = d.locations[:, d.outer], 2 if m == 0 else 3
+    normal, radial, angular = loads / (2 * np.pi if m == 0 else np.pi)
+    load = np.zeros((count * d.N, loads.shape[-1]))
+    given = np.zeros_like(load)
+    load[(count - 1) * d.N + d.contact] = normal
+    load[d.contact] = radial
+    axis: tuple[int, ...] = (0,) if m == 0 else (0, 2) if m == 1 else (0, 1, 2)
+    outside: list[tuple[np.ndarray, np.ndarray]] = []
+    if m == 0:
+        W = loads[0].sum(axis=0)
+        outside = [(u, W) for u in solid.far_displacement(*far)]
+    else:  # virtual work R U + T V with U = S - V
+        load[d.N + d.contact] = angular - radial
+    if m == 1:
+        Q = (loads[1] - loads[2]).sum(axis=0)
+        U, V, Z = solid.far_sliding(*far)
+        outside = [(u, Q) for u in (U + V, V, Z)]
+    for field, (u, resultant) in enumerate(outside):
+        given[field * d.N + d.outer] = u[:, None] * resultant
+    for field in axis:
+        given[field * d.N + d.axis] = 0.0
+    K = d.skeleton(solid.materials, m)
+    fixed = [field * d.N + d.outer for field in range(count)] + [field * d.N + d.axis for field in axis]
+    solved = constrained_solve(K.matrix, given, np.concatenate([*fixed, K.inner.ravel()]), load)
+    return K.extended(solved.u)

@@ -1,0 +1,214 @@
+"""Contact of an indenter that is no sphere, by the compliance of finite elements.
+
+The pressure of another method is the start; it is corrected until the gap that the elements find below the
+indenter vanishes (``star_contact``), on a mesh and on a coarser companion. So its part that smooth corrections
+do not reach is the other method's, and what that leaves of the gap counts as an uncertainty.
+"""
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from .estimate import Uncertainty
+from .harmonic_compliance import harmonic_compliance
+from .indenter_height import Height, Indenter, indenter_height
+from .levels import NotConverged
+from .off_axis import COARSER, OffAxisFields, PressedSolid, discretised
+from .scaling import LayeredSolid, Units
+from .star_contact import Corrected, StarPressure, corrected
+from .validation import check_choice, check_materials, check_positive, check_proportions
+
+__all__ = ["ShapedContact", "ShapedDiagnostics", "solve_shape"]
+
+Coatings = tuple[tuple[float, float, float], ...]
+
+MARGIN = 1.04  # of the contact up to the last node below the pressure
+WIDEST = 8.0  # radius in which the contact is looked for, over that of Hertz's sphere
+SAFETY = 1.5  # of the change from the companion
+FEWER = 0.7  # of the harmonics, for the change by what is beyond them
+FLOOR = 1e-5  # of the peak pressure: error of the stress by its interpolation in the harmonic
+
+
+@dataclass(frozen=True)
+class ShapedDiagnostics:
+    """How the contact was reached.
+
+    steps : corrections of the pressure.  harmonics : the last one.  dofs, triangles : of the finer mesh
+    residual_gap : root mean square, weighted with the pressure, of the gap inside over the approach
+    residual_load : relative error of the load.  correction : largest change of the pressure over its peak
+    """
+
+    steps: int
+    harmonics: int
+    dofs: int
+    triangles: int
+    residual_gap: float
+    residual_load: float
+    seconds: float
+
+
+@dataclass(frozen=True, eq=False)
+class ShapedContact(PressedSolid):
+    """Contact under an indenter of any shape, even in y; x along sliding, z into the solid, SI.
+
+    contact_radius : of the disc of the contact's area.  extent_x, extent_y : largest x and y of the contact
+    uncertainty : of contact radius, approach, peak pressure.  extent_uncertainty : of either extent
+    """
+
+    contact_radius: float
+    approach: float
+    peak_pressure: float
+    extent_x: float
+    extent_y: float
+    surface_nodes: np.ndarray
+    diagnostics: ShapedDiagnostics
+    uncertainty: Uncertainty | None
+    extent_uncertainty: tuple[float, float] | None
+    height: Height = field(repr=False)
+    stiffness: float | None = None
+    stiffness_uncertainty: float | None = None
+
+    def stress_with_uncertainty(
+        self, x: Any, y: Any, z: Any, layer: int | None = None, uncertainty: bool = True
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """As of ``PressedSolid``, with the error of the pressure."""
+        s, U = super().stress_with_uncertainty(x, y, z, layer, uncertainty)
+        return s, U + self._floor if uncertainty else U
+
+    def stress_uncertainty(self, x: Any, y: Any, z: Any, layer: int | None = None) -> np.ndarray:
+        """The second part of ``stress_with_uncertainty``."""
+        return self.stress_with_uncertainty(x, y, z, layer)[1]
+
+    def displacement_with_uncertainty(
+        self, x: Any, y: Any, z: Any, uncertainty: bool = True
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """As of ``PressedSolid``, with that of the approach."""
+        u, U = super().displacement_with_uncertainty(x, y, z, uncertainty)
+        return u, U + self.uncertainty.approach if uncertainty and self.uncertainty else U
+
+    def displacement_uncertainty(self, x: Any, y: Any, z: Any) -> np.ndarray:
+        """The second part of ``displacement_with_uncertainty``."""
+        return self.displacement_with_uncertainty(x, y, z)[1]
+
+    def pressure_uncertainty(self, x: Any, y: Any = 0.0) -> np.ndarray:
+        """Uncertainty of the pressure [Pa]: the change from the companion, and that of the peak."""
+        if self._coarse is None:
+            raise ValueError("this solution has no uncertainty; solve with estimate_uncertainty=True")
+        x, y = np.broadcast_arrays(np.asarray(x, dtype=float), np.asarray(y, dtype=float))
+        L = self._units.length
+        other = np.asarray(self._coarse.pressure(x / L, y / L)) * self._units.pressure
+        return SAFETY * np.abs(self.pressure(x, y) - other) + self._floor
+
+    @property
+    def _floor(self) -> float:
+        return (self.uncertainty.peak_pressure if self.uncertainty else 0.0) + FLOOR * self.peak_pressure
+
+
+def solve_shape(
+    *,
+    indenter: Indenter,
+    start: Callable[[Any, Any], Any],
+    radius: float,
+    load: float,
+    coatings: Coatings,
+    substrate: tuple[float, float],
+    friction: float = 0.0,
+    harmonics: int = 64,
+    order: int = 4,
+    size: float = 0.42,
+    surface: float = 0.09,
+    far: float = 1000.0,
+    estimate_uncertainty: bool = True,
+) -> ShapedContact:
+    """Indenter of another shape than a sphere on a coated half-space, as in ``solve``.
+
+    indenter : shape and numbers, see ``indenter_height``.  start : p(x, y) [Pa] of arrays [m] by another method
+    size, surface : of the triangles over their distance from the contact, and on the surface below it over the
+    contact's extent
+    Raises ValueError for bad input, NotConverged where the correction does not end.
+    """
+    began = time.perf_counter()
+    check_positive(radius=radius, load=load, far=far, size=size, surface=surface, harmonics=harmonics)
+    check_materials(coatings, substrate, friction)
+    check_choice("order", order, (2, 3, 4))
+    height, fold = indenter_height(indenter, radius)
+    E, nu = substrate
+    widest = WIDEST * (0.75 * load * radius * (1 - nu**2) / E) ** (1 / 3)
+    if indenter[0] == "asperities":
+        widest += indenter[1][0]
+    given = StarPressure.of(start, fold, widest)
+    reach = MARGIN * given.farthest
+    unit = Units(length=reach, pressure=E, modulus=E)
+    solid = LayeredSolid.scaled(coatings, substrate, reach, far, E)
+    check_proportions(solid.thicknesses, "the contact's extent")
+    scaled = given.scaled(reach, E)
+
+    def scaled_height(x: Any, y: Any) -> Any:
+        return height(x * reach, y * reach) / reach
+
+    def on_mesh(coarser: float) -> tuple[OffAxisFields, Corrected, float]:
+        d = discretised(solid, coarser * size, coarser * surface, order)
+        compliance = harmonic_compliance(solid, d, harmonics, fold)
+        found = corrected(compliance, scaled, scaled_height, load / unit.load)
+        if not found.converged:
+            raise NotConverged(
+                f"the pressure under the indenter {indenter[0]} is not settled after {found.steps} corrections; "
+                "the start is too far from it, or its contact is not star-shaped"
+            )
+        fields = OffAxisFields.of(compliance, found.loads, friction, found.pressure)
+        beyond = 0.0
+        if coarser > 1:
+            fewer = corrected(compliance, scaled, scaled_height, load / unit.load, int(FEWER * harmonics))
+            beyond = np.abs(_numbers(fewer) - _numbers(found))
+        return fields, found, beyond
+
+    fine, found, _ = on_mesh(1.0)
+    numbers = _numbers(found)
+    coarse, uncertainty, extents = None, None, None
+    if estimate_uncertainty:
+        coarse, companion, beyond = on_mesh(COARSER)
+        change = SAFETY * np.abs(numbers - _numbers(companion))
+        left = found.residual * np.abs(numbers)
+        units = np.array([reach, reach, E, reach, reach])
+        names = ("contact_radius", "approach", "peak_pressure")
+        parts = (("element size", change), ("harmonics", beyond), ("gap left", left))
+        budget = tuple(
+            (name, what, float(part[k] * units[k])) for k, name in enumerate(names) for what, part in parts
+        )
+        total = (change + beyond + left) * units
+        uncertainty = Uncertainty(*(float(v) for v in total[:3]), budget=budget)
+        extents = float(total[3]), float(total[4])
+    d = fine.discretisation
+    nodes = np.linspace(0, 2.6 * found.pressure.extents[0], 160)
+    return ShapedContact(
+        fine,
+        coarse,
+        unit,
+        contact_radius=float(numbers[0]) * reach,
+        approach=float(numbers[1]) * reach,
+        peak_pressure=float(numbers[2]) * E,
+        extent_x=float(numbers[3]) * reach,
+        extent_y=float(numbers[4]) * reach,
+        surface_nodes=np.concatenate([-nodes[:0:-1], nodes]) * reach,
+        diagnostics=ShapedDiagnostics(
+            steps=found.steps,
+            harmonics=harmonics,
+            dofs=3 * d.N,
+            triangles=int(d.mesh.layer.size),
+            residual_gap=found.residual,
+            residual_load=abs(fine.load * unit.load / load - 1),
+            seconds=time.perf_counter() - began,
+        ),
+        uncertainty=uncertainty,
+        extent_uncertainty=extents,
+        height=height,
+    )
+
+
+def _numbers(found: Corrected) -> np.ndarray:
+    """Contact radius, approach, peak pressure, extents; scaled."""
+    p = found.pressure
+    return np.array([np.sqrt(p.area / np.pi), found.approach, p.peak, *p.extents])

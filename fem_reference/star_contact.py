@@ -1,0 +1,277 @@
+"""Pressure on a contact that is star-shaped about its centre, corrected until the gap inside it vanishes.
+
+By hand: no package solves a contact by the compliance of one meridian plane.
+
+With the edge at r = R(tau) about the centre and s = r/R, a pressure p is corrected by
+
+    sqrt(1 - s^2) s^(n + 2 j) cos(n tau),   n + 2 j <= DEGREE,          and by moving its edge, R + R c_n cos(n tau),
+
+until the gap  u_z + height - approach  has no product with any  (1 - s^2)^1.5 s^(n + 2 j) cos(n tau),
+n + 2 j <= DEGREE + 2, inside: as many conditions as there are unknowns, once the load is that of the indenter.
+The weight leaves out the edge, where finite elements are too stiff. Newton's method, with the derivatives of
+p = p0 sqrt(1 - s^2); elements give u_z, so the pressure found is theirs. What is left of the gap is the error
+that functions of this degree do not reach.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from .harmonic_compliance import HarmonicCompliance
+
+__all__ = ["StarPressure", "corrected"]
+
+Pressure = Callable[[Any, Any], Any]
+
+DEGREE = 2
+RADIAL, ANGULAR = 24, 96  # points between two vertices of the surface, on an arc inside the contact
+SAMPLES = 256  # on half a circle, between which an arc begins or ends
+WAVES = 48  # of the cosine series of R
+BISECTIONS = 48
+STEPS, ENOUGH, CLOSE = 8, 3e-7, 1e-4  # largest change of the edge in the last step; beyond which it failed
+TOUCHING = 1e-5  # of the largest pressure on the axis of symmetry: p above counts as contact
+LARGEST = 0.2  # change of the edge in one step
+
+
+@dataclass(frozen=True, eq=False)
+class StarPressure:
+    """A ``given`` pressure with its edge moved and with smooth terms added; lengths and pressure scaled.
+
+    centre : x of the centre, whose mirror image at -x counts too unless it is 0.  fold : of the symmetry
+    radius : coefficients of R = sum_k cos(k tau).  edge : c_n of the ``waves``.  coefficients : of the ``terms``
+    """
+
+    given: Pressure
+    centre: float
+    fold: int
+    radius: np.ndarray
+    edge: np.ndarray
+    coefficients: np.ndarray
+
+    @classmethod
+    def of(cls, given: Pressure, fold: int, reach: float) -> "StarPressure":
+        """The ``given`` pressure itself, which is zero beyond ``reach``.
+
+        Raises ValueError where it is zero at the origin and no single contact lies on either side.
+        """
+        centre, x = 0.0, np.linspace(0, reach, 2001)
+        along = given(x, 0 * x)
+        least = TOUCHING * float(along.max())
+        if not along[0] > least:
+            inside = np.flatnonzero(along > least)
+            if inside.size == 0 or np.any(np.diff(inside) > 1):
+                raise ValueError("the contact is neither one region around the origin nor two beside it")
+            centre, fold = float(x[inside].mean()), 1
+        tau = np.pi * (np.arange(4 * WAVES) + 0.5) / (4 * WAVES)
+        low, high = np.zeros(tau.size), np.full(tau.size, 2 * reach)
+        for _ in range(BISECTIONS):
+            r = (low + high) / 2
+            loaded = given(centre + r * np.cos(tau), r * np.sin(tau)) > least
+            low, high = np.where(loaded, r, low), np.where(loaded, high, r)
+        k = np.arange(WAVES)
+        series = np.cos(k[:, None] * tau) @ low * np.where(k > 0, 2, 1) / tau.size
+        empty = cls(given, centre, fold, series, np.zeros(0), np.zeros(0))
+        return replace(
+            empty, edge=np.zeros(len(empty.waves)), coefficients=np.zeros(len(empty.terms(DEGREE)))
+        )
+
+    @property
+    def waves(self) -> tuple[int, ...]:
+        return tuple(range(0, DEGREE + 3, self.fold))
+
+    def terms(self, degree: int) -> tuple[tuple[int, int], ...]:
+        """(n, j) with n + 2 j up to ``degree``."""
+        return tuple(
+            (n, j) for n in range(0, degree + 1, self.fold) for j in range((degree - n) // 2 + 1)
+        )
+
+    def polynomials(self, s: np.ndarray, tau: np.ndarray, degree: int) -> np.ndarray:
+        """s^(n + 2 j) cos(n tau) of the terms, (terms,) + points."""
+        return np.array([s ** (n + 2 * j) * np.cos(n * tau) for n, j in self.terms(degree)])
+
+    def edge_at(self, tau: np.ndarray) -> np.ndarray:
+        """Distance of the moved edge from the centre."""
+        return self._unmoved(tau) * (1 + self._shift(np.ones(tau.shape), tau))
+
+    def _unmoved(self, tau: np.ndarray) -> np.ndarray:
+        return np.polynomial.chebyshev.chebval(np.cos(tau), self.radius)
+
+    def _shift(self, s: np.ndarray, tau: np.ndarray) -> np.ndarray:
+        """Relative change of r of the points s of the given pressure; regular at the centre."""
+        total = np.zeros(s.shape)
+        for n, c in zip(self.waves, self.edge, strict=True):
+            total = total + c * s ** (2 if n else 0) * np.cos(n * tau)
+        return total
+
+    def __call__(self, x: Any, y: Any) -> np.ndarray:
+        """p; x and y broadcast."""
+        x, y = np.broadcast_arrays(np.asarray(x, dtype=float), np.asarray(y, dtype=float))
+        x = (np.abs(x) if self.centre else x) - self.centre
+        r, tau = np.hypot(x, y), np.arctan2(np.abs(y), x)
+        s = r / self.edge_at(tau)
+        r = r / (1 + self._shift(np.minimum(s, 1.0), tau))
+        p = np.asarray(self.given(self.centre + r * np.cos(tau), r * np.sin(tau)), dtype=float)
+        if not self.coefficients.any():
+            return p
+        added = np.tensordot(self.coefficients, self.polynomials(np.minimum(s, 1.0), tau, DEGREE), 1)
+        return np.where(s < 1, np.maximum(p + np.sqrt(np.maximum(1 - s**2, 0)) * added, 0), 0)
+
+    def quadrature(self, vertices: np.ndarray) -> "Quadrature":
+        """Points on half circles about the origin between the ``vertices`` of the surface.
+
+        By Gauss-Legendre on the arcs inside the contact, towards whose ends p falls like a square root.
+        """
+        node, weight = np.polynomial.legendre.leggauss(RADIAL)
+        half = np.diff(vertices)[:, None] / 2
+        r, of_r = ((vertices[:-1, None] + half * (1 + node)).ravel(), (half * weight).ravel())
+        theta = np.pi * np.arange(SAMPLES + 1) / SAMPLES
+        inside = self._inside(r[:, None], theta) > 0
+        ring, place = np.nonzero(inside[:, 1:] != inside[:, :-1])
+        low, high = theta[place], theta[place + 1]
+        for _ in range(BISECTIONS):
+            middle = (low + high) / 2
+            same = (self._inside(r[ring], middle) > 0) == inside[ring, place]
+            low, high = np.where(same, middle, low), np.where(same, high, middle)
+        rings = np.concatenate([ring, *(np.flatnonzero(inside[:, end]) for end in (0, -1))])
+        ends = np.concatenate([low, np.zeros(inside[:, 0].sum()), np.full(inside[:, -1].sum(), np.pi)])
+        order = np.lexsort((ends, rings))
+        arc, (begin, end) = rings[order][::2], ends[order].reshape(-1, 2).T
+        node, weight = np.polynomial.legendre.leggauss(ANGULAR)
+        angle = (begin + end)[:, None] / 2 + (end - begin)[:, None] / 2 * np.sin(np.pi / 2 * node)
+        of_angle = (end - begin)[:, None] * np.pi / 4 * np.cos(np.pi / 2 * node) * weight
+        x, y = r[arc, None] * np.cos(angle), r[arc, None] * np.sin(angle)
+        weights = 2 * (of_r * r)[arc, None] * of_angle
+        x, y, weights = x.ravel(), y.ravel(), weights.ravel()
+        s, tau = self._polar(x, y)
+        return Quadrature(np.minimum(s, 1 - 1e-14), tau, x, y, weights)
+
+    def _inside(self, r: np.ndarray, theta: np.ndarray) -> np.ndarray:
+        """Positive inside the contact."""
+        return 1 - self._polar(r * np.cos(theta), r * np.sin(theta))[0]
+
+    def _polar(self, x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """s and tau."""
+        x = (np.abs(x) if self.centre else x) - self.centre
+        tau = np.arctan2(np.abs(y), x)
+        return np.hypot(x, y) / self.edge_at(tau), tau
+
+    @property
+    def area(self) -> float:
+        tau = np.pi * (np.arange(720) + 0.5) / 720
+        return float(np.pi * np.mean(self.edge_at(tau) ** 2) * (2 if self.centre else 1))
+
+    @property
+    def farthest(self) -> float:
+        """Largest distance of the contact from the origin."""
+        tau = np.linspace(0, np.pi, 1441)
+        R = self.edge_at(tau)
+        return float(np.hypot(self.centre + R * np.cos(tau), R * np.sin(tau)).max())
+
+    def scaled(self, length: float, pressure: float) -> "StarPressure":
+        """The same, not corrected yet, in these units."""
+
+        def given(x: Any, y: Any) -> np.ndarray:
+            return np.asarray(self.given(np.asarray(x) * length, np.asarray(y) * length)) / pressure
+
+        return replace(self, given=given, centre=self.centre / length, radius=self.radius / length)
+
+    @property
+    def peak(self) -> float:
+        """Largest pressure, between the points of a grid by a parabola in each direction."""
+        s, tau = np.linspace(0, 0.99, 100), np.pi * np.arange(61) / 60
+        R = self.edge_at(tau)
+        x, y = self.centre + np.outer(s, R * np.cos(tau)), np.outer(s, R * np.sin(tau))
+        p = self(x, y)
+        i, j = np.unravel_index(int(p.argmax()), p.shape)
+        # refined around the highest point, whose place matters to second order alone
+        size = 0.02 * float(R[j])
+        for _ in range(4):
+            offset = size * np.linspace(-1, 1, 9)
+            X, Y = x[i, j] + offset[:, None], y[i, j] + offset[None, :]
+            x, y = np.broadcast_arrays(X, Y)
+            p = self(x, y)
+            i, j = np.unravel_index(int(p.argmax()), p.shape)
+            size /= 4
+        return float(p[i, j])
+
+    @property
+    def extents(self) -> tuple[float, float]:
+        """Largest x and y of the contact."""
+        tau = np.linspace(0, np.pi, 1441)
+        R = self.edge_at(tau)
+        return float((self.centre + R * np.cos(tau)).max()), float((R * np.sin(tau)).max())
+
+
+@dataclass(frozen=True, eq=False)
+class Quadrature:
+    """Points by s, tau, x, y; ``weights`` of integrals over the whole contact."""
+
+    s: np.ndarray
+    tau: np.ndarray
+    x: np.ndarray
+    y: np.ndarray
+    weights: np.ndarray
+
+
+@dataclass(frozen=True, eq=False)
+class Corrected:
+    """A pressure with its ``loads`` (harmonics, nodes) and its approach.
+
+    residual : root mean square of the gap left inside, weighted with the pressure, over the approach
+    """
+
+    pressure: StarPressure
+    loads: np.ndarray
+    approach: float
+    residual: float
+    steps: int
+    converged: bool
+
+
+def corrected(
+    compliance: HarmonicCompliance, given: StarPressure, height: Pressure, load: float, last: int | None = None
+) -> Corrected:
+    """Pressure under which the gap below an indenter of ``height`` (x, y) vanishes; scaled units.
+
+    last : harmonic at which the compliance is cut off, for an estimate of what is beyond
+    """
+    used = compliance.harmonics <= (compliance.last if last is None else last)
+    pressure = given
+    for step in range(STEPS + 1):
+        at = pressure.quadrature(compliance.nodes[:: compliance.discretisation.order])
+        p = pressure(at.x, at.y)
+        root = np.sqrt(1 - at.s**2)
+        smooth = root * pressure.polynomials(at.s, at.tau, DEGREE)
+        singular = float((at.weights * p).sum() / (at.weights * root).sum()) / root
+        moved = np.array([singular * at.s ** (4 if n else 2) * np.cos(n * at.tau) for n in pressure.waves])
+        tests = root**3 * pressure.polynomials(at.s, at.tau, DEGREE + 2)
+        forces = np.concatenate([[p], smooth, moved, tests]) * at.weights
+        k = 1 + len(smooth) + len(moved)
+        L = compliance.loads(at.x, at.y, forces.T) * used[:, None, None]
+        known = height(at.x, at.y)
+        total = forces.sum(axis=1)
+        work = np.einsum("mit,mic->tc", L[:, :, k:], compliance.matrices @ L[:, :, :k])
+        A = np.zeros((len(tests) + 1, k))
+        A[:-1, :-1], A[:-1, -1], A[-1, :-1] = work[:, 1:], -total[k:], total[1:k]
+        b = np.append(-work[:, 0] - forces[k:] @ known, load - total[0])
+        rows = np.abs(A).max(axis=1)
+        columns = np.abs(A / rows[:, None]).max(axis=0)
+        x = np.linalg.lstsq(A / rows[:, None] / columns, b / rows, rcond=1e-12)[0] / columns
+        n = len(smooth)
+        size = float(np.abs(x[n:-1]).max())
+        if size < ENOUGH or step == STEPS:
+            break
+        share = min(1.0, LARGEST / size)
+        pressure = replace(
+            pressure,
+            coefficients=pressure.coefficients + share * x[:n],
+            edge=pressure.edge + share * x[n:-1],
+        )
+    loads = L[:, :, 0]
+    gap = compliance.deflection(loads, at.x, at.y) + known - x[-1]
+    forces = at.weights * p
+    residual = float(np.sqrt((forces * gap**2).sum() / forces.sum()) / x[-1])
+    return Corrected(pressure, loads, float(x[-1]), residual, step, size < CLOSE)
