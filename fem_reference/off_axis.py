@@ -33,8 +33,8 @@ RADIAL = 48  # points between two vertices of the surface: p_m has kinks there
 COARSER = 1.4  # triangles of the companion over those of the mesh
 NEGLIGIBLE = 1e-9  # of the largest: a harmonic of the pressure below is left out
 # What lies beyond the last harmonic, over what the last third of them adds: of the deflection, whose terms
-# fall as m^-5/2, of the stress, m^-3/2.
-BEYOND = 1.2, 4.5
+# fall as m^-5/2, of the stress, m^-3/2, and alternate in sign but at the edge.
+BEYOND = 0.5, 1.0
 
 
 def check_pressure(

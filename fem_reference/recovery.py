@@ -22,6 +22,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+from skfem import Basis
 
 from .axisymmetric import Discretisation, elasticity, strain_operator
 from .location import LocatedPoints
@@ -48,6 +49,21 @@ def edge_distances(mesh: MeridianMesh) -> np.ndarray:
     thickness = (mesh.length / mesh.contact_radius) ** 2  # of the thinnest film on top, over a
     film = 0.05 * thickness / EDGE_SIZE
     return np.geomspace(1.0, max(min(largest, film), 5 * smallest) / smallest, 32)
+
+
+def _shapes(basis: Basis, at: LocatedPoints) -> np.ndarray:
+    """Shape functions of the triangles at their points, with derivatives by r and z, (3, functions, n).
+
+    Kept with the points, at which many harmonics may be evaluated.
+    """
+    known = at.__dict__.get("shapes")
+    if known is None:
+        known = np.empty((3, basis.Nbfun, at.r.size))
+        for i in range(basis.Nbfun):
+            (phi,) = basis.elem.gbasis(basis.mapping, at.X[:, :, None], i, tind=at.cells)
+            known[:, i] = np.asarray(phi)[:, 0], phi.grad[0][:, 0], phi.grad[1][:, 0]
+        at.__dict__["shapes"] = known
+    return known
 
 
 @dataclass(frozen=True, eq=False)
@@ -110,11 +126,7 @@ class HarmonicField:
         """Fields (fields, n) and strains (strains, n)."""
         d, basis = self.discretisation, self.discretisation.basis
         u = self.fields.reshape(-1, d.N)[:, np.asarray(basis.element_dofs)[:, at.cells]]
-        values, d_r, d_z = np.zeros((3, len(u), at.r.size))
-        for i in range(basis.Nbfun):
-            (phi,) = basis.elem.gbasis(basis.mapping, at.X[:, :, None], i, tind=at.cells)
-            for total, shape in ((values, np.asarray(phi)), (d_r, phi.grad[0]), (d_z, phi.grad[1])):
-                total += u[:, i] * shape[:, 0]
+        values, d_r, d_z = np.einsum("fin,kin->kfn", u, _shapes(basis, at))
         A_r, A_z, A_0 = strain_operator(self.harmonic)
         return values, A_r @ d_r + A_z @ d_z + A_0 @ (values / at.r)
 

@@ -16,7 +16,7 @@ from .estimate import Uncertainty
 from .harmonic_compliance import harmonic_compliance
 from .indenter_height import Height, Indenter, indenter_height
 from .levels import NotConverged
-from .off_axis import COARSER, OffAxisFields, PressedSolid, discretised
+from .off_axis import OffAxisFields, PressedSolid, discretised
 from .scaling import LayeredSolid, Units
 from .star_contact import Corrected, StarPressure, corrected
 from .validation import check_choice, check_materials, check_positive, check_proportions
@@ -28,6 +28,7 @@ Coatings = tuple[tuple[float, float, float], ...]
 MARGIN = 1.04  # of the contact up to the last node below the pressure
 WIDEST = 8.0  # radius in which the contact is looked for, over that of Hertz's sphere
 SAFETY = 1.5  # of the change from the companion
+COARSER = 1.3  # triangles of the companion over those of the mesh
 FEWER = 0.7  # of the harmonics, for the change by what is beyond them
 FLOOR = 1e-5  # of the peak pressure: error of the stress by its interpolation in the harmonic
 
@@ -116,10 +117,10 @@ def solve_shape(
     coatings: Coatings,
     substrate: tuple[float, float],
     friction: float = 0.0,
-    harmonics: int = 64,
+    harmonics: int = 96,
     order: int = 4,
     size: float = 0.42,
-    surface: float = 0.09,
+    surface: float = 0.08,
     far: float = 1000.0,
     estimate_uncertainty: bool = True,
 ) -> ShapedContact:

@@ -27,7 +27,8 @@ __all__ = ["StarPressure", "corrected"]
 Pressure = Callable[[Any, Any], Any]
 
 DEGREE = 2
-RADIAL, ANGULAR = 24, 96  # points between two vertices of the surface, on an arc inside the contact
+RADIAL = 20  # points between two vertices of the surface
+ANGULAR = 24, 1.6  # points on an arc inside the contact: some, and more for each harmonic
 SAMPLES = 256  # on half a circle, between which an arc begins or ends
 WAVES = 48  # of the cosine series of R
 BISECTIONS = 48
@@ -119,8 +120,8 @@ class StarPressure:
         added = np.tensordot(self.coefficients, self.polynomials(np.minimum(s, 1.0), tau, DEGREE), 1)
         return np.where(s < 1, np.maximum(p + np.sqrt(np.maximum(1 - s**2, 0)) * added, 0), 0)
 
-    def quadrature(self, vertices: np.ndarray) -> "Quadrature":
-        """Points on half circles about the origin between the ``vertices`` of the surface.
+    def quadrature(self, vertices: np.ndarray, last: int) -> "Quadrature":
+        """Points on half circles about the origin between the ``vertices`` of the surface, for harmonics to ``last``.
 
         By Gauss-Legendre on the arcs inside the contact, towards whose ends p falls like a square root.
         """
@@ -139,7 +140,7 @@ class StarPressure:
         ends = np.concatenate([low, np.zeros(inside[:, 0].sum()), np.full(inside[:, -1].sum(), np.pi)])
         order = np.lexsort((ends, rings))
         arc, (begin, end) = rings[order][::2], ends[order].reshape(-1, 2).T
-        node, weight = np.polynomial.legendre.leggauss(ANGULAR)
+        node, weight = np.polynomial.legendre.leggauss(int(ANGULAR[0] + ANGULAR[1] * last))
         angle = (begin + end)[:, None] / 2 + (end - begin)[:, None] / 2 * np.sin(np.pi / 2 * node)
         of_angle = (end - begin)[:, None] * np.pi / 4 * np.cos(np.pi / 2 * node) * weight
         x, y = r[arc, None] * np.cos(angle), r[arc, None] * np.sin(angle)
@@ -241,7 +242,7 @@ def corrected(
     used = compliance.harmonics <= (compliance.last if last is None else last)
     pressure = given
     for step in range(STEPS + 1):
-        at = pressure.quadrature(compliance.nodes[:: compliance.discretisation.order])
+        at = pressure.quadrature(compliance.nodes[:: compliance.discretisation.order], compliance.last)
         p = pressure(at.x, at.y)
         root = np.sqrt(1 - at.s**2)
         smooth = root * pressure.polynomials(at.s, at.tau, DEGREE)

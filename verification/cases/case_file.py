@@ -23,12 +23,14 @@ from verification.judging.standard_claims import standard_claims
 from verification.judging.verdict import Claim
 from verification.problem.array_types import Ball, Coatings
 from verification.problem.coated_contact import BALL, FLAT, CoatedContact
+from verification.problem.indenter_shape import Indenter
 from verification.problem.line_profile import Line, line_of, lines_of, oblique_lines
 from verification.sources.source_registry import METHODS, sources_of
 
 CONTRAST = 1e4  # of moduli, beyond which a method loses digits, and a ball deforms by less than 1e-4
 SUPPORTED = (1e-3, 1e3)  # h / a_h, by both methods
 CASES = Path(__file__).parent / "shipped" / "contact"
+SHAPES = Path(__file__).parent / "shipped" / "shapes"
 
 
 @dataclass(frozen=True)
@@ -174,6 +176,34 @@ def _in_metres(coatings: list[_Coating], a_h: float, over: int = 1) -> Coatings:
     return found
 
 
+class IndenterEntry(Strict):
+    """An indenter that is no sphere, see ``indenter_shape``."""
+
+    shape: Literal["ellipsoid", "asperities", "lobes"]
+    radii: Annotated[list[Metres], Field(min_length=2, max_length=2)] | None = None
+    distance: Metres | None = None
+    lobes: Annotated[int, Field(ge=2, le=6)] | None = None
+    amplitude: Metres | None = None
+    at: Metres | None = None
+
+    @model_validator(mode="after")
+    def _own_numbers(self) -> "IndenterEntry":
+        own = {"ellipsoid": {"radii"}, "asperities": {"distance"}, "lobes": {"lobes", "amplitude", "at"}}
+        given = {name for name in type(self).model_fields if getattr(self, name) is not None} - {"shape"}
+        if given != own[self.shape]:
+            raise ValueError(f"{self.shape} needs {', '.join(sorted(own[self.shape]))} and no other number")
+        return self
+
+    @property
+    def pair(self) -> Indenter:
+        """Shape and numbers."""
+        if self.radii is not None:
+            return self.shape, (self.radii[0], self.radii[1])
+        if self.distance is not None:
+            return self.shape, (self.distance,)
+        return self.shape, (float(self.lobes or 0), self.amplitude or 0.0, self.at or 0.0)
+
+
 class Sized(Strict):
     """A problem with a ball of given ``radius`` or ``diameter``."""
 
@@ -182,7 +212,8 @@ class Sized(Strict):
 
     @model_validator(mode="after")
     def _one_size(self) -> "Sized":
-        if (self.radius is None) == (self.diameter is None):
+        radii = getattr(getattr(self, "indenter", None), "radii", None)
+        if [self.radius, self.diameter, radii].count(None) != 2:
             raise ValueError("needs exactly one of problem.radius or problem.diameter")
         return self
 
@@ -197,6 +228,7 @@ class Sized(Strict):
 
 class _Problem(Sized):
     load: Newtons
+    indenter: IndenterEntry | None = None
     friction: Friction = 0.0
     substrate: Material
     coatings: Annotated[list[_Coating], Field(default_factory=list, max_length=50)]
@@ -235,7 +267,11 @@ class _Problem(Sized):
         over : divisor of the number of sub-layers.
         """
         ball, substrate = self.ball, (self.substrate.E, self.substrate.nu)
-        bare = CoatedContact(self.size, self.load, (), substrate, self.friction, ball.bare if ball else None)
+        indenter, size = (self.indenter.pair, self.indenter.radii) if self.indenter else (None, None)
+        radius = float((size[0] * size[1]) ** 0.5) if size else self.size
+        bare = CoatedContact(
+            radius, self.load, (), substrate, self.friction, ball.bare if ball else None, indenter
+        )
         given = ball.coated(bare.a_h, over) if ball else None
         return replace(bare, coatings=_in_metres(self.coatings, bare.a_h, over), ball=given)
 
@@ -398,5 +434,10 @@ def _claims(path: Path, checked: _CaseFile, problem: CoatedContact) -> tuple[Cla
 
 
 def shipped_cases() -> dict[str, Path]:
-    """The cases of the default run, by name, in the order of their file names."""
+    """The spheres of the default run, by name, in the order of their file names."""
     return {path.stem: path for path in sorted(CASES.glob("*.toml"))}
+
+
+def shaped_cases() -> dict[str, Path]:
+    """The indenters of the default run that are no spheres, likewise."""
+    return {path.stem: path for path in sorted(SHAPES.glob("*.toml"))}

@@ -18,6 +18,8 @@ from verification.sources.source_registry import pairs_of, sources_of
 
 def standard_claims(problem: CoatedContact) -> tuple[Claim, ...]:
     """Every quantity on every line, no zone left out, for every pair of the sources of ``problem``."""
+    if problem.indenter is not None:
+        return _of_shape(problem)
     pairs = pairs_of(sources_of(problem))
     why = "numbers of the contact as a whole"
     claims = [
@@ -30,6 +32,27 @@ def standard_claims(problem: CoatedContact) -> tuple[Claim, ...]:
     for line in lines_of(problem):
         for name in _quantities(line, problem):
             claims += [Claim(name, line.name, pair, QUANTITIES[name].cap, why) for pair in pairs]
+    return (*claims, *_off_plane(problem, pairs))
+
+
+def _of_shape(problem: CoatedContact) -> tuple[Claim, ...]:
+    """Of an indenter that is no sphere: numbers of the contact, every quantity on every line."""
+    why = "numbers of the contact as a whole"
+    claims = [
+        Claim(name, "contact", pair, QUANTITIES[name].cap, why)
+        for pair in pairs_of(sources_of(problem, "scalar"))
+        for name in SCALARS
+    ]
+    pairs = pairs_of(sources_of(problem))
+    why = "the stress a coating cracks or peels by"
+    for line in lines_of(problem):
+        for name in _quantities(line, problem):
+            claims += [Claim(name, line.name, pair, QUANTITIES[name].cap, why) for pair in pairs]
+    return (*claims, *_off_plane(problem, pairs))
+
+
+def _off_plane(problem: CoatedContact, pairs: tuple[tuple[str, str], ...]) -> list[Claim]:
+    claims = []
     why = "all components, where none vanishes by symmetry"
     displaced = pairs_of(sources_of(problem, "displacement"))
     for line in oblique_lines(problem):
@@ -39,7 +62,7 @@ def standard_claims(problem: CoatedContact) -> tuple[Claim, ...]:
             claims += [
                 Claim(n, line.name, pair, QUANTITIES[n].cap, why) for n in DISPLACEMENTS for pair in displaced
             ]
-    return tuple(claims)
+    return claims
 
 
 def _quantities(line: Line, problem: CoatedContact) -> tuple[str, ...]:

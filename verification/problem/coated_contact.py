@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from verification.problem.array_types import Array, Ball, Coatings
+from verification.problem.indenter_shape import Indenter, require_shape
 
 FLAT, BALL = "flat", "ball"  # the two bodies of a contact
 
@@ -23,6 +24,7 @@ class CoatedContact:
     coatings : ((E [Pa], nu, thickness [m]), ...) from the surface down; () is the uncoated solid.
     substrate : (E [Pa], nu).   friction : f in q = f p, traction on the flat in +x and on the ball in -x.
     ball : None is rigid; (E, nu, coatings) of an elastic ball, its coatings from its surface inwards.
+    indenter : None is the sphere; another rigid shape with its numbers, see ``indenter_shape``.
 
     Near the contact both bodies are layered half-spaces, with the gap r^2/2R before they deform. The scales
     a_h, p_h, delta_h are those of both bodies without coatings.
@@ -35,8 +37,13 @@ class CoatedContact:
     substrate: tuple[float, float]
     friction: float = 0.0
     ball: Ball | None = None
+    indenter: Indenter | None = None
 
     def __post_init__(self) -> None:
+        if self.indenter is not None:
+            require_shape(self.indenter)
+            if self.ball is not None:
+                raise ValueError("an elastic ball and an indenter are both given; give one")
         _require_positive("radius", self.radius)
         _require_positive("load", self.load)
         _require_solid(self.coatings, self.substrate, self.friction)
@@ -141,8 +148,9 @@ class PrescribedLoad:
 
 
 def keywords(problem: CoatedContact | PrescribedLoad) -> dict[str, Any]:
-    """The fields of ``problem`` by name, as keywords of a solver."""
-    return {f.name: getattr(problem, f.name) for f in fields(problem)}
+    """The fields of ``problem`` by name, as keywords of a solver; no ``indenter`` of a sphere."""
+    found = {f.name: getattr(problem, f.name) for f in fields(problem)}
+    return found if found.get("indenter") else {k: v for k, v in found.items() if k != "indenter"}
 
 
 @dataclass(frozen=True)

@@ -119,7 +119,10 @@ def describe(problem: CoatedContact | PrescribedLoad | LoadingCurve) -> dict[str
     """The fields of a problem; of a contact its Hertz scales and interfaces besides."""
     if not isinstance(problem, CoatedContact):
         return asdict(problem)
-    return asdict(problem) | {
+    known = asdict(problem)
+    if problem.indenter is None:
+        del known["indenter"]
+    return known | {
         "a_h": problem.a_h,
         "p_h": problem.p_h,
         "delta_h": problem.delta_h,

@@ -15,7 +15,7 @@ from verification.problem.quantity import QUANTITIES, SCALARS
 from verification.running.case_result import CaseResult, SourceResult, describe, diagnostics_of, message_of
 from verification.sampling.line_sampling import edge_of, positions, sample, sample_contact
 from verification.sources.source_record import Solver
-from verification.sources.source_registry import solvers
+from verification.sources.source_registry import solvers, sources_of
 
 
 def run(case: Case, available: Mapping[str, Solver] | None = None) -> CaseResult:
@@ -74,12 +74,12 @@ def judge_case(case: Case, solved: Solved, *, invariants: bool = True) -> CaseRe
     solutions, outcomes = dict(solved.solutions), dict(solved.outcomes)
     profiles: dict[tuple[str, str, str], Profile] = {}
     places = positions(case.problem, case.lines, solutions) if solutions else {}
-    edge = edge_of(solutions) if solutions else None
+    edge = edge_of(solutions) if solutions and case.problem.indenter is None else None
     for source, solution in solutions.items():
         begin = time.perf_counter()
         try:
             found = list(sample_contact(solution, source, case.problem))
-            for line in case.lines:
+            for line in case.lines if source in sources_of(case.problem) else ():
                 found += sample(solution, source, line, places[line], case.problem, edge)
         except Exception as error:  # as above
             outcomes[source] = SourceResult(source, outcomes[source].seconds, message_of(error))

@@ -1,7 +1,7 @@
 """Profiles of a solution along the lines of a case."""
 
 from collections.abc import Callable, Mapping, Sequence
-from typing import Any
+from typing import Any, TypeGuard
 
 import numpy as np
 
@@ -16,7 +16,7 @@ from verification.problem.coated_contact import (
     stress_with_uncertainty,
 )
 from verification.problem.either_body import on_body
-from verification.problem.line_profile import Line, Profile
+from verification.problem.line_profile import Line, Profile, line_of
 from verification.problem.quantity import BALL_PEAKS, IN_PLANE, PEAKS, QUANTITIES, SCALARS, SLOPES
 from verification.sampling import oblique_sampling
 from verification.sampling.largest_tension import BESIDE, ENDS, Search, around_edge, edge_uncertainty
@@ -38,6 +38,9 @@ def sample_contact(solution: Solution, source: str, problem: CoatedContact) -> t
     return tuple(found)
 
 
+CLEAR = 0.2  # of a, either side of the edge of a contact that is no disc: no point there
+
+
 def positions(
     problem: CoatedContact, lines: Sequence[Line], solutions: Mapping[str, Solution]
 ) -> dict[Line, Array]:
@@ -51,23 +54,39 @@ def positions(
     edge = edge_of(solutions)
     nodes = next(iter(solutions.values())).surface_nodes
     wanted = 2.5 * a * np.linspace(0, 1, 101)
-    if problem.friction:
+    shaped = problem.indenter is not None
+    if problem.friction or shaped:
         wanted = np.concatenate([-wanted[:0:-1], wanted])
     wanted = wanted[np.abs(wanted) <= np.abs(nodes).max()]
     x = nodes[np.unique(np.abs(nodes[None, :] - wanted[:, None]).argmin(axis=1))]
     z = {body: _depths(problem.seen_from(body), a) for body in problem.bodies}
+    first = next(iter(solutions.values()))
+    if shaped:
+        clear = _clear_of_edges(first, line_of("surface", problem), x, CLEAR * a)
     near = edge * np.concatenate([1 + NEAR_EDGE, 1 - NEAR_EDGE])
-    clear = x[np.abs(np.abs(x) - edge) > NEAR_EDGE[1] * edge]
-    surface = np.unique(np.concatenate([clear, near, -near] if problem.friction else [clear, near]))
+    if not shaped:
+        clear = x[np.abs(np.abs(x) - edge) > NEAR_EDGE[1] * edge]
+        clear = np.concatenate([clear, near, -near] if problem.friction else [clear, near])
+    surface = np.unique(clear)
 
     def along(line: Line) -> Array:
         if line.coordinate == "z":
             return z[line.body]
         if line.depth is None:
-            return oblique_sampling.positions(problem, line, a)
+            at = oblique_sampling.positions(problem, line, a)
+            on_surface = shaped and line.place == "oblique surface"
+            return _clear_of_edges(first, line, at, CLEAR * a) if on_surface else at
         return surface if line.depth == 0 else x
 
     return {line: along(line) for line in lines}
+
+
+def _clear_of_edges(solution: Solution, line: Line, at: Array, distance: float) -> Array:
+    """Positions within ``distance`` of which the contact neither begins nor ends on ``line``, all [m]."""
+    least = 1e-6 * solution.peak_pressure
+    x, y, _ = line.points(at[:, None] + distance * np.linspace(-1, 1, 9))
+    loaded = solution.pressure(x, y) > least
+    return at[loaded.all(axis=1) | ~loaded.any(axis=1)]
 
 
 def edge_of(solutions: Mapping[str, Solution]) -> float:
@@ -116,7 +135,7 @@ def sample(
     side = np.sign(x[at])
     x[at] = side * a
     around = (side[:, None] * around_edge(solution)).ravel() if at.size and stated else np.zeros(0)
-    search = Search(solution, problem.seen_from(line.body)) if problem is not None and surface else None
+    search = Search(solution, problem.seen_from(line.body)) if _has_peak(problem) and surface else None
     # In one call, whose cost hardly depends on the number of points.
     parts = (x, around, np.zeros(0) if search is None else search.x)
     points = np.concatenate(parts)
@@ -157,6 +176,10 @@ def sample(
             own = None if uncertain is None else np.array([uncertain])
             profiles.append(Profile(name, "contact", np.zeros(1), np.array([number]), source, own))
     return tuple(profiles)
+
+
+def _has_peak(problem: CoatedContact | None) -> TypeGuard[CoatedContact]:
+    return problem is not None and problem.indenter is None
 
 
 def _at_edge(solution: Solution, value: Array, U: Array, at_own_edge: Callable[[Any], Array]) -> Array:

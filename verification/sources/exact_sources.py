@@ -27,7 +27,10 @@ def solve_exactly(problem: Problem, numerics: Mapping[str, Any] | None = None) -
 def hertz(problem: CoatedContact, numerics: Mapping[str, Any] | None = None) -> Any:
     """Hertz's contact of the substrates."""
     from verification.sources.references.hertz import Hertz
+    from verification.sources.references.hertz_ellipse import pressed_ellipsoid
 
+    if problem.indenter is not None:
+        return pressed_ellipsoid(*problem.indenter[1], problem.load, *problem.substrate)
     return Hertz(problem.radius, problem.load, *problem.substrate, ball=_bare_ball(problem))
 
 
@@ -45,12 +48,17 @@ def _bare_ball(problem: CoatedContact) -> tuple[float, float] | None:
 
 def _exact_accepts(problem: Problem, kind: str) -> bool:
     """No sliding disc, whose stress is infinite at the rim."""
+    if isinstance(problem, CoatedContact) and problem.indenter is not None:
+        return False
     return not (isinstance(problem, PrescribedLoad) and problem.friction)
 
 
 def _closed_accepts(problem: Problem, kind: str, *, sliding: bool) -> bool:
     if not isinstance(problem, CoatedContact):
         return False
+    if problem.indenter is not None:
+        ellipsoid = problem.indenter[0] == "ellipsoid" and kind == "scalar"
+        return ellipsoid and problem.homogeneous and not (problem.friction or sliding)
     return problem.homogeneous and (problem.friction > 0) is sliding
 
 

@@ -31,11 +31,22 @@ def solve_elements(problem: Problem, numerics: Mapping[str, Any] | None = None) 
     """``problem`` by finite elements, extrapolated where a layer is incompressible or the base rigid."""
     from verification.sources.limit_extrapolation import extrapolated
 
+    if isinstance(problem, CoatedContact) and problem.indenter is not None:
+        return _shape_by_elements(problem, numerics or {})
     if isinstance(problem, LoadingCurve):
         from verification.sources.loading_solution import loading
 
         return loading(problem, partial(_elements, {"size": CURVE_SIZE, **(numerics or {})}), limits=True)
     return extrapolated(problem, partial(_elements, numerics or {}))
+
+
+def _shape_by_elements(problem: CoatedContact, numerics: Mapping[str, Any]) -> Any:
+    """An indenter that is no sphere: the elements correct a pressure of the patches until their gap vanishes."""
+    import fem_reference
+
+    start = solve_semianalytic(problem, {"patches": 129, "estimate_uncertainty": False})
+    given = {name: value for name, value in keywords(problem).items() if name != "ball"}
+    return fem_reference.solve_shape(start=start.pressure, **given, **numerics)
 
 
 def _elements(numerics: Mapping[str, Any], problem: CoatedContact | PrescribedLoad) -> Any:

@@ -11,6 +11,7 @@ from verification.judging.invariants import (
     influence_error,
     mirror_symmetry,
     plane_consistency,
+    shaped_contact,
 )
 from verification.problem.coated_contact import BALL, CoatedContact, NotClaimed, Solution
 from verification.problem.either_body import on_body
@@ -41,6 +42,9 @@ def check(solution: Solution, source: str, problem: CoatedContact) -> tuple[Inva
 
 def _laws(solution: Solution, source: str, problem: CoatedContact) -> Iterator[tuple[str, Law]]:
     subject = (solution, source, problem)
+    if problem.indenter is not None:
+        yield from _of_shape(solution, source, problem)
+        return
     yield "load balance", partial(force_balance.load_balance, *subject)
     yield "sphere", partial(bonded_deformation.sphere, *subject)
     yield from _of_body(*subject)
@@ -51,6 +55,23 @@ def _laws(solution: Solution, source: str, problem: CoatedContact) -> Iterator[t
     if problem.ball is not None:
         of_ball = on_body(solution, BALL), source, problem.seen_from(BALL)
         yield from ((f"{ON_BALL}{name}", law) for name, law in _of_body(*of_ball))
+
+
+def _of_shape(solution: Solution, source: str, problem: CoatedContact) -> Iterator[tuple[str, Law]]:
+    """Invariants under an indenter that is no sphere, where no angle is like another."""
+    subject = (solution, source, problem)
+    yield "load balance", partial(shaped_contact.load_balance, *subject)
+    if not hasattr(solution, "stress"):  # a closed form of the contact alone
+        return
+    yield "indenter", partial(shaped_contact.gap, *subject)
+    if source == "semianalytic":
+        yield "influence coefficients", partial(influence_error.influence_coefficients, *subject)
+    for k in range(1, len(problem.coatings) + 1):
+        yield f"bonded tractions, interface {k}", partial(bonded_deformation.bonded_traction, *subject, k)
+    for layer in range(len(problem.coatings) + 1):
+        stencil = force_balance.places_in(layer, solution, problem)
+        yield f"equilibrium, layer {layer}", partial(force_balance.equilibrium, *subject, layer, stencil)
+        yield f"Hooke's law, layer {layer}", partial(bonded_deformation.hooke, *subject, layer, stencil)
 
 
 def _of_body(solution: Solution, source: str, problem: CoatedContact) -> Iterator[tuple[str, Law]]:

@@ -8,11 +8,17 @@ K and E the complete elliptic integrals of modulus e. K. L. Johnson, Contact Mec
 """
 
 from dataclasses import dataclass
-from math import pi
+from math import exp, log, pi
 
+import numpy as np
+from numpy.typing import ArrayLike
+from scipy.optimize import brentq
 from scipy.special import ellipe, ellipk
 
-__all__ = ["HertzEllipse"]
+from verification.problem.array_types import Array
+from verification.problem.coated_contact import Uncertainty
+
+__all__ = ["HertzEllipse", "PressedEllipsoid", "pressed_ellipsoid"]
 
 
 @dataclass(frozen=True)
@@ -44,3 +50,44 @@ class HertzEllipse:
     @property
     def _m(self) -> float:
         return 1 - (self.b / self.a) ** 2
+
+
+@dataclass(frozen=True)
+class PressedEllipsoid:
+    """Numbers of the contact of an ellipsoid; ``axes`` : semi-axes along x and y [m]."""
+
+    contact_radius: float
+    approach: float
+    peak_pressure: float
+    axes: tuple[float, float]
+    stiffness: None = None
+    uncertainty: Uncertainty = Uncertainty()
+    diagnostics: None = None
+
+    def pressure(self, x: ArrayLike, y: ArrayLike = 0.0) -> Array:
+        """p0 sqrt(1 - x^2/a_x^2 - y^2/a_y^2) [Pa], 0 outside."""
+        inside = 1 - (np.asarray(x) / self.axes[0]) ** 2 - (np.asarray(y) / self.axes[1]) ** 2
+        return self.peak_pressure * np.sqrt(np.maximum(inside, 0.0))
+
+
+def pressed_ellipsoid(R_x: float, R_y: float, load: float, E: float, nu: float) -> PressedEllipsoid:
+    """Contact of a rigid ellipsoid with radii of curvature R_x, R_y [m] under ``load`` [N] on one solid.
+
+    The ratio of the axes is that whose curvatures have the given ratio; then p0 and a follow from the load
+    and one curvature.
+    """
+    E_star, (long, short) = E / (1 - nu**2), (max(R_x, R_y), min(R_x, R_y))
+    if long == short:
+        a = (0.75 * load * long / E_star) ** (1 / 3)
+        return PressedEllipsoid(a, a**2 / long, 1.5 * load / (pi * a**2), (a, a))
+
+    def excess(log_ratio: float) -> float:
+        A, B = HertzEllipse(1.0, exp(-log_ratio), 1.0, 1.0).curvatures
+        return log(B / A) - log(long / short)
+
+    ratio = exp(-brentq(excess, 1e-8, 12.0, xtol=1e-15))
+    unit = HertzEllipse(1.0, ratio, E_star, E_star)  # for which all scale: A ~ p0/a, W ~ p0 a^2
+    a = (load / unit.load * 2 * long * unit.curvatures[0]) ** (1 / 3)
+    exact = HertzEllipse(a, ratio * a, E_star * a / (2 * long * unit.curvatures[0]), E_star)
+    axes = (exact.a, exact.b) if R_x >= R_y else (exact.b, exact.a)
+    return PressedEllipsoid((exact.a * exact.b) ** 0.5, exact.approach, exact.p0, axes)

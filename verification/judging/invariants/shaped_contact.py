@@ -1,0 +1,62 @@
+"""Invariants of a contact under an indenter that is no sphere: its gap and its load."""
+
+import numpy as np
+
+from verification.judging.invariant_verdict import Invariant, decide
+from verification.problem.coated_contact import CoatedContact, Solution, displacement_with_uncertainty
+from verification.problem.gauss_legendre import gauss_legendre
+from verification.problem.indenter_shape import height_of
+
+WIDEST = 4.0  # of the contact radius: no contact beyond
+RINGS, ANGLES = 60, 96  # of the quadrature over the plane
+PLACES = 2.0 * (np.arange(9) + 0.5) / 9  # of the contact radius, at each of ``TURNS``
+TURNS = np.pi * np.array([0.03, 0.21, 0.47, 0.68, 0.93])
+CLEAR = 0.2  # of the contact radius around a point where the contact neither begins nor ends
+
+
+def gap(solution: Solution, source: str, problem: CoatedContact) -> Invariant:
+    """The surface follows the indenter: u_z + height = approach in the contact, no less outside.
+
+    Away from the edge, without the part of u_z that sliding adds, which is odd in x and left out of the gap.
+    Bounded by the uncertainties of the approach and of displacements.
+    """
+    a, least = solution.contact_radius, 1e-6 * solution.peak_pressure
+    r, theta = (v.ravel() for v in np.meshgrid(a * PLACES, TURNS))
+    turn = np.linspace(0, 2 * np.pi, 9)
+    x, y = r * np.cos(theta), r * np.sin(theta)
+    beside = solution.pressure(
+        x[:, None] + CLEAR * a * np.cos(turn), y[:, None] + CLEAR * a * np.sin(turn)
+    )
+    inside = (beside > least).all(axis=1)
+    clear = inside | ~(beside > least).any(axis=1)
+    x, y, inside = x[clear], y[clear], inside[clear]
+    u, U = displacement_with_uncertainty(solution, x, y, 0.0)
+    lifted = u[2]
+    if problem.friction:
+        lifted = (u[2] + displacement_with_uncertainty(solution, -x, y, 0.0)[0][2]) / 2
+    left = (lifted + height_of(problem.indenter, problem.radius)(x, y) - solution.approach) / solution.approach
+    residual = np.where(inside, left, np.minimum(left, 0.0))
+    bound = None
+    if U is not None and solution.uncertainty is not None:
+        bound = (U[2] + solution.uncertainty.approach) / solution.approach
+    law = "u_z + height = approach in the contact, no less outside, over the approach"
+    return decide("indenter", source, law, residual, bound)
+
+
+def load_balance(solution: Solution, source: str, problem: CoatedContact) -> Invariant:
+    """Load balance: int p dA = W, by rings around the origin; bounded by the change by a coarser quadrature.
+
+    The pressure falls to zero like a square root at an edge that crosses the rings.
+    """
+    fine, coarse = (_load(solution, problem, n) for n in (2, 1))
+    bound = 2 * abs(fine - coarse) + 1e-4
+    return decide("load balance", source, "int p dA = W, over W", fine - 1, bound)
+
+
+def _load(solution: Solution, problem: CoatedContact, finer: int) -> float:
+    s, w = gauss_legendre(finer * RINGS)
+    r = WIDEST * solution.contact_radius * (s + 1) / 2
+    theta = 2 * np.pi * (np.arange(finer * ANGLES) + 0.3) / (finer * ANGLES)
+    x, y = r[:, None] * np.cos(theta), r[:, None] * np.sin(theta)
+    p = solution.pressure(x, y).mean(axis=1)
+    return float((p * r * w).sum() * WIDEST * solution.contact_radius * np.pi / problem.load)
