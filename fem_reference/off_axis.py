@@ -85,7 +85,7 @@ def discretised(solid: LayeredSolid, size: float, surface: float, order: int) ->
         size,
         far_size=min(2 * size, 0.7),
         film_size=2 * size,
-        rows=0.35 / size,
+        rows=0.8 / size,
         surface=surface,
     )
     mesh = meridian_mesh(contact_radius=1.0, thicknesses=solid.thicknesses, far=solid.far, grading=grading)

@@ -70,7 +70,8 @@ class StarPressure:
         low, high = np.zeros(tau.size), np.full(tau.size, 2 * reach)
         for _ in range(BISECTIONS):
             r = (low + high) / 2
-            loaded = given(centre + r * np.cos(tau), r * np.sin(tau)) > least
+            at = centre + r * np.cos(tau)
+            loaded = (given(at, r * np.sin(tau)) > least) & ((at > 0) | (centre == 0))
             low, high = np.where(loaded, r, low), np.where(loaded, high, r)
         k = np.arange(WAVES)
         series = np.cos(k[:, None] * tau) @ low * np.where(k > 0, 2, 1) / tau.size

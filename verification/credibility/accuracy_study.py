@@ -8,7 +8,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any, TypeVar
 
-from verification.credibility.exact_errors import ExactError, between_methods, disc_errors, turned_ellipse
+from verification.credibility.exact_errors import ExactError, disc_errors, turned_ellipse
 from verification.credibility.parameter_sweeps import Stated, Sweep, study
 from verification.credibility.refinement_studies import (
     Refinement,
@@ -126,13 +126,13 @@ def discs_of(patches: int = 129) -> tuple[ExactError, ...]:
     return tuple(found)
 
 
-def ellipses_of(elements: bool = True) -> tuple[ExactError, ...]:
-    """Contacts that are no discs, beside Hertz's and, with ``elements``, between the methods."""
-    return (*turned_ellipse(BARE), *(between_methods(SLIDING) if elements else ()))
+def ellipses_of() -> tuple[ExactError, ...]:
+    """Contacts that are no discs, beside Hertz's."""
+    return tuple(turned_ellipse(BARE))
 
 
-def quick(elements: bool = True) -> tuple[Invariant, ...]:
-    """The verdicts of a shorter study: fewer grids, no sweeps, finite elements under the ellipses alone.
+def quick() -> tuple[Invariant, ...]:
+    """The verdicts of a shorter study: fewer grids, no sweeps, no finite elements.
 
     For trials of planted faults: whatever fails is a verdict without a result.
     """
@@ -142,7 +142,7 @@ def quick(elements: bool = True) -> tuple[Invariant, ...]:
         grid(COATED, (33, 65, 129), solid="coated", setting=STAIRCASE, edge_correction=False),
     )
     try:
-        discs = discs_of() + ellipses_of(elements)
+        discs = discs_of() + ellipses_of()
     except Exception as error:
         return verdicts(refinements, (), (), (f"discs and ellipses: {failure_message(error)}",))
     return verdicts(refinements, discs, ())

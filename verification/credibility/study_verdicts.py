@@ -10,7 +10,7 @@ of a patch, d/a = 0.009 at 257 patches:
     plain        the conversion errs by 0.4 % at the loaded patch, and more far away
     discs        the quadratures of rings and tables promise 1e-8; patches carry a step of the pressure to
                  second order, and a pressure that falls to zero to third
-    ellipses     as corrected, on 129 patches; finite elements leave out harmonics beyond the 14th
+    ellipses     as corrected, on 129 patches
 """
 
 from collections.abc import Iterable
@@ -76,8 +76,6 @@ ELLIPSES = {
     "contact radius": 2e-5,
     "approach": 5e-6,
     "load": 5e-6,
-    "stress by finite elements": 1e-4,
-    "approach by finite elements": 1e-4,
 }
 
 

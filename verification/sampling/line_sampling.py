@@ -38,7 +38,8 @@ def sample_contact(solution: Solution, source: str, problem: CoatedContact) -> t
     return tuple(found)
 
 
-CLEAR = 0.2  # of a, either side of the edge of a contact that is no disc: no point there
+CLEAR = 0.4  # of a, around the edge of a contact that is no disc: no point there
+SHAPED = 21  # points on either side of x = 0, of rings about which there are no tables
 
 
 def positions(
@@ -53,8 +54,8 @@ def positions(
     a = max(solution.contact_radius for solution in solutions.values())
     edge = edge_of(solutions)
     nodes = next(iter(solutions.values())).surface_nodes
-    wanted = 2.5 * a * np.linspace(0, 1, 101)
     shaped = problem.indenter is not None
+    wanted = 2.5 * a * np.linspace(0, 1, SHAPED if shaped else 101)
     if problem.friction or shaped:
         wanted = np.concatenate([-wanted[:0:-1], wanted])
     wanted = wanted[np.abs(wanted) <= np.abs(nodes).max()]
@@ -74,18 +75,21 @@ def positions(
             return z[line.body]
         if line.depth is None:
             at = oblique_sampling.positions(problem, line, a)
-            on_surface = shaped and line.place == "oblique surface"
-            return _clear_of_edges(first, line, at, CLEAR * a) if on_surface else at
+            return _clear_of_edges(first, line, at, CLEAR * a) if shaped else at
+        if shaped and line.depth > 0:
+            return _clear_of_edges(first, line, x, CLEAR * a)
         return surface if line.depth == 0 else x
 
     return {line: along(line) for line in lines}
 
 
 def _clear_of_edges(solution: Solution, line: Line, at: Array, distance: float) -> Array:
-    """Positions within ``distance`` of which the contact neither begins nor ends on ``line``, all [m]."""
+    """Positions within ``distance`` of which the contact neither begins nor ends, all [m]."""
     least = 1e-6 * solution.peak_pressure
-    x, y, _ = line.points(at[:, None] + distance * np.linspace(-1, 1, 9))
-    loaded = solution.pressure(x, y) > least
+    x, y, z = line.points(at)
+    reach = np.sqrt(np.maximum(distance**2 - z**2, 0.0))[:, None]
+    turn = 2 * np.pi * np.arange(16) / 16
+    loaded = solution.pressure(x[:, None] + reach * np.cos(turn), y[:, None] + reach * np.sin(turn)) > least
     return at[loaded.all(axis=1) | ~loaded.any(axis=1)]
 
 
