@@ -1,6 +1,6 @@
 """Maps of what each assumption costs: the record with its values between the nodes.
 
-Maintainers make them; ``credibility.model.shared_assumptions`` states the axes of each.
+Maintainers make them; ``tests/tools assumptions`` has the axes of each.
 """
 
 from collections.abc import Mapping, Sequence
