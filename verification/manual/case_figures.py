@@ -172,7 +172,7 @@ def _distances(axes: Any, result: CaseResult) -> None:
     axes.set(xlim=(LEAST, 3e-2), ylim=(len(rows) - 0.4, -0.6), xlabel="over the scale of the comparison")
     axes.set_yticks(range(len(rows)), [label for label, _ in rows])
     axes.grid(visible=False, axis="y")
-    axes.set_title("Largest difference (dot), $U$ on its line (bar), cap (dashed)", fontsize=9, loc="left")
+    axes.set_title("Largest difference (dot), $U$ (bar), cap (dashed)", fontsize=9, loc="left")
     shown = dict.fromkeys(claim.between for _, found in rows for claim, _ in found)
     handles = [mpl.lines.Line2D([], [], marker="o", ls="", ms=3.6, color=_colour(pair)) for pair in shown]
     axes.legend(
