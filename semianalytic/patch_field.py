@@ -131,7 +131,7 @@ def displacement_plane(z: float, layer: int, *, grid_x: Array, body: Body) -> Fi
 def _plane(z: float, layer: int, grid_x: Array, field: "_Field") -> FieldPlane:
     nx = ny = len(grid_x)
     unit = nodal_forces(grid_x, grid_x, np.ones((nx, ny)))
-    (influence,) = field.influences(np.array([float(z)]), layer, unit.dx)
+    ((influence, _),) = field.influences(np.array([float(z)]), layer, unit.dx)
     # forces reach one patch beyond the grid, see `samples`
     table = influence_table(influence, np.arange(-nx, nx + 1), np.arange(-ny, ny + 1), field.odd_in_y)
     size = (next_fast_len(2 * nx + 1, real=True), next_fast_len(2 * ny + 1, real=True))
@@ -150,13 +150,18 @@ class _Field:
     components: int
     odd_in_y: tuple[int, ...]
 
-    def influences(self, depths: Array, layer: int, d: float) -> list[Influence]:
-        """Influence of a node at each of the ``depths`` [m], ascending, of one layer."""
+    def influences(self, depths: Array, layer: int, d: float) -> list[tuple[Influence, Influence]]:
+        """Influence of a node, of integer offsets, and of a point, at each of the ``depths`` [m] of one
+        layer."""
         point = self.point(depths, layer)
         shallow = depths[depths < SHALLOW * d]
-        blocks = self._blocks(shallow, layer, d) if shallow.size else []
-        near = [*blocks, *[None] * (depths.size - shallow.size)]
-        return [partial(_influence, point, z, d, block) for z, block in zip(depths, near, strict=True)]
+        near: list[Array | None] = [None] * depths.size
+        if shallow.size:
+            near[: shallow.size] = self._blocks(shallow, layer, d)
+        return [
+            (partial(_influence, point, z, d, block), partial(point, z=z))
+            for z, block in zip(depths, near, strict=True)
+        ]
 
     def _blocks(self, depths: Array, layer: int, d: float) -> Array:
         """Influence of a node at offsets up to ``NEAR``, (depths, components, 2 NEAR + 1, 2 NEAR + 1)."""
@@ -193,7 +198,8 @@ def _stress_field(body: Body) -> _Field:
 
 
 def _displacement_field(body: Body) -> _Field:
-    response = subsurface.displacement_response(*body.materials[0][:2], body)
+    E, nu, *_ = body.materials[0]
+    response = subsurface.displacement_response(E, nu, body)
     point = partial(PointField.of, body=body, response=response)
     return _Field(partial(subsurface.displacement, body=body), point, 3, odd_in_y=(1,))
 
@@ -231,12 +237,11 @@ def _fields(
 ) -> Iterator[Callable[[Array, Array], Array]]:
     """For each depth of one layer, the field as a function of x and y, (k,) -> (components, k)."""
     fine = lattices[0]
-    for z, influence in zip(depths, field.influences(depths, layer, fine.dx), strict=True):
+    for z, (influence, kernel) in zip(depths, field.influences(depths, layer, fine.dx), strict=True):
         if z < SHALLOW * fine.dx:
             yield partial(between_sites, lattice=fine, influence=influence, odd_in_y=field.odd_in_y, order=4)
         else:
             level = int(np.clip(np.log2(max(z / (COARSE * fine.dx), 1)), 0, len(lattices) - 1))
-            kernel = partial(influence.args[0], z=z)
             yield partial(
                 at_points, lattice=lattices[level], kernel=kernel, odd_in_y=field.odd_in_y, order=10
             )

@@ -101,7 +101,8 @@ def displacement(
     body: Body,
 ) -> Array:
     """Displacement u_x, u_y, u_z [m], (pressures, 3, n); arguments as in `stress`."""
-    response = displacement_response(*body.materials[0][:2], body)
+    E, nu, *_ = body.materials[0]
+    response = displacement_response(E, nu, body)
     return _summed(x, y, z, layer, pressures, [1.0] * len(pressures), body, response)
 
 
@@ -212,7 +213,9 @@ class PointField:
         rho = np.maximum(np.hypot(x, y), 1e-9 * z).ravel()
         table = _columns(rho, np.full(rho.size, z), self.layer, self.tables, self.response)
         harmonics = directions(x.ravel() / rho, y.ravel() / rho)
-        return self.response.combine(table, harmonics, self.friction).reshape(-1, *x.shape)
+        return self.response.combine(table, harmonics, self.friction).reshape(
+            self.response.components, *x.shape
+        )
 
 
 @dataclass(frozen=True, eq=False)

@@ -94,7 +94,7 @@ def keys(t):
 def test_influence_near_a_node_joins_that_of_a_point_force():
     body = Body(((4.0, 0.25, 2.0),), (1.0, 0.3), 0.6)
     for z, layer in ((0.0, 0), (0.5, 0), (2.0, 1)):
-        (near,) = patch_field._stress_field(body).influences(np.array([z]), layer, 1.0)
+        ((near, _),) = patch_field._stress_field(body).influences(np.array([z]), layer, 1.0)
         far = partial(near.func, near.args[0], z, 1.0, None)
         m, n = np.array([6, -6, 5, 12]), np.array([0, 6, -6, -20])
         exact = far(m, n)
