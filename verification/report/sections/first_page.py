@@ -9,6 +9,7 @@ from typing import Any
 
 from markupsafe import Markup
 
+from verification.credibility.faults.first_notice import kinds, method_score, of_method
 from verification.judging.verdict import Claim, Outcome
 from verification.page.number_text import plain, scientific
 from verification.page.source_labels import OUTCOMES, OutcomeStyle, source_label, symbol_of
@@ -241,6 +242,10 @@ def worth(material: Material) -> list[Worth]:
     if faults := evidence.faults:
         value = f"{faults.caught} of {len(faults.rows)}"
         recorded("planted faults detected", value, "#faults", "faults", faults.started, faults.commit)
+        if of_method(faults):
+            noticed, total = method_score(faults)
+            name = "of these, in the semi-analytical method, noticed by comparison, invariant or study"
+            found.append(Worth(name, f"{noticed} of {total}", "#faults", None, kinds(faults)))
         if faults.alarms:
             silent = [row not in faults.alarms for row in faults.controls]
             share("negative controls left alone", silent, "#faults")
