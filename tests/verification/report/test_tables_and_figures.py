@@ -12,8 +12,8 @@ from markupsafe import Markup
 from synthetic_results import STEEL, contact, result_of
 
 from verification.judging.verdict import Outcome
-from verification.page.embedded_csv import embedded
 from verification.page.number_text import aligned, engineering, scientific, seconds, with_uncertainty
+from verification.page.page_parts import embedded
 from verification.page.source_labels import OUTCOMES, pair_style, source_style
 from verification.page.svg_curves import FLOOR, LOWER, UPPER, Curve, Difference, draw
 from verification.page.svg_plot import Axes, drawing, polyline
