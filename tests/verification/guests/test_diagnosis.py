@@ -155,6 +155,7 @@ def test_a_slip_of_the_output_is_named(exams, case, change, words):
         (lambda p: replace(p, substrate=(p.substrate[0] * (1 - 0.09) ** 1, 0.3)), "E in place of E*"),
         (lambda p: replace(p, radius=2 * p.radius), "diameter"),
         (lambda p: replace(p, load=p.load / 2), "half of the load"),
+        (lambda p: replace(p, substrate=(p.substrate[0] / 1e3, 0.3)), "E* times 0.001: a factor of units?"),
         (lambda p: replace(p, substrate=(p.substrate[0] / 2, 0.3)), "material"),
     ],
 )
