@@ -1,7 +1,7 @@
 """Slips that change a whole answer: axis, sign, unit, component, shift, an input of Hertz's formulas.
 
-Each slip turns the exact values into the wrong answers that it would give. Of the sets of up to four slips
-the one is chosen that leaves the smallest misfit to the answers, with a price for every slip. What a slip
+Each slip turns the exact values into the wrong answers that it would give. Among the sets of up to four
+slips, the one with the smallest misfit to the answers is chosen, with a price for every slip. What a slip
 changes but cannot predict (a mirrored value on an oblique line) counts little, and is explained by that slip.
 """
 

@@ -144,7 +144,9 @@ def describe(problem: CoatedContact | PrescribedLoad | LoadingCurve) -> dict[str
 
 
 def diagnostics_of(diagnostics: Any) -> dict[str, Any]:
-    """A method's own record as a dictionary."""
+    """A source's own record as a dictionary."""
+    if isinstance(diagnostics, dict):
+        return diagnostics
     return asdict(diagnostics) if is_dataclass(diagnostics) and not isinstance(diagnostics, type) else {}
 
 

@@ -13,18 +13,12 @@ from verification.cases.published_table import PublishedColumn
 from verification.judging.verdict import Outcome, Verdict, compare, judge
 from verification.problem.coated_contact import CoatedContact, Solution
 from verification.problem.line_profile import Profile
-from verification.problem.loading_curve import Problem
 from verification.running.case_result import CaseResult, SourceResult, diagnostics_of, message_of
 from verification.sampling.beside_edge import BesideEdge
 from verification.sampling.point_values import values
 from verification.sources.loading_solution import Loading
 from verification.sources.source_record import Solver
 from verification.sources.source_registry import CLOSED, METHODS, PUBLISHED, solvers
-
-
-def published_solvers(problem: Problem) -> dict[str, Solver]:
-    """Solvers of a published ``problem``: the methods, and the exact reference where it supports it."""
-    return {name: solve for name, solve in solvers(problem).items() if name not in CLOSED}
 
 
 def run(case: PublishedCase, available: Mapping[str, Solver] | None = None) -> CaseResult:
@@ -34,7 +28,8 @@ def run(case: PublishedCase, available: Mapping[str, Solver] | None = None) -> C
     A source that fails leaves its message and NO_RESULT on each of its claims.
     """
     started = time.perf_counter()
-    available = published_solvers(case.problem) if available is None else available
+    if available is None:  # the methods, and the exact reference where it supports the problem
+        available = {name: one for name, one in solvers(case.problem).items() if name not in CLOSED}
     outcomes: dict[str, SourceResult] = {}
     profiles = {(p.profile.quantity, p.profile.line, PUBLISHED): p.profile for p in case.columns}
     for source, solve in available.items():

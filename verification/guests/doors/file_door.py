@@ -33,7 +33,7 @@ def place_of(guest: Guest, case: Subject, question: Question) -> Path:
 
 
 def pack(guest: Guest, case: Subject, question: Question) -> Path:
-    """Write the files of ``question``; those that are there stay as they are. Returns their directory."""
+    """Write the files of ``question`` that do not exist yet. Returns their directory."""
     folder = place_of(guest, case, question)
     units = guest.units
     rows = [[name, _unit(unit_of(name), units), "", ""] for name in question.contact]

@@ -1,7 +1,7 @@
-"""Relative change of a contact by dropping one assumption, of the quantities that designers use.
+"""Relative change of a contact when one assumption is dropped, for the quantities that designers use.
 
-Of a contact with ``problem``'s load: radius, approach, peak pressure, sigma_xx at the trailing edge of the
-surface, largest |sigma_xz| on the first interface.
+At the load of ``problem``: radius, approach, peak pressure, sigma_xx at the trailing edge of the surface,
+largest |sigma_xz| on the first interface.
 """
 
 from dataclasses import dataclass
@@ -31,7 +31,7 @@ RESOLUTION: dict[str, Any] = {"nodes": 40, "panel": 8, "tail": 18.0}
 class Change:
     """Each relative to its value with the assumption, a stress below ``FLOOR`` to that of the peak pressure.
 
-    None of what a model does not give, as ``shear`` without an interface.
+    None where a model gives no value, such as ``shear`` without an interface.
     """
 
     contact_radius: float | None

@@ -238,7 +238,7 @@ class SlidingExpansion:
 
     @property
     def _unit(self) -> float:
-        """Of displacements, a^2/R [m]."""
+        """Unit of displacements, a^2/R [m]."""
         return self.a**2 / self.problem.radius
 
     def _conjugate(self, psi1: Array, rest_slope: Array) -> Array:

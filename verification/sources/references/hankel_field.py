@@ -15,7 +15,7 @@ Sneddon, Fourier Transforms (1951); sliding derived by rotation of the wave vect
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
-from typing import Protocol
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -32,27 +32,15 @@ KEPT_SIZE = 100_000  # wavenumbers of a plane that is kept
 MOST = 4_000_000  # wavenumbers: as many need a gigabyte
 
 
-class AxisymmetricPressure(Protocol):
-    """A pressure on r <= a with its transforms; see ``axisymmetric_pressure`` and ``uniform_disc``."""
-
-    @property
-    def a(self) -> float: ...
-    def pressure(self, r: ArrayLike) -> Array: ...
-    def resultant(self, r: ArrayLike) -> Array: ...
-    def transform(self, k: Array) -> Array: ...
-    def bessel_integral(self, order: int, r: Array) -> Array: ...
-    def sink(self, r: Array) -> Array: ...
-    def over_circle(self, order: int, r: Array) -> Array: ...
-
-
 @dataclass(frozen=True, eq=False)
 class HankelField:
     """Stress below ``pressure``, with friction q = f p, in ``coatings`` on ``substrate``.
 
+    pressure : an AbelPressure, UniformDisc or FirstHarmonic.
     nodes : Gauss points a panel; tail : exponent at which the decaying integrands are cut.
     """
 
-    pressure: AxisymmetricPressure
+    pressure: Any
     coatings: Coatings
     substrate: tuple[float, float]
     friction: float = 0.0
