@@ -123,7 +123,7 @@ def test_texts_are_the_same_numbers_as_bare_ones():
         (
             "load",
             "20 kg",
-            "; 'kg' is no unit of force, not '20 kg'",
+            "; 'kg' is not a unit of force, not '20 kg'",
         ),
         ("E", "210 Gpa", "unknown"),
         ("E", "2,1 GPa", "decimal"),

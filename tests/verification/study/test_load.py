@@ -160,7 +160,7 @@ def _closed(request, f):
     [
         ("count = 5", "count = 3", "sweep.load.count"),
         ("from = 4", "from = 40", "give from < to"),
-        ("from = 4", 'from = "4 Pa"', "'Pa' is no unit of force"),
+        ("from = 4", 'from = "4 Pa"', "'Pa' is not a unit of force"),
         ("coating = {", BALL + "coating = {",
          "coatings"),
         ("2e-5", "2e-8", "value 1 is"),

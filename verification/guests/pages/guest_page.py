@@ -55,7 +55,7 @@ def page(found: Examined, info: RunInfo) -> str:
     guest, total = found.guest, found.total
     facts = [
         ("guest", guest.name),
-        ("way in", guest.callable or " ".join(guest.command) or f"files in {guest.results}"),
+        ("way in", guest.callable or " ".join(guest.command or ()) or f"files in {guest.results}"),
         ("uncertainty", _uncertainty(found)),
         ("left out", f"|r - a| < {guest.edge:g} a" if guest.edge else "nothing"),
         ("command", info.command),
