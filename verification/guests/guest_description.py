@@ -101,7 +101,7 @@ class GuestFile(Strict):
 
 
 class Guest(GuestFile):
-    """A contact code to examine, with the ``folder`` that its files are relative to, and its file as ``text``."""
+    """A contact code to examine: its file as ``text``, the ``folder`` that its paths are relative to."""
 
     folder: Path
     text: str

@@ -189,10 +189,8 @@ def test_a_largest_tension_in_the_zone_that_is_left_out_is_not_asked_for(exams):
     values = {"contact": {"largest_tension": 1.0, "tension_place": 0.0, "contact_radius": 1.0}}
     reply = [Solved(Answer(protocol=VERSION, id="x", values=values), 0.0)]
     for edge, outcome in ((0.0, Outcome.DISAGREES), (0.05, Outcome.UNSUPPORTED)):
-        found = {
-            c.quantity: v
-            for c, v in judged(GUEST.model_copy(update={"edge": edge}), case, exam, reply).verdicts
-        }
+        guest = GUEST.model_copy(update={"edge": edge})
+        found = {c.quantity: v for c, v in judged(guest, case, exam, reply).verdicts}
         assert {found[q].outcome for q in ("largest_tension", "tension_place")} == {outcome}
         assert found["contact_radius"].outcome is Outcome.DISAGREES
 
