@@ -54,8 +54,8 @@ class CaseResult:
     @classmethod
     def of(cls, case: Any, **parts: Any) -> "CaseResult":
         """The result of ``case`` with these ``parts``, empty where none are given."""
-        stated = {name: getattr(case, name) for name in ("name", "title", "source", "text")}
-        empty = {"sources": (), "profiles": (), "verdicts": (), "seconds": 0.0}
+        stated: dict[str, Any] = {name: getattr(case, name) for name in ("name", "title", "source", "text")}
+        empty: dict[str, Any] = {"sources": (), "profiles": (), "verdicts": (), "seconds": 0.0}
         return cls(**stated, problem=describe(case.problem), **empty | parts)
 
     @classmethod
