@@ -1,13 +1,8 @@
-"""Kill a run with kill -9 at random moments, resume it each time, hold what it ends with against a calm run.
+"""Kill a run with kill -9 at random moments, resume it each time, compare what it ends with with a calm run.
 
-python tests/robustness/kill_default_run.py [CASE ...] --kills 50 --output FOLDER
-
-Without cases it is the default run that is killed. Every second kill takes the run alone, the others its
-workers too; every third is aimed at a file being written. Ends with 1 where a finished case was lost, a
-damaged file was taken for a result, a process was left over, or a number differs from those of the calm run.
+Every second kill takes the run alone, the others its workers too; every third waits for a half-written file.
 """
 
-import argparse
 import json
 import os
 import random
@@ -22,8 +17,6 @@ from pathlib import Path
 from typing import Any
 
 from verification.running.checked_files import PART, StoreError, read_checked
-
-__all__ = ["disturbed", "largest_difference", "main", "resumed"]
 
 # What a second run of the same case may measure differently: times, and what they are part of.
 TIMES = ("seconds", "started", "diagnostics")
@@ -221,39 +214,3 @@ def disturbed(
         counts["half-written files left"] += sum(path.name != ".lock" for path in folder.rglob(".*"))
         turn += 1
     return counts
-
-
-def main() -> int:
-    """Run, print the counts; 1 where anything was lost."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("cases", nargs="*")
-    parser.add_argument("--kills", type=int, default=50)
-    parser.add_argument("--output", type=Path, required=True)
-    parser.add_argument("--jobs", type=int, default=2)
-    parser.add_argument(
-        "--longest", type=float, help="latest moment of a kill [s]; else a third of the calm run"
-    )
-    chosen = parser.parse_args()
-    begin = time.monotonic()
-    calm = chosen.output / "calm"
-    code = resumed(calm, chosen.cases, chosen.jobs).wait()
-    seconds = time.monotonic() - begin
-    sys.stdout.write(f"calm run: {seconds:.0f} s, code {code}, {len(whole(calm))} cases\n")
-    sys.stdout.flush()
-    rough = chosen.output / "rough"
-    longest = chosen.longest or seconds / 3
-    counts = disturbed(rough, chosen.cases, chosen.kills, longest, chosen.jobs, len(whole(calm)))
-    largest = 0.0
-    for folder in sorted(rough.iterdir()):
-        difference, compared = largest_difference(calm, folder)
-        largest = max(largest, difference)
-        sys.stdout.write(f"{folder.name}: {compared} values, largest difference {difference:.2g}\n")
-    for name, count in sorted(counts.items()):
-        sys.stdout.write(f"{count:5d} {name}\n")
-    forbidden = ("finished cases lost", "processes left over", "half-written files left")
-    lost = sum(counts[name] for name in forbidden)
-    return int(lost > 0 or largest > 1e-12 or counts["kills"] < chosen.kills)
-
-
-if __name__ == "__main__":
-    sys.exit(main())
