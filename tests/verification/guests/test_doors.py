@@ -128,7 +128,7 @@ def test_judge_judges_what_was_packed(tmp_path):
         ("", "missing"),
         ('name = "x"', "callable"),
         ('name = "x"\ncallable = "a"', "module:function"),
-        ('name = "x"\ncallable = "a:b"\ncommand = ["c"]', "exactly one"),
+        ('name = "x"\ncallable = "a:b"\ncommand = ["c"]', "one"),
         ('name = "hertz"\ncallable = "a:b"', "coatcheck"),
         ('name = "x"\ncallable = "a:b"\nclaim = 2', "claim"),
         ('name = "x"\ncallable = "a:b"\n[refine]\nn = [1, 2]', "refine.n"),
@@ -215,7 +215,7 @@ def test_files_that_are_filled_in_wrongly_are_named(tmp_path):
         read_answer(guest, case, question)
     contact.write_text(empty[0])
     points.write_text("\n".join(empty[1].splitlines()[:-1]))
-    with pytest.raises(ProtocolError, match="each once"):
+    with pytest.raises(ProtocolError, match="once"):
         read_answer(guest, case, question)
     lines = empty[1].splitlines()
     lines[1] = lines[1].replace("0,,,,-", "0,1e9,,,-")
