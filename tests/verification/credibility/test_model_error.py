@@ -55,7 +55,7 @@ def test_assumption_that_dominates_nowhere_is_named_with_its_largest_cost():
 
 def test_stresses_that_a_model_without_friction_does_not_have_are_missing():
     still, sliding = (dict(model_error(replace(BARE, friction=f)).missing) for f in (0.0, 0.3))
-    assert f"{SMALL_STRAINS}, of the stresses" in sliding
+    assert any(name.startswith(SMALL_STRAINS) for name in sliding)
     assert not still
 
 

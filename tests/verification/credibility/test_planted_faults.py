@@ -96,7 +96,7 @@ def test_two_edits_of_one_function_both_take():
 @pytest.mark.parametrize(
     ("change", "said"),
     [
-        (Edit("verification.judging.verdict:judge", "words that are not there", ""), "0"),
+        (Edit("verification.judging.verdict:judge", "nowhere", ""), "0"),
         (Edit("verification.judging.verdict:judge", "judged", ""), "once"),
         (Edit("verification.judging.verdict:no_such_function", "a", "b"), "function"),
         (Constant("fem_reference.estimate:SAFETY", 3.0), "planted"),
