@@ -56,20 +56,13 @@ def test_the_steps_stand_in_order(evidence):
     assert found.failures == ()
 
 
-def glance(found: Section) -> dict[str, list[str]]:
-    return {row.head.text: [c.text for c in row.cells] for row in found.parts[0].tables[0].rows}
-
-
 def test_what_was_never_measured_is_said_and_not_invented(evidence):
-    shown = glance(section(evidence))
-    missing = shown["Fault detection"]
-    for name in ("Exact reference", "Mutation testing", "False alarms"):
-        assert shown[name] == missing
-    assert shown["Regression"][0] == missing[0]
+    found = section(evidence)
+    assert part(found, "6").text.startswith("Not measured")
+    assert part(found, "7").text.startswith("Not measured")
     empty = section(Evidence(failures=("the source is not here",)), [])
     assert empty.failures == ("the source is not here",)
-    for name in ("Independence", "Code verification", "Solution verification"):
-        assert glance(empty)[name][0].startswith(missing[0])
+    assert part(empty, "5").text.startswith("Not measured")
 
 
 def test_figures_of_a_record_carry_date_and_commit(evidence, tmp_path):
@@ -84,7 +77,6 @@ def test_figures_of_a_record_carry_date_and_commit(evidence, tmp_path):
     assert str(len(record.alarms)) in text
     assert str(record.comparisons) in text
     assert record.alarms[0].reason in said(section(known).parts[-2])
-    assert glance(section(known))["False alarms"][1] == "2026-10-09, c0ffee123456"
 
 
 def test_the_fault_score_and_its_survivors_come_from_the_record(tmp_path):
@@ -113,7 +105,7 @@ def test_a_damaged_record_is_named_and_its_figure_is_not_measured(tmp_path):
     (tmp_path / "alarms.json").write_text("{")
     found = section(gather(tmp_path))
     assert any("alarms.json" in message for message in found.failures)
-    assert glance(found)["False alarms"] == glance(found)["Mutation testing"]
+    assert part(found, "7").text.startswith("Not measured")
 
 
 def test_figures_of_this_run_follow_its_results(evidence):

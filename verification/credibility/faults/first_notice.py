@@ -17,6 +17,7 @@ class Noticed(StrEnum):
     STUDY = "study"
     HARNESS = "published, self-test or manifest"
     STOPPED = "no result"
+    EQUIVALENT = "equivalent"
     BASELINE = "baseline"
     NOTHING = "unit tests at most"
 
@@ -44,6 +45,8 @@ def noticed(row: Row) -> Noticed:
             return kind
     if any(tally.no_result for tally in row.columns.values()):
         return Noticed.STOPPED
+    if row.equivalent:
+        return Noticed.EQUIVALENT
     baseline = row.columns.get("baseline")
     return Noticed.BASELINE if baseline is not None and baseline.disagree else Noticed.NOTHING
 
