@@ -4,10 +4,10 @@ from collections.abc import Callable, Sequence
 from functools import partial
 
 from verification.credibility.faults.first_notice import (
-    COUNTED,
     Noticed,
+    kinds,
+    method_score,
     noticed,
-    noticed_by,
     of_method,
     unused,
 )
@@ -41,13 +41,11 @@ def faults_message(record: Record) -> str:
         f"({plain(100 * record.share, 3)} %), "
         f"{record.as_predicted} of them by the check predicted before the trial"
     )
-    if method := of_method(record):
-        by = ", ".join(f"{noticed_by(record, kind)} by a {kind}" for kind in COUNTED).replace(
-            "a inv", "an inv"
-        )
+    if of_method(record):
+        found, count = method_score(record)
         text += (
-            f". Of {len(method)} in the semi-analytical method {noticed_by(record, *COUNTED)} are noticed by "
-            f"comparisons, invariants and judged studies ({by} first)"
+            f". In the semi-analytical method, {found} of {count} are noticed by a comparison, an invariant "
+            f"or a judged study (first {kinds(record)})"
         )
     if record.controls:
         text += (
