@@ -5,7 +5,7 @@ surface, largest |sigma_xz| on the first interface.
 """
 
 from dataclasses import dataclass
-from functools import partial
+from functools import lru_cache
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -15,7 +15,7 @@ from verification.problem.coated_contact import CoatedContact, keywords
 from verification.sources.assumptions.harmonic_stress import first_harmonic
 from verification.sources.assumptions.sliding_coupling import SlidingExpansion
 from verification.sources.references import integral_equation
-from verification.sources.references.integral_equation import SPHERE, ExactSolution
+from verification.sources.references.integral_equation import PARABOLA, SPHERE, ExactSolution, Gap
 
 SCALARS = ("contact_radius", "approach", "peak_pressure")
 FLOOR = 0.1  # of the peak pressure, to which a smaller stress is compared
@@ -49,10 +49,18 @@ def of_sphere(problem: CoatedContact) -> tuple[Change, Change]:
     thinner than ``THINNEST``.
     """
     require_thick(problem)
-    solve = partial(integral_equation.solve, **keywords(problem), estimate_uncertainty=False, **RESOLUTION)
-    parabola, sphere = solve(), solve(gap=SPHERE)
-    value = change_between(parabola, sphere)
+    value = change_between(half_spaces(problem), half_spaces(problem, SPHERE))
     return value, Change(0.0, 0.0, 0.0, 0.0, None if value.shear is None else 0.0)
+
+
+@lru_cache(maxsize=8)
+def half_spaces(problem: CoatedContact, gap: Gap = PARABOLA, **resolution: Any) -> ExactSolution:
+    """The contact that an assumption is dropped from; several are dropped from the same.
+
+    resolution : numerical parameters of ``integral_equation.solve``, ``RESOLUTION`` if none are given.
+    """
+    solved = resolution or RESOLUTION
+    return integral_equation.solve(**keywords(problem), gap=gap, estimate_uncertainty=False, **solved)
 
 
 def change_between(before: ExactSolution, after: ExactSolution) -> Change:
@@ -80,7 +88,7 @@ def of_goodman(problem: CoatedContact) -> tuple[Change, Change]:
         nothing = Change(0.0, 0.0, 0.0, 0.0, 0.0 if problem.coatings else None)
         return nothing, nothing
     require_thick(problem)
-    expansion = SlidingExpansion(problem, nodes=100, solved=RESOLUTION)
+    expansion = SlidingExpansion(problem, nodes=100, solved=RESOLUTION, exact=half_spaces(problem))
     change, exact = expansion.change, expansion.exact
     panel, tail = RESOLUTION["panel"], RESOLUTION["tail"]
 
@@ -117,6 +125,7 @@ def require_thick(problem: CoatedContact) -> None:
         raise ValueError(f"a coating thinner than {THINNEST:g} a_h, its model would need too long")
 
 
+@lru_cache(maxsize=8)
 def _tension(exact: ExactSolution) -> float:
     """sigma_xx [Pa] at x = -a on the surface."""
     return float(exact.stress(-exact.contact_radius, 0.0, 0.0)[0, 0])
@@ -141,6 +150,7 @@ class Curve(NamedTuple):
         return float(max(middle - (rise + bend * (at[1] - at[0])) ** 2 / (4 * bend), size.max()))
 
 
+@lru_cache(maxsize=8)
 def _shear(exact: ExactSolution) -> Curve | None:
     """sigma_xz [Pa] along the first interface of the flat."""
     coatings = exact.fields[0].coatings

@@ -18,7 +18,7 @@ J. Engng Sci. 8 (1970) 843-856; Yu, Sanday and Rath, J. Mech. Phys. Solids 38 (1
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cache, cached_property
 from typing import Any
 
 import numpy as np
@@ -266,6 +266,7 @@ def _solve(
         stiffness = 2 * np.pi * a * (weight @ phi[:, 0])
         return phi @ np.array([delta, -1.0]), float(delta), float(stiffness)
 
+    @cache  # at the ends of the bracket it is asked for again
     def excess(log_a: float) -> float:
         a = float(np.exp(log_a))
         return float(np.log(2 * np.pi * a * (weight @ contact(a)[0]) / load))
@@ -305,8 +306,10 @@ def _radius_guess(radius: float, load: float, E_star: float, solids: tuple[Solid
     """Hertz radius with the contact modulus seen by waves of that very length."""
     a = float((3 * load * radius / (4 * E_star)) ** (1 / 3))
     for _ in range(40):
-        M = float(compliance(solids, E_star, np.array([2.0 / a]))[0])
+        before, M = a, float(compliance(solids, E_star, np.array([2.0 / a]))[0])
         a = 0.5 * (a + float((3 * load * radius * M / (4 * E_star)) ** (1 / 3)))
+        if abs(a - before) < 1e-9 * a:
+            break
     return a
 
 
