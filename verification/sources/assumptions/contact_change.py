@@ -19,7 +19,7 @@ from verification.sources.references.integral_equation import PARABOLA, SPHERE, 
 
 SCALARS = ("contact_radius", "approach", "peak_pressure")
 FLOOR = 0.1  # of the peak pressure, to which a smaller stress is compared
-THINNEST = 0.01  # h/a_h; time and memory grow as (a/h)^2 and more
+THINNEST = 0.01  # h/a_h of an outer coating; time and memory grow as (a/h)^2 and more
 POINTS = 2 * np.linspace(-1, 1, 81)  # of a line along an interface, x/a
 NEAR = np.linspace(-1.5, 0.5, 21)  # (|x| - a)/h, where the shear of a thin coating is largest
 THIN = 0.5  # h/a, below which ``NEAR`` is finer than ``POINTS``
@@ -45,8 +45,8 @@ def of_sphere(problem: CoatedContact) -> tuple[Change, Change]:
     """From the gap r^2/2R to that of a sphere; vanishes as (a/R)^2.
 
     Returns the change, then its uncertainty, which is rounding: zero.
-    Raises ValueError where the contact is wider than 0.9 R, as ``integral_equation`` does, or a coating
-    thinner than ``THINNEST``.
+    Raises ValueError where the contact is wider than 0.9 R, as ``integral_equation`` does, or an outer
+    coating thinner than ``THINNEST``.
     """
     require_thick(problem)
     value = change_between(half_spaces(problem), half_spaces(problem, SPHERE))
@@ -81,7 +81,7 @@ def of_goodman(problem: CoatedContact) -> tuple[Change, Change]:
     a scalar's change, C^2/2 (x/a)^2 of a peak pressure at x. Patches without an expansion have, C up to 0.3,
     0.17 and 0.32 C^2 of a shear and a tension of a bare solid, 0.3 C^2 of its scalars' change.
 
-    Raises ValueError where a coating is thinner than ``THINNEST``.
+    Raises ValueError where an outer coating is thinner than ``THINNEST``.
     """
     f = problem.friction
     if not f:
@@ -119,10 +119,11 @@ def of_goodman(problem: CoatedContact) -> tuple[Change, Change]:
 
 
 def require_thick(problem: CoatedContact) -> None:
-    """Raises ValueError where a coating is thinner than ``THINNEST``."""
-    coatings = [layer for body in problem.bodies for layer in problem.seen_from(body).coatings]
-    if any(h < THINNEST * problem.a_h for *_, h in coatings):
-        raise ValueError(f"a coating thinner than {THINNEST:g} a_h, its model would need too long")
+    """Raises ValueError where an outer coating is thinner than ``THINNEST``."""
+    outer = [layers[0] for body in problem.bodies if (layers := problem.seen_from(body).coatings)]
+    if any(h < THINNEST * problem.a_h for *_, h in outer):
+        least = f"{THINNEST * problem.a_h * 1e6:.2g} um ({THINNEST:g} a_h)"
+        raise ValueError(f"an outer coating thinner than {least}, its model would need too long")
 
 
 @lru_cache(maxsize=8)

@@ -153,8 +153,8 @@ class SlidingExpansion:
         self.a = a = self.exact.contact_radius
         E_star = integral_equation.combined_modulus(solids)
         self.scale = E_star * a**2 / (np.pi * problem.radius)
-        thinnest = integral_equation.thinnest_coating(solids, a)
-        self.nodes = _Nodes.graded(int(nodes * (1 + 0.05 * a / thinnest)))
+        outer = integral_equation.outer_thickness(solids, a)
+        self.nodes = _Nodes.graded(int(nodes * (1 + 0.05 * a / outer)))
         self.points = np.append(self.nodes.s, 1.0)  # with the edge
         k, weight = integral_equation.kernel_wavenumbers(solids, a, solved["panel"], solved["tail"])
         self.k = k * a

@@ -226,9 +226,12 @@ def combined_modulus(solids: tuple[Solid, ...]) -> float:
     return moduli[0] if len(moduli) == 1 else 1 / sum(1 / E for E in moduli)
 
 
-def thinnest_coating(solids: tuple[Solid, ...], default: float) -> float:
-    """Least thickness [m] of all coatings, ``default`` where there is none."""
-    return min((h for coatings, _ in solids for _, _, h in coatings), default=default)
+def outer_thickness(solids: tuple[Solid, ...], default: float) -> float:
+    """Least thickness h1 [m] of the outer coatings, ``default`` where there is none.
+
+    M - 1 falls as exp(-2 k h1), so that the kernel is smooth over h1, however thin the layers below.
+    """
+    return min((coatings[0][2] for coatings, _ in solids if coatings), default=default)
 
 
 def _solve(
@@ -314,8 +317,8 @@ def _radius_guess(radius: float, load: float, E_star: float, solids: tuple[Solid
 
 
 def _contact_nodes(nodes: int, a: float, solids: tuple[Solid, ...]) -> int:
-    """The kernel varies over the first coating's thickness, so thin ones need nodes in proportion to a/h."""
-    return int(nodes + 3 * a / thinnest_coating(solids, a) * nodes / 80)
+    """The kernel varies over the outer coating's thickness, so thin ones need nodes in proportion to a/h."""
+    return int(nodes + 3 * a / outer_thickness(solids, a) * nodes / 80)
 
 
 def kernel_wavenumbers(solids: tuple[Solid, ...], a: float, panel: int, tail: float) -> tuple[Array, Array]:
@@ -323,6 +326,6 @@ def kernel_wavenumbers(solids: tuple[Solid, ...], a: float, panel: int, tail: fl
     coated = [solid for solid in solids if solid[0]]
     if not coated:
         return np.ones(1), np.zeros(1)
-    end = (tail + 2 * np.log(tail)) / (2 * min(coatings[0][2] for coatings, _ in coated))
+    end = (tail + 2 * np.log(tail)) / (2 * outer_thickness(solids, a))
     bent = max(bending_length(*solid) for solid in coated)
     return wavenumber_panels(end, 0.5 / bent, 3.0 / a, panel)
