@@ -25,7 +25,7 @@ from verification.commands.common.named_files import SHIPPED, path_of
 from verification.commands.common.shared_options import AsJson, Flag, Strict
 from verification.commands.common.terminal import print_error, print_json, print_out, print_warnings
 from verification.commands.common.terminal_bar import progress_bar, require_gmsh
-from verification.credibility.model.model_error import ModelError, model_error
+from verification.credibility.model_error import ModelError, model_error
 from verification.desk.answer_summary import agreement, summary
 from verification.desk.case_wording import case_text
 from verification.desk.contact_answer import Answer, Difference, answer, differences, usual_seconds

@@ -19,6 +19,7 @@ from verification.credibility.refinement_studies import (
 from verification.credibility.study_verdicts import CORRECTED, PLAIN, STAIRCASE, verdicts
 from verification.judging.invariant_verdict import Invariant
 from verification.judging.invariants.influence_error import ConversionError, conversion_errors
+from verification.judging.outcome import Outcome
 from verification.problem.coated_contact import CoatedContact
 from verification.running.checked_files import StoreError, read_checked, write_checked
 from verification.running.json_records import decode, encode
@@ -132,20 +133,30 @@ def ellipses_of(elements: bool = True) -> tuple[ExactError, ...]:
 
 
 def quick(elements: bool = True) -> tuple[Invariant, ...]:
-    """The verdicts of a shorter study: fewer grids, no sweeps, finite elements under the ellipses alone.
+    """The verdicts of a shorter study, part by part up to the first that disagrees: fewer grids, no sweeps.
 
     For trials of planted faults: whatever fails is a verdict without a result.
+    elements : with the finite elements under ellipses, the last part, which takes longest.
     """
     grid = partial(refined_grid, solve=solvers(COATED)["semianalytic"])
-    refinements = (
-        grid(COATED, (129,), solid="coated", setting=CORRECTED),
-        grid(COATED, (33, 65, 129), solid="coated", setting=STAIRCASE, edge_correction=False),
+    parts: tuple[Callable[[], tuple[Invariant, ...]], ...] = (
+        lambda: verdicts((), discs_of(), ()),
+        lambda: verdicts((grid(COATED, (129,), solid="coated", setting=CORRECTED),), (), ()),
+        lambda: verdicts(
+            (grid(COATED, (33, 65, 129), solid="coated", setting=STAIRCASE, edge_correction=False),), (), ()
+        ),
+        lambda: verdicts((), ellipses_of(elements=False), ()),
+        *((lambda: verdicts((), between_methods(SLIDING), ()),) if elements else ()),
     )
-    try:
-        discs = discs_of() + ellipses_of(elements)
-    except Exception as error:
-        return verdicts(refinements, (), (), (f"discs and ellipses: {failure_message(error)}",))
-    return verdicts(refinements, discs, ())
+    found: tuple[Invariant, ...] = ()
+    for part in parts:
+        try:
+            found += part()
+        except Exception as error:
+            found += verdicts((), (), (), (f"discs and ellipses: {failure_message(error)}",))
+        if any(row.outcome is Outcome.DISAGREES for row in found):
+            break
+    return found
 
 
 def failed(reason: str, seconds: float) -> AccuracyStudy:

@@ -68,6 +68,7 @@ DISCS = {
     "stress, inside": RINGS,
     "displacement": RINGS,
     "central deflection": 2 * PATCHES,
+    "deflection on a quarter": 2 * PATCHES,
     "stress on a plane": PATCHES,
     "displacement on a plane": PATCHES,
 }

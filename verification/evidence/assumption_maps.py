@@ -1,6 +1,6 @@
 """Maps of what each assumption costs: the record with its values between the nodes.
 
-Maintainers make them; ``credibility.model.shared_assumptions`` states the axes of each.
+Maintainers make them; ``tests/tools assumptions`` has the axes of each.
 """
 
 from collections.abc import Mapping, Sequence
@@ -11,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
-from verification.evidence.map_places import LOGARITHMIC, Place, coordinate, places_of
+from verification.evidence.map_places import LOGARITHMIC, Place, places_of
 from verification.problem.array_types import Array
 from verification.problem.coated_contact import CoatedContact
 from verification.running.json_records import RecordFile
@@ -177,9 +177,9 @@ class AssumptionMap:
             value, uncertainty = self._at_place(replace(place, friction=0.0))
             stress = np.array([name not in SCALARS for name in self.quantities])
             return np.where(stress, np.nan, value), uncertainty
-        positions = [axis.position(coordinate(place, axis.name)) for axis in self.axes]
-        scale = np.prod([self._scale(axis, coordinate(place, axis.name)) for axis in self.axes], axis=0)
-        below = [coordinate(place, axis.name) < axis.values[0] * (1 - SAME) for axis in self.axes]
+        positions = [axis.position(getattr(place, axis.name)) for axis in self.axes]
+        scale = np.prod([self._scale(axis, getattr(place, axis.name)) for axis in self.axes], axis=0)
+        below = [getattr(place, axis.name) < axis.values[0] * (1 - SAME) for axis in self.axes]
         # with fewer nodes where the model had no answer at some of four
         for most in (4, 2):
             value, error = interpolated(self._scaled, self.axes, positions, below, most)

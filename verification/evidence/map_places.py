@@ -4,7 +4,7 @@ ratio : E1*/E2* of coating and substrate, E1/E2 where both have one nu;   thickn
 width : a_h/R;   friction : f;   ball : share of the ball in the contact's compliance, E*/E_ball*, 0 rigid.
 """
 
-from dataclasses import astuple, dataclass, fields
+from dataclasses import dataclass, fields
 
 from verification.problem.coated_contact import CoatedContact
 
@@ -61,8 +61,3 @@ def places_of(problem: CoatedContact) -> tuple[Place, ...]:
     return tuple(
         Place(ratio, h / a_h, nu, a_h / problem.radius, problem.friction, share) for nu in sorted(nus)
     )
-
-
-def coordinate(place: Place, name: str) -> float:
-    """The coordinate ``name`` of ``place``."""
-    return float(astuple(place)[COORDINATES.index(name)])

@@ -52,7 +52,6 @@ SECTIONS: tuple[tuple[str, Callable[[Material], Section | None]], ...] = (
     ("Results", overview_section.section),
     ("Results", published_section.section),
     ("Results", family_section.section),
-    ("Results", effective_section.family_section),
     ("Results", effective_section.section),
     ("Evidence", credibility_statement.section),
     ("Evidence", model_section.section),

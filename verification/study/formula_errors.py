@@ -1,8 +1,8 @@
-"""Error of formulas against the exact solution: effective moduli, limits, families of moduli."""
+"""Error of formulas against the exact solution: effective moduli and limits."""
 
 import time
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -11,14 +11,9 @@ import numpy as np
 from scipy.optimize import least_squares, minimize_scalar
 
 from verification.problem.array_types import Array
-from verification.problem.coated_contact import CoatedContact
-from verification.problem.line_profile import lines_of
-from verification.running.case_result import CaseResult, SourceResult, describe
 from verification.running.checked_files import write_checked
 from verification.running.json_records import decode, encode
 from verification.running.pool.pool_task import Task
-from verification.sampling.line_sampling import sample, sample_contact
-from verification.sources.exact_sources import solve_exactly
 from verification.sources.references.effective_modulus import (
     FORMULAS,
     I0,
@@ -29,18 +24,15 @@ from verification.sources.references.effective_modulus import (
 )
 from verification.sources.references.flat_punch import pressed
 from verification.sources.references.layer_limits import spring_bed, squeezed_film, thick
-from verification.sources.source_registry import EXACT
 from verification.study.usual_correction import BallCurve, curves
 
 Rows = tuple[tuple[float, ...], ...]
 
-SCHEMA = "coatcheck-effective/3"
+SCHEMA = "coatcheck-effective/4"
 NU = 0.3  # of film and substrate on the map
 RIGID = (1e9, 0.3)  # under a layer of 1 Pa
 # Fewer nodes than usual: 1e-8 of kappa on the map.
 NODES, TAIL = 24, 14.0
-OSULLIVAN_KING = (0.25, 0.5, 1.0, 2.0, 4.0)
-FRICTION = (0.0, 0.25)
 
 
 @dataclass(frozen=True)
@@ -62,7 +54,6 @@ class EffectiveStudy:
 
     weights : largest error of Gao's I0 and I1 against the exact first derivatives.
     refitted : E1/E2, x0 of Perriot and Barthel, x0 and n fitted to the exact solution, a row for each ratio.
-    family : contacts of O'Sullivan and King's configuration by the exact reference.
     balls : contacts with an elastic ball against the usual correction.
     """
 
@@ -73,7 +64,6 @@ class EffectiveStudy:
     limits: tuple[Limit, ...] = ()
     weights: tuple[float, ...] = ()
     refitted: tuple[tuple[float, ...], ...] = ()
-    family: tuple[CaseResult, ...] = ()
     balls: tuple[BallCurve, ...] = ()
     seconds: float = 0.0
     failure: str = ""
@@ -99,7 +89,6 @@ def measure(points: int = 21) -> EffectiveStudy:
         limits=(*_thin(), *_thick()),
         weights=_weights(),
         refitted=refitted,
-        family=tuple(_member(r, f) for f in FRICTION for r in OSULLIVAN_KING),
         balls=curves(),
         seconds=time.perf_counter() - started,
     )
@@ -185,31 +174,6 @@ def _thick() -> list[Limit]:
 def _limit(panel: str, name: str, a: Array, exact: Sequence[float], law: Sequence[float]) -> Limit:
     excess = tuple(float(one / by_law - 1) for one, by_law in zip(exact, law, strict=True))
     return Limit(panel, name, tuple(a.tolist()), excess)
-
-
-def _member(ratio: float, friction: float) -> CaseResult:
-    """The configuration of O'Sullivan and King by the exact reference: h = a_h, nu = 0.3."""
-    started = time.perf_counter()
-    bare = CoatedContact(10e-3, 20.0, (), (210e9, 0.3), friction)
-    problem = replace(bare, coatings=((ratio * 210e9, 0.3, bare.a_h),))
-    found = solve_exactly(problem, {"estimate_uncertainty": False})
-    x = 2.5 * bare.a_h * np.linspace(-1 if friction else 0, 1, 101)
-    z = 4 * bare.a_h * np.linspace(0.005, 1, 60) ** 1.5
-    profiles = list(sample_contact(found, EXACT[0], problem))
-    for line in lines_of(problem):
-        profiles += sample(found, EXACT[0], line, z if line.depth is None else x)
-    seconds = time.perf_counter() - started
-    return CaseResult(
-        name=f"exact-{ratio:g}-{friction:g}",
-        title=f"E1/E2 = {ratio:g}, h = a_h, f = {friction:g}",
-        source="configuration of T. C. O'Sullivan and R. B. King, J. Tribol. 110 (1988) 235-240",
-        problem=describe(problem),
-        sources=(SourceResult(EXACT[0], seconds, None),),
-        profiles=tuple(profiles),
-        verdicts=(),
-        seconds=seconds,
-        text="",
-    )
 
 
 def _rows(table: Array) -> Rows:

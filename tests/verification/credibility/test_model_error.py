@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import pytest
 
-from verification.credibility.model.model_error import (
+from verification.credibility.model_error import (
     GOODMAN,
     HALF_SPACES,
     PARABOLA,
@@ -12,7 +12,7 @@ from verification.credibility.model.model_error import (
     ModelError,
     model_error,
 )
-from verification.credibility.model.shared_assumptions import SMALL_STRAINS
+from verification.credibility.shared_assumptions import SMALL_STRAINS
 from verification.problem.coated_contact import CoatedContact
 
 BARE = CoatedContact(10e-3, 20.0, (), (210e9, 0.3))

@@ -17,9 +17,7 @@ from verification.evidence.enclosure_record import read_record as read_enclosure
 from verification.evidence.fault_record import Catch, Record, Row, write_record
 from verification.guests.pages import guests_section
 from verification.page.page_parts import Part, Section
-from verification.regression.baseline_change import regression
 from verification.report.credibility import credibility_statement
-from verification.report.credibility.credibility_statement import figures
 from verification.report.credibility.faults_section import faults_section
 from verification.report.report_material import Evidence, Material, gather
 from verification.report.report_page import render
@@ -86,19 +84,10 @@ def test_what_was_never_measured_is_said_and_not_invented(evidence):
     found = section(evidence)
     assert part(found, STEPS[5]).text.startswith("Not measured")
     assert part(found, STEPS[6]).text.startswith("Not measured")
-    glance = {row.head.text: [c.text for c in row.cells] for row in found.parts[0].tables[0].rows}
-    assert glance["Fault detection"] == ["not measured", "never"]
-    assert glance["Exact reference"] == ["not measured", "never"]
-    assert glance["Mutation testing"] == ["not measured", "never"]
-    assert glance["False alarms"] == ["not measured", "never"]
-    assert glance["Regression"][0] == "not measured"
-    assert glance["Code verification"][0].endswith("not measured in this run")
     empty = section(Evidence(failures=("the source is not here",)), [])
     assert empty.failures == ("the source is not here",)
-    told = {row.head.text: row.cells[0].text for row in empty.parts[0].tables[0].rows}
-    assert told["Independence"] == "not measured"
-    assert told["Code verification"].startswith("not measured")
-    assert told["Solution verification"].startswith("not measured")
+    assert part(empty, STEPS[4]).text.startswith("Not measured")
+    assert "not measured" in part(empty, STEPS[2]).text
     assert part(empty, STEPS[3]).text == (
         "Nothing was compared in this run. Not measured: there is no record of enclosures; make one with: "
         "coatcheck certify --record"
@@ -119,9 +108,6 @@ def test_figures_of_a_record_carry_date_and_commit(evidence, tmp_path):
     assert "throughout" in text
     assert "Measured 2026-10-09, c0ffee123456" in text
     assert record.alarms[0].reason in said(section(known).parts[-2])
-    assert figures(known)[1] in text
-    glance = {row.head.text: [c.text for c in row.cells] for row in section(known).parts[0].tables[0].rows}
-    assert glance["False alarms"][1] == "2026-10-09, c0ffee123456"
 
 
 def test_the_fault_score_and_its_survivors_come_from_the_record(tmp_path):
@@ -173,12 +159,6 @@ def test_figures_of_this_run_follow_its_results(evidence):
     assert "order 4" in orders
 
 
-def test_regression_has_its_row(evidence):
-    none = section(evidence, baseline=regression(RESULTS, None, "somewhere", INFO, whole=True))
-    glance = {row.head.text: row.cells[0].text for row in none.parts[0].tables[0].rows}
-    assert glance["Regression"] == "There is no baseline in somewhere, so this run was not compared."
-
-
 def test_the_methods_share_numpy_and_none_of_scipy():
     found = {one.name: one for one in parts()}
     assert tuple(found) == tuple(PARTS)
@@ -210,7 +190,6 @@ def test_an_import_across_the_border_is_found(tmp_path, monkeypatch):
     with pytest.raises(ValueError, match="no_such_package"):
         imports_of("no_such_package")
     broken = section(Evidence(parts=(found, found)))
-    assert "2 imports are forbidden" not in said(part(broken, STEPS[4]))
     assert "forbidden" in said(part(broken, STEPS[4]))
 
 

@@ -10,7 +10,7 @@ from assumption_maps_made.measuring import with_map
 from synthetic_results import INFO, contact, result_of
 
 from verification.commands.common.known_folders import RECORDS
-from verification.credibility.model.model_error import LIMIT, Cost, ModelError, judged_quantities
+from verification.credibility.model_error import LIMIT, Cost, ModelError, judged_quantities
 from verification.evidence.assumption_maps import read_maps
 from verification.report.credibility.model_section import LEVELS, section
 from verification.report.report_material import Evidence, Material

@@ -5,13 +5,13 @@ from functools import partial
 
 import numpy as np
 import pytest
+from assumption_maps_made import neo_hooke
+from assumption_maps_made.finite_deformation import SphereContact, State
+from assumption_maps_made.meridian_elements import Meridian
+from assumption_maps_made.small_strain_cost import Resolution, deformed, of_small_strains
 from true_sphere import SphereOnHalfSpace
 
 from verification.problem.coated_contact import CoatedContact, keywords
-from verification.sources.assumptions import neo_hooke
-from verification.sources.assumptions.finite_deformation import SphereContact, State
-from verification.sources.assumptions.meridian_elements import Meridian
-from verification.sources.assumptions.small_strain_cost import Resolution, deformed, of_small_strains
 from verification.sources.references import integral_equation
 from verification.sources.references.integral_equation import SPHERE
 

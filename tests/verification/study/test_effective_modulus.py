@@ -41,7 +41,6 @@ def test_the_study_says_what_it_found(study):
     # To first order exact, Gao's formula fails where moduli differ much: its authors say so.
     assert np.abs(by_name["Gao, Chiu and Lee 1992"]).max() > 5
     assert np.abs(by_name["Perriot and Barthel 2004"]).max() < 0.2
-    assert {one.problem["friction"] for one in study.family} == {0.0, 0.25}
 
 
 def test_the_study_survives_json(study, tmp_path):
@@ -75,7 +74,7 @@ def test_page_shows_maps_limits_and_moduli_side_by_side(study):
         assert name in page
     shown = " ".join(Document(page).whole("p"))
     assert "f = 0.25" in shown
-    assert page.count("Numbers as CSV") >= 4
+    assert page.count("Numbers as CSV") == 1
     failed = replace(EffectiveStudy(), failure="its process <died>")
     assert "process" in render(Material([], INFO, Evidence(formulas=failed)))
 

@@ -11,16 +11,12 @@ from statistics import median
 
 from verification.credibility.import_independence import shared
 from verification.credibility.self_tests.known_enclosures import TEST
-from verification.evidence.alarm_record import DECADES, AlarmRecord
-from verification.evidence.enclosure_record import EnclosureRecord
-from verification.evidence.fault_record import Record
-from verification.evidence.mutant_record import MutantRecord
+from verification.evidence.alarm_record import DECADES
 from verification.judging.verdict import Outcome
 from verification.page.number_text import plain
-from verification.page.page_parts import Gallery, Panel, Part, Section, Table, row, words
+from verification.page.page_parts import Gallery, Panel, Part, Section
 from verification.page.source_labels import source_label
 from verification.page.svg_loglog import draw_histogram
-from verification.regression.baseline_change import baseline_message
 from verification.report.credibility.credibility_tables import (
     alarm_table,
     design_table,
@@ -30,36 +26,34 @@ from verification.report.credibility.credibility_tables import (
     range_table,
     two_sided_table,
 )
-from verification.report.credibility.manifest_section import manifest_parts, short_message
 from verification.report.credibility.mutants_section import mutants_message
 from verification.report.report_material import Evidence, Material
 from verification.report.sections.accuracy_section import accuracies, coverage_table
 from verification.running.case_result import CaseResult
 
-ANCHOR = "credibility"
-NO_RECORD = ("Not measured: there is no record of {}; make one with: {} --record", "not measured")
+NO_RECORD = "Not measured: there is no record of {}; make one with: {} --record"
 ASSUMED = (
     "A parabolic sphere, rigid or elastic, much larger than the contact; small strains; linear, isotropic, "
     "elastic layers with nu < 1/2, perfectly bonded, on a half-space; no adhesion, no roughness; Coulomb "
     "friction q = f p that leaves p unchanged."
 )
-COMMON_TITLES = (
-    "What the semi-analytical method and the integral equation share",
-    "What comparisons of a sphere test of the patches",
-)
-COMMON_EQUATION = (
-    "The semi-analytical method and the exact integral equation use the same frequency response of the "
-    "layers, derived and coded twice: the method from Papkovich potentials with reflection matrices, the "
-    "reference from state vectors with surface impedances. Otherwise they share no equation: the method "
-    "finds pressures of surface patches, the reference values of a potential along the radius, phi. "
-    "Stresses of the method are sums of point forces, those of the reference Hankel integrals over the "
-    "wavenumber. The finite elements share only the assumptions with both.",
-    "Every number of the semi-analytical method comes from the pressures that influence coefficients, "
-    "conjugate gradients and DC-FFT give to the patches: a change of the coefficients by 1 % changes contact "
-    "radius, peak pressure, approach and stresses as the same change of the modulus would. The studies named "
-    "staircase edge compare patches without the correction of the edge with the exact solution; an "
-    "invariant of every case compares the influence coefficients with direct quadrature.",
-)
+COMMON = {
+    "What the semi-analytical method and the integral equation share": (
+        "The semi-analytical method and the exact integral equation use the same frequency response of the "
+        "layers, derived and coded twice: the method from Papkovich potentials with reflection matrices, the "
+        "reference from state vectors with surface impedances. Otherwise they share no equation: the method "
+        "finds pressures of surface patches, the reference values of a potential along the radius, phi. "
+        "Stresses of the method are sums of point forces, those of the reference Hankel integrals over the "
+        "wavenumber. The finite elements share only the assumptions with both."
+    ),
+    "What comparisons of a sphere test of the patches": (
+        "Every number of the semi-analytical method comes from the pressures that influence coefficients, "
+        "conjugate gradients and DC-FFT give to the patches: a change of the coefficients by 1 % changes "
+        "contact radius, peak pressure, approach and stresses as the same change of the modulus would. The "
+        "studies named staircase edge compare patches without the correction of the edge with the exact "
+        "solution; an invariant of every case compares the influence coefficients with direct quadrature."
+    ),
+}
 NOT_CLAIMED = (
     "Validity for a real coating: nothing was compared with an experiment, so this is verification, not "
     "validation. Detection of an error in the assumptions common to both methods. Surface stresses at fixed "
@@ -71,10 +65,7 @@ NOT_CLAIMED = (
 
 
 def section(material: Material) -> Section | None:
-    """Eight steps from the intended use to the limits of the claim, under a table of their figures.
-
-    None where no evidence was collected.
-    """
+    """Eight steps from the intended use to the limits of the claim; None where no evidence was collected."""
     results, evidence = material.results, material.evidence
     if evidence == Evidence():
         return None
@@ -84,7 +75,6 @@ def section(material: Material) -> Section | None:
             "Evidence for the verdicts of this report, in the order of ASME V&V 10 (Guide for Verification "
             "and Validation in Computational Solid Mechanics) with further requirements of NASA-STD-7009A. "
             "Every figure was measured in this run or is read from a record with its date and commit.",
-            [_overview(material)],
         ),
         Part(
             "Deciding whether numerical solutions of one mathematical model are correct within a stated "
@@ -113,75 +103,24 @@ def section(material: Material) -> Section | None:
             [pair_table(results), two_sided_table(evidence.enclosures)],
             title="4. Comparison with references and between methods",
         ),
-        *manifest_parts(material),
         Part(
             _independent(evidence), [import_table(evidence.parts)], title="5. Independence of the two methods"
         ),
-        *(Part(text, folded=title) for title, text in zip(COMMON_TITLES, COMMON_EQUATION, strict=True)),
+        *(Part(text, folded=title) for title, text in COMMON.items()),
         Part(f"{_faults(evidence)} {_mutants(evidence)}", [], title="6. Fault detection"),
         Part(_alarms(evidence), [], _histograms(evidence), "7. False alarms"),
         Part("", [alarm_table(evidence.alarms)], folded="Verdicts of clean problems that are not AGREES"),
         Part(NOT_CLAIMED, title="8. Not claimed"),
     ]
-    return Section(ANCHOR, "Credibility", parts, evidence.failures)
+    return Section("credibility", "Credibility", parts, evidence.failures)
 
 
-def figures(evidence: Evidence) -> tuple[str, str]:
-    """Fault detection score and false alarm rate as sentences, each with date and commit."""
-    return _faults(evidence), _alarms(evidence)
-
-
-def _overview(material: Material) -> Table:
-    results, info, evidence = material.results, material.info, material.evidence
-    here = f"this run, {info.started[:10]}, {info.commit or 'no commit'}"
-    good = [one for one in evidence.orders if one.as_designed]
-    invariants = [one for result in results for one in result.invariants]
-    holding = sum(one.outcome is Outcome.AGREES for one in invariants)
-    agreeing, total = _agreeing(results)
-    design, refinements, regression = "not measured", "not measured in this run", "not measured"
-    if evidence.orders:
-        design = f"{len(good)} of {len(evidence.orders)} manufactured solutions at their design order"
-    if evidence.accuracy is not None:
-        refinements = f"{len(evidence.accuracy.refinements)} refinement studies on exact solutions"
-    if evidence.baseline is not None:
-        regression = baseline_message(evidence.baseline)
-
-    def older(name: str) -> str:
-        return ", older than the code" if name in evidence.older else ""
-
-    held = f"{holding} of {len(invariants)} invariants hold" if invariants else "not measured"
-    rows = [
-        ("Code verification", f"{design}; {refinements}", here),
-        ("Solution verification", _bracketed(material.contacts), here),
-        ("Invariants of each solution", held, here),
-        (
-            "Exact reference",
-            _enclosed(evidence, short=True),
-            _when(evidence.enclosures) + older("enclosures"),
-        ),
-        ("Comparison", f"{agreeing} of {total} comparisons agree", here),
-        ("What was judged", short_message(material), here),
-        ("Independence", _short_independence(evidence), here),
-        ("Regression", regression, here),
-        ("Fault detection", _faults(evidence, short=True), _when(evidence.faults) + older("faults")),
-        ("Mutation testing", _mutants(evidence, short=True), _when(evidence.mutants) + older("mutants")),
-        ("False alarms", _alarms(evidence, short=True), _when(evidence.alarms) + older("alarms")),
-    ]
-    return Table(
-        "Overview of the evidence.",
-        ["question", "found", "measured"],
-        [row(name, words(found), words(when)) for name, found, when in rows],
-    )
-
-
-def _when(record: Record | AlarmRecord | MutantRecord | EnclosureRecord | None) -> str:
-    made = record.info if isinstance(record, MutantRecord) else record
-    return "never" if made is None else f"{made.started[:10]}, {made.commit or 'no commit'}"
-
-
-def _agreeing(results: Sequence[CaseResult]) -> tuple[int, int]:
-    verdicts = [verdict for result in results for _, verdict in result.verdicts]
-    return sum(verdict.outcome is Outcome.AGREES for verdict in verdicts), len(verdicts)
+def _when(evidence: Evidence, name: str) -> str:
+    """Date and commit of the record ``name``, marked where the code that it judges has changed since."""
+    found = getattr(evidence, name)
+    made = found.info if name == "mutants" else found
+    older = ", older than the code" if name in evidence.older else ""
+    return f"{made.started[:10]}, {made.commit or 'no commit'}{older}"
 
 
 def _bracketed(results: Sequence[CaseResult]) -> str:
@@ -198,34 +137,31 @@ def _bracketed(results: Sequence[CaseResult]) -> str:
 
 
 def _compared(results: Sequence[CaseResult]) -> str:
-    agreeing, total = _agreeing(results)
-    if not total:
+    verdicts = [verdict for result in results for _, verdict in result.verdicts]
+    if not verdicts:
         return "Nothing was compared in this run."
-    text = f"{agreeing} of {total} comparisons of this run agree."
+    agreeing = sum(verdict.outcome is Outcome.AGREES for verdict in verdicts)
+    text = f"{agreeing} of {len(verdicts)} comparisons of this run agree."
     if not any(result.published for result in results):
         text += " Published results were not part of it: coatcheck run published."
     return text
 
 
-def _enclosed(evidence: Evidence, *, short: bool = False) -> str:
+def _enclosed(evidence: Evidence) -> str:
     """What is proven of the exact reference, with what this run found of it."""
     record = evidence.enclosures
     if record is None:
-        return NO_RECORD[short].format("enclosures", "coatcheck certify")
+        return NO_RECORD.format("enclosures", "coatcheck certify")
     values = [bounds for one in record.enclosures for bounds in one.bounds]
-    text = (
-        f"Proven bounds hold {len(values)} values of {len(record.enclosures)} problems, relative width "
-        f"{plain(max(bounds.width for bounds in values), 2)} at most."
-    )
-    if short:
-        return text
     held = next((test for test in evidence.self_tests if test.name == TEST), None)
     found = "" if held is None else f" Held against them in this run: {held.found}."
     return (
         "The exact reference states its uncertainty by two resolutions; it is checked against enclosures of "
-        f"the integral equation by ball arithmetic, without common code. {text} Made {_when(record)}, by "
-        f"coatcheck certify with python-flint {record.versions.get('python-flint', 'unknown')}; the proof is "
-        f"in the manual.{found}"
+        f"the integral equation by ball arithmetic, without common code. Proven bounds hold {len(values)} "
+        f"values of {len(record.enclosures)} problems, relative width "
+        f"{plain(max(bounds.width for bounds in values), 2)} at most. Made {_when(evidence, 'enclosures')}, "
+        f"by coatcheck certify with python-flint {record.versions.get('python-flint', 'unknown')}; the proof "
+        f"is in the manual.{found}"
     )
 
 
@@ -235,8 +171,14 @@ def _independent(evidence: Evidence) -> str:
     first, second = evidence.parts[:2]
     common = ", ".join(shared(first, second)) or "none"
     both = ", ".join(sorted(set(first.packages) & set(second.packages))) or "none"
+    bad = [message for part in evidence.parts for message in (*part.forbidden, *part.hidden)]
+    counted = sum(part.statements for part in evidence.parts)
+    files = sum(part.files for part in evidence.parts)
+    found = f"None of {counted} imports in {files} files of both methods and the references is forbidden."
+    if bad:
+        found = f"{len(bad)} imports are forbidden: {'; '.join(bad[:5])}."
     return (
-        f"{_short_independence(evidence)} Read from the installed source. Packages that both "
+        f"{found} Read from the installed source. Packages that both "
         f"methods use: {both}; modules that both import: {common}. A fault in one of these, in Python "
         "or in the processor affects both. So does a fault in their common assumptions, in the statement of "
         "the problem, in the sampling and judging of both; the last two are checked by planted faults and by "
@@ -244,40 +186,25 @@ def _independent(evidence: Evidence) -> str:
     )
 
 
-def _short_independence(evidence: Evidence) -> str:
-    if not evidence.parts:
-        return "not measured"
-    bad = [message for part in evidence.parts for message in (*part.forbidden, *part.hidden)]
-    if bad:
-        return f"{len(bad)} imports are forbidden: {'; '.join(bad[:5])}."
-    counted = sum(part.statements for part in evidence.parts)
-    files = sum(part.files for part in evidence.parts)
-    return f"None of {counted} imports in {files} files of both methods and the references is forbidden."
-
-
-def _faults(evidence: Evidence, *, short: bool = False) -> str:
+def _faults(evidence: Evidence) -> str:
     record = evidence.faults
     if record is None:
-        return NO_RECORD[short].format("planted faults", "coatcheck faults")
-    text = (
-        f"{record.caught} of {len(record.rows)} planted faults are detected, "
-        f"{plain(100 * record.share, 3)} %; {record.as_predicted} of them by the predicted check."
-    )
-    if short:
-        return text
+        return NO_RECORD.format("planted faults", "coatcheck faults")
     survivors = "Those that were not are in the section on planted faults." if record.survivors else ""
     return (
-        f"{text} Measured {_when(record)}, by coatcheck faults, which also tabulates faults against checks. "
-        f"A crash alone does not count as detected. {survivors}"
+        f"{record.caught} of {len(record.rows)} planted faults are detected, "
+        f"{plain(100 * record.share, 3)} %; {record.as_predicted} of them by the predicted check. Measured "
+        f"{_when(evidence, 'faults')}, by coatcheck faults. A crash alone does not count as detected. "
+        f"{survivors}"
     )
 
 
-def _mutants(evidence: Evidence, *, short: bool = False) -> str:
+def _mutants(evidence: Evidence) -> str:
     record = evidence.mutants
     if record is None:
-        return NO_RECORD[short].format("mutants", "python tests/tools mutants")
-    text = mutants_message(record)
-    return text if short else f"Apart from these, changes at random places: {text} Measured {_when(record)}."
+        return NO_RECORD.format("mutants", "python tests/tools mutants")
+    when = _when(evidence, "mutants")
+    return f"Apart from these, changes at random places: {mutants_message(record)} Measured {when}."
 
 
 def _histograms(evidence: Evidence) -> Gallery | None:
@@ -303,18 +230,13 @@ def _histograms(evidence: Evidence) -> Gallery | None:
     return Gallery((), panels, caption)
 
 
-def _alarms(evidence: Evidence, *, short: bool = False) -> str:
+def _alarms(evidence: Evidence) -> str:
     record = evidence.alarms
     if record is None:
-        return NO_RECORD[short].format("false alarms", "coatcheck alarms")
-    text = (
+        return NO_RECORD.format("false alarms", "coatcheck alarms")
+    return (
         f"{len(record.alarms)} false alarms in {record.comparisons} comparisons and {record.invariants} "
         f"invariants of {record.problems} clean random problems; {record.agreeing} of the problems agree "
-        "throughout."
-    )
-    if short:
-        return text
-    return (
-        f"{text} Measured {_when(record)}, by coatcheck alarms --count {record.problems} --seed "
-        f"{record.seed}. INCONCLUSIVE and a missing result count as alarms, too."
+        f"throughout. Measured {_when(evidence, 'alarms')}, by coatcheck alarms --count "
+        f"{record.problems} --seed {record.seed}. INCONCLUSIVE and a missing result count as alarms, too."
     )

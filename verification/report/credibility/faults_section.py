@@ -1,22 +1,21 @@
 """Planted faults: share detected, checks that detect each, those that none detects."""
 
-from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from functools import partial
 
 from verification.credibility.faults.first_notice import (
-    COUNTED,
-    METHOD,
     Noticed,
+    kinds,
+    method_score,
     noticed,
-    noticed_by,
     of_method,
     unused,
 )
-from verification.evidence.fault_record import COLUMNS, GROUPS, Catch, Record, Tally
+from verification.evidence.fault_record import COLUMNS, GROUPS, Catch, Record
 from verification.evidence.fault_record import Row as Fault
 from verification.page.html_page import render_sections
 from verification.page.number_text import plain, scientific, seconds
-from verification.page.page_parts import Cell, Part, Section, Table, number, row, words
+from verification.page.page_parts import Cell, Part, Section, Table, Value, table_of, words
 from verification.page.source_labels import source_label
 from verification.report.report_material import Material
 
@@ -42,13 +41,11 @@ def faults_message(record: Record) -> str:
         f"({plain(100 * record.share, 3)} %), "
         f"{record.as_predicted} of them by the check predicted before the trial"
     )
-    if method := of_method(record):
-        by = ", ".join(f"{noticed_by(record, kind)} by a {kind}" for kind in COUNTED).replace(
-            "a inv", "an inv"
-        )
+    if of_method(record):
+        found, count = method_score(record)
         text += (
-            f". Of {len(method)} in the semi-analytical method {noticed_by(record, *COUNTED)} are noticed by "
-            f"comparisons, invariants and judged studies ({by} first)"
+            f". In the semi-analytical method, {found} of {count} are noticed by a comparison, an invariant "
+            f"or a judged study (first {kinds(record)})"
         )
     if record.controls:
         text += (
@@ -73,12 +70,6 @@ def faults_section(record: Record) -> Section:
         "core."
     )
     parts = [Part(method), Part(faults_message(record), [_score(record)])]
-    if of_method(record):
-        text = (
-            "Faults in the semi-analytical method, by the check that notices them first, in this order: a "
-            "comparison with another source, an invariant, a judged study, then what does not count."
-        )
-        parts.append(Part(text, [_first_noticed(record)]))
     if never := [row for row in of_method(record) if unused(row)]:
         names = "; ".join(f"{row.name}: {row.description}" for row in never)
         parts.append(
@@ -157,90 +148,82 @@ def _groups(record: Record) -> list[tuple[str, list[Fault]]]:
 
 
 def _score(record: Record) -> Table:
-    shown = [catch for catch in Catch if any(fault.catch is catch for fault in record.rows)]
-    rows, groups = [], _groups(record)
-    if len(groups) > 1:
-        groups.append(("All", list(record.rows)))
-    for title, members in groups:
-        count = Counter(fault.catch for fault in members)
-        caught = sum(fault.caught for fault in members) / len(members)
-        rows.append(
-            row(
-                title,
-                number(len(members), str),
-                *(Cell(str(count[catch] or "–"), count[catch]) for catch in shown),
-                number(caught, lambda share: f"{plain(100 * share, 3)} %"),
-                number(sum(fault.as_predicted for fault in members), str),
-            )
-        )
-    return Table(
-        "Outcome of the faults of each group. Predicted check: detected by the check that was named for the "
-        "fault before the trial.",
-        ["group", "faults", *(str(catch) for catch in shown), "detected", "predicted check"],
-        rows,
+    shown = [kind for kind in Noticed if any(noticed(fault) is kind for fault in record.rows)]
+    groups = _groups(record)
+    columns: list[tuple[str, Callable[[tuple[str, list[Fault]]], Value]]] = [
+        ("group", lambda group: group[0]),
+        ("faults", lambda group: len(group[1])),
+        *((str(kind), partial(_count, kind=kind)) for kind in shown),
+        ("detected", lambda group: _percent(sum(fault.caught for fault in group[1]) / len(group[1]))),
+        ("predicted check", lambda group: sum(fault.as_predicted for fault in group[1])),
+    ]
+    return table_of(
+        "What notices the faults of each group first, in this order: a comparison with another source, an "
+        "invariant, a judged study, then what does not count. Predicted check: detected by the check "
+        "that was named for the fault before the trial.",
+        [*groups, *([("All", list(record.rows))] if len(groups) > 1 else [])],
+        columns,
     )
 
 
-def _first_noticed(record: Record) -> Table:
-    groups = [(title, rows) for title, rows in _groups(record) if rows[0].group in METHOD]
-    groups.append(("All", list(of_method(record))))
-    rows = []
-    for title, members in groups:
-        count = Counter(noticed(fault) for fault in members)
-        counted = sum(count[kind] for kind in COUNTED) / len(members)
-        cells = [Cell(str(count[kind] or "–"), count[kind]) for kind in Noticed]
-        share = number(counted, lambda share: f"{plain(100 * share, 3)} %")
-        rows.append(row(title, number(len(members), str), *cells, share))
-    columns = ["group", "faults", *(str(kind) for kind in Noticed), "counted"]
-    return Table("What notices a fault first; the first three kinds are counted.", columns, rows)
+def _count(group: tuple[str, list[Fault]], kind: Noticed) -> Cell:
+    found = sum(noticed(fault) is kind for fault in group[1])
+    return Cell(str(found or "–"), found)
+
+
+def _percent(share: float) -> Cell:
+    return Cell(f"{plain(100 * share, 3)} %", share)
 
 
 def _survivors(record: Record) -> Table:
-    rows = [
-        row(
-            Cell(fault.name, note=fault.description),
-            _catch_cell(fault),
-            words(fault.description),
-            words(fault.reason or fault.failure or "not known"),
-            words(fault.remedy or "–"),
-        )
-        for fault in record.survivors
-    ]
-    columns = ["fault", "outcome", "fault planted", "reason", "possible check"]
-    return Table("Survivors.", columns, rows)
+    return table_of(
+        "Survivors.",
+        record.survivors,
+        [
+            ("fault", lambda fault: Cell(fault.name, note=fault.description)),
+            ("outcome", _catch_cell),
+            ("fault planted", lambda fault: words(fault.description)),
+            ("reason", lambda fault: words(fault.reason or fault.failure or "not known")),
+            ("possible check", lambda fault: words(fault.remedy or "–")),
+        ],
+    )
 
 
 def _matrix(faults: Sequence[Fault], caption: str) -> Table:
-    made = [
-        row(
-            Cell(fault.name, note=fault.by),
-            words(fault.description),
-            source_label(fault.where),
-            _catch_cell(fault),
-            Cell("✓" if fault.as_predicted else "–", note=fault.by),
-            *(_seen_cell(fault.columns.get(column)) for column in COLUMNS),
-            Cell(scientific(fault.change), fault.change, note=f"{fault.changed}; {seconds(fault.seconds)}"),
-        )
-        for fault in faults
+    columns: list[tuple[str, Callable[[Fault], Value]]] = [
+        ("fault", lambda fault: Cell(fault.name, note=fault.by)),
+        ("fault planted", lambda fault: words(fault.description)),
+        ("in", lambda fault: source_label(fault.where)),
+        ("outcome", _catch_cell),
+        ("predicted check", lambda fault: Cell("✓" if fault.as_predicted else "–", note=fault.by)),
+        *((name, partial(_seen_cell, column=name)) for name in COLUMNS),
+        (
+            "change",
+            lambda fault: Cell(
+                scientific(fault.change), fault.change, note=f"{fault.changed}; {seconds(fault.seconds)}"
+            ),
+        ),
     ]
-    columns = ["fault", "fault planted", "in", "outcome", "predicted check", *COLUMNS, "change"]
     spans = [("", 5), ("checks that do not pass", len(COLUMNS)), ("", 1)]
-    return Table(caption, columns, made, spans, "faults")
+    return table_of(caption, faults, columns, spans, "faults")
 
 
 def _controls(controls: Sequence[Fault]) -> Table:
     """Trials with nothing planted: silence is right, a detection is a false alarm."""
     silent = Cell("✓ no alarm", 1.0, "verdict agrees")
-    rows = [
-        row(
-            one.name,
-            words(one.description),
-            Cell("✗ false alarm", 0.0, "verdict disagrees", one.by) if one.caught else silent,
-            number(sum(seen.made for seen in one.columns.values()), str),
-        )
-        for one in controls
-    ]
-    return Table("Nothing planted.", ["control", "solved again", "outcome", "checks"], rows)
+    return table_of(
+        "Nothing planted.",
+        controls,
+        [
+            ("control", lambda one: one.name),
+            ("solved again", lambda one: words(one.description)),
+            (
+                "outcome",
+                lambda one: Cell("✗ false alarm", 0.0, "verdict disagrees", one.by) if one.caught else silent,
+            ),
+            ("checks", lambda one: sum(seen.made for seen in one.columns.values())),
+        ],
+    )
 
 
 def _catch_cell(row: Fault) -> Cell:
@@ -248,7 +231,8 @@ def _catch_cell(row: Fault) -> Cell:
     return Cell(text, float(list(Catch).index(row.catch)), css, row.by or meaning)
 
 
-def _seen_cell(seen: Tally | None) -> Cell:
+def _seen_cell(fault: Fault, column: str) -> Cell:
+    seen = fault.columns.get(column)
     if seen is None:
         return Cell("", None, "nothing", "not made")
     parts = [("✓", seen.disagree), ("?", seen.inconclusive), ("∅", seen.no_result)]

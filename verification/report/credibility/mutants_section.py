@@ -2,7 +2,7 @@
 
 from verification.evidence.mutant_record import REQUIRED, Catch, MutantRecord
 from verification.page.number_text import plain, seconds
-from verification.page.page_parts import Part, Section, Table, number, row, words
+from verification.page.page_parts import Part, Section, Table, row, table_of, words
 from verification.report.report_material import Material
 
 
@@ -34,12 +34,19 @@ def section(material: Material) -> Section | None:
         if count:
             by = [sum((t.room, t.catch) == (name, catch) for t in record.trials) for catch in shown]
             share = f"{plain(100 * caught / count, 3)} %, {plain(100 * required, 3)} % required"
-            scores.append(row(name, *(number(n, str) for n in by), words(share)))
+            scores.append(row(name, *by, words(share)))
     parts = [Part(method, [Table("Mutants of each room.", ["room", *map(str, shown), "caught"], scores)])]
     if record.survivors:
-        heads = ["place", "function", "change", "kind", "reason"]
-        cells = [(m.function, m.change, t.kind or "not read", t.reason) for t, m in record.survivors]
-        places = [f"{m.file}:{m.line}" for _, m in record.survivors]
-        rows = [row(place, *map(words, texts)) for place, texts in zip(places, cells, strict=True)]
-        parts.append(Part("Mutants that nothing caught.", [Table("Survivors.", heads, rows)]))
+        survivors = table_of(
+            "Survivors.",
+            record.survivors,
+            [
+                ("place", lambda pair: f"{pair[1].file}:{pair[1].line}"),
+                ("function", lambda pair: words(pair[1].function)),
+                ("change", lambda pair: words(pair[1].change)),
+                ("kind", lambda pair: words(pair[0].kind or "not read")),
+                ("reason", lambda pair: words(pair[0].reason)),
+            ],
+        )
+        parts.append(Part("Mutants that nothing caught.", [survivors]))
     return Section("mutants", "Mutation testing", parts)

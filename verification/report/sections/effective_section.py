@@ -10,14 +10,22 @@ from markupsafe import Markup
 
 from verification.page.embedded_csv import written
 from verification.page.number_text import plain, scientific
-from verification.page.page_parts import Gallery, Panel, Part, Row, Section, Table, number, row
+from verification.page.page_parts import (
+    Cell,
+    Gallery,
+    Panel,
+    Part,
+    Row,
+    Section,
+    Table,
+    number,
+    row,
+    table_of,
+)
 from verification.page.svg_plot import Axes, drawing, power_of_ten
 from verification.problem.array_types import Array
-from verification.report.figures.line_panels import swatch
 from verification.report.report_material import Material
-from verification.report.sections.family_section import family_section as section_of_family
 from verification.sources.references.effective_modulus import PERRIOT_BARTHEL_N
-from verification.sources.source_record import Style
 from verification.study.formula_errors import EffectiveStudy, Limit
 from verification.study.usual_correction import FRICTION, BallCurve
 
@@ -27,18 +35,6 @@ LEVELS = (0.01, 0.05, 0.1, 0.2, 0.5)
 # One shade more for each level passed; two colours for too stiff and too compliant.
 SHADES = (0.12, 0.26, 0.42, 0.6, 0.85)
 STIFF, SOFT = "fem", "semi"
-_CURVES = (
-    Style("semi"),
-    Style("fem", (3.6, 3.0), 1.9),
-    Style("hertz", (1.0, 1.4), 1.9),
-    Style("pair", (4.5, 1.4, 1.0, 1.4)),
-)
-
-
-def family_section(material: Material) -> Section | None:
-    """Contacts of the exact reference side by side; None where they were not solved."""
-    study = material.evidence.formulas
-    return section_of_family(study.family, "exact-family") if study and not study.failure else None
 
 
 def section(material: Material) -> Section | None:
@@ -138,91 +134,56 @@ def _limit_parts(limits: Sequence[Limit]) -> list[Part]:
 
 
 def _limit_part(limits: Sequence[Limit], text: str) -> Part:
-    panels = list(dict.fromkeys(limit.panel for limit in limits))
-    names = list(dict.fromkeys(limit.name for limit in limits))
-    styles = dict(zip(names, _CURVES, strict=False))
-    drawn = []
-    for panel in panels:
-        figure = _draw_limit([one for one in limits if one.panel == panel], styles, panel)
-        drawn.append(Panel(panel, figure, "|exact over limit − 1|", ""))
-    legend = [(swatch(styles[name]), name) for name in names]
     a = limits[0].a_over_h
-    shown = (0, len(a) // 2, -1)
-    rows = [row(f"{x.panel}, {x.name}", *(number(x.excess[i], _percent) for i in shown)) for x in limits]
-    heads = [f"a/h = {plain(a[i], 2)}" for i in shown]
-    table = Table("Exact over limit, less 1, at three contact radii.", ["limit", *heads], rows)
-    caption = "Over a/h, both logarithmic: a straight line is a power of the thickness left out."
-    return Part(text, [table], Gallery(legend, drawn, caption, _limit_csv(limits)))
+    table = table_of(
+        "Exact over limit, less 1, at three contact radii.",
+        limits,
+        [
+            ("limit", lambda one: f"{one.panel}, {one.name}"),
+            *((f"a/h = {plain(a[i], 2)}", partial(_excess, i=i)) for i in (0, len(a) // 2, -1)),
+        ],
+    )
+    return Part(text, [table])
+
+
+def _excess(one: Limit, i: int) -> Cell:
+    return number(one.excess[i], _percent)
 
 
 def _ball_part(balls: Sequence[BallCurve]) -> Part:
-    coatings, quantities, thicknesses = (
-        list(dict.fromkeys(getattr(one, name) for one in balls))
-        for name in ("coating", "quantity", "thickness")
-    )
-    styles = dict(zip(thicknesses, _CURVES, strict=False))
-    drawn = []
-    for coating in coatings:
-        for quantity in quantities:
-            shown = [one for one in balls if (one.coating, one.quantity) == (coating, quantity)]
-            name = f"{quantity}, E1/E2 = {coating:g}"
-            drawn.append(Panel(name, _draw_ball(shown, styles, name), "over E_ball/E_flat", ""))
-    failing = [(_first_beyond(one, 0.01), one) for one in balls]
-    reach = max((ratio for ratio, _ in failing if ratio), default=0.0)
+    reach = max((ratio for one in balls if (ratio := _first_beyond(one, 0.01))), default=0.0)
     worst = max(balls, key=lambda one: abs(one.usual / one.value[0] - 1))
     text = (
         "An elastic, uncoated ball on a coated flat by the integral equation, "
-        f"f = {FRICTION:g}, nu = 0.3, over the scales of both bodies uncoated. The usual correction, dashed, "
+        f"f = {FRICTION:g}, nu = 0.3, over the scales of both bodies uncoated. The usual correction "
         "puts E* of the substrates into the scales, keeping the numbers of the rigid ball: it is exact where "
         "a body is rigid or no coating is present. It takes the coating for as important as under a rigid "
         "ball, though the ball's own compliance lessens its part. At E_ball = E_flat/10 its largest error is "
         f"{_percent(worst.usual / worst.value[0] - 1)}, of {worst.quantity} with E1/E2 = {worst.coating:g}, "
         f"h = {worst.thickness:g} a_h; more than 1 % remains up to E_ball = {plain(reach, 2)} E_flat."
     )
-    at = [min(range(len(balls[0].ratio)), key=lambda i: abs(balls[0].ratio[i] - r)) for r in (0.1, 1.0, 10.0)]
-    rows = []
-    for beyond, one in failing:
-        errors = (number(one.usual / one.value[i] - 1, _percent) for i in at)
-        label = f"{one.quantity}, E1/E2 = {one.coating:g}, h = {one.thickness:g} a_h"
-        rows.append(row(label, *errors, number(beyond, partial(plain, digits=2))))
-    heads = [f"E_ball/E_flat = {plain(balls[0].ratio[i], 2)}" for i in at]
-    table = Table(
+    ratios = balls[0].ratio
+    at = [min(range(len(ratios)), key=lambda i: abs(ratios[i] - r)) for r in (0.1, 1.0, 10.0)]
+    table = table_of(
         "Usual correction over exact, less 1; the largest E_ball/E_flat at which it is off by more than 1 %.",
-        ["quantity", *heads, "off by 1 % up to"],
-        rows,
+        balls,
+        [
+            ("quantity", lambda one: f"{one.quantity}, E1/E2 = {one.coating:g}, h = {one.thickness:g} a_h"),
+            *((f"E_ball/E_flat = {plain(ratios[i], 2)}", partial(_usual, i=i)) for i in at),
+            ("off by 1 % up to", lambda one: number(_first_beyond(one, 0.01), partial(plain, digits=2))),
+        ],
     )
-    legend = [(swatch(styles[h]), f"h = {h:g} a_h") for h in thicknesses]
-    legend.append((swatch(Style("ink", (2.0, 2.0), 0.9)), "usual correction"))
-    caption = "Full: both bodies elastic. Dashed: rigid ball, scales with E* of the substrates."
-    return Part(text, [table], Gallery(legend, drawn, caption, _ball_csv(balls)))
+    return Part(text, [table])
+
+
+def _usual(one: BallCurve, i: int) -> Cell:
+    return number(one.usual / one.value[i] - 1, _percent)
 
 
 def _first_beyond(curve: BallCurve, share: float) -> float | None:
     """The largest E_ball/E_flat at which the usual correction is off by more than ``share``."""
     off = [r for r, v in zip(curve.ratio, curve.value, strict=True) if abs(curve.usual / v - 1) > share]
     return max(off) if off else None
-
-
-def _draw_ball(balls: Sequence[BallCurve], styles: dict[float, Style], label: str) -> Markup:
-    x = np.log10(balls[0].ratio)
-    low, high = _widened(np.array([v for one in balls for v in (*one.value, one.usual)]), 0.06)
-    axes = Axes(BOX, (x[0], x[-1]), (low, high))
-    steps = np.linspace(low, high, 6)[1:-1]
-    axes.ticks(_decades(x[0], x[-1]), [(float(v), plain(float(v), 2)) for v in steps], "E_ball / E_flat")
-    for one in balls:
-        style = styles[one.thickness]
-        axes.level(one.usual, Style(style.colour, (2.0, 2.0), 0.9))
-        axes.line(x, np.array(one.value), Style(style.colour, width=style.width))
-    return drawing(WIDTH, HEIGHT, f"{label} over E_ball/E_flat, with the usual correction", axes)
-
-
-def _ball_csv(balls: Sequence[BallCurve]) -> str:
-    rows = [["quantity", "E1/E2", "h/a_h", "E_ball/E_flat", "both elastic", "usual correction"]]
-    for one in balls:
-        for r, v in zip(one.ratio, one.value, strict=True):
-            numbers = (one.coating, one.thickness, r, v, one.usual)
-            rows.append([one.quantity, *(f"{value:.9g}" for value in numbers)])
-    return written(rows)
 
 
 def _draw_map(study: EffectiveStudy, error: Array, name: str) -> Markup:
@@ -239,22 +200,6 @@ def _draw_map(study: EffectiveStudy, error: Array, name: str) -> Markup:
     axes.text(x[0], y[-1], "E1/E2", by=(4, 13))
     label = f"{name}: departure from the exact effective modulus over h/a and E1/E2"
     return drawing(WIDTH, HEIGHT, label, axes)
-
-
-def _draw_limit(limits: Sequence[Limit], styles: dict[str, Style], label: str) -> Markup:
-    x = [np.log10(limit.a_over_h) for limit in limits]
-    y = [np.log10(np.maximum(np.abs(limit.excess), 1e-12)) for limit in limits]
-    (left, right), (low, high) = (_widened(np.concatenate(some), by) for some, by in ((x, 0.02), (y, 0.06)))
-    axes = Axes(BOX, (left, right), (low, high))
-    axes.ticks(_decades(left, right), _decades(low, high), "a / h")
-    for limit, along, excess in zip(limits, x, y, strict=True):
-        axes.line(along, excess, styles[limit.name])
-    return drawing(WIDTH, HEIGHT, f"{label}: departure of the limit from the exact solution", axes)
-
-
-def _widened(values: Array, share: float) -> tuple[float, float]:
-    margin = share * max(float(np.ptp(values)), 1e-9)
-    return float(values.min()) - margin, float(values.max()) + margin
 
 
 def _decades(low: float, high: float) -> list[tuple[float, str]]:
@@ -284,12 +229,4 @@ def _map_csv(study: EffectiveStudy) -> str:
     for i, ratio in enumerate(study.ratio):
         for j, thickness in enumerate(study.thickness):
             rows.append([f"{v:.9g}" for v in (ratio, thickness, *(table[i][j] for table in tables))])
-    return written(rows)
-
-
-def _limit_csv(limits: Sequence[Limit]) -> str:
-    rows = [["limit", "solid", "a/h", "exact over limit less 1"]]
-    for one in limits:
-        pairs = zip(one.a_over_h, one.excess, strict=True)
-        rows += [[one.panel, one.name, f"{a:.9g}", f"{excess:.9g}"] for a, excess in pairs]
     return written(rows)

@@ -9,6 +9,7 @@ from typing import Any
 
 from markupsafe import Markup
 
+from verification.credibility.faults.first_notice import kinds, method_score, of_method
 from verification.judging.verdict import Claim, Outcome
 from verification.page.number_text import plain, scientific
 from verification.page.source_labels import OUTCOMES, OutcomeStyle, source_label, symbol_of
@@ -280,6 +281,10 @@ def worth(material: Material) -> list[Worth]:
         made = _made(material, "faults", record.started, record.commit)
         value = f"{record.caught} of {len(record.rows)}"
         found.append(Worth("planted faults detected", value, "#faults", None, *made))
+        if of_method(record):
+            noticed, count = method_score(record)
+            name = "of these, in the semi-analytical method, noticed by comparison, invariant or study"
+            found.append(Worth(name, f"{noticed} of {count}", "#faults", None, kinds(record)))
         if record.alarms:
             count = len(record.controls)
             found.append(_share("negative controls left alone", count - len(record.alarms), count, "#faults"))

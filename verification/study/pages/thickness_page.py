@@ -1,24 +1,18 @@
 """The report of a study: figures for a paper beside one page that describes them."""
 
 from collections.abc import Callable, Sequence
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 
 from verification.cases.unit_numbers import Units
-from verification.page.page_parts import (
-    Cell,
-    Part,
-    Section,
-    Table,
-    number,
-    row,
-)
+from verification.page.page_parts import Cell, Part, Section, Table, Value, number, row, table_of
+from verification.page.source_labels import source_label
 from verification.study.choice.failure_criteria import MODES, Judged, judged
 from verification.study.choice.thickness_choice import DRAWN, Choice, choice
 from verification.study.largest_stresses import QUANTITIES
 from verification.study.pages.contour_maps import contour_figures, nearest
-from verification.study.pages.curve_summary import agreement_messages, main_messages
 from verification.study.pages.study_assembly import (
     Draw,
     Written,
@@ -44,9 +38,7 @@ from verification.study.pages.thickness_recommendation import (
 )
 from verification.study.study_plan import Study
 from verification.study.study_table import SCALARS, SOURCES, read_columns
-from verification.study.thickness_curves import Curve, Difference, curves, differences, tension_checks
-
-__all__ = ["Written", "write_study_report"]
+from verification.study.thickness_curves import Curve, curves, differences
 
 CONTOURS = (0.1, 0.5, 2.0)  # h/a_h; the solved ones nearest to these
 
@@ -75,7 +67,6 @@ def write_study_report(
         choice([judged(c, study.criteria) for c in found if c.ratio == ratio], study.criteria)
         for ratio in ratios
     ]
-    checks = differences(columns)
     failures = [f"{c.label}, h = {h:.4g} a_h: {message}" for c in every for h, message in c.failures]
     draws: list[Draw] = []
     if found and figures:
@@ -93,8 +84,7 @@ def write_study_report(
         _preference(study, choices, said),
         inputs_section(study),
         *drawings,
-        _summary(found, checks),
-        *check_sections(checks, tension_checks(columns)),
+        *check_sections(differences(columns)),
         Section("extremes", "Extremes of every curve", [_extremes(found, units)]),
         *failed_section(failures),
     ]
@@ -105,15 +95,8 @@ def write_study_report(
     return write_page(table, study, folder, said, summary, sections, [points], facts)
 
 
-def _summary(found: Sequence[Curve], checks: Sequence[Difference]) -> Section:
-    if not found:
-        return Section("summary", "Summary of the curves", [], ["No curve has two solved points."])
-    texts = [*main_messages(found), *(agreement_messages(checks) or ["No point was cross-checked."])]
-    return Section("summary", "Summary of the curves", [Part(text) for text in texts])
-
-
 def _extremes(found: Sequence[Curve], units: Units) -> Part:
-    rows, ends = [], ("smallest", "at h", "largest", "at h")
+    rows = []
     for curve in found:
         size = curve.a_h / units.metre
         for quantity in (*QUANTITIES, *SCALARS):
@@ -125,70 +108,60 @@ def _extremes(found: Sequence[Curve], units: Units) -> Part:
                 i = int(curve.stress[quantity].argmax())
                 x, z = curve.x[quantity][i] * size, curve.z[quantity][i] * size
                 places = f"{x:.2f}, {z:.2f}".replace("nan", "–")
+            numbers = zip(
+                (low * scale, h_low * size, high * scale, h_high * size), ("5", "3") * 2, strict=True
+            )
             rows.append(
                 row(
                     quantity,
                     number(curve.ratio, "{:.4g}".format),
                     number(curve.friction, "{:g}".format),
                     units.stress if stress else units.length,
-                    number(low * scale, "{:.5g}".format),
-                    number(h_low * size, "{:.3g}".format),
-                    number(high * scale, "{:.5g}".format),
-                    number(h_high * size, "{:.3g}".format),
+                    *(number(value, f"{{:.{digits}g}}".format) for value, digits in numbers),
                     places,
                 )
             )
     table = Table(
         f"Extremes of every curve among its solved points; thicknesses, and places of the largest, in "
         f"{units.length}.",
-        ["quantity", "E1/E2", "f", "unit", *ends, "x, z"],
+        ["quantity", "E1/E2", "f", "unit", "smallest", "at h", "largest", "at h", "x, z"],
         rows,
     )
     return Part("", [table], folded=f"{len(rows)} rows")
 
 
 def _preference(study: Study, choices: Sequence[Choice], said: Sequence[str]) -> Section:
-    rows, units = [], study.units
-    for every in choices:
-        for j in every.judgements:
-            one = choice([j], study.criteria)
-            _, mode = one.governing(one.best)
-            size = j.curve.a_h / units.metre
-            even = [
-                edge if end is None else end.h for end, edge in zip(one.even, one.h[[0, -1]], strict=True)
-            ]
-            ranges = "; ".join(between(one, pair, units, safe=True) for pair in one.ranges)
-            rows.append(
-                row(
-                    number(j.curve.ratio, "{:.4g}".format),
-                    number(j.curve.friction, "{:g}".format),
-                    " – ".join(rounded(h * size, 0.0) for h in even),
-                    number(one.tolerance, "{:.1%}".format),
-                    Cell(rounded(one.least, one.error), one.least),
-                    Cell(mode, note=MODES[mode]),
-                    *([ranges or "none"] if j.limited else []),
-                    *_near_cells(j, one.best, mode, units),
-                    css="" if j.admissible or not j.limited else "disagrees",
-                )
-            )
+    units = study.units
+    curves = [(j, choice([j], study.criteria)) for every in choices for j in every.judgements]
     limited = any(one.judgements[0].limited for one in choices)
-    table = Table(
+    columns: list[tuple[str, Callable[[tuple[Judged, Choice]], Value]]] = [
+        ("E1/E2", lambda pair: number(pair[0].curve.ratio, "{:.4g}".format)),
+        ("f", lambda pair: number(pair[0].curve.friction, "{:g}".format)),
+        (f"best h [{units.length}]", lambda pair: _best(*pair, units)),
+        ("tolerance", lambda pair: number(pair[1].tolerance, "{:.1%}".format)),
+        (
+            "stress / strength" if limited else "stress / p_h",
+            lambda pair: Cell(rounded(pair[1].least, pair[1].error), pair[1].least),
+        ),
+        ("governing mode", lambda pair: Cell(_mode(pair[1]), note=MODES[_mode(pair[1])])),
+    ]
+    if limited:
+        columns.append((f"admissible h [{units.length}]", lambda pair: _admissible(pair[1], units)))
+    columns.append((f"checked at h [{units.length}]", lambda pair: _checked_at(*pair, units)))
+    columns += [
+        (
+            f"difference, {source_label(source)} [{units.stress}]",
+            partial(_difference, source=source, units=units),
+        )
+        for source in SOURCES[1:]
+    ]
+    table = table_of(
         "The thicknesses of every curve that are equally good: their largest stress exceeds the smallest by "
         "no more than the tolerance, 1 % or the error of interpolation. Last: differences of the governing "
         "stress at the checked thickness nearest to the best one.",
-        [
-            "E1/E2",
-            "f",
-            f"best h [{units.length}]",
-            "tolerance",
-            "stress / strength" if limited else "stress / p_h",
-            "governing mode",
-            *([f"admissible h [{units.length}]"] if limited else []),
-            f"checked at h [{units.length}]",
-            f"difference, finite elements [{units.stress}]",
-            f"difference, exact [{units.stress}]",
-        ],
-        rows,
+        curves,
+        columns,
+        row_css=lambda pair: "" if pair[0].admissible or not pair[0].limited else "disagrees",
     )
     texts = [
         *(said if len(said) > 1 else []),
@@ -197,6 +170,31 @@ def _preference(study: Study, choices: Sequence[Choice], said: Sequence[str]) ->
     ]
     parts = [*(Part(text) for text in texts), Part("", [table])]
     return Section("preferable", "Which thickness", [*parts, *_chances(study, choices)])
+
+
+def _mode(one: Choice) -> str:
+    return one.governing(one.best)[1]
+
+
+def _best(j: Judged, one: Choice, units: Units) -> str:
+    ends = [edge if end is None else end.h for end, edge in zip(one.even, one.h[[0, -1]], strict=True)]
+    return " – ".join(rounded(h * j.curve.a_h / units.metre, 0.0) for h in ends)
+
+
+def _admissible(one: Choice, units: Units) -> str:
+    return "; ".join(between(one, pair, units, safe=True) for pair in one.ranges) or "none"
+
+
+def _checked_at(j: Judged, one: Choice, units: Units) -> Cell:
+    found = near(j, one.best, _mode(one))
+    return number(found[-1].h * j.curve.a_h / units.metre if found else None, "{:.3g}".format)
+
+
+def _difference(pair: tuple[Judged, Choice], source: str, units: Units) -> float | None:
+    """What ``source`` differs by at the checked thickness nearest to the best one; None without any."""
+    j, one = pair
+    found = {near.source: near.difference for near in near(j, one.best, _mode(one))}
+    return found[source] * j.curve.p_h / units.pascal if source in found else None
 
 
 def _chances(study: Study, choices: Sequence[Choice]) -> list[Part]:
@@ -210,14 +208,14 @@ def _chances(study: Study, choices: Sequence[Choice]) -> list[Part]:
             places |= {"limit below": low.h} if low else {}
             places |= {"limit above": high.h} if high else {}
         chances = one.chances(np.array([*places.values()]))
+        curve = one.judgements[0].curve
         for k, (what, h) in enumerate(places.items()):
             rows.append(
                 row(
-                    number(one.judgements[0].curve.ratio, "{:.4g}".format),
+                    number(curve.ratio, "{:.4g}".format),
                     what,
-                    number(h * one.judgements[0].curve.a_h / study.units.metre, "{:.3g}".format),
-                    *(number(share, "{:.0%}".format) for share in chances.governs[:, k]),
-                    number(chances.fails[k], "{:.0%}".format),
+                    number(h * curve.a_h / study.units.metre, "{:.3g}".format),
+                    *(number(share, "{:.0%}".format) for share in (*chances.governs[:, k], chances.fails[k])),
                 )
             )
     table = Table(
@@ -227,19 +225,6 @@ def _chances(study: Study, choices: Sequence[Choice]) -> list[Part]:
         rows,
     )
     return [Part("", [table], title="Probabilities")]
-
-
-def _near_cells(judgement: Judged, h: float, mode: str, units: Units) -> list[Cell]:
-    """The thickness checked next to ``h``, what each other source differs by there; dashes for none."""
-    by_source = {one.source: one for one in near(judgement, h, mode)}
-    checked = next((by_source[source].h for source in reversed(SOURCES[1:]) if source in by_source), None)
-    found = [by_source.get(source) for source in SOURCES[1:]]
-    scale = judgement.curve.p_h / units.pascal
-    size = judgement.curve.a_h / units.metre
-    return [
-        number(None if checked is None else checked * size, "{:.3g}".format),
-        *(number(None if one is None else one.difference * scale) for one in found),
-    ]
 
 
 def _maps(study: Study, found: Sequence[Curve], failures: list[str]) -> list[Drawn]:

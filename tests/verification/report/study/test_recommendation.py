@@ -7,7 +7,6 @@ import study_table
 from verification.cases.unit_numbers import Units
 from verification.study.choice.failure_criteria import Criteria, judged
 from verification.study.choice.thickness_choice import choice
-from verification.study.pages.curve_summary import main_messages
 from verification.study.pages.thickness_recommendation import answers, checked_messages, near, rounded
 from verification.study.study_table import read_columns
 from verification.study.thickness_curves import curves
@@ -106,14 +105,3 @@ def test_answer_is_in_the_units_of_the_user(found):
     criteria = Criteria(strength={"von_mises_substrate": 0.8 * study_table.P_H})
     (answer,) = answers([chosen(found, criteria)], nm)
     assert "000" in answer
-
-
-def test_the_summary_is_a_sentence_a_stress_and_one_for_the_contact(found):
-    messages = main_messages(found)
-    assert len(messages) == len(study_table.QUANTITIES) + 1
-    worst = study_table.stress("von_mises_substrate", 2.0, 0.05, 0.25)
-    assert (
-        f"reaches {worst:.3g} p_h, {worst * study_table.P_H / 1e6:.4g} MPa, with E1/E2 = 2, f = 0.25"
-        in (messages[6])
-    )
-    assert "p0 is between 1 p_h" in messages[7]

@@ -1,57 +1,40 @@
-"""The assumptions that all sources share: the model that drops each, the axes of its map.
-
-A further assumption is one more entry of ``ASSUMPTIONS``: ``tests/tools assumptions`` measures its map, and
-``model_error``, the report and the manual show it.
-"""
+"""Axes over which the map of each assumption is measured, with the model that measures it."""
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field
 from itertools import product
 
+from assumption_maps_made.small_strain_cost import of_small_strains
+from verification.credibility.shared_assumptions import QUANTITIES
 from verification.evidence.map_places import COORDINATES, Place
 from verification.problem.coated_contact import CoatedContact
 from verification.sources.assumptions.contact_change import Change, of_goodman, of_sphere
 from verification.sources.assumptions.finite_bodies import of_half_spaces
-from verification.sources.assumptions.small_strain_cost import of_small_strains
-from verification.sources.assumptions.strain_cost_of_pair import of_pair
 
-QUANTITIES = tuple(one.name for one in fields(Change))
-PARABOLA, GOODMAN = "parabola for the sphere", "Goodman's assumption"
-HALF_SPACES = "half-spaces for the ball and a disc as thick as its radius"
-SMALL_STRAINS = "small strains"
 RATIOS = (0.1, 0.25, 0.5, 1.0, 2.0, 4.0, 10.0)  # E1/E2
 THICKNESSES = (0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0)  # h/a_h
 WIDTHS = (0.003, 0.03, 0.1, 0.3)  # a_h/R
 LAYERS = {"ratio": RATIOS, "thickness": THICKNESSES}
-Reading = Callable[[CoatedContact], tuple[Change, Change]]
 
 
 @dataclass(frozen=True)
-class Assumption:
-    """What all sources assume, with the model that does without it.
+class MapAxes:
+    """The map of an assumption: its model and its axes.
 
-    title : its name in sentences.
-    change : change of a contact by dropping it, with the uncertainty; ValueError where it has no answer.
-    axes : values of the coordinates of ``Place`` over which the map is measured; those of no axis are fixed
-        at the values of ``Place``.
+    change : change of a contact by dropping the assumption, with the uncertainty; ValueError where there is
+        none.
+    axes : values of the coordinates of ``Place``; those of no axis are fixed at the values of ``Place``.
     independent_of : coordinates that the change does not depend on.
     rates : exponents with which the change of each quantity vanishes as a coordinate does, one for all or one
         for each of ``QUANTITIES``; the axis excludes 0. The map is read scaled by them, and below its axis.
-    warned : beginning of the warning of implausible input that says the same, which is not repeated.
-    direct : whether ``model_error`` evaluates ``change``; of a slow model it reads the map.
-    read : change of a problem by that of others, which the map holds; where the map alone is not enough.
 
     Layers of real bodies differ in Poisson's ratio: a map to be read needs an axis of it.
     """
 
-    title: str
     change: Callable[[CoatedContact], tuple[Change, Change]]
     axes: Mapping[str, tuple[float, ...]]
     independent_of: tuple[str, ...] = ()
     rates: Mapping[str, float | tuple[float, ...]] = field(default_factory=dict)
-    warned: str = ""
-    direct: bool = False
-    read: Callable[[CoatedContact, Reading], tuple[Change, Change]] = lambda problem, at: at(problem)
 
     @property
     def all_axes(self) -> dict[str, tuple[float, ...]]:
@@ -75,25 +58,15 @@ class Assumption:
         return rate if isinstance(rate, tuple) else (rate,) * len(QUANTITIES)
 
 
-ASSUMPTIONS: dict[str, Assumption] = {
-    "sphere": Assumption(
-        PARABOLA,
-        of_sphere,
-        {**LAYERS, "width": WIDTHS, "friction": (0.0, 0.3)},
-        rates={"width": 2.0},
-        warned="contact radius a_h",
-        direct=True,
-    ),
-    "goodman": Assumption(
-        GOODMAN,
+MEASURED: dict[str, MapAxes] = {
+    "sphere": MapAxes(of_sphere, {**LAYERS, "width": WIDTHS, "friction": (0.0, 0.3)}, rates={"width": 2.0}),
+    "goodman": MapAxes(
         of_goodman,
         {**LAYERS, "nu": (0.2, 0.3, 0.45), "friction": (0.1, 0.3, 0.6, 1.0)},
         independent_of=("width",),
         rates={"friction": (2.0, 2.0, 2.0, 1.0, 1.0)},
-        direct=True,
     ),
-    "bodies": Assumption(
-        HALF_SPACES,
+    "bodies": MapAxes(
         of_half_spaces,
         {
             "ratio": (0.1, 0.5, 1.0, 2.0, 10.0),
@@ -103,10 +76,8 @@ ASSUMPTIONS: dict[str, Assumption] = {
         },
         # at least this one, which the approach has but for a logarithm
         rates={"width": 1.0},
-        direct=True,
     ),
-    "strains": Assumption(
-        SMALL_STRAINS,
+    "strains": MapAxes(
         of_small_strains,
         {
             "ratio": (0.1, 0.25, 1.0, 4.0, 10.0),
@@ -115,6 +86,5 @@ ASSUMPTIONS: dict[str, Assumption] = {
             "width": (0.03, 0.1, 0.2, 0.3),
         },
         rates={"width": 1.0},
-        read=of_pair,
     ),
 }

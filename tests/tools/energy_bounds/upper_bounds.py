@@ -9,10 +9,10 @@ v is extended by zero beyond the mesh, so that the bound holds in the infinite h
 
 import numpy as np
 
+from energy_bounds.half_space_mesh import HalfSpace, stiffness
+from energy_bounds.spline_elements import Numbers, Pieces
+from energy_bounds.tensor_energy import Bound, Energy, Term, solver
 from verification.problem.array_types import Array
-from verification.sources.bounds.half_space_mesh import HalfSpace, stiffness
-from verification.sources.bounds.spline_elements import Numbers, Pieces
-from verification.sources.bounds.tensor_energy import Bound, Energy, Term, solver
 
 
 def strain_energy(solid: HalfSpace) -> Energy:

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from energy_bounds.spline_elements import Points
 from verification.problem.array_types import Array, Coatings
-from verification.sources.bounds.spline_elements import Points
 
 # A radial piece spans a ratio of 5^(3/2) at most: Gauss's error for a polynomial over r is below rounding.
 RADIAL_POINTS = 48

@@ -19,10 +19,10 @@ import numpy as np
 from scipy.sparse import coo_array, csc_array
 from scipy.sparse.linalg import splu
 
+from assumption_maps_made import neo_hooke
+from assumption_maps_made.meridian_elements import Meridian, lagrange
 from verification.problem.array_types import Array, Coatings
 from verification.problem.gauss_legendre import gauss_legendre
-from verification.sources.assumptions import neo_hooke
-from verification.sources.assumptions.meridian_elements import Meridian, lagrange
 
 TOLERANCE, ITERATIONS = 1e-9, 12
 LEAST_STEP = 1 / 16  # of the curvature 1/R, which is raised in steps where Newton's method fails at once

@@ -13,32 +13,16 @@ Appl. Math. 5 (1947) 241-269. At the radius of the contact without load at its e
 approach, which depends on the radius to second order only.
 """
 
-from dataclasses import dataclass
-
 import numpy as np
 
+from energy_bounds.half_space_mesh import half_space
+from energy_bounds.lower_bounds import lower_bound
+from energy_bounds.tensor_energy import virtual_work
+from energy_bounds.upper_bounds import upper_bound
+from verification.evidence.enclosure_record import EnergyBounds
 from verification.problem.coated_contact import CoatedContact
-from verification.sources.bounds.half_space_mesh import half_space
-from verification.sources.bounds.lower_bounds import lower_bound
-from verification.sources.bounds.tensor_energy import virtual_work
-from verification.sources.bounds.upper_bounds import upper_bound
 
 VIRTUAL_WORK = 1e-9  # largest relative defect of sigma : e against the pressure's work
-
-
-@dataclass(frozen=True)
-class EnergyBounds:
-    """Bounds (lower, upper) at a contact radius.
-
-    stiffness : dW/d delta [N/m].   approach : [m].   displaced : approach [m] by the displacements alone.
-    rounding : of the stiffness, relative, as counted into the bounds.   unknowns : of both sides.
-    """
-
-    stiffness: tuple[float, float]
-    approach: tuple[float, float]
-    displaced: float
-    rounding: float
-    unknowns: int
 
 
 def bound(

@@ -20,10 +20,10 @@ import numpy as np
 from numpy.polynomial import Polynomial
 from scipy import sparse
 
+from energy_bounds.half_space_mesh import HalfSpace, compliance
+from energy_bounds.spline_elements import Numbers, Pieces, Points
+from energy_bounds.tensor_energy import Bound, Energy, Term, solver
 from verification.problem.array_types import Array
-from verification.sources.bounds.half_space_mesh import HalfSpace, compliance
-from verification.sources.bounds.spline_elements import Numbers, Pieces, Points
-from verification.sources.bounds.tensor_energy import Bound, Energy, Term, solver
 
 X = Polynomial([0, 1])
 CONE = 6 * X**2 - 8 * X**3 + 3 * X**4

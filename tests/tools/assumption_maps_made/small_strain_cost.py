@@ -1,15 +1,15 @@
 """Cost of small strains: the contact of a sphere at finite against that at small strain.
 
-Both by ``deformation`` on the same mesh with the same sphere, so that the change is that of the strains
-alone. It is of the order a/R for a compressible solid.
+Both by ``finite_deformation`` on the same mesh with the same sphere, so that the change is that of the
+strains alone. It is of the order a/R for a compressible solid.
 """
 
 from dataclasses import dataclass
 
+from assumption_maps_made.finite_deformation import Deformed, SphereContact
+from assumption_maps_made.meridian_elements import Meridian
 from verification.problem.coated_contact import CoatedContact
 from verification.sources.assumptions.contact_change import FLOOR, Change
-from verification.sources.assumptions.finite_deformation import Deformed, SphereContact
-from verification.sources.assumptions.meridian_elements import Meridian
 from verification.sources.assumptions.strain_cost_of_pair import of_pair
 
 

@@ -1,13 +1,13 @@
 """Error of the model itself at a problem: what its assumptions cost, each measured by a model without it.
 
-A fast model is evaluated at the problem; of a slow one the recorded map is read, see ``assumptions``.
+A fast model is evaluated at the problem; for a slow one the recorded map is read, see ``ASSUMPTIONS``.
 """
 
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass, fields
 from functools import cache
 
-from verification.credibility.model.shared_assumptions import (
+from verification.credibility.shared_assumptions import (
     ASSUMPTIONS,
     GOODMAN,
     HALF_SPACES,
@@ -133,7 +133,7 @@ def model_error(problem: CoatedContact, maps: AssumptionMaps | None = None) -> M
     for name, assumption in ASSUMPTIONS.items():
         try:
             change, uncertainty = (
-                assumption.change(problem) if assumption.direct else _read(maps, name, problem)
+                assumption.change(problem) if assumption.change else _read(maps, name, problem)
             )
         except ValueError as error:
             missing.append((assumption.title, str(error)))

@@ -7,8 +7,8 @@ import numpy as np
 from scipy import sparse
 from scipy.sparse.linalg import splu
 
+from energy_bounds.spline_elements import Pieces, Points
 from verification.problem.array_types import Array
-from verification.sources.bounds.spline_elements import Pieces, Points
 
 
 @dataclass(frozen=True, eq=False)
