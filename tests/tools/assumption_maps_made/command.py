@@ -16,11 +16,7 @@ from verification.commands.common.known_folders import RECORDS, require_checkout
 from verification.commands.common.shared_options import AsJson, Flag, Quiet, RecordsFolder
 from verification.commands.common.task_progress import run_info
 from verification.commands.common.terminal import did_you_mean, named_table, print_json, print_out
-<<<<<<< HEAD
 from verification.commands.common.terminal_bar import progress_bar
-from verification.credibility.model.shared_assumptions import ASSUMPTIONS
-=======
->>>>>>> main
 from verification.evidence.assumption_maps import (
     WORDS,
     AssumptionMap,

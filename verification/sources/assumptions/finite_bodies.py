@@ -37,8 +37,8 @@ def of_half_spaces(problem: CoatedContact, thickness: float = THICKNESS) -> tupl
 
     Returns the change, then its uncertainty: twice its difference from one with nodes and wavenumbers fewer
     by a quarter. The friction of ``problem`` leaves the pressure unchanged in both contacts.
-    Raises ValueError where the coatings are as thick as the disc, an outer one is thinner than ``THINNEST``, and as
-    ``integral_equation`` does.
+    Raises ValueError where the coatings are as thick as the disc, an outer one is thinner than ``THINNEST``,
+    and as ``integral_equation`` does.
     """
     require_thick(problem)
     fine, coarse = (change_at(problem, thickness, resolution) for resolution in RESOLUTIONS)
