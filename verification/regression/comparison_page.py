@@ -3,7 +3,17 @@
 from verification.judging.verdict import Outcome
 from verification.page.html_page import render_sections
 from verification.page.number_text import factor, scientific, seconds
-from verification.page.page_parts import Cell, Part, Section, Table, number, outcome_cell, row, words
+from verification.page.page_parts import (
+    Cell,
+    Part,
+    Section,
+    Table,
+    number,
+    outcome_cell,
+    row,
+    table_of,
+    words,
+)
 from verification.page.source_labels import pair_label
 from verification.regression.baseline_section import MOST, case_table, drift_table
 from verification.regression.number_drift import State
@@ -41,22 +51,20 @@ def comparison_page(found: RunComparison) -> str:
 def _verdicts(found: RunComparison) -> Part:
     if not found.verdicts:
         return Part("Every comparison has the same verdict in both runs.")
-    rows = [
-        row(
-            change.case,
-            _outcome(change.before),
-            _outcome(change.after),
-            change.quantity,
-            change.line,
-            pair_label(change.between),
-            words(change.reason),
-        )
-        for change in sorted(found.verdicts, key=lambda change: not change.worse)
-    ]
-    columns = ["case", "first", "second", "quantity", "line", "between", "reason in the second"]
-    return Part(
-        "", [Table("Comparisons whose verdict changed, the changes for the worse first.", columns, rows)]
+    table = table_of(
+        "Comparisons whose verdict changed, the changes for the worse first.",
+        sorted(found.verdicts, key=lambda change: not change.worse),
+        [
+            ("case", lambda change: change.case),
+            ("first", lambda change: _outcome(change.before)),
+            ("second", lambda change: _outcome(change.after)),
+            ("quantity", lambda change: change.quantity),
+            ("line", lambda change: change.line),
+            ("between", lambda change: pair_label(change.between)),
+            ("reason in the second", lambda change: words(change.reason)),
+        ],
     )
+    return Part("", [table])
 
 
 def _numbers(found: RunComparison) -> Part:

@@ -4,6 +4,7 @@ from dataclasses import fields
 
 import numpy as np
 import pytest
+from layer_limits import spring_bed, squeezed_film, thick
 
 import fem_reference
 import semianalytic
@@ -17,7 +18,6 @@ from verification.sources.references.effective_modulus import (
     perriot_barthel_x0,
 )
 from verification.sources.references.flat_punch import pressed
-from verification.sources.references.layer_limits import spring_bed, squeezed_film, thick
 
 LAYER, RIGID = ((1.0, 0.4, 1.0),), (1e9, 0.3)
 CURVE = LoadingCurve(100.0, "contact_radius", (0.4, 1.0), LAYER, RIGID)

@@ -10,7 +10,7 @@ from verification.evidence.alarm_record import AlarmRecord
 from verification.evidence.enclosure_record import EnclosureRecord
 from verification.judging.verdict import Outcome
 from verification.page.number_text import plain
-from verification.page.page_parts import Cell, Table, number, outcome_cell, row, tally, words
+from verification.page.page_parts import Cell, Table, number, outcome_cell, row, table_of, tally, words
 from verification.page.source_labels import pair_label, source_label
 from verification.problem.quantity import SCALARS
 from verification.report.tables.case_lookup import layers, scale
@@ -22,47 +22,49 @@ MOST = 30
 def range_table(results: Sequence[CaseResult]) -> Table:
     """Ranges of the problems of this run beside those of the random problems."""
     solids = [(layers(result), scale(result, "a_h"), result.problem) for result in results]
-    ratios = [E / found[-1][0] for found, _, _ in solids for E, _, _ in found[:-1]]
-    depths = [h / a for found, a, _ in solids for _, _, h in found[:-1]]
-    poisson = [nu for found, _, _ in solids for _, nu, _ in found]
-    friction = [float(problem.get("friction", 0.0)) for _, _, problem in solids]
-    counts = [float(len(found) - 1) for found, _, _ in solids if found]
-    rows: list[tuple[str, Sequence[float], Sequence[float]]] = [
-        ("E of a coating over E of the substrate", ratios, RATIO),
-        ("h / a_h of a coating", depths, (min(THINNEST, *THICKNESS), max(THICKNESS))),
-        ("Poisson's ratio", poisson, POISSON),
-        ("friction f", friction, FRICTION),
-        ("coatings", counts, (1.0, float(MOST_COATINGS))),
-    ]
-    return Table(
+    found: dict[str, tuple[list[float], Sequence[float]]] = {
+        "E of a coating over E of the substrate": (
+            [E / layers[-1][0] for layers, _, _ in solids for E, _, _ in layers[:-1]],
+            RATIO,
+        ),
+        "h / a_h of a coating": (
+            [float(h / a) for layers, a, _ in solids for _, _, h in layers[:-1]],
+            (min(THINNEST, *THICKNESS), max(THICKNESS)),
+        ),
+        "Poisson's ratio": ([nu for layers, _, _ in solids for _, nu, _ in layers], POISSON),
+        "friction f": ([float(problem.get("friction", 0.0)) for _, _, problem in solids], FRICTION),
+        "coatings": ([len(layers) - 1.0 for layers, _, _ in solids if layers], (1.0, float(MOST_COATINGS))),
+    }
+    return table_of(
         "Ranges of the problems solved.",
-        ["quantity", "this run", "random problems"],
-        [row(name, _range(found), _range(drawn)) for name, found, drawn in rows],
+        found.items(),
+        [
+            ("quantity", lambda item: item[0]),
+            ("this run", lambda item: _range(item[1][0])),
+            ("random problems", lambda item: _range(item[1][1])),
+        ],
     )
 
 
 def design_table(orders: Sequence[DesignOrder]) -> Table:
     """Observed order of convergence of the finite element operator beside its design order."""
-    rows = []
-    for one in orders:
-        css = "flag agrees" if one.as_designed else "flag disagrees"
-        rows.append(
-            row(
-                Cell(f"order {one.order}", one.order),
-                number(one.harmonic, str),
-                number(one.order + 1, str),
-                number(one.displacement, "{:.2f}".format, css),
-                number(one.order, str),
-                number(one.gradient, "{:.2f}".format, css),
-                number(one.errors[1]),
-            )
-        )
-    columns = ["elements", "harmonic", "design, u", "observed, u", "design, ∇u", "observed, ∇u"]
-    return Table(
+
+    def observed(value: float, one: DesignOrder) -> Cell:
+        return number(value, "{:.2f}".format, "flag agrees" if one.as_designed else "flag disagrees")
+
+    return table_of(
         "Finite element operator on manufactured solutions: order in the L2 norm from a mesh to one twice as "
         "fine.",
-        [*columns, "error, finer mesh"],
-        rows,
+        orders,
+        [
+            ("elements", lambda one: Cell(f"order {one.order}", one.order)),
+            ("harmonic", lambda one: one.harmonic),
+            ("design, u", lambda one: one.order + 1),
+            ("observed, u", lambda one: observed(one.displacement, one)),
+            ("design, ∇u", lambda one: one.order),
+            ("observed, ∇u", lambda one: observed(one.gradient, one)),
+            ("error, finer mesh", lambda one: one.errors[1]),
+        ],
     )
 
 
@@ -95,7 +97,7 @@ def pair_table(results: Sequence[CaseResult]) -> Table:
         good = sum(v.outcome is Outcome.AGREES for v in mine)
         largest = max((v.difference for v in mine if v.difference is not None), default=None)
         widest = max((v.uncertainty for v in mine if v.uncertainty is not None), default=None)
-        rows.append(row(pair_label(pair), tally(good, len(mine)), number(largest), number(widest)))
+        rows.append(row(pair_label(pair), tally(good, len(mine)), largest, widest))
     return Table(
         "All comparisons by pair of sources; differences and U as fractions of their scale.",
         ["between", "agree", "largest difference", "largest U"],
@@ -108,13 +110,9 @@ def two_sided_table(record: EnclosureRecord | None) -> Table:
     rows = []
     for one in record.enclosures if record else ():
         if (two := one.two_sided) is not None:
-            cells = []
+            cells: list[Cell | float] = []
             for (low, high), exact, effectivity in two.compared:
-                cells += [
-                    number(1 - low / exact),
-                    number(high / exact - 1),
-                    number(effectivity, "{:.1f}".format),
-                ]
+                cells += [1 - low / exact, high / exact - 1, number(effectivity, "{:.1f}".format)]
             rows.append(row(one.name, *cells))
     return Table(
         "Bounds by finite elements at the enclosed contact radius: distance of either end from the enclosed "
@@ -127,38 +125,39 @@ def two_sided_table(record: EnclosureRecord | None) -> Table:
 
 def import_table(parts: Sequence[Part]) -> Table:
     """Imports of each part from outside, with those that are forbidden."""
-    rows = []
-    for part in parts:
+
+    def forbidden(part: Part) -> Cell:
         bad = [*part.forbidden, *part.hidden]
-        modules = words(", ".join(part.modules))
-        forbidden = Cell("; ".join(bad) or "none", css=f"words flag {'disagrees' if bad else 'agrees'}")
-        rows.append(row(part.name, number(part.files, str), number(part.statements, str), modules, forbidden))
-    return Table(
+        return Cell("; ".join(bad) or "none", css=f"words flag {'disagrees' if bad else 'agrees'}")
+
+    return table_of(
         "Imports of each part, without its own and the standard library.",
-        ["part", "files", "imports", "modules from outside", "forbidden imports"],
-        rows,
+        parts,
+        [
+            ("part", lambda part: part.name),
+            ("files", lambda part: part.files),
+            ("imports", lambda part: part.statements),
+            ("modules from outside", lambda part: words(", ".join(part.modules))),
+            ("forbidden imports", forbidden),
+        ],
     )
 
 
 def alarm_table(record: AlarmRecord | None) -> Table:
     """The false alarms on record."""
     alarms = record.alarms if record is not None else ()
-    rows = [
-        row(
-            Cell(alarm.title, note=alarm.case, css="words"),
-            outcome_cell(alarm.outcome),
-            alarm.quantity,
-            alarm.line,
-            " – ".join(source_label(source) for source in alarm.between),
-            words(alarm.reason),
-        )
-        for alarm in alarms[:MOST]
-    ]
     more = f" The first {MOST} of {len(alarms)}." if len(alarms) > MOST else ""
-    return Table(
+    return table_of(
         f"Verdicts of clean problems that are not AGREES.{more}",
-        ["problem", "verdict", "quantity", "line", "between", "reason"],
-        rows,
+        alarms[:MOST],
+        [
+            ("problem", lambda alarm: Cell(alarm.title, note=alarm.case, css="words")),
+            ("verdict", lambda alarm: outcome_cell(alarm.outcome)),
+            ("quantity", lambda alarm: alarm.quantity),
+            ("line", lambda alarm: alarm.line),
+            ("between", lambda alarm: " – ".join(map(source_label, alarm.between))),
+            ("reason", lambda alarm: words(alarm.reason)),
+        ],
     )
 
 

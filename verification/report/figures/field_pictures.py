@@ -42,35 +42,40 @@ def pictures(result: CaseResult, plane: Plane | None) -> Pictures | None:
     a_h, p_h = float(scale_of(result, "a_h")), float(scale_of(result, "p_h"))
     if plane is None or not plane.stress or not a_h > 0 or not p_h > 0:
         return None
-    failures = tuple((source_label(name), message) for name, message in plane.failures.items())
     sources = [name for name in METHODS if name in plane.stress]
-    bottoms = [float(z[-1]) / a_h for z in plane.depths]
-    frame = Frame(float(plane.x[-1]) / a_h, bottoms[-1], tuple(bottoms[:-1]), plane.radius / a_h)
-    rows = [_quantity_drawn(plane, quantity, sources, p_h) for quantity in SHOWN]
-    caption, table = _caption(sources, frame), plane_csv(plane)
     x, depths = plane.x / a_h, [z / a_h for z in plane.depths]
-    panels = [
-        Panel(
-            one.title,
-            draw_field(
-                rasterised(x, depths, one.values, frame, smooth=one.smooth),
-                frame,
-                one.colours,
-                label=one.label,
-                lines=one.smooth,
-            ),
-            one.note,
-            "",
-        )
-        for some in zip(*rows, strict=True)
-        for one in some
-    ]
+    bottoms = [float(z[-1]) for z in depths]
+    frame = Frame(float(x[-1]), bottoms[-1], tuple(bottoms[:-1]), plane.radius / a_h)
+
+    def panel(values: Sequence[Array], colours: Scale, title: str, label: str, note: str) -> Panel:
+        smooth = not colours.logarithmic
+        raster = rasterised(x, depths, values, frame, smooth=smooth)
+        return Panel(title, draw_field(raster, frame, colours, label=label, lines=smooth), note, "")
+
+    fields, gaps = [], []
+    for quantity in SHOWN:
+        by = {s: [_quantity(sigma, quantity) / p_h for sigma in plane.stress[s]] for s in sources}
+        source, shown = next(iter(by.items()))
+        title, name = f"{TITLES.get(quantity, quantity)} / p_h", source_label(source)
+        values = np.concatenate([f.ravel() for f in shown])
+        known = values[np.isfinite(values)]
+        span = f"{plain(known.min(), 3)} to {plain(known.max(), 3)}" if known.size else "not finite"
+        fields.append(panel(shown, _colours(quantity, shown), title, f"{title} by {name}", f"{name}, {span}"))
+        if len(sources) == 2:
+            apart = [np.abs(one - other) for one, other in zip(*by.values(), strict=True)]
+            largest = max((float(g.max()) for g in apart), default=0.0)
+            exponents = [np.log10(np.maximum(g, 10.0 ** (FLOOR - 1))) for g in apart]
+            top = max(TOP, float(np.ceil(np.log10(largest)))) if 0 < largest < np.inf else TOP
+            colours = Scale(FLOOR, top, DIFFERENCE, logarithmic=True)
+            label = f"difference of both methods in {title}, logarithmic"
+            note = f"largest {scientific(largest)}"
+            gaps.append(panel(exponents, colours, f"difference in {title}", label, note))
     return Pictures(
-        tuple(panels),
-        caption,
-        table,
+        (*fields, *gaps),
+        _caption(sources, frame),
+        plane_csv(plane),
         f"{slug(result.name)}-plane.csv",
-        failures,
+        tuple((source_label(name), message) for name, message in plane.failures.items()),
     )
 
 
@@ -93,30 +98,6 @@ def _quantity(sigma: Array, name: str) -> Array:
     return von_mises(sigma) if name == "von_mises" else sigma[list(IN_PLANE).index(name)]
 
 
-@dataclass(frozen=True, eq=False)
-class _Drawn:
-    """A field to draw: values layer by layer.   smooth : between points, with level lines."""
-
-    title: str
-    values: Sequence[Array]
-    colours: Scale
-    label: str
-    note: str
-    smooth: bool = True
-
-
-def _quantity_drawn(plane: Plane, quantity: str, sources: Sequence[str], p_h: float) -> list[_Drawn]:
-    """The field of the first method, then its difference from the other."""
-    fields = {s: [_quantity(sigma, quantity) / p_h for sigma in plane.stress[s]] for s in sources}
-    source, shown = next(iter(fields.items()))
-    title, name = f"{TITLES.get(quantity, quantity)} / p_h", source_label(source)
-    values = np.concatenate([f.ravel() for f in shown])
-    known = values[np.isfinite(values)]
-    span = f"{plain(known.min(), 3)} to {plain(known.max(), 3)}" if known.size else "not finite"
-    first = _Drawn(title, shown, _colours(quantity, shown), f"{title} by {name}", f"{name}, {span}")
-    return [first, _difference(fields, title)] if len(sources) == 2 else [first]
-
-
 def plane_difference(plane: Plane, scale: float) -> tuple[float, str] | None:
     """Largest difference of the methods anywhere in the plane over ``scale``, with the stress it is of."""
     if len(plane.stress) != 2 or not scale > 0:
@@ -127,22 +108,6 @@ def plane_difference(plane: Plane, scale: float) -> tuple[float, str] | None:
     if not np.isfinite(largest).all():
         return None
     return float(largest.max()), list(IN_PLANE)[int(largest.argmax())]
-
-
-def _difference(fields: dict[str, list[Array]], title: str) -> _Drawn:
-    gaps = [np.abs(one - other) for one, other in zip(*fields.values(), strict=True)]
-    largest = max((float(g.max()) for g in gaps), default=0.0)
-    with np.errstate(divide="ignore"):
-        exponents = [np.log10(np.maximum(g, 10.0 ** (FLOOR - 1))) for g in gaps]
-    top = max(TOP, float(np.ceil(np.log10(largest)))) if 0 < largest < np.inf else TOP
-    return _Drawn(
-        f"difference in {title}",
-        exponents,
-        Scale(FLOOR, top, DIFFERENCE, logarithmic=True),
-        f"difference of both methods in {title}, logarithmic",
-        f"largest {scientific(largest)}",
-        smooth=False,
-    )
 
 
 def _colours(quantity: str, values: Sequence[Array]) -> Scale:
