@@ -186,7 +186,7 @@ def test_directions_are_conjugate_on_a_fixed_contact_set():
 
 
 def test_stopping_short_is_an_exception_with_advice():
-    with pytest.raises(contact.NotConverged, match=r"after 2 iterations .* raise max_iterations"):
+    with pytest.raises(contact.NotConverged, match=r" 2 .*max_iterations"):
         contact_of(max_iterations=2)
 
 

@@ -46,8 +46,7 @@ def run_of(day: int, *results, seconds: float = 10.0, machine: str = INFO.machin
 def test_a_departure_is_the_change_over_what_is_allowed(by):
     (run,) = history([run_of(1, moved(by))], BASELINE)
     assert run.departure == pytest.approx(by, rel=1e-6, abs=1e-12)
-    left = "1 of its 1 cases left the baseline" in history_message([run])
-    assert left == (by > 1)
+    assert ("1 of its 1" in history_message([run])) == (by > 1)
 
 
 def test_runs_are_ordered_by_their_start_and_compared_with_one_baseline():

