@@ -18,7 +18,7 @@ from quick_case import COMMAND, QUICK, coatcheck, coatcheck_process
 from verification.cases.case_file import parse_case
 from verification.cases.published_file import published_cases, read_published
 from verification.commands.common.task_progress import kept_results
-from verification.running import case_worker
+from verification.running import case_tasks
 from verification.running.case_result import from_json, to_json
 from verification.running.case_tasks import case_task, kept_result, result_path
 from verification.running.checked_files import (
@@ -44,7 +44,7 @@ def content(folder: Path) -> dict[str, bytes]:
 
 def test_worker_writes_the_fields_where_they_are_wanted(tmp_path, monkeypatch):
     written = []
-    monkeypatch.setattr(case_worker, "write_fields", lambda case, solutions, folder: written.append(folder))
+    monkeypatch.setattr(case_tasks, "write_fields", lambda case, solutions, folder: written.append(folder))
     case = parse_case(QUICK.encode(), Path("one.toml"))
     for fields in (False, True):
         case_task(case, tmp_path, fields=fields).work()

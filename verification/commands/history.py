@@ -31,7 +31,7 @@ def past(
     code is 0 wherever there is a run, whatever its verdicts are.
 
     Args:
-        folders: Directories of runs, or directories that hold such; reports unless given.
+        folders: Directories of runs, or directories that contain them; reports unless given.
         output: Also write the history to this HTML file.
     """
     places = folders or (Path("reports"),)

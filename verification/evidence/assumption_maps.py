@@ -87,8 +87,10 @@ class AssumptionMap:
         Raises ValueError outside the map, or where its model had no answer.
         """
         places = places_of(problem)
-        if not problem.coatings:
-            places = tuple(replace(place, thickness=self._any_thickness) for place in places)
+        if not problem.coatings:  # any thickness of the map
+            values = next((axis.values for axis in self.axes if axis.name == "thickness"), (1.0,))
+            any_thickness = min(values, key=lambda value: abs(np.log(value)))
+            places = tuple(replace(place, thickness=any_thickness) for place in places)
         if "nu" in self.independent_of:
             places = places[:1]
         found = np.array([self._at_place(place) for place in places])
@@ -156,19 +158,13 @@ class AssumptionMap:
             x = np.interp(np.arange((nodes.size - 1) * refined + 1) / refined, np.arange(nodes.size), nodes)
             weights = np.zeros((x.size, nodes.size))
             for row, value in zip(weights, x, strict=True):
-                for i, weight in _linear(nodes, float(value)).items():
+                for i, weight in _window(nodes, float(value), 2).items():
                     row[i] = weight
             lines.append((x, weights))
         (x, along), (y, over) = lines
         held = np.isfinite(table)
         plane = over @ np.where(held, table, 0.0) @ along.T
         return x, y, np.where(over @ held @ along.T > 1 - 1e-9, plane, np.nan)
-
-    @property
-    def _any_thickness(self) -> float:
-        """A thickness of the map, for a problem without a coating."""
-        values = next((axis.values for axis in self.axes if axis.name == "thickness"), (1.0,))
-        return min(values, key=lambda value: abs(np.log(value)))
 
     def _at_place(self, place: Place) -> tuple[Array, Array]:
         frictionless = next((axis.values == (0.0,) for axis in self.axes if axis.name == "friction"), False)
@@ -185,7 +181,7 @@ class AssumptionMap:
             value, error = interpolated(self._scaled, self.axes, positions, below, most)
             if np.isfinite(value).any():
                 break
-        near = [_linear(axis.nodes, x) for axis, x in zip(self.axes, positions, strict=True)]
+        near = [_window(axis.nodes, x, 2) for axis, x in zip(self.axes, positions, strict=True)]
         return value * scale, (error + _contracted(self._scaled_uncertainty, near)) * scale
 
     @cached_property
@@ -246,7 +242,7 @@ def interpolated(
         apart = [SAFETY * distance(j, less) for less in _fewer(axis.nodes, x, most)]
         error += np.max([np.zeros_like(error), *apart], axis=0)
     # a kink, as of a peak that moves off the axis, may escape the polynomials
-    near = [_linear(axis.nodes, x) for axis, x in zip(axes, positions, strict=True)]
+    near = [_window(axis.nodes, x, 2) for axis, x in zip(axes, positions, strict=True)]
     cell = table[np.ix_(range(table.shape[0]), *(list(weights) for weights in near))]
     between = max((4 * prod(w.values()) for w in near if len(w) == 2), default=0.0)
     return value, error + KINK * between * np.abs(cell).max(axis=tuple(range(1, cell.ndim)))
@@ -285,10 +281,6 @@ def _chosen(nodes: Array, x: float, most: int) -> list[int]:
 
 def _window(nodes: Array, x: float, most: int) -> Weights:
     return _lagrange(nodes, x, _chosen(nodes, x, most))
-
-
-def _linear(nodes: Array, x: float) -> Weights:
-    return _window(nodes, x, 2)
 
 
 def _fewer(nodes: Array, x: float, most: int) -> list[Weights]:

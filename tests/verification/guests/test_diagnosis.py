@@ -19,7 +19,7 @@ from verification.running.case_result import from_json
 from verification.running.checked_files import read_checked
 from verification.sources.exact_sources import solve_exactly
 
-GUEST = Guest(
+GUEST = Guest.model_construct(
     folder=None, text="", name="g", claim=0.01, supports=Supports(coatings=9, friction=True, stress=True)
 )
 HERTZ, COATED, SLIDING = "01_uncoated_steel", "05_ratio_4", "14_ratio_4_sliding"
@@ -152,6 +152,7 @@ def test_a_slip_of_the_output_is_named(exams, case, change, words):
         (lambda p: replace(p, substrate=(p.substrate[0] * (1 - 0.09) ** 1, 0.3)), "E*"),
         (lambda p: replace(p, radius=2 * p.radius), "diameter"),
         (lambda p: replace(p, load=p.load / 2), "load"),
+        (lambda p: replace(p, substrate=(p.substrate[0] / 1e3, 0.3)), "a factor of units?"),
         (lambda p: replace(p, substrate=(p.substrate[0] / 2, 0.3)), "material"),
     ],
 )
@@ -185,6 +186,7 @@ def test_a_largest_tension_in_the_zone_that_is_left_out_is_not_asked_for(exams):
     values = {"contact": {"largest_tension": 1.0, "tension_place": 0.0, "contact_radius": 1.0}}
     reply = [Solved(Answer(protocol=VERSION, id="x", values=values), 0.0)]
     for edge, outcome in ((0.0, Outcome.DISAGREES), (0.05, Outcome.UNSUPPORTED)):
-        found = {c.quantity: v for c, v in judged(replace(GUEST, edge=edge), case, exam, reply).verdicts}
+        guest = GUEST.model_copy(update={"edge": edge})
+        found = {c.quantity: v for c, v in judged(guest, case, exam, reply).verdicts}
         assert {found[q].outcome for q in ("largest_tension", "tension_place")} == {outcome}
         assert found["contact_radius"].outcome is Outcome.DISAGREES

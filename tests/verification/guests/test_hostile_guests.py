@@ -169,7 +169,7 @@ def hertz(tmp_path_factory):
 
 
 def guest(folder, **way_in):
-    return Guest(
+    return Guest.model_construct(
         folder=folder, text=repr(way_in), name="g", claim=0.01, supports=Supports(friction=True), **way_in
     )
 
@@ -253,7 +253,7 @@ def test_answers_out_of_order_are_refused(hertz, tmp_path):
     program = HEAD + "second = sys.stdin.readline()\n"  # waits for a second question before it answers
     (tmp_path / "hostile.py").write_text(program)
     host = guest(tmp_path, command=(sys.executable, "-S", "-E", "hostile.py"), time_limit=LIMIT)
-    host = replace(host, parameter="n", levels=(1, 2, 4))
+    host = host.model_copy(update={"refine": {"n": [1, 2, 4]}})
     claims = claims_of(case, host)
     questions = [question_of(case, exam, host, claims, parameter) for parameter in host.questions]
     replies = answered(host, case, questions)
@@ -304,7 +304,7 @@ def test_a_hostile_guest_does_not_hold_up_the_others(hertz, tmp_path):
     (tmp_path / "hostile.py").write_text(HEAD + "time.sleep(1000)\n")
     command = json.dumps([sys.executable, "-S", "-E", "hostile.py"])
     text = f'name = "g"\ncommand = {command}\nclaim = 0.01\ntime_limit = {LIMIT}\n'
-    host = replace(guest(tmp_path), text=text)
+    host = guest(tmp_path).model_copy(update={"text": text})
     begin = time.monotonic()
     second = replace(case, name="second")
     prepare(second, exam_path(folder, second))

@@ -108,6 +108,23 @@ def test_surface_closed_form_continues_the_quadrature_below(sliding):
     assert difference.max() < 1e-5 * BARE.p_h
 
 
+def test_pressure_is_the_abel_integral_of_its_potential():
+    # -int_r^a phi'(t) / sqrt(t^2 - r^2) dt with t^2 = r^2 + s^2, by Gauss-Legendre
+    abel = integral_equation.solve(
+        radius=1e-2, load=20.0, coatings=((800e9, 0.2, 5e-6), (50e9, 0.3, 9e-6)), substrate=(210e9, 0.3)
+    ).abel
+    full = np.zeros(2 * abel.c.size - 1)
+    full[::2] = abel.c
+    slope = np.polynomial.legendre.legder(full)
+    x, weight = np.polynomial.legendre.leggauss(200)
+    for share in (0.0, 0.3, 0.9, 0.999):
+        reach = np.sqrt(1 - share**2)
+        t = np.hypot(share, 0.5 * reach * (1 + x))
+        expected = -0.5 * reach * (np.polynomial.legendre.legval(t, slope) / t) @ weight / abel.a
+        assert abel.pressure(share * abel.a) == pytest.approx(expected, rel=1e-11)
+    assert abel.pressure(1.1 * abel.a) == 0
+
+
 def test_peak_on_a_ring_is_found_between_the_samples():
     s, weight = np.polynomial.legendre.leggauss(40)
     s, weight = (1 + s) / 2, weight / 2

@@ -26,11 +26,11 @@ from verification.commands.common.task_progress import (
     Pool,
     kept_results,
     pool_of,
-    require_gmsh,
     run_info,
     solve,
 )
 from verification.commands.common.terminal import did_you_mean, named_table, print_json, print_out
+from verification.commands.common.terminal_bar import require_gmsh
 from verification.running.case_tasks import case_task
 from verification.running.checked_files import locked, write_atomically
 
