@@ -10,7 +10,7 @@ from math import isfinite
 from statistics import median
 
 from verification.credibility.import_independence import shared
-from verification.credibility.self_tests.known_enclosures import TEST
+from verification.credibility.self_tests.known_verdicts import TEST
 from verification.evidence.alarm_record import DECADES
 from verification.judging.verdict import Outcome
 from verification.page.number_text import plain
