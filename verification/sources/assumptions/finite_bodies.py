@@ -30,14 +30,8 @@ from verification.sources.references import integral_equation
 from verification.sources.references.integral_equation import SPHERE, Solid, compliance, kernel_wavenumbers
 from verification.sources.references.layered_half_space import contact_modulus
 
-SUMMED, INTEGRATED = (
-    30,
-    76,
-)  # degrees n: below the series is a sum, above an integral, between a blend of both
-PANEL, TAIL = (
-    16,
-    36.0,
-)  # Gauss points in a panel of wavenumbers; exponent at which coatings are no longer felt
+SUMMED, INTEGRATED = 30, 76  # degrees n: a sum below, an integral above, a blend of both between
+PANEL, TAIL = 16, 36.0  # Gauss points in a panel of wavenumbers; exponent beyond which coatings are not felt
 
 
 @dataclass(frozen=True)
@@ -47,21 +41,21 @@ class ElasticBall:
     radius : [m].   solid : coatings from the surface inwards, then (E, nu).
 
     The ball is pressed at both poles, so that its equatorial plane stays plane and free of shear; the
-    approach is measured to that plane. Vertical pressure p(r) per horizontal area acts on the surface at r =
-    R sin(theta), as it acts on the flat, and displaces it vertically by w. With u_R = sum U_n P_n, u_theta =
-    sum V_n dP_n/dtheta and the same series S_n, T_n of the tractions sigma_RR, sigma_Rtheta,
+    approach is measured to that plane. Vertical pressure p(r) per horizontal area acts on the surface at
+    r = R sin(theta), as it acts on the flat, and displaces it vertically by w. With the series
+    u_R = sum U_n P_n, u_theta = sum V_n dP_n/dtheta and S_n, T_n of the tractions sigma_RR, sigma_Rtheta,
 
         w = sum_(n even) (2n+1)/R^2 [g1 C11 q1 + C12/L (g1 q2 + g2 q1) + g2 C22/L q2],   q = int_0^R p g r dr
         (U_n, V_n) = C (S_n, T_n),  L = n(n+1),  g1 = cos(theta) P_n,  g2 = -sin(theta) dP_n/dtheta.
 
-    Abel's operator, which turns J0(kr) into cos(kx), turns P_n(cos(theta)) = 2F1(-n/2, (n+1)/2; 1; (r/R)^2) into
-    F_n(x/R), the even solution of Legendre's equation with F_n(0) = 1:
+    Abel's operator, which turns J0(kr) into cos(kx), turns P_n(cos(theta)) = 2F1(-n/2, (n+1)/2; 1; (r/R)^2)
+    into F_n(x/R), the even solution of Legendre's equation with F_n(0) = 1:
 
         F_n(s) = 2F1(-n/2, (n+1)/2; 1/2; s^2),   P_n(s)/P_n(0) of even, Q_n(s)/Q_n(0) of odd n,
 
     so that g1 and g2 become sums of F_n-1 and F_n+1 in the equation of ``integral_equation``. The part
-    2/E1* int cos(k R xi) cos(k R xi') / sqrt(cos xi cos xi') dk, x = R sin(xi), is the identity of a half-space;
-    what is left is a function of x and t with a logarithm at x = t, of the order 1/(G R).
+    2/E1* int cos(k R xi) cos(k R xi') / sqrt(cos xi cos xi') dk, x = R sin(xi), is the identity of a
+    half-space; what is left is a function of x and t with a logarithm at x = t, of the order 1/(G R).
 
     Homogeneous, to the order a/R, a ball on a rigid half-space differs at the same load by
 

@@ -365,7 +365,8 @@ def first_harmonic(
 
         pressure:   sigma_xx = c (1 - 2 nu) m/r^3,      traction:   sigma_xx = (4 + nu)/4 I0 - I2 - nu/4 I4.
 
-    Derived like the axisymmetric fields of ``hankel_field``, with one more factor -i cos(alpha) of the wave's direction.
+    Derived like the axisymmetric fields of ``hankel_field``, with one more factor -i cos(alpha) of the wave's
+    direction.
 
     x : (n,) [m]; on the surface outside the contact, |x| >= a, where both tractions vanish.
     nodes, tail : of the quadrature, as of ``HankelField``.
