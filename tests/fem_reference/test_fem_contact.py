@@ -32,16 +32,14 @@ CASES = {
 HALF_SPACES = {"bare": (), "layers of equal moduli": ((E, NU, 0.1 * A_H), (E, NU, 0.9 * A_H))}
 
 
+def pressed(coatings, **options):
+    given = {"radius": R, "load": W, "substrate": (E, NU), "estimate_uncertainty": False}
+    return solve(coatings=coatings, **given | options)
+
+
 @lru_cache
 def solved(name, quality="default"):
-    return solve(
-        radius=R,
-        load=W,
-        coatings=(CASES | HALF_SPACES)[name],
-        substrate=(E, NU),
-        quality=quality,
-        estimate_uncertainty=False,
-    )
+    return pressed((CASES | HALF_SPACES)[name], quality=quality)
 
 
 def disc(a, n=400):
@@ -111,14 +109,7 @@ def test_equal_moduli_give_hertz():
 
 def test_thick_coating_gives_hertz_of_the_coating():
     E_1, nu_1, h = 2 * E, 0.2, 200 * A_H
-    s = solve(
-        radius=R,
-        load=W,
-        coatings=((E_1, nu_1, h),),
-        substrate=(E, NU),
-        quality="fast",
-        estimate_uncertainty=False,
-    )
+    s = pressed(((E_1, nu_1, h),), quality="fast")
     a = (3 * W * R * (1 - nu_1**2) / (4 * E_1)) ** (1 / 3)
     # the substrate is felt in proportion to (a/h)^3 in a, to a/h in the approach
     assert s.contact_radius == pytest.approx(a, rel=1e-6)
@@ -127,43 +118,24 @@ def test_thick_coating_gives_hertz_of_the_coating():
 
 def test_thin_coating_gives_hertz_of_the_substrate():
     h = 0.001 * A_H
-    s = solve(
-        radius=R,
-        load=W,
-        coatings=((2 * E, NU, h),),
-        substrate=(E, NU),
-        size=0.5,
-        estimate_uncertainty=False,
-    )
+    s = pressed(((2 * E, NU, h),), size=0.5)
     # the coating is felt in proportion to h/a
     assert s.contact_radius == pytest.approx(A_H, rel=2 * h / A_H)
     assert s.peak_pressure == pytest.approx(P_H, rel=4 * h / A_H)
 
 
 def test_scaling_with_load_radius_and_moduli():
-    cheap = {"size": 0.5, "order": 2, "estimate_uncertainty": False}
-    base = solve(radius=R, load=W, coatings=CASES["stiff"], substrate=(E, NU), **cheap)
+    cheap = {"size": 0.5, "order": 2}
+    base = pressed(CASES["stiff"], **cheap)
     factor = 3.0  # all lengths; W ~ E L^2 keeps strains
     coatings = tuple((7 * E_k, nu, factor * h) for E_k, nu, h in CASES["stiff"])
-    other = solve(
-        radius=factor * R,
-        load=7 * factor**2 * W,
-        coatings=coatings,
-        substrate=(7 * E, NU),
-        **cheap,
-    )
+    other = pressed(coatings, radius=factor * R, load=7 * factor**2 * W, substrate=(7 * E, NU), **cheap)
     assert other.contact_radius == pytest.approx(factor * base.contact_radius, rel=1e-9, abs=0)
     assert other.approach == pytest.approx(factor * base.approach, rel=1e-9, abs=0)
     assert other.peak_pressure == pytest.approx(7 * base.peak_pressure, rel=1e-9)
     # sharper sphere, same contact: R -> 2R with W -> W/2 halves every stress, small strain being linear in
     # 1/R
-    half = solve(
-        radius=2 * R,
-        load=W / 2,
-        coatings=CASES["stiff"],
-        substrate=(E, NU),
-        **cheap,
-    )
+    half = pressed(CASES["stiff"], radius=2 * R, load=W / 2, **cheap)
     assert half.contact_radius == pytest.approx(base.contact_radius, rel=1e-9, abs=0)
     assert half.peak_pressure == pytest.approx(base.peak_pressure / 2, rel=1e-9)
 
@@ -198,8 +170,7 @@ def test_pressure_error_falls_at_the_expected_order(order):
 @pytest.mark.slow
 def test_outer_boundary_is_far_enough():
     near, far = (
-        solve(radius=R, load=W, coatings=CASES["stiff"], substrate=(E, NU), far=far, quality="fast")
-        for far in (1000.0, 4000.0)
+        pressed(CASES["stiff"], far=far, quality="fast", estimate_uncertainty=True) for far in (1e3, 4e3)
     )
     # 3e-7 of the approach at 1000 a_h; the far mesh itself differs by its own estimate
     allowed = near.uncertainty.approach + far.uncertainty.approach
@@ -210,14 +181,7 @@ def test_outer_boundary_is_far_enough():
 # The other two are solved by the slow test against the exact solution.
 @pytest.mark.parametrize(("thickness", "ratio"), [(0.01, 100.0), (20.0, 0.01)])
 def test_extreme_coatings_are_solved_with_positive_pressure_and_gap(ratio, thickness):
-    s = solve(
-        radius=R,
-        load=W,
-        coatings=((ratio * E, NU, thickness * A_H),),
-        substrate=(E, NU),
-        size=0.5,
-        estimate_uncertainty=False,
-    )
+    s = pressed(((ratio * E, NU, thickness * A_H),), size=0.5)
     assert s.diagnostics.residual_pressure == 0
     assert s.diagnostics.residual_gap == 0
     # between Hertz on the stiffer and on the softer of the two solids

@@ -156,8 +156,8 @@ def run(
 def _write(
     results: Sequence[CaseResult], info: RunInfo, evidence: "Evidence", output: Path, junit: str
 ) -> Path:
-    from verification.report.report_files import write_report
     from verification.report.report_material import Material
+    from verification.report.report_page import write_report
 
     return write_report(Material(results, info, evidence, read_planes(output, results)), output, junit)
 

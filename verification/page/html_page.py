@@ -9,8 +9,7 @@ from pathlib import Path
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 
-from verification.page.embedded_csv import embedded
-from verification.page.page_parts import Section
+from verification.page.page_parts import Section, embedded
 from verification.page.symbol_text import drawn, typeset, unicode
 
 HTML = Path(__file__).parent / "html"

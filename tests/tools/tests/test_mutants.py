@@ -14,7 +14,7 @@ from synthetic_results import INFO
 
 from verification.evidence import mutant_record as records
 from verification.evidence.mutant_record import Catch, MutantRecord, Trial
-from verification.report.credibility import mutants_section as page
+from verification.report.credibility import detection_sections as page
 from verification.report.report_material import Evidence, Material
 from verification.report.sections.first_page import worth
 from verification.running.checked_files import StoreError, read_checked
@@ -209,12 +209,12 @@ def test_survivors_that_were_read_keep_their_reason_and_equivalent_ones_do_not_c
 
 def test_the_section_shows_score_and_survivors(tmp_path):
     record = _record(tmp_path)
-    section = page.section(Material([], INFO, Evidence(mutants=record)))
+    section = page.mutants_of(Material([], INFO, Evidence(mutants=record)))
     assert section is not None
     assert "1 of 2" in section.parts[0].text
     cells = [cell.text for row in section.parts[1].tables[0].rows for cell in row.cells]
     assert record.trials[0].reason in cells
-    assert page.section(Material([], INFO)) is None
+    assert page.mutants_of(Material([], INFO)) is None
     (first,) = worth(Material([], INFO, Evidence(mutants=record)))
     assert (first.value, first.href) == ("1 of 2", f"#{section.anchor}")
 

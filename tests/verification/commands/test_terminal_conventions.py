@@ -21,8 +21,8 @@ from verification.cases.published_file import published_cases
 from verification.commands.compare import compare
 from verification.commands.shipped.list_cases import list_cases
 from verification.page.pdf_file import NoBrowser, browser, printed
-from verification.report.report_files import report_json
 from verification.report.report_material import Material
+from verification.report.report_page import report_json
 from verification.running.case_result import to_json
 from verification.running.checked_files import write_checked
 from verification.running.stored_run import read_run

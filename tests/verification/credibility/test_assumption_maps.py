@@ -10,8 +10,7 @@ from assumption_maps_made.measuring import assembled, measure, with_map
 
 from verification.commands.common.known_folders import RECORDS
 from verification.credibility.model_error import ASSUMPTIONS, PARABOLA, QUANTITIES, Assumption, model_error
-from verification.evidence.assumption_maps import AssumptionMaps, read_maps
-from verification.evidence.map_places import Place, places_of
+from verification.evidence.assumption_maps import AssumptionMaps, Place, places_of, read_maps
 from verification.problem.coated_contact import CoatedContact
 from verification.running.case_result import RunInfo
 from verification.sources.assumptions.contact_change import Change

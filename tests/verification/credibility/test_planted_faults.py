@@ -16,7 +16,7 @@ from verification.credibility.faults.fault_planting import Constant, Edit, Fault
 from verification.credibility.faults.fault_trial import Trial, clean_path, try_fault
 from verification.evidence.fault_record import Catch, Record, read_record, to_json, write_record
 from verification.judging.verdict import Outcome
-from verification.report.credibility.faults_section import faults_page
+from verification.report.credibility.detection_sections import faults_page
 from verification.running import contact_run as running
 from verification.running.case_result import from_json as result_from_json
 from verification.running.case_result import to_json as result_to_json

@@ -10,7 +10,7 @@ from verification.credibility.self_tests import SelfTest, self_tests
 from verification.judging.verdict import Outcome
 from verification.regression.baseline_change import Regression
 from verification.regression.run_exit_codes import EXIT, run_code
-from verification.report.credibility.self_tests_section import section
+from verification.report.credibility.detection_sections import section
 from verification.report.report_material import Evidence, Material
 
 PASSED = SelfTest("judging", "verdicts are what they must be", True, "21 known answers")

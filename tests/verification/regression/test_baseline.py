@@ -24,8 +24,8 @@ from verification.regression.baseline_change import (
 )
 from verification.regression.baseline_file import path_in, read_baseline, write_baseline
 from verification.regression.number_drift import RELATIVE, State, measured
-from verification.report.report_files import report_json
 from verification.report.report_material import Material
+from verification.report.report_page import report_json
 from verification.running.case_result import CaseResult, to_json
 from verification.running.checked_files import StoreError, write_checked
 

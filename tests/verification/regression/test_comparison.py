@@ -12,13 +12,11 @@ from quick_case import coatcheck
 from synthetic_results import INFO, STEEL, contact, result_of
 
 from verification.judging.verdict import Outcome
-from verification.regression.comparison_page import comparison_page
-from verification.regression.history_page import history_page
 from verification.regression.number_drift import State
-from verification.regression.run_comparison import compare_runs
-from verification.regression.run_history import history
-from verification.report.report_files import report_json
+from verification.regression.run_comparison import compare_runs, comparison_page
+from verification.regression.run_history import history, history_page
 from verification.report.report_material import Material
+from verification.report.report_page import report_json
 from verification.running.case_result import CaseResult, RunInfo
 from verification.running.checked_files import StoreError
 from verification.running.stored_run import StoredRun, read_run

@@ -11,10 +11,15 @@ from quick_case import coatcheck
 from synthetic_results import INFO, STEEL, contact, result_of
 
 from verification.regression.baseline_change import updated
-from verification.regression.history_page import MOST_COLUMNS, history_message, history_page
-from verification.regression.run_history import history, reports_in
-from verification.report.report_files import report_json
+from verification.regression.run_history import (
+    MOST_COLUMNS,
+    history,
+    history_message,
+    history_page,
+    reports_in,
+)
 from verification.report.report_material import Material
+from verification.report.report_page import report_json
 from verification.running.stored_run import StoredRun
 
 GOOD = result_of(contact((2 * STEEL[0], 0.3, 1.0)), name="stiff", points=17)

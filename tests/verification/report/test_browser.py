@@ -8,8 +8,8 @@ from synthetic_results import INFO, showcase
 from synthetic_study import study
 
 from verification.page.pdf_file import page_numbers, printed, with_numbers
-from verification.report.report_files import write_report
 from verification.report.report_material import Evidence, Material
+from verification.report.report_page import write_report
 from verification.sampling.stress_plane import sample_plane
 from verification.sources.references.hertz import Hertz
 

@@ -14,7 +14,7 @@ from verification.evidence.fault_record import Catch, Record, Row, write_record
 from verification.guests.pages import guests_section
 from verification.page.page_parts import Part, Section
 from verification.report.credibility import credibility_statement
-from verification.report.credibility.faults_section import faults_section
+from verification.report.credibility.detection_sections import faults_section
 from verification.report.report_material import Evidence, Material, gather
 from verification.report.report_page import render
 from verification.report.sections import first_page

@@ -10,9 +10,9 @@ from synthetic_results import INFO, STEEL, contact, result_of, showcase
 
 from verification.judging.verdict import Outcome
 from verification.regression.junit_xml import junit_xml
-from verification.report import report_files
-from verification.report.report_files import write_report
+from verification.report import report_page as report_files
 from verification.report.report_material import Material
+from verification.report.report_page import write_report
 from verification.running import checked_files
 from verification.running.case_result import SCHEMA, CaseResult, SourceResult, from_json
 from verification.running.checked_files import StoreError

@@ -5,8 +5,16 @@ import numpy as np
 import pytest
 from synthetic_results import INFO, STEEL, contact, result_of
 
-from verification.page.svg_raster import THINNEST, Frame, Scale, coloured, rasterised
-from verification.report.figures.field_pictures import EVERY, pictures, plane_difference
+from verification.report.figures.field_pictures import (
+    EVERY,
+    THINNEST,
+    Frame,
+    Scale,
+    coloured,
+    pictures,
+    plane_difference,
+    rasterised,
+)
 from verification.report.report_material import Material
 from verification.report.report_page import render
 from verification.sampling.stress_plane import Plane, sample_plane

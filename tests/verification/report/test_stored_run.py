@@ -13,8 +13,8 @@ from verification.credibility.self_tests import SelfTest
 from verification.evidence.alarm_record import write_record
 from verification.regression.baseline_change import regression, updated
 from verification.regression.junit_xml import junit_xml
-from verification.report.report_files import write_report
 from verification.report.report_material import Material, gather, stored_material
+from verification.report.report_page import write_report
 from verification.report.sections.case_page import rerun_command
 from verification.running.case_result import to_json
 from verification.running.checked_files import write_checked

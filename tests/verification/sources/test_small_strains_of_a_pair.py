@@ -11,7 +11,7 @@ from assumption_maps_made.small_strain_cost import COARSE, of_small_strains
 from numpy.polynomial import legendre
 from scipy.sparse.linalg import splu
 
-from verification.evidence.map_places import Place
+from verification.evidence.assumption_maps import Place
 from verification.problem.coated_contact import CoatedContact, keywords
 from verification.sources.assumptions.contact_change import Change
 from verification.sources.assumptions.strain_cost_of_pair import SAFETY, of_pair

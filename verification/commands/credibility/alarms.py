@@ -70,8 +70,8 @@ def alarms(
         require_checkout(records, "--records")
     require_gmsh()
 
-    from verification.report.report_files import write_report
     from verification.report.report_material import Material
+    from verification.report.report_page import write_report
 
     started = datetime.datetime.now(datetime.UTC)
     with locked(output):

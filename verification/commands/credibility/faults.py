@@ -94,7 +94,7 @@ def faults(
 
     from verification.credibility.faults import fault_campaign
     from verification.evidence.fault_record import to_json, write_record
-    from verification.report.credibility.faults_section import faults_page
+    from verification.report.credibility.detection_sections import faults_page
 
     started = datetime.datetime.now(datetime.UTC)
     with locked(output):

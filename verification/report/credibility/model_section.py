@@ -10,9 +10,8 @@ from markupsafe import Markup
 from verification.credibility.model_error import ASSUMPTIONS
 from verification.credibility.model_error import WORDS as NAMES
 from verification.evidence.assumption_maps import WORDS, AssumptionMap
-from verification.page.embedded_csv import written
 from verification.page.number_text import plain
-from verification.page.page_parts import Cell, Gallery, Panel, Part, Section, Table, number, row
+from verification.page.page_parts import Cell, Gallery, Panel, Part, Section, Table, number, row, written
 from verification.page.svg_plot import Axes, drawing
 from verification.problem.array_types import Array
 from verification.report.report_material import Material

@@ -8,7 +8,6 @@ from math import ceil, floor
 import numpy as np
 from markupsafe import Markup
 
-from verification.page.embedded_csv import written
 from verification.page.number_text import plain
 from verification.page.page_parts import (
     Cell,
@@ -21,6 +20,7 @@ from verification.page.page_parts import (
     number,
     row,
     table_of,
+    written,
 )
 from verification.page.svg_plot import Axes, drawing, power_of_ten
 from verification.problem.array_types import Array
