@@ -1,4 +1,4 @@
-"""Errors of the semi-analytical method: discs under given pressures, elliptical contacts.
+"""Errors of the semi-analytical method: discs under given pressures, films, elliptical contacts.
 
 A uniform pressure and Hertz's, which slides, on the surface, inside, on both sides of each interface. Nothing
 is iterated, so the error is that of the stress coefficients, of the influence coefficients and of the
@@ -14,6 +14,7 @@ from typing import Any
 
 import numpy as np
 
+from verification.judging.invariants.influence_error import coefficient_error
 from verification.problem.array_types import Array
 from verification.problem.coated_contact import CoatedContact
 from verification.problem.line_profile import lines_of
@@ -29,6 +30,8 @@ DEPTHS = (0.02, 0.15, 0.48, 1.2, 2.5)
 PLANE = 0.6  # depth of the plane by FFT, over ten patches, where patches of a pressure without steps suffice
 # Of the half-width of the grid: centres along an axis, off it, in the corner, none beside the rim.
 QUARTER = ((0.0, 0.3, 0.75, 0.2, 0.5, 0.6, 0.9, 1.0), (0.0, 0.0, 0.0, 0.7, 0.5, 0.3, 0.9, 1.0))
+SIDE = 0.07  # of a patch, over a_h
+FILMS = {"film of one patch": 1.0, "film of five patches": 5.0}  # thickness over that
 TURNED, SLIDING = "ellipse 2 : 1, turned", "ellipse 2 : 1, sliding"
 ANGLE = 0.4  # of the long axis from x
 WIDE = 1.15  # half-width of the grid over the long semi-axis
@@ -126,6 +129,20 @@ def _deflection_error(problem: CoatedContact, exact: HankelField, patches: int) 
     i, j = (np.array(QUARTER) * (len(grid.x) - 1)).astype(int)
     normal = HankelField(exact.pressure, problem.coatings, problem.substrate, 0.0)
     return float(np.abs(u[i, j] - normal.displacement(grid.x[i], grid.x[j], 0 * grid.x[i])[2]).max())
+
+
+def film_errors(problem: CoatedContact) -> list[ExactError]:
+    """Influence coefficients of films so thin that patches near the loaded one are integrated by quadrature.
+
+    No shipped case has a film so thin on the patches of its last grid.
+    """
+    found = []
+    for name, thickness in FILMS.items():
+        (E, nu, _), *_ = problem.coatings
+        film = replace(problem, coatings=((E, nu, thickness * SIDE * problem.a_h),))
+        error = coefficient_error(film, SIDE * problem.a_h)
+        found.append(ExactError("one patch loaded", name, "influence coefficients", error))
+    return found
 
 
 def turned_ellipse(problem: CoatedContact, patches: int = 129) -> list[ExactError]:

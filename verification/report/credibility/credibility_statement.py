@@ -14,7 +14,7 @@ from verification.cases.random_problems import FRICTION, MOST_COATINGS, POISSON,
 from verification.credibility.import_independence import Part as Imports
 from verification.credibility.import_independence import shared
 from verification.credibility.manufactured_solutions import DesignOrder
-from verification.credibility.self_tests.known_enclosures import TEST
+from verification.credibility.self_tests.known_verdicts import TEST
 from verification.evidence.alarm_record import DECADES, AlarmRecord
 from verification.evidence.enclosure_record import EnclosureRecord
 from verification.judging.verdict import Outcome

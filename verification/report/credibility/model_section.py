@@ -7,8 +7,8 @@ from itertools import pairwise, product
 import numpy as np
 from markupsafe import Markup
 
+from verification.credibility.model_error import ASSUMPTIONS
 from verification.credibility.model_error import WORDS as NAMES
-from verification.credibility.shared_assumptions import ASSUMPTIONS
 from verification.evidence.assumption_maps import WORDS, AssumptionMap
 from verification.page.number_text import plain
 from verification.page.page_parts import Cell, Gallery, Panel, Part, Section, Table, number, row, written
