@@ -22,7 +22,7 @@ from verification.page.page_parts import (
     table_of,
     written,
 )
-from verification.page.svg_plot import Axes, drawing, power_of_ten
+from verification.page.svg_plot import level_map, power_of_ten, tint
 from verification.problem.array_types import Array
 from verification.report.report_material import Material
 from verification.report.report_words import stated
@@ -30,8 +30,6 @@ from verification.sources.references.effective_modulus import PERRIOT_BARTHEL_N
 from verification.study.formula_errors import EffectiveStudy
 from verification.study.usual_correction import FRICTION, BallCurve
 
-WIDTH, HEIGHT = 320, 250
-BOX = (48.0, 5.0, 266.0, 207.5)  # left, top, width, height
 LEVELS = (0.01, 0.05, 0.1, 0.2, 0.5)
 # One shade more for each level passed; two colours for too stiff and too compliant.
 SHADES = (0.12, 0.26, 0.42, 0.6, 0.85)
@@ -58,7 +56,7 @@ def _map_part(study: EffectiveStudy) -> Part:
     low, high = PERRIOT_BARTHEL_N
     text = stated("formulas", low=f"{low:g}", high=f"{high:g}")
     legend = [
-        (_tint(colour, shade), f"{word} {_percent(level)[1:]}")
+        (tint(colour, shade), f"{word} {_percent(level)[1:]}")
         for colour, word in ((STIFF, "too stiff by more than"), (SOFT, "too compliant by more than"))
         for level, shade in zip(LEVELS, SHADES, strict=True)
     ]
@@ -121,18 +119,15 @@ def _first_beyond(curve: BallCurve, share: float) -> float | None:
 
 def _draw_map(study: EffectiveStudy, error: Array, name: str) -> Markup:
     x, y = np.log10(study.thickness), np.log10(study.ratio)
-    axes = Axes(BOX, (x[0], x[-1]), (y[0], y[-1]))
-    for sign, colour in ((1, STIFF), (-1, SOFT)):
-        for (level, above), shade in zip(pairwise([*LEVELS, 1e9]), SHADES, strict=True):
-            if (sign * error > level).any():
-                axes.filled(x, y, sign * error, level, above, colour, shade)
-    for level in (0.1, -0.1):
-        if error.min() < level < error.max():
-            axes.contour(x, y, error, level, _percent(level))
-    axes.ticks(_decades(x[0], x[-1]), _decades(y[0], y[-1]), "h / a")
-    axes.text(x[0], y[-1], "E1/E2", by=(4, 13))
-    label = f"{name}: departure from the exact effective modulus over h/a and E1/E2"
-    return drawing(WIDTH, HEIGHT, label, axes)
+    areas = [
+        (sign * error, level, above, colour, shade)
+        for sign, colour in ((1, STIFF), (-1, SOFT))
+        for (level, above), shade in zip(pairwise([*LEVELS, 1e9]), SHADES, strict=True)
+    ]
+    contours = [(error, level, _percent(level)) for level in (0.1, -0.1)]
+    label = f"{name}: departure from the exact effective modulus"
+    ticks = (_decades(x[0], x[-1]), _decades(y[0], y[-1]))
+    return level_map(label, x, y, areas, contours, ticks, ("h / a", "E1/E2"))
 
 
 def _decades(low: float, high: float) -> list[tuple[float, str]]:
@@ -140,13 +135,6 @@ def _decades(low: float, high: float) -> list[tuple[float, str]]:
     step = max(1, ceil((high - low) / 6))
     exponents = range(ceil(low), floor(high) + 1, step)
     return [(m, f"{10.0**m:g}" if -3 < m < 4 else power_of_ten(m)) for m in exponents]
-
-
-def _tint(colour: str, shade: float) -> Markup:
-    return Markup(
-        '<svg class="swatch" viewBox="0 0 36 10" aria-hidden="true"><rect x="1" y="0" width="34" height="10" '
-        'class="f-{}" fill-opacity="{}"/></svg>'
-    ).format(colour, shade)
 
 
 def _percent(value: float) -> str:
