@@ -1,4 +1,4 @@
-"""Plausibility of a problem: one line for each number that is possible but hardly meant.
+"""Plausibility of a problem: one warning for each number that is possible but unlikely.
 
 A warning blocks nothing. Where a bare SI number looks like one in the unit that people write it in, the line
 names that unit: E = 210 is meant in GPa.

@@ -1,4 +1,4 @@
-"""Error of the model itself at a problem: what its assumptions cost, each measured by a model without it.
+"""Error of the model itself at a problem: the cost of each assumption, from a model without it.
 
 A fast model is evaluated at the problem; for a slow one the recorded map is read, see ``ASSUMPTIONS``.
 """
@@ -29,8 +29,8 @@ WORDS = {
 }
 
 
-LIMIT = 0.05  # of a quantity; a larger cost is warned of
-LEAST = 1e-6  # of a quantity; a smaller cost is not named
+LIMIT = 0.05  # relative; a larger cost triggers a warning
+LEAST = 1e-6  # relative; a smaller cost is not reported
 
 
 @dataclass(frozen=True)
@@ -151,7 +151,7 @@ def model_error(problem: CoatedContact, maps: AssumptionMaps | None = None) -> M
 
 
 def judged_quantities(claimed: Collection[str]) -> tuple[str, ...]:
-    """Of ``QUANTITIES`` those that claims on the quantities ``claimed`` judge."""
+    """The members of ``QUANTITIES`` that claims on the quantities ``claimed`` judge."""
     by = {
         "peak_pressure": ("peak_pressure", "pressure"),
         "tension": ("sigma_xx", *PEAKS, *BALL_PEAKS),

@@ -45,17 +45,7 @@ class Exam:
 
 def prepare(case: Subject, path: Path) -> None:
     """Solve ``case`` exactly, sample it on its lines, store it at ``path``."""
-    result = CaseResult(
-        name=case.name,
-        title=case.title,
-        source=case.source,
-        problem=describe(case.problem),
-        sources=(SourceResult(REFERENCE, 0.0),),
-        profiles=case.exact(),
-        verdicts=(),
-        seconds=0.0,
-        text=case.text,
-    )
+    result = CaseResult.of(case, sources=(SourceResult(REFERENCE, 0.0),), profiles=case.exact())
     write_checked(path, to_json(result) | {"made_by": fingerprint()})
 
 

@@ -12,7 +12,7 @@ from verification.guests.guest_description import Guest
 from verification.judging.verdict import Claim, Outcome, Verdict
 from verification.problem.line_profile import Profile
 from verification.problem.quantity import BALL_PEAKS, PEAKS
-from verification.running.case_result import CaseResult, SourceResult, describe
+from verification.running.case_result import CaseResult, SourceResult
 from verification.running.contact_run import decide
 
 Key = tuple[str, str]  # quantity, line
@@ -39,15 +39,20 @@ def judged(guest: Guest, case: Subject, exam: CaseResult, replies: Sequence[Solv
         if verdict is None:
             verdict = decided(guest, claim, decide(claim, profiles, outcomes, case.problem))
         verdicts.append((claim, verdict))
-    return _result(case, (mine, exact), tuple(profiles.values()), verdicts, sum(r.seconds for r in replies))
+    return CaseResult.of(
+        case,
+        sources=(mine, exact),
+        profiles=tuple(profiles.values()),
+        verdicts=tuple(verdicts),
+        seconds=sum(r.seconds for r in replies),
+    )
 
 
 def refused(guest: Guest, case: Subject, reason: str) -> CaseResult:
     """The result of a case that the guest does not solve, by its own statement."""
     verdict = Verdict(Outcome.UNSUPPORTED, reason)
-    return _result(
-        case, (SourceResult(guest.name, 0.0),), (), [(c, verdict) for c in claims_of(case, guest)], 0.0
-    )
+    verdicts = tuple((claim, verdict) for claim in claims_of(case, guest))
+    return CaseResult.of(case, sources=(SourceResult(guest.name, 0.0),), verdicts=verdicts)
 
 
 def decided(guest: Guest, claim: Claim, verdict: Verdict) -> Verdict:
@@ -118,23 +123,3 @@ def _diagnostics(guest: Guest, replies: Sequence[Solved], memory: int | None) ->
         found[guest.parameter] = list(guest.levels[: len(replies)])
         found["seconds"] = [r.seconds for r in replies]
     return found
-
-
-def _result(
-    case: Subject,
-    sources: tuple[SourceResult, ...],
-    profiles: tuple[Profile, ...],
-    verdicts: Sequence[tuple[Claim, Verdict]],
-    seconds: float,
-) -> CaseResult:
-    return CaseResult(
-        name=case.name,
-        title=case.title,
-        source=case.source,
-        problem=describe(case.problem),
-        sources=sources,
-        profiles=profiles,
-        verdicts=tuple(verdicts),
-        seconds=seconds,
-        text=case.text,
-    )

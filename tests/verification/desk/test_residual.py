@@ -143,5 +143,6 @@ def test_bad_files_end_in_one_message(old, new, message):
 
 def test_slip_of_its_unit_is_warned_of():
     (line,) = parse(FILE.replace('"150 MPa"', "-2.0")).warnings
-    assert line.endswith("coatings.1.residual_stress = -2 looks like GPa")
+    assert "coatings.1.residual_stress" in line
+    assert "GPa" in line
     assert parse(FILE).warnings == ()

@@ -22,7 +22,7 @@ from verification.running.checked_files import read_checked
 from verification.sampling.line_sampling import sample, sample_contact
 from verification.sources.exact_sources import solve_exactly
 
-GUEST = Guest(
+GUEST = Guest.model_construct(
     folder=None, text="", name="g", claim=0.01, supports=Supports(coatings=9, friction=True, stress=True)
 )
 LENGTHS = ("contact_radius", "approach", "tension_place", *DISPLACEMENTS)

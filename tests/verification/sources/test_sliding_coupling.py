@@ -240,15 +240,6 @@ def test_edge_has_the_exponent_of_the_plane(problem):
     assert np.diff(ratio) / np.diff(np.log(far)) == pytest.approx(problem.dundurs_beta / np.pi, rel=1e-3)
 
 
-def test_patches_without_an_expansion_confirm_the_change():
-    C, n = 0.2, 49
-    still, sliding = (solve_on_patches(c, n)[0] for c in (0.0, C))
-    change = (sliding[:2] / still[:2] - 1) / C**2
-    # the next power, C^2, contributes 1 % and 2 %, the staircase the rest
-    assert change == pytest.approx(np.array([CLOSED[3], PEAK]), rel=0.05)
-    assert sliding[2] / C == pytest.approx(CLOSED[1], rel=0.02)
-
-
 def test_patches_without_an_expansion_confirm_a_coated_contact():
     C, n, layers = 0.05, 49, ((1 - NU**2, NU, 0.5), ((1 - NU**2) / 4, NU))
     problem = CoatedContact(1.0, 0.8, (layers[0],), layers[1])

@@ -13,8 +13,8 @@ from verification.cases.unit_numbers import InSI, of_file
 from verification.credibility.self_tests.known_answers import Answers
 from verification.judging.standard_claims import standard_claims
 
-# Changes of one digit by ten half digits or more, 9 of each up to the hundredths, 1 to 5 of a thousandth: of
-# values that count, of those that depart.
+# Changes of one digit by ten half digits or more, 9 for each digit up to the hundredths, 1 to 5 for a
+# thousandth: in values that count, in values that depart.
 CHANGES = (675, 299)
 
 

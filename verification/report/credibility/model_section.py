@@ -10,15 +10,13 @@ from markupsafe import Markup
 from verification.credibility.model_error import WORDS as NAMES
 from verification.credibility.shared_assumptions import ASSUMPTIONS
 from verification.evidence.assumption_maps import WORDS, AssumptionMap
-from verification.page.embedded_csv import written
 from verification.page.number_text import plain
-from verification.page.page_parts import Cell, Gallery, Panel, Part, Section, Table, number, row
+from verification.page.page_parts import Cell, Gallery, Panel, Part, Section, Table, number, row, written
 from verification.page.svg_plot import Axes, drawing
 from verification.problem.array_types import Array
 from verification.report.report_material import Material
 from verification.sources.assumptions.contact_change import SCALARS
 
-ANCHOR = "model"
 LEVELS = (0.001, 0.01, 0.05)
 SHADES = (0.15, 0.4, 0.75)
 COLOUR, NO_ANSWER = "fem", 0.45
@@ -35,8 +33,12 @@ def section(material: Material) -> Section | None:
     record = material.evidence.maps
     if record is None or not record.maps:
         return None
-    parts = [Part(_conclusion(record.maps), [_reaches(record.maps)])]
-    return Section(ANCHOR, "Where the model ends", [*parts, *(_part(one) for one in record.maps)])
+    return Section("model", "Where the model ends", parts(record.maps))
+
+
+def parts(maps: Sequence[AssumptionMap]) -> list[Part]:
+    """A conclusion with the reach of each assumption, then a part for each of its ``maps``."""
+    return [Part(_conclusion(maps), [_reaches(maps)]), *map(_part, maps)]
 
 
 def _conclusion(maps: Sequence[AssumptionMap]) -> str:

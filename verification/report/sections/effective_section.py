@@ -1,15 +1,14 @@
-"""Effective-modulus formulas, simple limits: their accuracy against the exact reference."""
+"""Effective-modulus formulas: their accuracy against the exact reference."""
 
 from collections.abc import Sequence
 from functools import partial
 from itertools import pairwise
-from math import ceil, floor, log10
+from math import ceil, floor
 
 import numpy as np
 from markupsafe import Markup
 
-from verification.page.embedded_csv import written
-from verification.page.number_text import plain, scientific
+from verification.page.number_text import plain
 from verification.page.page_parts import (
     Cell,
     Gallery,
@@ -21,12 +20,13 @@ from verification.page.page_parts import (
     number,
     row,
     table_of,
+    written,
 )
 from verification.page.svg_plot import Axes, drawing, power_of_ten
 from verification.problem.array_types import Array
 from verification.report.report_material import Material
 from verification.sources.references.effective_modulus import PERRIOT_BARTHEL_N
-from verification.study.formula_errors import EffectiveStudy, Limit
+from verification.study.formula_errors import EffectiveStudy
 from verification.study.usual_correction import FRICTION, BallCurve
 
 WIDTH, HEIGHT = 320, 250
@@ -44,9 +44,8 @@ def section(material: Material) -> Section | None:
         return None
     if study.failure:
         return Section("effective-modulus", "Effective-modulus formulas", [], [study.failure])
-    parts = [_map_part(study), _confirmation(study), *_limit_parts(study.limits)]
-    parts += [_ball_part(study.balls)] if study.balls else []
-    return Section("effective-modulus", "Effective-modulus formulas and simple limits", parts)
+    parts = [_map_part(study), *([_ball_part(study.balls)] if study.balls else [])]
+    return Section("effective-modulus", "Effective-modulus formulas", parts)
 
 
 def _map_part(study: EffectiveStudy) -> Part:
@@ -62,7 +61,8 @@ def _map_part(study: EffectiveStudy) -> Part:
         "Perriot and Barthel's exponent is fitted to each ratio of moduli, between "
         f"{PERRIOT_BARTHEL_N[0]:g} and {PERRIOT_BARTHEL_N[1]:g}; drawn is the best one. Formulas "
         "with a coefficient that each experiment fits anew (Doerner and Nix, King, Saha and Nix, Hu and "
-        "Lawn, Jung) are not predictive and have no map."
+        "Lawn, Jung) are not predictive and have no map. No primary source was available; tests confirm "
+        "Gao's weights and Perriot and Barthel's x0 by the exact solution."
     )
     legend = [
         (_tint(colour, shade), f"{word} {_percent(level)[1:]}")
@@ -91,63 +91,6 @@ def _formula_row(study: EffectiveStudy, name: str, error: Array) -> Row:
             cells.append(number(float(value), _percent))
         cells.append(number(float((np.abs(part) <= 0.1).mean()), lambda share: f"{100 * share:.0f} %"))
     return row(name, *cells)
-
-
-def _confirmation(study: EffectiveStudy) -> Part:
-    first, second = study.weights
-    apart = max(abs(log10(theirs / fitted)) for _, theirs, fitted, _ in study.refitted)
-    n = [row[3] for row in study.refitted]
-    text = (
-        "No primary source was available. Gao's weights are confirmed by computation: I0 and I1 are within "
-        f"{scientific(first, 1)} and {scientific(second, 1)} of the exact first derivatives of the "
-        "stiffness with the film's shear modulus and Poisson's ratio. Perriot and Barthel's x0 is within "
-        f"{plain(apart, 2)} in its logarithm of what a least-squares fit to the exact solution gives, with n "
-        f"from {plain(min(n), 3)} to {plain(max(n), 3)}."
-    )
-    rows = [row(*(number(value, partial(plain, digits=3)) for value in values)) for values in study.refitted]
-    table = Table(
-        "x0 of Perriot and Barthel, and x0 with n fitted to the exact solution at nu = 0.3.",
-        ["E1/E2", "x0, published", "x0, fitted", "n, fitted"],
-        rows,
-    )
-    return Part(text, [table])
-
-
-def _limit_parts(limits: Sequence[Limit]) -> list[Part]:
-    thin = [limit for limit in limits if "thin" in limit.panel]
-    thick = [limit for limit in limits if "thick" in limit.panel]
-    return [
-        _limit_part(
-            thin,
-            "Thin layer on a rigid base: a bed of springs where it is compressible, S = pi M a^2/h and W "
-            "= pi M a^4/(4 R h) with the oedometric modulus M; a film squeezed out sideways where nu = "
-            "1/2, S = 3 pi G a^4/(8 h^3) and W = pi G a^6/(32 R h^3). Johnson (1985, section 5.8), Jaffar "
-            "(1989), Barber (2018). Near nu = 1/2 neither holds before a is many times h.",
-        ),
-        _limit_part(
-            thick,
-            "Thick coating, nu = 0.3: Hertz of the coating, kappa = 1, and with its first correction, "
-            "kappa = 1/(1 + (2/pi) a int (M - 1) dk), M the compliance of the layers: what the interface "
-            "adds when the contact is small.",
-        ),
-    ]
-
-
-def _limit_part(limits: Sequence[Limit], text: str) -> Part:
-    a = limits[0].a_over_h
-    table = table_of(
-        "Exact over limit, less 1, at three contact radii.",
-        limits,
-        [
-            ("limit", lambda one: f"{one.panel}, {one.name}"),
-            *((f"a/h = {plain(a[i], 2)}", partial(_excess, i=i)) for i in (0, len(a) // 2, -1)),
-        ],
-    )
-    return Part(text, [table])
-
-
-def _excess(one: Limit, i: int) -> Cell:
-    return number(one.excess[i], _percent)
 
 
 def _ball_part(balls: Sequence[BallCurve]) -> Part:

@@ -14,7 +14,13 @@ from functools import partial
 from typing import Any
 
 from verification.problem.coated_contact import CoatedContact, keywords
-from verification.sources.assumptions.contact_change import RESOLUTION, Change, change_between, require_thick
+from verification.sources.assumptions.contact_change import (
+    RESOLUTION,
+    Change,
+    change_between,
+    half_spaces,
+    require_thick,
+)
 from verification.sources.assumptions.elastic_ball import ElasticBall
 from verification.sources.references import integral_equation
 from verification.sources.references.integral_equation import SPHERE
@@ -31,8 +37,8 @@ def of_half_spaces(problem: CoatedContact, thickness: float = THICKNESS) -> tupl
 
     Returns the change, then its uncertainty: twice its difference from one with nodes and wavenumbers fewer
     by a quarter. The friction of ``problem`` leaves the pressure unchanged in both contacts.
-    Raises ValueError where the coatings are as thick as the disc, one is thinner than ``THINNEST``, and as
-    ``integral_equation`` does.
+    Raises ValueError where the coatings are as thick as the disc, an outer one is thinner than ``THINNEST``,
+    and as ``integral_equation`` does.
     """
     require_thick(problem)
     fine, coarse = (change_at(problem, thickness, resolution) for resolution in RESOLUTIONS)
@@ -51,7 +57,7 @@ def change_at(problem: CoatedContact, thickness: float, resolution: Mapping[str,
         E, nu, coatings = problem.ball
         beyond = ElasticBall(problem.radius, (coatings, (E, nu))).beyond_half_space
     disc = on_disc(problem, thickness * problem.radius)
-    return change_between(solve(**keywords(problem)), solve(**keywords(disc), beyond=beyond))
+    return change_between(half_spaces(problem, SPHERE, **resolution), solve(**keywords(disc), beyond=beyond))
 
 
 def on_disc(problem: CoatedContact, thickness: float) -> CoatedContact:

@@ -16,7 +16,7 @@ I_n = int phat1 J_n k dk, closed but for I_n,
 Derived as the axisymmetric fields of ``hankel``, with one more factor -i cos(alpha) of the wave's direction.
 """
 
-from typing import Any, NamedTuple, cast
+from typing import NamedTuple
 
 import numpy as np
 
@@ -60,7 +60,7 @@ def first_harmonic(
         total[2] = (4 + nu) / 4 * I0 - I2 - nu / 4 * I4
     if z > 0 or coatings:
         # of the pressure, this needs no more than its transform and radius
-        field = HankelField(cast(Any, pressure), coatings, substrate, 1.0, nodes, tail)
+        field = HankelField(pressure, coatings, substrate, 1.0, nodes, tail)
         k, w, (N, A, B) = field.waves(r, z, layer)
         J = bessel(k, r, highest=4)
         A1, A3 = (3 * A.ll + A.tt - 2 * B.lt) / 4, (A.ll - A.tt + 2 * B.lt) / 4

@@ -43,7 +43,7 @@ from verification.problem.array_types import Array
 from verification.problem.coated_contact import CoatedContact, keywords
 from verification.problem.gauss_legendre import gauss_legendre
 from verification.sources.references import integral_equation
-from verification.sources.references.integral_equation import Solid
+from verification.sources.references.integral_equation import ExactSolution, Solid
 from verification.sources.references.layered_half_space import LayeredHalfSpace
 
 GRADING = 4  # of the nodes towards the edge, where potentials have a logarithm
@@ -132,22 +132,29 @@ class SlidingExpansion:
 
     nodes : quadrature points in the contact, more where a coating is thin.
     solved : numerical parameters of ``integral_equation.solve``; ``panel``, ``tail`` are those here too.
+    exact : the contact without friction, by the parameters ``solved``, where it is there already.
     Lengths are over the contact radius a, potentials over E* a^2/(pi R).
     Raises ValueError where no contact radius is found.
     """
 
     def __init__(
-        self, problem: CoatedContact, nodes: int = 200, solved: Mapping[str, Any] | None = None
+        self,
+        problem: CoatedContact,
+        nodes: int = 200,
+        solved: Mapping[str, Any] | None = None,
+        exact: ExactSolution | None = None,
     ) -> None:
         solids = integral_equation.solids_of(problem.coatings, problem.substrate, problem.ball)
         self.problem, self.beta = problem, problem.dundurs_beta
         solved = {"panel": 16, "tail": 36.0, **(solved or {})}
-        self.exact = integral_equation.solve(**keywords(problem), estimate_uncertainty=False, **solved)
+        self.exact = exact or integral_equation.solve(
+            **keywords(problem), estimate_uncertainty=False, **solved
+        )
         self.a = a = self.exact.contact_radius
         E_star = integral_equation.combined_modulus(solids)
         self.scale = E_star * a**2 / (np.pi * problem.radius)
-        thinnest = integral_equation.thinnest_coating(solids, a)
-        self.nodes = _Nodes.graded(int(nodes * (1 + 0.05 * a / thinnest)))
+        outer = integral_equation.outer_thickness(solids, a)
+        self.nodes = _Nodes.graded(int(nodes * (1 + 0.05 * a / outer)))
         self.points = np.append(self.nodes.s, 1.0)  # with the edge
         k, weight = integral_equation.kernel_wavenumbers(solids, a, solved["panel"], solved["tail"])
         self.k = k * a
@@ -238,7 +245,7 @@ class SlidingExpansion:
 
     @property
     def _unit(self) -> float:
-        """Of displacements, a^2/R [m]."""
+        """Unit of displacements, a^2/R [m]."""
         return self.a**2 / self.problem.radius
 
     def _conjugate(self, psi1: Array, rest_slope: Array) -> Array:
