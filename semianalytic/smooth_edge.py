@@ -83,7 +83,7 @@ def edge_patches(shape: Shape, p: Array, grid: Grid, window: Window) -> EdgePatc
     at_edge = (depth[i, j] >= 1) & (depth[i, j] <= 2)
     missed = np.abs(held**2 - c)[at_edge] / slope[at_edge].max(initial=np.finfo(float).tiny)
     centre = np.sqrt(np.maximum(c, 0))
-    parts = np.empty((i.size, PARTS**2), dtype=np.float32)  # to 1e-7 of the pressure at the edge
+    parts = np.empty((i.size, PARTS**2))
     for k in _some(np.arange(i.size)):
         parts[k] = _smooth_parts(quadratic[k])
     # the edge cuts these along x, or along y
