@@ -32,7 +32,7 @@ Indices = NDArray[np.intp]
 FULL, TAPER = 3, 8
 SHARES = np.concatenate([np.ones(FULL + 1), 1 - np.arange(1, TAPER + 1) / (TAPER + 1)])
 PARTS = 11  # of a patch a side, odd
-AT_ONCE = 100  # patches at the edge
+AT_ONCE = 4000  # patches at the edge: with their parts 100 megabytes
 NEARLY = 4  # depth from which a quadratic of f^2 gives the means of all parts, to 1e-6 of them
 NEAR = 4  # within which the deflection is that of the parts, beyond it that of their moments
 
