@@ -17,7 +17,7 @@ from test_failing_workers import REASONS, alive, gone, task
 from verification.commands.common.command_error import CommandError
 from verification.commands.common.task_progress import pool_of, run_info
 from verification.running.checked_files import StoreError, read_checked, write_checked
-from verification.running.pool import dask_cluster, remote_tasks
+from verification.running.pool import dask_cluster
 from verification.running.pool.dask_cluster import Cluster, Lost
 from verification.running.pool.pool_task import SchedulerError, Task
 from verification.running.provenance import hardware
@@ -143,8 +143,8 @@ def test_another_program_is_named_by_what_differs():
     other = replace(here, code="0", versions=here.versions | {"numpy": "1.0"})
     assert {"numpy", "1.0", here.versions["numpy"]} <= set(other.difference(here).replace(",", "").split())
     with pytest.raises(SchedulerError, match="program"):
-        list(Cluster("tcp://there:1")._taken([(0, task("good", Path()))], remote_tasks.Reply(other)))
-    assert remote_tasks.serve(remote_tasks.Request((), {}, 1.0, "0")) == remote_tasks.Reply(here)
+        list(Cluster("tcp://there:1")._taken([(0, task("good", Path()))], dask_cluster.Reply(other)))
+    assert dask_cluster.serve(dask_cluster.Request((), {}, 1.0, "0")) == dask_cluster.Reply(here)
 
 
 def test_workers_of_another_program_are_refused(address, monkeypatch):

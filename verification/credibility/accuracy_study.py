@@ -7,7 +7,13 @@ from functools import partial
 from pathlib import Path
 from typing import Any, TypeVar
 
-from verification.credibility.exact_errors import ExactError, between_methods, disc_errors, turned_ellipse
+from verification.credibility.exact_errors import (
+    ExactError,
+    between_methods,
+    disc_errors,
+    film_errors,
+    turned_ellipse,
+)
 from verification.credibility.parameter_sweeps import Stated, Sweep, study
 from verification.credibility.refinement_studies import (
     Refinement,
@@ -119,11 +125,9 @@ def measure() -> AccuracyStudy:
 
 
 def discs_of(patches: int = 129) -> tuple[ExactError, ...]:
-    """Given pressures on both solids, Hertz's sliding on the coated one."""
-    found = disc_errors(COATED, "coated", SLIDING.friction, patches) + disc_errors(
-        BARE, "uncoated", 0.0, patches
-    )
-    return tuple(found)
+    """Given pressures on both solids, Hertz's sliding on the coated one; one patch of thin films."""
+    found = disc_errors(COATED, "coated", SLIDING.friction, patches)
+    return (*found, *disc_errors(BARE, "uncoated", 0.0, patches), *film_errors(COATED))
 
 
 def ellipses_of(elements: bool = True) -> tuple[ExactError, ...]:

@@ -23,7 +23,7 @@ from verification.guests.guest_protocol import (
 from verification.judging.verdict import Claim
 from verification.problem.array_types import Coatings
 from verification.problem.coated_contact import CoatedContact
-from verification.problem.layer_depths import layer_at
+from verification.problem.evaluation_points import layer_at
 from verification.problem.line_profile import Profile
 from verification.problem.quantity import unit_of
 from verification.running.case_result import CaseResult, SourceResult, describe, from_json, to_json

@@ -9,8 +9,7 @@ from assumption_maps_made.map_axes import MEASURED, MapAxes
 from assumption_maps_made.measuring import assembled, measure, with_map
 
 from verification.commands.common.known_folders import RECORDS
-from verification.credibility.model_error import model_error
-from verification.credibility.shared_assumptions import ASSUMPTIONS, PARABOLA, QUANTITIES, Assumption
+from verification.credibility.model_error import ASSUMPTIONS, PARABOLA, QUANTITIES, Assumption, model_error
 from verification.evidence.assumption_maps import AssumptionMaps, Place, places_of, read_maps
 from verification.problem.coated_contact import CoatedContact
 from verification.running.case_result import RunInfo

@@ -8,11 +8,11 @@ from verification.credibility.model_error import (
     GOODMAN,
     HALF_SPACES,
     PARABOLA,
+    SMALL_STRAINS,
     Cost,
     ModelError,
     model_error,
 )
-from verification.credibility.shared_assumptions import SMALL_STRAINS
 from verification.problem.coated_contact import CoatedContact
 
 BARE = CoatedContact(10e-3, 20.0, (), (210e9, 0.3))

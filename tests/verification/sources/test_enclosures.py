@@ -8,7 +8,7 @@ import pytest
 import fem_reference
 import semianalytic
 from verification.cases.published_table import FOLDER
-from verification.credibility.self_tests.known_enclosures import COATED, ROUNDING, distances
+from verification.credibility.self_tests.known_verdicts import COATED, ROUNDING, distances
 from verification.evidence.enclosure_record import SHIPPED, WIDTH, read_record
 from verification.problem.coated_contact import CoatedContact, keywords
 from verification.sources.enclosures.enclosed_problems import problems

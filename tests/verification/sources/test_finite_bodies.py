@@ -8,8 +8,13 @@ import pytest
 import semianalytic
 from verification.problem.coated_contact import CoatedContact, keywords
 from verification.sources.assumptions.contact_change import FLOOR
-from verification.sources.assumptions.elastic_ball import ElasticBall
-from verification.sources.assumptions.finite_bodies import RESOLUTIONS, change_at, of_half_spaces, on_disc
+from verification.sources.assumptions.finite_bodies import (
+    RESOLUTIONS,
+    ElasticBall,
+    change_at,
+    of_half_spaces,
+    on_disc,
+)
 
 E, NU, R = 210e9, 0.3, 10e-3
 RIGID = (1e9 * E, 0.3)

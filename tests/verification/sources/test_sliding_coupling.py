@@ -10,8 +10,7 @@ from scipy.special import j0, j1
 
 from semianalytic import frf
 from verification.problem.coated_contact import CoatedContact, keywords
-from verification.sources.assumptions.harmonic_stress import first_harmonic
-from verification.sources.assumptions.sliding_coupling import SlidingExpansion, coupling
+from verification.sources.assumptions.sliding_coupling import SlidingExpansion, coupling, first_harmonic
 from verification.sources.references import integral_equation
 from verification.sources.references.layered_half_space import contact_modulus
 

@@ -12,8 +12,7 @@ import numpy as np
 
 from verification.problem.array_types import Array
 from verification.problem.coated_contact import CoatedContact, keywords
-from verification.sources.assumptions.harmonic_stress import first_harmonic
-from verification.sources.assumptions.sliding_coupling import SlidingExpansion
+from verification.sources.assumptions.sliding_coupling import SlidingExpansion, first_harmonic
 from verification.sources.references import integral_equation
 from verification.sources.references.integral_equation import PARABOLA, SPHERE, ExactSolution, Gap
 

@@ -23,8 +23,8 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.special import j0, j1
 
 from verification.problem.array_types import Array, Coatings
+from verification.problem.evaluation_points import layer_at
 from verification.problem.gauss_legendre import wavenumber_panels
-from verification.problem.layer_depths import layer_at
 from verification.sources.references.layered_half_space import Amplitudes, LayeredHalfSpace, bending_length
 
 CHUNK = 2_000_000  # products of wavenumbers with radii held in memory at once
