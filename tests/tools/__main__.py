@@ -14,6 +14,7 @@ app = App(name="tests/tools", help=__doc__, help_format="plaintext")
 app.command("bench.command:bench")
 app.command("mutation.command:mutants")
 app.command("open_digits_made.command:vectors")
+app.command("energy_bounds.command:bounds")
 app.command("assumption_maps_made.command:assumptions")
 
 if __name__ == "__main__":

@@ -1,14 +1,9 @@
-"""Helper modules shared by name; what a report says of the program itself, measured once a process."""
+"""What a report says of the program itself, measured once a process."""
 
-import sys
 from functools import cache
-from pathlib import Path
 from unittest import mock
 
 import pytest
-
-# pytest's importlib mode leaves sys.path alone, so a helper beside the tests would not be found.
-sys.path.insert(0, str(Path(__file__).parent))
 
 
 @pytest.fixture(scope="session", autouse=True)

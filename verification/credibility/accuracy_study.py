@@ -1,6 +1,5 @@
 """The accuracy study of a default run: convergence on two solids of known solution, discs and ellipses."""
 
-import os
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -8,7 +7,13 @@ from functools import partial
 from pathlib import Path
 from typing import Any, TypeVar
 
-from verification.credibility.exact_errors import ExactError, disc_errors, turned_ellipse
+from verification.credibility.exact_errors import (
+    ExactError,
+    between_methods,
+    disc_errors,
+    film_errors,
+    turned_ellipse,
+)
 from verification.credibility.parameter_sweeps import Stated, Sweep, study
 from verification.credibility.refinement_studies import (
     Refinement,
@@ -19,9 +24,10 @@ from verification.credibility.refinement_studies import (
 from verification.credibility.study_verdicts import CORRECTED, PLAIN, STAIRCASE, verdicts
 from verification.judging.invariant_verdict import Invariant
 from verification.judging.invariants.influence_error import ConversionError, conversion_errors
+from verification.judging.outcome import Outcome
 from verification.problem.coated_contact import CoatedContact
-from verification.running.checked_files import StoreError, read_checked, write_checked
-from verification.running.json_records import decode, encode
+from verification.running.checked_files import write_checked
+from verification.running.json_records import RecordFile, decode
 from verification.running.pool.pool_task import Task
 from verification.running.provenance import commit, versions
 from verification.sources.method_sources import sharing_pressure
@@ -119,43 +125,46 @@ def measure() -> AccuracyStudy:
 
 
 def discs_of(patches: int = 129) -> tuple[ExactError, ...]:
-    """Given pressures on both solids, Hertz's sliding on the coated one."""
-    found = disc_errors(COATED, "coated", SLIDING.friction, patches) + disc_errors(
-        BARE, "uncoated", 0.0, patches
-    )
-    return tuple(found)
+    """Given pressures on both solids, Hertz's sliding on the coated one; one patch of thin films."""
+    found = disc_errors(COATED, "coated", SLIDING.friction, patches)
+    return (*found, *disc_errors(BARE, "uncoated", 0.0, patches), *film_errors(COATED))
 
 
-def ellipses_of() -> tuple[ExactError, ...]:
-    """Contacts that are no discs, beside Hertz's."""
-    return tuple(turned_ellipse(BARE))
+def ellipses_of(elements: bool = True) -> tuple[ExactError, ...]:
+    """Contacts that are no discs, beside Hertz's and, with ``elements``, between the methods."""
+    return (*turned_ellipse(BARE), *(between_methods(SLIDING) if elements else ()))
 
 
-def quick() -> tuple[Invariant, ...]:
-    """The verdicts of a shorter study: fewer grids, no sweeps, no finite elements.
+def quick(elements: bool = True) -> tuple[Invariant, ...]:
+    """The verdicts of a shorter study, part by part up to the first that disagrees: fewer grids, no sweeps.
 
     For trials of planted faults: whatever fails is a verdict without a result.
+    elements : with the finite elements under ellipses, the last part, which takes longest.
     """
     grid = partial(refined_grid, solve=solvers(COATED)["semianalytic"])
-    refinements = (
-        grid(COATED, (129,), solid="coated", setting=CORRECTED),
-        grid(COATED, (33, 65, 129), solid="coated", setting=STAIRCASE, edge_correction=False),
+    parts: tuple[Callable[[], tuple[Invariant, ...]], ...] = (
+        lambda: verdicts((), discs_of(), ()),
+        lambda: verdicts((grid(COATED, (129,), solid="coated", setting=CORRECTED),), (), ()),
+        lambda: verdicts(
+            (grid(COATED, (33, 65, 129), solid="coated", setting=STAIRCASE, edge_correction=False),), (), ()
+        ),
+        lambda: verdicts((), ellipses_of(elements=False), ()),
+        *((lambda: verdicts((), between_methods(SLIDING), ()),) if elements else ()),
     )
-    try:
-        discs = discs_of() + ellipses_of()
-    except Exception as error:
-        return verdicts(refinements, (), (), (f"discs and ellipses: {failure_message(error)}",))
-    return verdicts(refinements, discs, ())
+    found: tuple[Invariant, ...] = ()
+    for part in parts:
+        try:
+            found += part()
+        except Exception as error:
+            found += verdicts((), (), (), (f"discs and ellipses: {failure_message(error)}",))
+        if any(row.outcome is Outcome.DISAGREES for row in found):
+            break
+    return found
 
 
 def failed(reason: str, seconds: float) -> AccuracyStudy:
     """The study of a process that left nothing but the ``reason``."""
     return AccuracyStudy((), (), (reason,), seconds, commit(), versions())
-
-
-def path_in(folder: Path) -> Path:
-    """Path of the study in a run directory."""
-    return folder / "accuracy.json"
 
 
 def stored(
@@ -166,28 +175,16 @@ def stored(
     The study of a tree that was changed since its commit (marked "+") is not used: the tree may have changed
     since. Raises StoreError, naming the file, where the study is damaged.
     """
-    path = path_in(folder)
-    if not os.path.lexists(path):
+    found, now = _FILE.read(folder), source()
+    if found is None or found.failures or (now or "").endswith("+"):
         return None
-    data = read_checked(path)
-    try:
-        found = from_json(data)
-    except ValueError as error:
-        raise StoreError(f"{path}: not a study of this program ({error})") from None
-    now = source()
-    same = (found.commit, found.versions) == (now, packages()) and not (now or "").endswith("+")
-    return found if same and not found.failures else None
+    return found if (found.commit, found.versions) == (now, packages()) else None
 
 
 def task(folder: Path) -> Task[AccuracyStudy]:
     """The study as a task beside the cases of a run."""
     path = path_in(folder)
     return Task("accuracy study", partial(main, path), path, from_json, failed, cost=COST)
-
-
-def to_json(study: AccuracyStudy) -> dict[str, Any]:
-    """The study as strict JSON."""
-    return {"schema": SCHEMA, **encode(study)}
 
 
 def from_json(data: dict[str, Any]) -> AccuracyStudy:
@@ -200,3 +197,7 @@ def from_json(data: dict[str, Any]) -> AccuracyStudy:
 def main(path: Path) -> None:
     """Measure and store at ``path``."""
     write_checked(path, to_json(measure()))
+
+
+_FILE = RecordFile(AccuracyStudy, "accuracy.json", (SCHEMA,), "an accuracy study", "measure it again")
+path_in, to_json = _FILE.path_in, _FILE.to_json

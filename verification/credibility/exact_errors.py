@@ -1,11 +1,12 @@
-"""Errors of the semi-analytical method: discs under given pressures, elliptical contacts.
+"""Errors of the semi-analytical method: discs under given pressures, films, elliptical contacts.
 
 A uniform pressure and Hertz's, which slides, on the surface, inside, on both sides of each interface. Nothing
 is iterated, so the error is that of the stress coefficients, of the influence coefficients and of the
 convolution, each apart.
 
-An ellipse whose axes are turned, so that the contact has no mirror plane in common with the grid; it is
-Hertz's. Ellipses that finite elements solve too are cases.
+Two ellipses: the axes of the first are turned, so that the contact has no mirror plane in common with the
+grid; it is Hertz's. The second slides on a stiff coating; finite elements have its pressure, harmonic by
+harmonic, and give the stresses and the approach at which the gap under the indenter vanishes in the mean.
 """
 
 from dataclasses import dataclass, replace
@@ -13,6 +14,7 @@ from typing import Any
 
 import numpy as np
 
+from verification.judging.invariants.influence_error import coefficient_error
 from verification.problem.array_types import Array
 from verification.problem.coated_contact import CoatedContact
 from verification.problem.line_profile import lines_of
@@ -26,9 +28,18 @@ UNIFORM, HERTZ = "uniform pressure", "Hertz's pressure"
 SURFACE = np.array([-1.7, -1.15, -0.97, -0.8, -0.5, -0.2, 0.0, 0.3, 0.6, 0.9, 1.02, 1.3])
 DEPTHS = (0.02, 0.15, 0.48, 1.2, 2.5)
 PLANE = 0.6  # depth of the plane by FFT, over ten patches, where patches of a pressure without steps suffice
-TURNED = "ellipse 2 : 1, turned"
+INSIDE = np.array([-0.8, -0.55, -0.3, 0.0, 0.21, 0.47, 0.7])  # of the radius, off the patch centres
+# Of the half-width of the grid: centres along an axis, off it, in the corner, none beside the rim.
+QUARTER = ((0.0, 0.3, 0.75, 0.2, 0.5, 0.6, 0.9, 1.0), (0.0, 0.0, 0.0, 0.7, 0.5, 0.3, 0.9, 1.0))
+SIDE = 0.07  # of a patch, over a_h
+FILMS = {"film of one patch": 1.0, "film of five patches": 5.0}  # thickness over that
+TURNED, SLIDING = "ellipse 2 : 1, turned", "ellipse 2 : 1, sliding"
 ANGLE = 0.4  # of the long axis from x
+BETWEEN = 0.4  # of a patch, by which the turned ellipse lies beside a patch centre
 WIDE = 1.15  # half-width of the grid over the long semi-axis
+HARMONICS, SIZE = 14, 0.2  # of the finite elements
+BELOW = (0.5, 0.5, 0.9, 1.6)  # depths over a_h: in the coating, below it
+ALONG = np.linspace(-1.5, 1.5, 13)  # of the long semi-axis, beside the plane of symmetry
 
 
 @dataclass(frozen=True)
@@ -96,7 +107,64 @@ def _errors(problem: CoatedContact, exact: HankelField, p_h: float, patches: int
         )
         plane = solution.displacement_plane(z)[:, i, j]
         errors["displacement on a plane"] = _largest([plane - exact.displacement(*at)]) / sink
+        errors["deflection on a quarter"] = _deflection_error(problem, exact, patches) / sink
+        errors["stress of patches"] = _patch_error(problem, exact, patches) / p_h
     return errors
+
+
+def _patch_error(problem: CoatedContact, exact: HankelField, patches: int) -> float:
+    """Largest error of the stresses [Pa] half a patch and two below the surface, off the edge.
+
+    They are summed over the patches, as under a rough indenter, in place of rings around each point.
+    """
+    from semianalytic import patch_field, prescribed
+    from semianalytic.grid import Grid
+    from semianalytic.inputs import Body
+
+    a = exact.pressure.a
+    grid = Grid(patches, 2.04 * a / patches)
+    mean = prescribed.patch_mean(prescribed.Prescribed(a, exact.pressure.pressure), grid.x, grid.d)
+    body = Body(problem.coatings, problem.substrate, problem.friction, None)
+    x, z = np.meshgrid(a * INSIDE, grid.d * np.array([0.5, 2.0]))
+    y = np.full(x.shape, 0.13 * a)
+    found = patch_field.stress(x, y, z, 0, grid_x=grid.x, pressure=mean, body=body)
+    return _largest([patch_field.tensor(found) - exact.stress(x, y, z, 0)])
+
+
+def _deflection_error(problem: CoatedContact, exact: HankelField, patches: int) -> float:
+    """Largest error [m] of the patches' deflection, as a round contact has it: held on a quarter of the grid.
+
+    Influence coefficients and DC-FFT alone, off the edge, where constant patches are of third order.
+    """
+    from semianalytic import convolution, influence, prescribed
+    from semianalytic.grid import Grid
+    from semianalytic.inputs import Body, Numerics
+
+    a = exact.pressure.a
+    grid = Grid(patches, 2.04 * a / patches, quarter=True)
+    K = influence.surface_coefficients(
+        patches, grid.d, Body(problem.coatings, problem.substrate, 0.0, None), Numerics()
+    )
+    x = Grid(patches, grid.d).x
+    mean = prescribed.patch_mean(prescribed.Prescribed(a, exact.pressure.pressure), x, grid.d)
+    u = convolution.even_convolution(K, quarter=True)(grid.held(prescribed.deconvolve(mean)).copy())
+    i, j = (np.array(QUARTER) * (len(grid.x) - 1)).astype(int)
+    normal = HankelField(exact.pressure, problem.coatings, problem.substrate, 0.0)
+    return float(np.abs(u[i, j] - normal.displacement(grid.x[i], grid.x[j], 0 * grid.x[i])[2]).max())
+
+
+def film_errors(problem: CoatedContact) -> list[ExactError]:
+    """Influence coefficients of films so thin that patches near the loaded one are integrated by quadrature.
+
+    No shipped case has a film so thin on the patches of its last grid.
+    """
+    found = []
+    for name, thickness in FILMS.items():
+        (E, nu, _), *_ = problem.coatings
+        film = replace(problem, coatings=((E, nu, thickness * SIDE * problem.a_h),))
+        error = coefficient_error(film, SIDE * problem.a_h)
+        found.append(ExactError("one patch loaded", name, "influence coefficients", error))
+    return found
 
 
 def turned_ellipse(problem: CoatedContact, patches: int = 129) -> list[ExactError]:
@@ -107,8 +175,10 @@ def turned_ellipse(problem: CoatedContact, patches: int = 129) -> list[ExactErro
     exact = HertzEllipse(a, b, problem.p_h, problem.E_star)
     (A, B), c, s = exact.curvatures, np.cos(ANGLE), np.sin(ANGLE)
 
+    aside = BETWEEN * 2 * WIDE * a / patches
+
     def height(x: Any, y: Any) -> Any:
-        return A * (c * x + s * y) ** 2 + B * (c * y - s * x) ** 2
+        return A * (c * (x - aside) + s * y) ** 2 + B * (c * y - s * (x - aside)) ** 2
 
     found = []
     for load, approach in ((exact.load, None), (None, exact.approach)):
@@ -130,6 +200,59 @@ def turned_ellipse(problem: CoatedContact, patches: int = 129) -> list[ExactErro
         }
         what = TURNED if approach is None else f"{TURNED}, given approach"
         found += [ExactError(what, "uncoated", name, abs(error)) for name, error in errors.items()]
+    return found
+
+
+def between_methods(problem: CoatedContact, patches: int = 129) -> list[ExactError]:
+    """Differences of both methods under a sliding ellipsoid, along its long axis and across.
+
+    problem : the solid, load and friction; the product of both radii is that of the sphere's, squared.
+    """
+    import fem_reference
+    import semianalytic
+
+    found = []
+    for name, ratio in (("along the long axis", 1.5), ("across the long axis", 1 / 1.5)):
+        R_x, R_y = problem.radius * ratio, problem.radius / ratio
+
+        def height(x: Any, y: Any, R_x: float = R_x, R_y: float = R_y) -> Any:
+            return x**2 / (2 * R_x) + y**2 / (2 * R_y)
+
+        patch = semianalytic.indent(
+            profile=height,
+            half_width=1.5 * problem.a_h,
+            load=problem.load,
+            patches=patches,
+            estimate_uncertainty=False,
+            coatings=problem.coatings,
+            substrate=problem.substrate,
+            friction=problem.friction,
+        )
+        x = np.linspace(0, 1.5 * problem.a_h, 600)
+        reach = max(
+            float(along[patch.pressure(*at) > 0].max()) for along, at in ((x, (x, 0 * x)), (x, (0 * x, x)))
+        )
+        elements = fem_reference.check_pressure(
+            pressure=patch.pressure,
+            reach=1.01 * reach,
+            harmonics=HARMONICS,
+            size=SIZE,
+            estimate_uncertainty=False,
+            coatings=problem.coatings,
+            substrate=problem.substrate,
+            friction=problem.friction,
+        )
+        X, Y = ALONG * reach, np.full(ALONG.shape, 0.2 * problem.a_h)
+        layers = (0, *(1,) * (len(BELOW) - 1))
+        difference = [
+            patch.stress(X, Y, z * problem.a_h, layer=k) - elements.stress(X, Y, z * problem.a_h, layer=k)
+            for z, k in zip(BELOW, layers, strict=True)
+        ]
+        errors = {
+            "stress by finite elements": float(np.max(np.abs(difference))) / patch.peak_pressure,
+            "approach by finite elements": abs(elements.approach_of(height) / patch.approach - 1),
+        }
+        found += [ExactError(f"{SLIDING}, {name}", "coated", what, error) for what, error in errors.items()]
     return found
 
 

@@ -124,7 +124,7 @@ class Reference:
         a, deep = self.exact.contact_radius, self.problem.interfaces
         bounds = np.array([0.0, *deep, max([4 * a, *(2 * z for z in deep)])])
         z = (bounds[:-1, None] + np.diff(bounds)[:, None] * (np.arange(12) + 0.5) / 12).ravel()
-        x = 2.5 * a * np.linspace(0, 1, 26)
+        x = 2.5 * a * np.linspace(0, 1, 80)
         places: list[tuple[FloatArray, FloatArray, int | None]] = [(np.zeros_like(z), z, None)]
         for line in lines_of(self.problem):
             if line.layer is not None and line.depth:

@@ -13,7 +13,6 @@ import numpy as np
 from verification.problem.array_types import Coatings
 from verification.problem.coated_contact import CoatedContact
 from verification.running.json_records import RecordFile
-from verification.sources.bounds.approach_bounds import EnergyBounds
 
 SHIPPED = Path(__file__).parent / "shipped"
 SCHEMA = "coatcheck-enclosures/1"
@@ -66,6 +65,21 @@ class Ring:
 
 
 @dataclass(frozen=True)
+class EnergyBounds:
+    """Bounds (lower, upper) of stiffness dW/d delta [N/m] and approach [m] at a contact radius.
+
+    displaced : approach [m] by the displacements alone.   rounding : of the stiffness, relative, as counted
+    into the bounds.   unknowns : of both sides.
+    """
+
+    stiffness: tuple[float, float]
+    approach: tuple[float, float]
+    displaced: float
+    rounding: float
+    unknowns: int
+
+
+@dataclass(frozen=True)
 class TwoSided:
     """Energy bounds by finite elements at the enclosed contact radius, beside what they have to contain."""
 
@@ -82,26 +96,17 @@ class TwoSided:
 
     @property
     def compared(self) -> tuple[tuple[tuple[float, float], float, float], ...]:
-        """Bounds, enclosed value, effectivity; of the stiffness, then of the approach."""
-        k, d = self.effectivities
+        """Bounds, enclosed value and effectivity of the stiffness, then of the approach.
+
+        The effectivity is the proven over the true error of the displacements alone.
+        """
+        (low, high), exact = self.found.stiffness, self.stiffness.middle
+        ends, displaced, approach = self.found.approach, self.found.displaced, self.approach.middle
+        proven = max(abs(displaced - end) for end in ends)
         return (
-            (self.found.stiffness, self.stiffness.middle, k),
-            (self.found.approach, self.approach.middle, d),
+            ((low, high), exact, (high - low) / (high - exact)),
+            (ends, approach, proven / abs(displaced - approach)),
         )
-
-    @property
-    def widths(self) -> tuple[float, float]:
-        """Of the bounds of stiffness and approach, relative."""
-        k, d = np.ptp(self.found.stiffness), np.ptp(self.found.approach)
-        return float(k / self.stiffness.middle), float(d / self.approach.middle)
-
-    @property
-    def effectivities(self) -> tuple[float, float]:
-        """Proven over true error of the displacements alone, of stiffness and approach."""
-        low, high = self.found.stiffness
-        displaced = self.found.displaced
-        proven = max(abs(displaced - end) for end in self.found.approach)
-        return (high - low) / (high - self.stiffness.middle), proven / abs(displaced - self.approach.middle)
 
 
 @dataclass(frozen=True)

@@ -39,6 +39,7 @@ COLUMNS = {
     "baseline": "numbers that changed; counted only where no other check can detect the fault",
 }
 SMALLEST_CHANGE = 1e-12  # of its scale; a smaller change is rounding
+EQUIVALENT_CHANGE = 1e-6  # of its scale; below the uncertainty that a method states, and below every cap
 
 
 class Catch(StrEnum):
@@ -75,6 +76,7 @@ class Row:
 
     as_predicted : True where a check that was predicted caught it.   by : message of the check that did.
     change : see Trial.   reason, remedy : of a survivor, why it survives and what would catch it.
+    equivalent : of a survivor, the same numbers by another way, within ``EQUIVALENT_CHANGE``.
     """
 
     name: str
@@ -92,6 +94,7 @@ class Row:
     failure: str = ""
     reason: str = ""
     remedy: str = ""
+    equivalent: bool = False
 
     @property
     def caught(self) -> bool:
@@ -142,7 +145,7 @@ class Record:
     @property
     def unexplained(self) -> tuple[Row, ...]:
         """Survivors without a reason on record."""
-        return tuple(row for row in self.survivors if not (row.reason and row.remedy))
+        return tuple(row for row in self.survivors if not (row.reason and (row.remedy or row.equivalent)))
 
     @property
     def idle(self) -> tuple[Row, ...]:

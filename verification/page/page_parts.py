@@ -1,15 +1,31 @@
 """Parts of a report page: cells, rows, tables, figures, sections."""
 
-from collections.abc import Callable, Sequence
+import base64
+import csv
+import gzip
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
-from typing import Any
+from io import StringIO
+from typing import Any, TypeVar
 
 from markupsafe import Markup
 
 from verification.judging.verdict import Outcome
-from verification.page.embedded_csv import embedded, written
 from verification.page.number_text import scientific
 from verification.page.source_labels import OUTCOMES
+
+
+def embedded(text: str) -> str:
+    """``text`` compressed as a data address; the same text always gives the same address."""
+    packed = gzip.compress(text.encode(), compresslevel=9, mtime=0)
+    return f"data:application/gzip;base64,{base64.b64encode(packed).decode()}"
+
+
+def written(rows: Sequence[Sequence[str]]) -> str:
+    """``rows`` as CSV."""
+    out = StringIO()
+    csv.writer(out, lineterminator="\n").writerows(rows)
+    return out.getvalue()
 
 
 @dataclass(frozen=True)
@@ -24,6 +40,10 @@ class Cell:
     css: str = ""
     note: str = ""
     href: str = ""
+
+
+Value = Cell | str | float | None
+T = TypeVar("T")
 
 
 def number(value: float | None, show: Callable[[Any], str] = scientific, css: str = "") -> Cell:
@@ -56,10 +76,14 @@ class Row:
     css: str = ""
 
 
-def row(head: Cell | str, *cells: Cell | str, css: str = "") -> Row:
-    """A row of cells; text alone becomes a cell."""
-    first, *others = (cell if isinstance(cell, Cell) else Cell(cell) for cell in (head, *cells))
+def row(head: Value, *cells: Value, css: str = "") -> Row:
+    """A row of cells; text, a count or another number alone becomes a cell."""
+    first, *others = (cell if isinstance(cell, Cell) else _cell(cell) for cell in (head, *cells))
     return Row(first, others, css)
+
+
+def _cell(value: str | float | None) -> Cell:
+    return Cell(value) if isinstance(value, str) else number(value, str if type(value) is int else scientific)
 
 
 @dataclass(frozen=True)
@@ -77,6 +101,19 @@ class Table:
 
     def __bool__(self) -> bool:
         return bool(self.rows)
+
+
+def table_of(
+    caption: str,
+    items: Iterable[T],
+    columns: Sequence[tuple[str, Callable[[T], Value]]],
+    groups: Sequence[tuple[str, int]] = (),
+    css: str = "",
+    row_css: Callable[[T], str] = lambda _: "",
+) -> Table:
+    """A table with a row for each of ``items``; ``columns`` are heads, each with what its cells show."""
+    rows = [row(*(show(item) for _, show in columns), css=row_css(item)) for item in items]
+    return Table(caption, [head for head, _ in columns], rows, groups, css)
 
 
 @dataclass(frozen=True)

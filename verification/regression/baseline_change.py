@@ -8,7 +8,6 @@ from typing import Any
 from verification.page.number_text import scientific
 from verification.regression.manifest import Difference, Manifest, differences, differing_tests, manifest_of
 from verification.regression.number_drift import Drift, Numbers, State, drift, edges_of, measured
-from verification.regression.usual_uncertainty import Ability, abilities
 from verification.running.case_result import CaseResult, RunInfo
 from verification.running.json_records import plain
 from verification.running.provenance import NOT_INSTALLED
@@ -101,7 +100,7 @@ class Regression:
     """Comparison of a run with the baseline in ``folder``; ``update`` is None where there is no baseline.
 
     other_versions : (name, then, now) of the machine and each package that differs.
-    judged : how what the run judged differs from the manifest.   abilities : caps beside usual uncertainties.
+    judged : how what the run judged differs from the manifest.
     """
 
     folder: str
@@ -109,7 +108,6 @@ class Regression:
     cases: tuple[CaseDrift, ...]
     other_versions: tuple[tuple[str, str, str], ...] = ()
     judged: tuple[Difference, ...] = ()
-    abilities: tuple[Ability, ...] = ()
 
     @property
     def less(self) -> tuple[Difference, ...]:
@@ -193,8 +191,7 @@ def regression(
     judged += [Difference(c.name, "the case was not run", 1, True) for c in cases if c.name not in run]
     if self_tests is not None:
         judged += differing_tests(baseline.self_tests, self_tests)
-    usual = abilities(results, baseline.cases, baseline.manifests)
-    return Regression(folder, then, cases, other, tuple(judged), usual)
+    return Regression(folder, then, cases, other, tuple(judged))
 
 
 def differing(

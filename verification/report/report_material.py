@@ -14,7 +14,7 @@ from verification.credibility import accuracy_study
 from verification.credibility.accuracy_study import AccuracyStudy
 from verification.credibility.import_independence import Part, parts
 from verification.credibility.manufactured_solutions import DesignOrder, design_orders
-from verification.credibility.model.model_error import ModelError, judged_quantities, model_error
+from verification.credibility.model_error import ModelError, judged_quantities, model_error
 from verification.credibility.self_tests import SelfTest
 from verification.evidence import alarm_record, enclosure_record
 from verification.evidence import mutant_record as mutation

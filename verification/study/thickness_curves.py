@@ -70,24 +70,6 @@ class Difference:
     friction: float
 
 
-@dataclass(frozen=True)
-class TensionCheck:
-    """The largest tension of the surface by the semi-analytical method and by ``source`` at one point.
-
-    tension : by the first, over p_h.   difference, stated : of the two, and the sum of their uncertainties,
-    over the smaller of p_h and p0.   place : difference of x over a; NaN where there is no tension.
-    """
-
-    source: str
-    ratio: float
-    h: float
-    friction: float
-    tension: float
-    difference: float
-    stated: float
-    place: float
-
-
 def curves(columns: Mapping[str, NDArray[Any]]) -> tuple[Curve, ...]:
     """Every curve of a table, by modulus, then by friction."""
     keys = sorted(set(zip(columns["modulus_ratio"].tolist(), columns["friction"].tolist(), strict=True)))
@@ -108,23 +90,6 @@ def differences(columns: Mapping[str, NDArray[Any]]) -> tuple[Difference, ...]:
             place = (columns[name][here[i]] for name in ("modulus_ratio", "thickness_over_a_h", "friction"))
             ratio, h, friction = map(float, place)
             found.append(Difference(source, quantity, here.size, largest, stated, ratio, h, friction))
-    return tuple(found)
-
-
-def tension_checks(columns: Mapping[str, NDArray[Any]]) -> tuple[TensionCheck, ...]:
-    """The largest tension of the surface at every cross-checked point, by source, then by point."""
-    name, found = "sigma_xx_surface", []
-    for source, here, beside in _checked(columns):
-        over = _scale(columns, here)
-        uncertainty = columns[f"{name}_uncertainty"]
-        numbers = (
-            *(columns[key][here] for key in ("modulus_ratio", "thickness_over_a_h", "friction")),
-            columns[f"{name}_over_p_h"][beside],
-            (columns[name][here] - columns[name][beside]) / over,
-            (uncertainty[here] + uncertainty[beside]) / over,
-            (columns[f"{name}_x"][here] - columns[f"{name}_x"][beside]) / columns["contact_radius"][here],
-        )
-        found += [TensionCheck(source, *row) for row in np.stack(numbers, axis=1).tolist()]
     return tuple(found)
 
 

@@ -8,14 +8,15 @@ import numpy as np
 from rich.console import Console
 from rich.markup import escape
 
+from assumption_maps_made.map_axes import MEASURED
 from assumption_maps_made.measuring import assembled, measure, with_map
 from verification.commands.common.command_error import CommandError
 from verification.commands.common.exit_codes import with_exit_code
 from verification.commands.common.known_folders import RECORDS, require_checkout
 from verification.commands.common.shared_options import AsJson, Flag, Quiet, RecordsFolder
-from verification.commands.common.task_progress import progress_bar, run_info
+from verification.commands.common.task_progress import run_info
 from verification.commands.common.terminal import did_you_mean, named_table, print_json, print_out
-from verification.credibility.model.shared_assumptions import ASSUMPTIONS
+from verification.commands.common.terminal_bar import progress_bar
 from verification.evidence.assumption_maps import (
     WORDS,
     AssumptionMap,
@@ -41,12 +42,12 @@ def assumptions(
         record: Store the maps in RECORDS/assumptions.json, beside those of the other assumptions.
     """
     for name in names:
-        if name not in ASSUMPTIONS:
-            raise CommandError(f"{name!r} is no assumption with a model{did_you_mean(name, ASSUMPTIONS)}")
+        if name not in MEASURED:
+            raise CommandError(f"{name!r} is no assumption with a model{did_you_mean(name, MEASURED)}")
     if record:
         require_checkout(records, "--records")
     made = AssumptionMaps(())
-    for name in names or ASSUMPTIONS:
+    for name in names or MEASURED:
         new = _measured(name, silent=quiet or as_json)
         made = with_map(made, new)
         if record:  # each as soon as it is made
@@ -66,7 +67,7 @@ def assumptions(
 
 def _measured(name: str, *, silent: bool) -> AssumptionMap:
     started, began = datetime.datetime.now(datetime.UTC), time.process_time()
-    places = list(ASSUMPTIONS[name].places())
+    places = list(MEASURED[name].places())
     found = []
     with progress_bar(Console(stderr=True), silent=silent) as bar:
         task = bar.add_task(name, total=len(places))

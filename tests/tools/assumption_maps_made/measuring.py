@@ -5,9 +5,9 @@ from dataclasses import asdict, dataclass
 
 import numpy as np
 
-from verification.credibility.model.shared_assumptions import ASSUMPTIONS, QUANTITIES
-from verification.evidence.assumption_maps import AssumptionMap, AssumptionMaps, Axis
-from verification.evidence.map_places import Place
+from assumption_maps_made.map_axes import MEASURED
+from verification.credibility.model_error import ASSUMPTIONS, QUANTITIES
+from verification.evidence.assumption_maps import AssumptionMap, AssumptionMaps, Axis, Place
 from verification.running.case_result import RunInfo
 from verification.sources.assumptions.contact_change import Change
 
@@ -33,7 +33,7 @@ def measure(assumption: str, place: Place) -> Measured:
     """What ``assumption`` costs at ``place``."""
     nothing = (float("nan"),) * len(QUANTITIES)
     try:
-        found = ASSUMPTIONS[assumption].change(place.problem)
+        found = MEASURED[assumption].change(place.problem)
     except ValueError:
         return Measured(nothing, nothing)
     return Measured(*(_rounded(one) for one in found))
@@ -45,7 +45,7 @@ def _rounded(change: Change) -> tuple[float, ...]:
 
 def assembled(assumption: str, measured: Sequence[Measured], info: RunInfo) -> AssumptionMap:
     """The map of ``assumption`` from what was ``measured`` at its places, in their order."""
-    stated = ASSUMPTIONS[assumption]
+    stated = MEASURED[assumption]
     axes = tuple(Axis(name, values, stated.rates_of(name)) for name, values in stated.all_axes.items())
     shape = (*(len(axis.values) for axis in axes), len(QUANTITIES))
     change, uncertainty = (
@@ -54,7 +54,7 @@ def assembled(assumption: str, measured: Sequence[Measured], info: RunInfo) -> A
     )
     return AssumptionMap(
         assumption,
-        stated.title,
+        ASSUMPTIONS[assumption].title,
         QUANTITIES,
         axes,
         stated.independent_of,

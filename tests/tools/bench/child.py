@@ -33,7 +33,6 @@ RADIUS, LOAD, FRICTION = 10e-3, 20.0, 0.3  # m, N
 DEPTHS = 200  # points of the line across depths
 SHORT = 0.25  # s
 LONG = 10.0  # s, in which equal spheres of N = 512 differ by up to 0.5 %
-JUDGED = 4096  # patches a side of the largest sphere that the judge has memory for
 
 
 def public(name: str) -> ModuleType:
@@ -132,16 +131,6 @@ def more_threads(turn: int, patches: int, few: int, many: int) -> Prepared:
         return median(found)
 
     return ratio
-
-
-def library(turn: int, name: str, patches: int, threads: int) -> Prepared:
-    """The sphere on arrays of a library; turn 0 is a small one, and one above ``JUDGED`` is not judged."""
-    solved = import_module("bench.peers").uneven
-    if not turn:
-        return lambda: solved(64, threads, name)
-    return lambda: (
-        solved(patches, threads, name) if patches <= JUDGED else solved(patches, threads, name).size
-    )
 
 
 def judge(result: Any) -> float:

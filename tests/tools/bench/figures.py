@@ -11,13 +11,11 @@ from pathlib import Path
 from statistics import median
 from typing import Literal
 
-from bench.device import LIBRARY
 from bench.judge import LIMIT
 from bench.turns import HERE, Work, in_turn
 
 __all__ = [
     "ASKED_SIZES",
-    "DEVICE_SIZES",
     "PEERS",
     "REFERENCE",
     "ROOMS",
@@ -31,11 +29,10 @@ __all__ = [
 
 REFERENCE = "dfc1d79"  # the commit over which ratios are asked
 ROOMS = "cf67b33"  # that of the default run: its rooms are today's, its methods those of REFERENCE
-Part = Literal["solve", "stress", "elements", "contact", "gpu", "default-run"]
+Part = Literal["solve", "stress", "elements", "contact", "default-run"]
 PEERS = ("tamaas", "aspher")
 CONTACT = "contact"  # of the semi-analytical method
 ASKED_SIZES = (512, 1024, 2048)
-DEVICE_SIZES = (4096, 8192, 16384)
 _PEERS_ASKED = {"tamaas": 0.008, "aspher": 0.15}
 _CONVOLUTIONS_ASKED = dict(zip(ASKED_SIZES, (8.0, 4.0, 4.0), strict=True))  # on two threads
 
@@ -102,12 +99,11 @@ def groups(
     threads: Sequence[int] = (1, 2),
     peers: Sequence[str] = (),
     fast: bool = False,
-    library: str = LIBRARY,
 ) -> list[Group]:
     """What is measured of ``parts``, those over another commit only with ``other``.
 
-    sizes : of the contact, ASKED_SIZES unless given, and on the GPU, DEVICE_SIZES.   threads, peers : of the
-    contact.   fast : the extra "fast" is installed, of the finite elements.   library : of the GPU.
+    sizes : of the contact, ASKED_SIZES unless given.   threads, peers : of the contact.   fast : the extra
+    "fast" is installed, of the finite elements.
     """
     found: list[Group] = []
     if other is not None:
@@ -126,8 +122,6 @@ def groups(
                 found.append(_over(other, works, *asked))
     if "contact" in parts:
         found += [_contact(patches, threads, peers) for patches in sizes or ASKED_SIZES]
-    if "gpu" in parts:
-        found += [_on_device(patches, library) for patches in sizes or DEVICE_SIZES]
     if other is not None and "default-run" in parts:
         work = Work("default_run", _shared_cases(other.root))
         found.append(_over(other, {"default run": work}, 0.6, asked_over=ROOMS))
@@ -180,16 +174,6 @@ def _contact(patches: int, threads: Sequence[int], peers: Sequence[str]) -> Grou
             fewer = names[threads[0]].partition(", ")[2]
             ratios.append(Ratio(itself, None, fewer, asked))
     return Group(works, tuple(ratios), processor=False)
-
-
-def _on_device(patches: int, library: str) -> Group:
-    """The sphere on N x N patches by an array library over two threads of NumPy."""
-    ours, threads = f"{library}, N = {patches}", f"numpy, N = {patches}, 2 threads"
-    works = {
-        ours: Work("library", (library, patches, 1)),
-        threads: Work("library", ("numpy", patches, 2), threads=2),
-    }
-    return Group(works, (Ratio(ours, threads, "numpy, 2 threads"),), processor=False)
 
 
 def measure(group: Group, rounds: int, progress: Callable[[str], None] = lambda name: None) -> list[Figure]:

@@ -20,19 +20,10 @@ __all__ = ["SOLVERS"]
 
 def contact(patches: int, threads: int) -> FloatArray:
     """``semianalytic.indent`` by patches alone, as the others, without uncertainty."""
-    return _indented(patches, threads, 0.0)
-
-
-def uneven(patches: int, threads: int, library: str) -> FloatArray:
-    """As ``contact`` on arrays of a library; off the middle by so little that only the symmetry is lost."""
-    return _indented(patches, threads, 1e-9 * A, array_namespace=import_module(library))
-
-
-def _indented(patches: int, threads: int, off: float, **options: Any) -> FloatArray:
     found: FloatArray = (
         import_module("semianalytic")
         .indent(
-            profile=lambda x, y: ((x - off) ** 2 + y**2) / (2 * RADIUS),
+            profile=lambda x, y: (x**2 + y**2) / (2 * RADIUS),
             half_width=2 * A,
             load=W,
             coatings=(),
@@ -42,7 +33,6 @@ def _indented(patches: int, threads: int, off: float, **options: Any) -> FloatAr
             edge_correction=False,
             threads=threads,
             estimate_uncertainty=False,
-            **options,
         )
         .patch_pressure
     )

@@ -9,7 +9,8 @@ from typing import Any
 
 from open_digits_made.problems import VectorProblem
 from open_digits_made.values import Row
-from verification.guests.vectors.open_digits import LICENCE, VERSION, VectorSet, csv_texts
+from open_digits_made.vector_schema import LICENCE, VERSION, VectorSet
+from verification.guests.vectors.open_digits import csv_texts
 from verification.problem.coated_contact import CoatedContact
 
 DIGITS = 12  # significant, of values

@@ -1,12 +1,12 @@
 """The benchmark's figures: what is measured over what, how ratios are taken, which are missed."""
 
-import re
+import json
 
 import pytest
 from bench import figures
-from bench.device import not_measured
-from bench.figures import ASKED_SIZES, REFERENCE, ROOMS, Figure, Other, groups, measure
+from bench.figures import REFERENCE, ROOMS, Figure, Other, groups, measure
 from bench.turns import HERE, Times
+from cyclopts import App
 
 
 def planned(name=REFERENCE, root=HERE, **options):
@@ -57,14 +57,6 @@ def test_default_run_is_that_of_the_contacts_that_both_commits_have(tmp_path):
 def test_over_another_commit_nothing_is_asked():
     assert {over for _, _, over in asked(planned("1234567"))} == {"convolution", "1 thread"}
     assert {work for work, _, _ in asked(planned("dfc1d79+"))} == {"sphere", "more_threads"}
-
-
-def test_without_another_commit_the_contact_remains():
-    found = groups(("solve", "elements", "contact"), other=None, sizes=ASKED_SIZES)
-    assert {work.name for group in found for work in group.works.values()} == {
-        "sphere",
-        "more_threads",
-    }
 
 
 def test_both_commits_do_the_same_work(tmp_path):
@@ -121,32 +113,34 @@ def test_peak_memory_is_counted_and_a_solver_that_misses_the_judge_is_a_figure_m
     assert residual.missed
 
 
-def test_an_array_library_is_measured_over_two_threads_of_numpy():
-    assert [len(group.works) for group in groups(("gpu",), other=None)] == [2, 2, 2]
-    (group,) = groups(("gpu",), other=None, sizes=(48,), library="array_api_strict")
-    ratio, *residuals = measure(group, 1)
-    assert (ratio.name, ratio.over) == ("array_api_strict, N = 48", "numpy, 2 threads")
-    assert ratio.asked is None
-    assert ratio.median > 0
-    assert not residuals  # both meet the judge
+app = App(result_action="return_value")
+app.command("bench.command:bench")
 
 
 @pytest.mark.parametrize(
-    ("module", "reason"),
+    ("words", "option"),
     [
-        (None, "is not installed"),
-        ("raise ImportError('libcudart')", r"cannot be imported \(libcudart\)"),
-        (
-            "from numpy import sum\ndef ones(shape): raise RuntimeError('no driver')",
-            r"finds no device that computes \(no driver\)",
-        ),
-        ("from numpy import ones, sum", None),
+        ("solve", "--against"),
+        ("--rounds 0", "--rounds"),
+        ("--sizes 8192", "--sizes"),
+        ("--against no-such-commit", "--against"),
     ],
 )
-def test_a_device_that_does_not_compute_is_named_with_the_reason(module, reason, tmp_path, monkeypatch):
-    name = f"device_library_{tmp_path.name}".replace("-", "_")
-    if module is not None:
-        (tmp_path / f"{name}.py").write_text(module)
-    monkeypatch.syspath_prepend(tmp_path)
-    found = not_measured(name)
-    assert found is None if reason is None else re.fullmatch(f"{name} {reason}", found)
+def test_what_cannot_be_measured_is_refused(words, option, capsys):
+    assert app(["bench", *words.split()]) == 2
+    assert option in capsys.readouterr().err
+
+
+def test_the_exit_code_shows_a_missed_figure_and_a_failure_keeps_the_rest(monkeypatch, capsys):
+    def measured(group, rounds, progress):
+        if "N = 64, 1 thread" not in next(iter(group.works)):
+            raise RuntimeError("no memory")
+        return [Figure("solve", REFERENCE, 0.3, (0.5,)), Figure("contact", "tamaas", 0.1, (0.05,))]
+
+    monkeypatch.setattr("bench.command.measure", measured)
+    assert app(["bench", "contact", "--sizes", "64"]) == 1
+    assert capsys.readouterr().out.count("missed") == 1
+    assert app(["bench", "contact", "--sizes", "64", "128", "--json"]) == 3
+    out, err = capsys.readouterr()
+    assert "no memory" in err
+    assert [figure["name"] for figure in json.loads(out)["figures"]] == ["solve", "contact"]

@@ -13,6 +13,7 @@ from open_digits_made.content import vector
 from open_digits_made.making import make
 from open_digits_made.problems import problems
 from open_digits_made.values import exact_rows
+from open_digits_made.vector_schema import VectorSet
 from quick_case import coatcheck
 
 from verification.guests.vectors import open_digits
@@ -33,7 +34,8 @@ def test_at_least_500_problems_with_50_000_values(shipped):
 
 
 def test_the_schema_holds_and_every_value_has_its_uncertainty(shipped):
-    open_digits.VectorSet.model_validate_json(json.dumps(shipped))
+    VectorSet.model_validate_json(json.dumps(shipped))
+    assert json.loads(open_digits.SCHEMA.read_text()) == VectorSet.model_json_schema()
     assert "CC0" in shipped["licence"]
     assert "coatcheck" in shipped["cite"]
     for one in shipped["problems"]:

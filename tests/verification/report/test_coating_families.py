@@ -8,7 +8,11 @@ from synthetic_results import INFO, contact, result_of
 
 from verification.report.report_material import Material
 from verification.report.report_page import render
-from verification.report.sections.family_section import family_section
+from verification.report.sections.family_section import section
+
+
+def family_section(results):
+    return section(Material(results, INFO))
 
 
 def member(ratio, thickness=1.0, friction=0.0, name=None):
@@ -24,12 +28,12 @@ def frictionless():
 def test_coatings_of_one_thickness_and_the_bare_solid_are_a_family(frictionless):
     section = family_section(frictionless)
     assert len(section.parts) == 1
-    assert "h = 1 a_h" in section.parts[0].text
     panels = section.parts[0].gallery.panels
     assert [panel.title for panel in panels].count("sigma_xx / p_h") == 4
-    # Each curve of the pressure says its modulus.
-    pressure = next(panel.figure for panel in panels if panel.title == "p / p_h")
-    assert all(f">{ratio}<" in pressure for ratio in ("0.25", "1", "2", "4"))
+    assert [label for _, label in section.parts[0].gallery.legend] == [
+        f"E1/E2 = {ratio}" for ratio in ("0.25", "1", "2", "4")
+    ]
+    assert all(str(panel.figure).count('class="s-ink"') == len(frictionless) for panel in panels[:3])
 
 
 def test_its_numbers_are_those_of_the_cases(frictionless):
@@ -52,7 +56,6 @@ def test_each_friction_has_a_family_of_its_own(frictionless):
     sliding = [member(ratio, friction=0.25, name=f"sliding_{ratio:g}") for ratio in (0.5, 1, 2)]
     section = family_section([*sliding, *frictionless])
     assert len(section.parts) == 2
-    assert "f = 0.25" in section.parts[1].text
 
 
 def test_no_number_keeps_the_page_from_being_written(frictionless):

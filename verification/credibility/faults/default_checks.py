@@ -27,6 +27,16 @@ class Check:
         return self.outcome is Outcome.AGREES
 
     @property
+    def reports(self) -> bool:
+        """True where the check finds an error, or U above its cap; not where a source has no result."""
+        return self.outcome in (Outcome.DISAGREES, Outcome.INCONCLUSIVE)
+
+    @property
+    def compares(self) -> bool:
+        """True for a comparison with another source."""
+        return self.column.startswith(("bare", "coated"))
+
+    @property
     def key(self) -> tuple[str, str, str, str]:
         """What identifies the check."""
         return self.column, self.name, self.case, self.detail

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from verification.credibility.faults.default_checks import Check
 from verification.credibility.faults.fault_planting import Fault
 from verification.credibility.faults.fault_trial import Trial
-from verification.evidence.fault_record import CAUGHT, COLUMNS, Catch, Row, Tally
+from verification.evidence.fault_record import CAUGHT, COLUMNS, EQUIVALENT_CHANGE, Catch, Row, Tally
 from verification.judging.verdict import Outcome
 
 WORST_FIRST = (Outcome.DISAGREES, Outcome.INCONCLUSIVE, Outcome.NO_RESULT)  # of those that do not pass
@@ -34,6 +34,7 @@ def row_of(fault: Fault, trial: Trial) -> Row:
         trial.failure or "",
         "" if catch in CAUGHT else fault.reason,
         "" if catch in CAUGHT else fault.remedy,
+        fault.equivalent and catch is Catch.SURVIVED and trial.change <= EQUIVALENT_CHANGE,
     )
 
 

@@ -4,7 +4,17 @@ from enum import StrEnum
 
 from verification.evidence.fault_record import SMALLEST_CHANGE, Record, Row
 
-__all__ = ["COUNTED", "METHOD", "Noticed", "noticed", "noticed_by", "of_method", "unused"]
+__all__ = [
+    "COUNTED",
+    "METHOD",
+    "Noticed",
+    "kinds",
+    "method_score",
+    "noticed",
+    "noticed_by",
+    "of_method",
+    "unused",
+]
 
 METHOD = ("conversion_fft", "conjugate_gradients", "grids", "edge", "stress", "rings")  # groups of its faults
 
@@ -17,6 +27,7 @@ class Noticed(StrEnum):
     STUDY = "study"
     HARNESS = "published, self-test or manifest"
     STOPPED = "no result"
+    EQUIVALENT = "harmless"
     BASELINE = "baseline"
     NOTHING = "unit tests at most"
 
@@ -44,6 +55,8 @@ def noticed(row: Row) -> Noticed:
             return kind
     if any(tally.no_result for tally in row.columns.values()):
         return Noticed.STOPPED
+    if row.equivalent:
+        return Noticed.EQUIVALENT
     baseline = row.columns.get("baseline")
     return Noticed.BASELINE if baseline is not None and baseline.disagree else Noticed.NOTHING
 
@@ -61,3 +74,15 @@ def of_method(record: Record) -> tuple[Row, ...]:
 def noticed_by(record: Record, *kinds: Noticed) -> int:
     """Faults of the method that checks of these ``kinds`` notice first."""
     return sum(noticed(row) in kinds for row in of_method(record))
+
+
+def method_score(record: Record) -> tuple[int, int]:
+    """Faults of the method that a counted kind notices, of all but the harmless ones."""
+    return noticed_by(record, *COUNTED), len(of_method(record)) - noticed_by(record, Noticed.EQUIVALENT)
+
+
+def kinds(record: Record) -> str:
+    """Each counted kind with the faults that it notices first, and the harmless faults."""
+    parts = [f"{noticed_by(record, kind)} by {kind}" for kind in COUNTED]
+    apart = noticed_by(record, Noticed.EQUIVALENT)
+    return ", ".join(parts) + (f"; {apart} harmless apart" if apart else "")

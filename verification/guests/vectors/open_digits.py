@@ -8,84 +8,12 @@ import json
 from collections.abc import Iterator, Sequence
 from itertools import groupby
 from pathlib import Path
-from typing import Any, Literal
-
-from pydantic import BaseModel, ConfigDict, Field
+from typing import Any
 
 from verification.problem.quantity import unit_of
 
-VERSION: Literal["coatcheck-vectors/1"] = "coatcheck-vectors/1"
 FILE = Path(__file__).parents[1] / "shipped" / "vectors.json.gz"
-README = Path(__file__).parent / "README.md"
-LICENCE: Literal["CC0-1.0"] = "CC0-1.0"
-
-
-class _Strict(BaseModel):
-    model_config = ConfigDict(extra="forbid", strict=True, frozen=True)
-
-
-class Material(_Strict):
-    """Young's modulus [Pa], Poisson's ratio, thickness [m] of a coating."""
-
-    E: float
-    nu: float
-    thickness: float | None = None
-
-
-class Entry(_Strict):
-    """The problem: radius [m] and load [N] of a sphere, or pressure [Pa] on a disc of load_radius [m]."""
-
-    radius: float | None = None
-    load: float | None = None
-    pressure: float | None = None
-    load_radius: float | None = None
-    friction: float = 0.0
-    coatings: list[Material]
-    substrate: Material
-
-
-class Points(_Strict):
-    """Values at points of the plane y = 0 in one layer; as many of each as x and z."""
-
-    layer: int
-    x: list[float]
-    z: list[float]
-    values: dict[str, list[float]]
-    uncertainty: dict[str, list[float]]
-
-
-class Vector(_Strict):
-    """One problem with its values: numbers of the contact as [value, uncertainty], then points."""
-
-    name: str
-    group: str
-    problem: Entry
-    contact: dict[str, tuple[float, float]]
-    points: list[Points]
-
-
-class Checked(_Strict):
-    """How many ``values`` of how many ``problems`` a ``method`` gave, and how many lie ``within`` both U."""
-
-    method: str
-    problems: int
-    values: int
-    within: int
-    largest_share_of_U: float
-    refused: list[str] = Field(default_factory=list)
-
-
-class VectorSet(_Strict):
-    """The whole data set; ``sha256`` are the checksums of the CSV files of the same content."""
-
-    schema_: Literal["coatcheck-vectors/1"] = Field(alias="schema")
-    licence: Literal["CC0-1.0"]
-    cite: str
-    conventions: dict[str, str]
-    made_by: dict[str, str]
-    checked: list[Checked]
-    sha256: dict[str, str]
-    problems: list[Vector]
+README, SCHEMA = (Path(__file__).parent / name for name in ("README.md", "vectors.schema.json"))
 
 
 def csv_texts(vectors: Sequence[dict[str, Any]]) -> dict[str, str]:
@@ -136,9 +64,9 @@ def texts(content: dict[str, Any]) -> dict[str, str]:
     """Every file of the data set by its name."""
     files = {
         "vectors.json": json.dumps(content, separators=(",", ":")) + "\n",
-        "vectors.schema.json": json.dumps(VectorSet.model_json_schema(), indent=1) + "\n",
+        SCHEMA.name: SCHEMA.read_text(encoding="utf-8"),
         **csv_texts(content["problems"]),
-        "README.md": README.read_text(encoding="utf-8"),
+        README.name: README.read_text(encoding="utf-8"),
     }
     sums = [f"{hashlib.sha256(text.encode()).hexdigest()}  {name}" for name, text in files.items()]
     return files | {"SHA256SUMS": "\n".join(sums) + "\n"}

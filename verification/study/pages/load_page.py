@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 from matplotlib.ticker import MaxNLocator
 
-from verification.page.page_parts import Cell, Part, Section, Table, number, row
+from verification.page.page_parts import Cell, Part, Section, number, table_of
 from verification.study.choice.critical_load import Critical, critical, ramps
 from verification.study.choice.failure_criteria import MODES
 from verification.study.pages.study_assembly import (
@@ -28,12 +28,10 @@ from verification.study.pages.study_figures import (
     sheet,
     thickness_axes,
 )
-from verification.study.pages.thickness_recommendation import rounded
+from verification.study.pages.thickness_page import rounded
 from verification.study.study_plan import Study
 from verification.study.study_table import read_columns
-from verification.study.thickness_curves import differences, tension_checks
-
-__all__ = ["answers", "write_load_report"]
+from verification.study.thickness_curves import differences
 
 
 def write_load_report(
@@ -66,7 +64,7 @@ def write_load_report(
         Section("critical", "Critical loads", [Part(text) for text in said] + [_table(study, found)]),
         inputs_section(study),
         *drawings,
-        *check_sections(differences(columns), tension_checks(columns)),
+        *check_sections(differences(columns)),
         *failed_section(failures),
     ]
     summary = said[0] if said else f"No answer: no ramp of {study.title} has four solved loads."
@@ -113,46 +111,42 @@ def _newtons(value: float, uncertainty: float, last: float) -> str:
 
 
 def _table(study: Study, found: Sequence[Critical]) -> Part:
-    units, rows = study.units, []
-    for one in found:
-        last = float(one.load[-1])
-        for mode, (low, middle, high) in one.of.items():
-            if not np.isfinite(low):
-                continue
-            known = np.isfinite(middle)
-            p0 = np.interp(np.log(middle), np.log(one.ramp.load), one.ramp.p0) if known else np.nan
-            rows.append(
-                row(
-                    number(one.ramp.ratio, "{:.4g}".format),
-                    number(one.ramp.thickness / units.metre, "{:.4g}".format),
-                    number(one.ramp.friction, "{:g}".format),
-                    Cell(mode, note=MODES[mode]),
-                    *(
-                        Cell(_newtons(value, one.uncertainty[mode], last)[: -len(" N")], value)
-                        for value in (low, middle, high)
-                    ),
-                    number(one.uncertainty[mode] if known else None),
-                    number(p0 / units.pascal if known else None, "{:.3g}".format),
-                    number(one.share[mode], "{:.0%}".format),
-                )
-            )
-    table = Table(
+    units = study.units
+
+    def load(quantile: int) -> Callable[[tuple[Critical, str]], Cell]:
+        def cell(item: tuple[Critical, str]) -> Cell:
+            one, mode = item
+            value = one.of[mode][quantile]
+            return Cell(_newtons(value, one.uncertainty[mode], float(one.load[-1]))[: -len(" N")], value)
+
+        return cell
+
+    def p0(item: tuple[Critical, str]) -> float | None:
+        middle = item[0].of[item[1]][1]
+        ramp = item[0].ramp
+        pressure = np.interp(np.log(middle), np.log(ramp.load), ramp.p0) / units.pascal
+        return float(pressure) if np.isfinite(middle) else None
+
+    table = table_of(
         "Critical load [N] of each failure mode whose strength some sample reaches within the ramp: its 5 %, "
         "50 %, 95 % quantiles, the numerical uncertainty of the median, the peak pressure there; last the "
         "probability that this mode is the first within the ramp.",
+        [(one, mode) for one in found for mode in one.of if np.isfinite(one.of[mode][0])],
         [
-            "E1/E2",
-            f"h [{units.length}]",
-            "f",
-            "mode",
-            "5 %",
-            "50 %",
-            "95 %",
-            "±",
-            f"p0 [{units.stress}]",
-            "first",
+            ("E1/E2", lambda item: number(item[0].ramp.ratio, "{:.4g}".format)),
+            (
+                f"h [{units.length}]",
+                lambda item: number(item[0].ramp.thickness / units.metre, "{:.4g}".format),
+            ),
+            ("f", lambda item: number(item[0].ramp.friction, "{:g}".format)),
+            ("mode", lambda item: Cell(item[1], note=MODES[item[1]])),
+            ("5 %", load(0)),
+            ("50 %", load(1)),
+            ("95 %", load(2)),
+            ("±", lambda item: item[0].uncertainty[item[1]] if np.isfinite(item[0].of[item[1]][1]) else None),
+            (f"p0 [{units.stress}]", lambda item: number(p0(item), "{:.3g}".format)),
+            ("first", lambda item: number(item[0].share[item[1]], "{:.0%}".format)),
         ],
-        rows,
     )
     return Part("", [table])
 

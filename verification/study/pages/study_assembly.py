@@ -3,14 +3,11 @@
 import base64
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
-from functools import partial
 from pathlib import Path
 
 from markupsafe import Markup
 
-from verification.page.embedded_csv import embedded
 from verification.page.html_page import render_sections
-from verification.page.number_text import scientific
 from verification.page.page_parts import (
     Cell,
     Gallery,
@@ -19,16 +16,18 @@ from verification.page.page_parts import (
     Row,
     Section,
     Table,
+    embedded,
     number,
     row,
-    words,
+    table_of,
 )
 from verification.page.source_labels import source_label
+from verification.problem.array_types import Coatings
 from verification.running.checked_files import write_atomically
 from verification.study.choice.failure_criteria import MODES
 from verification.study.pages.study_figures import Drawn, write_drawn
 from verification.study.study_plan import Study
-from verification.study.thickness_curves import Difference, TensionCheck
+from verification.study.thickness_curves import Difference
 
 Draw = tuple[str, str, Callable[[], list[Drawn]]]  # anchor, title, function that draws the figures
 
@@ -88,11 +87,10 @@ def inputs_section(study: Study) -> Section:
     """Every input and assumption in one table."""
     units, bare = study.units, study.bare
     E_ball = "rigid" if study.ball is None else _solid(*study.ball[:2])
-    on_ball = (
-        []
-        if study.ball is None
-        else [f"{_solid(E, nu)}, {units.shown_length(h)}" for E, nu, h in study.ball[2]]
-    )
+
+    def layers(coatings: Coatings) -> list[str]:
+        return [f"{_solid(E, nu)}, {units.shown_length(h)}" for E, nu, h in coatings]
+
     moduli = ", ".join(f"{E / 1e9:.4g}" for E in study.moduli)
     ratios = ", ".join(f"{E / study.substrate[0]:.3g}" for E in study.moduli)
     h = study.thicknesses
@@ -103,15 +101,14 @@ def inputs_section(study: Study) -> Section:
     strengths = study.criteria.given(units.shown_stress)
     rows = [
         row("ball", f"R = {study.radius * 1e3:g} mm, {E_ball}"),
-        *(row(f"coating {i} on the ball", text) for i, text in enumerate(on_ball, start=1)),
-        row("load", load_text(study)),
+        *(
+            row(f"coating {i} on the ball", text)
+            for i, text in enumerate(layers(study.ball[2] if study.ball else ()), start=1)
+        ),
+        row("load", f"{study.load:g} N" if study.loads is None else "{:g} to {:g} N".format(*study.loads)),
         row("substrate", _solid(*study.substrate)),
         row("coating", f"E = {moduli} GPa (E1/E2 = {ratios}), nu = {study.coating_nu:g}"),
-        *(
-            row(f"{side} it", ", ".join(f"{_solid(E, nu)}, {units.shown_length(h)}" for E, nu, h in fixed))
-            for side, fixed in study.fixed.items()
-            if fixed
-        ),
+        *(row(f"{side} it", ", ".join(layers(fixed))) for side, fixed in study.fixed.items() if fixed),
         row("thickness", swept),
         row("friction", ", ".join(f"{f:g}" for f in study.frictions)),
         row(
@@ -127,72 +124,35 @@ def inputs_section(study: Study) -> Section:
         row("safety factor on every stress", f"{study.criteria.safety:g}"),
         row(
             "assumed",
-            words(
-                "parabolic ball, small strains, linear elasticity, perfect bond, friction that leaves the "
-                "pressure unchanged; strengths are independent of each other"
-            ),
+            "parabolic ball, small strains, linear elasticity, perfect bond, friction that leaves the "
+            "pressure unchanged; strengths are independent of each other",
         ),
     ]
     rows = [Row(one.head, [Cell(cell.text, css="words") for cell in one.cells]) for one in rows]
     return Section("inputs", "Inputs and assumptions", [Part("", [Table("", ["input", "value"], rows)])])
 
 
-def check_sections(checks: Sequence[Difference], tensions: Sequence[TensionCheck]) -> list[Section]:
-    """The largest differences of the other sources; no section where nothing was checked."""
+def check_sections(checks: Sequence[Difference]) -> list[Section]:
+    """The largest differences of the other sources."""
     if not checks:
-        return []
-    rows = [
-        row(
-            source_label(d.source),
-            d.quantity,
-            number(d.points, str),
-            number(d.largest),
-            number(d.stated),
-            number(d.ratio, "{:.4g}".format),
-            number(d.h, "{:.3g}".format),
-            number(d.friction, "{:g}".format),
-            css="" if d.largest <= d.stated or d.stated != d.stated else "disagrees",
-        )
-        for d in checks
-    ]
-    columns = ["source", "quantity", "points", "largest difference", "uncertainty of both"]
-    table = Table(
+        return [Section("checks", "Cross-check", [Part("No point was cross-checked.")])]
+    table = table_of(
         "The largest difference from the semi-analytical method, over a_h, delta_h or the smaller of p_h and "
         "p0, where it occurs, the uncertainty both state there.",
-        [*columns, "E1/E2", "h / a_h", "f"],
-        rows,
+        checks,
+        [
+            ("source", lambda d: source_label(d.source)),
+            ("quantity", lambda d: d.quantity),
+            ("points", lambda d: d.points),
+            ("largest difference", lambda d: d.largest),
+            ("uncertainty of both", lambda d: d.stated),
+            ("E1/E2", lambda d: number(d.ratio, "{:.4g}".format)),
+            ("h / a_h", lambda d: number(d.h, "{:.3g}".format)),
+            ("f", lambda d: number(d.friction, "{:g}".format)),
+        ],
+        row_css=lambda d: "" if d.largest <= d.stated or d.stated != d.stated else "disagrees",
     )
-    every = Part("", [_tension_table(tensions)], folded=f"{len(tensions)} rows")
-    return [Section("checks", "Cross-check", [Part("", [table]), every])]
-
-
-def _tension_table(tensions: Sequence[TensionCheck]) -> Table:
-    rows = [
-        row(
-            source_label(t.source),
-            number(t.ratio, "{:.4g}".format),
-            number(t.h, "{:.3g}".format),
-            number(t.friction, "{:g}".format),
-            number(t.tension, "{:.6f}".format),
-            number(t.difference, partial(scientific, sign=True)),
-            number(t.stated),
-            number(t.place, partial(scientific, sign=True)),
-            css="" if abs(t.difference) <= t.stated or t.stated != t.stated else "disagrees",
-        )
-        for t in tensions
-    ]
-    return Table(
-        "The largest tension of the surface by the semi-analytical method at every cross-checked point, "
-        "over p_h; the difference of the other source and the uncertainty of both, over the smaller of p_h "
-        "and p0; the difference of the places, over a.",
-        ["source", "E1/E2", "h / a_h", "f", "tension", "difference", "uncertainty of both", "place"],
-        rows,
-    )
-
-
-def load_text(study: Study) -> str:
-    """The load of a study, or its range."""
-    return f"{study.load:g} N" if study.loads is None else f"{study.loads[0]:g} to {study.loads[1]:g} N"
+    return [Section("checks", "Cross-check", [Part("", [table])])]
 
 
 def _solid(E: float, nu: float) -> str:

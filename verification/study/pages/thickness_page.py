@@ -1,24 +1,23 @@
-"""The report of a study: figures for a paper beside one page that describes them."""
+"""The report of a study: its answer in words, and figures for a paper beside one page that describes them.
 
+No number of the answer has more digits than its uncertainty supports; limits are rounded to the safe side.
+"""
+
+import math
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 
 from verification.cases.unit_numbers import Units
-from verification.page.page_parts import (
-    Cell,
-    Part,
-    Section,
-    Table,
-    number,
-    row,
-)
+from verification.page.page_parts import Cell, Part, Section, Table, Value, number, row, table_of
+from verification.page.source_labels import source_label
 from verification.study.choice.failure_criteria import MODES, Judged, judged
-from verification.study.choice.thickness_choice import DRAWN, Choice, choice
+from verification.study.choice.thickness_choice import DRAWN, Choice, End, Range, choice
 from verification.study.largest_stresses import QUANTITIES
 from verification.study.pages.contour_maps import contour_figures, nearest
-from verification.study.pages.curve_summary import agreement_messages, main_messages
 from verification.study.pages.study_assembly import (
     Draw,
     Written,
@@ -35,18 +34,163 @@ from verification.study.pages.study_figures import (
     stress_figures,
     use_figures,
 )
-from verification.study.pages.thickness_recommendation import (
-    answers,
-    between,
-    checked_messages,
-    near,
-    rounded,
-)
 from verification.study.study_plan import Study
 from verification.study.study_table import SCALARS, SOURCES, read_columns
-from verification.study.thickness_curves import Curve, Difference, curves, differences, tension_checks
+from verification.study.thickness_curves import Curve, curves, differences
 
-__all__ = ["Written", "write_study_report"]
+DIGITS = 2  # of a thickness, at most
+
+
+@dataclass(frozen=True)
+class Near:
+    """How far ``source`` is from the semi-analytical curve in ``mode`` at a checked thickness.
+
+    h : over a_h.   difference : |difference| over p_h.
+    """
+
+    source: str
+    mode: str
+    h: float
+    difference: float
+
+
+def near(judgement: Judged, h: float, mode: str) -> tuple[Near, ...]:
+    """The cross-checks of ``mode`` nearest to ``h`` over a_h, one for each source that has any."""
+    curve = judgement.curve
+    found = []
+    for source, marks in curve.marks.items():
+        at, value = marks[mode]
+        known = np.isin(at, curve.h) & np.isfinite(value)
+        if not known.any():
+            continue
+        i = int(np.flatnonzero(known)[np.abs(np.log(at[known] / h)).argmin()])
+        here = float(curve.stress[mode][np.flatnonzero(curve.h == at[i])[0]])
+        found.append(Near(source, mode, float(at[i]), abs(float(value[i]) - here)))
+    return tuple(found)
+
+
+def rounded(value: float, uncertainty: float, upwards: bool | None = None) -> str:
+    """A positive ``value`` in at most ``DIGITS`` digits, the last no finer than its ``uncertainty``.
+
+    upwards : whether it is rounded up or down; to the nearest for None.
+    """
+    last = math.floor(math.log10(value)) - DIGITS + 1
+    if uncertainty > 0 and math.isfinite(uncertainty):
+        last = max(last, math.ceil(math.log10(uncertainty)))
+    last = min(last, math.floor(math.log10(value)))
+    step = 10.0**last
+    # 1e-9: a value that is round already stays
+    shift = 0.0 if upwards is None else (-1e-9 if upwards else 1e-9)
+    steps = value / step + shift
+    count = round(steps) if upwards is None else math.ceil(steps) if upwards else math.floor(steps)
+    return f"{(count or 1) * step:.{max(-last, 0)}f}"
+
+
+def answers(choices: Sequence[Choice], units: Units) -> list[str]:
+    """The answer for each modulus in a line."""
+    return [_answer(one, units, several=len(choices) > 1) for one in choices]
+
+
+def _answer(found: Choice, units: Units, *, several: bool) -> str:
+    frictions = [j.curve.friction for j in found.judgements]
+    at = f"f = {frictions[0]:g}" + (f" to {frictions[-1]:g}" if len(frictions) > 1 else "")
+    name = f"E1/E2 = {found.judgements[0].curve.ratio:.3g}: " if several else ""
+    if not found.judgements[0].limited:
+        return f"{name}{_even(found, units)} at {at}{_limits(found, found.even)}."
+    if not found.ranges:
+        judgement, mode = found.governing(found.best)
+        use = rounded(found.least, found.error)
+        return (
+            f"{name}no thickness of the sweep keeps every stress below its strength at {at}; even the best, "
+            f"{_length(found, found.best, units)}, uses {use} of it: {MODES[mode]} "
+            f"(f = {judgement.curve.friction:g})."
+        )
+    parts = []
+    for pair in found.ranges:
+        parts.append(
+            f"{between(found, pair, units, safe=True)} keeps every stress below its strength at {at}"
+            f"{_limits(found, pair)}"
+        )
+    use = rounded(found.least, found.error)
+    return f"{name}{'. '.join(parts)}. {_even(found, units)}, at {use} of the strength."
+
+
+def _even(found: Choice, units: Units) -> str:
+    percent = math.ceil(100 * found.tolerance - 1e-9)
+    verb = f"are within {percent} % of each other"
+    return f"{between(found, found.even, units)} {verb}"
+
+
+def between(found: Choice, pair: Range, units: Units, *, safe: bool = False) -> str:
+    """ "2 to 10 µm"; inwards where ``safe``, with the ends of the sweep named."""
+    low, high = pair
+    scale = found.judgements[0].curve.a_h / units.metre
+    ends = []
+    for end, edge, upwards in ((low, found.h[0], True), (high, found.h[-1], False)):
+        value, U = (float(edge), 0.0) if end is None else (end.h, end.uncertainty)
+        ends.append(rounded(value * scale, U * scale, upwards if safe and end else None))
+    swept = [word for word, end in (("thinnest", low), ("thickest", high)) if end is None]
+    beyond = f" (the {' and the '.join(swept)} of the sweep)" if swept else ""
+    if ends[0] == ends[1] or float(ends[0]) > float(ends[1]):
+        return f"about {_length(found, found.best, units)}{beyond}"
+    return f"{ends[0]} to {ends[1]} {units.length}{beyond}"
+
+
+def _length(found: Choice, h: float, units: Units) -> str:
+    return f"{rounded(h * found.judgements[0].curve.a_h / units.metre, 0.0)} {units.length}"
+
+
+def _limits(found: Choice, pair: Range) -> str:
+    """What sets each limit, with its share of the samples in which the coating fails there."""
+    said = []
+    words = (
+        ("the limit below is set where", "above where") if pair[0] else ("", "the limit above is set where")
+    )
+    for word, end in zip(words, pair, strict=True):
+        if end is not None:
+            said.append(f"{word} {MODES[end.mode]} ({_share(found, end)}f = {end.friction:g})")
+    return f"; {', '.join(said)}" if said else ""
+
+
+def _share(found: Choice, end: End) -> str:
+    if not found.criteria.scatters:
+        return ""
+    chances = found.chances(np.array([end.h]))
+    if not chances.fails[0]:
+        return ""
+    share = chances.breaks[found.judgements[0].modes.index(end.mode), 0] / chances.fails[0]
+    return f"{100 * share:.0f} % of the failures there, "
+
+
+def checked_messages(choices: Sequence[Choice], units: Units) -> list[str]:
+    """For each modulus the cross-checks nearest to what is recommended, every source with its worst."""
+    return [message for one in choices if (message := _checked(one, units))]
+
+
+def _checked(choice: Choice, units: Units) -> str:
+    pairs = [*choice.ranges, choice.even]
+    places = [(end.h, end.mode, end.friction) for pair in pairs for end in pair if end is not None]
+    judgement, mode = choice.governing(choice.best)
+    places.append((choice.best, mode, judgement.curve.friction))
+    by_friction = {j.curve.friction: j for j in choice.judgements}
+    found = [(by_friction[f], one) for h, mode, f in places for one in near(by_friction[f], h, mode)]
+    if not found:
+        return ""
+    parts = []
+    for source in dict.fromkeys(one.source for _, one in found):
+        j, one = max(
+            ((j, one) for j, one in found if one.source == source), key=lambda item: item[1].difference
+        )
+        stress = one.difference * j.curve.p_h / units.pascal
+        parts.append(
+            f"at most {stress:.1g} {units.stress} off the {source_label(source)} ({one.mode}, "
+            f"{_length(choice, one.h, units)}, f = {j.curve.friction:g})"
+        )
+    return (
+        f"E1/E2 = {judgement.curve.ratio:.3g}: at the checked thicknesses nearest to these the governing "
+        f"stresses are {' and '.join(parts)}."
+    )
+
 
 CONTOURS = (0.1, 0.5, 2.0)  # h/a_h; the solved ones nearest to these
 
@@ -75,7 +219,6 @@ def write_study_report(
         choice([judged(c, study.criteria) for c in found if c.ratio == ratio], study.criteria)
         for ratio in ratios
     ]
-    checks = differences(columns)
     failures = [f"{c.label}, h = {h:.4g} a_h: {message}" for c in every for h, message in c.failures]
     draws: list[Draw] = []
     if found and figures:
@@ -93,8 +236,7 @@ def write_study_report(
         _preference(study, choices, said),
         inputs_section(study),
         *drawings,
-        _summary(found, checks),
-        *check_sections(checks, tension_checks(columns)),
+        *check_sections(differences(columns)),
         Section("extremes", "Extremes of every curve", [_extremes(found, units)]),
         *failed_section(failures),
     ]
@@ -105,15 +247,8 @@ def write_study_report(
     return write_page(table, study, folder, said, summary, sections, [points], facts)
 
 
-def _summary(found: Sequence[Curve], checks: Sequence[Difference]) -> Section:
-    if not found:
-        return Section("summary", "Summary of the curves", [], ["No curve has two solved points."])
-    texts = [*main_messages(found), *(agreement_messages(checks) or ["No point was cross-checked."])]
-    return Section("summary", "Summary of the curves", [Part(text) for text in texts])
-
-
 def _extremes(found: Sequence[Curve], units: Units) -> Part:
-    rows, ends = [], ("smallest", "at h", "largest", "at h")
+    rows = []
     for curve in found:
         size = curve.a_h / units.metre
         for quantity in (*QUANTITIES, *SCALARS):
@@ -125,70 +260,67 @@ def _extremes(found: Sequence[Curve], units: Units) -> Part:
                 i = int(curve.stress[quantity].argmax())
                 x, z = curve.x[quantity][i] * size, curve.z[quantity][i] * size
                 places = f"{x:.2f}, {z:.2f}".replace("nan", "–")
+            numbers = zip(
+                (low * scale, h_low * size, high * scale, h_high * size), ("5", "3") * 2, strict=True
+            )
             rows.append(
                 row(
                     quantity,
                     number(curve.ratio, "{:.4g}".format),
                     number(curve.friction, "{:g}".format),
                     units.stress if stress else units.length,
-                    number(low * scale, "{:.5g}".format),
-                    number(h_low * size, "{:.3g}".format),
-                    number(high * scale, "{:.5g}".format),
-                    number(h_high * size, "{:.3g}".format),
+                    *(number(value, f"{{:.{digits}g}}".format) for value, digits in numbers),
                     places,
                 )
             )
     table = Table(
         f"Extremes of every curve among its solved points; thicknesses, and places of the largest, in "
         f"{units.length}.",
-        ["quantity", "E1/E2", "f", "unit", *ends, "x, z"],
+        ["quantity", "E1/E2", "f", "unit", "smallest", "at h", "largest", "at h", "x, z"],
         rows,
     )
     return Part("", [table], folded=f"{len(rows)} rows")
 
 
 def _preference(study: Study, choices: Sequence[Choice], said: Sequence[str]) -> Section:
-    rows, units = [], study.units
-    for every in choices:
-        for j in every.judgements:
-            one = choice([j], study.criteria)
-            _, mode = one.governing(one.best)
-            size = j.curve.a_h / units.metre
-            even = [
-                edge if end is None else end.h for end, edge in zip(one.even, one.h[[0, -1]], strict=True)
-            ]
-            ranges = "; ".join(between(one, pair, units, safe=True) for pair in one.ranges)
-            rows.append(
-                row(
-                    number(j.curve.ratio, "{:.4g}".format),
-                    number(j.curve.friction, "{:g}".format),
-                    " – ".join(rounded(h * size, 0.0) for h in even),
-                    number(one.tolerance, "{:.1%}".format),
-                    Cell(rounded(one.least, one.error), one.least),
-                    Cell(mode, note=MODES[mode]),
-                    *([ranges or "none"] if j.limited else []),
-                    *_near_cells(j, one.best, mode, units),
-                    css="" if j.admissible or not j.limited else "disagrees",
-                )
-            )
+    units = study.units
+    curves = [(j, choice([j], study.criteria)) for every in choices for j in every.judgements]
     limited = any(one.judgements[0].limited for one in choices)
-    table = Table(
+    columns: list[tuple[str, Callable[[tuple[Judged, Choice]], Value]]] = [
+        ("E1/E2", lambda pair: number(pair[0].curve.ratio, "{:.4g}".format)),
+        ("f", lambda pair: number(pair[0].curve.friction, "{:g}".format)),
+        (f"best h [{units.length}]", lambda pair: _best(*pair, units)),
+        ("tolerance", lambda pair: number(pair[1].tolerance, "{:.1%}".format)),
+        (
+            "stress / strength" if limited else "stress / p_h",
+            lambda pair: Cell(rounded(pair[1].least, pair[1].error), pair[1].least),
+        ),
+        ("governing mode", lambda pair: Cell(_mode(pair[1]), note=MODES[_mode(pair[1])])),
+    ]
+    if limited:
+        columns.append(
+            (
+                f"admissible h [{units.length}]",
+                lambda pair: (
+                    "; ".join(between(pair[1], ends, units, safe=True) for ends in pair[1].ranges) or "none"
+                ),
+            )
+        )
+    columns.append((f"checked at h [{units.length}]", lambda pair: _checked_at(*pair, units)))
+    columns += [
+        (
+            f"difference, {source_label(source)} [{units.stress}]",
+            partial(_difference, source=source, units=units),
+        )
+        for source in SOURCES[1:]
+    ]
+    table = table_of(
         "The thicknesses of every curve that are equally good: their largest stress exceeds the smallest by "
         "no more than the tolerance, 1 % or the error of interpolation. Last: differences of the governing "
         "stress at the checked thickness nearest to the best one.",
-        [
-            "E1/E2",
-            "f",
-            f"best h [{units.length}]",
-            "tolerance",
-            "stress / strength" if limited else "stress / p_h",
-            "governing mode",
-            *([f"admissible h [{units.length}]"] if limited else []),
-            f"checked at h [{units.length}]",
-            f"difference, finite elements [{units.stress}]",
-            f"difference, exact [{units.stress}]",
-        ],
-        rows,
+        curves,
+        columns,
+        row_css=lambda pair: "" if pair[0].admissible or not pair[0].limited else "disagrees",
     )
     texts = [
         *(said if len(said) > 1 else []),
@@ -197,6 +329,27 @@ def _preference(study: Study, choices: Sequence[Choice], said: Sequence[str]) ->
     ]
     parts = [*(Part(text) for text in texts), Part("", [table])]
     return Section("preferable", "Which thickness", [*parts, *_chances(study, choices)])
+
+
+def _mode(one: Choice) -> str:
+    return one.governing(one.best)[1]
+
+
+def _best(j: Judged, one: Choice, units: Units) -> str:
+    ends = [edge if end is None else end.h for end, edge in zip(one.even, one.h[[0, -1]], strict=True)]
+    return " – ".join(rounded(h * j.curve.a_h / units.metre, 0.0) for h in ends)
+
+
+def _checked_at(j: Judged, one: Choice, units: Units) -> Cell:
+    found = near(j, one.best, _mode(one))
+    return number(found[-1].h * j.curve.a_h / units.metre if found else None, "{:.3g}".format)
+
+
+def _difference(pair: tuple[Judged, Choice], source: str, units: Units) -> float | None:
+    """What ``source`` differs by at the checked thickness nearest to the best one; None without any."""
+    j, one = pair
+    found = {near.source: near.difference for near in near(j, one.best, _mode(one))}
+    return found[source] * j.curve.p_h / units.pascal if source in found else None
 
 
 def _chances(study: Study, choices: Sequence[Choice]) -> list[Part]:
@@ -210,14 +363,14 @@ def _chances(study: Study, choices: Sequence[Choice]) -> list[Part]:
             places |= {"limit below": low.h} if low else {}
             places |= {"limit above": high.h} if high else {}
         chances = one.chances(np.array([*places.values()]))
+        curve = one.judgements[0].curve
         for k, (what, h) in enumerate(places.items()):
             rows.append(
                 row(
-                    number(one.judgements[0].curve.ratio, "{:.4g}".format),
+                    number(curve.ratio, "{:.4g}".format),
                     what,
-                    number(h * one.judgements[0].curve.a_h / study.units.metre, "{:.3g}".format),
-                    *(number(share, "{:.0%}".format) for share in chances.governs[:, k]),
-                    number(chances.fails[k], "{:.0%}".format),
+                    number(h * curve.a_h / study.units.metre, "{:.3g}".format),
+                    *(number(share, "{:.0%}".format) for share in (*chances.governs[:, k], chances.fails[k])),
                 )
             )
     table = Table(
@@ -227,19 +380,6 @@ def _chances(study: Study, choices: Sequence[Choice]) -> list[Part]:
         rows,
     )
     return [Part("", [table], title="Probabilities")]
-
-
-def _near_cells(judgement: Judged, h: float, mode: str, units: Units) -> list[Cell]:
-    """The thickness checked next to ``h``, what each other source differs by there; dashes for none."""
-    by_source = {one.source: one for one in near(judgement, h, mode)}
-    checked = next((by_source[source].h for source in reversed(SOURCES[1:]) if source in by_source), None)
-    found = [by_source.get(source) for source in SOURCES[1:]]
-    scale = judgement.curve.p_h / units.pascal
-    size = judgement.curve.a_h / units.metre
-    return [
-        number(None if checked is None else checked * size, "{:.3g}".format),
-        *(number(None if one is None else one.difference * scale) for one in found),
-    ]
 
 
 def _maps(study: Study, found: Sequence[Curve], failures: list[str]) -> list[Drawn]:

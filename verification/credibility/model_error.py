@@ -1,0 +1,205 @@
+"""Error of the model itself at a problem: the cost of each assumption, from a model without it.
+
+A fast model is evaluated at the problem; for a slow one the recorded map is read, see ``ASSUMPTIONS``.
+
+A further assumption is one more entry of ``ASSUMPTIONS``: ``model_error``, the report and the manual show it.
+``tests/tools assumptions`` measures its map, over the axes stated there.
+"""
+
+from collections.abc import Callable, Collection, Sequence
+from dataclasses import dataclass, fields
+from functools import cache
+
+from verification.evidence.assumption_maps import SHIPPED, AssumptionMaps, read_maps
+from verification.problem.coated_contact import CoatedContact
+from verification.problem.quantity import BALL_PEAKS, PEAKS
+from verification.sources.assumptions.contact_change import SCALARS, Change, of_goodman, of_sphere
+from verification.sources.assumptions.finite_bodies import of_half_spaces
+from verification.sources.assumptions.strain_cost_of_pair import of_pair
+
+QUANTITIES = tuple(one.name for one in fields(Change))
+PARABOLA, GOODMAN = "parabola for the sphere", "Goodman's assumption"
+HALF_SPACES = "half-spaces for the ball and a disc as thick as its radius"
+SMALL_STRAINS = "small strains"
+Reading = Callable[[CoatedContact], tuple[Change, Change]]
+
+
+@dataclass(frozen=True)
+class Assumption:
+    """What all sources assume, with its ``title`` in sentences.
+
+    change : change of a contact by dropping it, with the uncertainty; ValueError where there is none.
+        None where the model is too slow for this, so that its map is read.
+    warned : beginning of the warning of implausible input that says the same, which is not repeated.
+    read : change of a problem by that of others, which the map holds; where the map alone is not enough.
+    """
+
+    title: str
+    change: Reading | None = None
+    warned: str = ""
+    read: Callable[[CoatedContact, Reading], tuple[Change, Change]] = lambda problem, at: at(problem)
+
+
+ASSUMPTIONS: dict[str, Assumption] = {
+    "sphere": Assumption(PARABOLA, of_sphere, warned="contact radius a_h"),
+    "goodman": Assumption(GOODMAN, of_goodman),
+    "bodies": Assumption(HALF_SPACES, of_half_spaces),
+    "strains": Assumption(SMALL_STRAINS, read=of_pair),
+}
+
+
+__all__ = ["GOODMAN", "HALF_SPACES", "PARABOLA", "Cost", "ModelError", "model_error"]
+
+WORDS = {
+    "contact_radius": "contact radius",
+    "peak_pressure": "peak pressure",
+    "tension": "tension at the trailing edge",
+    "shear": "shear of the first interface",
+}
+
+
+LIMIT = 0.05  # relative; a larger cost triggers a warning
+LEAST = 1e-6  # relative; a smaller cost is not reported
+
+
+@dataclass(frozen=True)
+class Cost:
+    """Relative change of ``quantity`` when ``assumption`` is dropped, with its absolute uncertainty."""
+
+    assumption: str
+    quantity: str
+    change: float
+    uncertainty: float
+
+    @property
+    def name(self) -> str:
+        """The quantity in words."""
+        return WORDS.get(self.quantity, self.quantity)
+
+    @property
+    def size(self) -> float:
+        """Magnitude of the change and its uncertainty together."""
+        return abs(self.change) + self.uncertainty
+
+    @property
+    def words(self) -> str:
+        """Size, quantity and assumption."""
+        return f"{_percent(self.size)} of the {self.name} ({self.assumption})"
+
+
+@dataclass(frozen=True)
+class ModelError:
+    """Costs of the assumptions at a problem; ``missing`` : (assumption, reason) of those not evaluated."""
+
+    costs: tuple[Cost, ...]
+    missing: tuple[tuple[str, str], ...] = ()
+
+    def largest(self, quantities: Collection[str] = QUANTITIES) -> Cost | None:
+        """The largest cost of ``quantities``; None where nothing was evaluated."""
+        of = [cost for cost in self.costs if cost.quantity in quantities]
+        return max(of, key=lambda cost: cost.size, default=None)
+
+    @property
+    def dominating(self) -> tuple[Cost, ...]:
+        """The largest cost of scalars and that of stresses."""
+        stresses = [name for name in QUANTITIES if name not in SCALARS]
+        return tuple(one for one in (self.largest(SCALARS), self.largest(stresses)) if one)
+
+    @property
+    def parts(self) -> tuple[str, ...]:
+        """The dominating costs, each with its assumption."""
+        return tuple(one.words for one in self.dominating)
+
+    @property
+    def lesser(self) -> tuple[Cost, ...]:
+        """The largest cost of each assumption that dominates nowhere."""
+        named = {one.assumption for one in self.dominating}
+        others = dict.fromkeys(one.assumption for one in self.costs if one.assumption not in named)
+        worst = (max((c for c in self.costs if c.assumption == a), key=lambda c: c.size) for a in others)
+        return tuple(one for one in worst if one.size >= LEAST)
+
+    def message(self) -> str:
+        """One sentence: how good the model is."""
+        if not self.parts:
+            return "the error of the model was not evaluated"
+        return f"the model itself is good to {' and '.join(self.parts)}"
+
+    @property
+    def sentences(self) -> str:
+        """The message with its notes."""
+        return " ".join(f"{line[0].upper()}{line[1:]}." for line in (self.message(), *self.notes))
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """A line for each assumption that dominates nowhere, for each whose cost is not known here."""
+        unknown = (f"not known here: {assumption} ({reason})" for assumption, reason in self.missing)
+        return (*(f"less: {one.words}" for one in self.lesser), *unknown)
+
+    def warnings(self, judged: Collection[str] = QUANTITIES, told: Sequence[str] = ()) -> tuple[str, ...]:
+        """A line for each assumption that costs more than ``LIMIT`` of a quantity among ``judged``.
+
+        told : warnings of implausible input, which are not repeated.
+        """
+        found = []
+        for one in ASSUMPTIONS.values():
+            if one.warned and any(line.startswith(one.warned) for line in told):
+                continue
+            of = [cost for cost in self.costs if cost.assumption == one.title and cost.quantity in judged]
+            worst = max(of, key=lambda cost: cost.size, default=None)
+            if worst is not None and worst.size > LIMIT:
+                found.append(f"{one.title} costs {_percent(worst.size)} of the {worst.name}")
+        return tuple(found)
+
+
+def model_error(problem: CoatedContact, maps: AssumptionMaps | None = None) -> ModelError:
+    """What the assumptions cost at ``problem``, in tenths of a second; in seconds under h < a_h/20.
+
+    maps : to read the assumptions in that are not evaluated; those of the package if None.
+    """
+    maps = _shipped() if maps is None else maps
+    costs: list[Cost] = []
+    missing: list[tuple[str, str]] = []
+    for name, assumption in ASSUMPTIONS.items():
+        try:
+            change, uncertainty = (
+                assumption.change(problem) if assumption.change else _read(maps, name, problem)
+            )
+        except ValueError as error:
+            missing.append((assumption.title, str(error)))
+            continue
+        if change.tension is None:
+            missing.append(
+                (f"{assumption.title}, of the stresses", "its model has a rigid ball, no friction")
+            )
+        costs += [
+            Cost(assumption.title, field.name, value, getattr(uncertainty, field.name))
+            for field in fields(change)
+            if (value := getattr(change, field.name)) is not None
+        ]
+    return ModelError(tuple(costs), tuple(missing))
+
+
+def judged_quantities(claimed: Collection[str]) -> tuple[str, ...]:
+    """The members of ``QUANTITIES`` that claims on the quantities ``claimed`` judge."""
+    by = {
+        "peak_pressure": ("peak_pressure", "pressure"),
+        "tension": ("sigma_xx", *PEAKS, *BALL_PEAKS),
+        "shear": ("sigma_xz",),
+    }
+    return tuple(name for name in QUANTITIES if any(one in claimed for one in by.get(name, (name,))))
+
+
+def _percent(size: float) -> str:
+    return f"{100 * size:.2g} %" if size >= LEAST else "0.0001 %"
+
+
+def _read(maps: AssumptionMaps, name: str, problem: CoatedContact) -> tuple[Change, Change]:
+    found = maps.of(name)
+    if found is None:
+        raise ValueError(f"its map was not measured; run: python tests/tools assumptions {name} --record")
+    return ASSUMPTIONS[name].read(problem, found.at)
+
+
+@cache
+def _shipped() -> AssumptionMaps:
+    return read_maps(SHIPPED) or AssumptionMaps(())

@@ -1,0 +1,309 @@
+"""What the checks detect: planted faults, mutants, self-tests of the harness."""
+
+from collections.abc import Callable, Sequence
+from functools import partial
+
+from verification.credibility.faults.first_notice import (
+    Noticed,
+    kinds,
+    method_score,
+    noticed,
+    of_method,
+    unused,
+)
+from verification.evidence.fault_record import COLUMNS, GROUPS, Catch, Record
+from verification.evidence.fault_record import Row as Fault
+from verification.evidence.mutant_record import REQUIRED, MutantRecord
+from verification.evidence.mutant_record import Catch as Noticer
+from verification.page.html_page import render_sections
+from verification.page.number_text import plain, scientific, seconds
+from verification.page.page_parts import Cell, Part, Section, Table, Value, row, table_of, words
+from verification.page.source_labels import source_label
+from verification.report.report_material import Material
+from verification.report.report_words import stated
+
+# Mark, class and words of each outcome of a planted fault.
+_CATCHES = {
+    Catch.DISAGREES: ("✓ detected", "verdict agrees", "a check that must hold does not"),
+    Catch.INCONCLUSIVE: (
+        "? inconclusive",
+        "verdict inconclusive",
+        "the uncertainty it leaves exceeds the cap",
+    ),
+    Catch.DRIFTED: ("~ baseline", "verdict inconclusive", "a number differs from the baseline"),
+    Catch.NO_RESULT: ("∅ no result", "verdict no-result", "the source fails without a reason"),
+    Catch.SURVIVED: ("✗ survived", "verdict disagrees", "every check passes"),
+    Catch.NOT_TRIED: ("∅ not tried", "verdict no-result", "the trial failed"),
+}
+
+
+def faults_message(record: Record) -> str:
+    """The score as a message."""
+    text = (
+        f"{record.caught} of {len(record.rows)} planted faults are detected "
+        f"({plain(100 * record.share, 3)} %), "
+        f"{record.as_predicted} of them by the check predicted before the trial"
+    )
+    if of_method(record):
+        found, count = method_score(record)
+        text += (
+            f". In the semi-analytical method, {found} of {count} are noticed by a comparison, an invariant "
+            f"or a judged study (first {kinds(record)})"
+        )
+    if record.controls:
+        text += (
+            f"; of {len(record.controls)} negative controls {len(record.alarms) or 'none'} raised an alarm"
+        )
+    return text + "."
+
+
+def faults_of(material: Material) -> Section | None:
+    """The planted faults on record; None without a record."""
+    record = material.evidence.faults
+    return None if record is None else faults_section(record)
+
+
+def faults_section(record: Record) -> Section:
+    """Planted faults as a section of any page: method, share detected, survivors, checks of each fault."""
+    made = {
+        "date": record.started[:10],
+        "commit": record.commit or "unknown",
+        "time": seconds(record.core_seconds),
+    }
+    parts = [Part(stated("planting", **made)), Part(faults_message(record), [_score(record)])]
+    if never := [row for row in of_method(record) if unused(row)]:
+        names = "; ".join(f"{row.name}: {row.description}" for row in never)
+        parts.append(
+            Part(f"No run executes what these faults change, an argument for a further case. {names}.")
+        )
+    if survivors := _survivors(record):
+        parts.append(
+            Part("Faults that were not detected, with the reason and a possible check.", [survivors])
+        )
+    if record.controls:
+        text = "Negative controls, the same trials with nothing planted: any detection is a false alarm."
+        parts.append(Part(text, [_controls(record.controls)]))
+    parts.append(Part(_explained(record), title="Faults against checks"))
+    parts += [
+        Part("", [_matrix(rows, title)], folded=f"{title}, {len(rows)} faults")
+        for title, rows in _groups(record)
+    ]
+    failures = [f"{row.name} changes no number, so it is not a fault." for row in record.idle]
+    failures += [f"{row.name}, a negative control, is detected: {row.by}" for row in record.alarms]
+    failures += [f"{row.name}: {row.failure}" for row in record.rows if row.failure]
+    failures += [
+        f"Fails without any fault, so that it is no evidence: {check}" for check in record.failing_clean
+    ]
+    return Section("faults", "Planted faults", parts, failures)
+
+
+def faults_page(record: Record) -> str:
+    """The section as a page of its own."""
+    facts = (
+        ("started", record.started.replace("T", " ").replace("+00:00", " UTC")),
+        ("duration", seconds(record.seconds)),
+        ("on one core", seconds(record.core_seconds)),
+        ("commit", record.commit or "not in a repository"),
+        ("machine", record.machine),
+        *record.versions.items(),
+    )
+    return render_sections(
+        "coatcheck faults",
+        faults_message(record),
+        facts,
+        [faults_section(record)],
+        "Written by coatcheck faults.",
+    )
+
+
+def _explained(record: Record) -> str:
+    columns = "; ".join(f"“{title}”: {text}" for title, text in COLUMNS.items())
+    blind = sum(_only_coated(row) for row in record.rows)
+    first = (
+        f"{blind} faults pass every comparison of the uncoated cases, including Hertz and Hamilton, and are "
+        "detected on coated cases only. "
+        if blind
+        else ""
+    )
+    return (
+        f"{first}Each cell counts the checks that do not pass, of those that were made: ✓ a disagreement, "
+        "? an uncertainty beyond its cap, ∅ no result. An empty cell: not checked, since the "
+        f"fault does not affect it. The columns: {columns}."
+    )
+
+
+def _only_coated(row: Fault) -> bool:
+    """True where comparisons on uncoated cases all pass and some on coated ones do not."""
+    bare = [seen for column, seen in row.columns.items() if column.startswith("bare")]
+    coated = [seen for column, seen in row.columns.items() if column.startswith("coated")]
+    passed = all(seen.disagree + seen.inconclusive + seen.no_result == 0 for seen in bare)
+    return bool(bare) and passed and any(seen.disagree + seen.inconclusive for seen in coated)
+
+
+def _groups(record: Record) -> list[tuple[str, list[Fault]]]:
+    """Title and faults of each group that has any."""
+    groups = [
+        (title, [fault for fault in record.rows if fault.group == key]) for key, title in GROUPS.items()
+    ]
+    return [(title, faults) for title, faults in groups if faults]
+
+
+def _score(record: Record) -> Table:
+    shown = [kind for kind in Noticed if any(noticed(fault) is kind for fault in record.rows)]
+    groups = _groups(record)
+    columns: list[tuple[str, Callable[[tuple[str, list[Fault]]], Value]]] = [
+        ("group", lambda group: group[0]),
+        ("faults", lambda group: len(group[1])),
+        *((str(kind), partial(_count, kind=kind)) for kind in shown),
+        ("detected", lambda group: _percent(sum(fault.caught for fault in group[1]) / len(group[1]))),
+        ("predicted check", lambda group: sum(fault.as_predicted for fault in group[1])),
+    ]
+    return table_of(
+        stated("noticed"),
+        [*groups, *([("All", list(record.rows))] if len(groups) > 1 else [])],
+        columns,
+    )
+
+
+def _count(group: tuple[str, list[Fault]], kind: Noticed) -> Cell:
+    found = sum(noticed(fault) is kind for fault in group[1])
+    return Cell(str(found or "–"), found)
+
+
+def _percent(share: float) -> Cell:
+    return Cell(f"{plain(100 * share, 3)} %", share)
+
+
+def _survivors(record: Record) -> Table:
+    return table_of(
+        "Survivors.",
+        record.survivors,
+        [
+            ("fault", lambda fault: Cell(fault.name, note=fault.description)),
+            ("outcome", _catch_cell),
+            ("fault planted", lambda fault: words(fault.description)),
+            ("reason", lambda fault: words(fault.reason or fault.failure or "not known")),
+            ("possible check", lambda fault: words(fault.remedy or "–")),
+        ],
+    )
+
+
+def _matrix(faults: Sequence[Fault], caption: str) -> Table:
+    columns: list[tuple[str, Callable[[Fault], Value]]] = [
+        ("fault", lambda fault: Cell(fault.name, note=fault.by)),
+        ("fault planted", lambda fault: words(fault.description)),
+        ("in", lambda fault: source_label(fault.where)),
+        ("outcome", _catch_cell),
+        ("predicted check", lambda fault: Cell("✓" if fault.as_predicted else "–", note=fault.by)),
+        *((name, partial(_seen_cell, column=name)) for name in COLUMNS),
+        (
+            "change",
+            lambda fault: Cell(
+                scientific(fault.change), fault.change, note=f"{fault.changed}; {seconds(fault.seconds)}"
+            ),
+        ),
+    ]
+    spans = [("", 5), ("checks that do not pass", len(COLUMNS)), ("", 1)]
+    return table_of(caption, faults, columns, spans, "faults")
+
+
+def _controls(controls: Sequence[Fault]) -> Table:
+    """Trials with nothing planted: silence is right, a detection is a false alarm."""
+    silent = Cell("✓ no alarm", 1.0, "verdict agrees")
+    return table_of(
+        "Nothing planted.",
+        controls,
+        [
+            ("control", lambda one: one.name),
+            ("solved again", lambda one: words(one.description)),
+            (
+                "outcome",
+                lambda one: Cell("✗ false alarm", 0.0, "verdict disagrees", one.by) if one.caught else silent,
+            ),
+            ("checks", lambda one: sum(seen.made for seen in one.columns.values())),
+        ],
+    )
+
+
+def _catch_cell(row: Fault) -> Cell:
+    text, css, meaning = _CATCHES[row.catch]
+    return Cell(text, float(list(Catch).index(row.catch)), css, row.by or meaning)
+
+
+def _seen_cell(fault: Fault, column: str) -> Cell:
+    seen = fault.columns.get(column)
+    if seen is None:
+        return Cell("", None, "nothing", "not made")
+    parts = [("✓", seen.disagree), ("?", seen.inconclusive), ("∅", seen.no_result)]
+    text = " ".join(f"{mark}{count}" for mark, count in parts if count)
+    if not text:
+        return Cell(f"0/{seen.made}", 0.0, note=f"all {seen.made} pass")
+    css = "agrees" if seen.disagree else "inconclusive" if seen.inconclusive else "no-result"
+    return Cell(f"{text}/{seen.made}", seen.disagree + seen.inconclusive, f"verdict {css}", seen.message)
+
+
+def mutants_message(record: MutantRecord) -> str:
+    """The score as a message."""
+    caught, count = record.score()
+    return (
+        f"{caught} of {count} mutants are caught ({plain(100 * caught / max(count, 1), 3)} %), "
+        f"{len(record.trials) - count} equivalent ones apart."
+    )
+
+
+def mutants_of(material: Material) -> Section | None:
+    """The mutants on record; None without a record."""
+    record = material.evidence.mutants
+    if record is None:
+        return None
+    method = stated(
+        "mutants",
+        message=mutants_message(record),
+        date=record.info.started[:10],
+        commit=record.info.commit or "unknown",
+        time=seconds(record.seconds),
+    )
+    shown = [catch for catch in Noticer if any(trial.catch is catch for trial in record.trials)]
+    scores = []
+    for name, required in REQUIRED.items():
+        caught, count = record.score(name)
+        if count:
+            by = [sum((t.room, t.catch) == (name, catch) for t in record.trials) for catch in shown]
+            share = f"{plain(100 * caught / count, 3)} %, {plain(100 * required, 3)} % required"
+            scores.append(row(name, *by, words(share)))
+    parts = [Part(method, [Table("Mutants of each room.", ["room", *map(str, shown), "caught"], scores)])]
+    if record.survivors:
+        survivors = table_of(
+            "Survivors.",
+            record.survivors,
+            [
+                ("place", lambda pair: f"{pair[1].file}:{pair[1].line}"),
+                ("function", lambda pair: words(pair[1].function)),
+                ("change", lambda pair: words(pair[1].change)),
+                ("kind", lambda pair: words(pair[0].kind or "not read")),
+                ("reason", lambda pair: words(pair[0].reason)),
+            ],
+        )
+        parts.append(Part("Mutants that nothing caught.", [survivors]))
+    return Section("mutants", "Mutation testing", parts)
+
+
+def self_tests_of(material: Material) -> Section | None:
+    """Each self-test with its requirement and its outcome; None where none was made."""
+    tests = material.evidence.self_tests
+    if not tests:
+        return None
+    passed, failed = Cell("✓", 1.0, "verdict agrees"), Cell("✗", 0.0, "verdict disagrees")
+    table = table_of(
+        "Made before the first case was solved.",
+        tests,
+        [
+            ("part", lambda test: test.name),
+            ("passed", lambda test: passed if test.passed else failed),
+            ("requirement", lambda test: words(test.statement)),
+            ("found", lambda test: words(test.found)),
+        ],
+    )
+    bad = [test for test in tests if not test.passed]
+    failures = [f"{test.name}: {test.found}. The verdicts of this run are not valid." for test in bad]
+    return Section("self-tests", "Self-tests of the harness", [Part(stated("self_tests"), [table])], failures)
