@@ -43,7 +43,7 @@ __all__ = ["ELEMENTS", "Discretisation", "Skeleton", "elasticity", "strain_opera
 ELEMENTS = {2: ElementTriP2, 3: ElementTriP3, 4: ElementTriP4}
 
 
-def strain_operator(harmonic: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def strain_operator(harmonic: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """The matrices (A_r, A_z, A_0), each of shape (strains, fields).
 
         rr = U,r            tt = (U + m V)/r            zz = Z,z
@@ -60,7 +60,7 @@ def strain_operator(harmonic: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     return A_r, A_z, A_0
 
 
-def elasticity(E: float, nu: float, harmonic: int) -> np.ndarray:
+def elasticity(E: float, nu: float, harmonic: float) -> np.ndarray:
     """Hooke's law as a matrix from strain to stress, in the component order of the module.
 
     sigma = lambda tr(eps) I + 2 G eps;  engineering shears carry G alone. Units of ``E``.
@@ -146,7 +146,7 @@ class Discretisation:
         far = self.locations.max(axis=1)[:, None] * (1 - 1e-9)
         return self.unknowns_on(self.facets(lambda x: np.any(x >= far, axis=0)))
 
-    def stiffness(self, materials: tuple[tuple[float, float], ...], harmonic: int) -> sp.csc_matrix:
+    def stiffness(self, materials: tuple[tuple[float, float], ...], harmonic: float) -> sp.csc_matrix:
         """Stiffness matrix, (n, n) for field vectors (n,): virtual work over the angular factor of all terms.
 
             v^T K u = int eps(v) : D(layer) eps(u) r dr dz
@@ -155,7 +155,7 @@ class Discretisation:
         """
         return _assembled(*self._elements(materials, harmonic))
 
-    def skeleton(self, materials: tuple[tuple[float, float], ...], harmonic: int) -> "Skeleton":
+    def skeleton(self, materials: tuple[tuple[float, float], ...], harmonic: float) -> "Skeleton":
         """The same without the unknowns inside the triangles."""
         K, numbers = self._elements(materials, harmonic)
         fields = numbers.shape[1] // self.basis.Nbfun
@@ -170,7 +170,7 @@ class Discretisation:
         return Skeleton(_assembled(K_o, outer, fields * self.N), inner, outer, extension)
 
     def _elements(
-        self, materials: tuple[tuple[float, float], ...], harmonic: int
+        self, materials: tuple[tuple[float, float], ...], harmonic: float
     ) -> tuple[np.ndarray, np.ndarray]:
         """Stiffness (m, size, size) of the triangles and the numbers (m, size) of their unknowns.
 

@@ -4,10 +4,10 @@ By hand: many pressures on one mesh are needed, and more harmonics than it is wo
 
 Finite elements see a pressure as its products with the shape functions phi_i on the surface,
 
-    L_mi = int p cos(m theta) phi_i(r) dA,        u_z(r, theta) = sum_m cos(m theta) sum_ij phi_i(r) S_m,ij L_mj,
+    L_mi = int p cos(m theta) phi_i(r) dA,   u_z(r, theta) = sum_m cos(m theta) sum_ij phi_i(r) S_m,ij L_mj,
 
-with one matrix S_m for each harmonic, found by as many right-hand sides as there are nodes below the pressure.
-So  int p u_z' dA = sum_m L_m . S_m L'_m  holds for any two pressures without a further solution.
+with one matrix S_m for each harmonic, found by as many right-hand sides as there are nodes below the
+pressure. So  int p u_z' dA = sum_m L_m . S_m L'_m  holds for any two pressures without a further solution.
 
 The stiffness matrix is a polynomial in m, so S_m depends smoothly on m, which need not be an integer: beyond
 ``DIRECT`` m S_m is interpolated in log m between Chebyshev's points. A shorter wave is stiffer in proportion.
@@ -17,7 +17,6 @@ Friction along x, q = f p, has the products with the shape functions of u_r and 
     R_m = f (L_(m-1) + L_(m+1))/2,      T_m = -f (L_(m-1) - L_(m+1))/2,      L_-1 = L_1.
 """
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -112,7 +111,9 @@ class HarmonicCompliance:
         for k, one in enumerate(solved):
             shares = [(m, w) for m in of for j, w in _weights(solved, m) if j == k]
             columns = np.stack([w * of[m] for m, w in shares], axis=-1)
-            for (m, _), u in zip(shares, _fields(self.solid, self.discretisation, one, columns).T, strict=True):
+            for (m, _), u in zip(
+                shares, _fields(self.solid, self.discretisation, one, columns).T, strict=True
+            ):
                 found[m] += u
         return found
 
@@ -123,18 +124,14 @@ class HarmonicCompliance:
         cell = np.clip(np.searchsorted(vertices, r, side="right") - 1, 0, vertices.size - 2)
         t = order * (r - vertices[cell]) / (vertices[cell + 1] - vertices[cell])
         knots = np.arange(order + 1)
-        values = [
-            np.prod([(t - k) / (i - k) for k in knots if k != i], axis=0) for i in knots
-        ]
+        values = [np.prod([(t - k) / (i - k) for k in knots if k != i], axis=0) for i in knots]
         columns, rows = cell[:, None] * order + knots, np.arange(r.size + 1) * (order + 1)
         return sp.csr_matrix(
             (np.stack(values, axis=1).ravel(), columns.ravel(), rows), shape=(r.size, self.nodes.size)
         )
 
 
-def harmonic_compliance(
-    solid: LayeredSolid, d: Discretisation, last: int, fold: int
-) -> HarmonicCompliance:
+def harmonic_compliance(solid: LayeredSolid, d: Discretisation, last: int, fold: int) -> HarmonicCompliance:
     """Compliance to pressures within the mesh's contact radius, of harmonics 0, fold, .. to ``last``."""
     wanted = range(0, last + 1, fold)
     solved = (*(m for m in wanted if m < DIRECT), *_high([m for m in wanted if m >= DIRECT]))

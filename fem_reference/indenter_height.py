@@ -17,7 +17,7 @@ def indenter_height(indenter: Indenter, radius: float) -> tuple[Height, int]:
     """Height (x, y) [m] above its lowest points, and n of the symmetry by turns of 2 pi/n about z.
 
     ("ellipsoid", (R_x, R_y)) : x^2/2 R_x + y^2/2 R_y
-    ("asperities", (distance,)) : two spheres of ``radius``, their lowest points at x = -distance/2, distance/2
+    ("asperities", (distance,)) : two spheres of ``radius``, lowest at x = -distance/2, distance/2
     ("lobes", (n, amplitude, at)) : r^2/2 radius + amplitude (r/at)^n cos(n theta)
     All are even in y. Raises ValueError for another shape, for numbers that do not fit.
     """

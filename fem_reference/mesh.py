@@ -52,7 +52,7 @@ class Grading:
     film_size : the same in the coatings
     rows      : triangles across each coating at least, near the contact; fewer where they would be smaller
         than ``_LEAST_ROW`` times size
-    surface   : size on the surface of the contact over its radius, growing below it; 0 leaves it to the others
+    surface   : size on the surface of the contact over its radius, growing below it; 0 for none of its own
     """
 
     size: float = 0.4

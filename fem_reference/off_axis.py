@@ -1,10 +1,10 @@
 """A coated half-space under any pressure that is even in y, as a sum of angular harmonics.
 
-On a body of revolution a load of harmonic m gives displacements of that harmonic (``axisymmetric``), so the
-fields under p(r, theta) = sum_m p_m(r) cos(m theta), which may slide along x, are a sum over meridian problems
-(``harmonic_compliance``). What the tractions themselves add to the stress on the surface is not split into
-harmonics. A contact without symmetry, solved by another method, is checked by it: under its pressure the gap
-has to vanish inside.
+On a body of revolution a load of harmonic m gives displacements of that harmonic (``axisymmetric``). So the
+fields under p(r, theta) = sum_m p_m(r) cos(m theta), which may slide along x, are a sum over meridian
+problems (``harmonic_compliance``). What the tractions themselves add to the stress on the surface is not
+split into harmonics. A contact without symmetry, solved by another method, is checked by it: under its
+pressure the gap has to vanish inside.
 """
 
 from collections.abc import Callable
@@ -55,7 +55,8 @@ def check_pressure(
     pressure : p(x, y) [Pa] of arrays [m], even in y.  reach [m] : distance from the origin without pressure
     coatings ((E, nu, thickness), ...), substrate (E, nu), friction f in q = f p : as in ``solve``
     harmonics : the last angular harmonic of the pressure
-    size : of the triangles over the distance from the pressure; on the surface below it a fifth of ``reach``
+    size : of the triangles over the distance from the pressure; on the surface below it half of it, over
+    ``reach``
     far : distance of the outer boundary over (reach + thickness of all coatings)
     Raises ValueError for bad input, for a pressure that is not even in y or reaches farther.
     """
@@ -68,7 +69,7 @@ def check_pressure(
     unit = Units(length=reach, pressure=angular.scale, modulus=substrate[0])
 
     def under(size: float) -> OffAxisFields:
-        d = discretised(solid, size, size / 5, order)
+        d = discretised(solid, size, size / 2, order)
         compliance = harmonic_compliance(solid, d, int(harmonics), 1)
         return OffAxisFields.of(compliance, angular.loads(compliance), friction, angular)
 

@@ -1,8 +1,8 @@
 """Contact of an indenter that is no sphere, by the compliance of finite elements.
 
 The pressure of another method is the start; it is corrected until the gap that the elements find below the
-indenter vanishes (``star_contact``), on a mesh and on a coarser companion. So its part that smooth corrections
-do not reach is the other method's, and what that leaves of the gap counts as an uncertainty.
+indenter vanishes (``star_contact``), on a mesh and on a coarser companion. So the part of it that smooth
+corrections do not reach is the other method's, and what that leaves of the gap counts as an uncertainty.
 """
 
 import time
@@ -31,7 +31,7 @@ WIDEST = 8.0  # radius in which the contact is looked for, over that of Hertz's 
 SAFETY = 1.5  # of the change from the companion
 COARSER = 1.3  # triangles of the companion over those of the mesh
 FEWER = 0.7  # of the harmonics, for the change by what is beyond them
-TYPICAL = 75  # per cent of points below the contact whose stress changes less from the companion
+TYPICAL = 90  # per cent of points below the contact whose stress changes less from the companion
 SAMPLES = 8, 3, 7  # of such points by radius, angle and depth
 
 
@@ -79,7 +79,7 @@ class ShapedContact(PressedSolid):
     ) -> tuple[np.ndarray, np.ndarray]:
         """As of ``PressedSolid``, with the error of the pressure."""
         s, U = super().stress_with_uncertainty(x, y, z, layer, uncertainty)
-        return s, np.maximum(U, self._typical) + self._floor if uncertainty else U
+        return s, np.maximum(SAFETY * U, self._typical) + self._floor if uncertainty else U
 
     @cached_property
     def _typical(self) -> float:
@@ -92,7 +92,7 @@ class ShapedContact(PressedSolid):
             reach * (0.1 + np.arange(depths) / depths),
         )
         _, U = super().stress_with_uncertainty(r * np.cos(theta), r * np.sin(theta), z)
-        return float(np.percentile(U[0, 0], TYPICAL))
+        return SAFETY * float(np.percentile(U[0, 0], TYPICAL))
 
     def stress_uncertainty(self, x: Any, y: Any, z: Any, layer: int | None = None) -> np.ndarray:
         """The second part of ``stress_with_uncertainty``."""
@@ -141,9 +141,10 @@ def solve_shape(
 ) -> ShapedContact:
     """Indenter of another shape than a sphere on a coated half-space, as in ``solve``.
 
-    indenter : shape and numbers, see ``indenter_height``.  start : p(x, y) [Pa] of arrays [m] by another method
-    size, surface : of the triangles over their distance from the contact, and on the surface below it over the
-    contact's extent
+    indenter : shape and numbers, see ``indenter_height``.  start : p(x, y) [Pa] of arrays [m], by another
+    method
+    size, surface : of the triangles over their distance from the contact; on the surface below it over its
+    extent
     Raises ValueError for bad input, NotConverged where the correction does not end.
     """
     began = time.perf_counter()
@@ -165,17 +166,17 @@ def solve_shape(
     def scaled_height(x: Any, y: Any) -> Any:
         return height(x * reach, y * reach) / reach
 
-    def on_mesh(coarser: float) -> tuple[OffAxisFields, Corrected, float]:
+    def on_mesh(coarser: float) -> tuple[OffAxisFields, Corrected, np.ndarray]:
         d = discretised(solid, coarser * size, coarser * surface, order)
         compliance = harmonic_compliance(solid, d, harmonics, fold)
         found = corrected(compliance, scaled, scaled_height, load / unit.load)
         if not found.converged:
             raise NotConverged(
-                f"the pressure under the indenter {indenter[0]} is not settled after {found.steps} corrections; "
+                f"the pressure under the {indenter[0]} is not settled after {found.steps} corrections; "
                 "the start is too far from it, or its contact is not star-shaped"
             )
         fields = OffAxisFields.of(compliance, found.loads, friction, found.pressure)
-        beyond = 0.0
+        beyond = np.zeros(5)
         if coarser > 1:
             fewer = corrected(compliance, scaled, scaled_height, load / unit.load, int(FEWER * harmonics))
             beyond = np.abs(_numbers(fewer) - _numbers(found))
@@ -195,7 +196,7 @@ def solve_shape(
             (name, what, float(part[k] * units[k])) for k, name in enumerate(names) for what, part in parts
         )
         total = (change + beyond + left) * units
-        uncertainty = Uncertainty(*(float(v) for v in total[:3]), budget=budget)
+        uncertainty = Uncertainty(float(total[0]), float(total[1]), float(total[2]), budget)
         extents = float(total[3]), float(total[4])
     d = fine.discretisation
     nodes = np.linspace(0, 2.6 * found.pressure.extents[0], 160)

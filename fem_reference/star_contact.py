@@ -2,20 +2,20 @@
 
 By hand: no package solves a contact by the compliance of one meridian plane.
 
-With the edge at r = R(tau) about the centre and s = r/R, a pressure p is corrected by
+With the edge at r = R(tau) about the centre and s = r/R, a pressure p is corrected by moving its edge to
+R (1 + c_n cos(n tau)) and by
 
-    sqrt(1 - s^2) s^(n + 2 j) cos(n tau),   n + 2 j <= DEGREE,          and by moving its edge, R + R c_n cos(n tau),
+    sqrt(1 - s^2) s^(n + 2 j) cos(n tau),   n + 2 j <= DEGREE,
 
 until the gap  u_z + height - approach  has no product with any  (1 - s^2)^1.5 s^(n + 2 j) cos(n tau),
-n + 2 j <= DEGREE + 2, inside: as many conditions as there are unknowns, once the load is that of the indenter.
-The weight leaves out the edge, where finite elements are too stiff. Newton's method, with the derivatives of
+n + 2 j <= DEGREE + 2, inside: as many conditions as there are unknowns, once the load is given. The weight
+leaves out the edge, where finite elements are too stiff. Newton's method, with the derivatives of
 p = p0 sqrt(1 - s^2); elements give u_z, so the pressure found is theirs. What is left of the gap is the error
 that functions of this degree do not reach.
 """
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -32,7 +32,7 @@ ANGULAR = 24, 1.6  # points on an arc inside the contact: some, and more for eac
 SAMPLES = 256  # on half a circle, between which an arc begins or ends
 WAVES = 48  # of the cosine series of R
 BISECTIONS = 48
-STEPS, ENOUGH, CLOSE = 8, 3e-7, 1e-4  # largest change of the edge in the last step; beyond which it failed
+STEPS, ENOUGH, CLOSE = 8, 3e-7, 1e-4  # change of the edge in the last step, and in one that failed
 TOUCHING = 1e-5  # of the largest pressure on the axis of symmetry: p above counts as contact
 LARGEST = 0.2  # change of the edge in one step
 
@@ -42,7 +42,7 @@ class StarPressure:
     """A ``given`` pressure with its edge moved and with smooth terms added; lengths and pressure scaled.
 
     centre : x of the centre, whose mirror image at -x counts too unless it is 0.  fold : of the symmetry
-    radius : coefficients of R = sum_k cos(k tau).  edge : c_n of the ``waves``.  coefficients : of the ``terms``
+    radius : coefficients of R by cos(k tau).  edge : c_n of the ``waves``.  coefficients : of the ``terms``
     """
 
     given: Pressure
@@ -86,9 +86,7 @@ class StarPressure:
 
     def terms(self, degree: int) -> tuple[tuple[int, int], ...]:
         """(n, j) with n + 2 j up to ``degree``."""
-        return tuple(
-            (n, j) for n in range(0, degree + 1, self.fold) for j in range((degree - n) // 2 + 1)
-        )
+        return tuple((n, j) for n in range(0, degree + 1, self.fold) for j in range((degree - n) // 2 + 1))
 
     def polynomials(self, s: np.ndarray, tau: np.ndarray, degree: int) -> np.ndarray:
         """s^(n + 2 j) cos(n tau) of the terms, (terms,) + points."""
@@ -122,7 +120,7 @@ class StarPressure:
         return np.where(s < 1, np.maximum(p + np.sqrt(np.maximum(1 - s**2, 0)) * added, 0), 0)
 
     def quadrature(self, vertices: np.ndarray, last: int) -> "Quadrature":
-        """Points on half circles about the origin between the ``vertices`` of the surface, for harmonics to ``last``.
+        """Points on half circles about the origin between the ``vertices``, for harmonics to ``last``.
 
         By Gauss-Legendre on the arcs inside the contact, towards whose ends p falls like a square root.
         """
@@ -234,7 +232,11 @@ class Corrected:
 
 
 def corrected(
-    compliance: HarmonicCompliance, given: StarPressure, height: Pressure, load: float, last: int | None = None
+    compliance: HarmonicCompliance,
+    given: StarPressure,
+    height: Pressure,
+    load: float,
+    last: int | None = None,
 ) -> Corrected:
     """Pressure under which the gap below an indenter of ``height`` (x, y) vanishes; scaled units.
 

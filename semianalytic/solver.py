@@ -152,11 +152,14 @@ def solve(
     return replace(solution, neighbours=beside)
 
 
-def _shaped(
-    profile: Callable[[Array, Array], Array], half_width: float, fill: float, **of: Any
-) -> Solution:
+def _shaped(profile: Callable[[Array, Array], Array], half_width: float, fill: float, **of: Any) -> Solution:
     """Press an indenter over a square ``fill`` times as wide as its contact, which coarse grids find."""
-    coarse = of | {"patches": ROUGH, "tolerance": 1e-4, "edge_correction": False, "estimate_uncertainty": False}
+    coarse = of | {
+        "patches": ROUGH,
+        "tolerance": 1e-4,
+        "edge_correction": False,
+        "estimate_uncertainty": False,
+    }
     for _ in range(20):
         try:
             found = indent(profile=profile, half_width=half_width, **coarse)

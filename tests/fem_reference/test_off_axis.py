@@ -4,10 +4,9 @@ import numpy as np
 import pytest
 
 from fem_reference import check_pressure, solve_prescribed
-from fem_reference.axisymmetric import Discretisation
+from fem_reference.harmonic_compliance import harmonic_compliance
 from fem_reference.loading import solve_traction
-from fem_reference.mesh import Grading, meridian_mesh
-from fem_reference.off_axis import AngularPressure, _Fields, tractions
+from fem_reference.off_axis import AngularPressure, OffAxisFields, discretised
 from fem_reference.scaling import LayeredSolid
 from verification.sources.references.hertz_ellipse import HertzEllipse
 
@@ -29,34 +28,40 @@ def three_lobes(x, y):
 
 def test_a_round_pressure_has_the_fields_of_harmonics_0_and_1():
     solid = LayeredSolid.scaled(COATINGS, STEEL, A, 100.0, E)
-    mesh = meridian_mesh(contact_radius=1.0, thicknesses=solid.thicknesses, far=solid.far, grading=Grading())
-    d = Discretisation(mesh, 4)
+    d = discretised(solid, 0.4, 0.2, 4)
     angular = AngularPressure.of(lambda x, y: 1e9 * np.maximum(1 - (x**2 + y**2) / A**2, 0) ** 2, A)
 
     def profile(r):
         return np.maximum(1 - r**2, 0) ** 2
 
-    found = _Fields.of(solid, d, angular, F, 4)
+    compliance = harmonic_compliance(solid, d, 4, 1)
+    found = OffAxisFields.of(compliance, angular.loads(compliance), F, angular)
     assert [field.harmonic for field in found.fields] == [0, 1]
     for field, traction in zip(found.fields, (profile, lambda r: F * profile(r)), strict=True):
         expected = solve_traction(d, solid, field.harmonic, traction)
         np.testing.assert_allclose(field.fields, expected, rtol=0, atol=1e-9 * np.abs(expected).max())
 
 
-def test_tractions_are_those_of_the_product_with_friction_in_x():
-    p = np.array([0.7, 0.3, -0.2, 0.1, 0.0, 0.0])
-    theta = np.linspace(0, np.pi, 7)
-    m = np.arange(7)[:, None]
-    found = tractions(p, F)
-    pressure = (p[:, None] * np.cos(m[:6] * theta)).sum(axis=0)
-    for component, wave, expected in (
-        (0, np.cos, pressure),
-        (1, np.cos, F * pressure * np.cos(theta)),
-        (2, np.sin, -F * pressure * np.sin(theta)),
-    ):
-        np.testing.assert_allclose(
-            (found[:, component, None] * wave(m * theta)).sum(axis=0), expected, atol=1e-15
-        )
+def test_a_harmonic_between_those_solved_is_interpolated():
+    solid = LayeredSolid.scaled(COATINGS, STEEL, A, 100.0, E)
+    d = discretised(solid, 0.5, 0.2, 4)
+    many, all_ = harmonic_compliance(solid, d, 40, 2), harmonic_compliance(solid, d, 20, 2)
+    assert len(many.solved) < len(many.harmonics)
+    m = 18
+    assert m in all_.solved
+    assert m not in many.solved
+    found, exact = (one.matrices[m // 2] for one in (many, all_))
+    np.testing.assert_allclose(found, exact, rtol=0, atol=1e-3 * np.abs(exact).max())
+
+
+def test_sliding_gives_the_tractions_of_the_product_with_the_direction():
+    given = {"coatings": COATINGS, "substrate": STEEL, "friction": F, "harmonics": 6}
+    found = check_pressure(
+        pressure=ellipsoid(A, 0.8 * A), reach=A, size=0.4, far=100.0, estimate_uncertainty=False, **given
+    )
+    sigma = found.stress(0.3 * A, 0.2 * A, 0.0)
+    p = found.pressure(0.3 * A, 0.2 * A)
+    np.testing.assert_allclose(sigma[2], [-F * p, 0.0, -p], atol=1e-9 * p)
 
 
 @pytest.mark.parametrize(("ratio", "within"), [(0.5, 1e-4), (0.3, 5e-4)])

@@ -30,7 +30,8 @@ def hertz(problem: CoatedContact, numerics: Mapping[str, Any] | None = None) -> 
     from verification.sources.references.hertz_ellipse import pressed_ellipsoid
 
     if problem.indenter is not None:
-        return pressed_ellipsoid(*problem.indenter[1], problem.load, *problem.substrate)
+        along, across = problem.indenter[1]
+        return pressed_ellipsoid(along, across, problem.load, *problem.substrate)
     return Hertz(problem.radius, problem.load, *problem.substrate, ball=_bare_ball(problem))
 
 

@@ -41,7 +41,7 @@ def solve_elements(problem: Problem, numerics: Mapping[str, Any] | None = None) 
 
 
 def _shape_by_elements(problem: CoatedContact, numerics: Mapping[str, Any]) -> Any:
-    """An indenter that is no sphere: the elements correct a pressure of the patches until their gap vanishes."""
+    """An indenter that is no sphere: elements correct a pressure of patches until their gap vanishes."""
     import fem_reference
 
     start = solve_semianalytic(problem, {"patches": 129, "estimate_uncertainty": False})

@@ -27,7 +27,7 @@ def clean_folder(output: Path) -> Path:
 
 def clean_cases(faults: Sequence[Fault]) -> list[Case]:
     """The cases of all trials, which have to be solved without a fault first."""
-    shipped = (shipped_cases() | shaped_cases())
+    shipped = shipped_cases() | shaped_cases()
     return [read_case(shipped[name]) for name in sorted({name for fault in faults for name in fault.cases})]
 
 

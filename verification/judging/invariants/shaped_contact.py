@@ -24,17 +24,18 @@ def gap(solution: Solution, source: str, problem: CoatedContact) -> Invariant:
     r, theta = (v.ravel() for v in np.meshgrid(a * PLACES, TURNS))
     turn = np.linspace(0, 2 * np.pi, 9)
     x, y = r * np.cos(theta), r * np.sin(theta)
-    beside = solution.pressure(
-        x[:, None] + CLEAR * a * np.cos(turn), y[:, None] + CLEAR * a * np.sin(turn)
-    )
-    inside = (beside > least).all(axis=1)
-    clear = inside | ~(beside > least).any(axis=1)
+    beside = solution.pressure(x[:, None] + CLEAR * a * np.cos(turn), y[:, None] + CLEAR * a * np.sin(turn))
+    loaded = np.asarray(beside > least)
+    inside = loaded.all(axis=1)
+    clear = inside | ~loaded.any(axis=1)
     x, y, inside = x[clear], y[clear], inside[clear]
     u, U = displacement_with_uncertainty(solution, x, y, 0.0)
     lifted = u[2]
     if problem.friction:
         lifted = (u[2] + displacement_with_uncertainty(solution, -x, y, 0.0)[0][2]) / 2
-    left = (lifted + height_of(problem.indenter, problem.radius)(x, y) - solution.approach) / solution.approach
+    left = (
+        lifted + height_of(problem.indenter, problem.radius)(x, y) - solution.approach
+    ) / solution.approach
     residual = np.where(inside, left, np.minimum(left, 0.0))
     bound = None
     if U is not None and solution.uncertainty is not None:

@@ -52,6 +52,9 @@ class HertzEllipse:
         return 1 - (self.b / self.a) ** 2
 
 
+EXACT = Uncertainty()
+
+
 @dataclass(frozen=True)
 class PressedEllipsoid:
     """Numbers of the contact of an ellipsoid; ``axes`` : semi-axes along x and y [m]."""
@@ -61,7 +64,7 @@ class PressedEllipsoid:
     peak_pressure: float
     axes: tuple[float, float]
     stiffness: None = None
-    uncertainty: Uncertainty = Uncertainty()
+    uncertainty: Uncertainty = EXACT
     diagnostics: None = None
 
     def pressure(self, x: ArrayLike, y: ArrayLike = 0.0) -> Array:

@@ -1,0 +1,76 @@
+"""Contacts that are no discs, by the compliance of finite elements."""
+
+import numpy as np
+import pytest
+
+from fem_reference import NotConverged, solve_shape
+from fem_reference.indenter_height import indenter_height
+from verification.problem.indenter_shape import height_of
+from verification.sources.references.hertz_ellipse import pressed_ellipsoid
+
+STEEL = (210e9, 0.3)
+RADII = (16e-3, 6e-3)
+LOAD = 20.0
+EXACT = pressed_ellipsoid(*RADII, LOAD, *STEEL)
+QUICK = {"harmonics": 32, "surface": 0.12, "far": 100.0, "estimate_uncertainty": False}
+
+
+def solved(start, **changes):
+    given = {"indenter": ("ellipsoid", RADII), "radius": 9.8e-3, "load": LOAD, "coatings": ()}
+    return solve_shape(start=start, substrate=STEEL, **given | QUICK | changes)
+
+
+def wrong(x, y, stretch=1.02, factor=1.01):
+    return factor * EXACT.pressure(np.asarray(x) / stretch, y)
+
+
+def test_a_wrong_start_is_corrected_to_the_contact_of_hertz():
+    found = solved(wrong)
+    assert found.peak_pressure == pytest.approx(EXACT.peak_pressure, rel=3e-4)
+    assert found.approach == pytest.approx(EXACT.approach, rel=5e-5)
+    assert found.contact_radius == pytest.approx(EXACT.contact_radius, rel=5e-4)
+    assert found.extent_x == pytest.approx(EXACT.axes[0], rel=5e-3)  # of the 2e-2 given
+    assert found.extent_y == pytest.approx(EXACT.axes[1], rel=5e-3)
+    assert found.load == pytest.approx(LOAD, rel=1e-6)
+
+
+def test_the_start_does_not_decide():
+    one, other = solved(wrong), solved(EXACT.pressure)
+    assert one.peak_pressure == pytest.approx(other.peak_pressure, rel=1e-4)
+    assert one.approach == pytest.approx(other.approach, rel=1e-5)
+
+
+def test_the_gap_left_inside_is_small():
+    found = solved(EXACT.pressure)
+    s = np.array([0.0, 0.3, 0.6])
+    gap = found.gap(s * EXACT.axes[0], 0 * s, height_of(("ellipsoid", RADII), 1.0), found.approach)
+    assert np.abs(gap).max() < 1e-4 * found.approach
+
+
+def test_a_start_turned_by_a_right_angle_is_not_taken_for_the_contact():
+    turned = pressed_ellipsoid(*RADII[::-1], LOAD, *STEEL).pressure
+    try:
+        found = solved(turned)
+    except (NotConverged, ValueError, np.linalg.LinAlgError):
+        return
+    assert found.extent_x / found.extent_y == pytest.approx(EXACT.axes[0] / EXACT.axes[1], rel=0.02)
+
+
+@pytest.mark.parametrize(
+    "indenter",
+    [("ellipsoid", (2e-2, 5e-3)), ("asperities", (2e-4,)), ("lobes", (3.0, 3e-8, 9e-5))],
+    ids=lambda one: one[0],
+)
+def test_height_and_symmetry(indenter):
+    height, fold = indenter_height(indenter, 1e-2)
+    r, theta = np.meshgrid(1e-4 * np.array([0.2, 0.7, 1.3]), np.array([0.1, 0.9, 2.2]))
+    x, y = r * np.cos(theta), r * np.sin(theta)
+    np.testing.assert_allclose(height(x, y), height_of(indenter, 1e-2)(x, y), rtol=1e-12, atol=1e-22)
+    turned = theta + 2 * np.pi / fold
+    np.testing.assert_allclose(height(r * np.cos(turned), r * np.sin(turned)), height(x, y), rtol=1e-9)
+    np.testing.assert_allclose(height(x, -y), height(x, y), rtol=1e-12)
+
+
+def test_a_shape_that_is_unknown_is_refused():
+    with pytest.raises(ValueError, match="ellipsoid"):
+        indenter_height(("cube", (1.0,)), 1.0)
