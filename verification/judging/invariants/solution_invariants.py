@@ -8,10 +8,10 @@ from verification.judging.invariant_verdict import Invariant, failed
 from verification.judging.invariants import (
     bonded_deformation,
     force_balance,
+    indenter_gap,
     influence_error,
     mirror_symmetry,
     plane_consistency,
-    shaped_contact,
 )
 from verification.problem.coated_contact import BALL, CoatedContact, NotClaimed, Solution
 from verification.problem.either_body import on_body
@@ -60,10 +60,10 @@ def _laws(solution: Solution, source: str, problem: CoatedContact) -> Iterator[t
 def _of_shape(solution: Solution, source: str, problem: CoatedContact) -> Iterator[tuple[str, Law]]:
     """Invariants under an indenter that is no sphere, where no angle is like another."""
     subject = (solution, source, problem)
-    yield "load balance", partial(shaped_contact.load_balance, *subject)
+    yield "load balance", partial(indenter_gap.load_balance, *subject)
     if not hasattr(solution, "stress"):  # a closed form of the contact alone
         return
-    yield "indenter", partial(shaped_contact.gap, *subject)
+    yield "indenter", partial(indenter_gap.gap, *subject)
     if source == "semianalytic":
         yield "influence coefficients", partial(influence_error.influence_coefficients, *subject)
     for k in range(1, len(problem.coatings) + 1):

@@ -25,10 +25,10 @@ def gap(solution: Solution, source: str, problem: CoatedContact) -> Invariant:
     turn = np.linspace(0, 2 * np.pi, 9)
     x, y = r * np.cos(theta), r * np.sin(theta)
     beside = solution.pressure(x[:, None] + CLEAR * a * np.cos(turn), y[:, None] + CLEAR * a * np.sin(turn))
-    loaded = np.asarray(beside > least)
-    inside = loaded.all(axis=1)
-    clear = inside | ~loaded.any(axis=1)
-    x, y, inside = x[clear], y[clear], inside[clear]
+    loaded = np.greater(beside, least)
+    inside, outside = np.all(loaded, axis=1), np.all(~loaded, axis=1)
+    clear = np.flatnonzero(inside | outside)
+    x, y, inside = x[clear], y[clear], np.asarray(inside)[clear]
     u, U = displacement_with_uncertainty(solution, x, y, 0.0)
     lifted = u[2]
     if problem.friction:
