@@ -135,7 +135,7 @@ def solve_shape(
     harmonics: int = 96,
     order: int = 4,
     size: float = 0.42,
-    surface: float = 0.08,
+    surface: float = 0.07,
     far: float = 1000.0,
     estimate_uncertainty: bool = True,
 ) -> ShapedContact:

@@ -38,7 +38,7 @@ def sample_contact(solution: Solution, source: str, problem: CoatedContact) -> t
     return tuple(found)
 
 
-CLEAR = 0.4  # of a, around the edge of a contact that is no disc: no point there
+CLEAR = 0.45  # of a, around the edge of a contact that is no disc: no point there
 SHAPED = 21  # points on either side of x = 0, of rings about which there are no tables
 
 

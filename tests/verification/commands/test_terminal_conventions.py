@@ -16,7 +16,7 @@ from quick_case import COMMAND, QUICK, coatcheck
 from rich.console import Console
 from synthetic_results import INFO, contact, result_of
 
-from verification.cases.case_file import shipped_cases
+from verification.cases.case_file import shaped_cases, shipped_cases
 from verification.cases.published_file import published_cases
 from verification.commands.compare import compare
 from verification.commands.shipped.list_cases import list_cases
@@ -117,7 +117,7 @@ def test_the_table_stands_in_a_narrow_terminal(stored, capsys, environment, widt
 
 
 def test_names_are_whole_in_a_pipe(tmp_path):
-    names = [*shipped_cases(), *published_cases()]
+    names = [*shipped_cases(), *shaped_cases(), *published_cases()]
     listed = coatcheck("list", cwd=tmp_path)
     lines = listed.stdout.splitlines()
     assert [line.split()[0] for line in lines if line.strip() and line.split()[0] in names] == names
@@ -148,7 +148,7 @@ def test_names_are_whole_in_a_terminal(stored, screen, width):
     (stored / "report.json").write_text(report_json(Material(results, INFO)))
     assert list_cases() == 0
     assert compare(stored, stored) == 0
-    assert [n for n in [name, *shipped_cases(), *published_cases()] if n not in shown()] == []
+    assert [n for n in [name, *shipped_cases(), *shaped_cases(), *published_cases()] if n not in shown()] == []
     assert max(map(len, shown().splitlines())) <= width
 
 
