@@ -11,7 +11,6 @@ from functools import partial
 from .axisymmetric import Discretisation
 from .contact import FixedRadiusContact, solve_at_radius
 from .coupling import Coupling
-from .linear_system import Factor
 from .mesh import EDGE_SIZE, Grading, MeridianMesh, Meshes, meridian_mesh
 from .radius_search import find_contact_radius
 from .scaling import LayeredSolid, first_radius
@@ -28,6 +27,7 @@ __all__ = [
 
 # One row of triangles in a coating: the radius is good to 1e-4, from where the companion takes two solves.
 _COARSE = Grading.of(0.5, rows=1.0)
+_OF_COMPANION = 1e-5  # tolerance of its load, which the estimate takes into account: one solve instead of two
 COMPANION = 1.4  # size of the companion over that of the final mesh
 
 
@@ -77,7 +77,7 @@ def solve_levels(
     """
     levels = [_Level("coarse", _COARSE, 1e-3)]
     if with_companion:
-        levels.append(_Level("companion", companion_grading(size), tolerance))
+        levels.append(_Level("companion", companion_grading(size), max(tolerance, _OF_COMPANION)))
     levels.append(_Level("final", final_grading(size), tolerance))
     a = first_radius(solids, load)
     history: list[tuple[str, float, float]] = []
@@ -143,9 +143,7 @@ def _meshes_at(solids: Solids, grading: Grading, contact_radius: float) -> Meshe
     return Meshes(tuple(made[solid.thicknesses] for solid in solids))
 
 
-def _solve_on(
-    solids: Solids, order: int, curvature: float, meshes: Meshes, factor: Factor | None
-) -> FixedRadiusContact:
+def _solve_on(solids: Solids, order: int, curvature: float, meshes: Meshes) -> FixedRadiusContact:
     flat, *others = (Discretisation(mesh, order) for mesh in meshes.of)
     ball = (solids[1], Coupling(flat, others[0])) if others else None
-    return solve_at_radius(solids[0], flat, ball, curvature, factor)
+    return solve_at_radius(solids[0], flat, ball, curvature)

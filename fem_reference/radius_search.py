@@ -7,15 +7,14 @@ hundredth (``contact``), converges in a few steps. Small steps stretch the mesh,
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from .contact import FixedRadiusContact
-from .linear_system import Factor
 from .mesh import Meshes
 
 __all__ = ["RadiusSearch", "find_contact_radius"]
 
-_STRETCH = 1.05  # largest factor by which radii are stretched before a new mesh is generated
+_STRETCH = 1.3  # largest factor by which radii are stretched before a new mesh is generated
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,18 +33,17 @@ def find_contact_radius(
     tolerance: float,
     max_iterations: int,
     mesh_at: Callable[[float], Meshes],
-    solve_on: Callable[[Meshes, Factor | None], FixedRadiusContact],
+    solve_on: Callable[[Meshes], FixedRadiusContact],
 ) -> RadiusSearch:
     """Find a with |W(a)/load - 1| <= ``tolerance`` from ``start``.
 
     mesh_at : contact radius -> mesh with a vertex there
-    solve_on : mesh, factor of a contact on the same triangles or None -> contact with the radius of the mesh
+    solve_on : mesh -> contact with the radius of the mesh
     """
-    a, mesh, factor = start, mesh_at(start), None
+    a, mesh = start, mesh_at(start)
     history: list[tuple[float, float]] = []
     while True:
-        contact = solve_on(mesh.stretched(a / mesh.contact_radius), factor)
-        contact, factor = replace(contact, factor=None), contact.factor
+        contact = solve_on(mesh.stretched(a / mesh.contact_radius))
         history.append((a, contact.load))
         positive = contact.load > 0 and math.isfinite(contact.load)
         converged = positive and abs(math.log(load / contact.load)) <= tolerance
@@ -53,4 +51,4 @@ def find_contact_radius(
             return RadiusSearch(contact, tuple(history), converged)
         a = contact.radius_at(load)
         if not 1 / _STRETCH < a / mesh.contact_radius < _STRETCH:
-            mesh, factor = mesh_at(a), None
+            mesh = mesh_at(a)
