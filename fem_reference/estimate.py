@@ -42,8 +42,8 @@ from .state import ElasticState
 
 __all__ = ["Estimates", "PressureEstimate", "StressEstimate", "Uncertainty", "contact_estimates", "estimates"]
 
-# Half of Roache's factor of safety for two meshes: his is that of differences point by point, in place of which
-# the largest in a neighbourhood counts. `coatcheck alarms` counts how often it is too small.
+# Half of Roache's factor of safety for two meshes: his is that of differences point by point, here the
+# largest in a neighbourhood counts. `coatcheck alarms` counts how often it is too small.
 SAFETY = 1.5
 # Triangles above this size do not reach the order of the elements. The factor then grows with the size, that
 # of pressures and stresses with its square: on the axis of a fast solution 2.6 times were needed.
@@ -125,14 +125,10 @@ class StressEstimate(Uncached):
         return self._between(self._corners[6:], at) + self.far + self.relative * np.abs(u)
 
     def _error(self, points: Pair, layer: int | None = None) -> np.ndarray:
-        """Estimate (6, n) at points of comparison, before the largest in a neighbourhood is taken.
+        """Estimate (6, n) at points of comparison before the largest around is taken, then of u; (9, n).
 
         layer : of points on a plane z = const, whose stresses follow from strains and tractions of the plane
         """
-        return self._compared(points, layer)[:6]
-
-    def _compared(self, points: Pair, layer: int | None = None) -> np.ndarray:
-        """``_error``, then that of the displacement, whose order is higher by one; (9, n)."""
         (u, final), (other, companion) = (
             f(at) for f, at in zip((self.field, self.companion), points, strict=True)
         )
@@ -151,7 +147,7 @@ class StressEstimate(Uncached):
         d = self.field.discretisation
         points = d.mesh.points.shape[1]
         vertices = d.triangulation.t + d.mesh.layer * points
-        worst = self._compared(self.points.triangles).reshape(9, -1, vertices.shape[1]).max(axis=1)
+        worst = self._error(self.points.triangles).reshape(9, -1, vertices.shape[1]).max(axis=1)
         estimate = np.zeros((9, (int(d.mesh.layer.max()) + 1) * points))
         for share in np.divide(REACH, (1.0, *REACH[:-1])):
             for corner in vertices:
@@ -170,7 +166,7 @@ class StressEstimate(Uncached):
     def _planes(self) -> dict[tuple[float, int], tuple[np.ndarray, np.ndarray]]:
         """Vertices and estimates on the surface and on both sides of each interface, by (depth, layer)."""
         found = {
-            key: (vertices, largest_around(self._error(points, key[1]), vertices.size))
+            key: (vertices, largest_around(self._error(points, key[1])[:6], vertices.size))
             for key, (vertices, points) in self.points.planes.items()
         }
         for upper, depth in enumerate(self.field.discretisation.mesh.depths):

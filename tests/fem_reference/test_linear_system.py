@@ -61,7 +61,7 @@ def test_unknowns_inside_triangles_follow_from_those_on_their_sides(order, harmo
     np.testing.assert_allclose(found.force[held], expected.force[held], rtol=0, atol=1e-11)
 
 
-@pytest.mark.parametrize("steps, expected", [(30, [np.float32]), (1, [np.float32, np.float64])])
+@pytest.mark.parametrize(("steps", "expected"), [(30, [np.float32]), (1, [np.float32, np.float64])])
 def test_one_load_in_single_precision_is_refined_or_solved_in_double(steps, expected, monkeypatch):
     monkeypatch.setattr(linear_system, "_PARDISO", False)
     K, given, fixed, load = problem(1)
