@@ -30,6 +30,7 @@ from functools import cached_property
 import numpy as np
 import scipy.sparse as sp
 import scipy.sparse.linalg as sla
+from scipy.interpolate import PPoly
 from scipy.optimize import minimize_scalar
 
 from .axisymmetric import Discretisation
@@ -59,21 +60,17 @@ class Multiplier:
     def vertices(self) -> np.ndarray:
         return self.nodes[:: self.degree]
 
+    @cached_property
+    def _cells(self) -> PPoly:
+        knots = np.arange(self.degree + 1)
+        values = self.values[np.arange(self.vertices.size - 1) * self.degree + knots[:, None]]
+        width = np.diff(self.vertices) / self.degree
+        return PPoly(np.linalg.solve(np.vander(knots), values) / width ** knots[::-1, None], self.vertices)
+
     def __call__(self, r: np.ndarray) -> np.ndarray:
         """Value at the radii ``r``, zero outside; any shape."""
         r = np.asarray(r, dtype=float)
-        a = self.vertices[-1]
-        inside = r <= a
-        cell = np.clip(np.searchsorted(self.vertices, r, side="right") - 1, 0, self.vertices.size - 2)
-        left, right = self.vertices[cell], self.vertices[cell + 1]
-        t = (np.clip(r, 0, a) - left) / (right - left)
-        knots = np.arange(self.degree + 1) / self.degree
-        total = np.zeros(r.shape)
-        for i, knot in enumerate(knots):
-            others = np.delete(knots, i)
-            shape = np.prod([(t - other) / (knot - other) for other in others], axis=0)
-            total += shape * self.values[cell * self.degree + i]
-        return np.where(inside, total, 0.0)
+        return np.where(r <= self.vertices[-1], self._cells(r), 0.0)
 
 
 @dataclass(frozen=True, eq=False)

@@ -51,9 +51,8 @@ class ContactLevels:
 
 
 Solids = tuple[LayeredSolid, ...]
-Meshes = tuple[
-    MeridianMesh, ...
-]  # of the flat, then of an elastic ball, with the same vertices on the surface
+# of the flat, then of an elastic ball, with the same vertices on the surface
+Meshes = tuple[MeridianMesh, ...]
 
 
 def solve_levels(
