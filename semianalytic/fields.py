@@ -38,7 +38,6 @@ def stress(
             *points, pressures=pressures, body=body, ratios=[ratios[k] for k in edged]
         )
     x0, y0, z0, where = points
-    of_patches: patch_field.Tables = {}  # a point force does not depend on the grid
     for total, level, one, ratio in zip(out, levels, smooth, ratios, strict=True):
         rough = level.mean if one is None else level.rest
         if rough is not None:
@@ -50,8 +49,6 @@ def stress(
                 grid_x=level.nodes,
                 pressure=level.grid.whole(rough),
                 body=body,
-                kept=of_patches,
-                few_depths=one is not None,
             )
     shape = np.broadcast_shapes(*(np.shape(v) for v in (x, y, z)))
     return np.array([patch_field.tensor(one) for one in out]).reshape(len(levels), 3, 3, *shape)

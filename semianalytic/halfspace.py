@@ -1,28 +1,19 @@
-"""Closed forms of Love, Boussinesq, Cerruti for a uniformly loaded rectangle on a half-space.
+"""Closed forms of a half-space: Love's rectangle under pressure, the point forces of Boussinesq and Cerruti.
 
-Everything follows from three potentials of the loaded rectangle, rho = |point - source|,
+Under unit pressure on a rectangle the surface deflects by u_z = (1-nu)/(2 pi G) V, V = int int 1/rho with rho
+= |point - source|: a sum over its corners, which loses digits as (distance/side)^2; beyond ``FAR`` sides a
+series of its moments. A point force has the same with the derivatives of 1/rho, chi = ln(rho + z) and F1 = z
+ln(rho + z) - rho, V = 1/rho:
 
-    F1 = int int [z ln(rho + z) - rho],   chi = int int ln(rho + z),   V = int int 1/rho,
-    d F1/dz = chi,   d chi/dz = V,   all three harmonic.
+    normal       4 pi G u_x = -(1-2nu) chi_x - z V_x,         4 pi G u_z = 2(1-nu) V - z V_z
+    Johnson 3.18 2 pi s_xx = 2nu V_z - (1-2nu) chi_xx - z V_xx,   2 pi s_xy = -(1-2nu) chi_xy - z V_xy
+    3.19         2 pi s_zz = V_z - z V_zz,                        2 pi s_xz = -z V_xz
+    in +x        4 pi G u = [2V + 2nu F1_xx - z chi_xx,  2nu F1_xy - z chi_xy,  (1-2nu) chi_x - z V_x]
+    3.76         2 pi s_xx = 2(1+nu) V_x + 2nu F1_xxx - z chi_xxx,    2 pi s_zz = -z V_xz
+    3.77         2 pi s_yy = 2nu V_x + 2nu F1_xyy - z chi_xyy,        2 pi s_yz = -z V_xy
+                 2 pi s_xy = V_y + 2nu F1_xxy - z chi_xxy,            2 pi s_xz = V_z - z V_xx
 
-Normal pressure p = 1 (Love 1929, eqs. 5-9; Johnson 1985, eqs. 3.10-3.12):
-
-    4 pi G u_x = -(1-2nu) chi_x - z V_x,         4 pi G u_z = 2(1-nu) V - z V_z
-    2 pi s_xx = 2nu V_z - (1-2nu) chi_xx - z V_xx,   2 pi s_xy = -(1-2nu) chi_xy - z V_xy
-    2 pi s_zz = V_z - z V_zz,                        2 pi s_xz = -z V_xz
-
-Traction q = 1 on the solid in +x (Johnson 1985, eq. 3.7 with F1 alone):
-
-    4 pi G u = [2V + 2nu F1_xx - z chi_xx,  2nu F1_xy - z chi_xy,  (1-2nu) chi_x - z V_x]
-    2 pi s_xx = 2(1+nu) V_x + 2nu F1_xxx - z chi_xxx,    2 pi s_zz = -z V_xz
-    2 pi s_yy = 2nu V_x + 2nu F1_xyy - z chi_xyy,        2 pi s_yz = -z V_xy
-    2 pi s_xy = V_y + 2nu F1_xxy - z chi_xxy,            2 pi s_xz = V_z - z V_xx
-
-Near the rectangle the double integrals are sums over its corners. Corner sums lose digits as
-(distance/side)^2; beyond ``FAR`` sides the 3 x 3 Gauss rule over point forces takes over, whose error
-falls as (side/distance)^6: the two meet at 2e-11 of the local stress, the displacements at 1e-12.
-
-Axes: z into the solid, origin at the centre of the rectangle. Stress positive in tension. SI units.
+Axes: z into the solid, origin at the force or the centre of the rectangle. Stress positive in tension. SI.
 
 Sources
 -------
@@ -34,77 +25,21 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from semianalytic.arrays import at_once, namespace
 
 __all__ = [
-    "normal_displacement",
-    "normal_stress",
     "point_displacement",
     "point_stress",
     "surface_deflection",
-    "tangential_displacement",
-    "tangential_stress",
 ]
 
 Array = NDArray[np.floating]
 Field = Callable[[Array, Array, Array, float], tuple[Array, ...]]
 
-FAR = 25.0  # sides; where the errors of closed form and quadrature cross
+FAR = 25.0  # sides; where the errors of closed form and series cross
 TINY = 1e-100  # floor of squared lengths: real infinities (edges at z = 0) become finite, alike on both sides
-
-
-def normal_stress(x: ArrayLike, y: ArrayLike, z: ArrayLike, dx: float, dy: float, nu: float) -> Array:
-    """Stress below unit pressure on the rectangle dx x dy centred at the origin.
-
-    Love (1929) eqs. 5-9. At z = 0 the limit from inside: sigma_zz = -1 on the rectangle, -1/2 on its
-    edges, -1/4 at its corners. sigma_xy is logarithmic at the corners and floored there.
-
-    x, y, z : points [m], z >= 0, broadcast.  dx, dy : sides [m].
-    Returns sigma[i, j, ...] per unit pressure [-], shape (3, 3) + points.
-    Raises ValueError for z < 0.
-    """
-    return _tensor(_over_rectangle(_normal_stress_corner, _normal_stress_point, x, y, z, dx, dy, nu))
-
-
-def tangential_stress(x: ArrayLike, y: ArrayLike, z: ArrayLike, dx: float, dy: float, nu: float) -> Array:
-    """Stress below unit traction in +x on the rectangle dx x dy centred at the origin.
-
-    Johnson (1985) eq. 3.7. At z = 0 the limit from inside: sigma_xz = -1 on the rectangle, -1/2 on
-    its edges. sigma_xx is logarithmic at the edges x = +-dx/2, z = 0, and floored there.
-
-    x, y, z : points [m], z >= 0, broadcast.  dx, dy : sides [m].
-    Returns sigma[i, j, ...] per unit traction [-], shape (3, 3) + points.
-    Raises ValueError for z < 0.
-    """
-    return _tensor(_over_rectangle(_tangential_stress_corner, _tangential_stress_point, x, y, z, dx, dy, nu))
-
-
-def normal_displacement(
-    x: ArrayLike, y: ArrayLike, z: ArrayLike, dx: float, dy: float, E: float, nu: float
-) -> Array:
-    """Displacement under unit pressure on the rectangle dx x dy. Love (1929) eqs. 5-7.
-
-    x, y, z : points [m], z >= 0, broadcast.  E [Pa].
-    Returns u[i, ...] per unit pressure [m/Pa], shape (3,) + points; u_z into the solid.
-    Raises ValueError for z < 0.
-    """
-    u = _over_rectangle(_normal_displacement_corner, _normal_displacement_point, x, y, z, dx, dy, nu)
-    return u * ((1 + nu) / (2 * np.pi * E))
-
-
-def tangential_displacement(
-    x: ArrayLike, y: ArrayLike, z: ArrayLike, dx: float, dy: float, E: float, nu: float
-) -> Array:
-    """Displacement under unit traction in +x on the rectangle dx x dy. Johnson (1985) eq. 3.7.
-
-    x, y, z : points [m], z >= 0, broadcast.  E [Pa].
-    Returns u[i, ...] per unit traction [m/Pa], shape (3,) + points; u_z into the solid.
-    Raises ValueError for z < 0.
-    """
-    u = _over_rectangle(_tangential_displacement_corner, _tangential_displacement_point, x, y, z, dx, dy, nu)
-    return u * ((1 + nu) / (2 * np.pi * E))
 
 
 def point_stress(x: Array, y: Array, z: Array, nu: float, *, tangential: bool = True) -> Array:
@@ -181,56 +116,6 @@ def _potential_series(x: Array, y: Array, z: float, dx: float, dy: float) -> Arr
     return sum_
 
 
-def _over_rectangle(
-    corner: Field,
-    point: Field,
-    x: ArrayLike,
-    y: ArrayLike,
-    z: ArrayLike,
-    dx: float,
-    dy: float,
-    nu: float,
-) -> Array:
-    """Integral of a point field over the rectangle: corner sums near, Gauss points far."""
-    x, y, z = np.broadcast_arrays(*(np.asarray(v, dtype=float) for v in (x, y, z)))
-    if np.any(z < 0):
-        raise ValueError(f"z = {np.min(z):g} m is above the surface; depth counts down from 0")
-    shape = x.shape
-    x, y, z = x.ravel(), y.ravel(), z.ravel()
-    near = x**2 + y**2 + z**2 <= (FAR * max(dx, dy)) ** 2
-    far = ~near
-    value: Array | None = None
-
-    def add(where: NDArray[np.bool_], field: Field, sx: float, sy: float, weight: float) -> None:
-        nonlocal value
-        parts = field(x[where] + sx, y[where] + sy, z[where], nu)
-        if value is None:
-            value = np.zeros((len(parts), x.size))
-        for total, part in zip(value, parts, strict=True):
-            total[where] += weight * part
-
-    for sign_x in (1, -1):
-        for sign_y in (1, -1):
-            add(near, corner, sign_x * dx / 2, sign_y * dy / 2, sign_x * sign_y)
-    if np.any(far):
-        s, w = np.polynomial.legendre.leggauss(3)
-        for si, wi in zip(s, w, strict=True):
-            for sj, wj in zip(s, w, strict=True):
-                add(far, point, si * dx / 2, sj * dy / 2, wi * wj * dx * dy / 4)
-    assert value is not None
-    return value.reshape(-1, *shape)
-
-
-def _tensor(parts: Array) -> Array:
-    """(xx, yy, zz, xy, xz, yz) / (2 pi) as a symmetric tensor."""
-    xx, yy, zz, xy, xz, yz = parts / (2 * np.pi)
-    return np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
-
-
-# Corner functions. Terms that depend on X or on Y alone cancel in the corner sum and are left out, which
-# makes every logarithm an asinh and every expression odd or even: no cancellation on the negative side.
-
-
 def _lengths(X: Array, Y: Array, z: Array) -> tuple[Array, Array, Array]:
     """rho, X^2 + z^2 and Y^2 + z^2, floored."""
     xp = namespace(X)
@@ -244,75 +129,6 @@ def _potential_corner(X: Array, Y: Array, z: Array) -> Array:
     rho, sx, sy = _lengths(X, Y, z)
     V: Array = X * xp.asinh(Y / xp.sqrt(sx)) + Y * xp.asinh(X / xp.sqrt(sy)) - z * xp.atan2(X * Y, z * rho)
     return V
-
-
-def _chi_angles(X: Array, Y: Array, z: Array, rho: Array) -> tuple[Array, Array]:
-    """chi_xx and chi_yy: arctan(Y/X) - arctan(z Y / (X rho)), and X, Y exchanged."""
-    r2 = X * X + Y * Y
-    small = X * Y * r2 / (rho + z)
-    return np.arctan2(small, X * X * rho + z * Y * Y), np.arctan2(small, Y * Y * rho + z * X * X)
-
-
-def _normal_stress_corner(X: Array, Y: Array, z: Array, nu: float) -> tuple[Array, ...]:
-    rho, sx, sy = _lengths(X, Y, z)
-    V_z = -np.arctan2(X * Y, z * rho)
-    z_V_xx = -z * X * Y / (rho * sx)
-    z_V_yy = -z * X * Y / (rho * sy)
-    chi_xx, chi_yy = _chi_angles(X, Y, z, rho)
-    e = 1 - 2 * nu
-    return (
-        2 * nu * V_z - e * chi_xx - z_V_xx,
-        2 * nu * V_z - e * chi_yy - z_V_yy,
-        V_z + z_V_xx + z_V_yy,
-        -e * np.log(rho + z) - z / rho,
-        z * z * Y / (rho * sx),
-        z * z * X / (rho * sy),
-    )
-
-
-def _tangential_stress_corner(X: Array, Y: Array, z: Array, nu: float) -> tuple[Array, ...]:
-    rho, sx, sy = _lengths(X, Y, z)
-    w = rho + z
-    V_x, V_y = np.arcsinh(Y / np.sqrt(sx)), np.arcsinh(X / np.sqrt(sy))
-    z_V_xz = -z * z * Y / (rho * sx)
-    z_chi_xyy = z * Y / (rho * w)
-    F_xyy = -Y / w
-    return (
-        2 * (1 + nu) * V_x - 2 * nu * (F_xyy + V_x) + z_chi_xyy + z_V_xz,
-        2 * nu * (V_x + F_xyy) - z_chi_xyy,
-        -z_V_xz,
-        V_y - 2 * nu * X / w - z * X / (rho * w),
-        -np.arctan2(X * Y, z * rho) + z * X * Y / (rho * sx),
-        -z / rho,
-    )
-
-
-def _normal_displacement_corner(X: Array, Y: Array, z: Array, nu: float) -> tuple[Array, ...]:
-    rho, sx, sy = _lengths(X, Y, z)
-    log = np.log(rho + z)
-    V_x, V_y = np.arcsinh(Y / np.sqrt(sx)), np.arcsinh(X / np.sqrt(sy))
-    chi_xx, chi_yy = _chi_angles(X, Y, z, rho)
-    e = 1 - 2 * nu
-    return (
-        -e * (Y * log + z * V_x + X * chi_xx) - z * V_x,
-        -e * (X * log + z * V_y + Y * chi_yy) - z * V_y,
-        2 * (1 - nu) * _potential_corner(X, Y, z) + z * np.arctan2(X * Y, z * rho),
-    )
-
-
-def _tangential_displacement_corner(X: Array, Y: Array, z: Array, nu: float) -> tuple[Array, ...]:
-    rho, sx, _ = _lengths(X, Y, z)
-    log = np.log(rho + z)
-    V_x = np.arcsinh(Y / np.sqrt(sx))
-    chi_xx, _ = _chi_angles(X, Y, z, rho)
-    return (
-        2 * _potential_corner(X, Y, z) + 2 * nu * (z * chi_xx - X * V_x) - z * chi_xx,
-        2 * nu * (z * log - rho) - z * log,
-        (1 - 2 * nu) * (Y * log + z * V_x + X * chi_xx) - z * V_x,
-    )
-
-
-# Point forces: the same combinations of the derivatives of 1/rho, ln(rho + z) and z ln(rho + z) - rho.
 
 
 def _normal_stress_point(X: Array, Y: Array, z: Array, nu: float) -> tuple[Array, ...]:

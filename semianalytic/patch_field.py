@@ -1,25 +1,21 @@
 """Stress below patches: a rough contact, or every patch centre of a plane.
 
-The pressure between patch centres is the cubic convolution of its values there, q = f p. At a depth z the
-field is then a discrete convolution of the nodal forces with the influence of one node, found in one of two
-ways (d the patch, L the length over which the response of the solid decays, exp(-k L)):
+The pressure between patch centres is the cubic convolution of Keys (1981) of its values there,
 
-- z >= 3 d. A node is a point force, tabulated for the layered solid: the lattice sum of a function of scale z
-  differs from an integral by its aliases, exp(-2 pi z/d). Deeper down the forces are first gathered on
-  lattices of spacing up to z/12.
-- z < 3 d. In the first coating (or the uncoated solid) the closed forms of the homogeneous half-space of
-  that material, and the rest of the response, which is smooth on the scale 2h - z >= h, from tables. In a
-  deeper layer the whole response from tables of scale z >= h.
+    p(x) = sum_i p_i B(x/d - i) in each direction,   B cubic on |t| < 1 and on 1 < |t| < 2,   q = f p,
 
-Patches of constant pressure would suffice below, but not near the surface: the steps of p change sigma_xx of
-a sliding load by p' d even at the patch centres. With p continuous the field is smooth enough to be computed
-below patch centres only, with cubic interpolation between them.
+so that the field at one depth is a discrete convolution of the nodal forces with the influence of one node.
+More than ``NEAR`` patches away, or deeper than ``SHALLOW``, a node is a point force; nearer it is the field
+of the pressure B B on rings (``subsurface``). B has the moments 1, 0, 0, 0, -3/10; with the fourth
+subtracted as a fourth difference, both meet. Deeper down the forces are first gathered on lattices of spacing
+up to z/12. Between patch centres the field is interpolated.
 
 "Stress analysis of elastic coated solids in point contact", eqs. 1-4. Axes: z down; tension positive; SI.
+R. G. Keys, IEEE Trans. Acoust. Speech Signal Process. 29 (1981) 1153-1160, eq. 15.
 """
 
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
@@ -27,10 +23,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.fft import irfft2, next_fast_len, rfft2
 
-from . import halfspace
-from .inputs import Body
-from .interpolation_kernel import near_influence
-from .nodal_convolution import (
+from semianalytic import subsurface
+from semianalytic.inputs import Body
+from semianalytic.nodal_convolution import (
     Influence,
     Lattice,
     at_points,
@@ -39,25 +34,17 @@ from .nodal_convolution import (
     nodal_forces,
     samples,
 )
-from .point_force import (
-    PointForce,
-    displacement_below,
-    displacement_from_lines,
-    stress_below,
-    stress_from_lines,
-)
+from semianalytic.rings import Node
+from semianalytic.subsurface import DEPTHS, PointField, chebyshev, weights
 
-__all__ = ["FieldPlane", "Tables", "displacement", "displacement_plane", "stress", "stress_plane", "tensor"]
+__all__ = ["FieldPlane", "displacement", "displacement_plane", "stress", "stress_plane", "tensor"]
 
 Array = NDArray[Any]
-Field = Callable[..., Array]
-Tables = dict[tuple[bytes, int, float, bool], list[PointForce]]
 
 SHALLOW = 3.0  # patches; above this depth a node is not yet a point force: aliases exp(-6 pi) = 7e-9
 COARSE = 12.0  # depth over lattice spacing; interpolation through ten sites then errs by 1e-8 of p_h
-CHEBYSHEV = 10  # shallow depths; more than these are interpolated, to 1e-6 three patches from the edge
-KEPT = 64  # depths of which point-force tables are kept, half a megabyte each
-SIX = ((0, 1, 2, 0, 0, 1), (0, 1, 2, 1, 2, 2))  # xx, yy, zz, xy, xz, yz
+NEAR = 6  # patches; beyond, the sixth moment of B contributes 1e-5 of the pressure
+BLOCK = NEAR + 2  # offsets computed, two more for the fourth difference
 
 
 def stress(
@@ -69,22 +56,14 @@ def stress(
     grid_x: Array,
     pressure: Array,
     body: Body,
-    kept: Tables | None = None,
-    few_depths: bool = False,
 ) -> Array:
     """Stress at points (x, y, z) of the layers named, under pressure p with traction q = f p in +x.
 
     x, y, z : points [m], broadcast.  layer : integers, which pick the side of an interface, broadcast.
     pressure : mean of p over each patch [Pa], (n, n), centred at grid_x along both axes [m], which are
-    uniform.
-    kept : point-force tables of other calls for the same solid; those of this call are added.
-    few_depths : interpolate between depths below three patches too, to 1e-3 of the largest stress.
-    Returns xx, yy, zz, xy, xz, yz [Pa], (6,) + points.
+    uniform.  Returns xx, yy, zz, xy, xz, yz [Pa], (6,) + points.
     """
-    response = _stress_response(body)
-    if kept is not None:
-        response = replace(response, below=partial(_kept, kept, response.below))
-    return _evaluate(x, y, z, layer, nodal_forces(grid_x, grid_x, pressure), response, few_depths)
+    return _evaluate(x, y, z, layer, nodal_forces(grid_x, grid_x, pressure), _stress_field(body))
 
 
 def tensor(components: Array) -> Array:
@@ -107,8 +86,7 @@ def displacement(
 
     Returns u[i, ...] [m], shape (3,) + points; u_z into the solid.
     """
-    response = _displacement_response(body)
-    return _evaluate(x, y, z, layer, nodal_forces(grid_x, grid_x, pressure), response)
+    return _evaluate(x, y, z, layer, nodal_forces(grid_x, grid_x, pressure), _displacement_field(body))
 
 
 @dataclass(frozen=True, eq=False)
@@ -140,88 +118,95 @@ class FieldPlane:
         return out
 
 
-def stress_plane(
-    z: float,
-    layer: int,
-    *,
-    grid_x: Array,
-    body: Body,
-) -> FieldPlane:
+def stress_plane(z: float, layer: int, *, grid_x: Array, body: Body) -> FieldPlane:
     """Set up the convolution for all patch centres at depth z [m]; arguments as in `stress`."""
-    return _plane(z, layer, grid_x, _stress_response(body))
+    return _plane(z, layer, grid_x, _stress_field(body))
 
 
-def displacement_plane(
-    z: float,
-    layer: int,
-    *,
-    grid_x: Array,
-    body: Body,
-) -> FieldPlane:
+def displacement_plane(z: float, layer: int, *, grid_x: Array, body: Body) -> FieldPlane:
     """Set up the convolution for all patch centres at depth z [m]; arguments as in `displacement`."""
-    return _plane(z, layer, grid_x, _displacement_response(body))
+    return _plane(z, layer, grid_x, _displacement_field(body))
 
 
-def _plane(z: float, layer: int, grid_x: Array, response: "_Response") -> FieldPlane:
+def _plane(z: float, layer: int, grid_x: Array, field: "_Field") -> FieldPlane:
     nx = ny = len(grid_x)
     unit = nodal_forces(grid_x, grid_x, np.ones((nx, ny)))
-    ((_, shallow, point),) = _tables(np.array([float(z)]), layer, max(unit.dx, unit.dy), response)
-    influence = _near(point, layer == 0, z, unit, response) if shallow else _as_points(point, unit)
+    ((influence, _),) = field.influences(np.array([float(z)]), layer, unit.dx)
     # forces reach one patch beyond the grid, see `samples`
-    table = influence_table(influence, np.arange(-nx, nx + 1), np.arange(-ny, ny + 1), response.odd_in_y)
+    table = influence_table(influence, np.arange(-nx, nx + 1), np.arange(-ny, ny + 1), field.odd_in_y)
     size = (next_fast_len(2 * nx + 1, real=True), next_fast_len(2 * ny + 1, real=True))
-    return FieldPlane(rfft2(table, size), size, (nx, ny), unit.dx * unit.dy)
+    return FieldPlane(rfft2(table, size), size, (nx, ny), unit.dx**2)
 
 
 @dataclass(frozen=True, eq=False)
-class _Response:
-    """Response of the solid to unit forces, in stress or in displacement.
+class _Field:
+    """Stress or displacement: near(x, y, z, layer, pressures=) on rings; point(z, layer) of unit forces.
 
-    below(z, layer, scale, excess=) : point-force tables at depths z.
-    closed(X, Y, z, dx, dy) : field of unit forces on a rectangle, normal then tangential, (2, n, ...).
-    from_lines : point-force table of the same away from the force.  odd_in_y : components odd in y.
+    odd_in_y : components odd in y.
     """
 
-    body: Body
-    below: Callable[..., list[PointForce]]
-    closed: Field
-    from_lines: Callable[..., PointForce]
+    near: Callable[..., Array]
+    point: Callable[[Array, int], PointField]
     components: int
     odd_in_y: tuple[int, ...]
 
+    def influences(self, depths: Array, layer: int, d: float) -> list[tuple[Influence, Influence]]:
+        """Influence of a node, of integer offsets, and of a point, at each of the ``depths`` [m] of one
+        layer."""
+        point = self.point(depths, layer)
+        shallow = depths[depths < SHALLOW * d]
+        near: list[Array | None] = [None] * depths.size
+        if shallow.size:
+            near[: shallow.size] = self._blocks(shallow, layer, d)
+        return [
+            (partial(_influence, point, z, d, block), partial(point, z=z))
+            for z, block in zip(depths, near, strict=True)
+        ]
 
-def _stress_response(body: Body) -> _Response:
-    rectangle = halfspace.normal_stress, halfspace.tangential_stress
-    return _Response(
-        body,
-        partial(stress_below, body=body),
-        partial(_closed, rectangle, body.friction, body.materials[0][1:2], SIX),
-        stress_from_lines,
-        components=6,
-        odd_in_y=(3, 5),
-    )
-
-
-def _displacement_response(body: Body) -> _Response:
-    rectangle = halfspace.normal_displacement, halfspace.tangential_displacement
-    return _Response(
-        body,
-        partial(displacement_below, body=body),
-        partial(_closed, rectangle, body.friction, body.materials[0][:2], (...,)),
-        displacement_from_lines,
-        components=3,
-        odd_in_y=(1,),
-    )
-
-
-def _closed(rectangle, friction, moduli, components, X, Y, z: float, dx: float, dy: float) -> Array:
-    """Fields of unit forces on a rectangle of the uncoated solid, normal and tangential, (2, n, ...)."""
-    used = rectangle if friction else rectangle[:1]
-    fields = [field(X, Y, z, dx, dy, *moduli)[components] / (dx * dy) for field in used]
-    return np.array(fields if friction else [*fields, np.zeros_like(fields[0])])
+    def _blocks(self, depths: Array, layer: int, d: float) -> Array:
+        """Influence of a node at offsets up to ``NEAR``, (depths, components, 2 NEAR + 1, 2 NEAR + 1)."""
+        m, n = np.meshgrid(np.arange(-BLOCK, BLOCK + 1), np.arange(BLOCK + 1), indexing="ij")
+        x, y, z = np.broadcast_arrays(m * d, n * d, depths[:, None, None])
+        where = np.full(z.size, layer)
+        half = self.near(x.ravel(), y.ravel(), z.ravel(), where, pressures=[Node(d)])[0]
+        half = half.reshape(self.components, *z.shape)
+        mirrored = half[..., :0:-1].copy()
+        mirrored[list(self.odd_in_y)] *= -1
+        block = np.concatenate([mirrored, half], axis=-1)
+        for axis in (2, 3):  # plus 1/80 of its fourth differences
+            b = np.moveaxis(block, axis, 0)
+            fourth = b[:-4] + b[4:] - 4 * (b[1:-3] + b[3:-1]) + 6 * b[2:-2]
+            block = np.moveaxis(b[2:-2] + fourth / 80, 0, axis)
+        return block.swapaxes(0, 1)
 
 
-def _evaluate(x, y, z, layer, fine: Lattice, response: _Response, few_depths: bool = False) -> Array:
+def _influence(point: PointField, z: float, d: float, near: Array | None, m: Array, n: Array) -> Array:
+    """Influence of unit force on a node at integer offsets (m, n), (components, k)."""
+    if near is None:
+        return point(m * d, n * d, z)
+    close = np.maximum(np.abs(m), np.abs(n)) <= NEAR
+    total = np.empty((len(near), m.size))
+    total[:, ~close] = point(m[~close] * d, n[~close] * d, z)
+    total[:, close] = near[:, m[close] + NEAR, n[close] + NEAR]
+    return total
+
+
+def _stress_field(body: Body) -> _Field:
+    response = subsurface.stress_response(body.materials[0][1], body)
+    point = partial(PointField.of, body=body, response=response)
+    return _Field(partial(subsurface.stress, body=body), point, 6, odd_in_y=(3, 5))
+
+
+def _displacement_field(body: Body) -> _Field:
+    E, nu, *_ = body.materials[0]
+    response = subsurface.displacement_response(E, nu, body)
+    point = partial(PointField.of, body=body, response=response)
+    return _Field(partial(subsurface.displacement, body=body), point, 3, odd_in_y=(1,))
+
+
+def _evaluate(
+    x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: ArrayLike, fine: Lattice, field: _Field
+) -> Array:
     """Field components (n,) + points, layer by layer and depth by depth."""
     x, y, z, layer = np.broadcast_arrays(*(np.asarray(v) for v in (x, y, z, layer)))
     shape = z.shape
@@ -229,124 +214,34 @@ def _evaluate(x, y, z, layer, fine: Lattice, response: _Response, few_depths: bo
     lattices = [fine]
     while max(lattices[-1].force.shape) > 24:
         lattices.append(lattices[-1].coarser())
-    shallow = z < SHALLOW * max(fine.dx, fine.dy)
-    out = np.zeros((response.components, z.size))
+    shallow = z < SHALLOW * fine.dx
+    out = np.zeros((field.components, z.size))
     for number in np.unique(layer):
-        for here in (
-            np.flatnonzero((layer == number) & shallow),
-            np.flatnonzero((layer == number) & ~shallow),
-        ):
+        for near in (True, False):
+            here = np.flatnonzero((layer == number) & (shallow == near))
             depths, which = np.unique(z[here], return_inverse=True)
-            near = bool(shallow[here].any())
-            if (near or few_depths) and depths.size > CHEBYSHEV:
-                depths, weights = _between_depths(z[here] if near else np.log(z[here]))
-                depths = depths if near else np.exp(depths)
-                points, at = np.unique(np.stack([x[here], y[here]]), axis=1, return_inverse=True)
-                for i, field in enumerate(_fields(depths, int(number), lattices, response)):
-                    out[:, here] += weights[:, i] * field(*points)[:, at.ravel()]
+            if near and depths.size > DEPTHS:
+                depths = chebyshev(depths[0], depths[-1], False)
+                share = weights(depths, z[here])
+                for w, of_depth in zip(share, _fields(depths, int(number), lattices, field), strict=True):
+                    out[:, here] += w * of_depth(x[here], y[here])
             else:
-                for i, field in enumerate(_fields(depths, int(number), lattices, response)):
+                for i, of_depth in enumerate(_fields(depths, int(number), lattices, field)):
                     at = here[which == i]
-                    out[:, at] = field(x[at], y[at])
-    return out.reshape(response.components, *shape)
-
-
-def _between_depths(z: Array) -> tuple[Array, Array]:
-    """Chebyshev depths over the range of ``z``, and weights (k, depths) that interpolate to each of ``z``."""
-    theta = np.pi * np.arange(CHEBYSHEV) / (CHEBYSHEV - 1)
-    low, high = z.min(), z.max()
-    s = (2 * z - low - high) / (high - low)
-    # cardinal functions as sums of T_m(s) T_m(s_i), first and last terms halved
-    m = np.arange(CHEBYSHEV)
-    ends = np.where((m == 0) | (m == CHEBYSHEV - 1), 0.5, 1.0)
-    T = np.cos(m * np.arccos(np.clip(s, -1, 1))[:, None]) * ends
-    weights = 2 / (CHEBYSHEV - 1) * T @ np.cos(np.outer(m, theta)) * ends
-    return (low + high + (high - low) * np.cos(theta)) / 2, weights
+                    out[:, at] = of_depth(x[at], y[at])
+    return out.reshape(field.components, *shape)
 
 
 def _fields(
-    depths: Array, layer: int, lattices: list[Lattice], response: _Response
-) -> Iterator[Callable[..., Array]]:
+    depths: Array, layer: int, lattices: list[Lattice], field: _Field
+) -> Iterator[Callable[[Array, Array], Array]]:
     """For each depth of one layer, the field as a function of x and y, (k,) -> (components, k)."""
     fine = lattices[0]
-    d = max(fine.dx, fine.dy)
-    for z, shallow, table in _tables(depths, layer, d, response):
-        if shallow:
-            influence = _near(table, layer == 0, z, fine, response)
-            yield partial(
-                between_sites, lattice=fine, influence=influence, odd_in_y=response.odd_in_y, order=4
-            )
+    for z, (influence, kernel) in zip(depths, field.influences(depths, layer, fine.dx), strict=True):
+        if z < SHALLOW * fine.dx:
+            yield partial(between_sites, lattice=fine, influence=influence, odd_in_y=field.odd_in_y, order=4)
         else:
-            level = int(np.clip(np.log2(max(z / (COARSE * d), 1)), 0, len(lattices) - 1))
-            assert table is not None
+            level = int(np.clip(np.log2(max(z / (COARSE * fine.dx), 1)), 0, len(lattices) - 1))
             yield partial(
-                at_points, lattice=lattices[level], kernel=table, odd_in_y=response.odd_in_y, order=10
+                at_points, lattice=lattices[level], kernel=kernel, odd_in_y=field.odd_in_y, order=10
             )
-
-
-def _tables(
-    depths: Array, layer: int, d: float, response: _Response
-) -> Iterator[tuple[float, bool, PointForce | None]]:
-    """Each depth, whether it is shallow, and its point-force table; those of a run share their wavenumbers.
-
-    Shallow in the first layer, the tables hold the difference to the homogeneous solid: None if uncoated.
-    """
-    coatings = response.body.coatings
-    keys = []
-    for z in depths:
-        shallow = bool(z < SHALLOW * d)
-        reach = z
-        if shallow and layer == 0:
-            reach = 2 * coatings[0][2] - z if coatings else d
-        keys.append((2.0 ** np.floor(np.log2(reach)), shallow))
-    start = 0
-    while start < len(keys):
-        scale, shallow = keys[start]
-        stop = start + 1
-        while stop < min(len(keys), start + 64) and keys[stop] == keys[start]:
-            stop += 1
-        run = depths[start:stop]
-        excess = shallow and layer == 0
-        tables: Sequence[PointForce | None] = [None] * run.size
-        if coatings or not excess:
-            tables = response.below(run, layer, scale, excess=excess)
-        for z, table in zip(run, tables, strict=True):
-            yield float(z), shallow, table
-        start = stop
-
-
-def _kept(
-    kept: Tables, below: Callable[..., list[PointForce]], z: Array, layer: int, scale: float, *, excess: bool
-) -> list[PointForce]:
-    """Point-force tables from ``kept``, or by ``below`` and then kept, for at most ``KEPT`` depths in all."""
-    key = (z.tobytes(), layer, scale, excess)
-    if key not in kept:
-        if z.size + sum(len(tables) for tables in kept.values()) > KEPT:
-            kept.clear()
-        kept[key] = below(z, layer, scale, excess=excess)
-    return kept[key]
-
-
-def _near(
-    table: PointForce | None, first: bool, z: float, lattice: Lattice, response: _Response
-) -> Influence:
-    """Influence of a node of the grid at a shallow depth."""
-    dx, dy = lattice.dx, lattice.dy
-
-    def rectangle(X: Array, Y: Array) -> Array:
-        normal, tangential = response.closed(X, Y, z, dx, dy)
-        return normal + response.body.friction * tangential
-
-    if not first:
-        return near_influence(None, None, table, dx, dy, z, response.odd_in_y)
-    # a rectangle of d/50 is a point from some patches on
-    reach = 6 * max(dx, dy) * np.exp(np.arange(0, 8.5, 0.02))
-    outside = response.from_lines(
-        partial(response.closed, z=z, dx=dx / 50, dy=dy / 50), reach, response.body.friction
-    )
-    return near_influence(rectangle, outside, table, dx, dy, z, response.odd_in_y)
-
-
-def _as_points(table: PointForce | None, lattice: Lattice) -> Influence:
-    assert table is not None
-    return lambda m, n: table(m * lattice.dx, n * lattice.dy)

@@ -29,23 +29,22 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
-from . import halfspace
-from .frf import Load, displacement_frf, stress_frf
-from .hankel import NEAR, LogGrid, hankel, log_grid, near_axis
-from .inputs import Body
+from semianalytic import halfspace
+from semianalytic.frf import Load, displacement_frf, stress_frf
+from semianalytic.hankel import NEAR, LogGrid, hankel, log_grid, near_axis
+from semianalytic.inputs import Body
 
 __all__ = [
     "PointForce",
     "combine_displacement",
     "combine_stress",
+    "directions",
     "displacement_below",
     "displacement_columns",
-    "displacement_from_lines",
     "half_space_displacement",
     "half_space_stress",
     "stress_below",
     "stress_columns",
-    "stress_from_lines",
 ]
 
 Array = NDArray[Any]
@@ -57,22 +56,10 @@ _INNER = np.linspace(0, NEAR, 60, endpoint=False)  # r / L of the table, as dens
 
 @dataclass(frozen=True)
 class PointForce:
-    """Field at one depth of a normal force 1 with a tangential force ``friction``, as radial tables."""
+    """Radial functions at one depth below a point force, a spline over asinh(r / scale)."""
 
     radial: CubicSpline
     scale: float
-    friction: float
-    combine: Callable[[Array, Array, float], Array]
-
-    def __call__(self, x: Array, y: Array) -> Array:
-        """Components at offsets (x, y) [m] from the force; (6 or 3,) + shape of ``x``.
-
-        Stress xx, yy, zz, xy, xz, yz [1/m^2]; displacement x, y, z [m/N].
-        """
-        r = np.hypot(x, y)
-        table = self.radial(np.arcsinh(r / self.scale))
-        r = np.maximum(r, np.finfo(float).tiny)  # on the axis the harmonics m > 0 vanish by their tables
-        return self.combine(np.moveaxis(table, -1, 0), directions(x / r, y / r), self.friction)
 
 
 def stress_below(z: Array, layer: int, scale: float, body: Body, *, excess: bool = False) -> list[PointForce]:
@@ -88,7 +75,7 @@ def stress_below(z: Array, layer: int, scale: float, body: Body, *, excess: bool
         return stress_frf(k, z, layer, **body.layers, load=load, excess=excess)
 
     columns = [_radial(F, m, scale, grid) for F, m in stress_columns(response, body.friction)]
-    return _tabulate(columns, grid, scale, body.friction, combine_stress)
+    return _tabulate(columns, grid, scale)
 
 
 def displacement_below(
@@ -104,7 +91,7 @@ def displacement_below(
     columns = [
         _radial(F, m, scale, grid, over_k=True) for F, m in displacement_columns(response, body.friction)
     ]
-    return _tabulate(columns, grid, scale, body.friction, combine_displacement)
+    return _tabulate(columns, grid, scale)
 
 
 def stress_columns(response: Response, friction: float) -> list[tuple[Array, int]]:
@@ -133,24 +120,11 @@ def displacement_columns(response: Response, friction: float) -> list[tuple[Arra
     return columns
 
 
-def stress_from_lines(field: Field, reach: Array, friction: float) -> PointForce:
-    """Radial tables of a point force away from it, from its stress on the two axes.
+def stress_columns_of_lines(field: Field, reach: Array, friction: float) -> list[Array]:
+    """Radial functions at ``reach`` [m] of a point force, from its stress on the two axes.
 
     field(x, y) : xx, yy, zz, xy, xz, yz below a normal and below a tangential unit force, (2, 6, n).
-    reach : radii [m] of the table, increasing; the first is the unit of its scale.
     """
-    return _outer(stress_columns_of_lines(field, reach, friction), reach, friction, combine_stress)
-
-
-def displacement_from_lines(field: Field, reach: Array, friction: float) -> PointForce:
-    """As `stress_from_lines`, from the displacements (2, 3, n)."""
-    return _outer(
-        displacement_columns_of_lines(field, reach, friction), reach, friction, combine_displacement
-    )
-
-
-def stress_columns_of_lines(field: Field, reach: Array, friction: float) -> list[Array]:
-    """Radial functions at ``reach`` from the stress on the two axes, as in `stress_from_lines`."""
     zero = np.zeros_like(reach)
     (xx, yy, zz, _, xz, _), (xx_t, yy_t, zz_t, _, xz_t, _) = field(reach, zero)
     columns = [zz, (xx + yy) / 2, -xz, (yy - xx) / 2]
@@ -163,7 +137,7 @@ def stress_columns_of_lines(field: Field, reach: Array, friction: float) -> list
 
 
 def displacement_columns_of_lines(field: Field, reach: Array, friction: float) -> list[Array]:
-    """The same of the displacement."""
+    """The same of the displacement, (2, 3, n)."""
     zero = np.zeros_like(reach)
     (ux, _, uz), (ux_t, _, uz_t) = field(reach, zero)
     columns = [uz, -ux]
@@ -173,24 +147,17 @@ def displacement_columns_of_lines(field: Field, reach: Array, friction: float) -
     return columns
 
 
-def _outer(columns: list[Array], reach: Array, friction: float, combine: Callable) -> PointForce:
-    table = np.stack(columns, axis=-1)
-    return PointForce(CubicSpline(np.arcsinh(reach / reach[0]), table), float(reach[0]), friction, combine)
-
-
 def _grid(body: Body, scale: float) -> LogGrid:
     """Grid of the transforms: a film E, h stretches on a base E' over a length h E/E', bends over less."""
     moduli = [material[0] for material in body.materials]
     return log_grid(sum(body.thickness) * max(moduli) / min(moduli) / scale)
 
 
-def _tabulate(
-    columns: list[Array], grid: LogGrid, scale: float, friction: float, combine: Callable
-) -> list[PointForce]:
+def _tabulate(columns: list[Array], grid: LogGrid, scale: float) -> list[PointForce]:
     """Splines through the radial functions (nz, nr, columns)."""
     tables = np.stack(columns, axis=-1)
     nodes = np.arcsinh(np.concatenate([_INNER, grid.radii[grid.radii >= NEAR]]))
-    return [PointForce(CubicSpline(nodes, table), scale, friction, combine) for table in tables]
+    return [PointForce(CubicSpline(nodes, table), scale) for table in tables]
 
 
 def _radial(F: Array, order: int, scale: float, grid: LogGrid, *, over_k: bool = False) -> Array:

@@ -28,7 +28,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from semianalytic.edge_shape import Shape
 
-__all__ = ["Disc", "RingPressure", "Rings", "SmoothContour", "rings_around", "rings_of"]
+__all__ = ["Disc", "Node", "RingPressure", "Rings", "SmoothContour", "rings_around", "rings_of"]
 
 Array = NDArray[np.floating]
 Step = Callable[[float], float]
@@ -37,6 +37,7 @@ LEAST = 1e-9  # distance from the edge, over the width of the contact, below whi
 AROUND = 128  # angles at which a contour that is no circle is sampled,
 RING = 48  # and a ring around a point
 FLAT = 1e-9  # relative change of t along a ring that has no nearest place to the edge
+NODE = 64, 32  # points of a ring within a node, on a panel of rings: 2e-6 of the field of unit pressure
 AT_ONCE = 400_000  # points of the pressure held at a time
 
 
@@ -254,6 +255,55 @@ class SmoothContour:
                     value = (-1) ** m * (p * (wave(m * phi) if m else 1.0)).sum(axis=1)
                     out[at] = np.bincount(ring, value, minlength=rho.size)
         return out
+
+
+@dataclass(frozen=True, eq=False)
+class Node:
+    """Unit force on a node of patches of side d [m]: p = B(x/d) B(y/d)/d^2, B Keys' cubic."""
+
+    d: float
+
+    def pressure(self, x: ArrayLike, y: ArrayLike) -> Array:
+        """p [1/m^2]."""
+        return _keys(np.asarray(x) / self.d) * _keys(np.asarray(y) / self.d) / self.d**2
+
+    def rings(self, x: Array, y: Array, scale: Array) -> Rings:
+        """As in `RingPressure`; those around the same places, in patches, are kept for other patches."""
+        places = (np.round(x / self.d, 9), np.round(y / self.d, 9), np.minimum(scale / self.d, 1.0))
+        unit = _around_node(*(v.tobytes() for v in places))
+        harmonics = unit.harmonics / self.d**2
+        return Rings(unit.foot, unit.radius * self.d, unit.weight * self.d**2, harmonics)
+
+
+@lru_cache(maxsize=8)
+def _around_node(*places: bytes) -> Rings:
+    """Rings around points x, y over their arcs within the node, on patches of side 1."""
+    x, y, scale = (np.frombuffer(v) for v in places)
+    corner = 2**1.5
+    r, towards = np.hypot(x, y), np.arctan2(-y, -x)
+    marks = [([max(one - corner, 0.0), one + corner], False) for one in r]
+    foot, radius, weight = _panels(marks, scale, NODE[1])
+    # half the angle within which a ring crosses the circle around the node
+    kappa = (r[foot] ** 2 + radius**2 - corner**2) / np.maximum(2 * r[foot] * radius, 1e-30)
+    width = np.arccos(np.clip(kappa, -1, 1))
+    s = (np.arange(NODE[0]) + 0.5) / NODE[0] * 2 - 1
+    phi = towards[foot][:, None] + width[:, None] * s
+    c, s = np.cos(phi), np.sin(phi)
+    p = _keys(x[foot][:, None] + radius[:, None] * c) * _keys(y[foot][:, None] + radius[:, None] * s)
+    p *= (2 * width / NODE[0])[:, None]
+    # the direction from the force to the point is that from the point to the force turned by pi
+    harmonics, even, odd = [p.sum(axis=1)], p, 0.0 * p
+    for _ in range(3):
+        even, odd = odd * s - even * c, -even * s - odd * c
+        harmonics += [even.sum(axis=1), odd.sum(axis=1)]
+    return Rings(foot, radius, weight, np.array(harmonics))
+
+
+def _keys(t: Array) -> Array:
+    """B(t): R. G. Keys, IEEE Trans. Acoust. Speech Signal Process. 29 (1981) 1153-1160, eq. 15."""
+    t = np.abs(t)
+    outer = np.maximum(2 - t, 0)
+    return np.where(t < 1, (1.5 * t - 2.5) * t * t + 1, 0.5 * (1 - t) * outer * outer)
 
 
 def _turned(rings: Rings, same: NDArray[np.intp], angle: Array) -> Rings:

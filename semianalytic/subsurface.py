@@ -26,6 +26,7 @@ from semianalytic.point_force import (
     PointForce,
     combine_displacement,
     combine_stress,
+    directions,
     displacement_below,
     half_space_displacement,
     half_space_stress,
@@ -33,7 +34,17 @@ from semianalytic.point_force import (
 )
 from semianalytic.rings import RingPressure, Rings, rings_around
 
-__all__ = ["displacement", "stress"]
+__all__ = [
+    "DEPTHS",
+    "PointField",
+    "Response",
+    "chebyshev",
+    "displacement",
+    "displacement_response",
+    "stress",
+    "stress_response",
+    "weights",
+]
 
 Array = NDArray[Any]
 
@@ -43,7 +54,7 @@ DEPTHS = 10
 
 
 @dataclass(frozen=True, eq=False)
-class _Response:
+class Response:
     """Stress or displacement of a unit force: closed(rho, z) of the half-space of the first material,
     (columns, n); below(z, layer, scale, excess=) the tables of the layers; combine(table, harmonics,
     friction) the components."""
@@ -70,7 +81,7 @@ def stress(
     ratios : of x and y under each pressure to those given; 1 by default.
     """
     nu, f = body.materials[0][1], body.friction
-    response = _Response(6, partial(_stress, nu, f), partial(stress_below, body=body), combine_stress)
+    response = stress_response(nu, body)
     ratios = [1.0] * len(pressures) if ratios is None else ratios
     total = _summed(x, y, z, layer, pressures, ratios, body, response)
     local = np.array([-(1 + 2 * nu) / 2, -(1 + 2 * nu) / 2, -1.0, 0.0, -f, 0.0])
@@ -90,11 +101,21 @@ def displacement(
     body: Body,
 ) -> Array:
     """Displacement u_x, u_y, u_z [m], (pressures, 3, n); arguments as in `stress`."""
-    E, nu, f = *body.materials[0][:2], body.friction
-    response = _Response(
-        3, partial(_displacement, E, nu, f), partial(displacement_below, body=body), combine_displacement
-    )
+    E, nu, *_ = body.materials[0]
+    response = displacement_response(E, nu, body)
     return _summed(x, y, z, layer, pressures, [1.0] * len(pressures), body, response)
+
+
+def stress_response(nu: float, body: Body) -> Response:
+    """Of the stress, with Poisson's ratio ``nu`` of the first material."""
+    of_force = partial(_stress, nu, body.friction)
+    return Response(6, of_force, partial(stress_below, body=body), combine_stress)
+
+
+def displacement_response(E: float, nu: float, body: Body) -> Response:
+    """Of the displacement, with ``E`` [Pa] and ``nu`` of the first material."""
+    of_force = partial(_displacement, E, nu, body.friction)
+    return Response(3, of_force, partial(displacement_below, body=body), combine_displacement)
 
 
 def _stress(nu: float, f: float, rho: Array, z: Array) -> Array:
@@ -113,7 +134,7 @@ def _summed(
     pressures: Sequence[RingPressure],
     ratios: Sequence[float],
     body: Body,
-    response: _Response,
+    response: Response,
 ) -> Array:
     """Components (pressures, components, n): the sums over the rings around each point."""
     out = np.zeros((len(pressures), response.components, z.size))
@@ -143,7 +164,7 @@ def _at_depths(
     layer: int,
     tables: "_Tables | None",
     body: Body,
-    response: _Response,
+    response: Response,
 ) -> Array:
     """Components (components, n) at points of one layer with the rings ``foot`` and depths z, ascending."""
     begin = np.searchsorted(rings.foot, np.arange(foot.max() + 2))
@@ -160,12 +181,41 @@ def _at_depths(
             begin[foot[some]] - (ends[some] - count[some] - held), count[some]
         )
         depth, rho = z[some][which], rings.radius[ring]
-        closed = [response.closed(rho, depth)] if layer == 0 else []
-        table = sum([tables(rho, depth)] if tables else [], start=sum(closed, start=np.zeros(1)))
+        table = _columns(rho, depth, layer, tables, response)
         parts = response.combine(table, rings.harmonics[:, ring] * rings.weight[ring], body.friction)
         out[:, some] = [np.bincount(which, part, minlength=stop - start) for part in parts]
         start = stop
     return out
+
+
+def _columns(rho: Array, z: Array, layer: int, tables: "_Tables | None", response: Response) -> Array:
+    """Radial functions (columns, n) of a point force at rho, z [m] of one layer."""
+    closed = [response.closed(rho, z)] if layer == 0 else []
+    return sum([tables(rho, z)] if tables else [], start=sum(closed, start=np.zeros(1)))
+
+
+@dataclass(frozen=True, eq=False)
+class PointField:
+    """Field of a normal force 1 with a tangential force f in one layer, at depths it is made for."""
+
+    layer: int
+    tables: "_Tables | None"
+    response: Response
+    friction: float
+
+    @classmethod
+    def of(cls, z: Array, layer: int, body: Body, response: Response) -> "PointField":
+        """For the depths z [m], ascending."""
+        return cls(layer, _Tables.of(z, layer, body, response), response, body.friction)
+
+    def __call__(self, x: Array, y: Array, z: float) -> Array:
+        """Components at offsets (x, y) [m] from the force; (components,) + shape of ``x``."""
+        rho = np.maximum(np.hypot(x, y), 1e-9 * z).ravel()
+        table = _columns(rho, np.full(rho.size, z), self.layer, self.tables, self.response)
+        harmonics = directions(x.ravel() / rho, y.ravel() / rho)
+        return self.response.combine(table, harmonics, self.friction).reshape(
+            self.response.components, *x.shape
+        )
 
 
 @dataclass(frozen=True, eq=False)
@@ -178,7 +228,7 @@ class _Tables:
     logarithm: bool
 
     @classmethod
-    def of(cls, z: Array, layer: int, body: Body, response: _Response) -> "_Tables | None":
+    def of(cls, z: Array, layer: int, body: Body, response: Response) -> "_Tables | None":
         """For the depths z [m], ascending, of one layer; None of an uncoated body."""
         if not body.coatings:
             return None
@@ -189,7 +239,7 @@ class _Tables:
             depths = np.unique(z[octave == power])
             between.append(depths.size > DEPTHS)
             if between[-1]:
-                depths = _chebyshev(depths[0], depths[-1], layer > 0)
+                depths = chebyshev(depths[0], depths[-1], layer > 0)
             tables = response.below(depths, layer, 2.0**power, excess=layer == 0)
             groups.append((float(z[octave == power][0]), depths, tables))
         return cls(groups, between, layer > 0)
@@ -208,7 +258,7 @@ class _Tables:
             s = np.arcsinh(rho[here] / tables[0].scale)
             if self.between[k]:
                 at = (np.log(depths), np.log(z[here])) if self.logarithm else (depths, z[here])
-                for w, table in zip(_weights(*at), tables, strict=True):
+                for w, table in zip(weights(*at), tables, strict=True):
                     out[:, here] += w * table.radial(s).T
             else:
                 nearest = np.clip(np.searchsorted(depths, z[here] * (1 - 1e-12)), 0, len(tables) - 1)
@@ -219,13 +269,13 @@ class _Tables:
         return out
 
 
-def _chebyshev(low: float, high: float, in_logarithm: bool) -> Array:
+def chebyshev(low: float, high: float, in_logarithm: bool) -> Array:
     """Depths at the Chebyshev nodes of [low, high], ends included, or of its logarithm."""
     t = (1 - np.cos(np.pi * np.arange(DEPTHS) / (DEPTHS - 1))) / 2
     return low * (high / low) ** t if in_logarithm else low + (high - low) * t
 
 
-def _weights(nodes: Array, x: Array) -> Array:
+def weights(nodes: Array, x: Array) -> Array:
     """Barycentric weights (nodes, n) of the polynomial through Chebyshev ``nodes``, ends included, at x."""
     w = (-1.0) ** np.arange(nodes.size)
     w[[0, -1]] /= 2

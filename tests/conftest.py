@@ -1,6 +1,7 @@
 """One thread a process; the slow tests in parts."""
 
 import os
+import re
 import zlib
 
 import pytest
@@ -30,7 +31,7 @@ def environment(monkeypatch):
 
 def pytest_addoption(parser):
     parser.addoption(
-        "--slow-part", type=int, choices=range(SLOW_PARTS), help="of the slow tests one part alone"
+        "--slow-part", type=int, choices=range(SLOW_PARTS), help="one part of the slow tests alone"
     )
 
 
@@ -41,7 +42,8 @@ def pytest_collection_modifyitems(config, items):
     part = config.getoption("--slow-part")
     if part is None:
         return
-    slow = [item for item in items if item.get_closest_marker("slow")]
-    other = [item for item in slow if zlib.crc32(item.nodeid.encode()) % SLOW_PARTS != part]
-    config.hook.pytest_deselected(items=other)
+    # Tests of one file with one parameter share what their fixtures have solved.
+    groups = {item: re.sub(r"::[^\[]*", "", item.nodeid) for item in items if item.get_closest_marker("slow")}
+    other = {item for item, name in groups.items() if zlib.crc32(name.encode()) % SLOW_PARTS != part}
+    config.hook.pytest_deselected(items=list(other))
     items[:] = [item for item in items if item not in other]

@@ -81,6 +81,7 @@ def test_commands_of_the_pages_are_found():
 
 
 @pytest.mark.slow
+@pytest.mark.timeout(1800)  # the first one with an extra installs it
 @pytest.mark.parametrize(("extras", "words"), commands())
 def test_a_command_runs_with_the_extras_that_its_line_names(extras, words, folder):
     programs = environment(extras)

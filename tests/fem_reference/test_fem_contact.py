@@ -32,16 +32,14 @@ CASES = {
 HALF_SPACES = {"bare": (), "layers of equal moduli": ((E, NU, 0.1 * A_H), (E, NU, 0.9 * A_H))}
 
 
+def pressed(coatings, **options):
+    given = {"radius": R, "load": W, "substrate": (E, NU), "estimate_uncertainty": False}
+    return solve(coatings=coatings, **given | options)
+
+
 @lru_cache
 def solved(name, quality="default"):
-    return solve(
-        radius=R,
-        load=W,
-        coatings=(CASES | HALF_SPACES)[name],
-        substrate=(E, NU),
-        quality=quality,
-        estimate_uncertainty=False,
-    )
+    return pressed((CASES | HALF_SPACES)[name], quality=quality)
 
 
 def disc(a, n=400):
@@ -111,14 +109,7 @@ def test_equal_moduli_give_hertz():
 
 def test_thick_coating_gives_hertz_of_the_coating():
     E_1, nu_1, h = 2 * E, 0.2, 200 * A_H
-    s = solve(
-        radius=R,
-        load=W,
-        coatings=((E_1, nu_1, h),),
-        substrate=(E, NU),
-        quality="fast",
-        estimate_uncertainty=False,
-    )
+    s = pressed(((E_1, nu_1, h),), quality="fast")
     a = (3 * W * R * (1 - nu_1**2) / (4 * E_1)) ** (1 / 3)
     # the substrate is felt in proportion to (a/h)^3 in a, to a/h in the approach
     assert s.contact_radius == pytest.approx(a, rel=1e-6)
@@ -127,43 +118,24 @@ def test_thick_coating_gives_hertz_of_the_coating():
 
 def test_thin_coating_gives_hertz_of_the_substrate():
     h = 0.001 * A_H
-    s = solve(
-        radius=R,
-        load=W,
-        coatings=((2 * E, NU, h),),
-        substrate=(E, NU),
-        size=0.5,
-        estimate_uncertainty=False,
-    )
+    s = pressed(((2 * E, NU, h),), size=0.5)
     # the coating is felt in proportion to h/a
     assert s.contact_radius == pytest.approx(A_H, rel=2 * h / A_H)
     assert s.peak_pressure == pytest.approx(P_H, rel=4 * h / A_H)
 
 
 def test_scaling_with_load_radius_and_moduli():
-    cheap = {"size": 0.5, "order": 2, "estimate_uncertainty": False}
-    base = solve(radius=R, load=W, coatings=CASES["stiff"], substrate=(E, NU), **cheap)
+    cheap = {"size": 0.5, "order": 2}
+    base = pressed(CASES["stiff"], **cheap)
     factor = 3.0  # all lengths; W ~ E L^2 keeps strains
     coatings = tuple((7 * E_k, nu, factor * h) for E_k, nu, h in CASES["stiff"])
-    other = solve(
-        radius=factor * R,
-        load=7 * factor**2 * W,
-        coatings=coatings,
-        substrate=(7 * E, NU),
-        **cheap,
-    )
+    other = pressed(coatings, radius=factor * R, load=7 * factor**2 * W, substrate=(7 * E, NU), **cheap)
     assert other.contact_radius == pytest.approx(factor * base.contact_radius, rel=1e-9, abs=0)
     assert other.approach == pytest.approx(factor * base.approach, rel=1e-9, abs=0)
     assert other.peak_pressure == pytest.approx(7 * base.peak_pressure, rel=1e-9)
     # sharper sphere, same contact: R -> 2R with W -> W/2 halves every stress, small strain being linear in
     # 1/R
-    half = solve(
-        radius=2 * R,
-        load=W / 2,
-        coatings=CASES["stiff"],
-        substrate=(E, NU),
-        **cheap,
-    )
+    half = pressed(CASES["stiff"], radius=2 * R, load=W / 2, **cheap)
     assert half.contact_radius == pytest.approx(base.contact_radius, rel=1e-9, abs=0)
     assert half.peak_pressure == pytest.approx(base.peak_pressure / 2, rel=1e-9)
 
@@ -198,8 +170,7 @@ def test_pressure_error_falls_at_the_expected_order(order):
 @pytest.mark.slow
 def test_outer_boundary_is_far_enough():
     near, far = (
-        solve(radius=R, load=W, coatings=CASES["stiff"], substrate=(E, NU), far=far, quality="fast")
-        for far in (1000.0, 4000.0)
+        pressed(CASES["stiff"], far=far, quality="fast", estimate_uncertainty=True) for far in (1e3, 4e3)
     )
     # 3e-7 of the approach at 1000 a_h; the far mesh itself differs by its own estimate
     allowed = near.uncertainty.approach + far.uncertainty.approach
@@ -210,14 +181,7 @@ def test_outer_boundary_is_far_enough():
 # The other two are solved by the slow test against the exact solution.
 @pytest.mark.parametrize(("thickness", "ratio"), [(0.01, 100.0), (20.0, 0.01)])
 def test_extreme_coatings_are_solved_with_positive_pressure_and_gap(ratio, thickness):
-    s = solve(
-        radius=R,
-        load=W,
-        coatings=((ratio * E, NU, thickness * A_H),),
-        substrate=(E, NU),
-        size=0.5,
-        estimate_uncertainty=False,
-    )
+    s = pressed(((ratio * E, NU, thickness * A_H),), size=0.5)
     assert s.diagnostics.residual_pressure == 0
     assert s.diagnostics.residual_gap == 0
     # between Hertz on the stiffer and on the softer of the two solids
@@ -309,13 +273,6 @@ def test_even_polynomials_are_kept_next_to_the_axis(order):
         np.testing.assert_allclose(even @ free, r**power, rtol=0, atol=1e-13)
 
 
-def test_records_are_frozen():
-    s = solved("stiff", "fast")
-    with pytest.raises(AttributeError):
-        s.approach = 0.0
-    assert replace(s, approach=1.0).approach == 1.0
-
-
 # Sliding friction as first harmonic, against closed forms and against equilibrium in three dimensions
 
 F = 0.5
@@ -364,43 +321,10 @@ def test_full_tensor_is_that_of_distributed_point_forces():
     assert np.abs(got - expected).max() < 1e-4 * F * sliding().peak_pressure
 
 
-def test_shear_on_the_axis_follows_the_closed_form():
-    s = sliding()
-    t = np.linspace(0, 3, 61)
-    expected = -1 + 1.5 * t * np.arctan2(1, t) - t**2 / (2 * (1 + t**2))
-    got = s.stress(0.0, 0.0, t * s.contact_radius)[0, 2] / (F * s.peak_pressure)
-    assert np.abs(got - expected).max() < 1e-4  # issue: 1e-4 f p0
-
-
-def test_tension_at_the_trailing_edge_follows_the_closed_form():
-    s = sliding()
-    got = s.stress(-s.contact_radius, 0.0, 0.0)[0, 0] / s.peak_pressure
-    expected = (1 - 2 * NU) / 3 + F * np.pi * (4 + NU) / 8
-    assert got == pytest.approx(expected, rel=1e-5)
-
-
 def test_tension_at_the_edge_of_a_contact_at_rest_follows_the_closed_form():
     s = sliding(0.0)
     peak = s.stress(s.contact_radius, 0.0, 0.0)[0, 0]
     assert peak == pytest.approx((1 - 2 * NU) / 3 * s.peak_pressure, rel=2e-5)
-
-
-def test_surface_stress_inside_the_contact_is_linear_in_x():
-    """Under q of Hertz shape sigma_xx = -f p0 pi (4 + nu) x / (8 a), without friction's p. Johnson (7.34)."""
-    s = sliding()
-    x = np.linspace(-0.98, 0.98, 99)
-    got = sliding_part(x * s.contact_radius, 0 * x, 0 * x)
-    expected = -F * s.peak_pressure * np.pi * (4 + NU) / 8 * x
-    assert np.abs(got[0] - expected).max() < 1e-4 * F * s.peak_pressure
-
-
-def test_surface_traction_is_friction_times_pressure():
-    s = sliding(name="stiff")
-    x = np.linspace(-1.5, 1.5, 61) * A_H
-    y = 0.3 * A_H
-    sigma = s.stress(x, y, 0.0)
-    np.testing.assert_allclose(sigma[0, 2], -F * s.pressure(x, y), rtol=0, atol=1e-9 * s.peak_pressure)
-    np.testing.assert_allclose(sigma[1, 2], 0, atol=1e-9 * s.peak_pressure)
 
 
 def test_reversed_friction_mirrors_the_field():
@@ -412,49 +336,6 @@ def test_reversed_friction_mirrors_the_field():
     np.testing.assert_allclose(
         backward.displacement(-x, y, z)[0], -forward.displacement(x, y, z)[0], rtol=1e-9
     )
-
-
-@pytest.mark.parametrize("depth", [0.3, 1.1])
-def test_three_dimensional_equilibrium_holds_in_every_layer(depth):
-    """div sigma = 0 by fourth-order differences, at points off every plane of symmetry."""
-    s = sliding(name="stiff")
-    points = A_H * np.array([[0.31, 0.22, depth], [-0.63, 0.41, depth], [1.2, -0.7, depth]]).T
-    step = 0.05 * A_H
-    divergence = np.zeros((3, points.shape[1]))
-    for axis in range(3):
-        shift = np.zeros((3, 1))
-        shift[axis] = step
-        near = s.stress(*(points + shift)) - s.stress(*(points - shift))
-        wide = s.stress(*(points + 2 * shift)) - s.stress(*(points - 2 * shift))
-        divergence += (8 * near - wide)[:, axis] / (12 * step)
-    # stress errors of 5e-5 p_h divided by the step, and step^4/30 of fifth derivatives
-    assert np.abs(divergence).max() < 1e-3 * s.peak_pressure / A_H
-
-
-def test_tractions_are_continuous_across_the_interface_when_sliding():
-    s = sliding(name="stiff")
-    x, y = np.linspace(-2, 2, 41) * A_H, 0.4 * A_H
-    # a hair off the interface each side differentiates alone
-    above, below = (s.stress(x, y, CASES["stiff"][0][2] * side) for side in (1 - 1e-6, 1 + 1e-6))
-    assert np.abs(above[:, 2] - below[:, 2]).max() < 2e-4 * s.peak_pressure
-
-
-def test_stress_is_the_gradient_of_the_displacement():
-    s = sliding(name="stiff")
-    x, y, z = 0.4 * A_H, 0.3 * A_H, 0.25 * A_H
-    step = 1e-3 * A_H
-    gradient = np.zeros((3, 3))
-    for axis in range(3):
-        shift = step * np.eye(3)[axis]
-        ahead = s.displacement(x + shift[0], y + shift[1], z + shift[2])
-        behind = s.displacement(x - shift[0], y - shift[1], z - shift[2])
-        gradient[:, axis] = (ahead - behind) / (2 * step)
-    strain = (gradient + gradient.T) / 2
-    E_1, nu_1, _ = CASES["stiff"][0]
-    G = E_1 / (2 * (1 + nu_1))
-    sigma = 2 * G * strain + 2 * G * nu_1 / (1 - 2 * nu_1) * np.trace(strain) * np.eye(3)
-    # central differences: step^2 times third derivatives, and triangles of a quartic field
-    np.testing.assert_allclose(sigma, s.stress(x, y, z), atol=2e-5 * s.peak_pressure)
 
 
 def test_friction_does_not_change_the_pressure():

@@ -83,9 +83,9 @@ def test_given_pressure_carries_no_pressure_uncertainty():
     [
         (0.0, "pressure = 0.0"),
         (-P, "positive"),
-        (lambda r: 0 * r, "zero everywhere"),
-        (lambda r: np.full_like(r, np.nan), "finite number per radius"),
-        (lambda r: 1.0 if r < A else 0.0, "write it with numpy"),
+        (lambda r: 0 * r, "zero"),
+        (lambda r: np.full_like(r, np.nan), "finite"),
+        (lambda r: 1.0 if r < A else 0.0, "numpy"),
     ],
 )
 def test_hopeless_pressures_are_refused_in_a_sentence(pressure, says):

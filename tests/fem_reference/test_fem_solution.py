@@ -80,7 +80,7 @@ def test_uncertainty_of_the_displacement_is_that_of_its_direction():
 
 
 def test_a_depth_above_the_surface_is_named():
-    with pytest.raises(ValueError, match="z = -2e-06 m is not inside"):
+    with pytest.raises(ValueError, match="z = -2e-06"):
         solved("sphere").stress(0.0, 0.0, -2e-6)
 
 

@@ -127,7 +127,7 @@ def test_friction_is_that_of_a_prescribed_load():
 @pytest.mark.parametrize(
     ("pressure", "named"),
     [
-        (lambda x, y: 1e9 * np.maximum(1 - (x**2 + (y - 0.1 * A) ** 2) / A**2, 0), "even in y"),
+        (lambda x, y: 1e9 * np.maximum(1 - (x**2 + (y - 0.1 * A) ** 2) / A**2, 0), "even"),
         (ellipsoid(1.3 * A, A), "reach"),
         (lambda x, y: np.full(x.shape, np.nan), "finite"),
     ],

@@ -1,7 +1,4 @@
-"""NaN and infinity planted in both methods, one function at a time, and what each comes to.
-
-python tests/robustness/not_finite.py [PART OF A NAME ...] prints the table; exit code 1 where a case agrees.
-"""
+"""NaN and infinity planted in both methods, one function at a time, and what each comes to."""
 
 import importlib
 import sys
@@ -16,6 +13,7 @@ from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
+from case_texts import case_text
 
 from verification.cases.case_file import Case, parse_case
 from verification.judging.standard_claims import standard_claims
@@ -27,21 +25,11 @@ from verification.sources.source_registry import solvers
 __all__ = ["BAD", "PLACES", "Place", "clean", "outcome_of", "planted"]
 
 BAD = {"nan": np.nan, "inf": np.inf, "-inf": -np.inf}
-TEXT = """title = "Stiff coating, sliding"
-[problem]
-radius = 10e-3
-load = 20.0
-friction = 0.25
-substrate = { E = 210e9, nu = 0.3 }
-[[problem.coatings]]
-E = 420e9
-nu = 0.25
-thickness_over_a_h = 0.8
-[semianalytic]
-patches = 65
-[fem_reference]
-quality = "fast"
-"""
+TEXT = case_text(
+    "E = 420e9; nu = 0.25; thickness_over_a_h = 0.8",
+    more="friction = 0.25",
+    tables='[semianalytic]\npatches = 65\n[fem_reference]\nquality = "fast"\n',
+)
 
 
 @dataclass(frozen=True)
@@ -107,36 +95,33 @@ PLACES = (
 )
 
 
-def spoilt(value: Any, bad: float, part: str | int | None, *, whole: bool) -> Any:
-    """``value`` with ``bad`` in the middle of it, or all over."""
+def spoilt(value: Any, bad: float, part: str | int | None) -> Any:
+    """``value`` with ``bad`` in the middle of it."""
     if part is not None and isinstance(value, tuple):
         assert isinstance(part, int)
-        inner = spoilt(value[part], bad, None, whole=whole)
+        inner = spoilt(value[part], bad, None)
         return tuple(inner if n == part else item for n, item in enumerate(value))
     if part is not None:
         assert isinstance(part, str)
-        return replace(value, **{part: spoilt(getattr(value, part), bad, None, whole=whole)})
+        return replace(value, **{part: spoilt(getattr(value, part), bad, None)})
     if sp.issparse(value):
         value = value.copy()
-        value.data = spoilt(value.data, bad, None, whole=whole)
+        value.data = spoilt(value.data, bad, None)
         return value
     if is_dataclass(value) and not isinstance(value, type):
         first = next(f.name for f in fields(value) if isinstance(getattr(value, f.name), np.ndarray))
-        return replace(value, **{first: spoilt(getattr(value, first), bad, None, whole=whole)})
+        return replace(value, **{first: spoilt(getattr(value, first), bad, None)})
     if callable(value):
-        return lambda *words, **named: spoilt(value(*words, **named), bad, None, whole=whole)
+        return lambda *words, **named: spoilt(value(*words, **named), bad, None)
     if np.ndim(value) == 0:
         return bad
     array = np.array(value, dtype=np.result_type(value, float))
-    if whole:
-        array[...] = bad
-    else:
-        array.flat[array.size // 2] = bad
+    array.flat[array.size // 2] = bad
     return array
 
 
 @contextmanager
-def planted(place: Place, bad: float, *, whole: bool) -> Iterator[Counter[str]]:
+def planted(place: Place, bad: float) -> Iterator[Counter[str]]:
     """``bad`` in what ``place`` gives for as long as this lasts; yields how often it was asked."""
     asked: Counter[str] = Counter()
     owner: Any = importlib.import_module(place.module)
@@ -147,7 +132,7 @@ def planted(place: Place, bad: float, *, whole: bool) -> Iterator[Counter[str]]:
 
     def wrapped(*words: Any, **named: Any) -> Any:
         asked["times"] += 1
-        return spoilt(original(*words, **named), bad, place.part, whole=whole)
+        return spoilt(original(*words, **named), bad, place.part)
 
     # A function imported by name lives in several modules.
     holders = [owner] if path else [m for n, m in sys.modules.items() if n.split(".")[0] == place.method]
@@ -185,46 +170,14 @@ def clean() -> tuple[Case, CaseResult, dict[str, Any]]:
     return case, replace(result, invariants=()), kept
 
 
-def outcome_of(place: Place, bad: float, *, whole: bool = False) -> tuple[CaseResult, int]:
+def outcome_of(place: Place, bad: float) -> tuple[CaseResult, int]:
     """The case with one method spoilt, the other sources as they were; how often the place was asked."""
     case, _, kept = clean()
     available = solvers()
     for name in kept:
         if name != place.method:
             available[name] = lambda problem, numerics, name=name: kept[name]
-    with planted(place, bad, whole=whole) as asked, warnings.catch_warnings(), np.errstate(all="ignore"):
+    with planted(place, bad) as asked, warnings.catch_warnings(), np.errstate(all="ignore"):
         warnings.simplefilter("ignore")
         # By its claims alone: what the invariants notice comes on top.
         return replace(run(case, available), invariants=()), asked["times"]
-
-
-def row(place: Place, bad: str, whole: bool) -> tuple[Outcome, str]:
-    """The outcome of the case, and a line of the table."""
-    result, asked = outcome_of(place, BAD[bad], whole=whole)
-    verdicts = [v for c, v in result.verdicts if place.method in c.between]
-    counted = Counter(v.outcome for v in verdicts)
-    tally = " ".join(f"{counted[o]:3d} {o}" for o in Outcome if counted[o])
-    reason = next((v.reason for v in verdicts if v.outcome is not Outcome.AGREES), "")
-    what = f"{bad}{' all over' if whole else ''}"
-    line = f"{place!s:62} {what:14} asked {asked:5d}  {result.outcome:12} {tally}: {reason[:110]}"
-    return (result.outcome if asked else Outcome.AGREES), line
-
-
-def main(*wanted: str, what: tuple[str, ...] = tuple(BAD)) -> int:
-    """Print the table; the number of rows in which the case agrees."""
-    _, result, _ = clean()
-    sys.stdout.write(f"as it is: {result.outcome}, {len(result.verdicts)} comparisons\n")
-    bad = 0
-    for place in (p for p in PLACES if not wanted or any(w in str(p) for w in wanted)):
-        for value in what:
-            for whole in (False, True):
-                outcome, line = row(place, value, whole)
-                bad += outcome is Outcome.AGREES
-                sys.stdout.write(line + "\n")
-                sys.stdout.flush()
-    sys.stdout.write(f"{bad} of them agree\n")
-    return bad
-
-
-if __name__ == "__main__":
-    sys.exit(bool(main(*sys.argv[1:])))

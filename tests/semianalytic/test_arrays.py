@@ -170,10 +170,10 @@ def unwritable(*_, **__):
 @pytest.mark.parametrize(
     ("library", "message"),
     [
-        (SimpleNamespace(__name__="bare"), "the array library bare lacks fft.rfft, fft.irfft"),
+        (SimpleNamespace(__name__="bare"), "bare.*fft.rfft, fft.irfft"),
         (
             SimpleNamespace(__name__="fixed", fft=strict.fft, zeros=unwritable, float64=float),
-            "arrays of fixed of double precision cannot be written",
+            "fixed",
         ),
         (SimpleNamespace(__name__="short", fft=strict.fft, zeros=np.zeros), "float64"),
     ],

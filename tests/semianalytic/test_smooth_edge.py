@@ -16,6 +16,11 @@ E_STAR = STEEL[0] / (1 - STEEL[1] ** 2)
 P0 = 1e9
 
 
+def indented(profile, half_width, load, patches, **options):
+    given = {"coatings": (), "substrate": STEEL, "estimate_uncertainty": False} | options
+    return semianalytic.indent(profile=profile, half_width=half_width, load=load, patches=patches, **given)
+
+
 class Ellipse:
     """Hertz contact of semi-axes a > b, a turned from x (Johnson 1985, section 4.2)."""
 
@@ -41,11 +46,7 @@ class Ellipse:
         return P0 * np.sqrt(np.maximum(1 - (u / self.a) ** 2 - (v / self.b) ** 2, 0))
 
     def indent(self, patches, **options):
-        given = {"load": self.load, "coatings": (), "substrate": STEEL, "estimate_uncertainty": False}
-        half_width = 1.2 * self.a
-        return semianalytic.indent(
-            profile=self.profile, half_width=half_width, patches=patches, **given | options
-        )
+        return indented(self.profile, 1.2 * self.a, self.load, patches, **options)
 
     def semi_axes(self, solution):
         """Where the pressure along the axes falls to zero."""
@@ -147,16 +148,10 @@ def test_uncertainty_is_far_below_that_of_the_staircase():
 def test_round_profile_is_the_sphere(coatings):
     """Fitted without knowing that it is round."""
     R, W = 10e-3, 20.0
-    given = {
-        "load": W,
-        "coatings": coatings,
-        "substrate": STEEL,
-        "patches": 129,
-        "estimate_uncertainty": False,
-    }
-    sphere = semianalytic.solve(radius=R, **given)
+    given = {"coatings": coatings, "patches": 129, "estimate_uncertainty": False}
+    sphere = semianalytic.solve(radius=R, load=W, substrate=STEEL, **given)
     a = sphere.contact_radius
-    s = semianalytic.indent(profile=lambda x, y: (x**2 + y**2) / (2 * R), half_width=1.2 * a, **given)
+    s = indented(lambda x, y: (x**2 + y**2) / (2 * R), 1.2 * a, W, **given)
     # the order 3/2 at 54 patches to the radius, of both
     for name in ("peak_pressure", "approach", "contact_radius"):
         assert getattr(s, name) == pytest.approx(getattr(sphere, name), rel=1e-5), name
@@ -174,15 +169,7 @@ def lobes(x, y):
 def test_pressure_and_stress_end_with_a_contact_of_lobes():
     """Its contour is no ellipse; far away the field is that of a point force."""
     W, a = 20.0, 8.66e-5
-    s = semianalytic.indent(
-        profile=lobes,
-        half_width=1.6 * a,
-        load=W,
-        coatings=(),
-        substrate=STEEL,
-        patches=97,
-        estimate_uncertainty=False,
-    )
+    s = indented(lobes, 1.6 * a, W, 97)
     assert s._level.shape is not None
     angle, r = np.linspace(0, 2 * np.pi, 37), np.geomspace(1.5, 100, 20)[:, None] * a
     assert not s.pressure(r * np.cos(angle), r * np.sin(angle)).any()
@@ -195,15 +182,7 @@ def test_pressure_and_stress_end_with_a_contact_of_lobes():
 def test_cone_is_sneddons_whose_inside_is_left_to_the_patches():
     slope, delta = 0.01, 1e-7
     a, load = 2 * delta / (np.pi * slope), 2 * E_STAR * delta**2 / (np.pi * slope)
-    s = semianalytic.indent(
-        profile=lambda x, y: slope * np.hypot(x, y),
-        half_width=1.3 * a,
-        load=load,
-        coatings=(),
-        substrate=STEEL,
-        patches=257,
-        estimate_uncertainty=False,
-    )
+    s = indented(lambda x, y: slope * np.hypot(x, y), 1.3 * a, load, 257)
     assert s._level.shape.outside
     # Sneddon (1965)
     assert s.contact_radius == pytest.approx(a, rel=1e-4)
@@ -224,17 +203,8 @@ def test_cone_is_sneddons_whose_inside_is_left_to_the_patches():
 )
 def test_an_edge_that_is_no_smooth_curve_is_left_to_the_patches(profile):
     # the tolerance is relative to the gap at the rim, which under the flat is 6e4 times the approach
-    given = {
-        "half_width": 1.5e-4,
-        "load": 10.0,
-        "coatings": (),
-        "substrate": STEEL,
-        "patches": 65,
-        "tolerance": 1e-13,
-    }
     corrected, alone = (
-        semianalytic.indent(profile=profile, **given, edge_correction=edge, estimate_uncertainty=False)
-        for edge in (True, False)
+        indented(profile, 1.5e-4, 10.0, 65, tolerance=1e-13, edge_correction=edge) for edge in (True, False)
     )
     np.testing.assert_allclose(
         corrected.patch_pressure, alone.patch_pressure, rtol=0, atol=1e-6 * alone.peak_pressure

@@ -4,18 +4,20 @@ import numpy as np
 import pytest
 from scipy.special import jv
 
-from semianalytic import halfspace, interpolation_kernel
 from semianalytic.frf import displacement_frf, stress_frf
 from semianalytic.inputs import Body
-from semianalytic.point_force import displacement_below, stress_below
+from semianalytic.point_force import (
+    combine_displacement,
+    combine_stress,
+    directions,
+    displacement_below,
+    stress_below,
+)
 
 SUBSTRATE = (210e9, 0.3)
 FRICTION = 0.5
-SIX = ((0, 1, 2, 0, 0, 1), (0, 1, 2, 1, 2, 2))
-FIELDS = (halfspace.normal_stress, halfspace.tangential_stress)
 TOLERANCE = 1e-7  # of the largest coefficient
 RADII = np.array([0, 0.004, 0.02, 0.1, 1, 7])  # over the depth or the scale
-NEAR = [1 / 30, *(pytest.param(z, marks=pytest.mark.slow) for z in (0.0, 0.01, 0.026, 0.06))]
 
 
 def panels(radius, scale):
@@ -89,6 +91,12 @@ def stack(ratio, h, layers, nu):
     )
 
 
+def at(table, combine, r):
+    """Components from a table at the distances r in the direction (0.8, 0.6)."""
+    harmonics = np.repeat(directions(np.array([0.8]), np.array([0.6])), r.size, axis=1)
+    return combine(table.radial(np.arcsinh(r / table.scale)).T, harmonics, FRICTION)
+
+
 def check_tables(ratio, h, layers, nu, tolerance=TOLERANCE):
     """Tables above and below every kind of interface; patches of side 1, shallow ones within 3 of them."""
     coatings = stack(ratio, h, layers, nu)
@@ -103,12 +111,12 @@ def check_tables(ratio, h, layers, nu, tolerance=TOLERANCE):
         expected = by_quadrature(r, 0.8, 0.6, z, layer, scale, excess, body)
         # shallow in the first layer the closed form, of order 1, is added to the table
         largest = max(np.abs(expected).max(), float(excess))
-        assert np.abs(table(0.8 * r, 0.6 * r) - expected).max() <= tolerance * largest, (z, layer)
+        assert np.abs(at(table, combine_stress, r) - expected).max() <= tolerance * largest, (z, layer)
     z, layer, _ = places[3]
     scale = 2.0 ** np.floor(np.log2(z))
     (table,) = displacement_below(np.array([z]), layer, scale, Body(friction=FRICTION, **body))
     expected = displacement_by_quadrature(RADII * scale, 0.8, 0.6, z, layer, scale, body)
-    error = table(0.8 * RADII * scale, 0.6 * RADII * scale) - expected
+    error = at(table, combine_displacement, RADII * scale) - expected
     assert np.abs(error).max() <= tolerance * np.abs(expected).max(), "displacement"
 
 
@@ -133,36 +141,3 @@ def test_coated_influence_is_the_quadrature(ratio, h, layers, nu):
 def test_coated_influence_is_the_quadrature_over_the_range(ratio, h, layers):
     for nu in (0.0, 0.5) if layers == 1 else (0.25,):
         check_tables(ratio, h, layers, nu)
-
-
-def graded(levels, points):
-    """Gauss panels halved towards both ends of a side of length 1 around 0."""
-    half = np.concatenate([[0], 0.5 * 2.0 ** -np.arange(levels, -1, -1)])
-    edges = np.concatenate([half, 1 - half[-2::-1]]) - 0.5
-    s, w = np.polynomial.legendre.leggauss(points)
-    width = np.diff(edges)[:, None] / 2
-    return ((edges[:-1] + edges[1:])[:, None] / 2 + width * s).ravel(), (width * w).ravel()
-
-
-@pytest.mark.parametrize("z", NEAR)
-def test_influence_of_a_node_near_the_surface_is_the_quadrature(z):
-    # the offsets whose cells touch the rectangle, where layers of width z need resolving
-    levels = int(np.ceil(np.log2(1 / max(z, 1e-4)))) + 4
-    t, weight = graded(levels, 8)
-
-    def rectangle(X, Y):
-        stresses = [field(X, Y, z, 1.0, 1.0, 0.3) for field in FIELDS]
-        return np.concatenate([stress[SIX] for stress in stresses])
-
-    block = interpolation_kernel._block_of_rectangle(rectangle, 1.0, 1.0, z)
-    largest = np.abs(block).max()
-    for m, n in ((0, 0), (1, 1)):
-        expected = np.zeros(12)
-        for c in (-1, 0, 1):
-            for e in (-1, 0, 1):
-                w_c = -sum(interpolation_kernel._keys_slope(c + t + 0.5 + k) for k in range(3)) * weight
-                w_e = -sum(interpolation_kernel._keys_slope(e + t + 0.5 + k) for k in range(3)) * weight
-                X, Y = np.broadcast_arrays((m - c - t)[:, None], n - e - t)
-                expected += np.einsum("axy,x,y->a", rectangle(X, Y), w_c, w_e, optimize=True)
-        found = block[:, m + interpolation_kernel.BLOCK, n]
-        assert np.abs(found - expected).max() <= TOLERANCE * largest

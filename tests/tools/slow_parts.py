@@ -1,29 +1,28 @@
-"""The parts of the slow tests that are due: one for each day since the commit before, of at most a week.
+"""The part of the slow tests that is due: python tests/tools/slow_parts.py prints its number.
 
-python tests/tools/slow_parts.py prints their numbers. A day has one part of seven, so that every part runs
-within a week of changes however the commits are spread: where main rested for three days, three are due.
+A day on which main changes has one part of seven, the next such day the next: each part runs within seven
+days of changes, however many days lie between them. Without history, the days of the calendar are counted.
 """
 
 import subprocess
 import sys
-from datetime import datetime, timedelta
+from collections.abc import Iterable
+from datetime import date
 
 PARTS = 7  # as in tests/conftest.py
 
 
-def due(before: datetime, now: datetime) -> list[int]:
-    """Parts of the days after ``before`` up to that of ``now``, of ``now`` at least."""
-    days = min(max((now.date() - before.date()).days, 1), PARTS)
-    return [(now.date() - timedelta(days=back)).toordinal() % PARTS for back in range(days)]
+def part_of(days: Iterable[str], shallow: bool) -> int:
+    """Part of the newest of ``days``, which are the dates of all commits, the newest first."""
+    days = list(days)
+    return (date.fromisoformat(days[0]).toordinal() if shallow else len(set(days))) % PARTS
 
 
-def committed(revision: str) -> datetime:
-    """When a commit was made; a shallow clone has none but the last, which stands for the others."""
-    words = ["git", "log", "-1", "--first-parent", "--format=%cI"]
-    done = subprocess.run([*words, revision], capture_output=True, text=True, check=False)
-    found = done.stdout.strip() or subprocess.run(words, capture_output=True, text=True).stdout.strip()
-    return datetime.fromisoformat(found)
+def _git(*words: str) -> list[str]:
+    return subprocess.run(["git", *words], capture_output=True, text=True, check=False).stdout.split()
 
 
 if __name__ == "__main__":
-    sys.stdout.write(" ".join(map(str, due(committed("HEAD~1"), committed("HEAD")))) + "\n")
+    days = _git("log", "--first-parent", "--format=%cs")
+    whole = _git("rev-parse", "--is-shallow-repository") == ["false"]
+    sys.stdout.write(f"{part_of(days or [str(date.today())], shallow=not whole)}\n")

@@ -13,13 +13,13 @@ from verification.judging.verdict import Claim, Outcome, compare, judge
 from verification.problem.line_profile import Profile
 
 MATTERS = 10.0
-SHOWN = 20  # changes that are named at most, of those that pass
+SHOWN = 20  # the most changes listed among those not noticed
 GROUPS = ("counted", "departures", RECOMPUTED)
 
 
 @dataclass
 class Count:
-    """Changes made in the cells of one group, and of those that turn a verdict: by any source, by each."""
+    """Changes in the cells of one group, and how many turn a verdict: of any source, of each."""
 
     cells: int = 0
     changes: int = 0

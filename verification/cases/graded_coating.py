@@ -1,6 +1,6 @@
 """Moduli of a graded coating as those of its sub-layers.
 
-Of n equal sub-layers each has the modulus of its middle, at the share s = (k + 1/2)/n of the thickness:
+Each of n equal sub-layers has the modulus at its middle, s = (k + 1/2)/n of the thickness:
 
     linear       E(s) = E_top + (E_base - E_top) s
     exponential  E(s) = E_top (E_base / E_top)^s

@@ -58,7 +58,7 @@ class InSI(float):
 
 @dataclass(frozen=True)
 class Units:
-    """Units in which results are printed: names with the SI value of 1."""
+    """Units in which results are shown: names with the SI value of 1."""
 
     length: str = "µm"
     metre: float = 1e-6
@@ -80,7 +80,7 @@ _STRESSES = ("strength", "residual_stress", "hardness", "yield_strength")
 
 
 def units_of(file: BaseModel) -> Units:
-    """Units of printed results: of the first coating thickness, of the first strength or residual stress.
+    """Units of the results shown: of the first coating thickness, of the first strength or residual stress.
 
     µm and MPa for those that have no unit in the file.
     """
@@ -124,13 +124,13 @@ def in_si(text: str, unit: str) -> InSI:
             raise ValueError(name)
         found = _registry().parse_units(name)
         alike = found.is_compatible_with(unit)
-    except Exception:  # pint raises errors of many kinds for a text that is no unit
+    except Exception:  # pint raises errors of many kinds for a text that is not a unit
         near = [usual for usual in _USUAL[unit] if usual.casefold() == name.casefold()]
         raise ValueError(
             f"{needs}; the unit {name!r} is unknown" + (f", did you mean {near[0]}?" if near else "")
         ) from None
     if not alike:
-        raise ValueError(f"{needs}; {name!r} is no unit of {_KINDS[unit]}")
+        raise ValueError(f"{needs}; {name!r} is not a unit of {_KINDS[unit]}")
     value = _registry().Quantity(Decimal(parts[1]), found).to(unit).magnitude
     return InSI.given_in(float(value), name)
 

@@ -27,7 +27,7 @@ def update(*runs: Path, why: str = "", baseline: BaselineFolder = BASELINE, quie
     """Make stored runs the baseline, with their manifest; no other command changes it.
 
     Together the runs must hold every shipped case, and these must agree throughout. Published cases may be
-    among them; those that are not, or do not agree, are kept as they were.
+    among them; published cases that are absent, or do not agree, keep their numbers.
 
     Args:
         runs: Directories of the runs, or their report.json; reports without any.

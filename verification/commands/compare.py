@@ -37,7 +37,7 @@ def compare(
     try:
         found = compare_runs(read_run(first), read_run(second))
         if output is not None:
-            from verification.regression.comparison_page import comparison_page
+            from verification.regression.run_comparison import comparison_page
 
             write_atomically(output, comparison_page(found).encode("utf-8", errors="replace"))
     except StoreError as error:
@@ -72,6 +72,6 @@ def _print(found: RunComparison) -> None:
         print_out(f"... with {more} more, which --output or --json shows")
     for name, then, now in found.versions:
         print_out(escape(f"{name}: {one_line(then)} to {one_line(now)}"))
-    from verification.regression.comparison_page import comparison_message
+    from verification.regression.run_comparison import comparison_message
 
     print_out(comparison_message(found))

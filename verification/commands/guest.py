@@ -191,9 +191,7 @@ def check(guest: str, /, *, output: Folder = None, jobs: Jobs = None, as_json: A
         named = {r.name: [str(slip) for slip in slips(r, host.name)] for r in found.results}
         print_json({"guest": host.name, "exit_code": code, "slips": named})
         return code
-    total = outcome_counts(found.results)
-    answered = sum(total[o] for o in SHOWN[:-1])
-    line = f"{host.name}: {total[Outcome.AGREES]} of {answered} comparisons agree"
+    line = f"{host.name}: {found.total[Outcome.AGREES]} of {found.answered} comparisons agree"
     print_out(escape(line + ("; next: coatcheck guest run " + shlex.quote(guest) if not code else "")))
     for result in found.results:
         _show(host, result)
@@ -243,7 +241,7 @@ def report_json(found: Examined, info: RunInfo) -> str:
 
 def exit_code(found: Examined) -> int:
     """The code of the worst verdict that is not a known failure."""
-    outcomes = {verdict.outcome for _, _, verdict in found.counted}
+    outcomes = {verdict.outcome for verdict in found.counted}
     if found.unexpected:
         outcomes.add(Outcome.DISAGREES)
     for outcome in (Outcome.DISAGREES, Outcome.NO_RESULT, Outcome.INCONCLUSIVE, Outcome.AGREES):
@@ -285,15 +283,9 @@ def _print(found: Examined, seconds: float, page: Path) -> None:
     print_out(table)
     for line in _messages(found):
         print_out(line)
-    total = outcome_counts(found.results)
-    answered = sum(total[o] for o in SHOWN[:-1])
-    print_out(
-        escape(
-            f"{found.guest.name}: {total[Outcome.AGREES]} of {answered} comparisons agree, "
-            f"{total[Outcome.UNSUPPORTED]} unsupported; {len(found.results)} cases in {seconds:.0f} s; "
-            f"report: {page}"
-        )
-    )
+    agree = f"{found.guest.name}: {found.total[Outcome.AGREES]} of {found.answered} comparisons agree"
+    cases = f"{len(found.results)} cases in {seconds:.0f} s; report: {page}"
+    print_out(escape(f"{agree}, {found.total[Outcome.UNSUPPORTED]} unsupported; {cases}"))
 
 
 def _messages(found: Examined) -> list[str]:

@@ -31,7 +31,7 @@ def past(
     code is 0 wherever there is a run, whatever its verdicts are.
 
     Args:
-        folders: Directories of runs, or directories that hold such; reports unless given.
+        folders: Directories of runs, or directories that contain them; reports unless given.
         output: Also write the history to this HTML file.
     """
     places = folders or (Path("reports"),)
@@ -44,7 +44,7 @@ def past(
     try:
         runs = history(map(read_run, reports), read_baseline(baseline))
         if output is not None:
-            from verification.regression.history_page import history_page
+            from verification.regression.run_history import history_page
 
             write_atomically(output, history_page(runs).encode("utf-8", errors="replace"))
     except StoreError as error:
@@ -72,6 +72,6 @@ def _print(runs: tuple[PastRun, ...]) -> None:
             escape(run.path),
         )
     print_out(table)
-    from verification.regression.history_page import history_message
+    from verification.regression.run_history import history_message
 
     print_out(history_message(runs))

@@ -43,8 +43,8 @@ def report(
         time_limit: Seconds that each of two prints may take.
     """
     from verification.page.pdf_file import NoBrowser, printed
-    from verification.report.report_files import write_report
     from verification.report.report_material import gather, stored_material
+    from verification.report.report_page import write_report
 
     if not (folder / "cases").is_dir():
         raise CommandError(

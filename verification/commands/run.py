@@ -35,11 +35,11 @@ from verification.commands.common.task_progress import (
     kept_results,
     kept_study,
     pool_of,
-    require_gmsh,
     run_info,
     solve,
 )
 from verification.commands.common.terminal import print_error, print_json, print_warnings
+from verification.commands.common.terminal_bar import require_gmsh
 from verification.credibility import accuracy_study
 from verification.credibility.accuracy_study import AccuracyStudy
 from verification.credibility.self_tests import self_tests
@@ -156,8 +156,8 @@ def run(
 def _write(
     results: Sequence[CaseResult], info: RunInfo, evidence: "Evidence", output: Path, junit: str
 ) -> Path:
-    from verification.report.report_files import write_report
     from verification.report.report_material import Material
+    from verification.report.report_page import write_report
 
     return write_report(Material(results, info, evidence, read_planes(output, results)), output, junit)
 

@@ -1,6 +1,5 @@
 """The accuracy study of a default run: convergence on two solids of known solution, discs and ellipses."""
 
-import os
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -8,7 +7,13 @@ from functools import partial
 from pathlib import Path
 from typing import Any, TypeVar
 
-from verification.credibility.exact_errors import ExactError, between_methods, disc_errors, turned_ellipse
+from verification.credibility.exact_errors import (
+    ExactError,
+    between_methods,
+    disc_errors,
+    film_errors,
+    turned_ellipse,
+)
 from verification.credibility.parameter_sweeps import Stated, Sweep, study
 from verification.credibility.refinement_studies import (
     Refinement,
@@ -21,8 +26,8 @@ from verification.judging.invariant_verdict import Invariant
 from verification.judging.invariants.influence_error import ConversionError, conversion_errors
 from verification.judging.outcome import Outcome
 from verification.problem.coated_contact import CoatedContact
-from verification.running.checked_files import StoreError, read_checked, write_checked
-from verification.running.json_records import decode, encode
+from verification.running.checked_files import write_checked
+from verification.running.json_records import RecordFile, decode
 from verification.running.pool.pool_task import Task
 from verification.running.provenance import commit, versions
 from verification.sources.method_sources import sharing_pressure
@@ -120,11 +125,9 @@ def measure() -> AccuracyStudy:
 
 
 def discs_of(patches: int = 129) -> tuple[ExactError, ...]:
-    """Given pressures on both solids, Hertz's sliding on the coated one."""
-    found = disc_errors(COATED, "coated", SLIDING.friction, patches) + disc_errors(
-        BARE, "uncoated", 0.0, patches
-    )
-    return tuple(found)
+    """Given pressures on both solids, Hertz's sliding on the coated one; one patch of thin films."""
+    found = disc_errors(COATED, "coated", SLIDING.friction, patches)
+    return (*found, *disc_errors(BARE, "uncoated", 0.0, patches), *film_errors(COATED))
 
 
 def ellipses_of(elements: bool = True) -> tuple[ExactError, ...]:
@@ -164,11 +167,6 @@ def failed(reason: str, seconds: float) -> AccuracyStudy:
     return AccuracyStudy((), (), (reason,), seconds, commit(), versions())
 
 
-def path_in(folder: Path) -> Path:
-    """Path of the study in a run directory."""
-    return folder / "accuracy.json"
-
-
 def stored(
     folder: Path, source: Callable[[], str | None] = commit, packages: Callable[[], dict[str, str]] = versions
 ) -> AccuracyStudy | None:
@@ -177,28 +175,16 @@ def stored(
     The study of a tree that was changed since its commit (marked "+") is not used: the tree may have changed
     since. Raises StoreError, naming the file, where the study is damaged.
     """
-    path = path_in(folder)
-    if not os.path.lexists(path):
+    found, now = _FILE.read(folder), source()
+    if found is None or found.failures or (now or "").endswith("+"):
         return None
-    data = read_checked(path)
-    try:
-        found = from_json(data)
-    except ValueError as error:
-        raise StoreError(f"{path}: not a study of this program ({error})") from None
-    now = source()
-    same = (found.commit, found.versions) == (now, packages()) and not (now or "").endswith("+")
-    return found if same and not found.failures else None
+    return found if (found.commit, found.versions) == (now, packages()) else None
 
 
 def task(folder: Path) -> Task[AccuracyStudy]:
     """The study as a task beside the cases of a run."""
     path = path_in(folder)
     return Task("accuracy study", partial(main, path), path, from_json, failed, cost=COST)
-
-
-def to_json(study: AccuracyStudy) -> dict[str, Any]:
-    """The study as strict JSON."""
-    return {"schema": SCHEMA, **encode(study)}
 
 
 def from_json(data: dict[str, Any]) -> AccuracyStudy:
@@ -211,3 +197,7 @@ def from_json(data: dict[str, Any]) -> AccuracyStudy:
 def main(path: Path) -> None:
     """Measure and store at ``path``."""
     write_checked(path, to_json(measure()))
+
+
+_FILE = RecordFile(AccuracyStudy, "accuracy.json", (SCHEMA,), "an accuracy study", "measure it again")
+path_in, to_json = _FILE.path_in, _FILE.to_json

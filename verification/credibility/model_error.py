@@ -1,23 +1,52 @@
-"""Error of the model itself at a problem: what its assumptions cost, each measured by a model without it.
+"""Error of the model itself at a problem: the cost of each assumption, from a model without it.
 
 A fast model is evaluated at the problem; for a slow one the recorded map is read, see ``ASSUMPTIONS``.
+
+A further assumption is one more entry of ``ASSUMPTIONS``: ``model_error``, the report and the manual show it.
+``tests/tools assumptions`` measures its map, over the axes stated there.
 """
 
-from collections.abc import Collection, Sequence
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass, fields
 from functools import cache
 
-from verification.credibility.shared_assumptions import (
-    ASSUMPTIONS,
-    GOODMAN,
-    HALF_SPACES,
-    PARABOLA,
-    QUANTITIES,
-)
 from verification.evidence.assumption_maps import SHIPPED, AssumptionMaps, read_maps
 from verification.problem.coated_contact import CoatedContact
 from verification.problem.quantity import BALL_PEAKS, PEAKS
-from verification.sources.assumptions.contact_change import SCALARS, Change
+from verification.sources.assumptions.contact_change import SCALARS, Change, of_goodman, of_sphere
+from verification.sources.assumptions.finite_bodies import of_half_spaces
+from verification.sources.assumptions.strain_cost_of_pair import of_pair
+
+QUANTITIES = tuple(one.name for one in fields(Change))
+PARABOLA, GOODMAN = "parabola for the sphere", "Goodman's assumption"
+HALF_SPACES = "half-spaces for the ball and a disc as thick as its radius"
+SMALL_STRAINS = "small strains"
+Reading = Callable[[CoatedContact], tuple[Change, Change]]
+
+
+@dataclass(frozen=True)
+class Assumption:
+    """What all sources assume, with its ``title`` in sentences.
+
+    change : change of a contact by dropping it, with the uncertainty; ValueError where there is none.
+        None where the model is too slow for this, so that its map is read.
+    warned : beginning of the warning of implausible input that says the same, which is not repeated.
+    read : change of a problem by that of others, which the map holds; where the map alone is not enough.
+    """
+
+    title: str
+    change: Reading | None = None
+    warned: str = ""
+    read: Callable[[CoatedContact, Reading], tuple[Change, Change]] = lambda problem, at: at(problem)
+
+
+ASSUMPTIONS: dict[str, Assumption] = {
+    "sphere": Assumption(PARABOLA, of_sphere, warned="contact radius a_h"),
+    "goodman": Assumption(GOODMAN, of_goodman),
+    "bodies": Assumption(HALF_SPACES, of_half_spaces),
+    "strains": Assumption(SMALL_STRAINS, read=of_pair),
+}
+
 
 __all__ = ["GOODMAN", "HALF_SPACES", "PARABOLA", "Cost", "ModelError", "model_error"]
 
@@ -29,8 +58,8 @@ WORDS = {
 }
 
 
-LIMIT = 0.05  # of a quantity; a larger cost is warned of
-LEAST = 1e-6  # of a quantity; a smaller cost is not named
+LIMIT = 0.05  # relative; a larger cost triggers a warning
+LEAST = 1e-6  # relative; a smaller cost is not reported
 
 
 @dataclass(frozen=True)
@@ -151,7 +180,7 @@ def model_error(problem: CoatedContact, maps: AssumptionMaps | None = None) -> M
 
 
 def judged_quantities(claimed: Collection[str]) -> tuple[str, ...]:
-    """Of ``QUANTITIES`` those that claims on the quantities ``claimed`` judge."""
+    """The members of ``QUANTITIES`` that claims on the quantities ``claimed`` judge."""
     by = {
         "peak_pressure": ("peak_pressure", "pressure"),
         "tension": ("sigma_xx", *PEAKS, *BALL_PEAKS),

@@ -72,7 +72,8 @@ DISCS = {
     "stress on a plane": PATCHES,
     "displacement on a plane": PATCHES,
 }
-ELLIPSES = {
+OTHERS = {
+    "influence coefficients": BOUND,
     "peak pressure": 1e-5,
     "contact radius": 2e-5,
     "approach": 5e-6,
@@ -96,7 +97,7 @@ def verdicts(
     for disc in discs:
         of_disc = disc.quantity in DISCS
         name = f"{disc.solid}: {'disc, ' * of_disc}{disc.pressure}: {disc.quantity}"
-        found.append(_below(name, disc.error, (DISCS if of_disc else ELLIPSES)[disc.quantity]))
+        found.append(_below(name, disc.error, (DISCS if of_disc else OTHERS)[disc.quantity]))
     for conversion in conversions:
         if conversion.conversion == "split":
             found.append(_below("coated: influence coefficients", conversion.largest, BOUND))

@@ -19,7 +19,18 @@ from verification.problem.coated_contact import BALL, CoatedContact, Solution, s
 from verification.problem.either_body import on_body
 from verification.problem.quantity import von_mises
 from verification.sampling.largest_tension import Search
-from verification.study.friction_planes import XX, XZ, ZZ, Parts, Plane, crowded, plane, stress_at, surface
+from verification.study.friction_planes import (
+    XX,
+    XZ,
+    ZZ,
+    Parts,
+    Plane,
+    crowded,
+    plane,
+    planes_between,
+    stress_at,
+    surface,
+)
 from verification.study.largest_stresses import (
     Located,
     Measure,
@@ -31,8 +42,6 @@ from verification.study.largest_stresses import (
     vertex,
     with_residual,
 )
-
-__all__ = ["Course", "Extreme", "first_principal", "stresses"]
 
 REACH, POINTS = 2.0, 401  # of a course, over a
 
@@ -242,5 +251,5 @@ class _Layers:
             between = depths(top, 1.5 * top + 2 * a, 0.5 * max(a / 2, top))[1:]
         # They only locate: the uncertainty is evaluated at the place found.
         parts = replace(self.parts, stated=False)
-        planes = [plane(parts, knots, float(z), layer) for z in between]
+        planes = planes_between(parts, knots, between, layer)
         return [self.tops[layer], *planes, *([self.bases[layer]] if coating else [])], knots

@@ -1,21 +1,79 @@
 """Maps of what each assumption costs: the record with its values between the nodes.
 
-Maintainers make them; ``tests/tools assumptions`` has the axes of each.
+Maintainers make them; ``credibility.model.shared_assumptions`` states the axes of each. The places are
+a rigid or elastic ball on one coating, by dimensionless coordinates:
+
+ratio : E1*/E2* of coating and substrate, E1/E2 where both have one nu;   thickness : h/a_h;   nu;
+width : a_h/R;   friction : f;   ball : share of the ball in the contact's compliance, E*/E_ball*, 0 rigid.
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from functools import cached_property
 from math import prod
 from pathlib import Path
 
 import numpy as np
 
-from verification.evidence.map_places import LOGARITHMIC, Place, places_of
 from verification.problem.array_types import Array
 from verification.problem.coated_contact import CoatedContact
 from verification.running.json_records import RecordFile
 from verification.sources.assumptions.contact_change import SCALARS, Change
+
+SUBSTRATE, RADIUS = 210e9, 10e-3  # the costs depend on neither
+LOGARITHMIC = ("ratio", "thickness", "width")
+
+
+@dataclass(frozen=True)
+class Place:
+    """A problem by its coordinates; both bodies and the coating have one ``nu``."""
+
+    ratio: float = 1.0
+    thickness: float = 1.0
+    nu: float = 0.3
+    width: float = 0.03
+    friction: float = 0.0
+    ball: float = 0.0
+
+    @property
+    def problem(self) -> CoatedContact:
+        """With a steel's modulus below and a ball of 10 mm."""
+        a_h = self.width * RADIUS
+        ball = None
+        if self.ball:
+            ball = (SUBSTRATE * (1 - self.ball) / self.ball, self.nu, ())
+        coating = (self.ratio * SUBSTRATE, self.nu, self.thickness * a_h)
+        E_star = SUBSTRATE / (1 - self.nu**2) * (1 - self.ball)
+        load = 4 * a_h**3 * E_star / (3 * RADIUS)
+        return CoatedContact(RADIUS, load, (coating,), (SUBSTRATE, self.nu), self.friction, ball)
+
+
+COORDINATES = tuple(field.name for field in fields(Place))
+
+
+def places_of(problem: CoatedContact) -> tuple[Place, ...]:
+    """Where ``problem`` lies: one place for each Poisson's ratio that occurs in it.
+
+    Without a coating ``ratio`` is 1 and the thickness is of no importance.
+    Raises ValueError where the maps cannot hold it: several coatings, a coated ball.
+    """
+    if len(problem.coatings) > 1:
+        raise ValueError(f"{len(problem.coatings)} coatings; the maps hold one")
+    E2, nu2 = problem.substrate
+    E1, nu1, h = problem.coatings[0] if problem.coatings else (E2, nu2, problem.a_h)
+    share, nus = 0.0, {nu1, nu2}
+    if problem.ball is not None:
+        E_ball, nu_ball, layers = problem.ball
+        if layers:
+            raise ValueError("a coated ball; that of the maps is not")
+        share = problem.E_star * (1 - nu_ball**2) / E_ball
+        nus.add(nu_ball)
+    ratio = E1 * (1 - nu2**2) / (E2 * (1 - nu1**2))
+    a_h = problem.a_h
+    return tuple(
+        Place(ratio, h / a_h, nu, a_h / problem.radius, problem.friction, share) for nu in sorted(nus)
+    )
+
 
 SHIPPED = Path(__file__).parent / "shipped"
 SCHEMA = "coatcheck-assumptions/2"
@@ -87,8 +145,10 @@ class AssumptionMap:
         Raises ValueError outside the map, or where its model had no answer.
         """
         places = places_of(problem)
-        if not problem.coatings:
-            places = tuple(replace(place, thickness=self._any_thickness) for place in places)
+        if not problem.coatings:  # any thickness of the map
+            values = next((axis.values for axis in self.axes if axis.name == "thickness"), (1.0,))
+            any_thickness = min(values, key=lambda value: abs(np.log(value)))
+            places = tuple(replace(place, thickness=any_thickness) for place in places)
         if "nu" in self.independent_of:
             places = places[:1]
         found = np.array([self._at_place(place) for place in places])
@@ -156,19 +216,13 @@ class AssumptionMap:
             x = np.interp(np.arange((nodes.size - 1) * refined + 1) / refined, np.arange(nodes.size), nodes)
             weights = np.zeros((x.size, nodes.size))
             for row, value in zip(weights, x, strict=True):
-                for i, weight in _linear(nodes, float(value)).items():
+                for i, weight in _window(nodes, float(value), 2).items():
                     row[i] = weight
             lines.append((x, weights))
         (x, along), (y, over) = lines
         held = np.isfinite(table)
         plane = over @ np.where(held, table, 0.0) @ along.T
         return x, y, np.where(over @ held @ along.T > 1 - 1e-9, plane, np.nan)
-
-    @property
-    def _any_thickness(self) -> float:
-        """A thickness of the map, for a problem without a coating."""
-        values = next((axis.values for axis in self.axes if axis.name == "thickness"), (1.0,))
-        return min(values, key=lambda value: abs(np.log(value)))
 
     def _at_place(self, place: Place) -> tuple[Array, Array]:
         frictionless = next((axis.values == (0.0,) for axis in self.axes if axis.name == "friction"), False)
@@ -185,7 +239,7 @@ class AssumptionMap:
             value, error = interpolated(self._scaled, self.axes, positions, below, most)
             if np.isfinite(value).any():
                 break
-        near = [_linear(axis.nodes, x) for axis, x in zip(self.axes, positions, strict=True)]
+        near = [_window(axis.nodes, x, 2) for axis, x in zip(self.axes, positions, strict=True)]
         return value * scale, (error + _contracted(self._scaled_uncertainty, near)) * scale
 
     @cached_property
@@ -246,7 +300,7 @@ def interpolated(
         apart = [SAFETY * distance(j, less) for less in _fewer(axis.nodes, x, most)]
         error += np.max([np.zeros_like(error), *apart], axis=0)
     # a kink, as of a peak that moves off the axis, may escape the polynomials
-    near = [_linear(axis.nodes, x) for axis, x in zip(axes, positions, strict=True)]
+    near = [_window(axis.nodes, x, 2) for axis, x in zip(axes, positions, strict=True)]
     cell = table[np.ix_(range(table.shape[0]), *(list(weights) for weights in near))]
     between = max((4 * prod(w.values()) for w in near if len(w) == 2), default=0.0)
     return value, error + KINK * between * np.abs(cell).max(axis=tuple(range(1, cell.ndim)))
@@ -285,10 +339,6 @@ def _chosen(nodes: Array, x: float, most: int) -> list[int]:
 
 def _window(nodes: Array, x: float, most: int) -> Weights:
     return _lagrange(nodes, x, _chosen(nodes, x, most))
-
-
-def _linear(nodes: Array, x: float) -> Weights:
-    return _window(nodes, x, 2)
 
 
 def _fewer(nodes: Array, x: float, most: int) -> list[Weights]:

@@ -23,7 +23,7 @@ from verification.guests.guest_protocol import (
 from verification.judging.verdict import Claim
 from verification.problem.array_types import Coatings
 from verification.problem.coated_contact import CoatedContact
-from verification.problem.layer_depths import layer_at
+from verification.problem.evaluation_points import layer_at
 from verification.problem.line_profile import Profile
 from verification.problem.quantity import unit_of
 from verification.running.case_result import CaseResult, SourceResult, describe, from_json, to_json
@@ -45,17 +45,7 @@ class Exam:
 
 def prepare(case: Subject, path: Path) -> None:
     """Solve ``case`` exactly, sample it on its lines, store it at ``path``."""
-    result = CaseResult(
-        name=case.name,
-        title=case.title,
-        source=case.source,
-        problem=describe(case.problem),
-        sources=(SourceResult(REFERENCE, 0.0),),
-        profiles=case.exact(),
-        verdicts=(),
-        seconds=0.0,
-        text=case.text,
-    )
+    result = CaseResult.of(case, sources=(SourceResult(REFERENCE, 0.0),), profiles=case.exact())
     write_checked(path, to_json(result) | {"made_by": fingerprint()})
 
 

@@ -1,13 +1,13 @@
 """Slips that change a whole answer: axis, sign, unit, component, shift, an input of Hertz's formulas.
 
-Each slip turns the exact values into the wrong answers that it would give. Of the sets of up to four slips
-the one is chosen that leaves the smallest misfit to the answers, with a price for every slip. What a slip
+Each slip turns the exact values into the wrong answers that it would give. Among the sets of up to four
+slips, the one with the smallest misfit to the answers is chosen, with a price for every slip. What a slip
 changes but cannot predict (a mirrored value on an oblique line) counts little, and is explained by that slip.
 """
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
-from math import log
+from math import isclose, log
 
 import numpy as np
 from numpy.typing import NDArray
@@ -34,6 +34,7 @@ UNITS = {
     },
     "m": {1e3: "mm in place of m", 1e-3: "mm taken for m", 1e6: "um in place of m", 1e-6: "um taken for m"},
 }
+THOUSANDS = {10.0**k: "a factor of units" for k in (-9, -6, -3, 3, 6, 9)}
 SCOPES = {
     "Pa": ((*STRESSES, *PEAKS[:1], "pressure", "peak_pressure"), (*STRESSES, *PEAKS[:1])),
     "m": (("contact_radius", "approach", *PEAKS[1:], *DISPLACEMENTS), DISPLACEMENTS),
@@ -133,7 +134,7 @@ def _slips(
     """In the order in which they act: of the input, of the physics, of the output."""
     places = {p.line: p.position for p in result.profiles}
     if any(q in ("contact_radius", "approach", "peak_pressure") for q, _ in wrong):
-        yield from _inputs(result, places)
+        yield from _inputs(result, exact, given, places)
     mirrored = _moved(places, lambda x: -x, _signs("sigma_xz", "sigma_xy", "u_x", "tension_place"))
     if result.problem["friction"]:
         yield CommonSlip(
@@ -174,17 +175,23 @@ def _has(unit: str, key: Key, exact: Values) -> bool:
     return unit_of(key[0]) == unit and bool(np.abs(exact[key][0]).max() > 0)
 
 
-def _inputs(result: CaseResult, places: dict[str, Array]) -> Iterator[CommonSlip]:
+def _inputs(
+    result: CaseResult, exact: Values, given: dict[Key, Array], places: dict[str, Array]
+) -> Iterator[CommonSlip]:
     """A wrong input of an uncoated contact: the fields of Hertz scale with a and p0.
 
     a = (3 W R / 4 E*)^(1/3),  p0 = 3 W / (2 pi a^2),  delta = a^2 / R      Johnson (4.22) to (4.24)
     """
     if result.problem["coatings"] or result.problem.get("ball"):
         return
+    radius = "contact_radius", "contact"
+    size = float(given[radius][0] / exact[radius][0][0]) if radius in given else 1.0
     for name, factors in input_factors(float(result.problem["substrate"][1])).items():
-        for factor, cause in factors.items():
+        for factor, cause in (factors | THOUSANDS).items():
             R, W, E = (factor if name == one else 1.0 for one in ("R", "W", "E*"))
             a = (W * R / E) ** (1 / 3)
+            if factor in THOUSANDS and not isclose(a, size, rel_tol=EDGE):
+                continue
             p0 = W / a**2
             numbers = {"contact_radius": a, "approach": a**2 / R, "peak_pressure": p0, "largest_tension": p0}
             numbers |= {"tension_place": a, "stiffness": a * E}

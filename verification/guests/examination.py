@@ -33,24 +33,34 @@ class Examined:
     replies: dict[str, list[Solved]]
 
     @cached_property
-    def _known(self) -> dict[tuple[str, Claim], str]:
-        found = {}
-        for result in self.results:
-            for claim, verdict in result.verdicts:
-                reason = self.guest.known_failure(result.name, claim.quantity, claim.line)
-                if reason is not None and verdict.outcome is not Outcome.UNSUPPORTED:
-                    found[result.name, claim] = reason
-        return found
+    def comparisons(self) -> list[tuple[CaseResult, Claim, Verdict]]:
+        """Every comparison of every case."""
+        return [(result, claim, verdict) for result in self.results for claim, verdict in result.verdicts]
+
+    @cached_property
+    def total(self) -> Counter[Outcome]:
+        """How many comparisons have each outcome."""
+        return outcome_counts(self.results)
 
     @property
-    def counted(self) -> list[tuple[str, Claim, Verdict]]:
-        """Case, claim and verdict of every comparison but known failures."""
-        return [
-            (result.name, claim, verdict)
-            for result in self.results
-            for claim, verdict in result.verdicts
-            if (result.name, claim) not in self._known
-        ]
+    def answered(self) -> int:
+        """How many comparisons the guest supports."""
+        return self.total.total() - self.total[Outcome.UNSUPPORTED]
+
+    @cached_property
+    def _known(self) -> dict[tuple[str, Claim], str]:
+        """The reason of each comparison that is listed as a known failure."""
+        reasons = {
+            (result.name, claim): self.guest.known_failure(result.name, claim.quantity, claim.line)
+            for result, claim, verdict in self.comparisons
+            if verdict.outcome is not Outcome.UNSUPPORTED
+        }
+        return {key: reason for key, reason in reasons.items() if reason is not None}
+
+    @property
+    def counted(self) -> list[Verdict]:
+        """The verdict of every comparison but known failures."""
+        return [v for result, claim, v in self.comparisons if (result.name, claim) not in self._known]
 
     @property
     def known(self) -> list[tuple[str, str]]:
@@ -59,15 +69,14 @@ class Examined:
 
     @property
     def unexpected(self) -> list[tuple[str, str]]:
-        """Name and reason of each entry of known failures of which nothing fails."""
+        """Name and reason of each listed known failure that does not fail."""
         failing = {reason for _, reason in self.known}
         return [item for item in self._of_known(agrees=True) if item[1] not in failing]
 
     def _of_known(self, *, agrees: bool) -> list[tuple[str, str]]:
         return [
             (f"{result.name}/{claim.quantity}/{claim.line}", self._known[result.name, claim])
-            for result in self.results
-            for claim, verdict in result.verdicts
+            for result, claim, verdict in self.comparisons
             if (result.name, claim) in self._known and (verdict.outcome is Outcome.AGREES) is agrees
         ]
 

@@ -5,13 +5,12 @@ callable = "adapter:solve"     # or command = ["./adapter"], or results = "answe
 """
 
 import re
-from dataclasses import dataclass, field
 from fnmatch import fnmatchcase
 from importlib.metadata import entry_points
 from importlib.util import find_spec
 from itertools import pairwise
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
@@ -54,7 +53,16 @@ class Units(Strict):
     force: Literal["N", "mN", "uN", "kN"] = "N"
 
 
-class _GuestFile(Strict):
+class GuestFile(Strict):
+    """The keys of a guest file.
+
+    callable, command, results : the way in, one of the three.
+    claim : largest relative difference that the code claims to have; None where it does not say.
+    edge : half-width of a zone around the contact edge that is left out, as a fraction of a.
+    refine : numerical parameter of the refinement study with its values, coarse to fine.
+    known : reason of each known failure by "case/quantity" or "case/quantity/line".
+    """
+
     name: Annotated[str, Field(pattern=r"^[^\x00-\x1f\x7f]{1,60}$")]
     callable: Word | None = None
     command: Annotated[list[Word], Field(min_length=1, max_length=50)] | None = None
@@ -72,7 +80,7 @@ class _GuestFile(Strict):
     known: Annotated[dict[str, Text], Field(default_factory=dict, max_length=1000)]
 
     @model_validator(mode="after")
-    def _one_way_in(self) -> "_GuestFile":
+    def _one_way_in(self) -> "GuestFile":
         given = [name for name in ("callable", "command", "results") if getattr(self, name) is not None]
         if len(given) != 1:
             raise ValueError(
@@ -92,34 +100,21 @@ class _GuestFile(Strict):
         return self
 
 
-@dataclass(frozen=True, eq=False)
-class Guest:
-    """A contact code to examine, with the directory that its files are relative to.
-
-    text : the guest file.
-
-    callable, command, results : the way in, one of the three.
-    claim : largest relative difference that the code claims to have; None where it does not say.
-    edge : half-width of a zone around the contact edge that is left out, as a fraction of a.
-    parameter, levels : numerical parameter of the refinement study with its values, coarse to fine; "" and ()
-    without one.   known : reason of each known failure by "case/quantity" or "case/quantity/line".
-    """
+class Guest(GuestFile):
+    """A contact code to examine: its file as ``text``, the ``folder`` that its paths are relative to."""
 
     folder: Path
     text: str
-    name: str
-    callable: str | None = None
-    command: tuple[str, ...] = ()
-    results: str | None = None
-    claim: float | None = None
-    edge: float = 0.0
-    time_limit: float = 120.0
-    homepage: str | None = None
-    supports: Supports = field(default_factory=Supports)
-    units: Units = field(default_factory=Units)
-    parameter: str = ""
-    levels: tuple[float, ...] = ()
-    known: dict[str, str] = field(default_factory=dict)
+
+    @property
+    def parameter(self) -> str:
+        """Numerical parameter of the refinement study; "" without one."""
+        return next(iter(self.refine), "")
+
+    @property
+    def levels(self) -> tuple[float, ...]:
+        """Values of the parameter, coarse to fine."""
+        return tuple(self.refine.get(self.parameter, ()))
 
     def refusal(self, problem: CoatedContact) -> str | None:
         """Why the code does not solve ``problem``, by its own statement; None where it does."""
@@ -172,17 +167,8 @@ def read_guest(place: str | Path) -> Guest:
 
 def parse_guest(raw: bytes, path: Path) -> Guest:
     """Check the content of a guest file; ``path`` names it in messages. Raises CaseError."""
-    text, checked = read_toml(raw, path, _GuestFile)
-    given: dict[str, Any] = {name: getattr(checked, name) for name in _GuestFile.model_fields}
-    refine = given.pop("refine")
-    parameter = next(iter(refine), "")
-    return Guest(
-        folder=path.resolve().parent,
-        text=text,
-        **given | {"command": tuple(checked.command or ())},
-        parameter=parameter,
-        levels=tuple(refine.get(parameter, ())),
-    )
+    text, checked = read_toml(raw, path, GuestFile)
+    return Guest.model_construct(**dict(checked), folder=path.resolve().parent, text=text)
 
 
 def installed_guests() -> dict[str, Path]:

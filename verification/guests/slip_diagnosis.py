@@ -13,7 +13,7 @@ import numpy as np
 from scipy.optimize import minimize_scalar
 
 from verification.guests.case_exam import ALONG_SURFACE
-from verification.guests.common_slips import EDGE, EXPLAINED, UNITS, Explanation, explanation, input_factors
+from verification.guests.common_slips import EDGE, EXPLAINED, THOUSANDS, UNITS, Explanation, explanation
 from verification.guests.exam_subjects import REFERENCE
 from verification.judging.verdict import Outcome
 from verification.problem.array_types import Array
@@ -34,8 +34,6 @@ TWICE = {
         0.5: "a^2/(2 R), the depth of the contact edge, in place of a^2/R",
     },
 }
-OF_INPUTS = ("contact_radius", "peak_pressure", "approach", "stiffness")
-THOUSANDS = {10.0**k: "a factor of units" for k in (-9, -6, -3, 3, 6, 9)}
 
 
 @dataclass(frozen=True)
@@ -90,12 +88,11 @@ def slips(result: CaseResult, guest: str) -> list[Slip]:
     explained = {place for slip in named for place in slip.places}
     expected = _expected(result, guest, whole)
     found: dict[str, list[tuple[str, str]]] = {}
-    inputs = _of_inputs(expected, guest)
     for quantity, line in wrong:
         # A number that a slip explains may be wrong for another reason too: p0 in MPa, and the mean.
         if (quantity, line) in explained and not (line == "contact" and whole.values[quantity, line][1]):
             continue
-        messages = [_of_place(one, guest, quantity, line, inputs) for one in (expected, result)]
+        messages = [_of_place(one, guest, quantity, line) for one in (expected, result)]
         message = next((m for m in messages if m and m.endswith("?")), messages[0])
         if message and not ((quantity, line) in explained and messages[0] is None):
             found.setdefault(message, []).append((quantity, line))
@@ -106,15 +103,12 @@ def slips(result: CaseResult, guest: str) -> list[Slip]:
     ]
 
 
-def _of_place(result: CaseResult, guest: str, quantity: str, line: str, inputs: str | None) -> str | None:
+def _of_place(result: CaseResult, guest: str, quantity: str, line: str) -> str | None:
     """The message about one quantity on one line, or about one number."""
     mine, exact = (result.profile_of.get((quantity, line, source)) for source in (guest, REFERENCE))
     if mine is None or exact is None or not np.isfinite(mine.value).all():
         return None
-    if line == "contact":
-        return (inputs if quantity in OF_INPUTS else None) or _of_number(mine, exact)
-    message = _of_line(mine, exact, result)
-    return (message and _explained(message)) or inputs or message
+    return _of_number(mine, exact) if line == "contact" else _of_line(mine, exact, result)
 
 
 def _expected(result: CaseResult, guest: str, found: Explanation) -> CaseResult:
@@ -141,40 +135,6 @@ def _outside_zone(result: CaseResult, zone: float) -> CaseResult:
         kept = replace(p, position=p.position[keep], value=p.value[keep], uncertainty=uncertainty)
         profiles.append(kept if p.line in ALONG_SURFACE else p)
     return replace(result, profiles=tuple(profiles))
-
-
-def _of_inputs(result: CaseResult, guest: str) -> str | None:
-    """A wrong input of an uncoated contact, from its three numbers; None where an output alone is wrong.
-
-        a = (3 W R / 4 E*)^(1/3),  p0 = 3 W / (2 pi a^2),  delta = a^2 / R      Johnson (4.22) to (4.24)
-
-    gives the factors of R, W and E* that explain the three ratios to the exact values.
-    """
-    if result.problem["coatings"] or result.problem.get("ball"):
-        return None
-    ratios = {}
-    for name in ("contact_radius", "peak_pressure", "approach"):
-        mine, exact = (result.profile_of.get((name, "contact", source)) for source in (guest, REFERENCE))
-        if mine is None or exact is None or not np.isfinite(mine.value[0]) or mine.value[0] <= 0:
-            return None
-        ratios[name] = float(mine.value[0] / exact.value[0])
-    a, p0, delta = (ratios[name] for name in ("contact_radius", "peak_pressure", "approach"))
-    R, W = a**2 / delta, p0 * a**2
-    E = W * R / a**3
-    nu = float(result.problem["substrate"][1])
-    names = {name: known | THOUSANDS for name, known in input_factors(nu).items()}
-    factors = {"E*": E, "R": R, "W": W}
-    off = {name: factor for name, factor in factors.items() if not isclose(factor, 1, rel_tol=4 * NEAR)}
-    if len(off) != 1 or sum(not isclose(ratio, 1, rel_tol=NEAR) for ratio in ratios.values()) < 2:
-        return None
-    ((name, factor),) = off.items()
-    cause = _nearest(factor, names[name])
-    known = f": {cause}?" if cause else ""
-    return f"the answers are those of Hertz with {name} times {factor:.4g}{known}"
-
-
-def _explained(message: str) -> str | None:
-    return None if message.startswith(UNEXPLAINED) else message
 
 
 def _of_number(mine: Profile, exact: Profile) -> str | None:

@@ -7,7 +7,6 @@ python -m verification.manual.case_figures 14_ratio_4_sliding
 
 import io
 import sys
-from collections.abc import Sequence
 from typing import Any
 
 import matplotlib as mpl
@@ -15,9 +14,10 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
-from verification.cases.case_file import Case, read_case, shipped_cases
-from verification.manual.baseline_numbers import Pair, pairs, values
+from verification.manual.baseline_numbers import stored
 from verification.page.number_text import engineering, plain
+from verification.report.tables.case_lookup import contact_radius, layers
+from verification.running.case_result import CaseResult
 from verification.sources.source_registry import EXACT, SOURCES
 
 # Okabe and Ito's colours, distinct for the colour-blind; markers tell the sources apart in grey too.
@@ -52,27 +52,21 @@ GROUPS = (
 )
 
 
-def of_case(case: Case) -> bytes:
+def of_case(name: str) -> bytes:
     """Section, pressure with sigma_xx of the surface, sigma_xx below, differences of a contact case."""
+    result = stored(name)
     with mpl.rc_context(SETTINGS):
         figure = Figure(figsize=(8.6, 6.8))
         (section, surface), (below, distances) = figure.subplots(2, 2)
         figure.subplots_adjust(0.075, 0.12, 0.985, 0.955, wspace=0.34, hspace=0.3)
-        _section(section, case)
-        _surface(surface, case)
-        _below(below, case)
-        rows = [(label, _chosen(pairs(case.name), names, line)) for label, names, line in GROUPS]
-        _distances(distances, [row for row in rows if row[1]])
-        return _svg(figure)
-
-
-def of_published(name: str, rows: Sequence[tuple[str, Sequence[Pair]]]) -> bytes:
-    """Differences of a published case, a row for each column of its tables."""
-    with mpl.rc_context(SETTINGS):
-        height = 1.3 + 0.24 * len(rows)
-        figure = Figure(figsize=(8.6, height))
-        _distances(figure.subplots(), rows)
-        figure.subplots_adjust(0.34, 0.95 / height, 0.985, 1 - 0.25 / height)
+        _section(section, result)
+        _curve(surface, result, "pressure", "surface", PALETTE[3], "$p$")
+        _curve(surface, result, "sigma_xx", "surface", PALETTE[0], "$\\sigma_{xx}$")
+        surface.set(xlim=(-2, 2), xlabel="$x / a_h$", ylabel="over $p_h$")
+        surface.set_title("Surface: exact —, semi-analytical ○, elements ×", fontsize=9, loc="left")
+        surface.legend(frameon=False, loc="best")
+        _below(below, result)
+        _distances(distances, result)
         return _svg(figure)
 
 
@@ -82,32 +76,22 @@ def _svg(figure: Figure) -> bytes:
     return content.getvalue()
 
 
-def _chosen(found: Sequence[Pair], names: Sequence[str], line: str) -> list[Pair]:
-    """Those of ``found`` whose quantity begins with one of ``names``, their line, on either body, with it."""
-    return [
-        p
-        for p in found
-        if any(p.quantity.startswith(name) for name in names)
-        and p.line.removeprefix("ball, ").startswith(line)
-    ]
-
-
-def _section(axes: Any, case: Case) -> None:
+def _section(axes: Any, result: CaseResult) -> None:
     """Layers of the flat to scale in z/a_h, a layer too thin to see drawn thicker; the contact above them."""
-    problem = case.problem
-    a = float(values(case.name)["integral_equation", "contact_radius", "contact"].value[0]) / problem.a_h
-    layers = [(E, nu, h / problem.a_h) for E, nu, h in problem.coatings]
-    deepest = max(1.8, 1.35 * sum(h for *_, h in layers))
-    moduli = np.log([E for E, *_ in layers] + [problem.substrate[0]])
+    problem, a_h = result.problem, result.problem["a_h"]
+    a = float(contact_radius(result) or np.nan) / a_h
+    found = [(E, nu, h / a_h) for E, nu, h in layers(result)]
+    deepest = max(1.8, 1.35 * sum(h for *_, h in found[:-1]))
+    moduli = np.log([E for E, *_ in found])
     shade = 0.9 - 0.35 * (moduli - moduli.min()) / (np.ptp(moduli) or 1.0)
     axes.set(xlim=(-2, 2), ylim=(deepest, -0.42 * deepest), ylabel="$z / a_h$", xlabel="$x / a_h$")
     axes.grid(visible=False)
     top, named = 0.0, -np.inf
-    for i, (E, nu, h) in enumerate([*layers, (*problem.substrate, np.inf)]):
+    for i, (E, nu, h) in enumerate(found):
         height = min(max(h, 0.012 * deepest), deepest - top)
         axes.add_patch(Rectangle((-2, top), 4, height, facecolor=str(shade[i]), edgecolor="#444", lw=0.6))
         text = f"$E$ {engineering(E, 'Pa', 3)}, $\\nu$ {plain(nu, 3)}"
-        text += "" if h == np.inf else f", $h$ {engineering(h * problem.a_h, 'm', 3)}"
+        text += "" if h == np.inf else f", $h$ {engineering(h * a_h, 'm', 3)}"
         named = max(top + min(height / 2, 0.11 * deepest), named + 0.085 * deepest)
         axes.annotate(text, (-1.93, named), va="center", fontsize=7.5)
         top += height
@@ -117,90 +101,79 @@ def _section(axes: Any, case: Case) -> None:
     inside = ball > -0.4 * deepest
     axes.plot(x[inside], ball[inside], color="#444", lw=1.4)
     axes.plot([-a, a], [0, 0], color="#b03a2e", lw=3, solid_capstyle="butt")
-    kind = "rigid sphere" if problem.ball is None else "elastic ball"
-    axes.text(0, -0.36 * deepest, f"{kind}, $R$ {engineering(problem.radius, 'm', 3)}", ha="center")
-    axes.text(0, -0.26 * deepest, f"$W$ {engineering(problem.load, 'N', 3)}", ha="center")
+    kind = "elastic ball" if problem["ball"] else "rigid sphere"
+    axes.text(0, -0.36 * deepest, f"{kind}, $R$ {engineering(problem['radius'], 'm', 3)}", ha="center")
+    axes.text(0, -0.26 * deepest, f"$W$ {engineering(problem['load'], 'N', 3)}", ha="center")
     axes.text(0, -0.05 * deepest, f"$2a$ = {2 * a:.3g} $a_h$", ha="center", color="#b03a2e", fontsize=7.5)
     axes.set_title("The problem (sphere not to scale)", fontsize=9, loc="left")
 
 
 def _curve(
-    axes: Any, case: Case, quantity: str, line: str, colour: str, label: str, style: str = "-"
+    axes: Any, result: CaseResult, quantity: str, line: str, colour: str, label: str, style: str = "-"
 ) -> None:
     """A quantity over p_h along a line: a curve of the exact solution, a few markers of both methods."""
-    known, problem = values(case.name), case.problem
-    exact = known.get(("integral_equation", quantity, line))
-    if exact is None:
-        return
-    order = np.argsort(exact.position)
-    x = exact.position[order] / problem.a_h
-    axes.plot(x, exact.value[order] / problem.p_h, style, color=colour, lw=1.1, label=label)
-    for i, source in enumerate(MARKERS):
-        n = known.get((source, quantity, line))
-        if n is None:
+    a_h, p_h = result.problem["a_h"], result.problem["p_h"]
+    for i, source in enumerate(("integral_equation", *MARKERS)):
+        found = result.profile_of.get((quantity, line, source))
+        if found is None:
             continue
-        order = np.argsort(n.position)
-        at = np.linspace(0, len(order) - 1, 25).astype(int)[i::2]
-        place = order[at]
-        axes.plot(
-            n.position[place] / problem.a_h,
-            n.value[place] / problem.p_h,
-            MARKERS[source],
-            color=COLOURS[source],
-            markersize=4.2,
-            markerfacecolor="none",
-            markeredgewidth=1.0,
-        )
+        order = np.argsort(found.position)
+        if i == 0:
+            x, y = found.position[order] / a_h, found.value[order] / p_h
+            axes.plot(x, y, style, color=colour, lw=1.1, label=label)
+            continue
+        place = order[np.linspace(0, len(order) - 1, 25).astype(int)[i - 1 :: 2]]
+        x, y = found.position[place] / a_h, found.value[place] / p_h
+        open_ = {"markersize": 4.2, "markerfacecolor": "none", "markeredgewidth": 1.0}
+        axes.plot(x, y, MARKERS[source], color=COLOURS[source], **open_)
 
 
-def _surface(axes: Any, case: Case) -> None:
-    _curve(axes, case, "pressure", "surface", PALETTE[3], "$p$")
-    _curve(axes, case, "sigma_xx", "surface", PALETTE[0], "$\\sigma_{xx}$")
-    axes.set(xlim=(-2, 2), xlabel="$x / a_h$", ylabel="over $p_h$")
-    axes.set_title("Surface: exact —, semi-analytical ○, elements ×", fontsize=9, loc="left")
-    axes.legend(frameon=False, loc="best")
-
-
-def _below(axes: Any, case: Case) -> None:
+def _below(axes: Any, result: CaseResult) -> None:
     """sigma_xx on both sides of every interface; of an uncoated solid the stresses of the axis."""
-    if case.problem.coatings:
-        for i in range(len(case.problem.coatings)):
-            colour, name = PALETTE[i % len(PALETTE)], f"interface {i + 1}"
-            _curve(axes, case, "sigma_xx", f"{name}, upper side", colour, name)
-            _curve(axes, case, "sigma_xx", f"{name}, lower side", colour, "", "--")
+    coatings = result.problem["coatings"]
+    for i in range(len(coatings)):
+        colour, name = PALETTE[i % len(PALETTE)], f"interface {i + 1}"
+        _curve(axes, result, "sigma_xx", f"{name}, upper side", colour, name)
+        _curve(axes, result, "sigma_xx", f"{name}, lower side", colour, "", "--")
+    if coatings:
         axes.set(xlim=(-2, 2), xlabel="$x / a_h$", ylabel="$\\sigma_{xx} / p_h$")
         title = "$\\sigma_{xx}$ at each interface: above it (full), below it (dashed)"
-        axes.set_title(title, fontsize=9, loc="left")
     else:
         for colour, name in zip(PALETTE, ("sigma_xx", "sigma_zz"), strict=False):
-            label = f"$\\sigma_{{{name[-2:]}}}$"
-            _curve(axes, case, name, "axis", colour, label)
+            _curve(axes, result, name, "axis", colour, f"$\\sigma_{{{name[-2:]}}}$")
         axes.set(xlabel="$z / a_h$", ylabel="over $p_h$")
-        axes.set_title("On the axis", fontsize=9, loc="left")
+        title = "On the axis"
+    axes.set_title(title, fontsize=9, loc="left")
     axes.legend(frameon=False, fontsize=7, loc="best")
 
 
-def _distances(axes: Any, rows: Sequence[tuple[str, Sequence[Pair]]]) -> None:
-    """|A - B| of each comparison at its worst point as a dot, U there as a bar, the cap as a line."""
+def _distances(axes: Any, result: CaseResult) -> None:
+    """The largest |A - B| of each pair in each group as a dot, its U as a bar, the cap as a line."""
+    rows = []
+    for label, names, line in GROUPS:
+        found = [
+            pair
+            for pair in result.verdicts
+            if pair[0].quantity.startswith(names) and pair[0].line.removeprefix("ball, ").startswith(line)
+        ]
+        rows += [(label, found)] if found else []
     for y, (_, found) in enumerate(rows):
-        sets = list(dict.fromkeys(p.between for p in found))
+        sets = list(dict.fromkeys(claim.between for claim, _ in found))
         for i, between in enumerate(sets):
-            of_set = [p for p in found if p.between == between]
-            worst = max(of_set, key=lambda p: p.worst)
-            at = int(np.argmax(worst.difference))
+            of_set = [verdict for claim, verdict in found if claim.between == between]
+            worst = max(of_set, key=lambda verdict: verdict.difference or 0.0)
             offset = y + 0.26 * ((i + 0.5) / len(sets) - 0.5) * 2
-            colour = _colour(between)
-            U = max(float(worst.uncertainty[at]), LEAST)
+            colour, U = _colour(between), max(worst.uncertainty or 0.0, LEAST)
             axes.plot([LEAST, U], [offset, offset], color=colour, lw=2.2, alpha=0.25, solid_capstyle="butt")
-            axes.plot(max(worst.worst, LEAST), offset, "o", color=colour, markersize=3.6)
-        cap = min(p.cap for p in found)
+            axes.plot(max(worst.difference or 0.0, LEAST), offset, "o", color=colour, markersize=3.6)
+        cap = min(claim.cap for claim, _ in found)
         axes.plot([cap, cap], [y - 0.4, y + 0.4], color="#c02a2a", lw=1.2, ls=(0, (3, 1.5)))
     axes.set_xscale("log")
     axes.set(xlim=(LEAST, 3e-2), ylim=(len(rows) - 0.4, -0.6), xlabel="over the scale of the comparison")
     axes.set_yticks(range(len(rows)), [label for label, _ in rows])
     axes.grid(visible=False, axis="y")
-    axes.set_title("Largest difference (dot), $U$ there (bar), cap (dashed)", fontsize=9, loc="left")
-    shown = dict.fromkeys(p.between for _, found in rows for p in found)
+    axes.set_title("Largest difference (dot), $U$ (bar), cap (dashed)", fontsize=9, loc="left")
+    shown = dict.fromkeys(claim.between for _, found in rows for claim, _ in found)
     handles = [mpl.lines.Line2D([], [], marker="o", ls="", ms=3.6, color=_colour(pair)) for pair in shown]
     axes.legend(
         handles,
@@ -227,4 +200,4 @@ def _name(between: tuple[str, str]) -> str:
 
 
 if __name__ == "__main__":
-    sys.stdout.buffer.write(of_case(read_case(shipped_cases()[sys.argv[1]])))
+    sys.stdout.buffer.write(of_case(sys.argv[1]))

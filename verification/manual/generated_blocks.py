@@ -8,52 +8,46 @@ from collections.abc import Callable, Sequence
 from datetime import datetime
 from pathlib import Path
 
-import numpy as np
-
-from verification.cases.case_file import read_case, shipped_cases
+from verification.cases.case_file import shipped_cases
 from verification.cases.published_file import published_cases, read_published
 from verification.evidence import alarm_record
-from verification.evidence.assumption_maps import WORDS as WORDS_OF_AXES
-from verification.evidence.assumption_maps import AssumptionMap, read_maps
+from verification.evidence.assumption_maps import read_maps
 from verification.evidence.enclosure_record import read_record as read_enclosures
 from verification.evidence.fault_record import read_record
-from verification.guests.pages.guests_section import COLUMNS, examined
-from verification.manual.baseline_numbers import FOLDER, baseline, largest, pairs
-from verification.manual.markdown_text import symbol, table, text
-from verification.manual.tour_output import solved
-from verification.manual.worked_examples import WORKED
-from verification.page.number_text import scientific, seconds
+from verification.guests.pages import guests_section
+from verification.manual.baseline_numbers import FOLDER, baseline, largest, points, stored
+from verification.manual.markdown_text import paragraphs, shown, symbol, table, text
+from verification.manual.tour_output import WORKED, solved
+from verification.page.number_text import scientific
 from verification.problem.quantity import QUANTITIES
+from verification.report.credibility import model_section
+from verification.report.credibility.credibility_statement import two_sided_table
+from verification.report.credibility.detection_sections import faults_section
 from verification.sources.source_registry import METHODS, SOURCES
 
 SOURCE = Path(__file__).parent / "source"
 RECORDS = FOLDER.parents[1] / "evidence" / "shipped"
 FIELDS = ("stress", "pressure", "displacement")
-WORDS_OF_MAPS = {
-    "contact_radius": "contact radius",
-    "approach": "approach",
-    "peak_pressure": "peak pressure",
-    "tension": r"$\sigma_{xx}$ at the trailing edge",
-    "shear": r"largest $|\sigma_{xz}|$ on the interface",
-}
 
 
 def headline() -> str:
     """The largest differences of every case of the default run."""
     rows = []
-    for path in shipped_cases().values():
-        case = read_case(path)
-        found = [p for p in pairs(case.name) if p.between == METHODS]
+    for name in shipped_cases():
+        result = stored(name)
         cells = [
-            scientific(next(p.worst for p in found if p.quantity == name), 1)
-            for name in ("peak_pressure", "contact_radius", "approach")
+            scientific(result_of.difference, 1)
+            for quantity in ("peak_pressure", "contact_radius", "approach")
+            for claim, result_of in result.verdicts
+            if (claim.quantity, claim.between) == (quantity, METHODS)
         ]
-        exact = [largest(case.name, (method, "integral_equation"), *FIELDS) for method in METHODS]
-        fields = [scientific(value, 1) for value in (largest(case.name, METHODS, *FIELDS), *exact)]
-        count = str(len(pairs(case.name)))
-        rows.append([f"[{text(case.title)}](/cases/{case.name}.md)", *cells, *fields, count])
+        exact = [largest(name, (method, "integral_equation"), *FIELDS) for method in METHODS]
+        fields = [scientific(value, 1) for value in (largest(name, METHODS, *FIELDS), *exact)]
+        rows.append([f"[{text(result.title)}](/cases/{name}.md)", *cells, *fields, str(len(result.verdicts))])
     head = ["case", "$p_0$", "$a$", r"$\delta$", "lines, both methods", "semi-analytical, exact"]
-    return _dated() + table([*head, "finite elements, exact", "comparisons"], rows, 1) + f"\n{HEADLINE}"
+    last = baseline().last
+    made = f"Baseline of {_day(last.when)}, commit {last.commit or 'unknown'}, on {last.machine}."
+    return f"{made}\n\n{table([*head, 'finite elements, exact', 'comparisons'], rows, 1)}\n{HEADLINE}"
 
 
 HEADLINE = r"""
@@ -68,11 +62,10 @@ def totals() -> str:
     contacts = [name for name in known.cases if not known.published(name)]
     comparisons = sum(len(c.pairs) for name in contacts for c in known.manifests[name].comparisons)
     invariants = sum(len(known.manifests[name].invariants) for name in contacts)
-    points = sum(len(p.position) for name in contacts for p in pairs(name))
     return (
-        f"The default run solves {len(contacts)} cases. It judges {comparisons} comparisons at {points} "
-        f"points and {invariants} invariants; the baseline holds {known.last.numbers} numbers, those of the "
-        "published cases included."
+        f"The default run solves {len(contacts)} cases. It judges {comparisons} comparisons at "
+        f"{sum(map(points, contacts))} points and {invariants} invariants; the baseline holds "
+        f"{known.last.numbers} numbers, those of the published cases included."
     )
 
 
@@ -124,24 +117,11 @@ def invariants() -> str:
 
 
 def fault_score() -> str:
-    """Planted faults: how many are caught, by group."""
+    """Planted faults: how many are caught, by group, and those that are not."""
     record = read_record(RECORDS)
     if record is None:
         return "No record of planted faults is part of this version."
-    groups: dict[str, list[bool]] = {}
-    for row in record.rows:
-        groups.setdefault(row.group, []).append(row.caught)
-    rows = [[text(name), str(len(found)), str(sum(found))] for name, found in groups.items()]
-    missed = [[f"`{row.name}`", text(row.description), text(row.reason)] for row in record.survivors]
-    line = (
-        f"{_day(record.started)}: {record.caught} of {len(record.rows)} planted faults are caught, "
-        f"{record.as_predicted} by a check that was named for it beforehand, in {seconds(record.seconds)}; "
-        f"with nothing planted {len(record.alarms)} of {len(record.controls)} trials failed a check."
-    )
-    parts = [line, table(["group", "faults", "caught"], rows, 1)]
-    if missed:
-        parts += ["Not caught:", table(["fault", "what is changed", "why no check notices"], missed)]
-    return "\n\n".join(parts)
+    return paragraphs(part for part in faults_section(record).parts if not part.title)
 
 
 def false_alarms() -> str:
@@ -166,18 +146,7 @@ def false_alarms() -> str:
 
 def real_guests() -> str:
     """Codes of others examined: cases, largest differences, time, memory."""
-    rows = []
-    for one in examined():
-        gaps = (one["differences"].get(name) for name in COLUMNS)
-        cells = ["–" if gap is None else scientific(max(gap, 1e-15), 1) for gap in gaps]
-        low, high = one["seconds"]
-        time = seconds(high) if round(low) == round(high) else f"{seconds(low)} to {seconds(high)}"
-        memory = "–" if one["memory"] is None else f"{one['memory'] / 1e6:.0f} MB"
-        agree = f"{one['agree']} of {one['answered']}"
-        rows.append([text(one["guest"]), str(one["cases"]), text(one["levels"]), *cells, time, memory, agree])
-    head = ["code", "problems", "levels", "$p_0$", "$a$", r"$\delta$", "$p(r)$", "$u_z$ under a square"]
-    caption = "Largest difference from the exact solution; time at the finest level, on a busy machine."
-    return table([*head, "time", "memory", "agree"], rows, 3) + f"\n\n{caption}\n"
+    return shown(guests_section.section().parts[0].tables[0])
 
 
 def history() -> str:
@@ -227,53 +196,14 @@ def enclosures() -> str:
 
 def two_sided() -> str:
     """Energy bounds by finite elements beside the enclosures that they contain."""
-    record = read_enclosures(RECORDS)
-    rows = []
-    for one in record.enclosures if record else ():
-        if one.two_sided is not None:
-            cells = [f"`{one.name}`"]
-            for (low, high), exact, effectivity in one.two_sided.compared:
-                ends = (scientific(1 - low / exact, 2), scientific(high / exact - 1, 2))
-                cells += [*ends, f"{effectivity:.1f}"]
-            rows.append([*cells, f"{one.two_sided.seconds:.0f} s"])
-    parts = ["below", "above", "effectivity"]
-    head = ["problem", *(f"{which}, {part}" for which in ("$k$", r"$\delta$") for part in parts), "time"]
-    return table(head, rows, 1)
+    return shown(two_sided_table(read_enclosures(RECORDS)))
 
 
 def assumption_costs() -> str:
-    """What each measured assumption costs over its map, by the coordinate that it grows with."""
+    """Where each measured assumption costs 0.1, 1 and 5 %, and the largest change of its map."""
     maps = read_maps(RECORDS)
     assert maps is not None
-    return "\n\n".join(_costs(one) for one in maps.maps)
-
-
-def _costs(one: AssumptionMap) -> str:
-    """The largest change of each quantity at each value of the axis that drives the change."""
-    axis = next((i for i, axis in enumerate(one.axes) if any(axis.rates)), 0)
-    values = one.axes[axis].values
-    rows = []
-    for quantity, change in zip(one.quantities, np.abs(one.change), strict=True):
-        along = np.moveaxis(change, axis, 0).reshape(len(values), -1)
-        shown = ["–" if np.isnan(some).all() else f"{100 * np.nanmax(some):.2g}" for some in along]
-        rows.append([WORDS_OF_MAPS.get(quantity, quantity), *shown])
-    ranges = ", ".join(
-        f"{WORDS_OF_AXES[axis.name]} {axis.values[0]:g}"
-        + (f" to {axis.values[-1]:g}" if len(axis.values) > 1 else "")
-        for axis in one.axes
-        if axis.name != "ball" or axis.values != (0.0,)
-    )
-    head = [f"{WORDS_OF_AXES[one.axes[axis].name]} = {value:g}" for value in values]
-    return (
-        f"{one.title[0].upper()}{one.title[1:]}: the largest relative change in percent, over {ranges}. Made "
-        f"{_day(one.started)}, commit {one.commit or 'unknown'}, on {one.machine}, in {one.seconds:.0f} s of "
-        "one core.\n\n" + table(["quantity", *head], rows, 1)
-    )
-
-
-def _dated() -> str:
-    last = baseline().last
-    return f"Baseline of {_day(last.when)}, commit {last.commit or 'unknown'}, on {last.machine}.\n\n"
+    return paragraphs(model_section.parts(maps.maps))
 
 
 def _day(when: str) -> str:

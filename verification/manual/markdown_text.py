@@ -1,11 +1,15 @@
-"""Markdown of generated pages: tables, plain text, symbols."""
+"""Markdown of generated pages: tables, plain text, symbols; parts of a report."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
+from markupsafe import Markup
+
+from verification.page.page_parts import Part, Table
+from verification.page.symbol_text import pieces
 from verification.problem.quantity import QUANTITIES
 
 
-def table(head: Sequence[str], rows: Sequence[Sequence[str]], right: int = 99) -> str:
+def table(head: Sequence[str], rows: Iterable[Sequence[str]], right: int = 99) -> str:
     """A table; columns from ``right`` on are aligned at the right."""
     rule = ["---:" if i >= right else "---" for i in range(len(head))]
     lines = [head, rule, *([cell.replace("|", "\\|") for cell in row] for row in rows)]
@@ -22,3 +26,33 @@ def symbol(name: str) -> str:
     q = QUANTITIES[name]
     # The place of a peak has the symbol of a coordinate, which alone tells too little.
     return f"${q.tex}$" if q.tex and not name.startswith("tension_place") else text(q.symbol)
+
+
+def typeset(words: str) -> str:
+    """``words`` of a report, their symbols as HTML; what is ``Markup`` already stays as it is."""
+    if isinstance(words, Markup):
+        return str(words)
+    written = []
+    for piece in pieces(words):
+        inner = f"<i>{text(piece.text)}</i>" if piece.italic else text(piece.text)
+        tag = {-1: "sub", 1: "sup"}.get(piece.level)
+        written.append(f"<{tag}>{inner}</{tag}>" if tag else inner)
+    return "".join(written)
+
+
+def shown(found: Table) -> str:
+    """A table of a report under its caption."""
+    over = [title for title, count in found.groups for _ in range(count)] or [""] * len(found.columns)
+    heads = [f"{group}: {head}" if group else head for group, head in zip(over, found.columns, strict=True)]
+    rows = [[typeset(cell.text) for cell in (row.head, *row.cells)] for row in found.rows]
+    heads = [typeset(head).replace("|", "\\|") for head in heads]
+    return f"{typeset(found.caption)}\n\n{table(heads, rows, 1)}"
+
+
+def paragraphs(parts: Iterable[Part]) -> str:
+    """The open parts of a section of a report: their texts and tables, without figures."""
+    found = []
+    for part in (part for part in parts if part and not part.folded):
+        found += [f"**{text(part.title)}**"] * bool(part.title) + [typeset(part.text)] * bool(part.text)
+        found += [shown(one) for one in part.tables if one]
+    return "\n\n".join(found)

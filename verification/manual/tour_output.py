@@ -1,4 +1,4 @@
-"""What the command of the tour prints, with the picture that it draws."""
+"""What coatcheck solve prints for the tour and for the worked examples, with the picture of the tour."""
 
 import os
 import re
@@ -8,10 +8,10 @@ import sys
 import tempfile
 import textwrap
 from collections.abc import Sequence
-from functools import cache
+from functools import cache, partial
 from pathlib import Path
 
-PAGE = Path(__file__).parent / "source" / "tour.md"
+SOURCE = Path(__file__).parent / "source"
 
 
 def solved() -> str:
@@ -26,7 +26,9 @@ def picture() -> bytes:
 
 @cache
 def _run() -> tuple[str, bytes]:
-    page = re.sub(r" \\\n +", " ", PAGE.read_text(encoding="utf-8"))  # each command on one line
+    page = re.sub(
+        r" \\\n +", " ", (SOURCE / "tour.md").read_text(encoding="utf-8")
+    )  # each command on one line
     found = re.search(r"^coatcheck (solve --ball .+)$", page, re.MULTILINE)
     assert found, "the tour has no line that begins with coatcheck solve --ball"
     words = [word.replace(".png", ".svg") for word in shlex.split(found[1])]
@@ -39,7 +41,7 @@ def transcript(words: Sequence[str], work: Path, prompt: str = "") -> str:
 
     prompt : a line before it.
     """
-    path = os.pathsep.join([str(PAGE.parents[3]), *filter(None, sys.path)])
+    path = os.pathsep.join([str(SOURCE.parents[2]), *filter(None, sys.path)])
     done = subprocess.run(
         [sys.executable, "-m", "verification.cli", *words],
         cwd=work,
@@ -53,3 +55,18 @@ def transcript(words: Sequence[str], work: Path, prompt: str = "") -> str:
     lines = [line.rstrip() for line in (*done.stderr.splitlines(), *printed.splitlines())]
     wrapped = [textwrap.fill(line, 88) if len(line) > 88 else line for line in lines]
     return "\n".join(["```text", *filter(None, [prompt]), *wrapped, "```"])
+
+
+def worked(number: int) -> str:
+    """Output for the file of this number, from 1."""
+    files = re.findall(
+        r"^```toml\n(.*?)^```$",
+        (SOURCE / "examples.md").read_text(encoding="utf-8"),
+        re.MULTILINE | re.DOTALL,
+    )
+    with tempfile.TemporaryDirectory() as work:
+        (Path(work) / "example.toml").write_text(files[number - 1], encoding="utf-8")
+        return transcript(["solve", "example.toml"], Path(work), "$ coatcheck solve example.toml")
+
+
+WORKED = {f"worked_{number}": partial(worked, number) for number in (1, 2, 3)}

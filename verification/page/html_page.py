@@ -9,9 +9,8 @@ from pathlib import Path
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 
-from verification.page.embedded_csv import embedded
-from verification.page.page_parts import Section
-from verification.page.symbol_text import typeset, unicode
+from verification.page.page_parts import Section, embedded
+from verification.page.symbol_text import drawn, typeset, unicode
 
 HTML = Path(__file__).parent / "html"
 
@@ -27,7 +26,7 @@ def _environment(folder: Path) -> Environment:
         lstrip_blocks=True,
     )
     made.policies["json.dumps_kwargs"] = {"separators": (",", ":"), "ensure_ascii": False}
-    made.filters |= {"symbols": typeset, "unicode": unicode, "embedded": embedded}
+    made.filters |= {"symbols": typeset, "unicode": unicode, "drawn": drawn, "embedded": embedded}
     return made
 
 

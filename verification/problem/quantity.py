@@ -179,7 +179,6 @@ CURVES = _names(sampled="curve")
 STRESSES = {q.name: q.component for q in QUANTITIES.values() if q.kind == "stress" and q.component}
 DISPLACEMENTS = _names("displacement")
 IN_PLANE = {name: component for name, component in STRESSES.items() if name not in ("sigma_xy", "sigma_yz")}
-POINTWISE = ("stress", "strain")  # kinds made of the stress at each point; the pressure aside
 
 
 def unit_of(name: str) -> str:

@@ -1,16 +1,16 @@
 """Comparison with the baseline: the change of each number since it was recorded."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 from math import isfinite
 
 from verification.page.number_text import scientific
-from verification.page.page_parts import Cell, Part, Section, Table, number, row, words
+from verification.page.page_parts import Cell, Part, Section, Table, Value, table_of, words
 from verification.page.source_labels import source_label
 from verification.regression.baseline_change import COUNTED, CaseDrift, Regression, baseline_message
 from verification.regression.manifest import manifest_message
 from verification.regression.number_drift import FACTOR, RELATIVE, TOLERANCE, Drift, State
 
-ANCHOR = "baseline"
 MOST = 40
 # How a state is shown without relying on colour: mark, class, rank in a column.
 _STATES = {
@@ -30,11 +30,10 @@ _RULE = (
 )
 
 
-def state_cell(case: CaseDrift, *, short: bool = False) -> Cell:
-    """State of a case as mark and word, or as mark alone; it sorts by severity."""
-    mark, css, rank = _STATES[case.state]
+def state_cell(case: CaseDrift) -> Cell:
+    """State of a case as mark and word; it sorts by severity."""
     note = f"{case.state}: {case.message or f'largest change {scientific(case.change)} of the scale'}"
-    return Cell(mark if short else f"{mark} {case.state}", float(rank), f"verdict {css}".strip(), note)
+    return _state(case.state, note)
 
 
 def section(found: Regression | None, anchors: Mapping[str, str]) -> Section | None:
@@ -46,7 +45,7 @@ def section(found: Regression | None, anchors: Mapping[str, str]) -> Section | N
             f"{baseline_message(found)} A complete run that agrees throughout becomes the baseline by: "
             'coatcheck baseline update --why "..."'
         )
-        return Section(ANCHOR, "Baseline", [Part(text)])
+        return Section("baseline", "Baseline", [Part(text)])
     update = found.update
     made = f"recorded {update.when.replace('T', ' ').replace('+00:00', ' UTC')}"
     made += f" at commit {update.commit}" if update.commit else ""
@@ -65,7 +64,7 @@ def section(found: Regression | None, anchors: Mapping[str, str]) -> Section | N
     table = case_table(found.cases, anchors, "Numbers of each case compared with the baseline.")
     parts.append(Part("", [table, drift_table(moved)]))
     parts.append(Part(_judged(found), [_difference_table(found)], title="Manifest"))
-    return Section(ANCHOR, "Baseline", parts)
+    return Section("baseline", "Baseline", parts)
 
 
 def _judged(found: Regression) -> str:
@@ -79,48 +78,57 @@ def _judged(found: Regression) -> str:
 
 
 def _difference_table(found: Regression) -> Table:
-    rows = [
-        row(
-            item.case or "harness",
-            "less" if item.less else "more",
-            words(item.message),
-            number(item.count, str),
-        )
-        for item in found.judged[:MOST]
-    ]
     more = f" The first {MOST} of {len(found.judged)}." if len(found.judged) > MOST else ""
-    return Table(
-        f"What was judged otherwise than recorded.{more}", ["case", "judged", "change", "checks"], rows
+    return table_of(
+        f"What was judged otherwise than recorded.{more}",
+        found.judged[:MOST],
+        [
+            ("case", lambda one: one.case or "harness"),
+            ("judged", lambda one: "less" if one.less else "more"),
+            ("change", lambda one: words(one.message)),
+            ("checks", lambda one: one.count),
+        ],
     )
 
 
 def drift_table(moved: Sequence[tuple[CaseDrift, Drift]]) -> Table:
     """The changed profiles, the largest change first."""
     order = sorted(moved, key=lambda item: -(float("inf") if item[1].change is None else item[1].change))
-    rows = []
-    for case, drift in order[:MOST]:
-        mark, css, rank = _STATES[drift.state]
-        state = Cell(f"{mark} {drift.state}", float(rank), f"verdict {css}")
-        head, source = Cell(case.name, note=case.title), source_label(drift.source)
-        change = _change(drift.change)
-        rows.append(row(head, state, source, drift.quantity, drift.line, change, drift.message))
     more = f" The {MOST} of {len(order)} with the largest change." if len(order) > MOST else ""
-    return Table(
+    return table_of(
         f"Changed numbers; changes over the largest magnitude of the profile.{more}",
-        ["case", "state", "source", "quantity", "line", "largest change", "remark"],
-        rows,
+        order[:MOST],
+        [
+            ("case", lambda item: Cell(item[0].name, note=item[0].title)),
+            ("state", lambda item: _state(item[1].state)),
+            ("source", lambda item: source_label(item[1].source)),
+            ("quantity", lambda item: item[1].quantity),
+            ("line", lambda item: item[1].line),
+            ("largest change", lambda item: _change(item[1].change)),
+            ("remark", lambda item: item[1].message),
+        ],
     )
+
+
+def _state(state: State, note: str = "") -> Cell:
+    mark, css, rank = _STATES[state]
+    return Cell(f"{mark} {state}", float(rank), f"verdict {css}".strip(), note)
 
 
 def case_table(cases: Sequence[CaseDrift], anchors: Mapping[str, str], caption: str) -> Table:
     """State and counts of numbers of each case; ``anchors`` leads to cases by name."""
-    rows = []
-    for case in cases:
-        place = anchors.get(case.name)
-        head = Cell(case.title, note=case.name, href=f"#{place}" if place else "")
-        counts = [number(case.count(state), str) for state in COUNTED]
-        rows.append(row(head, state_cell(case), *counts, _change(case.change), case.message))
-    return Table(caption, ["case", "state", "same", "drifted", "gone", "new", "largest change", ""], rows)
+    columns: list[tuple[str, Callable[[CaseDrift], Value]]] = [
+        ("case", lambda case: Cell(case.title, note=case.name, href=_place(anchors.get(case.name)))),
+        ("state", state_cell),
+        *((str(state), partial(CaseDrift.count, state=state)) for state in COUNTED),
+        ("largest change", lambda case: _change(case.change)),
+        ("", lambda case: case.message),
+    ]
+    return table_of(caption, cases, columns)
+
+
+def _place(anchor: str | None) -> str:
+    return f"#{anchor}" if anchor else ""
 
 
 def _change(change: float | None) -> Cell:

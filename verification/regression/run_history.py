@@ -1,10 +1,13 @@
-"""History of the runs that a user keeps: verdicts, departure from the baseline, times."""
+"""History of the runs that a user keeps: verdicts, departure from the baseline, times, and their page."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 from verification.judging.verdict import Outcome
+from verification.page.html_page import render_sections
+from verification.page.number_text import factor, seconds
+from verification.page.page_parts import Cell, Part, Section, Table, number, row, table_of, words
 from verification.regression.baseline_change import Baseline, case_drift
 from verification.running.case_result import CaseResult, RunInfo
 from verification.running.stored_run import StoredRun
@@ -98,3 +101,77 @@ def _case(result: CaseResult, baseline: Baseline | None) -> PastCase:
         max(differences, default=None),
         case_drift(result, baseline).departure if baseline is not None else None,
     )
+
+
+MOST_COLUMNS = 8  # runs in the table of times
+_RUNS = (
+    "The departure is the largest change of a value since the baseline over what is allowed on any machine: "
+    "above 1 the value has left its baseline. All runs are compared with the present baseline. Times compare "
+    "only within one machine."
+)
+
+
+def history_message(runs: Sequence[PastRun]) -> str:
+    """All runs in one sentence."""
+    agreeing = sum(run.agrees for run in runs)
+    last = runs[-1]
+    left = sum(case.departure is not None and not case.departure <= 1.0 for case in last.cases)
+    text = f"{agreeing} of {len(runs)} runs agree throughout; the last took {seconds(last.info.seconds)}"
+    if left:
+        return f"{text}, and {left} of its {len(last.cases)} cases left the baseline."
+    return f"{text}, and no value of it left the baseline." if last.departure is not None else f"{text}."
+
+
+def history_page(runs: Sequence[PastRun]) -> str:
+    """The whole page as text; ``runs`` from the earliest to the latest, at least one."""
+    facts = [("first", _day(runs[0])), ("last", _day(runs[-1]))]
+    facts += [("machine", machine) for machine in dict.fromkeys(run.info.machine for run in runs)]
+    sections = [
+        Section("runs", "Runs", [Part(_RUNS, [_table(runs)])]),
+        Section("times", "Times of each case", [Part("", [_times(runs)])]),
+    ]
+    return render_sections("coatcheck history", history_message(runs), facts, sections)
+
+
+def _table(runs: Sequence[PastRun]) -> Table:
+    """One row a run, the latest first."""
+    first = {run.info.machine: run.info.seconds for run in reversed(runs)}
+    return table_of(
+        "Runs, the latest first; |A − B| over its scale, the last ratio over the first run on that machine.",
+        reversed(list(enumerate(runs, 1))),
+        [
+            ("run", lambda pair: pair[0]),
+            ("started", lambda pair: _day(pair[1])),
+            ("commit", lambda pair: pair[1].info.commit or "–"),
+            ("version", lambda pair: pair[1].info.versions.get("coatcheck", "–")),
+            ("agree", lambda pair: _agreeing(pair[1])),
+            ("largest |A − B|", lambda pair: pair[1].difference),
+            ("departure", lambda pair: pair[1].departure),
+            ("time", lambda pair: number(pair[1].info.seconds, seconds)),
+            ("ratio", lambda pair: factor(pair[1].info.seconds, first[pair[1].info.machine])),
+            ("report", lambda pair: words(pair[1].path)),
+        ],
+    )
+
+
+def _agreeing(run: PastRun) -> Cell:
+    mark, css = ("✓", "agrees") if run.agrees else ("✗", "disagrees")
+    return Cell(f"{mark} {run.agreeing} of {run.comparisons}", float(run.agreeing), f"verdict {css}")
+
+
+def _times(runs: Sequence[PastRun]) -> Table:
+    shown = runs[-MOST_COLUMNS:]
+    titles = {case.name: case.title for run in shown for case in run.cases}
+    rows = []
+    for name, title in titles.items():
+        times = [run.seconds(name) for run in shown]
+        known = [time for time in times if time is not None]
+        ratio = factor(known[-1], known[0]) if len(known) > 1 else "–"
+        rows.append(row(Cell(title, note=name), *(number(time, seconds) for time in times), ratio))
+    heads = [f"run {n}" for n in range(len(runs) - len(shown) + 1, len(runs) + 1)]
+    more = f" The last {MOST_COLUMNS} runs." if len(runs) > MOST_COLUMNS else ""
+    return Table(f"Seconds of each case.{more}", ["case", *heads, "last over first"], rows)
+
+
+def _day(run: PastRun) -> str:
+    return run.info.started.replace("T", " ").replace("+00:00", " UTC")

@@ -1,9 +1,10 @@
-"""The report page: from case results to one HTML text that needs nothing else.
+"""The report: from case results to one HTML text that needs nothing else, and its files.
 
-It is one file, so that it can be sent by mail alone, with pages inside it that open by the part of the
+The page is one file, so that it can be sent by mail alone, with pages inside it that open by the part of the
 address behind "#". Without the script, and on paper, all pages follow one after another.
 """
 
+import json
 from collections.abc import Callable
 from dataclasses import replace
 from itertools import groupby
@@ -11,17 +12,17 @@ from pathlib import Path
 
 import numpy as np
 
+from verification.credibility import accuracy_study
 from verification.guests.pages import guests_section
 from verification.page.html_page import rendered
 from verification.page.number_text import seconds
 from verification.page.page_parts import Part, Section
 from verification.regression import baseline_section
+from verification.regression.baseline_change import regression_json
 from verification.report.credibility import (
     credibility_statement,
-    faults_section,
+    detection_sections,
     model_section,
-    mutants_section,
-    self_tests_section,
 )
 from verification.report.report_material import Material
 from verification.report.sections import (
@@ -36,6 +37,9 @@ from verification.report.sections import (
 )
 from verification.report.sections.case_page import contents, data
 from verification.report.sections.first_page import FIRST_PAGE
+from verification.running.case_result import SCHEMA, to_json
+from verification.running.checked_files import write_together
+from verification.running.json_records import encode
 
 # Of more cases each page is compressed until it is opened: a report of hundreds stays small.
 MOST_UNPACKED = 60
@@ -60,9 +64,9 @@ SECTIONS: tuple[tuple[str, Callable[[Material], Section | None]], ...] = (
     ("Evidence", refinement_section.semianalytic_section),
     ("Evidence", refinement_section.finite_element_section),
     ("Evidence", parameters_section.section),
-    ("Evidence", faults_section.section),
-    ("Evidence", mutants_section.section),
-    ("Evidence", self_tests_section.section),
+    ("Evidence", detection_sections.faults_of),
+    ("Evidence", detection_sections.mutants_of),
+    ("Evidence", detection_sections.self_tests_of),
     ("Evidence", _baseline),
     ("Evidence", lambda _: guests_section.section()),
 )
@@ -109,3 +113,28 @@ def render(material: Material) -> str:
             data=data(material),
             seconds=seconds,
         )
+
+
+def write_report(material: Material, folder: Path, junit: str) -> Path:
+    """Write report.html and report.json into ``folder``, with ``junit`` beside them; the path of the page."""
+    texts = {"report.html": render(material), "report.json": report_json(material), "junit.xml": junit}
+    write_together(folder, texts)
+    return folder / "report.html"
+
+
+def report_json(material: Material) -> str:
+    """Everything the report is made from as strict JSON of schema ``coatcheck-report/1``.
+
+    ``evidence`` is all that ``coatcheck report`` needs beside the results; ``accuracy`` and ``baseline``
+    are for other readers.
+    """
+    study, baseline = material.evidence.accuracy, material.evidence.baseline
+    data = {
+        "schema": SCHEMA,
+        "run": {**vars(material.info)},
+        "cases": [to_json(result) for result in material.results],
+        "accuracy": None if study is None else accuracy_study.to_json(study),
+        "baseline": None if baseline is None else regression_json(baseline),
+        "evidence": encode(material.evidence),
+    }
+    return json.dumps(data, allow_nan=False, ensure_ascii=True, separators=(",", ":")) + "\n"

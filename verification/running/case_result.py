@@ -51,6 +51,20 @@ class CaseResult:
     invariants: tuple[Invariant, ...] = ()
     warnings: tuple[str, ...] = ()
 
+    @classmethod
+    def of(cls, case: Any, **parts: Any) -> "CaseResult":
+        """The result of ``case`` with these ``parts``, empty where none are given."""
+        stated: dict[str, Any] = {name: getattr(case, name) for name in ("name", "title", "source", "text")}
+        empty: dict[str, Any] = {"sources": (), "profiles": (), "verdicts": (), "seconds": 0.0}
+        return cls(**stated, problem=describe(case.problem), **empty | parts)
+
+    @classmethod
+    def failed(cls, case: Any, reason: str, seconds: float, **parts: Any) -> "CaseResult":
+        """The result of a case that could not be run at all: every claim NO_RESULT, for ``reason``."""
+        verdicts = tuple((claim, Verdict(Outcome.NO_RESULT, reason)) for claim in case.claims)
+        sources = (SourceResult("case", seconds, reason),)
+        return cls.of(case, sources=sources, verdicts=verdicts, seconds=seconds, **parts)
+
     @property
     def outcome(self) -> Outcome:
         """The worst verdict or invariant: DISAGREES, then NO_RESULT, then INCONCLUSIVE, then AGREES.
@@ -130,7 +144,9 @@ def describe(problem: CoatedContact | PrescribedLoad | LoadingCurve) -> dict[str
 
 
 def diagnostics_of(diagnostics: Any) -> dict[str, Any]:
-    """A method's own record as a dictionary."""
+    """A source's own record as a dictionary."""
+    if isinstance(diagnostics, dict):
+        return diagnostics
     return asdict(diagnostics) if is_dataclass(diagnostics) and not isinstance(diagnostics, type) else {}
 
 

@@ -1,8 +1,12 @@
-"""Cases as tasks of the process pool, and the results stored by an earlier run."""
+"""Cases as tasks of the process pool: what a process does, and the results stored by an earlier run.
+
+A process solves a case, judges it and stores the result in checked files. Cases of one process share the
+normal contact where they differ in friction alone.
+"""
 
 import os
 from dataclasses import replace
-from functools import partial
+from functools import cache, partial
 from pathlib import Path
 from typing import Any
 
@@ -10,15 +14,17 @@ from verification.cases.case_file import Case
 from verification.cases.published_file import PublishedCase
 from verification.judging.verdict import Outcome
 from verification.running import published_run
-from verification.running.case_result import CaseResult, describe, from_json
-from verification.running.case_worker import solve_and_store, solve_and_store_published
-from verification.running.checked_files import StoreError, read_checked
-from verification.running.contact_run import failed
+from verification.running.case_result import CaseResult, describe, from_json, to_json
+from verification.running.checked_files import StoreError, read_checked, write_checked
+from verification.running.contact_run import failed, judge_case, solve_case
 from verification.running.json_records import plain
 from verification.running.pool.pool_task import Task
 from verification.running.provenance import fingerprint
-from verification.running.stored_fields import plane_path, read_fields, read_plane
-from verification.sources.source_registry import METHODS, SOURCES
+from verification.running.stored_fields import plane_path, read_fields, read_plane, write_fields, write_plane
+from verification.sampling.stress_plane import plane_invariants, sample_plane
+from verification.sources.method_sources import sharing_pressure
+from verification.sources.source_record import Solver
+from verification.sources.source_registry import METHODS, SOURCES, solvers
 
 _METHOD_PACKAGES = tuple(SOURCES[method].package for method in METHODS)
 
@@ -29,26 +35,17 @@ def result_path(folder: Path, case: Case | PublishedCase) -> Path:
 
 
 def case_task(case: Case | PublishedCase, folder: Path, *, fields: bool = False) -> Task[CaseResult]:
-    """Solving ``case``, its result stored under ``folder``, and its ``fields`` where they are wanted."""
-    return contact_task(case, folder, fields) if isinstance(case, Case) else published_task(case, folder)
+    """Solving ``case``, its result stored under ``folder``, and its ``fields`` where they are wanted.
 
-
-def contact_task(case: Case, folder: Path, fields: bool) -> Task[CaseResult]:
-    """As ``case_task``, for a contact.
-
-    Cases that differ in friction alone share a process, and so the solution without friction.
+    Contacts that differ in friction alone share a process, and so the solution without friction.
     """
-    path = result_path(folder, case)
-    return Task(
-        case.name,
-        partial(solve_and_store, case, path, plane_path(folder, case.name), folder if fields else None),
-        path,
-        partial(_of, case),
-        partial(failed, case),
-        cost=cost(case),
-        together=repr((replace(case.problem, friction=0.0), sorted(case.numerics.items()))),
-        ahead=_METHOD_PACKAGES,
-    )
+    path, read = result_path(folder, case), partial(_of, case)
+    if not isinstance(case, Case):
+        work, lost = partial(solve_and_store_published, case, path), partial(published_run.failed, case)
+        return Task(case.name, work, path, read, lost, cost=1.0, ahead=_METHOD_PACKAGES)
+    work = partial(solve_and_store, case, path, plane_path(folder, case.name), folder if fields else None)
+    alike = repr((replace(case.problem, friction=0.0), sorted(case.numerics.items())))
+    return Task(case.name, work, path, read, partial(failed, case), cost(case), alike, ahead=_METHOD_PACKAGES)
 
 
 def cost(case: Case) -> float:
@@ -64,12 +61,32 @@ def cost(case: Case) -> float:
     return layers * solves * min(max([1.0, *finest, *thin]), 2.0) ** 2
 
 
-def published_task(case: PublishedCase, folder: Path) -> Task[CaseResult]:
-    """Comparing both methods with the results published in ``case``, its result stored under ``folder``."""
-    path = result_path(folder, case)
-    work = partial(solve_and_store_published, case, path)
-    failed = partial(published_run.failed, case)
-    return Task(case.name, work, path, partial(_of, case), failed, cost=1.0, ahead=_METHOD_PACKAGES)
+def solve_and_store(case: Case, path: Path, plane: Path, directory: Path | None = None) -> None:
+    """Solve ``case``, store the stresses that the report draws at ``plane`` and the result at ``path``.
+
+    directory : of the run, where the fields are written too.
+    """
+    solved = solve_case(case, _solvers())
+    result = judge_case(case, solved)
+    drawn = sample_plane(case.problem.interfaces, solved.solutions)
+    checked = plane_invariants(drawn, solved.solutions, case.problem)
+    result = replace(result, invariants=(*result.invariants, *checked))
+    # The result comes last: where it lies, all that belongs to it does.
+    write_plane(plane, drawn, case.text)
+    if directory is not None:
+        write_fields(case, solved.solutions, directory)
+    write_checked(path, to_json(result) | {"made_by": fingerprint()})
+
+
+def solve_and_store_published(case: PublishedCase, path: Path) -> None:
+    """Solve a published ``case`` and store its result at ``path``."""
+    result = published_run.with_digits(case, published_run.run(case))
+    write_checked(path, to_json(result) | {"made_by": fingerprint()})
+
+
+@cache
+def _solvers() -> dict[str, Solver]:
+    return {name: sharing_pressure(solve) for name, solve in solvers().items()}
 
 
 def _of(case: Case | PublishedCase, data: dict[str, Any]) -> CaseResult:

@@ -30,32 +30,7 @@ def write_atomically(path: Path, content: str | bytes) -> None:
     A link at ``path`` is replaced, never followed.
     """
     data = content.encode() if isinstance(content, str) else content
-    temporary = None
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        with tempfile.NamedTemporaryFile(
-            dir=path.parent, prefix=f".{path.name[:80]}.", suffix=PART, delete=False
-        ) as file:
-            temporary = Path(file.name)
-            file.write(data)
-            file.flush()
-            os.fsync(file.fileno())
-        temporary.chmod(0o644)
-        temporary.replace(path)
-    except OSError as error:
-        if temporary is not None:
-            with suppress(OSError):
-                temporary.unlink(missing_ok=True)
-        raise StoreError(
-            f"{path}: cannot be written ({error.strerror or error}); free space or choose --output"
-        ) from None
-
-
-def write_checked(path: Path, payload: dict[str, Any]) -> None:
-    """Store ``payload`` as JSON beside its SHA-256; compressed where the name ends in .xz."""
-    body = json.dumps(payload, sort_keys=True, allow_nan=False)
-    content = f'{{"sha256": "{_digest(body)}", "payload": {body}}}\n'
-    write_atomically(path, lzma.compress(content.encode()) if path.suffix == ".xz" else content)
+    _write_all(path.parent, {path.name: data}, f"{path}: cannot", "free space or choose --output")
 
 
 def write_together(folder: Path, texts: Mapping[str, str]) -> None:
@@ -63,28 +38,39 @@ def write_together(folder: Path, texts: Mapping[str, str]) -> None:
 
     An error leaves the earlier files as they were. Raises StoreError where the folder cannot be written.
     """
+    # A lone surrogate in an untrusted title must not cost the whole report.
+    data = {name: text.encode("utf-8", errors="replace") for name, text in texts.items()}
+    remedy = "free space, then continue with --resume"
+    _write_all(folder, data, f"{folder}: the report cannot", remedy)
+
+
+def _write_all(folder: Path, contents: Mapping[str, bytes], what: str, remedy: str) -> None:
     ready: dict[Path, Path] = {}
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        for name, text in texts.items():
-            handle, path = tempfile.mkstemp(prefix=f".{name}.", suffix=PART, dir=folder)
+        for name, data in contents.items():
+            handle, path = tempfile.mkstemp(prefix=f".{name[:80]}.", suffix=PART, dir=folder)
             ready[Path(path)] = folder / name
             with os.fdopen(handle, "wb") as file:
-                # A lone surrogate in an untrusted title must not cost the whole report.
-                file.write(text.encode("utf-8", errors="replace"))
+                file.write(data)
                 file.flush()
                 os.fsync(file.fileno())
             os.chmod(path, 0o644)
         for temporary, final in ready.items():
-            os.replace(temporary, final)
+            temporary.replace(final)
     except OSError as error:
-        raise StoreError(
-            f"{folder}: the report cannot be written ({error.strerror or error}); free space, then continue "
-            "with --resume"
-        ) from None
+        raise StoreError(f"{what} be written ({error.strerror or error}); {remedy}") from None
     finally:
         for temporary in ready:
-            temporary.unlink(missing_ok=True)
+            with suppress(OSError):
+                temporary.unlink(missing_ok=True)
+
+
+def write_checked(path: Path, payload: dict[str, Any]) -> None:
+    """Store ``payload`` as JSON beside its SHA-256; compressed where the name ends in .xz."""
+    body = json.dumps(payload, sort_keys=True, allow_nan=False)
+    content = f'{{"sha256": "{_digest(body)}", "payload": {body}}}\n'
+    write_atomically(path, lzma.compress(content.encode()) if path.suffix == ".xz" else content)
 
 
 def read_checked(path: Path) -> dict[str, Any]:
@@ -140,7 +126,10 @@ def locked(folder: Path) -> Iterator[None]:
     path = folder / ".lock"
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        _refuse_links(folder)
+        for place in (folder / name for name in FOLDERS):
+            if place.is_symlink():
+                what = f"a link that may lead out of {folder}; remove it or choose another --output"
+                raise StoreError(f"{place}: {what}")
         # Neither a link nor a pipe in the place of the lock is followed or waited for.
         flags = os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW | os.O_NONBLOCK | os.O_CLOEXEC
         file = os.fdopen(os.open(path, flags, 0o644), "r+b", buffering=0)
@@ -164,14 +153,6 @@ def locked(folder: Path) -> Iterator[None]:
                 with suppress(OSError):
                     left.unlink()
         yield
-
-
-def _refuse_links(folder: Path) -> None:
-    for name in FOLDERS:
-        if (folder / name).is_symlink():
-            raise StoreError(
-                f"{folder / name}: a link that may lead out of {folder}; remove it or choose another --output"
-            )
 
 
 def _digest(body: str) -> str:

@@ -12,7 +12,7 @@ from verification.judging.verdict import Claim, Outcome, Verdict, compare, judge
 from verification.problem.coated_contact import CoatedContact, Solution
 from verification.problem.line_profile import Profile
 from verification.problem.quantity import QUANTITIES, SCALARS
-from verification.running.case_result import CaseResult, SourceResult, describe, diagnostics_of, message_of
+from verification.running.case_result import CaseResult, SourceResult, diagnostics_of, message_of
 from verification.sampling.line_sampling import edge_of, positions, sample, sample_contact
 from verification.sources.source_record import Solver
 from verification.sources.source_registry import solvers
@@ -95,35 +95,20 @@ def judge_case(case: Case, solved: Solved, *, invariants: bool = True) -> CaseRe
             held += check(solution, source, case.problem)
         held += solved.resolved
     verdicts = tuple((claim, decide(claim, profiles, outcomes, case.problem)) for claim in case.claims)
-    return CaseResult(
-        name=case.name,
-        title=case.title,
-        source=case.source,
-        problem=describe(case.problem),
+    return CaseResult.of(
+        case,
         sources=tuple(outcomes.values()),
         profiles=tuple(profiles.values()),
         verdicts=verdicts,
         seconds=sum(s.seconds for s in solved.outcomes.values()) + time.perf_counter() - started,
-        text=case.text,
         invariants=tuple(held),
         warnings=case.warnings,
     )
 
 
 def failed(case: Case, reason: str, seconds: float) -> CaseResult:
-    """The result of a case that could not be run at all: every claim NO_RESULT, for ``reason``."""
-    return CaseResult(
-        name=case.name,
-        title=case.title,
-        source=case.source,
-        problem=describe(case.problem),
-        sources=(SourceResult("case", seconds, reason),),
-        profiles=(),
-        verdicts=tuple((claim, Verdict(Outcome.NO_RESULT, reason)) for claim in case.claims),
-        seconds=seconds,
-        text=case.text,
-        warnings=case.warnings,
-    )
+    """The result of a case that could not be run at all."""
+    return CaseResult.failed(case, reason, seconds, warnings=case.warnings)
 
 
 def decide(

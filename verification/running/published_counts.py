@@ -1,4 +1,4 @@
-"""Published values counted: those that count, that depart, that are recomputed."""
+"""Counts of published values: counted, departing, recomputed."""
 
 from collections.abc import Sequence
 

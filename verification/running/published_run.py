@@ -2,31 +2,81 @@
 
 import time
 from collections.abc import Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from verification.cases.digit_changes import digit_changes
 from verification.cases.published_file import PublishedCase
 from verification.cases.published_table import PublishedColumn
 from verification.judging.verdict import Outcome, Verdict, compare, judge
-from verification.problem.coated_contact import CoatedContact, Solution
+from verification.problem.array_types import Array
+from verification.problem.coated_contact import (
+    CoatedContact,
+    Solution,
+    relative_to_edge,
+    stress_with_uncertainty,
+)
 from verification.problem.line_profile import Profile
-from verification.problem.loading_curve import Problem
-from verification.problem.quantity import POINTWISE, QUANTITIES
-from verification.running.case_result import CaseResult, SourceResult, describe, diagnostics_of, message_of
-from verification.sampling.beside_edge import BesideEdge
+from verification.running.case_result import CaseResult, SourceResult, diagnostics_of, message_of
+from verification.sampling.largest_tension import BESIDE
 from verification.sampling.point_values import values
-from verification.sampling.tabulated_solution import tabulated
 from verification.sources.loading_solution import Loading
 from verification.sources.source_record import Solver
 from verification.sources.source_registry import CLOSED, METHODS, PUBLISHED, solvers
 
 
-def published_solvers(problem: Problem) -> dict[str, Solver]:
-    """Solvers of a published ``problem``: the methods, and the exact reference where it supports it."""
-    return {name: solve for name, solve in solvers(problem).items() if name not in CLOSED}
+@dataclass(frozen=True, eq=False)
+class BesideEdge:
+    """``solution`` with points within ``BESIDE`` of the exact ``edge`` [m] at the same x/a of its own.
+
+    At a fixed x next to the edge an error da of the radius changes the pressure by q sqrt(2 da/a), whatever
+    the method; the radius is a quantity of its own.
+    """
+
+    solution: Solution
+    edge: float
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self.solution, name)
+
+    def pressure(self, x: ArrayLike, y: ArrayLike = 0.0) -> Array:
+        """As of the solution."""
+        _, ratio = self._near(x, y, 0.0)
+        return self.solution.pressure(np.asarray(x) * ratio, np.asarray(y) * ratio)
+
+    def pressure_uncertainty(self, x: ArrayLike, y: ArrayLike = 0.0) -> Array:
+        """As of the solution; of its view relative to the edge beside it."""
+        near, ratio = self._near(x, y, 0.0)
+        x, y = np.asarray(x) * ratio, np.asarray(y) * ratio
+        relative = relative_to_edge(self.solution).pressure_uncertainty(x, y)
+        return np.where(near, relative, self.solution.pressure_uncertainty(x, y))
+
+    def stress(self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None) -> Array:
+        """As of the solution."""
+        _, ratio = self._near(x, y, z)
+        return self.solution.stress(np.asarray(x) * ratio, np.asarray(y) * ratio, z, layer)
+
+    def stress_uncertainty(self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None) -> Array:
+        """As ``pressure_uncertainty``."""
+        near, ratio = self._near(x, y, z)
+        place = np.asarray(x) * ratio, np.asarray(y) * ratio, z
+        relative = relative_to_edge(self.solution)
+        _, U = stress_with_uncertainty(self.solution, *place, layer=layer)
+        assert U is not None
+        if not near.any() or relative is self.solution:
+            return U
+        _, beside = stress_with_uncertainty(relative, *place, layer=layer)
+        assert beside is not None
+        return np.where(near, beside, U)
+
+    def _near(self, x: ArrayLike, y: ArrayLike, z: ArrayLike) -> tuple[Array, Array]:
+        """Which points are beside the edge, and the factor on x and y."""
+        x, y, z = np.broadcast_arrays(*(np.asarray(v, dtype=float) for v in (x, y, z)))
+        near = np.hypot(np.hypot(x, y) - self.edge, z) <= BESIDE * self.edge
+        return near, np.where(near, float(self.solution.contact_radius) / self.edge, 1.0)
 
 
 def run(case: PublishedCase, available: Mapping[str, Solver] | None = None) -> CaseResult:
@@ -36,18 +86,16 @@ def run(case: PublishedCase, available: Mapping[str, Solver] | None = None) -> C
     A source that fails leaves its message and NO_RESULT on each of its claims.
     """
     started = time.perf_counter()
-    available = published_solvers(case.problem) if available is None else available
+    if available is None:  # the methods, and the exact reference where it supports the problem
+        available = {name: one for name, one in solvers(case.problem).items() if name not in CLOSED}
     outcomes: dict[str, SourceResult] = {}
     profiles = {(p.profile.quantity, p.profile.line, PUBLISHED): p.profile for p in case.columns}
     for source, solve in available.items():
         begin = time.perf_counter()
         try:
             solution = solve(case.problem)
-            if not isinstance(solution, Loading):
-                points = [i.at for i in case.columns if QUANTITIES[i.profile.quantity].kind in POINTWISE]
-                if isinstance(case.problem, CoatedContact) and case.problem.homogeneous:
-                    solution = BesideEdge(solution, case.problem.a_h)
-                solution = tabulated(solution, points)
+            if isinstance(case.problem, CoatedContact) and case.problem.homogeneous:
+                solution = BesideEdge(solution, case.problem.a_h)
             claimed = {(c.quantity, c.line) for c in case.claims if source in c.between}
             found = [
                 _profile(solution, source, item, case)
@@ -73,12 +121,13 @@ def run(case: PublishedCase, available: Mapping[str, Solver] | None = None) -> C
         mine = profiles[claim.quantity, claim.line, source]
         verdict = judge(compare(mine, item.reference, scale=item.scale), claim.cap)
         verdicts.append((claim, replace(verdict, reason=verdict.reason + _departures(item))))
-    return replace(
-        _blank(case),
+    return CaseResult.of(
+        case,
         sources=tuple(outcomes.values()),
         profiles=tuple(profiles.values()),
         verdicts=tuple(verdicts),
         seconds=time.perf_counter() - started,
+        published=_published(case),
     )
 
 
@@ -90,27 +139,11 @@ def with_digits(case: PublishedCase, result: CaseResult) -> CaseResult:
 
 def failed(case: PublishedCase, reason: str, seconds: float) -> CaseResult:
     """The result of a case that could not be run at all: every claim NO_RESULT, for ``reason``."""
-    return replace(
-        _blank(case),
-        sources=(SourceResult("case", seconds, reason),),
-        verdicts=tuple((claim, Verdict(Outcome.NO_RESULT, reason)) for claim in case.claims),
-        seconds=seconds,
-    )
+    return CaseResult.failed(case, reason, seconds, published=_published(case))
 
 
-def _blank(case: PublishedCase) -> CaseResult:
-    return CaseResult(
-        name=case.name,
-        title=case.title,
-        source=case.source,
-        problem=describe(case.problem),
-        sources=(),
-        profiles=(),
-        verdicts=(),
-        seconds=0.0,
-        text=case.text,
-        published=case.citation | {"columns": [_record(item) for item in case.columns]},
-    )
+def _published(case: PublishedCase) -> dict[str, Any]:
+    return case.citation | {"columns": [_record(item) for item in case.columns]}
 
 
 def _record(item: PublishedColumn) -> dict[str, Any]:

@@ -1,7 +1,7 @@
 """Stresses of both methods in the plane y = 0 below the contact, as the report draws them.
 
-Of the Solutions that were judged, at nodes of the semi-analytical grid, where its pressure needs no
-interpolation; finite elements have shape functions anywhere.
+They come from the Solutions that were judged, at nodes of the semi-analytical grid, where its pressure needs
+no interpolation; finite elements have shape functions anywhere.
 """
 
 from collections.abc import Mapping

@@ -2,10 +2,10 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
 from operator import attrgetter
 from types import SimpleNamespace
-from typing import Any, TypeVar
+from typing import Any, TypeVar, cast
 
 import numpy as np
 
@@ -15,6 +15,7 @@ from verification.problem.quantity import QUANTITIES, SCALARS, SLOPES
 
 Problem = TypeVar("Problem", bound=CoatedContact | PrescribedLoad)
 Solver = Callable[[CoatedContact | PrescribedLoad], Solution]
+FIELDS = ("pressure", "stress", "displacement")
 STEP = 1e-3  # of Poisson's ratio
 STIFFEST = 1e4  # base over softest coating
 
@@ -29,7 +30,7 @@ def extrapolated(problem: CoatedContact | PrescribedLoad, solve: Solver) -> Solu
     if short_of_limit(problem, 1) == problem:
         return solve(problem)
     near, further, third = (solve(short_of_limit(problem, t)) for t in (1, 2, 3))
-    return _Extrapolated(near, further, third)
+    return cast(Solution, _Extrapolated(near, further, third))
 
 
 def short_of_limit(problem: Problem, t: int) -> Problem:
@@ -55,7 +56,7 @@ def short_of_limit(problem: Problem, t: int) -> Problem:
 
 @dataclass(frozen=True, eq=False)
 class _Extrapolated:
-    """2 f(1) - f(2) of uncertainty 2 U(1) + U(2) + |second difference|."""
+    """2 f(1) - f(2) of uncertainty 2 U(1) + U(2) + |second difference|, for each scalar and field f."""
 
     near: Solution
     further: Solution
@@ -64,6 +65,10 @@ class _Extrapolated:
     def __getattr__(self, name: str) -> Any:
         if name in SCALARS + SLOPES:
             return 2 * getattr(self.near, name) - getattr(self.further, name)
+        if name in FIELDS:
+            return partial(self._field, name)
+        if (field := name.removesuffix("_uncertainty")) in FIELDS:
+            return partial(self._field_uncertainty, field)
         if name in ("diagnostics", "surface_nodes"):
             return getattr(self.near, name)
         raise AttributeError(name)
@@ -81,23 +86,6 @@ class _Extrapolated:
             total[name] = own + bend
         return SimpleNamespace(**total, budget=tuple(rows))
 
-    def pressure(self, x: Any, y: Any = 0.0) -> Array:
-        return 2 * self.near.pressure(x, y) - self.further.pressure(x, y)
-
-    def stress(self, x: Any, y: Any, z: Any, layer: int | None = None, **of: Any) -> Array:
-        return 2 * self.near.stress(x, y, z, layer, **of) - self.further.stress(x, y, z, layer, **of)
-
-    def displacement(self, x: Any, y: Any, z: Any, **of: Any) -> Array:
-        return 2 * self.near.displacement(x, y, z, **of) - self.further.displacement(x, y, z, **of)
-
-    def pressure_uncertainty(self, x: Any, y: Any = 0.0) -> Array:
-        own = 2 * self.near.pressure_uncertainty(x, y) + self.further.pressure_uncertainty(x, y)
-        return own + np.abs(self._bend(lambda s: s.pressure(x, y)))
-
-    def stress_uncertainty(self, x: Any, y: Any, z: Any, layer: int | None = None, **of: Any) -> Array:
-        U, V = (one.stress_uncertainty(x, y, z, layer, **of) for one in (self.near, self.further))
-        return 2 * U + V + np.abs(self._bend(lambda s: s.stress(x, y, z, layer, **of)))
-
     @property
     def stiffness_uncertainty(self) -> float | None:
         if self.uncertainty is None:
@@ -105,9 +93,13 @@ class _Extrapolated:
         near, further = (one.stiffness_uncertainty or 0.0 for one in (self.near, self.further))
         return float(2 * near + further + abs(self._bend(attrgetter("stiffness"))))
 
-    def displacement_uncertainty(self, x: Any, y: Any, z: Any, **of: Any) -> Array:
-        U, V = (one.displacement_uncertainty(x, y, z, **of) for one in (self.near, self.further))
-        return 2 * U + V + np.abs(self._bend(lambda s: s.displacement(x, y, z, **of)))
+    def _field(self, name: str, *at: Any, **of: Any) -> Array:
+        near, further = (getattr(one, name)(*at, **of) for one in (self.near, self.further))
+        return 2 * near - further
+
+    def _field_uncertainty(self, name: str, *at: Any, **of: Any) -> Array:
+        U, V = (getattr(one, f"{name}_uncertainty")(*at, **of) for one in (self.near, self.further))
+        return 2 * U + V + np.abs(self._bend(lambda one: getattr(one, name)(*at, **of)))
 
     def _bend(self, of: Callable[[Solution], Any]) -> Any:
         return of(self.near) - 2 * of(self.further) + of(self.third)

@@ -23,21 +23,17 @@ from verification.sources.references.flat_punch import Pressed, pressed
 STEP = 0.01
 
 
-@dataclass(frozen=True)
-class LoadingDiagnostics:
-    """Contacts solved for the curve."""
-
-    contacts: int
-
-
 @dataclass(frozen=True, eq=False)
 class Loading:
-    """States (W, delta, a, S) near the points, columns of ``state``, with their ``uncertainties`` [SI]."""
+    """States (W, delta, a, S) near the points, columns of ``state``, with their ``uncertainties`` [SI].
+
+    diagnostics : number of contacts solved for the curve.
+    """
 
     problem: LoadingCurve
     state: Array
     uncertainties: Array
-    diagnostics: LoadingDiagnostics
+    diagnostics: dict[str, int]
     uncertainty: None = None
 
     def quantity(self, name: str, at: Array, series: tuple[float, ...] = ()) -> tuple[Array, Array]:
@@ -127,7 +123,7 @@ def loading(
         bend = near - 2 * further + third
         found.append((2 * near - further + bend, 3 * U + 3 * V + T + np.abs(bend)))
     states, uncertainties = (np.array(column) for column in zip(*found, strict=True))
-    return Loading(problem, states, uncertainties, LoadingDiagnostics(count))
+    return Loading(problem, states, uncertainties, {"contacts": count})
 
 
 def _incompressible(contact: CoatedContact) -> bool:
@@ -143,7 +139,7 @@ def exact_loading(problem: LoadingCurve) -> Loading:
         state, other = (_exact_state(problem, a, one) for one in (fine, coarse))
         rows.append(state)
         uncertainty.append(2 * np.abs(state - other) + 1e-12 * state)
-    return Loading(problem, np.array(rows), np.array(uncertainty), LoadingDiagnostics(2 * len(rows)))
+    return Loading(problem, np.array(rows), np.array(uncertainty), {"contacts": 2 * len(rows)})
 
 
 def _exact_state(problem: LoadingCurve, a: float, one: Pressed) -> Array:

@@ -44,12 +44,13 @@ class Parts:
     friction: float
     stated: bool = True
 
-    def __call__(self, r: Array, z: float, layer: int) -> tuple[Array, Array, Array]:
-        """sigma_n, sigma_t at x = ``r`` >= 0, (4, n) each, with the uncertainty at r, -r, (2, 4, n).
+    def __call__(self, r: Array, z: float | Array, layer: int) -> tuple[Array, Array, Array]:
+        """sigma_n, sigma_t at x = ``r`` >= 0, (4,) + shape of r, with the uncertainty at r, -r, (2, 4) + it.
 
+        z : one depth, or one of each point.
         The uncertainty is the solution's own, NaN where it has none.
         """
-        x = np.stack([r, -r]) if self.friction else r[None, :]
+        x = np.stack([r, -r]) if self.friction else r[None]
         if self.stated:
             full, U = stress_with_uncertainty(self.solution, x, 0.0, z, layer=layer)
         else:
@@ -57,7 +58,7 @@ class Parts:
         sigma, bound = _components(full), _components(np.full_like(full, np.nan) if U is None else U)
         if not self.friction:
             return sigma[:, 0], np.zeros_like(sigma[:, 0]), np.stack([bound[:, 0]] * 2)
-        right, left = sigma[:, 0], sigma[:, 1] * PARITY[:, None]
+        right, left = sigma[:, 0], sigma[:, 1] * PARITY.reshape(4, *[1] * r.ndim)
         return (right + left) / 2, (right - left) / (2 * self.friction), np.moveaxis(bound, 1, 0)
 
     def uncertainty(self, bound: Array, friction: Array | float) -> Array:
@@ -131,14 +132,23 @@ def crowded(a: float, width: float, reach: float) -> Array:
 
 def plane(parts: Parts, knots: Array, z: float, layer: int) -> Plane:
     """The plane at depth ``z`` > 0 of ``layer``, sampled at ``knots``."""
-    normal, tangential, bound = parts(knots, z, layer)
+    return planes_between(parts, knots, np.array([z]), layer)[0]
 
-    def curves(keep: NDArray[np.int_]) -> tuple[Curve, Curve]:
-        r = knots[keep]
-        return _spline(r, normal[:, keep], PARITY), _spline(r, tangential[:, keep], -PARITY)
 
-    fine, coarse = curves(np.arange(knots.size)), curves(_every_other(knots.size))
-    return Plane(parts, z, layer, knots, fine, coarse, bound)
+def planes_between(parts: Parts, knots: Array, depths: Array, layer: int) -> list[Plane]:
+    """As ``plane`` at several ``depths``, evaluated together: one around the same point share its rings."""
+    r, z = np.broadcast_arrays(knots, depths[:, None])
+    normal, tangential, bound = parts(r, z, layer)
+
+    def curves(i: int, keep: NDArray[np.int_]) -> tuple[Curve, Curve]:
+        at = knots[keep]
+        return _spline(at, normal[:, i, keep], PARITY), _spline(at, tangential[:, i, keep], -PARITY)
+
+    every, half = np.arange(knots.size), _every_other(knots.size)
+    return [
+        Plane(parts, float(at), layer, knots, curves(i, every), curves(i, half), bound[:, :, i])
+        for i, at in enumerate(depths)
+    ]
 
 
 def surface(parts: Parts, a: float, h: float, reach: float) -> Plane:

@@ -17,7 +17,18 @@ from scipy.optimize import minimize_scalar
 from verification.problem.array_types import Array
 from verification.problem.coated_contact import CoatedContact, Solution
 from verification.problem.quantity import von_mises
-from verification.study.friction_planes import XX, XZ, ZZ, Parts, Plane, crowded, plane, stress_at, surface
+from verification.study.friction_planes import (
+    XX,
+    XZ,
+    ZZ,
+    Parts,
+    Plane,
+    crowded,
+    plane,
+    planes_between,
+    stress_at,
+    surface,
+)
 
 Measure = Callable[[Array], Array]
 
@@ -72,10 +83,10 @@ def quantities(
         bases.append(plane(parts, knots, h, k))
         tops.append(plane(parts, knots, h, k + 1))
         near.append(crowded(a, 0.5 * min(a, h), 0.5 * (a + h)))
-        within.append([plane(parts, near[k], at, k) for at in depths(above, h, 0.5 * a)[1:-1]])
+        within.append(planes_between(parts, near[k], depths(above, h, 0.5 * a)[1:-1], k))
     h, n = z[-1], len(z)
     deep = depths(h, 1.5 * h + 2 * a, 0.5 * max(a / 2, h))[1:]
-    below = [tops[-1], *(plane(parts, near[-1], at, n) for at in deep)]
+    below = [tops[-1], *planes_between(parts, near[-1], deep, n)]
     lines: dict[str, tuple[list[Plane], Measure]] = {
         "sigma_xx_surface": (tops[:1], lambda s: s[XX]),
         "sigma_xx_base": (bases, lambda s: s[XX]),

@@ -14,8 +14,9 @@ from verification.commands.common.command_error import CommandError
 from verification.commands.common.exit_codes import with_exit_code
 from verification.commands.common.known_folders import RECORDS, require_checkout
 from verification.commands.common.shared_options import AsJson, Flag, Quiet, RecordsFolder
-from verification.commands.common.task_progress import progress_bar, run_info
+from verification.commands.common.task_progress import run_info
 from verification.commands.common.terminal import did_you_mean, named_table, print_json, print_out
+from verification.commands.common.terminal_bar import progress_bar
 from verification.evidence.assumption_maps import (
     WORDS,
     AssumptionMap,

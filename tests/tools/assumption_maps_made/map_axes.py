@@ -5,8 +5,8 @@ from dataclasses import dataclass, field
 from itertools import product
 
 from assumption_maps_made.small_strain_cost import of_small_strains
-from verification.credibility.shared_assumptions import QUANTITIES
-from verification.evidence.map_places import COORDINATES, Place
+from verification.credibility.model_error import QUANTITIES
+from verification.evidence.assumption_maps import COORDINATES, Place
 from verification.problem.coated_contact import CoatedContact
 from verification.sources.assumptions.contact_change import Change, of_goodman, of_sphere
 from verification.sources.assumptions.finite_bodies import of_half_spaces

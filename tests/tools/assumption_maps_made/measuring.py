@@ -6,9 +6,8 @@ from dataclasses import asdict, dataclass
 import numpy as np
 
 from assumption_maps_made.map_axes import MEASURED
-from verification.credibility.shared_assumptions import ASSUMPTIONS, QUANTITIES
-from verification.evidence.assumption_maps import AssumptionMap, AssumptionMaps, Axis
-from verification.evidence.map_places import Place
+from verification.credibility.model_error import ASSUMPTIONS, QUANTITIES
+from verification.evidence.assumption_maps import AssumptionMap, AssumptionMaps, Axis, Place
 from verification.running.case_result import RunInfo
 from verification.sources.assumptions.contact_change import Change
 

@@ -16,8 +16,8 @@ from bench.figures import PEERS, Figure, Other, Part, groups, measure
 from verification.commands.common.command_error import CommandError
 from verification.commands.common.exit_codes import with_exit_code
 from verification.commands.common.shared_options import AsJson
-from verification.commands.common.task_progress import progress_bar
 from verification.commands.common.terminal import named_table, print_error, print_json, print_out
+from verification.commands.common.terminal_bar import progress_bar
 from verification.judging.outcome import Outcome
 from verification.regression.run_exit_codes import EXIT
 from verification.running.json_records import encode

@@ -21,8 +21,9 @@ from verification.commands.common.shared_options import (
     RecordsFolder,
     Resume,
 )
-from verification.commands.common.task_progress import require_gmsh, run_info, solve, worker_count
+from verification.commands.common.task_progress import run_info, solve, worker_count
 from verification.commands.common.terminal import did_you_mean, print_json, print_out
+from verification.commands.common.terminal_bar import require_gmsh
 from verification.commands.credibility.faults import solve_clean
 from verification.evidence.mutant_record import Mutant, MutantRecord, Trial, to_json, write_record
 from verification.running.checked_files import locked

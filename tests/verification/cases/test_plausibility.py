@@ -4,6 +4,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from case_texts import case_text
 
 from verification.cases.case_file import parse_case, read_case, shipped_cases
 from verification.cases.plausibility import YIELD, beyond_limits, warnings_of
@@ -12,18 +13,12 @@ from verification.problem.coated_contact import CoatedContact
 from verification.study.study_plan import parse_study, read_study_file, shipped_studies
 
 CONTACT = CoatedContact(10e-3, 20.0, ((450e9, 0.22, 3e-6),), (210e9, 0.3))
-CASE = """
-title = "Mine"
-[problem]
-radius = {radius}
-load = {load}
-substrate = {{ E = {E}, nu = 0.3{more} }}
-ball = {{ E = {ball}, nu = 0.27 }}
-[[problem.coatings]]
-E = {coating}
-nu = 0.22
-thickness = {thickness}
-"""
+CASE = case_text(
+    "E = {coating}; nu = 0.22; thickness = {thickness}",
+    radius="{radius}",
+    load="{load}",
+    more="ball = {{ E = {ball}, nu = 0.27 }}",
+).replace("{ E = 210e9, nu = 0.3 }", "{{ E = {E}, nu = 0.3{more} }}")
 STUDY = """
 title = "Mine"
 [problem]
@@ -60,30 +55,26 @@ def found(template, **changed):
 
 # Ten typical files, each with one slip of a unit; the message has to lead to it.
 SLIPS = [
-    (CASE, {"E": "210"}, "substrate.E = 210 looks like GPa"),
-    (CASE, {"E": "210000", "coating": "450000", "ball": "310000"}, "substrate.E = 210000 looks like MPa"),
-    (CASE, {"ball": "310"}, "ball.E = 310 looks like GPa"),
-    (CASE, {"coating": "450"}, "coatings.0.E = 450 looks like GPa"),
-    (CASE, {"thickness": "3"}, "coatings.0.thickness = 3 looks like um"),
-    (CASE, {"thickness": "0.003"}, "coatings.0.thickness = 0.003 looks like mm"),
-    (CASE, {"radius": "10"}, "radius = 10 looks like mm"),
-    (CASE, {"load": "20000"}, "check load, radius, E"),
-    (STUDY, {"thickness": "3"}, "thickness = 3 looks like um"),
-    (
-        STUDY,
-        {"strength": "2.5"},
-        "criteria.strength.sigma_xx_surface = 2.5 Pa is below 1 MPa; 2.5 looks like GPa",
-    ),
-    (CASE, {"E": '"210 MPa"'}, "strain p_h/E*"),
-    (CASE, {"thickness": '"3 mm"'}, "check its unit"),
-    (STUDY, {"radius": "10"}, "radius = 10 looks like mm"),
+    (CASE, {"E": "210"}, "substrate.E", "GPa"),
+    (CASE, {"E": "210000", "coating": "450000", "ball": "310000"}, "substrate.E", "MPa"),
+    (CASE, {"ball": "310"}, "ball.E", "GPa"),
+    (CASE, {"coating": "450"}, "coatings.0.E", "GPa"),
+    (CASE, {"thickness": "3"}, "coatings.0.thickness", "um"),
+    (CASE, {"thickness": "0.003"}, "coatings.0.thickness", "mm"),
+    (CASE, {"radius": "10"}, "radius", "mm"),
+    (CASE, {"load": "20000"}, "load", "radius"),
+    (STUDY, {"thickness": "3"}, "thickness", "um"),
+    (STUDY, {"strength": "2.5"}, "criteria.strength.sigma_xx_surface", "GPa"),
+    (CASE, {"E": '"210 MPa"'}, "strain", "p_h/E*"),
+    (CASE, {"thickness": '"3 mm"'}, "thickness", "unit"),
+    (STUDY, {"radius": "10"}, "radius", "mm"),
 ]
 
 
-@pytest.mark.parametrize(("template", "changed", "message"), SLIPS)
-def test_slip_of_a_unit_is_refused_or_warned_of(template, changed, message):
+@pytest.mark.parametrize(("template", "changed", "key", "unit"), SLIPS)
+def test_slip_of_a_unit_is_refused_or_warned_of(template, changed, key, unit):
     lines = found(template, **changed)
-    assert any(message in line for line in lines), lines
+    assert any(key in line and unit in line for line in lines), lines
     assert all("\n" not in line for line in lines)
 
 
@@ -108,14 +99,14 @@ def test_nothing_is_told_of_the_shipped_files():
             "substrate.E",
         ),
         ({"substrate": (2.1e12, 0.3)}, "substrate.E"),
-        ({"load": 4e4}, "a_h = 0.11 R"),
+        ({"load": 4e4}, "0.11 R"),
         (
             {"coatings": ((450e9, 0.22, 11e-3),)},
-            "thickness = 0.011 m",
+            "0.011 m",
         ),
         ({"coatings": ((450e9, 0.22, 3e-3),)}, "contact"),
-        ({"coatings": ((450e9, 0.22, 1.5e-3),)}, "thick for a coating"),
-        ({"coatings": ((279e9, 0.21, 2e-7), (450e9, 0.22, 2e-6))}, "from the surface down"),
+        ({"coatings": ((450e9, 0.22, 1.5e-3),)}, "thickness"),
+        ({"coatings": ((279e9, 0.21, 2e-7), (450e9, 0.22, 2e-6))}, "surface"),
         ({"load": 2e4}, "strain"),
     ],
 )
@@ -128,7 +119,7 @@ def test_cost_of_the_parabola_is_that_of_its_height():
     problem = replace(CONTACT, load=4e6)
     a, R = problem.a_h, problem.radius
     sphere, parabola = R - (R**2 - a**2) ** 0.5, a**2 / (2 * R)
-    assert f"{100 * (sphere / parabola - 1):.2g} % higher" in line
+    assert f"{100 * (sphere / parabola - 1):.2g} %" in line
 
 
 def test_hardness_and_yield_strength():
@@ -145,4 +136,4 @@ def test_hardness_and_yield_strength():
     for template in (CASE, STUDY):
         assert found(template, more=', hardness = "8 GPa", yield_strength = "1.5 GPa"') == []
         (line,) = found(template, more=', hardness = "0.8 GPa"')
-        assert "substrate.hardness = 800 MPa" in line
+        assert "substrate.hardness" in line

@@ -1,7 +1,5 @@
 """Published tables: read as printed, converted at the border, refused where malformed."""
 
-import shutil
-
 import numpy as np
 import pytest
 
@@ -115,9 +113,7 @@ def test_recomputed_tables_are_compared_and_not_counted(files):
     case = files(TOML.replace('seen = "primary"', 'seen = "recomputed"'))
     assert case.claims == files().claims
     assert not any(item.counted.any() for item in case.columns)
-    assert case.citation["tables"] == [
-        {"file": "t.csv", "seen": "recomputed", "read": "written for this test"}
-    ]
+    assert [table["seen"] for table in case.citation["tables"]] == ["recomputed"]
 
 
 @pytest.mark.parametrize(
@@ -163,13 +159,6 @@ def test_malformed_case_is_refused_with_file_and_key(files, old, new, said):
         files(toml=TOML.replace(old, new))
 
 
-def test_whole_numbers_are_numbers(files):
-    toml = TOML.replace("load_radius = 6.0", "load_radius = 6")
-    toml = toml.replace('file = "t.csv"', 'file = "t.csv"\nrows = { depth = 0 }')
-    stress, _ = files(toml).columns
-    assert stress.text == ("100",)
-
-
 def test_only_a_file_with_tables_is_taken_for_a_published_case():
     assert all(is_published(path.read_bytes()) for path in SHIPPED.values())
     assert not any(is_published(path.read_bytes()) for path in shipped_cases().values())
@@ -196,19 +185,9 @@ SHIPPED = published_cases()
 COUNTS = (463, 239, 550)  # published values that count, that depart; values of recomputed tables
 
 
-@pytest.mark.parametrize("name", SHIPPED)
-def test_shipped_case_states_its_source_and_how_it_was_read(name):
-    case = read_published(SHIPPED[name])
-    assert case.claims
-    assert all(table["read"] for table in case.citation["tables"])
-    assert str(case.citation["year"]) in case.source
-    assert case.citation["notes"]
-    # Whatever is printed has an uncertainty, and more than nothing.
-    assert all((item.profile.uncertainty > 0).all() for item in case.columns)
-
-
 def test_values_of_the_shipped_cases_are_counted_as_stated_in_the_readme():
     columns = [item for path in SHIPPED.values() for item in read_published(path).columns]
+    assert all((item.profile.uncertainty > 0).all() for item in columns)
     cells = sum(len(item.text) for item in columns)
     counted = sum(int(item.counted.sum()) for item in columns)
     recomputed = sum(len(item.text) for item in columns if item.seen == RECOMPUTED)
@@ -221,9 +200,3 @@ def test_contact_units_are_the_hertz_scales_of_the_case():
     radius = next(item for item in case.columns if item.profile.quantity == "contact_radius")
     assert radius.profile.value == pytest.approx([0.818478 * case.problem.a_h], rel=1e-14, abs=0)
     assert radius.profile.uncertainty == pytest.approx([0.5e-6 * case.problem.a_h], rel=1e-14, abs=0)
-
-
-def test_a_table_is_added_by_two_files_and_no_code(tmp_path):
-    for path in FOLDER.glob("jones*"):
-        shutil.copy(path, tmp_path / path.name.replace("jones_1962.toml", "mine.toml"))
-    assert read_published(tmp_path / "mine.toml").name == "mine"

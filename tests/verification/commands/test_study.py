@@ -21,8 +21,8 @@ def written(folder):
     ("plan", "options", "said"),
     [
         ("no_such_study", {}, "neither"),
-        ("no_such_study.toml", {}, "there is no such file"),
-        (".", {}, "is a directory"),
+        ("no_such_study.toml", {}, "no_such_study.toml"),
+        (".", {}, "directory"),
         ("bad.toml", {}, "bad.toml"),
         ("good.toml", {"jobs": 0}, "--jobs = 0"),
         ("good.toml", {"limit": 0}, "--limit = 0"),

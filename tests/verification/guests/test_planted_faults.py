@@ -13,8 +13,7 @@ from verification.credibility.faults.fault_catalogue import FAULTS
 from verification.credibility.faults.fault_planting import planted
 from verification.guests.case_exam import claims_of, prepare, question_of
 from verification.guests.doors.program_door import Solved
-from verification.guests.doors.returned_answers import values_of
-from verification.guests.doors.serve_function import called, problem_of
+from verification.guests.doors.serve_function import called, problem_of, values_of
 from verification.guests.exam_subjects import DISC, PLANE, SPHERE, SQUARE, subject_of
 from verification.guests.guest_description import read_guest
 from verification.guests.guest_protocol import VERSION, Answer, LineOfPoints

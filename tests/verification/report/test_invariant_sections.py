@@ -15,8 +15,6 @@ from verification.judging.invariants import Invariant
 from verification.judging.verdict import Outcome
 from verification.regression.junit_xml import junit_xml
 from verification.report.report_material import Material
-from verification.report.report_page import render
-from verification.report.sections.accuracy_section import coverage_table
 from verification.report.sections.invariants_section import invariant_table, section
 from verification.report.sections.parameters_section import parameter_section
 from verification.report.tables.case_tables import dominating_parameter
@@ -84,13 +82,6 @@ def test_section_gathers_the_layers_of_a_law_over_all_cases(sound, slipped):
     assert section(Material([replace(sound, invariants=())], INFO)) is None
 
 
-def test_page_says_what_is_broken_before_the_problem(slipped):
-    page = render(Material([slipped], INFO))
-    assert "2 of 4" in page
-    assert page.index("Invariants that do not hold") < page.index("<h3>Problem</h3>")
-    assert 'id="case-stiff-coating-invariants"' in page
-
-
 def test_dominating_parameter_is_the_largest_share_of_the_less_certain_side():
     result = result_of(contact((2 * STEEL[0], 0.3, 1.0)), points=31)
     found = {
@@ -104,20 +95,6 @@ def test_dominating_parameter_is_the_largest_share_of_the_less_certain_side():
     rows = tuple(("peak_pressure", parameter, value) for parameter, value in (("size", 1e3), ("domain", 1e9)))
     sources = tuple(replace(s, budget=rows) for s in result.sources)
     assert dominating_parameter(replace(result, sources=sources), claim, verdict) == "semi-analytical: domain"
-
-
-def test_coverage_counts_the_quantities_whose_error_lies_within_what_is_stated():
-    problem = contact((2 * STEEL[0], 0.3, 1.0))
-    honest = result_of(problem, points=31)
-    table = coverage_table([honest])
-    assert [row.cells[2].text for row in table.rows] == ["100.0 %"] * 4
-    bold = result_of(problem, points=31, stated={"semianalytic": 0.1})
-    *ours, scalars, lines = coverage_table([bold]).rows
-    for mine, theirs in zip(ours, (scalars, lines), strict=True):
-        assert mine.cells[0].text == theirs.cells[0].text
-        assert mine.cells[2].css == "flag disagrees"
-        assert float(mine.cells[3].text) > 1 > float(theirs.cells[3].text)
-        assert theirs.cells[2].text == "100.0 %"
 
 
 def studies():

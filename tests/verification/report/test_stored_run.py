@@ -13,8 +13,8 @@ from verification.credibility.self_tests import SelfTest
 from verification.evidence.alarm_record import write_record
 from verification.regression.baseline_change import regression, updated
 from verification.regression.junit_xml import junit_xml
-from verification.report.report_files import write_report
 from verification.report.report_material import Material, gather, stored_material
+from verification.report.report_page import write_report
 from verification.report.sections.case_page import rerun_command
 from verification.running.case_result import to_json
 from verification.running.checked_files import write_checked
@@ -60,7 +60,6 @@ def test_the_report_of_a_stored_run_is_that_of_the_run(run, tmp_path, monkeypatc
     before = {name: (run / name).read_bytes() for name in names}
     for mark in (b'id="baseline"', b'id="credibility"', b'id="effective-modulus"', b'id="self-tests"'):
         assert mark in before["report.html"]
-    assert b"false alarms in" in before["report.html"]
     (tmp_path / "empty").mkdir()
     monkeypatch.chdir(tmp_path / "empty")
     (tmp_path / "records" / "alarms.json").unlink()

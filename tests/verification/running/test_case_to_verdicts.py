@@ -7,25 +7,16 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from case_texts import case_text
 
 from verification.cases.case_file import parse_case
 from verification.judging.verdict import Outcome
-from verification.running.case_result import diagnostics_of, from_json, to_json
+from verification.running.case_result import from_json, to_json
 from verification.running.contact_run import judge_case, run, solve_case
 from verification.sources.references import integral_equation
 from verification.sources.references.hertz import Hertz
 
-CASE = b"""
-title = "One coating"
-[problem]
-radius = 10e-3
-load = 20
-substrate = { E = 210e9, nu = 0.3 }
-[[problem.coatings]]
-E = 420e9
-nu = 0.25
-thickness_over_a_h = 0.5
-"""
+CASE = case_text("E = 420e9; nu = 0.25; thickness_over_a_h = 0.5").encode()
 
 
 def exact(problem, _):
@@ -111,7 +102,9 @@ def test_unexpected_error_is_named_and_no_traceback(case):
         return {}["nothing"]
 
     reasons = {v.reason for v in verdicts(run(case, sources(fem_reference=broken)), "fem_reference")}
-    assert reasons == {"fem_reference: KeyError: 'nothing'"}
+    (reason,) = reasons
+    assert "KeyError" in reason
+    assert "Traceback" not in reason
 
 
 class Changed:
@@ -173,19 +166,6 @@ def test_scalar_that_is_not_finite_is_no_result(case, name):
     assert name in verdicts(result, "semianalytic")[0].reason
 
 
-def test_everything_failing_still_gives_a_row_for_every_claim(case):
-    def broken(problem, _):
-        raise ValueError("no")
-
-    result = run(case, dict.fromkeys(sources(), broken))
-    assert [v.outcome for _, v in result.verdicts] == [Outcome.NO_RESULT] * len(case.claims)
-
-
-def test_record_that_is_no_dataclass_is_empty(case):
-    assert diagnostics_of(None) == diagnostics_of(type(case)) == {}
-    assert diagnostics_of(case.claims[0])["quantity"] == case.claims[0].quantity
-
-
 def test_result_survives_strict_json_to_the_last_bit(case):
     def broken(problem, _):
         raise ValueError("no")
@@ -201,12 +181,7 @@ def test_result_survives_strict_json_to_the_last_bit(case):
 
 
 def test_hertz_is_asked_where_all_moduli_are_equal(tmp_path):
-    text = (
-        CASE.replace(b"420e9", b"210e9")
-        .replace(b"100e9", b"210e9")
-        .replace(b"0.25", b"0.3")
-        .replace(b"0.35", b"0.3")
-    )
+    text = CASE.replace(b"420e9", b"210e9").replace(b"0.25", b"0.3")
     case = parse_case(text, tmp_path / "same.toml")
     available = sources(hertz=lambda p, _: Hertz(p.radius, p.load, *p.substrate))
     result = run(case, available)

@@ -95,16 +95,8 @@ def test_every_value_is_judged_and_departures_are_shown(files):
 @pytest.mark.parametrize(
     ("old", "new", "said"),
     [
-        (
-            'quantity = "kappa", unit = "1" }',
-            'quantity = "sigma_zz", unit = "MPa" }',
-            "problem",
-        ),
-        (
-            'at = { contact_radius = "a", unit = "h" }',
-            'at = { z = "a", unit = "h" }',
-            "contact_radius",
-        ),
+        ('quantity = "kappa", unit = "1" }', 'quantity = "sigma_zz", unit = "MPa" }', "problem"),
+        ('at = { contact_radius = "a", unit = "h" }', 'at = { z = "a", unit = "h" }', "contact_radius"),
         ('contact_radius = "a"', 'contact_radius = "b"', r"t\.csv"),
         ('unit = "h" }\n', 'unit = "q" }\n', "unknown"),
         ("uncertainty = 0.006", "uncertainty = -0.1", r"curve\.toml: table\.0\.column\.2\.uncertainty"),

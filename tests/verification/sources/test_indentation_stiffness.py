@@ -4,11 +4,12 @@ from dataclasses import fields
 
 import numpy as np
 import pytest
+from layer_limits import spring_bed, squeezed_film, thick
 
 import fem_reference
 import semianalytic
 from verification.problem.loading_curve import LoadingCurve
-from verification.sources.loading_solution import Loading, LoadingDiagnostics, exact_loading, loading
+from verification.sources.loading_solution import Loading, exact_loading, loading
 from verification.sources.references.effective_modulus import (
     FORMULAS,
     I0,
@@ -17,7 +18,6 @@ from verification.sources.references.effective_modulus import (
     perriot_barthel_x0,
 )
 from verification.sources.references.flat_punch import pressed
-from verification.sources.references.layer_limits import spring_bed, squeezed_film, thick
 
 LAYER, RIGID = ((1.0, 0.4, 1.0),), (1e9, 0.3)
 CURVE = LoadingCurve(100.0, "contact_radius", (0.4, 1.0), LAYER, RIGID)
@@ -79,7 +79,7 @@ def test_a_point_asked_for_is_reached_from_a_load_that_missed_it():
     exact = exact_loading(CURVE)
     a, miss = np.array(CURVE.at), 1e-4
     off = exact_loading(LoadingCurve(100.0, "contact_radius", tuple(a * (1 + miss)), LAYER, RIGID))
-    moved = Loading(CURVE, off.state, off.uncertainties, LoadingDiagnostics(1))
+    moved = Loading(CURVE, off.state, off.uncertainties, {"contacts": 1})
     for name in ("kappa", "load", "series_over_load"):
         (value, U), (expected, _) = moved.quantity(name, a, (1.0,)), exact.quantity(name, a, (1.0,))
         assert (np.abs(value - expected) <= U).all()

@@ -59,5 +59,5 @@ def test_far_from_a_thin_coating_only_the_substrate_is_felt():
 
 
 def test_patch_with_the_origin_in_line_with_its_rim_is_refused():
-    with pytest.raises(ValueError, match="in line with the rim"):
+    with pytest.raises(ValueError, match="rim"):
         surface_coefficient(1.5e-6, 0.0, 3e-6, (), STEEL)

@@ -43,13 +43,6 @@ def test_flat_punch_on_a_half_space_is_the_unit():
     assert 0 < thin[1] < 0.6 * thin[0] < 0.2
 
 
-def test_flat_punch_converges_in_every_knob():
-    layer = ((1.0, 0.5, 1.0),)
-    fine = kappa(2.0, layer, RIGID)
-    assert kappa(2.0, layer, RIGID, nodes=40) == pytest.approx(fine, rel=1e-10)
-    assert kappa(2.0, layer, RIGID, tail=30.0) == pytest.approx(fine, rel=1e-10)
-
-
 def by_formula(approach, coefficients):
     """Load of the corrections at h = 1, E = 1, nu = 1/2, R = 100."""
     X = np.sqrt(100.0 * approach)

@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 
 from verification.problem.coated_contact import CoatedContact
-from verification.sources.assumptions.harmonic_stress import first_harmonic
-from verification.sources.assumptions.sliding_coupling import SlidingExpansion
+from verification.sources.assumptions.sliding_coupling import SlidingExpansion, first_harmonic
 from verification.sources.references import integral_equation
 from verification.sources.references.axisymmetric_pressure import AbelPressure
 

@@ -111,7 +111,7 @@ def test_stiffness_is_the_slope_of_the_forces():
 
 
 def test_elements_refuse_an_elastic_ball():
-    with pytest.raises(ValueError, match="rigid ball"):
+    with pytest.raises(ValueError, match="ball"):
         deformed(replace(contact(0.1), ball=(*STEEL, ())), SMALL)
 
 
@@ -181,44 +181,6 @@ def test_cost_is_of_first_order_in_the_width(ratio, thickness):
     changes = [pair for pair in zip(astuple(small), astuple(large), strict=True) if None not in pair]
     for one, other in changes:
         assert np.log(other / one) / np.log(widths[1] / widths[0]) == pytest.approx(1.0, abs=0.05)
-
-
-def second_order_energy(problem):
-    """Of order strain^3, at the fields of small strain: the change of the energy at the same approach.
-
-    int Psi_3 dV - int p G'(r) u_r dA with Psi_3 = -mu/3 tr H^3 - lambda/2 tr H tr H^2: by the envelope
-    theorem only the fields of the lower order enter.
-    """
-    a, E_star = problem.a_h, problem.E_star
-    coatings = tuple((E / E_star, nu, h / a) for E, nu, h in problem.coatings)
-    substrate = problem.substrate[0] / E_star, problem.substrate[1]
-    R = problem.radius / a
-    mesh = grid(Resolution(4, 1.0, 5e-4, 50.0), tuple(z / a for z in problem.interfaces))
-    model = SphereContact(mesh, R, problem.load / (E_star * a**2), coatings, substrate, False)
-    state = model.solve()
-    rr, rz, zr, zz, tt = np.moveaxis(model.gradient(state), -1, 0)
-    H = np.zeros((*rr.shape, 3, 3))
-    H[..., 0, 0], H[..., 0, 1], H[..., 1, 0], H[..., 1, 1], H[..., 2, 2] = rr, rz, zr, zz, tt
-    squares = H @ H
-    tr, tr2, tr3 = (np.trace(part, axis1=-2, axis2=-1) for part in (H, squares, squares @ H))
-    volume = np.sum((-model.mu / 3 * tr3 - model.lam / 2 * tr * tr2) * mesh.weights) * state.A**2
-    r = state.A * model.rho
-    surface = np.sum(model.forces(state)[model.c_z] * r / np.sqrt(R**2 - r**2) * state.u[model.c_r])
-    return 2 * np.pi * (volume - surface) * E_star * a**3, state.delta * a
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize(("ratio", "nu"), [(None, 0.0), (None, 0.3), (None, 0.49), (0.25, 0.3), (4.0, 0.45)])
-def test_approach_follows_the_second_order_energy(ratio, nu):
-    """At the same load the approach changes by -d(second-order energy)/dW."""
-    problem, step = contact(1e-3, ratio, nu=nu), 0.02
-    above, below = (
-        second_order_energy(replace(problem, load=(1 + by) * problem.load))[0] for by in (step, -step)
-    )
-    _, approach = second_order_energy(problem)
-    expected = -(above - below) / (2 * step * problem.load) / approach
-    change, uncertainty = of_small_strains(problem)
-    assert change.approach == pytest.approx(expected, rel=5e-3, abs=5 * uncertainty.approach)
 
 
 def published_load(approach, thickness):

@@ -81,7 +81,7 @@ def test_hertz_1882_contact_scales(source):
         *((source, 0.25, "below") for source in SOURCES),
         *((source, 0.35, "surface") for source in SOURCES[:2]),
         # A second sliding solve of some ten seconds.
-        pytest.param("fem_reference", 0.35, "on the surface", marks=pytest.mark.slow),
+        pytest.param("fem_reference", 0.35, "surface", marks=pytest.mark.slow),
     ],
 )
 def test_hamilton_1983_first_yield_reaches_the_surface_at_friction_above_03(source, friction, yields_first):

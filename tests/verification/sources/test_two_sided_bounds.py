@@ -125,9 +125,9 @@ def test_wrong_signs_of_the_gap_are_refused():
     low, high = approach_bounds(upper, lower, 1.0)
     # W = K_11 delta - K_12 at either end of the gap of diagonal forms
     assert low < 4 / 3 < high
-    with pytest.raises(ValueError, match="too wide"):
+    with pytest.raises(ValueError, match="wide"):
         approach_bounds(lower, upper, 1.0)
-    with pytest.raises(ValueError, match="below 1/2"):
+    with pytest.raises(ValueError, match="1/2"):
         half_space(((1.0, 0.5, 1.0),), 0.3, **COARSE)
 
 

@@ -43,8 +43,8 @@ def test_any_layer_is_swept(layers, thicknesses):
 @pytest.mark.parametrize(
     ("layers", "said"),
     [
-        (HELD, "to be swept"),
-        ('{ nu = 0.2 }, { E = "1 GPa", nu = 0.2 }', "is not swept|to be swept"),
+        (HELD, "swept"),
+        ('{ nu = 0.2 }, { E = "1 GPa", nu = 0.2 }', "swept"),
         ('{ E = "300 GPa", nu = 0.2 }, { nu = 0.25, thickness = 2e-5 }', "coatings.1"),
         ('{ E = "300 GPa", nu = 0.2 }, { E = "4 GPa", nu = 0.25, thickness = 2e-9 }', "um"),
     ],
@@ -75,4 +75,4 @@ def test_a_template_is_written_once_and_is_a_study(kind, tmp_path, capsys):
     assert init(kind, path) == 0
     assert (read_study_file(path).loads is None) == (kind != "load")
     assert init(kind, path) == 2
-    assert "another name" in capsys.readouterr().err
+    assert str(path) in capsys.readouterr().err

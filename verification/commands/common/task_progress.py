@@ -8,23 +8,12 @@ from typing import TypeVar
 
 from rich.console import Console
 from rich.markup import escape
-from rich.progress import (
-    BarColumn,
-    MofNCompleteColumn,
-    Progress,
-    ProgressColumn,
-    TextColumn,
-    TimeElapsedColumn,
-    TimeRemainingColumn,
-)
-from rich.progress import Task as RichTask
-from rich.table import Column
-from rich.text import Text
 
 from verification.cases.case_file import Case
 from verification.cases.published_file import PublishedCase
-from verification.commands.common.command_error import CommandError, no_result
+from verification.commands.common.command_error import CommandError
 from verification.commands.common.terminal import STYLE, one_line, print_error
+from verification.commands.common.terminal_bar import progress_bar
 from verification.credibility import accuracy_study as accuracy_study
 from verification.credibility.accuracy_study import AccuracyStudy
 from verification.running.case_result import CaseResult, RunInfo
@@ -33,11 +22,9 @@ from verification.running.checked_files import StoreError
 from verification.running.pool.dask_cluster import Cluster
 from verification.running.pool.pool_task import Task
 from verification.running.pool.process_pool import run_tasks
-from verification.running.provenance import commit, cores, hardware, missing_libraries, versions
+from verification.running.provenance import commit, cores, hardware, versions
 
 T = TypeVar("T")
-
-NARROW = 60  # columns
 
 Pool = int | Cluster  # so many processes on this machine, or the workers of a scheduler
 
@@ -58,13 +45,6 @@ def pool_of(jobs: int | None, time_limit: float, scheduler: str | None) -> Pool:
     if jobs is not None:
         raise CommandError(f"--jobs = {jobs}: the workers of --scheduler decide; leave one of both out")
     return Cluster(scheduler)
-
-
-def require_gmsh() -> None:
-    """Raises CommandError with the packages to install where gmsh cannot be loaded."""
-    if lacking := missing_libraries():
-        install = f"apt-get install {' '.join(lacking)}"
-        raise no_result(f"gmsh lacks system libraries here; install them with: {install}")
 
 
 def kept_results(
@@ -158,31 +138,4 @@ def run_info(command: str, started: datetime.datetime, pool: Pool) -> RunInfo:
         commit=commit(),
         machine=" and ".join(sorted(machines)) or hardware(),
         versions=versions(),
-    )
-
-
-class _Description(ProgressColumn):
-    """Names of the tasks at work, in one line."""
-
-    def render(self, task: RichTask) -> Text:
-        return Text(task.description, no_wrap=True, overflow="ellipsis")
-
-
-def progress_bar(console: Console, *more: ProgressColumn, silent: bool = False) -> Progress:
-    """A bar that counts, with time gone and left; nothing at all where ``console`` is not a terminal.
-
-    more : columns behind the count.
-    """
-    return Progress(
-        # Words and bar give way where the terminal is narrow; counts and times stay whole.
-        _Description(table_column=Column(no_wrap=False)),
-        *([BarColumn(table_column=Column(no_wrap=False))] if console.width >= NARROW else []),
-        MofNCompleteColumn(),
-        *more,
-        TimeElapsedColumn(),
-        TextColumn("left"),
-        TimeRemainingColumn(),
-        console=console,
-        transient=True,
-        disable=silent or not console.is_terminal,
     )

@@ -21,8 +21,9 @@ from verification.commands.common.shared_options import (
     Resume,
     Scheduler,
 )
-from verification.commands.common.task_progress import kept_results, pool_of, require_gmsh, run_info, solve
+from verification.commands.common.task_progress import kept_results, pool_of, run_info, solve
 from verification.commands.common.terminal import STYLE, named_table, one_line, print_json, print_out
+from verification.commands.common.terminal_bar import require_gmsh
 from verification.credibility.false_alarms import counted
 from verification.evidence.alarm_record import AlarmRecord, write_record
 from verification.regression.junit_xml import junit_xml
@@ -69,8 +70,8 @@ def alarms(
         require_checkout(records, "--records")
     require_gmsh()
 
-    from verification.report.report_files import write_report
     from verification.report.report_material import Material
+    from verification.report.report_page import write_report
 
     started = datetime.datetime.now(datetime.UTC)
     with locked(output):

@@ -26,11 +26,11 @@ from verification.commands.common.task_progress import (
     Pool,
     kept_results,
     pool_of,
-    require_gmsh,
     run_info,
     solve,
 )
 from verification.commands.common.terminal import did_you_mean, named_table, print_json, print_out
+from verification.commands.common.terminal_bar import require_gmsh
 from verification.running.case_tasks import case_task
 from verification.running.checked_files import locked, write_atomically
 
@@ -94,7 +94,7 @@ def faults(
 
     from verification.credibility.faults import fault_campaign
     from verification.evidence.fault_record import to_json, write_record
-    from verification.report.credibility.faults_section import faults_page
+    from verification.report.credibility.detection_sections import faults_page
 
     started = datetime.datetime.now(datetime.UTC)
     with locked(output):
@@ -153,8 +153,9 @@ def _print(found: "Record", page: Path) -> None:
     from verification.credibility.faults.first_notice import (
         COUNTED,
         Noticed,
+        kinds,
+        method_score,
         noticed,
-        noticed_by,
         of_method,
         unused,
     )
@@ -176,7 +177,7 @@ def _print(found: "Record", page: Path) -> None:
         )
         print_out(f"[bold red]{row.catch}[/] {row.name}: {escape(row.description)}. {escape(reason)}")
     for row in of_method(found):
-        if noticed(row) not in COUNTED:
+        if noticed(row) not in (*COUNTED, Noticed.EQUIVALENT):
             what = "no run executes it" if unused(row) else f"first noticed by: {noticed(row)}"
             print_out(f"[yellow]{row.name}[/] {escape(row.description)}: {what}")
     for row in found.idle:
@@ -187,10 +188,9 @@ def _print(found: "Record", page: Path) -> None:
         print_out(f"[bold red]fails without a fault[/] {escape(failure)}")
     text = f"{found.caught} of {len(found.rows)} faults caught ({100 * found.share:.0f} %), "
     text += f"{found.as_predicted} by the predicted check"
-    if method := of_method(found):
-        by = ", ".join(f"{noticed_by(found, kind)} {kind}" for kind in Noticed if noticed_by(found, kind))
-        counted = noticed_by(found, *COUNTED)
-        text += f"; of the method's {len(method)} {counted} by comparison, invariant or study (first: {by})"
+    if of_method(found):
+        seen, judged = method_score(found)
+        text += f"; in the method {seen} of {judged} by comparison, invariant or study (first {kinds(found)})"
     if found.controls:
         text += f"; {len(found.alarms)} alarms in {len(found.controls)} negative controls"
     print_out(f"{text}; {found.seconds:.0f} s; matrix: {escape(str(page))}")

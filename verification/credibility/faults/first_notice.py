@@ -4,7 +4,17 @@ from enum import StrEnum
 
 from verification.evidence.fault_record import SMALLEST_CHANGE, Record, Row
 
-__all__ = ["COUNTED", "METHOD", "Noticed", "noticed", "noticed_by", "of_method", "unused"]
+__all__ = [
+    "COUNTED",
+    "METHOD",
+    "Noticed",
+    "kinds",
+    "method_score",
+    "noticed",
+    "noticed_by",
+    "of_method",
+    "unused",
+]
 
 METHOD = ("conversion_fft", "conjugate_gradients", "grids", "edge", "stress", "rings")  # groups of its faults
 
@@ -64,3 +74,15 @@ def of_method(record: Record) -> tuple[Row, ...]:
 def noticed_by(record: Record, *kinds: Noticed) -> int:
     """Faults of the method that checks of these ``kinds`` notice first."""
     return sum(noticed(row) in kinds for row in of_method(record))
+
+
+def method_score(record: Record) -> tuple[int, int]:
+    """Faults of the method that a counted kind notices, of all but the equivalent ones."""
+    return noticed_by(record, *COUNTED), len(of_method(record)) - noticed_by(record, Noticed.EQUIVALENT)
+
+
+def kinds(record: Record) -> str:
+    """Each counted kind with the faults that it notices first, and the equivalent faults."""
+    parts = [f"{noticed_by(record, kind)} by {kind}" for kind in COUNTED]
+    apart = noticed_by(record, Noticed.EQUIVALENT)
+    return ", ".join(parts) + (f"; {apart} equivalent apart" if apart else "")

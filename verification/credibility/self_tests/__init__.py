@@ -10,14 +10,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from verification.credibility.self_tests.known_answers import Answers
-from verification.credibility.self_tests.known_enclosures import TEST, of_enclosures
-from verification.credibility.self_tests.known_inputs import of_case_file, of_published_table
+from verification.credibility.self_tests.known_files import of_case_file, of_published_table, of_store
 from verification.credibility.self_tests.known_outputs import of_codes, of_junit, of_regression
 from verification.credibility.self_tests.known_runs import of_coverage, of_invariants, of_runs
 from verification.credibility.self_tests.known_samples import of_points_of_tables, of_sampling
-from verification.credibility.self_tests.known_storage import of_store
-from verification.credibility.self_tests.known_verdicts import of_judging, of_points
+from verification.credibility.self_tests.known_verdicts import TEST, of_enclosures, of_judging, of_points
+from verification.credibility.self_tests.stand_ins import Answers
 
 __all__ = ["SelfTest", "self_tests"]
 

@@ -8,7 +8,7 @@ from xml.etree.ElementTree import fromstring
 
 import numpy as np
 
-from verification.credibility.self_tests.known_answers import Answers
+from verification.credibility.self_tests.stand_ins import Answers
 from verification.judging.invariant_verdict import Invariant
 from verification.judging.verdict import Claim, Judged, Outcome, Verdict
 from verification.problem.line_profile import Profile

@@ -11,8 +11,7 @@ from typing import Any
 import numpy as np
 
 from verification.cases.case_file import Case
-from verification.credibility.self_tests.known_answers import Answers
-from verification.credibility.self_tests.stand_ins import Failing, Misplaced, Spoiled, Stated
+from verification.credibility.self_tests.stand_ins import Answers, Failing, Misplaced, Spoiled, Stated
 from verification.judging.standard_claims import standard_claims
 from verification.judging.verdict import Claim, Outcome
 from verification.problem.coated_contact import CoatedContact

@@ -5,8 +5,7 @@ from typing import cast
 
 import numpy as np
 
-from verification.credibility.self_tests.known_answers import Answers
-from verification.credibility.self_tests.stand_ins import ON_BALL, Labelled, labelled, moved
+from verification.credibility.self_tests.stand_ins import ON_BALL, Answers, Labelled, labelled, moved
 from verification.problem.coated_contact import BALL, CoatedContact, Solution
 from verification.problem.evaluation_points import Points
 from verification.problem.line_profile import line_of, lines_of, oblique_lines

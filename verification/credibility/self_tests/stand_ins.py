@@ -1,6 +1,8 @@
 """Closed forms that stand in for a method: right, off, vague, incomplete, or labelled."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -8,6 +10,8 @@ from numpy.typing import ArrayLike
 from verification.problem.array_types import Array
 from verification.problem.coated_contact import FLAT, Uncertainty
 from verification.sources.references.hamilton import Hamilton
+
+Answers = Iterator[tuple[str, Any, Any]]  # what was asked, what the harness found, what it has to be
 
 
 @dataclass(frozen=True)

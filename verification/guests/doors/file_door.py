@@ -33,7 +33,7 @@ def place_of(guest: Guest, case: Subject, question: Question) -> Path:
 
 
 def pack(guest: Guest, case: Subject, question: Question) -> Path:
-    """Write the files of ``question``; those that are there stay as they are. Returns their directory."""
+    """Write the files of ``question`` that do not exist yet. Returns their directory."""
     folder = place_of(guest, case, question)
     units = guest.units
     rows = [[name, _unit(unit_of(name), units), "", ""] for name in question.contact]
@@ -53,31 +53,6 @@ def pack(guest: Guest, case: Subject, question: Question) -> Path:
         if not (folder / name).exists() and (name != "points.csv" or question.lines):
             write_atomically(folder / name, text)
     return folder
-
-
-def fill(guest: Guest, case: Subject, question: Question, answer: Answer) -> None:
-    """Fill the files of ``question`` with the values of ``answer``, as a user would."""
-    folder = place_of(guest, case, question)
-    given, U = answer.values or {}, answer.uncertainty
-    contact, stated = given.get("contact", {}), U.get("contact", {})
-    rows: list[list[Any]] = [["quantity", "unit", "value", "uncertainty"]]
-    for name in question.contact:
-        rows.append(
-            [name, _unit(unit_of(name), guest.units), _cell(contact.get(name)), _cell(stated.get(name))]
-        )
-    write_atomically(folder / "contact.csv", _written(rows))
-    quantities = list(dict.fromkeys(q for line in question.lines for q in line.quantities))
-    points: list[list[Any]] = [[*HEAD, *quantities, *(f"U {q}" for q in quantities)]]
-    start: dict[str, int] = {}
-    for number, (line, i) in enumerate(_points(question)):
-        start.setdefault(line.line, number)
-        row: list[Any] = [number, line.line, repr(line.x[i]), repr(line.y[i]), repr(line.z[i]), line.layer[i]]
-        for numbers in (given, U):
-            for q in quantities:
-                values = numbers.get(line.line, {}).get(q)
-                row.append(_cell(values[i]) if isinstance(values, list) else "")
-        points.append(row)
-    write_atomically(folder / "points.csv", _written(points))
 
 
 def read_answer(guest: Guest, case: Subject, question: Question) -> Answer:
@@ -156,10 +131,6 @@ def _number(text: str, where: str) -> float:
     except ValueError:
         shown = text.strip()[:20]
         raise ProtocolError(f"{where}: {shown!r} is not a number" if shown else f"{where} is empty") from None
-
-
-def _cell(value: Any) -> str:
-    return "" if value is None else repr(float(value))
 
 
 def _written(rows: list[list[Any]]) -> str:

@@ -144,7 +144,7 @@ def command_of(guest: Guest) -> tuple[str, ...]:
     """The program of ``guest``: its own, or that which calls its Python function."""
     if guest.callable is not None:
         return (sys.executable, "-m", "verification.guests.doors.serve_function", guest.callable)
-    return guest.command
+    return tuple(guest.command or ())
 
 
 def _write(pipe: int, line: bytes) -> None:

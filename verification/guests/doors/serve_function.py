@@ -2,23 +2,219 @@
 
 Answers the questions on standard input by calls of the function. What the function prints goes to standard
 error, so that it is not taken for an answer.
+
+The function returns a mapping or an object with any of contact_radius, approach, peak_pressure,
+largest_tension, tension_place, pressure(x, y), stress(x, y, z, layer), displacement(x, y, z), stress_plane(z,
+layer) at nodes in x and y; for each an uncertainty if there is one:
+``uncertainty`` with the names of the numbers, pressure_uncertainty, stress_uncertainty.
 """
 
 import inspect
 import os
 import sys
 import traceback
-from collections.abc import Callable
-from dataclasses import fields
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import suppress
+from dataclasses import fields, replace
 from importlib import import_module
+from types import SimpleNamespace
 from typing import Any
 
-from verification.guests.doors.returned_answers import NotGiven, values_of
-from verification.guests.exam_subjects import Load, SquareLoad
-from verification.guests.guest_protocol import TOKEN, VERSION, Answer, Disc, Layer, Question, Square
-from verification.problem.array_types import Coatings
-from verification.problem.coated_contact import CoatedContact, NotClaimed, PrescribedLoad
+import numpy as np
+from scipy.interpolate import RectBivariateSpline
+
+from verification.guests.exam_subjects import PLANE, Load, SquareLoad
+from verification.guests.guest_protocol import (
+    TOKEN,
+    VERSION,
+    Answer,
+    Disc,
+    Layer,
+    LineOfPoints,
+    Question,
+    Square,
+)
+from verification.problem.array_types import Array, Coatings
+from verification.problem.coated_contact import FLAT, CoatedContact, NotClaimed, PrescribedLoad
+from verification.problem.line_profile import Line, Profile
+from verification.problem.quantity import DISPLACEMENTS, PEAKS, QUANTITIES, STRESSES
 from verification.running.json_records import plain
+from verification.sampling.largest_tension import Search
+from verification.sampling.line_sampling import sample
+
+Numbers = dict[str, dict[str, Any]]
+
+
+class NotGiven(ValueError):
+    """A result that holds nothing that was asked for."""
+
+
+class Face:
+    """A guest's result with the attributes of a ``Solution``, each if the guest has it."""
+
+    def __init__(self, result: Any) -> None:
+        self._get: Callable[[str], Any] = (
+            result.get if isinstance(result, Mapping) else lambda name: getattr(result, name, None)
+        )
+        self.uncertainty = self._get("uncertainty")
+        if isinstance(self.uncertainty, Mapping):
+            self.uncertainty = SimpleNamespace(**self.uncertainty)
+
+    def has(self, name: str) -> bool:
+        return self._get(name) is not None
+
+    def __getattr__(self, name: str) -> Any:
+        value = self._get(name)
+        if value is None:
+            raise AttributeError(name)
+        return {"pressure": self._pressure, "stress": self._stress}.get(name, value)
+
+    def number(self, name: str) -> float:
+        return float(np.asarray(self._get(name), dtype=float).reshape(()))
+
+    def _pressure(self, x: Any, y: Any = 0.0) -> Array:
+        """p [Pa] at points of the surface, (n,)."""
+        x, y = np.broadcast_arrays(np.asarray(x, dtype=float), np.asarray(y, dtype=float))
+        return _shaped("pressure", self._get("pressure")(x, y), x.shape)
+
+    def _stress(self, x: Any, y: Any, z: Any, layer: int | None = None) -> Array:
+        """sigma[i, j, ...] [Pa] at points, (3, 3) + points."""
+        x, y, z = np.broadcast_arrays(*(np.asarray(v, dtype=float) for v in (x, y, z)))
+        function = self._get("stress")
+        named = {"layer": layer} if "layer" in inspect.signature(function).parameters else {}
+        return _shaped("stress", function(x, y, z, **named), (3, 3, *x.shape))
+
+
+class _Plain(Face):
+    """A face whose uncertainty is not complete, and so not used for fields."""
+
+    def __init__(self, result: Any) -> None:
+        super().__init__(result)
+        self.uncertainty = None
+
+
+def values_of(result: Any, problem: Load, question: Question) -> tuple[Numbers, Numbers]:
+    """Values and uncertainties that ``result`` gives of those wanted, by line and quantity.
+
+    Raises NotGiven where it gives none, ValueError for one of a wrong shape.
+    """
+    # A whole solution, as the methods return it, is sampled as they are.
+    whole = all(
+        hasattr(result, name) for name in ("uncertainty", "pressure_uncertainty", "stress_uncertainty")
+    )
+    face: Any = result if whole else _Plain(result)
+    stated = Face(result).uncertainty
+    values: Numbers = {"contact": {}}
+    uncertainty: Numbers = {"contact": {}}
+    for name in question.contact:
+        record = QUANTITIES[name]
+        if record.derived is not None or (whole and record.kind == "slope"):
+            with suppress(AttributeError):  # a number of which it follows is not given
+                values["contact"][name] = record.value(result if whole else face, problem)
+                if whole and (own := record.uncertainty(result, problem)) is not None:
+                    uncertainty["contact"][name] = own
+        elif Face(result).has(name):
+            values["contact"][name] = Face(result).number(name)
+            if getattr(stated, name, None) is not None:
+                uncertainty["contact"][name] = float(getattr(stated, name))
+    missing = set(question.contact) - set(values["contact"])
+    if (
+        isinstance(problem, CoatedContact)
+        and not whole
+        and missing & set(PEAKS)
+        and _able(face, "stress", "contact_radius")
+    ):
+        values["contact"] |= dict(zip(PEAKS, _largest_tension(face, problem), strict=True))
+    for asked in question.lines:
+        for p in _sampled(result, problem, asked) if whole else _on_line(face, asked):
+            one = p.line == "contact"
+            if p.quantity in (missing if one else asked.quantities):
+                values.setdefault(p.line, {})[p.quantity] = p.value[0] if one else p.value
+                if p.uncertainty is not None:
+                    wide = p.uncertainty[0] if one else p.uncertainty
+                    uncertainty.setdefault(p.line, {})[p.quantity] = wide
+    values = {line: numbers for line, numbers in values.items() if numbers}
+    if not values:
+        names = "contact_radius, approach, peak_pressure, pressure, stress"
+        raise NotGiven(f"its result, {type(result).__name__}, has none of {names}")
+    return values, {line: numbers for line, numbers in uncertainty.items() if numbers}
+
+
+def _able(face: Any, *names: str) -> bool:
+    return all(getattr(face, name, None) is not None for name in names)
+
+
+def _largest_tension(face: Any, problem: CoatedContact) -> tuple[float, float]:
+    """Value and place of the largest tension of the surface."""
+    search = Search(face, problem)
+    found = search.largest(face.stress(search.x, 0.0, 0.0, layer=0)[0, 0], None)
+    return found.value, found.place
+
+
+def _sampled(solution: Any, problem: Load, asked: LineOfPoints) -> tuple[Profile, ...]:
+    """Every quantity of a whole solution on a line, with the uncertainties, as the methods are sampled."""
+    points = np.array([asked.x, asked.y, asked.z])
+    (_, y, z), ends = points, points[:, [0, -1]]
+    direction = np.diff(ends)[:, 0] / np.linalg.norm(np.diff(ends))
+    moving = np.flatnonzero(direction)
+    # Along an axis the coordinate itself, to the last bit.
+    position = points[moving[0]] if moving.size == 1 else direction @ points
+    origin = ends[:, 0] - (direction @ ends[:, 0]) * direction
+    level = z[0] == z[-1]
+    line = Line(
+        asked.line,
+        float(z[0]) if level and not y.any() else None,
+        asked.layer[0] if level else None,
+        tuple(origin.tolist()),
+        tuple(direction.tolist()),
+        asked.body,
+    )
+    contact = problem if line.depth == 0 and isinstance(problem, CoatedContact) else None
+    found = sample(solution, "guest", line, position, contact)
+    if asked.line != PLANE or (plane := _of_plane(solution, asked)) is None:
+        return found
+    return tuple(replace(p, value=plane[p.quantity]) if p.quantity in plane else p for p in found)
+
+
+def _of_plane(face: Any, asked: LineOfPoints) -> dict[str, Array] | None:
+    """The stresses of a whole plane at points, by a cubic spline; None where the plane is not given there."""
+    if not _able(face, "stress_plane", "nodes"):
+        return None
+    nodes = np.asarray(face.nodes, dtype=float)
+    x, y = np.array(asked.x), np.array(asked.y)
+    if nodes.ndim != 1 or max(abs(x).max(), abs(y).max()) > min(-nodes[0], nodes[-1]):
+        return None
+    sigma = _shaped("stress_plane", face.stress_plane(asked.z[0], asked.layer[0]), (3, 3, *2 * nodes.shape))
+    return {name: RectBivariateSpline(nodes, nodes, sigma[c]).ev(x, y) for name, c in STRESSES.items()}
+
+
+def _on_line(face: Any, asked: LineOfPoints) -> Iterator[Profile]:
+    """Every quantity that ``face`` gives at points of the flat; nothing of a ball."""
+    x, y, z = (np.array(v) for v in (asked.x, asked.y, asked.z))
+    found: dict[str, Array] = {}
+    flat = asked.body == FLAT
+    if flat and "pressure" in asked.quantities and _able(face, "pressure"):
+        found["pressure"] = face.pressure(x, y)
+    if asked.line == PLANE and (plane := _of_plane(face, asked)) is not None:
+        found |= plane
+    elif flat and set(STRESSES) & set(asked.quantities) and _able(face, "stress"):
+        sigma, layers = np.empty((3, 3, x.size)), np.array(asked.layer)
+        for layer in sorted(set(asked.layer)):
+            here = layers == layer
+            sigma[..., here] = face.stress(x[here], y[here], z[here], layer=layer)
+        found |= {name: sigma[component] for name, component in STRESSES.items()}
+    if flat and set(DISPLACEMENTS) & set(asked.quantities) and _able(face, "displacement"):
+        u = _shaped("displacement", face.displacement(x, y, z), (3, x.size))
+        found |= {name: u[i] for i, name in enumerate(DISPLACEMENTS)}
+    for quantity, value in found.items():
+        yield Profile(quantity, asked.line, x, value, "guest")
+
+
+def _shaped(name: str, value: Any, shape: tuple[int, ...]) -> Array:
+    found = np.asarray(value, dtype=float)
+    if found.shape != shape:
+        raise ValueError(f"{name} returns an array of shape {found.shape}; {shape} is needed")
+    return found
 
 
 def main(place: str) -> None:

@@ -10,7 +10,7 @@ from markupsafe import Markup
 
 from verification.guests.case_exam import profiles_of
 from verification.guests.exam_subjects import REFERENCE
-from verification.guests.examination import Examined, outcome_counts
+from verification.guests.examination import Examined
 from verification.guests.slip_diagnosis import UNEXPLAINED, slips
 from verification.judging.verdict import Claim, Outcome, Verdict
 from verification.page.html_page import render_sections
@@ -52,12 +52,10 @@ OWN = ("semi", "fem")
 
 def page(found: Examined, info: RunInfo) -> str:
     """The whole page as HTML."""
-    total = outcome_counts(found.results)
-    answered = sum(total.values()) - total[Outcome.UNSUPPORTED]
-    guest = found.guest
+    guest, total = found.guest, found.total
     facts = [
         ("guest", guest.name),
-        ("way in", guest.callable or " ".join(guest.command) or f"files in {guest.results}"),
+        ("way in", guest.callable or " ".join(guest.command or ()) or f"files in {guest.results}"),
         ("uncertainty", _uncertainty(found)),
         ("left out", f"|r - a| < {guest.edge:g} a" if guest.edge else "nothing"),
         ("command", info.command),
@@ -66,7 +64,7 @@ def page(found: Examined, info: RunInfo) -> str:
     sections = [_quantities(found), _cases(found), _failures(found), _convergence(found), _missing(found)]
     return render_sections(
         "coatcheck guest",
-        f"{guest.name}: {total[Outcome.AGREES]} of {answered} comparisons agree, "
+        f"{guest.name}: {total[Outcome.AGREES]} of {found.answered} comparisons agree, "
         f"{total[Outcome.UNSUPPORTED]} are not supported.",
         facts,
         [section for section in sections if section is not None],
@@ -75,10 +73,9 @@ def page(found: Examined, info: RunInfo) -> str:
 
 def badge(found: Examined) -> str:
     """A badge with the count of comparisons that agree, as SVG."""
-    total = outcome_counts(found.results)
-    answered = sum(total.values()) - total[Outcome.UNSUPPORTED]
-    text = f"{total[Outcome.AGREES]} of {answered} agree"
-    colour = "#2e7d4f" if answered and total[Outcome.AGREES] == answered else "#b3261e"
+    agree, answered = found.total[Outcome.AGREES], found.answered
+    text = f"{agree} of {answered} agree"
+    colour = "#2e7d4f" if answered and agree == answered else "#b3261e"
     left, right = 74, 12 + 7 * len(text)
     return Markup(
         '<svg xmlns="http://www.w3.org/2000/svg" width="{width}" height="20" role="img" '
@@ -95,9 +92,8 @@ def summary(found: Examined) -> dict[str, Any]:
     differences : the largest of each kind of quantity, by the name of a scalar.   seconds : shortest, longest
     answer at the finest level.   memory : the largest [bytes], None where it is not known.
     """
-    total, guest = outcome_counts(found.results), found.guest
-    differences: dict[str, float] = {}
-    for claim, verdict in (item for result in found.results for item in result.verdicts):
+    guest, differences = found.guest, dict[str, float]()
+    for _, claim, verdict in found.comparisons:
         if verdict.difference is not None:
             kind = QUANTITIES[claim.quantity].kind
             name = claim.quantity if kind == "scalar" else kind
@@ -108,8 +104,8 @@ def summary(found: Examined) -> dict[str, Any]:
         "guest": guest.name,
         "cases": len(own),
         "levels": f"{guest.parameter} {', '.join(f'{v:g}' for v in guest.levels)}" if guest.levels else "",
-        "agree": total[Outcome.AGREES],
-        "answered": sum(total.values()) - total[Outcome.UNSUPPORTED],
+        "agree": found.total[Outcome.AGREES],
+        "answered": found.answered,
         "differences": differences,
         "seconds": [min(times, default=0.0), max(times, default=0.0)],
         "memory": max((s.diagnostics["memory"] for s in own if "memory" in s.diagnostics), default=None),
@@ -137,8 +133,8 @@ def _quantities(found: Examined) -> Section:
     """A row for each quantity, the worst first, with its likely reason: what to look at."""
     reasons = _reasons(found)
     rows: list[tuple[tuple[int, float], Row]] = []
-    for quantity in dict.fromkeys(c.quantity for r in found.results for c, _ in r.verdicts):
-        verdicts = [(r, c, v) for r in found.results for c, v in r.verdicts if c.quantity == quantity]
+    for quantity in dict.fromkeys(claim.quantity for _, claim, _ in found.comparisons):
+        verdicts = [one for one in found.comparisons if one[1].quantity == quantity]
         count = Counter(v.outcome for _, _, v in verdicts)
         if set(count) == {Outcome.UNSUPPORTED}:
             continue
@@ -206,9 +202,7 @@ def _place(quantity: str, line: str) -> str:
 
 def _cases(found: Examined) -> Section:
     """A row for each case with an answer: digits by quantity, time, memory."""
-    names = dict.fromkeys(
-        c.quantity for r in found.results for c, v in r.verdicts if v.difference is not None
-    )
+    names = dict.fromkeys(c.quantity for _, c, v in found.comparisons if v.difference is not None)
     rows: list[Row] = []
     for result in found.results:
         if all(v.outcome is Outcome.UNSUPPORTED for _, v in result.verdicts):
@@ -251,17 +245,12 @@ def _digits_cell(verdicts: Sequence[Verdict]) -> Cell:
 
 def _failures(found: Examined) -> Section | None:
     """Figures of the error along the line, of the comparisons that are furthest off."""
-    bad = [
-        (result, claim, verdict)
-        for result in found.results
-        for claim, verdict in result.verdicts
-        if verdict.outcome in (Outcome.DISAGREES, Outcome.INCONCLUSIVE)
-    ]
+    bad = [one for one in found.comparisons if one[2].outcome in (Outcome.DISAGREES, Outcome.INCONCLUSIVE)]
+    bad.sort(key=lambda item: -(item[2].difference or 0.0))
     failures = sorted({f"{r.title}: {s.failure}" for r in found.results for s in r.sources if s.failure})
     if not bad and not failures:
         return None
     along = [item for item in bad if item[1].line != "contact"]
-    along.sort(key=lambda item: -(item[2].difference or 0.0))
     # Every quantity once before one is shown again.
     seen: Counter[str] = Counter()
     ranked = []
@@ -296,7 +285,7 @@ def _failures(found: Examined) -> Section | None:
             words(verdict.reason),
             css=row_css(verdict.outcome),
         )
-        for result, claim, verdict in sorted(bad, key=lambda item: -(item[2].difference or 0.0))
+        for result, claim, verdict in bad
     ]
     heads = ["case", "verdict", "quantity", "line", "guest / exact", "difference", "U", "cap", "reason"]
     parts.append(Part("", [Table("Every comparison that does not agree.", heads, rows)]))
@@ -381,12 +370,8 @@ def _errors(found: Examined, result: CaseResult) -> dict[str, tuple[float, ...]]
             true = exact[p.quantity, p.line, REFERENCE]
             judged = np.abs(np.abs(true.position) - a) >= guest.edge * a
             scale = float(np.abs(true.value).max())
-            if scale and (p.line == "contact" or judged.any()):
-                gap = (
-                    np.abs(p.value - true.value)
-                    if p.line == "contact"
-                    else np.abs(p.value - true.value)[judged]
-                )
+            gap = np.abs(p.value - true.value)[judged | (p.line == "contact")]
+            if scale and gap.size:
                 largest[p.quantity] = max(largest.get(p.quantity, 0.0), float(gap.max()) / scale)
         for quantity, value in largest.items():
             errors.setdefault(quantity, []).append(value)
@@ -402,11 +387,8 @@ def _order(levels: Sequence[float], errors: Sequence[float]) -> float | None:
 
 def _missing(found: Examined) -> Section | None:
     """What the guest did not answer, with the reason."""
-    reasons: Counter[tuple[str, str]] = Counter()
-    for result in found.results:
-        for claim, verdict in result.verdicts:
-            if verdict.outcome is Outcome.UNSUPPORTED:
-                reasons[verdict.reason, claim.quantity] += 1
+    missing = (one for one in found.comparisons if one[2].outcome is Outcome.UNSUPPORTED)
+    reasons = Counter((verdict.reason, claim.quantity) for _, claim, verdict in missing)
     if not reasons:
         return None
     by: dict[str, list[str]] = {}

@@ -88,6 +88,17 @@ def conversion_errors(
     return tuple(found)
 
 
+def coefficient_error(problem: CoatedContact, side: float, patches: int = 33) -> float:
+    """Largest |K - K_exact| over the largest K, of coefficients by default on patches of ``side`` [m]."""
+    from semianalytic import influence
+    from semianalytic.inputs import Numerics
+
+    places = _places(patches)
+    exact = _by_quadrature(problem, places, side)
+    K = influence.surface_coefficients(patches, side, _body(problem), Numerics())
+    return float(np.abs(np.array([K[place] for place in places]) - exact).max() / exact[0])
+
+
 def influence_coefficients(solution: Solution, source: str, problem: CoatedContact) -> Invariant:
     """The coefficients in use, of patches and of their parts at the edge, at near and far offsets.
 

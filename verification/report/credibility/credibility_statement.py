@@ -5,63 +5,197 @@ further requirements of NASA-STD-7009A (2016), Standard for Models and Simulatio
 of the result, evidence for each.
 """
 
+from collections import Counter
 from collections.abc import Sequence
 from math import isfinite
 from statistics import median
 
+from verification.cases.random_problems import FRICTION, MOST_COATINGS, POISSON, RATIO, THICKNESS, THINNEST
+from verification.credibility.import_independence import Part as Imports
 from verification.credibility.import_independence import shared
-from verification.credibility.self_tests.known_enclosures import TEST
-from verification.evidence.alarm_record import DECADES
+from verification.credibility.manufactured_solutions import DesignOrder
+from verification.credibility.self_tests.known_verdicts import TEST
+from verification.evidence.alarm_record import DECADES, AlarmRecord
+from verification.evidence.enclosure_record import EnclosureRecord
 from verification.judging.verdict import Outcome
 from verification.page.number_text import plain
-from verification.page.page_parts import Gallery, Panel, Part, Section
-from verification.page.source_labels import source_label
-from verification.page.svg_loglog import draw_histogram
-from verification.report.credibility.credibility_tables import (
-    alarm_table,
-    design_table,
-    import_table,
-    pair_table,
-    parameter_table,
-    range_table,
-    two_sided_table,
+from verification.page.page_parts import (
+    Cell,
+    Gallery,
+    Panel,
+    Part,
+    Section,
+    Table,
+    number,
+    outcome_cell,
+    row,
+    table_of,
+    tally,
+    words,
 )
-from verification.report.credibility.mutants_section import mutants_message
+from verification.page.source_labels import pair_label, source_label
+from verification.page.svg_loglog import draw_histogram
+from verification.problem.quantity import SCALARS
+from verification.report.credibility.detection_sections import mutants_message
 from verification.report.report_material import Evidence, Material
+from verification.report.report_words import stated
 from verification.report.sections.accuracy_section import accuracies, coverage_table
+from verification.report.tables.case_lookup import layers, scale
 from verification.running.case_result import CaseResult
 
+MOST = 30
+
+
+def range_table(results: Sequence[CaseResult]) -> Table:
+    """Ranges of the problems of this run beside those of the random problems."""
+    solids = [(layers(result), scale(result, "a_h"), result.problem) for result in results]
+    found: dict[str, tuple[list[float], Sequence[float]]] = {
+        "E of a coating over E of the substrate": (
+            [E / layers[-1][0] for layers, _, _ in solids for E, _, _ in layers[:-1]],
+            RATIO,
+        ),
+        "h / a_h of a coating": (
+            [float(h / a) for layers, a, _ in solids for _, _, h in layers[:-1]],
+            (min(THINNEST, *THICKNESS), max(THICKNESS)),
+        ),
+        "Poisson's ratio": ([nu for layers, _, _ in solids for _, nu, _ in layers], POISSON),
+        "friction f": ([float(problem.get("friction", 0.0)) for _, _, problem in solids], FRICTION),
+        "coatings": ([len(layers) - 1.0 for layers, _, _ in solids if layers], (1.0, float(MOST_COATINGS))),
+    }
+    return table_of(
+        "Ranges of the problems solved.",
+        found.items(),
+        [
+            ("quantity", lambda item: item[0]),
+            ("this run", lambda item: _range(item[1][0])),
+            ("random problems", lambda item: _range(item[1][1])),
+        ],
+    )
+
+
+def design_table(orders: Sequence[DesignOrder]) -> Table:
+    """Observed order of convergence of the finite element operator beside its design order."""
+
+    def observed(value: float, one: DesignOrder) -> Cell:
+        return number(value, "{:.2f}".format, "flag agrees" if one.as_designed else "flag disagrees")
+
+    return table_of(
+        "Finite element operator on manufactured solutions: order in the L2 norm from a mesh to one twice as "
+        "fine.",
+        orders,
+        [
+            ("elements", lambda one: Cell(f"order {one.order}", one.order)),
+            ("harmonic", lambda one: one.harmonic),
+            ("design, u", lambda one: one.order + 1),
+            ("observed, u", lambda one: observed(one.displacement, one)),
+            ("design, ∇u", lambda one: one.order),
+            ("observed, ∇u", lambda one: observed(one.gradient, one)),
+            ("error, finer mesh", lambda one: one.errors[1]),
+        ],
+    )
+
+
+def parameter_table(results: Sequence[CaseResult]) -> Table:
+    """The numerical parameter that dominates the uncertainty of each scalar, counted over the cases."""
+    counts: dict[tuple[str, str], Counter[str]] = {}
+    for result in results:
+        for source in result.sources:
+            for quantity in SCALARS:
+                rows = [(value, parameter) for q, parameter, value in source.budget if q == quantity]
+                if rows:
+                    counts.setdefault((source.source, quantity), Counter())[max(rows)[1]] += 1
+    found = []
+    for (name, quantity), counter in sorted(counts.items()):
+        text = ", ".join(f"{parameter} ({count})" for parameter, count in counter.most_common())
+        found.append(row(source_label(name), quantity.replace("_", " "), words(text)))
+    return Table(
+        "Numerical parameter with the largest share of U, with the number of cases.",
+        ["method", "quantity", "dominating parameter"],
+        found,
+    )
+
+
+def pair_table(results: Sequence[CaseResult]) -> Table:
+    """Comparisons of each pair of sources: how many agree, the largest difference, the least margin."""
+    verdicts = [(c, v) for result in results for c, v in result.verdicts]
+    rows = []
+    for pair in dict.fromkeys(claim.between for claim, _ in verdicts):
+        mine = [v for c, v in verdicts if c.between == pair]
+        good = sum(v.outcome is Outcome.AGREES for v in mine)
+        largest = max((v.difference for v in mine if v.difference is not None), default=None)
+        widest = max((v.uncertainty for v in mine if v.uncertainty is not None), default=None)
+        rows.append(row(pair_label(pair), tally(good, len(mine)), largest, widest))
+    return Table(
+        "All comparisons by pair of sources; differences and U as fractions of their scale.",
+        ["between", "agree", "largest difference", "largest U"],
+        rows,
+    )
+
+
+def two_sided_table(record: EnclosureRecord | None) -> Table:
+    """Energy bounds by finite elements: ends relative to the enclosed values, effectivity."""
+    rows = []
+    for one in record.enclosures if record else ():
+        if (two := one.two_sided) is not None:
+            cells: list[Cell | float] = []
+            for (low, high), exact, effectivity in two.compared:
+                cells += [1 - low / exact, high / exact - 1, number(effectivity, "{:.1f}".format)]
+            rows.append(row(one.name, *cells))
+    return Table(
+        "Bounds by finite elements at the enclosed contact radius: distance of either end from the enclosed "
+        "value, relative; effectivity, the proven error of the displacements over the true one.",
+        ["problem", "below", "above", "effectivity", "below", "above", "effectivity"],
+        rows,
+        [("", 1), ("stiffness of a flat punch", 3), ("approach", 3)],
+    )
+
+
+def import_table(parts: Sequence[Imports]) -> Table:
+    """Imports of each part from outside, with those that are forbidden."""
+
+    def forbidden(part: Imports) -> Cell:
+        bad = [*part.forbidden, *part.hidden]
+        return Cell("; ".join(bad) or "none", css=f"words flag {'disagrees' if bad else 'agrees'}")
+
+    return table_of(
+        "Imports of each part, without its own and the standard library.",
+        parts,
+        [
+            ("part", lambda part: part.name),
+            ("files", lambda part: part.files),
+            ("imports", lambda part: part.statements),
+            ("modules from outside", lambda part: words(", ".join(part.modules))),
+            ("forbidden imports", forbidden),
+        ],
+    )
+
+
+def alarm_table(record: AlarmRecord | None) -> Table:
+    """The false alarms on record."""
+    alarms = record.alarms if record is not None else ()
+    more = f" The first {MOST} of {len(alarms)}." if len(alarms) > MOST else ""
+    return table_of(
+        f"Verdicts of clean problems that are not AGREES.{more}",
+        alarms[:MOST],
+        [
+            ("problem", lambda alarm: Cell(alarm.title, note=alarm.case, css="words")),
+            ("verdict", lambda alarm: outcome_cell(alarm.outcome)),
+            ("quantity", lambda alarm: alarm.quantity),
+            ("line", lambda alarm: alarm.line),
+            ("between", lambda alarm: " – ".join(map(source_label, alarm.between))),
+            ("reason", lambda alarm: words(alarm.reason)),
+        ],
+    )
+
+
+def _range(found: Sequence[float]) -> str:
+    if not found:
+        return "–"
+    low, high = min(found), max(found)
+    return plain(low, 3) if low == high else f"{plain(low, 3)} to {plain(high, 3)}"
+
+
 NO_RECORD = "Not measured: there is no record of {}; make one with: {} --record"
-ASSUMED = (
-    "A parabolic sphere, rigid or elastic, much larger than the contact; small strains; linear, isotropic, "
-    "elastic layers with nu < 1/2, perfectly bonded, on a half-space; no adhesion, no roughness; Coulomb "
-    "friction q = f p that leaves p unchanged."
-)
-COMMON = {
-    "What the semi-analytical method and the integral equation share": (
-        "The semi-analytical method and the exact integral equation use the same frequency response of the "
-        "layers, derived and coded twice: the method from Papkovich potentials with reflection matrices, the "
-        "reference from state vectors with surface impedances. Otherwise they share no equation: the method "
-        "finds pressures of surface patches, the reference values of a potential along the radius, phi. "
-        "Stresses of the method are sums of point forces, those of the reference Hankel integrals over the "
-        "wavenumber. The finite elements share only the assumptions with both."
-    ),
-    "What comparisons of a sphere test of the patches": (
-        "Every number of the semi-analytical method comes from the pressures that influence coefficients, "
-        "conjugate gradients and DC-FFT give to the patches: a change of the coefficients by 1 % changes "
-        "contact radius, peak pressure, approach and stresses as the same change of the modulus would. The "
-        "studies named staircase edge compare patches without the correction of the edge with the exact "
-        "solution; an invariant of every case compares the influence coefficients with direct quadrature."
-    ),
-}
-NOT_CLAIMED = (
-    "Validity for a real coating: nothing was compared with an experiment, so this is verification, not "
-    "validation. Detection of an error in the assumptions common to both methods. Surface stresses at fixed "
-    "points next to the contact edge better than the root of the error of the radius; the largest tension "
-    "has no such root. A strict bound by the uncertainty: it is an estimate from coarser solutions, and the "
-    "share in which it covers the true error is given above. Detection of other kinds of faults at the rate "
-    "of those that were planted. The same accuracy outside the ranges above."
-)
 
 
 def section(material: Material) -> Section | None:
@@ -71,30 +205,11 @@ def section(material: Material) -> Section | None:
         return None
     contacts = material.contacts
     parts = [
+        Part(stated("evidence")),
+        Part(stated("intended"), [range_table(contacts)], title="1. Intended use and limits"),
+        Part(stated("code"), [design_table(evidence.orders)], title="2. Code verification"),
         Part(
-            "Evidence for the verdicts of this report, in the order of ASME V&V 10 (Guide for Verification "
-            "and Validation in Computational Solid Mechanics) with further requirements of NASA-STD-7009A. "
-            "Every figure was measured in this run or is read from a record with its date and commit.",
-        ),
-        Part(
-            "Deciding whether numerical solutions of one mathematical model are correct within a stated "
-            f"uncertainty. The model: {ASSUMED[0].lower()}{ASSUMED[1:]} Ranges of the problems of this "
-            "run and of the random problems of the false alarm rate:",
-            [range_table(contacts)],
-            title="1. Intended use and limits",
-        ),
-        Part(
-            "Orders of convergence on problems with a known solution: manufactured fields in two bonded "
-            "materials for the finite element operator below, exact solutions of the contact for both "
-            "methods in the accuracy sections.",
-            [design_table(evidence.orders)],
-            title="2. Code verification",
-        ),
-        Part(
-            "Every method states an uncertainty U for each number, estimated from coarser solutions of the "
-            "same problem: on fewer patches, or on a coarser mesh. U is checked where the exact solution is "
-            "known: "
-            f"{_bracketed(contacts)}",
+            stated("solution", found=_bracketed(contacts)),
             [coverage_table(contacts), parameter_table(contacts)],
             title="3. Solution verification",
         ),
@@ -106,11 +221,15 @@ def section(material: Material) -> Section | None:
         Part(
             _independent(evidence), [import_table(evidence.parts)], title="5. Independence of the two methods"
         ),
-        *(Part(text, folded=title) for title, text in COMMON.items()),
+        Part(
+            stated("shared_equation"),
+            folded="What the semi-analytical method and the integral equation share",
+        ),
+        Part(stated("tested_patches"), folded="What comparisons of a sphere test of the patches"),
         Part(f"{_faults(evidence)} {_mutants(evidence)}", [], title="6. Fault detection"),
         Part(_alarms(evidence), [], _histograms(evidence), "7. False alarms"),
         Part("", [alarm_table(evidence.alarms)], folded="Verdicts of clean problems that are not AGREES"),
-        Part(NOT_CLAIMED, title="8. Not claimed"),
+        Part(stated("not_claimed"), title="8. Not claimed"),
     ]
     return Section("credibility", "Credibility", parts, evidence.failures)
 
@@ -154,14 +273,14 @@ def _enclosed(evidence: Evidence) -> str:
         return NO_RECORD.format("enclosures", "coatcheck certify")
     values = [bounds for one in record.enclosures for bounds in one.bounds]
     held = next((test for test in evidence.self_tests if test.name == TEST), None)
-    found = "" if held is None else f" Held against them in this run: {held.found}."
-    return (
-        "The exact reference states its uncertainty by two resolutions; it is checked against enclosures of "
-        f"the integral equation by ball arithmetic, without common code. Proven bounds hold {len(values)} "
-        f"values of {len(record.enclosures)} problems, relative width "
-        f"{plain(max(bounds.width for bounds in values), 2)} at most. Made {_when(evidence, 'enclosures')}, "
-        f"by coatcheck certify with python-flint {record.versions.get('python-flint', 'unknown')}; the proof "
-        f"is in the manual.{found}"
+    return stated(
+        "enclosed",
+        values=len(values),
+        problems=len(record.enclosures),
+        width=plain(max(bounds.width for bounds in values), 2),
+        made=_when(evidence, "enclosures"),
+        flint=record.versions.get("python-flint", "unknown"),
+        found=held and held.found,
     )
 
 
@@ -177,25 +296,21 @@ def _independent(evidence: Evidence) -> str:
     found = f"None of {counted} imports in {files} files of both methods and the references is forbidden."
     if bad:
         found = f"{len(bad)} imports are forbidden: {'; '.join(bad[:5])}."
-    return (
-        f"{found} Read from the installed source. Packages that both "
-        f"methods use: {both}; modules that both import: {common}. A fault in one of these, in Python "
-        "or in the processor affects both. So does a fault in their common assumptions, in the statement of "
-        "the problem, in the sampling and judging of both; the last two are checked by planted faults and by "
-        "self-tests of the harness."
-    )
+    return stated("independent", found=found, both=both, common=common)
 
 
 def _faults(evidence: Evidence) -> str:
     record = evidence.faults
     if record is None:
         return NO_RECORD.format("planted faults", "coatcheck faults")
-    survivors = "Those that were not are in the section on planted faults." if record.survivors else ""
-    return (
-        f"{record.caught} of {len(record.rows)} planted faults are detected, "
-        f"{plain(100 * record.share, 3)} %; {record.as_predicted} of them by the predicted check. Measured "
-        f"{_when(evidence, 'faults')}, by coatcheck faults. A crash alone does not count as detected. "
-        f"{survivors}"
+    return stated(
+        "detected",
+        caught=record.caught,
+        total=len(record.rows),
+        share=plain(100 * record.share, 3),
+        predicted=record.as_predicted,
+        made=_when(evidence, "faults"),
+        survivors=record.survivors,
     )
 
 
@@ -222,21 +337,11 @@ def _histograms(evidence: Evidence) -> Gallery | None:
         )
         for one in record.ratios
     ]
-    caption = (
-        "Error over stated uncertainty of every value in the random problems, the integral equation taken "
-        "for the truth; errors below 1e-9 of the largest value of a profile are left out. Right of the line, "
-        "an error exceeds its uncertainty; far to the left, an uncertainty is needlessly large."
-    )
-    return Gallery((), panels, caption)
+    return Gallery((), panels, stated("ratios"))
 
 
 def _alarms(evidence: Evidence) -> str:
     record = evidence.alarms
     if record is None:
         return NO_RECORD.format("false alarms", "coatcheck alarms")
-    return (
-        f"{len(record.alarms)} false alarms in {record.comparisons} comparisons and {record.invariants} "
-        f"invariants of {record.problems} clean random problems; {record.agreeing} of the problems agree "
-        f"throughout. Measured {_when(evidence, 'alarms')}, by coatcheck alarms --count "
-        f"{record.problems} --seed {record.seed}. INCONCLUSIVE and a missing result count as alarms, too."
-    )
+    return stated("false_alarms", record=record, made=_when(evidence, "alarms"))

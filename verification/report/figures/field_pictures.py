@@ -1,23 +1,240 @@
-"""Stresses in the plane below the contact, with the difference of both methods."""
+"""Stresses in the plane below the contact as small pictures, with the difference of both methods.
 
+The raster is a compressed image of a few kilobytes; axes, interfaces, contact and level lines are drawn over
+it as vectors in the colours of the page, so that they follow light, dark and print.
+"""
+
+import base64
+import io
+import itertools
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import zip_longest
+from typing import Any
 
+import contourpy
+import matplotlib as mpl
 import numpy as np
+from markupsafe import Markup, escape
+from numpy.typing import NDArray
+from PIL import Image
+from scipy.interpolate import PchipInterpolator
 
-from verification.page.embedded_csv import written
 from verification.page.number_text import plain, scientific
-from verification.page.page_parts import Panel
+from verification.page.page_parts import Panel, written
 from verification.page.source_labels import source_label
-from verification.page.svg_raster import Frame, Scale, draw_field, rasterised
+from verification.page.svg_plot import Axes, polyline, power_of_ten, round_ticks
+from verification.page.symbol_text import drawn, unicode
 from verification.problem.array_types import Array
 from verification.problem.quantity import IN_PLANE, von_mises
+from verification.report.report_words import stated
 from verification.report.tables.case_lookup import scale as scale_of
 from verification.report.tables.case_lookup import slug
 from verification.running.case_result import CaseResult
 from verification.sampling.stress_plane import Plane
 from verification.sources.source_registry import METHODS
+
+LEFT, TOP, RIGHT, BOTTOM = 46.0, 12.0, 52.0, 32.0  # margins around the raster, in units of the drawing
+WIDTH = 250.0  # of the raster
+PIXELS = 200  # along x
+COLOURS = 96
+THINNEST = 0.14  # of the height of a picture: what a layer has at least, to be seen
+NO_NUMBER = (128, 128, 128)
+
+
+@dataclass(frozen=True)
+class Scale:
+    """Colours for values from ``low`` to ``high``; ``name`` is a map of matplotlib safe for the colour-blind.
+
+    logarithmic : low and high are exponents of ten, so are the values.
+    """
+
+    low: float
+    high: float
+    name: str
+    logarithmic: bool = False
+
+    @property
+    def ticks(self) -> list[tuple[float, str]]:
+        """Values with their labels."""
+        if self.logarithmic:
+            values = [float(v) for v in range(round(self.low), round(self.high) + 1)]
+            return [(v, power_of_ten(v)) for v in values]
+        return round_ticks(self.low, self.high, 6)
+
+
+@dataclass(frozen=True, eq=False)
+class Frame:
+    """The part of the plane that is drawn, lengths over a_h.
+
+    half : it reaches from -half to half.  depth : from 0 to here.  interfaces : depths.  contact : radius.
+    A layer thinner than ``THINNEST`` of the depth is drawn that thick, the others that much thinner.
+    """
+
+    half: float
+    depth: float
+    interfaces: tuple[float, ...]
+    contact: float
+
+    @property
+    def edges(self) -> list[float]:
+        """Depths of the surface, of each interface above the lower end, of the lower end."""
+        return [0.0, *(z for z in self.interfaces if z < self.depth), self.depth]
+
+    @property
+    def shares(self) -> list[float]:
+        """Where the edges are drawn, as a share of the height."""
+        parts = np.diff(self.edges) / self.depth
+        thin = parts < THINNEST
+        rest = 1 - THINNEST * thin.sum()
+        if not thin.any() or rest < THINNEST:
+            return [edge / self.depth for edge in self.edges]
+        parts = np.where(thin, THINNEST, parts * rest / max(parts[~thin].sum(), 1e-30))
+        return [0.0, *np.cumsum(parts)[:-1].tolist(), 1.0]
+
+    @property
+    def stretched(self) -> bool:
+        """Whether a layer is drawn thicker than it is."""
+        return bool(np.abs(np.array(self.shares) - np.array(self.edges) / self.depth).max() > 1e-9)
+
+    def place(self, z: float) -> float:
+        """Where the depth ``z`` is drawn, as a share of the height."""
+        return float(np.interp(z, self.edges, self.shares))
+
+    @property
+    def rows(self) -> int:
+        """Pixels along z, as wide as those along x."""
+        return max(8, round(PIXELS * self.depth / (2 * self.half)))
+
+    @property
+    def height(self) -> float:
+        """Of the raster, in units of the drawing."""
+        return WIDTH * self.depth / (2 * self.half)
+
+
+def rasterised(
+    x: Array, depths: Sequence[Array], values: Sequence[Array], frame: Frame, smooth: bool = True
+) -> Array:
+    """Values at the centres of the pixels, (rows, PIXELS), from those at ``x`` and the depths of each layer.
+
+    Linear along x, along z monotone cubics (``smooth``) or straight lines; never across an interface.
+    """
+    columns = frame.half * (2 * (np.arange(PIXELS) + 0.5) / PIXELS - 1)
+    middles = (np.arange(frame.rows) + 0.5) / frame.rows
+    rows = np.interp(middles, frame.shares, frame.edges)
+    owner = np.searchsorted(frame.shares[1:-1], middles)
+    out = np.full((frame.rows, PIXELS), np.nan)
+    for k, (z, value) in enumerate(zip(depths, values, strict=True)):
+        mine = owner == k
+        if not mine.any() or not np.isfinite(value).all():
+            continue
+        at = np.clip(rows[mine], z[0], z[-1])
+        if smooth:
+            down = PchipInterpolator(z, value, axis=0)(at)
+        else:
+            down = np.stack([np.interp(at, z, column) for column in value.T], axis=1)
+        out[mine] = np.stack([np.interp(columns, x, row) for row in down])
+    return out
+
+
+def draw_field(raster: Array, frame: Frame, scale: Scale, *, label: str, lines: bool = True) -> Markup:
+    """One field as inline SVG; lengths over a_h.
+
+    raster : as from ``rasterised``, NaN is drawn grey.   lines : draw level lines at the ticks of the scale.
+    """
+    width, height = LEFT + WIDTH + RIGHT, TOP + frame.height + BOTTOM
+    axes = Axes((LEFT, TOP, WIDTH, frame.height), (-frame.half, frame.half), (1.0, 0.0))
+    axes.ticks(round_ticks(-frame.half, frame.half, 5), _depths(frame), "x / a_h")
+    axes.add(_image(_address(coloured(raster, scale), ragged=not lines), LEFT, WIDTH, frame))
+    if lines:
+        axes.add(_level_lines(raster, frame, scale))
+    unit = WIDTH / (2 * frame.half)
+    across = "".join(f"M{LEFT} {TOP + at * frame.height:.1f}h{WIDTH:g}" for at in frame.shares[1:-1])
+    axes.add(f'<path d="{across}" class="edge casing"/><path d="{across}" class="edge"/>')
+    half, middle = min(frame.contact, frame.half) * unit, TOP + frame.height / 2
+    return Markup(
+        f'<svg class="figure field" viewBox="0 0 {width:.0f} {height:.1f}" role="img" '
+        f'aria-label="{escape(unicode(label))}">{axes.markup()}'
+        f'<path d="M{LEFT + WIDTH / 2 - half:.1f} {TOP - 3.5}h{2 * half:.1f}" class="s-cap" '
+        'stroke-width="4"/>'
+        f'<text x="10" y="{middle:.1f}" class="f-muted" '
+        f'text-anchor="middle" transform="rotate(-90 10 {middle:.1f})">{drawn("z / a_h")}</text>'
+        f"{_bar(frame, scale)}</svg>"
+    )
+
+
+def _depths(frame: Frame) -> list[tuple[float, str]]:
+    """Ticks along z: the edges of the layers, then round numbers that keep clear of them."""
+    apart = 11.0 / frame.height
+    found: list[tuple[float, str]] = []
+    wanted = [(z, f"{z:.2g}") for z in frame.edges[:-1]] + round_ticks(0.0, frame.depth, 5)
+    for z, text in wanted:
+        at = frame.place(z)
+        if all(abs(at - other) >= apart for other, _ in found):
+            found.append((at, text))
+    return found
+
+
+def _image(address: str, left: float, width: float, frame: Frame) -> str:
+    return (
+        f'<image x="{left}" y="{TOP}" width="{width}" height="{frame.height:.1f}" preserveAspectRatio="none" '
+        f'href="{address}"/>'
+    )
+
+
+def coloured(raster: Array, scale: Scale) -> NDArray[np.uint8]:
+    """Colours of ``raster``, shape of it + (3,); NaN is grey."""
+    span = scale.high - scale.low or 1.0
+    known = np.isfinite(raster)
+    share = np.where(known, (np.where(known, raster, 0.0) - scale.low) / span, 0.0)
+    index = np.clip((share * COLOURS).astype(int), 0, COLOURS - 1)
+    return np.where(known[..., None], _palette(scale)[index], np.array(NO_NUMBER, dtype=np.uint8))
+
+
+def _palette(scale: Scale) -> NDArray[np.uint8]:
+    colours = mpl.colormaps[scale.name]((np.arange(COLOURS) + 0.5) / COLOURS)
+    return np.round(255 * colours[:, :3]).astype(np.uint8)
+
+
+def _address(pixels: NDArray[np.uint8], ragged: bool = False) -> str:
+    """``pixels`` as an image that carries itself; a ``ragged`` one nearly so, at a quarter of the size."""
+    written = io.BytesIO()
+    options: dict[str, Any] = {"quality": 90} if ragged else {"lossless": True, "quality": 100}
+    picture = Image.fromarray(np.ascontiguousarray(pixels, dtype=np.uint8))
+    picture.save(written, "WEBP", method=4, **options)
+    return f"data:image/webp;base64,{base64.b64encode(written.getvalue()).decode()}"
+
+
+def _level_lines(raster: Array, frame: Frame, scale: Scale) -> str:
+    """Lines of equal value at the ticks, broken at interfaces where the value jumps."""
+    rows, columns = raster.shape
+    x = LEFT + WIDTH * (np.arange(columns) + 0.5) / columns
+    z = TOP + frame.height * (np.arange(rows) + 0.5) / rows
+    bounds = [round(rows * share) for share in frame.shares]
+    path = []
+    for low, high in itertools.pairwise(bounds):
+        if high - low < 3 or not np.isfinite(raster[low:high]).all():
+            continue
+        lines = contourpy.contour_generator(x, z[low:high], raster[low:high])
+        for value, _ in scale.ticks:
+            path += [polyline(np.asarray(line)) for line in lines.lines(value)]
+    return f'<path d="{"".join(path)}" class="level"/>'
+
+
+def _bar(frame: Frame, scale: Scale) -> str:
+    """The colours of the scale with its ticks, to the right of the raster."""
+    left, width = LEFT + WIDTH + 8, 10.0
+    parts = [_image(_address(_palette(scale)[::-1, None, :]), left, width, frame)]
+    for value, text in scale.ticks:
+        share = (value - scale.low) / (scale.high - scale.low or 1.0)
+        if -1e-9 <= share <= 1 + 1e-9:
+            at = TOP + (1 - share) * frame.height
+            parts.append(
+                f'<path d="M{left + width} {at:.1f}h3" class="s-muted"/>'
+                f'<text x="{left + width + 5}" y="{at + 3.5:.1f}" class="f-ink">{drawn(text)}</text>'
+            )
+    return "".join(parts)
+
 
 SHOWN = ("von_mises", "sigma_xx", "sigma_xz")
 TITLES = {"von_mises": "von Mises"}
@@ -42,35 +259,40 @@ def pictures(result: CaseResult, plane: Plane | None) -> Pictures | None:
     a_h, p_h = float(scale_of(result, "a_h")), float(scale_of(result, "p_h"))
     if plane is None or not plane.stress or not a_h > 0 or not p_h > 0:
         return None
-    failures = tuple((source_label(name), message) for name, message in plane.failures.items())
     sources = [name for name in METHODS if name in plane.stress]
-    bottoms = [float(z[-1]) / a_h for z in plane.depths]
-    frame = Frame(float(plane.x[-1]) / a_h, bottoms[-1], tuple(bottoms[:-1]), plane.radius / a_h)
-    rows = [_quantity_drawn(plane, quantity, sources, p_h) for quantity in SHOWN]
-    caption, table = _caption(sources, frame), plane_csv(plane)
     x, depths = plane.x / a_h, [z / a_h for z in plane.depths]
-    panels = [
-        Panel(
-            one.title,
-            draw_field(
-                rasterised(x, depths, one.values, frame, smooth=one.smooth),
-                frame,
-                one.colours,
-                label=one.label,
-                lines=one.smooth,
-            ),
-            one.note,
-            "",
-        )
-        for some in zip(*rows, strict=True)
-        for one in some
-    ]
+    bottoms = [float(z[-1]) for z in depths]
+    frame = Frame(float(x[-1]), bottoms[-1], tuple(bottoms[:-1]), plane.radius / a_h)
+
+    def panel(values: Sequence[Array], colours: Scale, title: str, label: str, note: str) -> Panel:
+        smooth = not colours.logarithmic
+        raster = rasterised(x, depths, values, frame, smooth=smooth)
+        return Panel(title, draw_field(raster, frame, colours, label=label, lines=smooth), note, "")
+
+    fields, gaps = [], []
+    for quantity in SHOWN:
+        by = {s: [_quantity(sigma, quantity) / p_h for sigma in plane.stress[s]] for s in sources}
+        source, shown = next(iter(by.items()))
+        title, name = f"{TITLES.get(quantity, quantity)} / p_h", source_label(source)
+        values = np.concatenate([f.ravel() for f in shown])
+        known = values[np.isfinite(values)]
+        span = f"{plain(known.min(), 3)} to {plain(known.max(), 3)}" if known.size else "not finite"
+        fields.append(panel(shown, _colours(quantity, shown), title, f"{title} by {name}", f"{name}, {span}"))
+        if len(sources) == 2:
+            apart = [np.abs(one - other) for one, other in zip(*by.values(), strict=True)]
+            largest = max((float(g.max()) for g in apart), default=0.0)
+            exponents = [np.log10(np.maximum(g, 10.0 ** (FLOOR - 1))) for g in apart]
+            top = max(TOP, float(np.ceil(np.log10(largest)))) if 0 < largest < np.inf else TOP
+            colours = Scale(FLOOR, top, DIFFERENCE, logarithmic=True)
+            label = f"difference of both methods in {title}, logarithmic"
+            note = f"largest {scientific(largest)}"
+            gaps.append(panel(exponents, colours, f"difference in {title}", label, note))
     return Pictures(
-        tuple(panels),
-        caption,
-        table,
+        (*fields, *gaps),
+        stated("pictures", stretched=frame.stretched, both=len(sources) == 2),
+        plane_csv(plane),
         f"{slug(result.name)}-plane.csv",
-        failures,
+        tuple((source_label(name), message) for name, message in plane.failures.items()),
     )
 
 
@@ -93,30 +315,6 @@ def _quantity(sigma: Array, name: str) -> Array:
     return von_mises(sigma) if name == "von_mises" else sigma[list(IN_PLANE).index(name)]
 
 
-@dataclass(frozen=True, eq=False)
-class _Drawn:
-    """A field to draw: values layer by layer.   smooth : between points, with level lines."""
-
-    title: str
-    values: Sequence[Array]
-    colours: Scale
-    label: str
-    note: str
-    smooth: bool = True
-
-
-def _quantity_drawn(plane: Plane, quantity: str, sources: Sequence[str], p_h: float) -> list[_Drawn]:
-    """The field of the first method, then its difference from the other."""
-    fields = {s: [_quantity(sigma, quantity) / p_h for sigma in plane.stress[s]] for s in sources}
-    source, shown = next(iter(fields.items()))
-    title, name = f"{TITLES.get(quantity, quantity)} / p_h", source_label(source)
-    values = np.concatenate([f.ravel() for f in shown])
-    known = values[np.isfinite(values)]
-    span = f"{plain(known.min(), 3)} to {plain(known.max(), 3)}" if known.size else "not finite"
-    first = _Drawn(title, shown, _colours(quantity, shown), f"{title} by {name}", f"{name}, {span}")
-    return [first, _difference(fields, title)] if len(sources) == 2 else [first]
-
-
 def plane_difference(plane: Plane, scale: float) -> tuple[float, str] | None:
     """Largest difference of the methods anywhere in the plane over ``scale``, with the stress it is of."""
     if len(plane.stress) != 2 or not scale > 0:
@@ -129,22 +327,6 @@ def plane_difference(plane: Plane, scale: float) -> tuple[float, str] | None:
     return float(largest.max()), list(IN_PLANE)[int(largest.argmax())]
 
 
-def _difference(fields: dict[str, list[Array]], title: str) -> _Drawn:
-    gaps = [np.abs(one - other) for one, other in zip(*fields.values(), strict=True)]
-    largest = max((float(g.max()) for g in gaps), default=0.0)
-    with np.errstate(divide="ignore"):
-        exponents = [np.log10(np.maximum(g, 10.0 ** (FLOOR - 1))) for g in gaps]
-    top = max(TOP, float(np.ceil(np.log10(largest)))) if 0 < largest < np.inf else TOP
-    return _Drawn(
-        f"difference in {title}",
-        exponents,
-        Scale(FLOOR, top, DIFFERENCE, logarithmic=True),
-        f"difference of both methods in {title}, logarithmic",
-        f"largest {scientific(largest)}",
-        smooth=False,
-    )
-
-
 def _colours(quantity: str, values: Sequence[Array]) -> Scale:
     """One scale for both methods: from zero up for von Mises, even about zero for the others."""
     largest = max(
@@ -154,17 +336,3 @@ def _colours(quantity: str, values: Sequence[Array]) -> Scale:
     if quantity == "von_mises":
         return Scale(0.0, largest, SEQUENTIAL)
     return Scale(-largest, largest, DIVERGING)
-
-
-def _caption(sources: Sequence[str], frame: Frame) -> str:
-    text = (
-        "Plane y = 0; the red bar is the contact, lines across are interfaces, where stresses may jump. "
-        "Level lines at the ticks of the colour bar. "
-    )
-    if frame.stretched:
-        text += "Thin layers are drawn thicker than they are: read z off the axis. "
-    if len(sources) == 2:
-        text += (
-            "Below, the difference of the methods at the same points, on one logarithmic scale in every case."
-        )
-    return text

@@ -10,9 +10,8 @@ from itertools import zip_longest
 import numpy as np
 from markupsafe import Markup
 
-from verification.page.embedded_csv import written
 from verification.page.number_text import plain
-from verification.page.page_parts import Cell, Gallery, Panel, Part, Section, Table, number, row
+from verification.page.page_parts import Cell, Gallery, Panel, Part, Section, Table, number, row, written
 from verification.page.source_labels import source_label
 from verification.page.svg_plot import HUGE, Axes, drawing, round_ticks
 from verification.problem.line_profile import Profile

@@ -2,13 +2,14 @@
 
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from math import isfinite
 from statistics import median
 from typing import Any
 
 from markupsafe import Markup
 
+from verification.credibility.faults.first_notice import kinds, method_score, of_method
 from verification.judging.verdict import Claim, Outcome
 from verification.page.number_text import plain, scientific
 from verification.page.source_labels import OUTCOMES, OutcomeStyle, source_label, symbol_of
@@ -24,24 +25,10 @@ from verification.report.tables.case_lookup import divisor, layers
 from verification.running.case_result import CaseResult
 from verification.running.published_counts import counts
 from verification.sources.source_record import Independence
-from verification.sources.source_registry import SOURCES, independence
+from verification.sources.source_registry import CLOSED, SOURCES, independence
 
 MOST_ROWS = 28  # strips of the first page; of more cases the worst have their own, the others share some
 OWN_ROWS = 12
-_CLOSED = "closed forms of uncoated contacts."
-_METHODS = {
-    "semianalytic": "influence coefficients of surface patches, conjugate gradients, DC-FFT; stresses "
-    "are sums of point forces.",
-    "fem_reference": "axisymmetric, fourth order, mesh fitted to the contact edge; sliding as a harmonic.",
-    "integral_equation": "exact Fredholm equation of the layered contact.",
-    "hertz": _CLOSED,
-    "hamilton": _CLOSED,
-    "published": "tables of the literature.",
-}
-_ASSUMED = (
-    "All sources assume a parabolic sphere, small strains, linear elastic layers, perfect bonds, a "
-    "half-space; friction q = f p leaves p unchanged."
-)
 # What a difference is divided by, in words, by the kind of its quantity.
 _SCALES = {"scalar": "of its value", "slope": "of its value", "displacement": "of the approach"}
 
@@ -83,14 +70,12 @@ class Chart:
 
 
 def answered(material: Material) -> list[tuple[str, str]]:
-    """(labels, sentence) of the sources of the run, in the order of the registry."""
-    results = material.results
-    found = {name for result in results for claim, _ in result.verdicts for name in claim.between}
-    known = [name for name in SOURCES if name in found]
+    """(key of a text in the template, labels) of the sources of the run, in the order of the registry."""
+    found = {name for result in material.results for claim, _ in result.verdicts for name in claim.between}
     texts: dict[str, list[str]] = {}
-    for name in (*known, *sorted(found - set(known))):
-        texts.setdefault(_METHODS.get(name, ""), []).append(source_label(name))
-    return [(", ".join(labels), text) for text, labels in texts.items()]
+    for name in sorted(found, key=lambda name: (list(SOURCES).index(name) if name in SOURCES else 99, name)):
+        texts.setdefault("closed" if name in CLOSED else name, []).append(source_label(name))
+    return [(key, ", ".join(labels)) for key, labels in texts.items()]
 
 
 def headline(material: Material) -> str:
@@ -148,19 +133,11 @@ def largest(material: Material) -> list[str]:
     return texts
 
 
-def not_claimed(material: Material) -> list[str]:
-    """The limits of the claim."""
-    texts = ["Validation: nothing is compared with an experiment.", _ASSUMED]
+def left_out(material: Material) -> tuple[float, int]:
+    """The widest zone at the contact edge that is not judged, in percent; the number of comparisons with "
+    "one."""
     edges = [claim.edge for result in material.results for claim, _ in result.verdicts if claim.edge]
-    if edges:
-        texts.append(
-            f"Points within {100 * max(edges):.0f} % of the contact edge are not judged in {len(edges)} "
-            "comparisons."
-        )
-    elif material.contacts:
-        texts.append("No point is left out, the contact edge included.")
-    texts.append("U is an estimate, no bound; other problems and faults may fare worse.")
-    return texts
+    return 100 * max(edges, default=0.0), len(edges)
 
 
 def _scale(claim: Claim) -> str:
@@ -174,57 +151,38 @@ def _scale(claim: Claim) -> str:
 
 def chart(material: Material) -> Chart | None:
     """All comparisons of the run; None where there are none."""
-    results = material.results
+    results, anchors = material.results, material.anchors
     items = {result: [Item(claim, verdict) for claim, verdict in result.verdicts] for result in results}
     axis = axis_of([item for some in items.values() for item in some])
     if not any(items.values()):
         return None
-    if len(results) <= MOST_ROWS:
-        rows = [_row(material, result, items[result], axis) for result in results]
-        return Chart(rows, draw_axis(axis), 0)
-    order = sorted(results, key=lambda result: _badness(result, items[result]))
-    rows = [_row(material, result, items[result], axis) for result in order[:OWN_ROWS]]
+    order = list(results)
+    if len(results) > MOST_ROWS:
+        order = sorted(results, key=lambda result: _badness(result, items[result]))
+    own = order[: MOST_ROWS if len(results) <= MOST_ROWS else OWN_ROWS]
+    rows = [_strip_row(r.title, f"#{anchors[r]}", items[r], axis, [r], anchors[r]) for r in own]
     groups: dict[str, list[CaseResult]] = {}
-    for result in order[OWN_ROWS:]:
+    for result in order[len(own) :]:
         groups.setdefault(_kind(result), []).append(result)
-    for kind, members in sorted(groups.items(), key=lambda pair: _badness(pair[1][0], items[pair[1][0]])):
-        title = f"{len(members)} more: {kind}"
-        rows.append(
-            _strip_row(title, "#cases", [item for r in members for item in items[r]], axis, members, "")
-        )
-    return Chart(rows, draw_axis(axis), len(results) - OWN_ROWS)
-
-
-def _row(material: Material, result: CaseResult, items: Sequence[Item], axis: Axis) -> StripRow:
-    anchor = material.anchors[result]
-    return _strip_row(result.title, f"#{anchor}", items, axis, [result], anchor)
+    for kind, members in groups.items():
+        every = [item for result in members for item in items[result]]
+        rows.append(_strip_row(f"{len(members)} more: {kind}", "#cases", every, axis, members, ""))
+    return Chart(rows, draw_axis(axis), len(results) - len(own))
 
 
 def _strip_row(
-    title: str,
-    href: str,
-    items: Sequence[Item],
-    axis: Axis,
-    members: Sequence[CaseResult],
-    anchor: str,
+    title: str, href: str, items: Sequence[Item], axis: Axis, members: Sequence[CaseResult], anchor: str
 ) -> StripRow:
     first = worst(items)
     agreeing = sum(item.verdict.outcome is Outcome.AGREES for item in items)
     outcome = min((result.outcome for result in members), key=lambda o: OUTCOMES[o].rank)
-    label = f"{title}: {agreeing} of {len(items)} comparisons agree"
-    text = ""
+    label, text = f"{title}: {agreeing} of {len(items)} comparisons agree", ""
     if first is not None:
         shown = scientific(first.difference) if first.difference is not None else "no result"
         text = f"{shown} {_place(first.claim)}"
         label += f"; look first at {text}"
-    return StripRow(
-        title,
-        href,
-        draw_strip(items, axis, label, anchor),
-        text,
-        str(len(items)) if agreeing == len(items) else f"{agreeing} of {len(items)}",
-        OUTCOMES[outcome],
-    )
+    count = str(len(items)) if agreeing == len(items) else f"{agreeing} of {len(items)}"
+    return StripRow(title, href, draw_strip(items, axis, label, anchor), text, count, OUTCOMES[outcome])
 
 
 def _place(claim: Claim) -> str:
@@ -257,62 +215,58 @@ def tallies(material: Material) -> list[tuple[OutcomeStyle, int]]:
 
 def worth(material: Material) -> list[Worth]:
     """What is known about the verdicts besides the comparisons: each figure with the page it is on."""
-    results, evidence, found = material.results, material.evidence, [*_independent(material)]
-    invariants = [one for result in results for one in result.invariants]
-    if invariants:
-        holding = sum(one.outcome is Outcome.AGREES for one in invariants)
-        found.append(_share("invariants hold", holding, len(invariants), "#invariants"))
+    evidence, found = material.evidence, _independent(material)
+
+    def share(name: str, held: Sequence[bool], href: str, note: str = "") -> None:
+        if held:
+            value = f"{sum(held)} of {len(held)}"
+            found.append(Worth(name, value, href, all(held), note))
+
+    def recorded(name: str, value: str, href: str, key: str, started: str, commit: str | None) -> None:
+        older = key in evidence.older
+        note = f"{started[:10]}, {(commit or 'no commit')[:8]}{', older than code' if older else ''}"
+        found.append(Worth(name, value, href, None, note, older))
+
+    invariants = [one for result in material.results for one in result.invariants]
+    share("invariants hold", [one.outcome is Outcome.AGREES for one in invariants], "#invariants")
     studies = evidence.accuracy.verdicts if evidence.accuracy is not None else ()
-    if studies:
-        agreeing = sum(one.outcome is Outcome.AGREES for one in studies)
-        found.append(_share("judged studies agree", agreeing, len(studies), "#semi-analytical-accuracy"))
+    held = [one.outcome is Outcome.AGREES for one in studies]
+    share("judged studies agree", held, "#semi-analytical-accuracy")
     known = [item for result in material.contacts for item in accuracies(result)]
-    if known:
-        ratios = [item.ratio for item in known if item.ratio is not None and isfinite(item.ratio)]
-        note = f"median U / error {plain(median(ratios), 2)}" if ratios else ""
-        covered = sum(item.covered for item in known)
-        found.append(replace(_share("true error within U", covered, len(known), "#accuracy"), note=note))
+    ratios = [item.ratio for item in known if item.ratio is not None and isfinite(item.ratio)]
+    note = f"median U / error {plain(median(ratios), 2)}" if ratios else ""
+    share("true error within U", [item.covered for item in known], "#accuracy", note)
     if material.published:
-        counted, _, _ = counts(material.published)
-        found.append(Worth("published values counted", str(counted), "#published", None))
-    record = evidence.faults
-    if record is not None:
-        made = _made(material, "faults", record.started, record.commit)
-        value = f"{record.caught} of {len(record.rows)}"
-        found.append(Worth("planted faults detected", value, "#faults", None, *made))
-        if record.alarms:
-            count = len(record.controls)
-            found.append(_share("negative controls left alone", count - len(record.alarms), count, "#faults"))
+        count = str(counts(material.published)[0])
+        found.append(Worth("published values counted", count, "#published", None))
+    if faults := evidence.faults:
+        value = f"{faults.caught} of {len(faults.rows)}"
+        recorded("planted faults detected", value, "#faults", "faults", faults.started, faults.commit)
+        if of_method(faults):
+            noticed, total = method_score(faults)
+            name = "of these, in the semi-analytical method, noticed by comparison, invariant or study"
+            found.append(Worth(name, f"{noticed} of {total}", "#faults", None, kinds(faults)))
+        if faults.alarms:
+            silent = [row not in faults.alarms for row in faults.controls]
+            share("negative controls left alone", silent, "#faults")
     if evidence.mutants is not None:
-        caught, count = evidence.mutants.score()
+        caught, total = evidence.mutants.score()
         info = evidence.mutants.info
-        made = _made(material, "mutants", info.started, info.commit)
-        found.append(Worth("mutants detected", f"{caught} of {count}", "#mutants", None, *made))
-    if evidence.alarms is not None:
-        judged = evidence.alarms.comparisons + evidence.alarms.invariants
-        value = f"{len(evidence.alarms.alarms)} of {judged}"
-        made = _made(material, "alarms", evidence.alarms.started, evidence.alarms.commit)
-        found.append(Worth("false alarms, random problems", value, "#credibility", None, *made))
+        recorded("mutants detected", f"{caught} of {total}", "#mutants", "mutants", info.started, info.commit)
+    if alarms := evidence.alarms:
+        value = f"{len(alarms.alarms)} of {alarms.comparisons + alarms.invariants}"
+        name = "false alarms, random problems"
+        recorded(name, value, "#credibility", "alarms", alarms.started, alarms.commit)
     if evidence.maps is not None and evidence.maps.maps:
-        made = _made(material, "maps", *made_with(evidence.maps))
-        found.append(Worth("assumptions with a map", str(len(evidence.maps.maps)), "#model", None, *made))
+        count = str(len(evidence.maps.maps))
+        recorded("assumptions with a map", count, "#model", "maps", *made_with(evidence.maps))
     regression = evidence.baseline
     if regression is not None and regression.update is not None:
         same = sum(case.count(State.SAME) for case in regression.cases)
         total = sum(case.count(state) for case in regression.cases for state in State)
-        found.append(
-            Worth(
-                "numbers as in the baseline",
-                f"{same} of {total}",
-                "#baseline",
-                False if regression.unexplained else True if same == total else None,
-            )
-        )
-    tests = evidence.self_tests
-    if tests:
-        found.append(
-            _share("self-tests passed", sum(test.passed for test in tests), len(tests), "#self-tests")
-        )
+        good = False if regression.unexplained else True if same == total else None
+        found.append(Worth("numbers as in the baseline", f"{same} of {total}", "#baseline", good))
+    share("self-tests passed", [test.passed for test in evidence.self_tests], "#self-tests")
     return found
 
 
@@ -321,20 +275,12 @@ def _independent(material: Material) -> list[Worth]:
     agreed: dict[Independence, list[bool]] = {}
     for result in material.results:
         for claim, verdict in result.verdicts:
-            of_kind = agreed.setdefault(independence(claim.between), [])
-            of_kind.append(verdict.outcome is Outcome.AGREES)
-    kinds = [kind for kind in Independence if kind in agreed]
-    return [_share(f"{kind}", sum(agreed[kind]), len(agreed[kind]), "#cases") for kind in kinds]
-
-
-def _made(material: Material, name: str, started: str, commit: str | None) -> tuple[str, bool]:
-    """Date and commit of a record, and whether the code that it judges has changed since."""
-    older = name in material.evidence.older
-    return f"{started[:10]}, {(commit or 'no commit')[:8]}{', older than code' if older else ''}", older
-
-
-def _share(name: str, good: int, total: int, href: str) -> Worth:
-    return Worth(name, f"{good} of {total}" if total else "none", href, bool(total) and good == total)
+            agreed.setdefault(independence(claim.between), []).append(verdict.outcome is Outcome.AGREES)
+    return [
+        Worth(f"{kind}", f"{sum(agreed[kind])} of {len(agreed[kind])}", "#cases", all(agreed[kind]))
+        for kind in Independence
+        if kind in agreed
+    ]
 
 
 def alarms(material: Material) -> list[str]:
@@ -359,5 +305,5 @@ FIRST_PAGE: Mapping[str, Callable[[Material], Any]] = {
     "answered": answered,
     "chart": chart,
     "worth": worth,
-    "not_claimed": not_claimed,
+    "left_out": left_out,
 }

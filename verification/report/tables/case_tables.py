@@ -2,20 +2,22 @@
 
 from collections.abc import Sequence
 from functools import partial
-from math import isfinite
+from math import isfinite, isinf
 from typing import Any
 
 import numpy as np
 
 from verification.judging.verdict import Claim, Outcome, Verdict
 from verification.page.number_text import aligned, engineering, plain, scientific
-from verification.page.page_parts import Cell, Table, number, outcome_cell, row
+from verification.page.page_parts import Cell, Table, number, outcome_cell, row, table_of
 from verification.page.source_labels import OUTCOMES, pair_label, row_css, source_label, symbol_of
 from verification.problem.coated_contact import BALL, FLAT
 from verification.problem.quantity import BALL_PEAKS, PEAKS, QUANTITIES, SCALARS, SLOPES, unit_of
+from verification.report.report_words import stated
 from verification.report.tables.case_lookup import coordinate, layers, scalar, scale
 from verification.running.case_result import CaseResult
 
+NO_RESULT = Cell("no result", css="no-result")
 _FACTS = {
     "pressure": ("uniform pressure q", "Pa"),
     "load_radius": ("radius of the disc a", "m"),
@@ -48,23 +50,22 @@ def layer_table(result: CaseResult, body: str = FLAT) -> Table:
     length = "a" if "load_radius" in result.problem else "a_h"
     a_h = scale(result, "load_radius" if length == "a" else "a_h")
     found = layers(result, body)
-    rows = []
-    for layer, (E, nu, thickness) in enumerate(found, start=1):
-        below = layer == len(found)
-        rows.append(
-            row(
-                "substrate" if below else f"coating {layer}",
-                Cell(engineering(E, "Pa"), E),
-                Cell(plain(E / found[-1][0], 3), E),
-                number(nu, plain),
-                Cell("∞" if below else engineering(thickness, "m"), thickness),
-                Cell("∞" if below else plain(thickness / a_h, 3) if a_h > 0 else "–", thickness),
-            )
-        )
-    caption = (
-        "Layers from the surface down." if body == FLAT else "Layers of the ball, from its surface inwards."
+
+    def thickness(h: float, shown: str) -> Cell:
+        return Cell("∞" if isinf(h) else shown, h)
+
+    return table_of(
+        "Layers from the surface down." if body == FLAT else "Layers of the ball, from its surface inwards.",
+        enumerate(found, start=1),
+        [
+            ("layer", lambda at: "substrate" if at[0] == len(found) else f"coating {at[0]}"),
+            ("E", lambda at: Cell(engineering(at[1][0], "Pa"), at[1][0])),
+            ("E / E_s", lambda at: Cell(plain(at[1][0] / found[-1][0], 3), at[1][0])),
+            ("nu", lambda at: number(at[1][1], plain)),
+            ("h", lambda at: thickness(at[1][2], engineering(at[1][2], "m"))),
+            (f"h / {length}", lambda at: thickness(at[1][2], plain(at[1][2] / a_h, 3) if a_h > 0 else "–")),
+        ],
     )
-    return Table(caption, ["layer", "E", "E / E_s", "nu", "h", f"h / {length}"], rows)
 
 
 def contact_tables(result: CaseResult) -> list[Table]:
@@ -85,27 +86,17 @@ def _contact_table(result: CaseResult, quantities: Sequence[str], caption: str) 
         found = [scalar(result, quantity, source.source) for source in result.sources]
         unit, texts = aligned(found, unit_of(quantity))
         heads.append(f"{QUANTITIES[quantity].symbol} [{unit}]" if unit else QUANTITIES[quantity].symbol)
-        columns.append(
-            [
-                Cell("no result", css="no-result") if pair is None else Cell(text, float(pair[0]))
-                for text, pair in zip(texts, found, strict=True)
-            ]
-        )
+        columns.append([Cell(t, float(p[0])) if p else NO_RESULT for t, p in zip(texts, found, strict=True)])
     rows = [
-        row(
-            source_label(source.source),
-            *(column[n] for column in columns),
-            css="" if source.failure is None else "failed",
-        )
-        for n, source in enumerate(result.sources)
+        row(source_label(s.source), *(column[n] for column in columns), css="failed" if s.failure else "")
+        for n, s in enumerate(result.sources)
     ]
     verdicts = {(c.quantity, c.between): v for c, v in result.verdicts if c.line == "contact"}
     for pair in dict.fromkeys(between for _, between in verdicts):
         judged = [verdicts.get((quantity, pair)) for quantity in names]
         gaps = [Cell("–") if v is None else _judged_cell(v, v.difference) for v in judged]
-        bounds = [Cell("–") if v is None else number(v.uncertainty) for v in judged]
         rows.append(row(pair_label(pair), *gaps, css="gap"))
-        rows.append(row("U of both", *bounds, css="bound"))
+        rows.append(row("U of both", *(None if v is None else v.uncertainty for v in judged), css="bound"))
     return Table(caption, ["source", *heads], rows if names else [], css="numbers")
 
 
@@ -124,19 +115,13 @@ def comparison_table(result: CaseResult) -> Table:
     rows = []
     for quantity, line in dict.fromkeys((quantity, line) for quantity, line, _ in verdicts):
         found = [verdicts.get((quantity, line, pair)) for pair in pairs]
-        cap = next((claim.cap for claim, _ in filter(None, found)), None)
-        cells = [Cell(line), number(cap, partial(scientific, digits=1))]
+        cap = next((one[0].cap for one in found if one), None)
+        cells: list[Cell | str | float | None] = [line, number(cap, partial(scientific, digits=1))]
         for one in found:
-            if one is None:
-                cells += [Cell(""), Cell("")]
-            else:
-                verdict = one[1]
-                cells += [_judged_cell(verdict, verdict.difference), number(verdict.uncertainty)]
+            cells += [_judged_cell(one[1], one[1].difference), one[1].uncertainty] if one else ["", ""]
         rows.append(row(symbol_of(quantity), *cells))
     return Table(
-        "Largest |A − B| and largest U = U_A + U_B over the judged points, over the scale of the comparison: "
-        "the value (p0, a, approach, dW/d delta), a (places), the smaller of delta_h and approach "
-        "(displacements) or of p_h and p0.",
+        stated("compared"),
         ["quantity", "line", "cap on U", *["|A − B|", "U"] * len(pairs)],
         rows,
         [("", 3), *((pair_label(pair), 2) for pair in pairs)],
@@ -147,28 +132,30 @@ def comparison_table(result: CaseResult) -> Table:
 def failing_table(result: CaseResult, a_h: float, most: int) -> Table:
     """The comparisons that do not agree, the worst first; ``most`` of them."""
     bad = [item for item in result.verdicts if item[1].outcome is not Outcome.AGREES]
-    rows = []
-    for claim, verdict in sorted(bad, key=lambda item: _badness(item[1]))[:most]:
-        where = ""
-        if verdict.worst is not None and claim.line != "contact" and a_h:
-            where = f"{coordinate(claim.line)} = {plain(verdict.worst / a_h, 3)} a_h"
-        rows.append(
-            row(
-                outcome_cell(verdict.outcome),
-                Cell(symbol_of(claim.quantity), note=claim.why),
-                claim.line,
-                pair_label(claim.between),
-                number(verdict.difference),
-                number(verdict.uncertainty),
-                number(claim.cap),
-                Cell(where, verdict.worst),
-                Cell(verdict.reason, css="reason"),
-                css=row_css(verdict.outcome),
-            )
-        )
-    columns = ["verdict", "quantity", "line", "between", "max |A − B|", "max U", "cap", "at", "reason"]
     more = f" The worst {most} of {len(bad)}." if len(bad) > most else ""
-    return Table(f"Comparisons that do not agree.{more}", columns, rows, css="verdicts")
+
+    def where(claim: Claim, verdict: Verdict) -> Cell:
+        known = verdict.worst is not None and claim.line != "contact" and a_h
+        text = f"{coordinate(claim.line)} = {plain((verdict.worst or 0.0) / a_h, 3)} a_h" if known else ""
+        return Cell(text, verdict.worst)
+
+    return table_of(
+        f"Comparisons that do not agree.{more}",
+        sorted(bad, key=lambda item: _badness(item[1]))[:most],
+        [
+            ("verdict", lambda item: outcome_cell(item[1].outcome)),
+            ("quantity", lambda item: Cell(symbol_of(item[0].quantity), note=item[0].why)),
+            ("line", lambda item: item[0].line),
+            ("between", lambda item: pair_label(item[0].between)),
+            ("max |A − B|", lambda item: item[1].difference),
+            ("max U", lambda item: item[1].uncertainty),
+            ("cap", lambda item: item[0].cap),
+            ("at", lambda item: where(*item)),
+            ("reason", lambda item: Cell(item[1].reason, css="reason")),
+        ],
+        css="verdicts",
+        row_css=lambda item: row_css(item[1].outcome),
+    )
 
 
 def _badness(verdict: Verdict) -> tuple[int, float]:
@@ -209,21 +196,20 @@ def budget_table(result: CaseResult) -> Table | None:
     """Uncertainty budget: a row for each numerical parameter of each method."""
     rows = []
     for source in result.sources:
-        for quantity in dict.fromkeys(quantity for quantity, _, _ in source.budget):
-            parts = [(name, value) for q, name, value in source.budget if q == quantity]
-            largest = max((value for _, value in parts if isfinite(value)), default=0.0)
-            for name, value in parts:
-                dominant = value == largest > 0 and len(parts) > 1
-                rows.append(
-                    row(
-                        source_label(source.source),
-                        quantity,
-                        Cell(name, css="dominant" if dominant else ""),
-                        Cell(engineering(value, unit_of(quantity), 2), value),
-                        Cell(scientific(_relative(result, source.source, quantity, value)), value),
-                        Cell("◀ dominates" if dominant else "", css="dominant"),
-                    )
+        for quantity, name, value in source.budget:
+            parts = [U for q, _, U in source.budget if q == quantity]
+            largest = max(filter(isfinite, parts), default=0.0)
+            dominant = "dominant" if value == largest > 0 and len(parts) > 1 else ""
+            rows.append(
+                row(
+                    source_label(source.source),
+                    quantity,
+                    Cell(name, css=dominant),
+                    Cell(engineering(value, unit_of(quantity), 2), value),
+                    Cell(scientific(_relative(result, source.source, quantity, value)), value),
+                    Cell("◀ dominates" if dominant else "", css="dominant"),
                 )
+            )
     return Table(
         "Uncertainty of each method by numerical parameter, from its own refinement; relative to the value, "
         "to p_h for stresses.",

@@ -4,7 +4,7 @@ from itertools import zip_longest
 
 import numpy as np
 
-from verification.page.embedded_csv import written
+from verification.page.page_parts import written
 from verification.problem.line_profile import Profile
 from verification.problem.quantity import unit_of
 from verification.report.tables.case_lookup import coordinate

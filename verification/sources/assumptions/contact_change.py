@@ -1,25 +1,24 @@
-"""Relative change of a contact by dropping one assumption, of the quantities that designers use.
+"""Relative change of a contact when one assumption is dropped, for the quantities that designers use.
 
-Of a contact with ``problem``'s load: radius, approach, peak pressure, sigma_xx at the trailing edge of the
-surface, largest |sigma_xz| on the first interface.
+At the load of ``problem``: radius, approach, peak pressure, sigma_xx at the trailing edge of the surface,
+largest |sigma_xz| on the first interface.
 """
 
 from dataclasses import dataclass
-from functools import partial
+from functools import lru_cache
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from verification.problem.array_types import Array
 from verification.problem.coated_contact import CoatedContact, keywords
-from verification.sources.assumptions.harmonic_stress import first_harmonic
-from verification.sources.assumptions.sliding_coupling import SlidingExpansion
+from verification.sources.assumptions.sliding_coupling import SlidingExpansion, first_harmonic
 from verification.sources.references import integral_equation
-from verification.sources.references.integral_equation import SPHERE, ExactSolution
+from verification.sources.references.integral_equation import PARABOLA, SPHERE, ExactSolution, Gap
 
 SCALARS = ("contact_radius", "approach", "peak_pressure")
 FLOOR = 0.1  # of the peak pressure, to which a smaller stress is compared
-THINNEST = 0.01  # h/a_h; time and memory grow as (a/h)^2 and more
+THINNEST = 0.01  # h/a_h of an outer coating; time and memory grow as (a/h)^2 and more
 POINTS = 2 * np.linspace(-1, 1, 81)  # of a line along an interface, x/a
 NEAR = np.linspace(-1.5, 0.5, 21)  # (|x| - a)/h, where the shear of a thin coating is largest
 THIN = 0.5  # h/a, below which ``NEAR`` is finer than ``POINTS``
@@ -31,7 +30,7 @@ RESOLUTION: dict[str, Any] = {"nodes": 40, "panel": 8, "tail": 18.0}
 class Change:
     """Each relative to its value with the assumption, a stress below ``FLOOR`` to that of the peak pressure.
 
-    None of what a model does not give, as ``shear`` without an interface.
+    None where a model gives no value, such as ``shear`` without an interface.
     """
 
     contact_radius: float | None
@@ -45,14 +44,22 @@ def of_sphere(problem: CoatedContact) -> tuple[Change, Change]:
     """From the gap r^2/2R to that of a sphere; vanishes as (a/R)^2.
 
     Returns the change, then its uncertainty, which is rounding: zero.
-    Raises ValueError where the contact is wider than 0.9 R, as ``integral_equation`` does, or a coating
-    thinner than ``THINNEST``.
+    Raises ValueError where the contact is wider than 0.9 R, as ``integral_equation`` does, or an outer
+    coating thinner than ``THINNEST``.
     """
     require_thick(problem)
-    solve = partial(integral_equation.solve, **keywords(problem), estimate_uncertainty=False, **RESOLUTION)
-    parabola, sphere = solve(), solve(gap=SPHERE)
-    value = change_between(parabola, sphere)
+    value = change_between(half_spaces(problem), half_spaces(problem, SPHERE))
     return value, Change(0.0, 0.0, 0.0, 0.0, None if value.shear is None else 0.0)
+
+
+@lru_cache(maxsize=8)
+def half_spaces(problem: CoatedContact, gap: Gap = PARABOLA, **resolution: Any) -> ExactSolution:
+    """The contact that an assumption is dropped from; several are dropped from the same.
+
+    resolution : numerical parameters of ``integral_equation.solve``, ``RESOLUTION`` if none are given.
+    """
+    solved = resolution or RESOLUTION
+    return integral_equation.solve(**keywords(problem), gap=gap, estimate_uncertainty=False, **solved)
 
 
 def change_between(before: ExactSolution, after: ExactSolution) -> Change:
@@ -73,14 +80,14 @@ def of_goodman(problem: CoatedContact) -> tuple[Change, Change]:
     a scalar's change, C^2/2 (x/a)^2 of a peak pressure at x. Patches without an expansion have, C up to 0.3,
     0.17 and 0.32 C^2 of a shear and a tension of a bare solid, 0.3 C^2 of its scalars' change.
 
-    Raises ValueError where a coating is thinner than ``THINNEST``.
+    Raises ValueError where an outer coating is thinner than ``THINNEST``.
     """
     f = problem.friction
     if not f:
         nothing = Change(0.0, 0.0, 0.0, 0.0, 0.0 if problem.coatings else None)
         return nothing, nothing
     require_thick(problem)
-    expansion = SlidingExpansion(problem, nodes=100, solved=RESOLUTION)
+    expansion = SlidingExpansion(problem, nodes=100, solved=RESOLUTION, exact=half_spaces(problem))
     change, exact = expansion.change, expansion.exact
     panel, tail = RESOLUTION["panel"], RESOLUTION["tail"]
 
@@ -111,12 +118,14 @@ def of_goodman(problem: CoatedContact) -> tuple[Change, Change]:
 
 
 def require_thick(problem: CoatedContact) -> None:
-    """Raises ValueError where a coating is thinner than ``THINNEST``."""
-    coatings = [layer for body in problem.bodies for layer in problem.seen_from(body).coatings]
-    if any(h < THINNEST * problem.a_h for *_, h in coatings):
-        raise ValueError(f"a coating thinner than {THINNEST:g} a_h, its model would need too long")
+    """Raises ValueError where an outer coating is thinner than ``THINNEST``."""
+    outer = [layers[0] for body in problem.bodies if (layers := problem.seen_from(body).coatings)]
+    if any(h < THINNEST * problem.a_h for *_, h in outer):
+        least = f"{THINNEST * problem.a_h * 1e6:.2g} um ({THINNEST:g} a_h)"
+        raise ValueError(f"an outer coating thinner than {least}, its model would need too long")
 
 
+@lru_cache(maxsize=8)
 def _tension(exact: ExactSolution) -> float:
     """sigma_xx [Pa] at x = -a on the surface."""
     return float(exact.stress(-exact.contact_radius, 0.0, 0.0)[0, 0])
@@ -141,6 +150,7 @@ class Curve(NamedTuple):
         return float(max(middle - (rise + bend * (at[1] - at[0])) ** 2 / (4 * bend), size.max()))
 
 
+@lru_cache(maxsize=8)
 def _shear(exact: ExactSolution) -> Curve | None:
     """sigma_xz [Pa] along the first interface of the flat."""
     coatings = exact.fields[0].coatings

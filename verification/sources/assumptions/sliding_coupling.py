@@ -39,11 +39,12 @@ from numpy.typing import ArrayLike
 from scipy.interpolate import CubicSpline
 from scipy.optimize import minimize_scalar
 
-from verification.problem.array_types import Array
+from verification.problem.array_types import Array, Coatings
 from verification.problem.coated_contact import CoatedContact, keywords
 from verification.problem.gauss_legendre import gauss_legendre
 from verification.sources.references import integral_equation
-from verification.sources.references.integral_equation import Solid
+from verification.sources.references.hankel_field import HankelField, bessel
+from verification.sources.references.integral_equation import ExactSolution, Solid
 from verification.sources.references.layered_half_space import LayeredHalfSpace
 
 GRADING = 4  # of the nodes towards the edge, where potentials have a logarithm
@@ -132,22 +133,29 @@ class SlidingExpansion:
 
     nodes : quadrature points in the contact, more where a coating is thin.
     solved : numerical parameters of ``integral_equation.solve``; ``panel``, ``tail`` are those here too.
+    exact : the contact without friction, by the parameters ``solved``, where it is there already.
     Lengths are over the contact radius a, potentials over E* a^2/(pi R).
     Raises ValueError where no contact radius is found.
     """
 
     def __init__(
-        self, problem: CoatedContact, nodes: int = 200, solved: Mapping[str, Any] | None = None
+        self,
+        problem: CoatedContact,
+        nodes: int = 200,
+        solved: Mapping[str, Any] | None = None,
+        exact: ExactSolution | None = None,
     ) -> None:
         solids = integral_equation.solids_of(problem.coatings, problem.substrate, problem.ball)
         self.problem, self.beta = problem, problem.dundurs_beta
         solved = {"panel": 16, "tail": 36.0, **(solved or {})}
-        self.exact = integral_equation.solve(**keywords(problem), estimate_uncertainty=False, **solved)
+        self.exact = exact or integral_equation.solve(
+            **keywords(problem), estimate_uncertainty=False, **solved
+        )
         self.a = a = self.exact.contact_radius
         E_star = integral_equation.combined_modulus(solids)
         self.scale = E_star * a**2 / (np.pi * problem.radius)
-        thinnest = integral_equation.thinnest_coating(solids, a)
-        self.nodes = _Nodes.graded(int(nodes * (1 + 0.05 * a / thinnest)))
+        outer = integral_equation.outer_thickness(solids, a)
+        self.nodes = _Nodes.graded(int(nodes * (1 + 0.05 * a / outer)))
         self.points = np.append(self.nodes.s, 1.0)  # with the edge
         k, weight = integral_equation.kernel_wavenumbers(solids, a, solved["panel"], solved["tail"])
         self.k = k * a
@@ -238,7 +246,7 @@ class SlidingExpansion:
 
     @property
     def _unit(self) -> float:
-        """Of displacements, a^2/R [m]."""
+        """Unit of displacements, a^2/R [m]."""
         return self.a**2 / self.problem.radius
 
     def _conjugate(self, psi1: Array, rest_slope: Array) -> Array:
@@ -322,3 +330,66 @@ def _second_kind(c: Array, s: Array) -> tuple[Array, Array]:
         d_older, d_newer = d_newer, ((2 * n + 1) * (newer + s * d_newer) - n * d_older) / (n + 1)
         older, newer = newer, ((2 * n + 1) * s * newer - n * older) / (n + 1)
     return total, slope
+
+
+class PlaneStress(NamedTuple):
+    """sigma_xx, sigma_xz [Pa] at points of the plane y = 0."""
+
+    xx: Array
+    xz: Array
+
+
+def first_harmonic(
+    pressure: FirstHarmonic,
+    coatings: Coatings,
+    substrate: tuple[float, float],
+    x: Array,
+    z: float,
+    layer: int,
+    nodes: int = 16,
+    tail: float = 36.0,
+) -> tuple[PlaneStress, PlaneStress]:
+    """Stress in the plane y = 0 at depth ``z`` of ``layer`` by p1 cos(theta), then by it as a traction in +x.
+
+    With phat1 = int p1 J1 r dr, amplitudes of ``layered_half_space`` for each wave (those of the shear load
+    with T = 1 and t = 1), A1 = (3 ll + tt - 2 lt)/4, A3 = (ll - tt + 2 lt)/4, c = +-1 at the two sides of the
+    axis:
+
+        pressure:   sigma_xx = c int [(3 ll + tt)/4 J1 - (ll - tt)/4 J3] phat1 k dk
+                    sigma_xz = int T/2 (J0 - J2) phat1 k dk
+        traction:   sigma_xx = int [A1/2 J0 - (A1 + A3)/2 J2 + A3/2 J4] phat1 k dk
+                    sigma_xz = -c int [(3 T + t)/4 J1 - (T - t)/4 J3] phat1 k dk
+
+    On the surface outside the contact the homogeneous solid of the top layer has, with m = int p1 r^2 dr and
+    I_n = int phat1 J_n k dk, closed but for I_n,
+
+        pressure:   sigma_xx = c (1 - 2 nu) m/r^3,      traction:   sigma_xx = (4 + nu)/4 I0 - I2 - nu/4 I4.
+
+    Derived like the axisymmetric fields of ``hankel_field``, with one more factor -i cos(alpha) of the wave's
+    direction.
+
+    x : (n,) [m]; on the surface outside the contact, |x| >= a, where both tractions vanish.
+    nodes, tail : of the quadrature, as of ``HankelField``.
+    Raises ValueError for points of the contact on the surface.
+    """
+    r, side = np.abs(x), np.sign(x)
+    total = np.zeros((4, r.size))
+    if z == 0:
+        if np.any(r < (1 - 1e-12) * pressure.a):
+            raise ValueError(f"|x| = {r.min():g} m lies in the contact; give points outside it, or below")
+        r = np.maximum(r, pressure.a)
+        nu = coatings[0][1] if coatings else substrate[1]
+        I0, I2, I4 = (pressure.bessel_integral(n, r) for n in (0, 2, 4))
+        total[0] = side * (1 - 2 * nu) * pressure.moment / r**3
+        total[2] = (4 + nu) / 4 * I0 - I2 - nu / 4 * I4
+    if z > 0 or coatings:
+        # of the pressure, this needs no more than its transform and radius
+        field = HankelField(pressure, coatings, substrate, 1.0, nodes, tail)
+        k, w, (N, A, B) = field.waves(r, z, layer)
+        J = bessel(k, r, highest=4)
+        A1, A3 = (3 * A.ll + A.tt - 2 * B.lt) / 4, (A.ll - A.tt + 2 * B.lt) / 4
+        total[0] += side * ((w * (3 * N.ll + N.tt) / 4) @ J[1] - (w * (N.ll - N.tt) / 4) @ J[3])
+        total[1] += (w * N.T / 2) @ (J[0] - J[2])
+        total[2] += (w * A1 / 2) @ J[0] - (w * (A1 + A3) / 2) @ J[2] + (w * A3 / 2) @ J[4]
+        total[3] -= side * ((w * (3 * A.T + B.t) / 4) @ J[1] - (w * (A.T - B.t) / 4) @ J[3])
+    return PlaneStress(*total[:2]), PlaneStress(*total[2:])

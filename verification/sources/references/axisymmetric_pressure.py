@@ -68,8 +68,21 @@ class AbelPressure:
         return float(max(-found.fun, p[best]))
 
     def pressure(self, r: ArrayLike) -> Array:
-        """p(r) [Pa], 0 outside; shape of ``r``."""
-        return self._over_ring(np.asarray(r, dtype=float), power=0)
+        """p(r) [Pa], 0 outside; shape of ``r``.
+
+        P_2n(t/a) is the potential of P_2n(u) / (P_2n(0) u a), u^2 = 1 - (r/a)^2: both have the transform
+        (-1)^n j_2n(ka). Since phi(a) = sum c_n = 0, the recurrence of P_2n divides the sum by u:
+
+            p = sum_n>=1 (4n - 1) C_n P_2n-1(u) / (2n P_2n(0) a),   C_n = c_n + c_n+1 + ...
+        """
+        r = np.asarray(r, dtype=float)
+        u = np.sqrt(np.maximum((self.a - r) * (self.a + r), 0.0)) / self.a
+        n = np.arange(1, self.c.size)
+        at_zero = np.cumprod(1 / (2 * n) - 1)  # P_2n(0)
+        tails = np.cumsum(self.c[:0:-1])[::-1]
+        odd = np.zeros(2 * self.c.size - 2)
+        odd[1::2] = (4 * n - 1) * tails / (2 * n * at_zero * self.a)
+        return np.asarray(legendre.legval(u, odd))
 
     def resultant(self, r: ArrayLike) -> Array:
         """int_0^r p(s) s ds [N/rad], the load inside ``r`` over 2 pi; shape of ``r``.
@@ -81,7 +94,7 @@ class AbelPressure:
         t = 0.5 * (1 + x)
         near = np.minimum(r, NEAR_AXIS * self.a)
         inside = 0.5 * near**2 * (self.pressure(near[..., None] * t) * t @ weight)
-        return np.where(r > near, self.load / (2 * np.pi) - self._over_ring(r, power=2), inside)
+        return np.where(r > near, self.load / (2 * np.pi) - self._load_outside(r), inside)
 
     def transform(self, k: Array) -> Array:
         """phat(k) [N]: int_0^1 P_2n(s) cos(ks) ds = (-1)^n j_2n(k)."""
@@ -116,13 +129,13 @@ class AbelPressure:
         slope = self._slope_over_t(r[..., None] * np.sin(psi)) * r[..., None] * np.sin(psi)
         return -0.5 * psi_max * (slope * np.sin(order * psi) @ weight)
 
-    def _over_ring(self, r: Array, power: int) -> Array:
-        """-int_r^a phi'(t) (t^2 - r^2)^((power-1)/2) dt, with s^2 = t^2 - r^2."""
+    def _load_outside(self, r: Array) -> Array:
+        """-int_r^a phi'(t) sqrt(t^2 - r^2) dt [N/rad], with s^2 = t^2 - r^2."""
         reach = np.sqrt(np.maximum(self.a**2 - r**2, 0.0))
         x, weight = gauss_legendre(max(64, 2 * self.c.size))
         s = 0.5 * reach[..., None] * (1 + x)
         t = np.minimum(np.hypot(r[..., None], s), self.a)
-        return -0.5 * reach * ((self._slope_over_t(t) * s**power) @ weight)
+        return -0.5 * reach * ((self._slope_over_t(t) * s**2) @ weight)
 
     def _slope_over_t(self, t: Array) -> Array:
         """phi'(t)/t, an even polynomial."""

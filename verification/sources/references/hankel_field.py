@@ -15,15 +15,16 @@ Sneddon, Fourier Transforms (1951); sliding derived by rotation of the wave vect
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
-from typing import Protocol
+from math import factorial
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.special import j0, j1, jv
+from scipy.special import j0, j1
 
 from verification.problem.array_types import Array, Coatings
+from verification.problem.evaluation_points import layer_at
 from verification.problem.gauss_legendre import wavenumber_panels
-from verification.problem.layer_depths import layer_at
 from verification.sources.references.layered_half_space import Amplitudes, LayeredHalfSpace, bending_length
 
 CHUNK = 2_000_000  # products of wavenumbers with radii held in memory at once
@@ -32,27 +33,15 @@ KEPT_SIZE = 100_000  # wavenumbers of a plane that is kept
 MOST = 4_000_000  # wavenumbers: as many need a gigabyte
 
 
-class AxisymmetricPressure(Protocol):
-    """A pressure on r <= a with its transforms; see ``axisymmetric_pressure`` and ``uniform_disc``."""
-
-    @property
-    def a(self) -> float: ...
-    def pressure(self, r: ArrayLike) -> Array: ...
-    def resultant(self, r: ArrayLike) -> Array: ...
-    def transform(self, k: Array) -> Array: ...
-    def bessel_integral(self, order: int, r: Array) -> Array: ...
-    def sink(self, r: Array) -> Array: ...
-    def over_circle(self, order: int, r: Array) -> Array: ...
-
-
 @dataclass(frozen=True, eq=False)
 class HankelField:
     """Stress below ``pressure``, with friction q = f p, in ``coatings`` on ``substrate``.
 
+    pressure : an AbelPressure, UniformDisc or FirstHarmonic.
     nodes : Gauss points a panel; tail : exponent at which the decaying integrands are cut.
     """
 
-    pressure: AxisymmetricPressure
+    pressure: Any
     coatings: Coatings
     substrate: tuple[float, float]
     friction: float = 0.0
@@ -214,10 +203,18 @@ def bessel(k: Array, r: Array, highest: int) -> list[Array]:
     small = kr < 2.0
     safe = np.where(small, 1.0, kr)
     for n in range(2, highest + 1):
-        # Upward recurrence loses digits where kr is below the order.
+        # Upward recurrence loses digits where kr is below the order; the series has few terms there.
         J.append(2 * (n - 1) / safe * J[-1] - J[-2])
-        J[-1][small] = jv(n, kr[small])
+        J[-1][small] = _ascending(n, kr[small])
     return J
+
+
+def _ascending(n: int, x: Array) -> Array:
+    """J_n of 0 <= ``x`` < 2 by its series in x/2; the terms left out are below 1e-17 of it."""
+    square, total = -((x / 2) ** 2), np.ones_like(x)
+    for m in range(10, 0, -1):
+        total = 1 + square / (m * (m + n)) * total
+    return (x / 2) ** n / factorial(n) * total
 
 
 def _rotate(mean: Array, deviator: Array, theta: Array) -> Array:

@@ -158,16 +158,7 @@ class HertzContact:
 
 
 class Hertz(HertzContact):
-    """Stress and surface displacement without friction."""
-
-    def surface_displacement(self, r: ArrayLike) -> Array:
-        """u_z at z = 0 [m], positive into the solid. Johnson (3.41a), (3.42a)."""
-        a, p0 = self.contact_radius, self.peak_pressure
-        rho = np.abs(np.asarray(r, dtype=float))
-        s = np.minimum(a / np.maximum(rho, a), 1.0)
-        inside = np.pi / 4 * (2 * a**2 - rho**2) / a
-        outside = ((2 * a**2 - rho**2) * np.arcsin(s) + rho * a * np.sqrt(1 - s**2)) / (2 * a)
-        return p0 * (1 - self.nu**2) / self.E * np.where(rho <= a, inside, outside)
+    """Stress and displacement without friction."""
 
     def stress(
         self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None, body: str = FLAT
@@ -213,23 +204,6 @@ class Hertz(HertzContact):
         sigma[2, 2] = -p0 * lens
         sigma[0, 2] = sigma[2, 0] = p0 * shear * np.cos(theta)
         sigma[1, 2] = sigma[2, 1] = p0 * shear * np.sin(theta)
-        return sigma
-
-    def stress_on_axis(self, z: ArrayLike) -> Array:
-        """Stress on the axis r = 0 at depth ``z`` >= 0, written out by itself. Johnson (3.45a, b).
-
-            sigma_xx / p0 = -(1 + nu) [1 - s arctan(1/s)] + 1 / (2 (1 + s^2)),   s = z/a
-            sigma_zz / p0 = -1 / (1 + s^2)
-
-        Returns sigma[i, j, ...] [Pa], shape (3, 3) + shape of ``z``.
-        """
-        s = np.asarray(z, dtype=float) / self.contact_radius
-        if np.any(s < 0):
-            raise ValueError(f"z = {np.min(z):g} m is above the surface; depth counts down from 0")
-        sigma = np.zeros((3, 3, *s.shape))
-        lateral = -(1 + self.nu) * (1 - s * np.arctan2(1, s)) + 0.5 / (1 + s**2)
-        sigma[0, 0] = sigma[1, 1] = self.peak_pressure * lateral
-        sigma[2, 2] = -self.peak_pressure / (1 + s**2)
         return sigma
 
     def displacement(self, x: ArrayLike, y: ArrayLike, z: ArrayLike, body: str = FLAT) -> Array:

@@ -18,7 +18,7 @@ J. Engng Sci. 8 (1970) 843-856; Yu, Sanday and Rath, J. Mech. Phys. Solids 38 (1
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cache, cached_property
 from typing import Any
 
 import numpy as np
@@ -226,9 +226,12 @@ def combined_modulus(solids: tuple[Solid, ...]) -> float:
     return moduli[0] if len(moduli) == 1 else 1 / sum(1 / E for E in moduli)
 
 
-def thinnest_coating(solids: tuple[Solid, ...], default: float) -> float:
-    """Least thickness [m] of all coatings, ``default`` where there is none."""
-    return min((h for coatings, _ in solids for _, _, h in coatings), default=default)
+def outer_thickness(solids: tuple[Solid, ...], default: float) -> float:
+    """Least thickness h1 [m] of the outer coatings, ``default`` where there is none.
+
+    M - 1 falls as exp(-2 k h1), so that the kernel is smooth over h1, however thin the layers below.
+    """
+    return min((coatings[0][2] for coatings, _ in solids if coatings), default=default)
 
 
 def _solve(
@@ -266,6 +269,7 @@ def _solve(
         stiffness = 2 * np.pi * a * (weight @ phi[:, 0])
         return phi @ np.array([delta, -1.0]), float(delta), float(stiffness)
 
+    @cache  # at the ends of the bracket it is asked for again
     def excess(log_a: float) -> float:
         a = float(np.exp(log_a))
         return float(np.log(2 * np.pi * a * (weight @ contact(a)[0]) / load))
@@ -305,14 +309,16 @@ def _radius_guess(radius: float, load: float, E_star: float, solids: tuple[Solid
     """Hertz radius with the contact modulus seen by waves of that very length."""
     a = float((3 * load * radius / (4 * E_star)) ** (1 / 3))
     for _ in range(40):
-        M = float(compliance(solids, E_star, np.array([2.0 / a]))[0])
+        before, M = a, float(compliance(solids, E_star, np.array([2.0 / a]))[0])
         a = 0.5 * (a + float((3 * load * radius * M / (4 * E_star)) ** (1 / 3)))
+        if abs(a - before) < 1e-9 * a:
+            break
     return a
 
 
 def _contact_nodes(nodes: int, a: float, solids: tuple[Solid, ...]) -> int:
-    """The kernel varies over the first coating's thickness, so thin ones need nodes in proportion to a/h."""
-    return int(nodes + 3 * a / thinnest_coating(solids, a) * nodes / 80)
+    """The kernel varies over the outer coating's thickness, so thin ones need nodes in proportion to a/h."""
+    return int(nodes + 3 * a / outer_thickness(solids, a) * nodes / 80)
 
 
 def kernel_wavenumbers(solids: tuple[Solid, ...], a: float, panel: int, tail: float) -> tuple[Array, Array]:
@@ -320,6 +326,6 @@ def kernel_wavenumbers(solids: tuple[Solid, ...], a: float, panel: int, tail: fl
     coated = [solid for solid in solids if solid[0]]
     if not coated:
         return np.ones(1), np.zeros(1)
-    end = (tail + 2 * np.log(tail)) / (2 * min(coatings[0][2] for coatings, _ in coated))
+    end = (tail + 2 * np.log(tail)) / (2 * outer_thickness(solids, a))
     bent = max(bending_length(*solid) for solid in coated)
     return wavenumber_panels(end, 0.5 / bent, 3.0 / a, panel)

@@ -46,22 +46,6 @@ class UniformDisc:
         outer = (ellipe(t) - np.where(t < 1, (1 - t) * ellipkm1(np.where(t < 1, 1 - t, 1.0)), 0.0)) * s
         return 4 * self.q * self.a / np.pi * np.where(s <= 1, inner, outer)
 
-    def over_circle(self, order: int, r: Array) -> Array:
-        """No claim is made on sliding discs; raises ValueError."""
-        raise ValueError("a sliding disc has infinite stress at its rim; no claim is made on it")
-
-    def bessel_integral(self, order: int, r: Array) -> Array:
-        """No claim is made on sliding discs; raises ValueError."""
-        raise ValueError("a sliding disc has infinite stress at its rim; no claim is made on it")
-
-
-@dataclass(frozen=True)
-class DiscDiagnostics:
-    """Gauss points a panel of wavenumbers, and the exponent at which the integrands are cut."""
-
-    nodes: int
-    tail: float
-
 
 @dataclass(frozen=True, eq=False)
 class DiscSolution:
@@ -88,14 +72,14 @@ class DiscSolution:
 
     @property
     def uncertainty(self) -> Uncertainty:
-        """Of u_z at the origin, twice the change when every quadrature is made coarser by a quarter."""
+        """For u_z at the origin, twice the change when every quadrature is coarser by a quarter."""
         U = float(self.displacement_uncertainty(0.0, 0.0, 0.0)[2])
         return Uncertainty(approach=U, budget=(("approach", "quadrature", U),))
 
     @property
-    def diagnostics(self) -> DiscDiagnostics:
-        """The quadrature."""
-        return DiscDiagnostics(self.field.nodes, self.field.tail)
+    def diagnostics(self) -> dict[str, float]:
+        """Gauss points a panel of wavenumbers, and the exponent at which the integrands are cut."""
+        return {"nodes": self.field.nodes, "tail": self.field.tail}
 
     @property
     def surface_nodes(self) -> Array:

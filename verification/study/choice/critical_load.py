@@ -18,8 +18,6 @@ from verification.study.choice.thickness_choice import HALVED, strengths_drawn
 from verification.study.largest_stresses import QUANTITIES
 from verification.study.study_table import SOURCES
 
-__all__ = ["Critical", "Ramp", "critical", "ramps"]
-
 SAMPLES = 2001  # of a ramp
 BAND = (0.05, 0.5, 0.95)  # quantiles of a critical load
 STRESSED = ("sigma_xx_surface", "sigma_xx_base")  # to which the residual stress is added

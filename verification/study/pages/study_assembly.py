@@ -7,7 +7,6 @@ from pathlib import Path
 
 from markupsafe import Markup
 
-from verification.page.embedded_csv import embedded
 from verification.page.html_page import render_sections
 from verification.page.page_parts import (
     Cell,
@@ -17,6 +16,7 @@ from verification.page.page_parts import (
     Row,
     Section,
     Table,
+    embedded,
     number,
     row,
     table_of,

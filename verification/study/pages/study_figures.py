@@ -26,7 +26,7 @@ from matplotlib.ticker import LogLocator, NullFormatter, ScalarFormatter
 from scipy.interpolate import PchipInterpolator
 
 from verification.cases.unit_numbers import Units
-from verification.page.embedded_csv import written
+from verification.page.page_parts import written
 from verification.problem.array_types import Array
 from verification.problem.quantity import QUANTITIES as QUANTITY
 from verification.running.checked_files import write_atomically

@@ -1,23 +1,26 @@
-"""Planted faults: share detected, checks that detect each, those that none detects."""
+"""What the checks detect: planted faults, mutants, self-tests of the harness."""
 
 from collections.abc import Callable, Sequence
 from functools import partial
 
 from verification.credibility.faults.first_notice import (
-    COUNTED,
     Noticed,
+    kinds,
+    method_score,
     noticed,
-    noticed_by,
     of_method,
     unused,
 )
 from verification.evidence.fault_record import COLUMNS, GROUPS, Catch, Record
 from verification.evidence.fault_record import Row as Fault
+from verification.evidence.mutant_record import REQUIRED, MutantRecord
+from verification.evidence.mutant_record import Catch as Noticer
 from verification.page.html_page import render_sections
 from verification.page.number_text import plain, scientific, seconds
-from verification.page.page_parts import Cell, Part, Section, Table, Value, table_of, words
+from verification.page.page_parts import Cell, Part, Section, Table, Value, row, table_of, words
 from verification.page.source_labels import source_label
 from verification.report.report_material import Material
+from verification.report.report_words import stated
 
 # Mark, class and words of each outcome of a planted fault.
 _CATCHES = {
@@ -41,13 +44,11 @@ def faults_message(record: Record) -> str:
         f"({plain(100 * record.share, 3)} %), "
         f"{record.as_predicted} of them by the check predicted before the trial"
     )
-    if method := of_method(record):
-        by = ", ".join(f"{noticed_by(record, kind)} by a {kind}" for kind in COUNTED).replace(
-            "a inv", "an inv"
-        )
+    if of_method(record):
+        found, count = method_score(record)
         text += (
-            f". Of {len(method)} in the semi-analytical method {noticed_by(record, *COUNTED)} are noticed by "
-            f"comparisons, invariants and judged studies ({by} first)"
+            f". In the semi-analytical method, {found} of {count} are noticed by a comparison, an invariant "
+            f"or a judged study (first {kinds(record)})"
         )
     if record.controls:
         text += (
@@ -56,7 +57,7 @@ def faults_message(record: Record) -> str:
     return text + "."
 
 
-def section(material: Material) -> Section | None:
+def faults_of(material: Material) -> Section | None:
     """The planted faults on record; None without a record."""
     record = material.evidence.faults
     return None if record is None else faults_section(record)
@@ -64,14 +65,12 @@ def section(material: Material) -> Section | None:
 
 def faults_section(record: Record) -> Section:
     """Planted faults as a section of any page: method, share detected, survivors, checks of each fault."""
-    method = (
-        "One fault at a time is planted in the running code by changing a few words of one function, and the "
-        "checks of the default run are applied to the result. Only the faulty source is solved again, with "
-        "the default numerics; the other sources keep the results of a clean run. Date "
-        f"{record.started[:10]}, commit {record.commit or 'unknown'}, {seconds(record.core_seconds)} on one "
-        "core."
-    )
-    parts = [Part(method), Part(faults_message(record), [_score(record)])]
+    made = {
+        "date": record.started[:10],
+        "commit": record.commit or "unknown",
+        "time": seconds(record.core_seconds),
+    }
+    parts = [Part(stated("planting", **made)), Part(faults_message(record), [_score(record)])]
     if never := [row for row in of_method(record) if unused(row)]:
         names = "; ".join(f"{row.name}: {row.description}" for row in never)
         parts.append(
@@ -160,9 +159,7 @@ def _score(record: Record) -> Table:
         ("predicted check", lambda group: sum(fault.as_predicted for fault in group[1])),
     ]
     return table_of(
-        "What notices the faults of each group first, in this order: a comparison with another source, an "
-        "invariant, a judged study, then what does not count. Predicted check: detected by the check "
-        "that was named for the fault before the trial.",
+        stated("noticed"),
         [*groups, *([("All", list(record.rows))] if len(groups) > 1 else [])],
         columns,
     )
@@ -243,3 +240,70 @@ def _seen_cell(fault: Fault, column: str) -> Cell:
         return Cell(f"0/{seen.made}", 0.0, note=f"all {seen.made} pass")
     css = "agrees" if seen.disagree else "inconclusive" if seen.inconclusive else "no-result"
     return Cell(f"{text}/{seen.made}", seen.disagree + seen.inconclusive, f"verdict {css}", seen.message)
+
+
+def mutants_message(record: MutantRecord) -> str:
+    """The score as a message."""
+    caught, count = record.score()
+    return (
+        f"{caught} of {count} mutants are caught ({plain(100 * caught / max(count, 1), 3)} %), "
+        f"{len(record.trials) - count} equivalent ones apart."
+    )
+
+
+def mutants_of(material: Material) -> Section | None:
+    """The mutants on record; None without a record."""
+    record = material.evidence.mutants
+    if record is None:
+        return None
+    method = stated(
+        "mutants",
+        message=mutants_message(record),
+        date=record.info.started[:10],
+        commit=record.info.commit or "unknown",
+        time=seconds(record.seconds),
+    )
+    shown = [catch for catch in Noticer if any(trial.catch is catch for trial in record.trials)]
+    scores = []
+    for name, required in REQUIRED.items():
+        caught, count = record.score(name)
+        if count:
+            by = [sum((t.room, t.catch) == (name, catch) for t in record.trials) for catch in shown]
+            share = f"{plain(100 * caught / count, 3)} %, {plain(100 * required, 3)} % required"
+            scores.append(row(name, *by, words(share)))
+    parts = [Part(method, [Table("Mutants of each room.", ["room", *map(str, shown), "caught"], scores)])]
+    if record.survivors:
+        survivors = table_of(
+            "Survivors.",
+            record.survivors,
+            [
+                ("place", lambda pair: f"{pair[1].file}:{pair[1].line}"),
+                ("function", lambda pair: words(pair[1].function)),
+                ("change", lambda pair: words(pair[1].change)),
+                ("kind", lambda pair: words(pair[0].kind or "not read")),
+                ("reason", lambda pair: words(pair[0].reason)),
+            ],
+        )
+        parts.append(Part("Mutants that nothing caught.", [survivors]))
+    return Section("mutants", "Mutation testing", parts)
+
+
+def self_tests_of(material: Material) -> Section | None:
+    """Each self-test with its requirement and its outcome; None where none was made."""
+    tests = material.evidence.self_tests
+    if not tests:
+        return None
+    passed, failed = Cell("✓", 1.0, "verdict agrees"), Cell("✗", 0.0, "verdict disagrees")
+    table = table_of(
+        "Made before the first case was solved.",
+        tests,
+        [
+            ("part", lambda test: test.name),
+            ("passed", lambda test: passed if test.passed else failed),
+            ("requirement", lambda test: words(test.statement)),
+            ("found", lambda test: words(test.found)),
+        ],
+    )
+    bad = [test for test in tests if not test.passed]
+    failures = [f"{test.name}: {test.found}. The verdicts of this run are not valid." for test in bad]
+    return Section("self-tests", "Self-tests of the harness", [Part(stated("self_tests"), [table])], failures)

@@ -1,0 +1,54 @@
+"""A bar that counts on the terminal; the check for gmsh before a command that takes long."""
+
+from rich.console import Console
+from rich.progress import (
+    BarColumn,
+    MofNCompleteColumn,
+    Progress,
+    ProgressColumn,
+    TextColumn,
+    TimeElapsedColumn,
+    TimeRemainingColumn,
+)
+from rich.progress import Task as RichTask
+from rich.table import Column
+from rich.text import Text
+
+from verification.commands.common.command_error import no_result
+from verification.running.provenance import missing_libraries
+
+NARROW = 60  # columns
+
+
+def require_gmsh() -> None:
+    """Raises CommandError with the packages to install where gmsh cannot be loaded."""
+    if lacking := missing_libraries():
+        install = f"apt-get install {' '.join(lacking)}"
+        raise no_result(f"gmsh lacks system libraries here; install them with: {install}")
+
+
+class _Description(ProgressColumn):
+    """Names of the tasks at work, in one line."""
+
+    def render(self, task: RichTask) -> Text:
+        return Text(task.description, no_wrap=True, overflow="ellipsis")
+
+
+def progress_bar(console: Console, *more: ProgressColumn, silent: bool = False) -> Progress:
+    """A bar that counts, with time gone and left; nothing at all where ``console`` is not a terminal.
+
+    more : columns behind the count.
+    """
+    return Progress(
+        # Words and bar give way where the terminal is narrow; counts and times stay whole.
+        _Description(table_column=Column(no_wrap=False)),
+        *([BarColumn(table_column=Column(no_wrap=False))] if console.width >= NARROW else []),
+        MofNCompleteColumn(),
+        *more,
+        TimeElapsedColumn(),
+        TextColumn("left"),
+        TimeRemainingColumn(),
+        console=console,
+        transient=True,
+        disable=silent or not console.is_terminal,
+    )
