@@ -189,12 +189,12 @@ class Discretisation:
 
         A = np.stack(strain_operator(harmonic))
         D = np.stack([elasticity(E, nu, harmonic) for E, nu in materials])
-        coupling = np.einsum("asf,lst,btg->lfgab", A, D, A, optimize=True)[self.mesh.layer, None]
+        coupling = np.einsum("asf,lst,btg->lfgab", A, D, A, optimize=True)[self.mesh.layer]
         fields, rows = A.shape[2], s.reshape(*s.shape[:2], -1)
         K = np.empty((len(r), fields, basis.Nbfun, fields, basis.Nbfun))
         for f in range(fields):
             for g in range(f + 1):
-                columns = (coupling[:, :, f, g] @ s).reshape(rows.shape)
+                columns = (coupling[:, None, f, g] @ s).reshape(rows.shape)
                 K[:, f, :, g] = block = rows @ columns.transpose(0, 2, 1)
                 K[:, g, :, f] = block.transpose(0, 2, 1)
         field = basis.N * np.arange(fields, dtype=np.int32)[:, None]

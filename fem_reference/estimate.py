@@ -42,9 +42,8 @@ from .state import ElasticState
 
 __all__ = ["Estimates", "PressureEstimate", "StressEstimate", "Uncertainty", "contact_estimates", "estimates"]
 
-# Half of Roache's factor of safety for two meshes: his is that of differences point by point, here the
-# largest in a neighbourhood counts. `coatcheck alarms` counts how often it is too small.
-SAFETY = 1.5
+# Roache's factor of safety for two meshes; `coatcheck alarms` counts how often it is too small.
+SAFETY = 3.0
 # Triangles above this size do not reach the order of the elements. The factor then grows with the size, that
 # of pressures and stresses with its square: on the axis of a fast solution 2.6 times were needed.
 _ASYMPTOTIC_SIZE = 0.18
