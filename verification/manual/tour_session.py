@@ -21,9 +21,7 @@ COMMANDS = {
     "study init thickness": False,
     "study thickness my_thickness.toml": True,
     "study init load": False,
-    "study load my_load.toml": True,
     "study init stiffness": False,
-    "study thickness my_stiffness.toml": True,
 }
 
 
