@@ -10,7 +10,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 
 from verification.commands.common.terminal import print_out
-from verification.manual.command_output import shown_lines, variables
+from verification.manual.tour_output import shown_lines, variables
 from verification.manual.tour_session import COMMANDS, RECORD, split
 from verification.running.provenance import commit, hardware
 

@@ -10,7 +10,7 @@ from verification.credibility.self_tests import SelfTest, self_tests
 from verification.judging.verdict import Outcome
 from verification.regression.baseline_change import Regression
 from verification.regression.run_exit_codes import EXIT, run_code
-from verification.report.credibility.detection_sections import section
+from verification.report.credibility.detection_sections import self_tests_of
 from verification.report.report_material import Evidence, Material
 
 PASSED = SelfTest("judging", "verdicts are what they must be", True, "21 known answers")
@@ -48,7 +48,7 @@ def test_a_run_is_no_better_than_its_harness(tmp_path):
 
 
 def test_the_report_says_which_answer_was_wrong():
-    shown = section(Material([], INFO, Evidence(self_tests=(PASSED, FAILED))))
+    shown = self_tests_of(Material([], INFO, Evidence(self_tests=(PASSED, FAILED))))
     assert shown is not None
     (failure,) = shown.failures
     assert FAILED.found in failure

@@ -12,7 +12,7 @@ from markupsafe import Markup
 from synthetic_results import STEEL, contact, result_of
 
 from verification.judging.verdict import Outcome
-from verification.page.number_text import aligned, engineering, scientific, seconds, with_uncertainty
+from verification.page.number_text import aligned, engineering, scientific, seconds
 from verification.page.source_labels import OUTCOMES, pair_style, source_style
 from verification.page.svg_curves import FLOOR, LOWER, UPPER, Curve, Difference, draw
 from verification.page.svg_plot import Axes, drawing, polyline
@@ -22,7 +22,6 @@ from verification.report.figures.line_panels import case_figures
 from verification.report.sections.accuracy_section import accuracies, coverage_table
 from verification.report.tables.case_lookup import contact_radius, difference, judged, reference_source
 from verification.report.tables.case_tables import (
-    budget_table,
     comparison_table,
     contact_tables,
     failing_table,
@@ -64,21 +63,6 @@ def test_engineering_prefix(value, unit, shown):
 def test_a_value_ends_where_its_uncertainty_ends(value, spread, shown):
     _, (_, text) = aligned([(1e9, 0.0), (value, spread)], "Pa")
     assert re.sub("<[^>]*>", "", text) == shown
-
-
-@pytest.mark.parametrize(
-    ("value", "spread", "shown"),
-    [
-        (1.2726114e9, 4.8e5, "1.27261 ± 0.00048 GPa"),
-        (1.2726114e9, None, "1.27261 GPa"),
-        (1.2726114e9, 0.0, "1.2726114 GPa"),
-        (1.2726114e9, 3.2e-1, "1.27261140 ± 3.2e-10 GPa"),
-        (1.2726114e9, nan, "1.27261 GPa ± nan Pa"),
-        (inf, 1.0, "not finite"),
-    ],
-)
-def test_a_value_in_text_ends_where_its_uncertainty_ends(value, spread, shown):
-    assert with_uncertainty(value, spread, "Pa") == shown
 
 
 def test_numbers_of_a_column_share_their_unit_and_their_decimal_point():
@@ -154,13 +138,6 @@ def test_failing_verdicts_lead_their_table_and_every_quantity_has_a_row():
     assert len(table.rows) == len({(c.quantity, c.line) for c, _ in result.verdicts})
     shown = sum(cell.css == "verdict disagrees" for row in table.rows for cell in row.cells)
     assert shown == sum(v.outcome is Outcome.DISAGREES for v in bad)
-
-
-def test_the_budget_names_the_knob_that_dominates():
-    table = budget_table(result_of(COATED, points=11))
-    dominating = [row.cells[1].text for row in table.rows if row.cells[4].text]
-    assert len(dominating) == 6
-    assert len(set(dominating)) == 1
 
 
 def test_accuracy_tells_an_honest_estimate_from_a_vain_one():

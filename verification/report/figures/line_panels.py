@@ -14,6 +14,7 @@ from verification.page.svg_curves import Curve, Difference, draw
 from verification.page.svg_plot import MARKS
 from verification.problem.line_profile import ON_BALL
 from verification.problem.quantity import QUANTITIES
+from verification.report.report_words import stated
 from verification.report.tables.case_lookup import (
     contact_radius,
     coordinate,
@@ -94,10 +95,6 @@ def swatch(style: Style, *, marked: bool = False) -> Markup:
     ).format(style.colour, style.width, dash or "none", style.opacity)
 
 
-def _on(result: CaseResult, line: str) -> list:
-    return [profile for profile in result.profiles if profile.line == line]
-
-
 def _pairs(result: CaseResult, line: str, quantity: str) -> list[tuple[str, str]]:
     """The claimed pairs that are drawn: methods with each other, sources with the reference source."""
     best = reference_source(result)
@@ -110,11 +107,12 @@ def _pairs(result: CaseResult, line: str, quantity: str) -> list[tuple[str, str]
 
 
 def _panel(result: CaseResult, line: str, quantity: str) -> Panel:
-    a_h, unit = scale(result, "a_h"), _scale_of(quantity)
+    a_h = scale(result, "a_h")
+    unit = QUANTITIES[quantity].scale if quantity in QUANTITIES else "p_h"
     curves = [
         Curve(profile.position / a_h, profile.value / scale(result, unit), source_style(profile.source))
-        for profile in _on(result, line)
-        if profile.quantity == quantity
+        for profile in result.profiles
+        if (profile.quantity, profile.line) == (quantity, line)
     ]
     claims = [(c, v) for c, v in result.verdicts if (c.quantity, c.line) == (quantity, line)]
     differences = []
@@ -149,10 +147,6 @@ def _panel(result: CaseResult, line: str, quantity: str) -> Panel:
     return Panel(title, figure, note if claims else "not compared", "fails" if bad else "")
 
 
-def _scale_of(quantity: str) -> str:
-    return QUANTITIES[quantity].scale if quantity in QUANTITIES else "p_h"
-
-
 def _unjudged(result: CaseResult, claims: list[Claim], curves: list[Curve]) -> list[tuple[float, float]]:
     edge = max((claim.edge for claim in claims), default=0.0)
     a, a_h = contact_radius(result), scale(result, "a_h")
@@ -168,15 +162,5 @@ def _caption(result: CaseResult, places: Sequence[tuple[str, str]]) -> str:
     """What to see in the panels."""
     verdicts = [v for c, v in result.verdicts if (c.quantity, c.line) in places]
     together = all(v.outcome is Outcome.AGREES for v in verdicts)
-    text = (
-        "Above, the sources coincide to the width of the line: the grey line is the reference, the marks are "
-        "the methods. Below, on a logarithmic scale, every difference lies under the thin line that bounds "
-        "its tint, U = U_A + U_B, and that line under the cap (red dashes)."
-        if together
-        else "Above, the values of every source; below, on a logarithmic scale, their differences. A "
-        "difference above the thin line that bounds its tint, U = U_A + U_B, disagrees; a tint above the cap "
-        "(red dashes) is inconclusive. A red ring marks the point that decides."
-    )
-    if any(claim.edge for claim, _ in result.verdicts if (claim.quantity, claim.line) in places):
-        text += " Grey: next to the contact edge, not judged."
-    return f"{text} Lengths over a_h, tension positive; differences over the smaller of p_h and p0."
+    edge = any(claim.edge for claim, _ in result.verdicts if (claim.quantity, claim.line) in places)
+    return stated("panels", together=together, edge=edge)

@@ -13,10 +13,7 @@ import numpy as np
 from scipy.interpolate import PchipInterpolator
 
 from verification.problem.array_types import Array
-from verification.study.choice.failure_criteria import SAMPLES, Criteria, Judged
-from verification.study.choice.strength import Strength
-
-__all__ = ["Chances", "Choice", "End", "choice", "sampled", "strengths_drawn"]
+from verification.study.choice.failure_criteria import SAMPLES, Criteria, Judged, Strength
 
 EVEN = 0.01  # of the smallest utilisation, unless the curves are less certain
 HALVED = 4  # at least by as much the error of interpolation falls with half the distance of points
@@ -123,7 +120,7 @@ def strengths_drawn(strengths: Mapping[str, Strength], drawn: int = DRAWN) -> Ar
 def choice(judgements: Sequence[Judged], criteria: Criteria) -> Choice:
     """The choice from the curves of one modulus, one for each friction."""
     members = tuple(sorted(judgements, key=lambda j: j.curve.friction))
-    low, high = max(j.h[0] for j in members), min(j.h[-1] for j in members)
+    low, high = max(j.curve.h[0] for j in members), min(j.curve.h[-1] for j in members)
     h = np.geomspace(low, high, SAMPLES)
     h[0], h[-1] = low, high
     use = np.stack([PchipInterpolator(np.log(j.curve.h), j.utilisation, axis=1)(np.log(h)) for j in members])
