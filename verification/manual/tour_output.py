@@ -61,8 +61,9 @@ def variables() -> dict[str, str]:
 
 def shown_lines(warned: str, printed: str) -> list[str]:
     """Lines of what a command printed, warnings first, wrapped for a page."""
-    # The time of one solve on a busy machine tells nothing.
+    # Times by the clock of a busy machine tell nothing.
     printed = re.sub(r"^time: .*\n?", "", printed.strip(), flags=re.MULTILINE)
+    printed = re.sub(r"( points) in [\d.]+ s:", r"\1:", printed)
     lines = [line.rstrip() for line in (*warned.splitlines(), *printed.splitlines())]
     return [textwrap.fill(line, 88) if len(line) > 88 else line for line in lines]
 
