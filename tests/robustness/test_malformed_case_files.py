@@ -251,6 +251,7 @@ CHANGED = [
     ("nu = 0.3 }", "nu = 0.5 }", "problem.substrate.nu"),
     ("nu = 0.3 }", "nu = 0.3, G = 80e9 }", "problem.substrate.G"),
     ("E = 210e9", "E = 210", "problem"),
+    ("E = 210e9", "E = 1.7976931348623157e308", "problem"),
     ("E = 420e9", "E = 420e17", "moduli"),
     ("E = 420e9", "E = -420e9", "problem.coatings.0.E"),
     ("[[problem.coatings]]", "[problem.coatings]", "problem.coatings"),

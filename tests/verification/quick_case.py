@@ -8,24 +8,22 @@ from pathlib import Path
 from unittest import mock
 
 import pytest
+from case_texts import case_text
 
 from verification.cli import main
 from verification.commands.common import task_progress
 from verification.running.checked_files import read_checked
 
-QUICK = """
-title = "Quick"
-[problem]
-radius = 10e-3
-load = 20
-substrate = { E = 210e9, nu = 0.3 }
-[[claim]]
+QUICK = case_text(
+    title="Quick",
+    tables="""[[claim]]
 quantity = "peak_pressure"
 line = "contact"
 between = ["integral_equation", "hertz"]
 cap = 1e-6
 why = "two references, no method"
-"""
+""",
+)
 COMMAND = [sys.executable, "-m", "verification.cli"]
 
 

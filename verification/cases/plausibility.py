@@ -4,6 +4,7 @@ A warning blocks nothing. Where a bare SI number looks like one in the unit that
 names that unit: E = 210 is meant in GPa.
 """
 
+import sys
 from collections.abc import Iterator, Mapping
 
 from verification.cases.unit_numbers import InSI
@@ -101,13 +102,14 @@ def _numbers(problem: CoatedContact) -> Iterator[str]:
 
 def _thick(problem: CoatedContact) -> Iterator[str]:
     """Lines for coatings below which nothing takes part in the contact."""
+    a_h = problem.a_h or sys.float_info.min  # below which floating point has nothing
     for body in problem.bodies:
         for i, (_, _, h) in enumerate(problem.seen_from(body).coatings):
             key = f"{f'{BALL}.' if body == BALL else ''}coatings.{i}.thickness"
-            if h > problem.radius or h <= min(THICKEST * problem.a_h, COATING):
+            if h > problem.radius or h <= min(THICKEST * a_h, COATING):
                 continue
-            reason = f"is {h / problem.a_h:.3g} contact radii; what lies below has no part"
-            if h <= THICKEST * problem.a_h:
+            reason = f"is {h / a_h:.3g} contact radii; what lies below has no part"
+            if h <= THICKEST * a_h:
                 reason = f"is above {COATING:g} m, thick for a coating"
             yield f"{key} = {h:g} m {reason}" + _slip(key, h, _LENGTH_UNITS, USUAL_THICKNESSES)
 

@@ -34,6 +34,7 @@ SIDE = 0.07  # of a patch, over a_h
 FILMS = {"film of one patch": 1.0, "film of five patches": 5.0}  # thickness over that
 TURNED, SLIDING = "ellipse 2 : 1, turned", "ellipse 2 : 1, sliding"
 ANGLE = 0.4  # of the long axis from x
+BETWEEN = 0.4  # of a patch, by which the turned ellipse lies beside a patch centre
 WIDE = 1.15  # half-width of the grid over the long semi-axis
 HARMONICS, SIZE = 14, 0.2  # of the finite elements
 BELOW = (0.5, 0.5, 0.9, 1.6)  # depths over a_h: in the coating, below it
@@ -153,8 +154,10 @@ def turned_ellipse(problem: CoatedContact, patches: int = 129) -> list[ExactErro
     exact = HertzEllipse(a, b, problem.p_h, problem.E_star)
     (A, B), c, s = exact.curvatures, np.cos(ANGLE), np.sin(ANGLE)
 
+    aside = BETWEEN * 2 * WIDE * a / patches
+
     def height(x: Any, y: Any) -> Any:
-        return A * (c * x + s * y) ** 2 + B * (c * y - s * x) ** 2
+        return A * (c * (x - aside) + s * y) ** 2 + B * (c * y - s * (x - aside)) ** 2
 
     found = []
     for load, approach in ((exact.load, None), (None, exact.approach)):

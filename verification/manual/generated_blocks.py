@@ -16,8 +16,8 @@ from verification.evidence.enclosure_record import read_record as read_enclosure
 from verification.evidence.fault_record import read_record
 from verification.guests.pages import guests_section
 from verification.manual.baseline_numbers import FOLDER, baseline, largest, points, stored
-from verification.manual.command_output import WORKED, solved
 from verification.manual.markdown_text import paragraphs, shown, symbol, table, text
+from verification.manual.tour_output import WORKED, solved
 from verification.page.number_text import scientific
 from verification.problem.quantity import QUANTITIES
 from verification.report.credibility import model_section

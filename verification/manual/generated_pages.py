@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from verification.manual.case_pages import contact_pages, published_pages
-from verification.manual.command_output import picture
+from verification.manual.tour_output import picture
 
 PACKAGE = Path(__file__).resolve().parents[1]
 ROOT = PACKAGE.parent

@@ -19,33 +19,6 @@ def engineering(value: Any, unit: str, digits: int = 4) -> str:
     return f"{_minus(format(number / factor, f'.{digits}g'))} {prefix}{unit}"
 
 
-def with_uncertainty(value: Any, uncertainty: Any, unit: str) -> str:
-    """``value`` with +- ``uncertainty``, both with one prefix, cut where the uncertainty ends.
-
-    uncertainty : None is "not stated" (six digits are shown), 0 is "exact" (nine digits).
-    """
-    number, stated = _number(value), _number(uncertainty)
-    if number is None:
-        return "not finite"
-    factor, prefix = _prefix(number)
-    mantissa, shown = number / factor, f"{prefix}{unit}"
-    if uncertainty is None:
-        return f"{_minus(format(mantissa, '.6g'))} {shown}"
-    if stated == 0:
-        return f"{_minus(format(mantissa, f'.{MOST_DIGITS}g'))} {shown}"
-    width = -1.0 if stated is None else stated / factor
-    if not 1e-30 < width < 1e30:
-        # Not finite, negative, or of no sensible size: shown as it is, for it needs looking at.
-        return f"{_minus(format(mantissa, '.6g'))} {shown} ± {uncertainty:.2g} {unit}"
-    # Two digits of the uncertainty, at most nine of the value.
-    whole = floor(log10(abs(mantissa))) if mantissa else 0
-    decimals = min(max(1 - floor(log10(width)), 0), max(MOST_DIGITS - 1 - whole, 0))
-    # Numbers of absurd size keep their exponent instead of running over the page.
-    form = f".{decimals}f" if abs(mantissa) < 1e4 and decimals <= 12 else ".6g"
-    plus_minus = format(width, f".{decimals}f" if 0.5 * 10**-decimals <= width < 1e6 else ".1e")
-    return f"{_minus(format(mantissa, form))} ± {plus_minus} {shown}"
-
-
 def aligned(values: Sequence[tuple[Any, Any] | None], unit: str) -> tuple[str, list[Markup | str]]:
     """(value, uncertainty) pairs [SI] of one column: its unit with one prefix, the texts point under point.
 

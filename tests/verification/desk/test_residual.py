@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from case_texts import case_text
 
 from verification.cases.case_file import parse_case
 from verification.cases.toml_file import CaseError
@@ -14,25 +15,12 @@ from verification.sources.source_registry import SOURCES
 
 STRESS = -2e9
 SLIDING = CoatedContact(10e-3, 20.0, ((210e9, 0.3, 10e-6),), (210e9, 0.3), 0.25)
-FILE = """
-title = "DLC"
-[problem]
-radius = "10 mm"
-load = "20 N"
-temperature_change = -300
-substrate = { E = "210 GPa", nu = 0.3, expansion = 12e-6 }
-ball = { E = "210 GPa", nu = 0.3, coatings = [{ E = "180 GPa", nu = 0.2, thickness = "1 um" }] }
-[[problem.coatings]]
-E = "180 GPa"
-nu = 0.2
-thickness = "2 um"
-expansion = 2e-6
-[[problem.coatings]]
-E = "280 GPa"
-nu = 0.21
-thickness = "1 um"
-residual_stress = "150 MPa"
-"""
+FILE = case_text(
+    'E = "180 GPa"; nu = 0.2; thickness = "2 um"; expansion = 2e-6',
+    'E = "280 GPa"; nu = 0.21; thickness = "1 um"; residual_stress = "150 MPa"',
+    more="temperature_change = -300; "
+    'ball = { E = "210 GPa", nu = 0.3, coatings = [{ E = "180 GPa", nu = 0.2, thickness = "1 um" }] }',
+).replace("nu = 0.3 }", "nu = 0.3, expansion = 12e-6 }", 1)
 
 
 def parse(text):

@@ -7,24 +7,17 @@ from itertools import combinations
 
 import numpy as np
 import pytest
+from guest_exams import GUEST, prepared, question
 
-from verification.cases.case_file import read_case, shipped_cases
-from verification.guests.case_exam import claims_of, prepare, question_of
 from verification.guests.doors.program_door import Solved
-from verification.guests.exam_subjects import REFERENCE, subject_of
-from verification.guests.guest_description import Guest, Supports
+from verification.guests.exam_subjects import REFERENCE
 from verification.guests.guest_protocol import VERSION, Answer
 from verification.guests.guest_verdicts import judged
 from verification.guests.slip_diagnosis import slips
 from verification.problem.quantity import DISPLACEMENTS, STRESSES
-from verification.running.case_result import from_json
-from verification.running.checked_files import read_checked
 from verification.sampling.line_sampling import sample, sample_contact
 from verification.sources.exact_sources import solve_exactly
 
-GUEST = Guest.model_construct(
-    folder=None, text="", name="g", claim=0.01, supports=Supports(coatings=9, friction=True, stress=True)
-)
 LENGTHS = ("contact_radius", "approach", "tension_place", *DISPLACEMENTS)
 PRESSURES = ("pressure", "peak_pressure", "largest_tension", *STRESSES)
 
@@ -33,10 +26,8 @@ class Planted:
     """A case with its exact reference, and answers with slips: those of the physics come first."""
 
     def __init__(self, name, folder):
-        self.case = subject_of(read_case(shipped_cases()[name]))
-        prepare(self.case, folder / name)
-        self.exam = from_json(read_checked(folder / name))
-        asked = question_of(self.case, self.exam, GUEST, claims_of(self.case, GUEST), {})
+        self.case, self.exam = prepared(name, folder)
+        asked = question(self.case, self.exam)
         self.asked = {line.line: line.quantities for line in asked.lines} | {"contact": asked.contact}
 
     def values(self, names):

@@ -4,24 +4,16 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from guest_exams import GUEST, prepared, question
 
-from verification.cases.case_file import read_case, shipped_cases
-from verification.guests.case_exam import claims_of, prepare, question_of
 from verification.guests.doors.program_door import Solved
-from verification.guests.exam_subjects import subject_of
-from verification.guests.guest_description import Guest, Supports
 from verification.guests.guest_protocol import VERSION, Answer
 from verification.guests.guest_verdicts import judged
 from verification.guests.slip_diagnosis import slips
 from verification.judging.verdict import Outcome
 from verification.problem.coated_contact import CoatedContact
-from verification.running.case_result import from_json
-from verification.running.checked_files import read_checked
 from verification.sources.exact_sources import solve_exactly
 
-GUEST = Guest.model_construct(
-    folder=None, text="", name="g", claim=0.01, supports=Supports(coatings=9, friction=True, stress=True)
-)
 HERTZ, COATED, SLIDING = "01_uncoated_steel", "05_ratio_4", "14_ratio_4_sliding"
 SIGMA = ("sigma_xx", "sigma_yy", "sigma_zz", "sigma_xz")
 
@@ -29,13 +21,8 @@ SIGMA = ("sigma_xx", "sigma_yy", "sigma_zz", "sigma_xz")
 @pytest.fixture(scope="module")
 def exams(tmp_path_factory):
     """Each case with its exact reference."""
-    found = {}
-    for name in (HERTZ, COATED, SLIDING):
-        case = subject_of(read_case(shipped_cases()[name]))
-        path = tmp_path_factory.mktemp("exam") / "exam.json"
-        prepare(case, path)
-        found[name] = case, from_json(read_checked(path))
-    return found
+    folder = tmp_path_factory.mktemp("exam")
+    return {name: prepared(name, folder) for name in (HERTZ, COATED, SLIDING)}
 
 
 def exact_values(exam):
@@ -52,7 +39,7 @@ def messages(exams, name, change):
     values = exact_values(exam)
     places = {p.line: p.position for p in exam.profiles}
     values = change(values, places) or values
-    asked = {q.line: q.quantities for q in question_of(case, exam, GUEST, claims_of(case, GUEST), {}).lines}
+    asked = {q.line: q.quantities for q in question(case, exam).lines}
     asked["contact"] = list(values["contact"])
     plain = {
         line: {q: np.asarray(v).tolist() for q, v in numbers.items() if q in asked[line]}

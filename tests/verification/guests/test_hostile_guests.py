@@ -8,19 +8,16 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 
 import pytest
+from guest_exams import prepared, question
 
-from verification.cases.case_file import read_case, shipped_cases
 from verification.guests.case_exam import claims_of, exam_path, prepare, question_of
 from verification.guests.doors.ask_guest import answered, ask_task
 from verification.guests.doors.file_door import pack
 from verification.guests.doors.program_door import Program
-from verification.guests.exam_subjects import subject_of
 from verification.guests.guest_description import Guest, Supports
 from verification.guests.guest_protocol import ProtocolError
 from verification.guests.guest_verdicts import judged
 from verification.judging.verdict import Outcome
-from verification.running.case_result import from_json
-from verification.running.checked_files import read_checked
 from verification.running.pool.process_pool import run_tasks
 
 LIMIT = 0.4  # s for an answer of a guest that hangs
@@ -161,11 +158,8 @@ SLOW = {
 @pytest.fixture(scope="module")
 def hertz(tmp_path_factory):
     """The uncoated case with its exact reference and where that is stored."""
-    case = subject_of(read_case(shipped_cases()["01_uncoated_steel"]))
     folder = tmp_path_factory.mktemp("hostile")
-    path = exam_path(folder, case)
-    prepare(case, path)
-    return case, from_json(read_checked(path)), folder
+    return *prepared("01_uncoated_steel", folder), folder
 
 
 def guest(folder, **way_in):
@@ -179,8 +173,8 @@ def verdict_on(hertz, program, folder, limit=LIMIT):
     case, exam, _ = hertz
     (folder / "hostile.py").write_text(HEAD + program + "\n")
     host = guest(folder, command=(sys.executable, "-S", "-E", "hostile.py"), time_limit=limit)
-    question = question_of(case, exam, host, claims_of(case, host), {})
-    result = judged(host, case, exam, answered(host, case, [question]))
+    asked = question(case, exam, host)
+    result = judged(host, case, exam, answered(host, case, [asked]))
     return next(v for c, v in result.verdicts if c.quantity == "contact_radius")
 
 
@@ -241,8 +235,8 @@ def test_a_hostile_function_is_one_message(hertz, tmp_path, name):
     body, words = FUNCTIONS[name]
     (tmp_path / "adapter.py").write_text(f"def solve(radius, load, substrate):\n    {body}\n")
     host = guest(tmp_path, callable="adapter:solve", time_limit=10.0)
-    question = question_of(case, exam, host, claims_of(case, host), {})
-    result = judged(host, case, exam, answered(host, case, [question]))
+    asked = question(case, exam, host)
+    result = judged(host, case, exam, answered(host, case, [asked]))
     verdict = next(v for c, v in result.verdicts if c.quantity == "contact_radius")
     assert verdict.outcome in (Outcome.NO_RESULT, Outcome.UNSUPPORTED)
     assert words in verdict.reason
@@ -269,8 +263,8 @@ def test_a_program_that_keeps_its_answer_in_a_buffer_is_told_to_flush(hertz, tmp
     (tmp_path / "hostile.py").write_text(program)
     case, exam, _ = hertz
     host = guest(tmp_path, command=(sys.executable, "-S", "-E", "hostile.py"), time_limit=1.0)
-    question = question_of(case, exam, host, claims_of(case, host), {})
-    (reply,) = answered(host, case, [question])
+    asked = question(case, exam, host)
+    (reply,) = answered(host, case, [asked])
     assert "flush" in reply.answer.error
 
 
@@ -282,8 +276,8 @@ def test_a_program_that_is_not_there_is_one_message(tmp_path):
 def test_hostile_files_are_one_message(hertz, tmp_path):
     case, exam, _ = hertz
     host = guest(tmp_path, results="answers")
-    question = question_of(case, exam, host, claims_of(case, host), {})
-    folder = pack(host, case, question)
+    asked = question(case, exam, host)
+    folder = pack(host, case, asked)
     for content in (
         b"\xff\xfe\x00",
         b"",
@@ -291,11 +285,11 @@ def test_hostile_files_are_one_message(hertz, tmp_path):
         b'"' * 10**5,
     ):
         (folder / "contact.csv").write_bytes(content)
-        answer = answered(host, case, [question])[0].answer
+        answer = answered(host, case, [asked])[0].answer
         assert answer.values is None or "contact" in answer.values
     (folder / "contact.csv").unlink()
     os.mkfifo(folder / "contact.csv")
-    answer = answered(host, case, [question])[0].answer
+    answer = answered(host, case, [asked])[0].answer
     assert "regular" in answer.error
 
 

@@ -8,9 +8,9 @@ import pytest
 from verification.guests.vectors.open_digits import FILE, shipped
 from verification.manual import manual_build, manual_pdf
 from verification.manual.baseline_numbers import baseline, largest
-from verification.manual.command_output import WORKED
 from verification.manual.generated_blocks import BLOCKS
 from verification.manual.sphinx_extension import restructured
+from verification.manual.tour_output import WORKED
 from verification.page.number_text import scientific
 
 SLOW = ("solved", *WORKED)  # solve problems

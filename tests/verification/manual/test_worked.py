@@ -4,7 +4,7 @@ import re
 
 import pytest
 
-from verification.manual.command_output import worked
+from verification.manual.tour_output import worked
 
 
 @pytest.mark.slow

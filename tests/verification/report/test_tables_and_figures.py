@@ -12,7 +12,7 @@ from markupsafe import Markup
 from synthetic_results import STEEL, contact, result_of
 
 from verification.judging.verdict import Outcome
-from verification.page.number_text import aligned, engineering, scientific, seconds, with_uncertainty
+from verification.page.number_text import aligned, engineering, scientific, seconds
 from verification.page.source_labels import OUTCOMES, pair_style, source_style
 from verification.page.svg_curves import FLOOR, LOWER, UPPER, Curve, Difference, draw
 from verification.page.svg_plot import Axes, drawing, polyline
@@ -64,21 +64,6 @@ def test_engineering_prefix(value, unit, shown):
 def test_a_value_ends_where_its_uncertainty_ends(value, spread, shown):
     _, (_, text) = aligned([(1e9, 0.0), (value, spread)], "Pa")
     assert re.sub("<[^>]*>", "", text) == shown
-
-
-@pytest.mark.parametrize(
-    ("value", "spread", "shown"),
-    [
-        (1.2726114e9, 4.8e5, "1.27261 ± 0.00048 GPa"),
-        (1.2726114e9, None, "1.27261 GPa"),
-        (1.2726114e9, 0.0, "1.2726114 GPa"),
-        (1.2726114e9, 3.2e-1, "1.27261140 ± 3.2e-10 GPa"),
-        (1.2726114e9, nan, "1.27261 GPa ± nan Pa"),
-        (inf, 1.0, "not finite"),
-    ],
-)
-def test_a_value_in_text_ends_where_its_uncertainty_ends(value, spread, shown):
-    assert with_uncertainty(value, spread, "Pa") == shown
 
 
 def test_numbers_of_a_column_share_their_unit_and_their_decimal_point():

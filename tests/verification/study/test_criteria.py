@@ -6,6 +6,7 @@ import study_table
 
 from verification.cases.toml_file import CaseError
 from verification.study.choice.failure_criteria import Criteria, judged
+from verification.study.choice.thickness_choice import choice
 from verification.study.study_plan import parse_study
 from verification.study.study_table import read_columns
 from verification.study.thickness_curves import curves, differences
@@ -16,6 +17,10 @@ def found(tmp_path_factory):
     path = tmp_path_factory.mktemp("study") / "study.parquet"
     study_table.write(path)
     return curves(read_columns(path))
+
+
+def chosen(curve, criteria):
+    return choice([judged(curve, criteria)], criteria)
 
 
 def test_a_curve_holds_every_thickness_of_one_modulus_with_one_friction(found):
@@ -30,11 +35,11 @@ def test_a_curve_holds_every_thickness_of_one_modulus_with_one_friction(found):
 
 def test_without_strengths_the_preferable_thickness_has_the_smallest_largest_stress(found):
     curve = found[3]
-    (h, use, mode) = judged(curve, Criteria(minimise=["sigma_xx_surface"])).preferable
+    one = chosen(curve, Criteria(minimise=["sigma_xx_surface"]))
     # the law has its minimum at h = a_h / 2; nine points on two decades read it this closely
-    assert h == pytest.approx(0.5, rel=0.02)
-    assert use == pytest.approx(0.35 * 2, rel=1e-3)
-    assert mode == "sigma_xx_surface"
+    assert one.best == pytest.approx(0.5, rel=0.02)
+    assert one.least == pytest.approx(0.35 * 2, rel=1e-3)
+    assert one.governing(one.best)[1] == "sigma_xx_surface"
 
 
 def test_admissible_range_ends_where_a_stress_meets_its_strength(found):
@@ -59,21 +64,21 @@ def test_safety_narrows_the_range_as_a_weaker_material_would(found):
 def test_the_governing_mode_is_the_one_closest_to_its_strength(found):
     curve = found[3]
     p_h = study_table.P_H
-    judgement = judged(curve, Criteria(strength={"sigma_xx_surface": p_h, "von_mises_coating": p_h}))
+    one = chosen(curve, Criteria(strength={"sigma_xx_surface": p_h, "von_mises_coating": p_h}))
+    (judgement,), governing = one.judgements, one.use[0].argmax(axis=0)
     # thin: von Mises 0.6 ratio (1 + f) e^-h = 1.5 beats the surface's 0.9; thick: it is gone
-    assert judgement.modes[judgement.governing[0]] in ("von_mises_coating", "sigma_xx_surface")
-    dense = {
-        mode: study_table.stress(mode, curve.ratio, judgement.h, curve.friction) for mode in judgement.modes
-    }
+    assert judgement.modes[governing[0]] in ("von_mises_coating", "sigma_xx_surface")
+    dense = {mode: study_table.stress(mode, curve.ratio, one.h, curve.friction) for mode in judgement.modes}
     exact = np.argmax([dense[mode] for mode in judgement.modes], axis=0)
     # the modes change where the curves cross, read to a part in a hundred of the sweep
-    assert (exact != judgement.governing).mean() < 0.01
+    assert (exact != governing).mean() < 0.01
 
 
 def test_reading_error_bounds_what_a_curve_read_between_its_points_is_off_by(found):
-    judgement = judged(found[3], Criteria(minimise=["sigma_xx_surface"]))
-    exact = study_table.stress("sigma_xx_surface", 2.0, judgement.h, 0.25)
-    error = np.abs(judgement.largest - exact).max() / judgement.utilisation.max()
+    one = chosen(found[3], Criteria(minimise=["sigma_xx_surface"]))
+    (judgement,) = one.judgements
+    exact = study_table.stress("sigma_xx_surface", 2.0, one.h, 0.25)
+    error = np.abs(one.largest - exact).max() / judgement.utilisation.max()
     assert 0 < error < judgement.interpolation_error
 
 

@@ -38,6 +38,7 @@ from verification.page.svg_loglog import draw_histogram
 from verification.problem.quantity import SCALARS
 from verification.report.credibility.detection_sections import mutants_message
 from verification.report.report_material import Evidence, Material
+from verification.report.report_words import stated
 from verification.report.sections.accuracy_section import accuracies, coverage_table
 from verification.report.tables.case_lookup import layers, scale
 from verification.running.case_result import CaseResult
@@ -195,36 +196,6 @@ def _range(found: Sequence[float]) -> str:
 
 
 NO_RECORD = "Not measured: there is no record of {}; make one with: {} --record"
-ASSUMED = (
-    "A parabolic sphere, rigid or elastic, much larger than the contact; small strains; linear, isotropic, "
-    "elastic layers with nu < 1/2, perfectly bonded, on a half-space; no adhesion, no roughness; Coulomb "
-    "friction q = f p that leaves p unchanged."
-)
-COMMON = {
-    "What the semi-analytical method and the integral equation share": (
-        "The semi-analytical method and the exact integral equation use the same frequency response of the "
-        "layers, derived and coded twice: the method from Papkovich potentials with reflection matrices, the "
-        "reference from state vectors with surface impedances. Otherwise they share no equation: the method "
-        "finds pressures of surface patches, the reference values of a potential along the radius, phi. "
-        "Stresses of the method are sums of point forces, those of the reference Hankel integrals over the "
-        "wavenumber. The finite elements share only the assumptions with both."
-    ),
-    "What comparisons of a sphere test of the patches": (
-        "Every number of the semi-analytical method comes from the pressures that influence coefficients, "
-        "conjugate gradients and DC-FFT give to the patches: a change of the coefficients by 1 % changes "
-        "contact radius, peak pressure, approach and stresses as the same change of the modulus would. The "
-        "studies named staircase edge compare patches without the correction of the edge with the exact "
-        "solution; an invariant of every case compares the influence coefficients with direct quadrature."
-    ),
-}
-NOT_CLAIMED = (
-    "Validity for a real coating: nothing was compared with an experiment, so this is verification, not "
-    "validation. Detection of an error in the assumptions common to both methods. Surface stresses at fixed "
-    "points next to the contact edge better than the root of the error of the radius; the largest tension "
-    "has no such root. A strict bound by the uncertainty: it is an estimate from coarser solutions, and the "
-    "share in which it covers the true error is given above. Detection of other kinds of faults at the rate "
-    "of those that were planted. The same accuracy outside the ranges above."
-)
 
 
 def section(material: Material) -> Section | None:
@@ -234,30 +205,11 @@ def section(material: Material) -> Section | None:
         return None
     contacts = material.contacts
     parts = [
+        Part(stated("evidence")),
+        Part(stated("intended"), [range_table(contacts)], title="1. Intended use and limits"),
+        Part(stated("code"), [design_table(evidence.orders)], title="2. Code verification"),
         Part(
-            "Evidence for the verdicts of this report, in the order of ASME V&V 10 (Guide for Verification "
-            "and Validation in Computational Solid Mechanics) with further requirements of NASA-STD-7009A. "
-            "Every figure was measured in this run or is read from a record with its date and commit.",
-        ),
-        Part(
-            "Deciding whether numerical solutions of one mathematical model are correct within a stated "
-            f"uncertainty. The model: {ASSUMED[0].lower()}{ASSUMED[1:]} Ranges of the problems of this "
-            "run and of the random problems of the false alarm rate:",
-            [range_table(contacts)],
-            title="1. Intended use and limits",
-        ),
-        Part(
-            "Orders of convergence on problems with a known solution: manufactured fields in two bonded "
-            "materials for the finite element operator below, exact solutions of the contact for both "
-            "methods in the accuracy sections.",
-            [design_table(evidence.orders)],
-            title="2. Code verification",
-        ),
-        Part(
-            "Every method states an uncertainty U for each number, estimated from coarser solutions of the "
-            "same problem: on fewer patches, or on a coarser mesh. U is checked where the exact solution is "
-            "known: "
-            f"{_bracketed(contacts)}",
+            stated("solution", found=_bracketed(contacts)),
             [coverage_table(contacts), parameter_table(contacts)],
             title="3. Solution verification",
         ),
@@ -269,11 +221,15 @@ def section(material: Material) -> Section | None:
         Part(
             _independent(evidence), [import_table(evidence.parts)], title="5. Independence of the two methods"
         ),
-        *(Part(text, folded=title) for title, text in COMMON.items()),
+        Part(
+            stated("shared_equation"),
+            folded="What the semi-analytical method and the integral equation share",
+        ),
+        Part(stated("tested_patches"), folded="What comparisons of a sphere test of the patches"),
         Part(f"{_faults(evidence)} {_mutants(evidence)}", [], title="6. Fault detection"),
         Part(_alarms(evidence), [], _histograms(evidence), "7. False alarms"),
         Part("", [alarm_table(evidence.alarms)], folded="Verdicts of clean problems that are not AGREES"),
-        Part(NOT_CLAIMED, title="8. Not claimed"),
+        Part(stated("not_claimed"), title="8. Not claimed"),
     ]
     return Section("credibility", "Credibility", parts, evidence.failures)
 
@@ -317,14 +273,14 @@ def _enclosed(evidence: Evidence) -> str:
         return NO_RECORD.format("enclosures", "coatcheck certify")
     values = [bounds for one in record.enclosures for bounds in one.bounds]
     held = next((test for test in evidence.self_tests if test.name == TEST), None)
-    found = "" if held is None else f" Held against them in this run: {held.found}."
-    return (
-        "The exact reference states its uncertainty by two resolutions; it is checked against enclosures of "
-        f"the integral equation by ball arithmetic, without common code. Proven bounds hold {len(values)} "
-        f"values of {len(record.enclosures)} problems, relative width "
-        f"{plain(max(bounds.width for bounds in values), 2)} at most. Made {_when(evidence, 'enclosures')}, "
-        f"by coatcheck certify with python-flint {record.versions.get('python-flint', 'unknown')}; the proof "
-        f"is in the manual.{found}"
+    return stated(
+        "enclosed",
+        values=len(values),
+        problems=len(record.enclosures),
+        width=plain(max(bounds.width for bounds in values), 2),
+        made=_when(evidence, "enclosures"),
+        flint=record.versions.get("python-flint", "unknown"),
+        found=held and held.found,
     )
 
 
@@ -340,25 +296,21 @@ def _independent(evidence: Evidence) -> str:
     found = f"None of {counted} imports in {files} files of both methods and the references is forbidden."
     if bad:
         found = f"{len(bad)} imports are forbidden: {'; '.join(bad[:5])}."
-    return (
-        f"{found} Read from the installed source. Packages that both "
-        f"methods use: {both}; modules that both import: {common}. A fault in one of these, in Python "
-        "or in the processor affects both. So does a fault in their common assumptions, in the statement of "
-        "the problem, in the sampling and judging of both; the last two are checked by planted faults and by "
-        "self-tests of the harness."
-    )
+    return stated("independent", found=found, both=both, common=common)
 
 
 def _faults(evidence: Evidence) -> str:
     record = evidence.faults
     if record is None:
         return NO_RECORD.format("planted faults", "coatcheck faults")
-    survivors = "Those that were not are in the section on planted faults." if record.survivors else ""
-    return (
-        f"{record.caught} of {len(record.rows)} planted faults are detected, "
-        f"{plain(100 * record.share, 3)} %; {record.as_predicted} of them by the predicted check. Measured "
-        f"{_when(evidence, 'faults')}, by coatcheck faults. A crash alone does not count as detected. "
-        f"{survivors}"
+    return stated(
+        "detected",
+        caught=record.caught,
+        total=len(record.rows),
+        share=plain(100 * record.share, 3),
+        predicted=record.as_predicted,
+        made=_when(evidence, "faults"),
+        survivors=record.survivors,
     )
 
 
@@ -385,21 +337,11 @@ def _histograms(evidence: Evidence) -> Gallery | None:
         )
         for one in record.ratios
     ]
-    caption = (
-        "Error over stated uncertainty of every value in the random problems, the integral equation taken "
-        "for the truth; errors below 1e-9 of the largest value of a profile are left out. Right of the line, "
-        "an error exceeds its uncertainty; far to the left, an uncertainty is needlessly large."
-    )
-    return Gallery((), panels, caption)
+    return Gallery((), panels, stated("ratios"))
 
 
 def _alarms(evidence: Evidence) -> str:
     record = evidence.alarms
     if record is None:
         return NO_RECORD.format("false alarms", "coatcheck alarms")
-    return (
-        f"{len(record.alarms)} false alarms in {record.comparisons} comparisons and {record.invariants} "
-        f"invariants of {record.problems} clean random problems; {record.agreeing} of the problems agree "
-        f"throughout. Measured {_when(evidence, 'alarms')}, by coatcheck alarms --count "
-        f"{record.problems} --seed {record.seed}. INCONCLUSIVE and a missing result count as alarms, too."
-    )
+    return stated("false_alarms", record=record, made=_when(evidence, "alarms"))

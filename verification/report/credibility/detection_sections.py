@@ -20,6 +20,7 @@ from verification.page.number_text import plain, scientific, seconds
 from verification.page.page_parts import Cell, Part, Section, Table, Value, row, table_of, words
 from verification.page.source_labels import source_label
 from verification.report.report_material import Material
+from verification.report.report_words import stated
 
 # Mark, class and words of each outcome of a planted fault.
 _CATCHES = {
@@ -64,14 +65,12 @@ def faults_of(material: Material) -> Section | None:
 
 def faults_section(record: Record) -> Section:
     """Planted faults as a section of any page: method, share detected, survivors, checks of each fault."""
-    method = (
-        "One fault at a time is planted in the running code by changing a few words of one function, and the "
-        "checks of the default run are applied to the result. Only the faulty source is solved again, with "
-        "the default numerics; the other sources keep the results of a clean run. Date "
-        f"{record.started[:10]}, commit {record.commit or 'unknown'}, {seconds(record.core_seconds)} on one "
-        "core."
-    )
-    parts = [Part(method), Part(faults_message(record), [_score(record)])]
+    made = {
+        "date": record.started[:10],
+        "commit": record.commit or "unknown",
+        "time": seconds(record.core_seconds),
+    }
+    parts = [Part(stated("planting", **made)), Part(faults_message(record), [_score(record)])]
     if never := [row for row in of_method(record) if unused(row)]:
         names = "; ".join(f"{row.name}: {row.description}" for row in never)
         parts.append(
@@ -160,9 +159,7 @@ def _score(record: Record) -> Table:
         ("predicted check", lambda group: sum(fault.as_predicted for fault in group[1])),
     ]
     return table_of(
-        "What notices the faults of each group first, in this order: a comparison with another source, an "
-        "invariant, a judged study, then what does not count. Predicted check: detected by the check "
-        "that was named for the fault before the trial.",
+        stated("noticed"),
         [*groups, *([("All", list(record.rows))] if len(groups) > 1 else [])],
         columns,
     )
@@ -259,12 +256,12 @@ def mutants_of(material: Material) -> Section | None:
     record = material.evidence.mutants
     if record is None:
         return None
-    method = (
-        "One operator, constant, index or term of the source is changed at a time, at places drawn at "
-        "random, as many in each room. Each mutant meets the checks of the default run, the self-tests, then "
-        f"the unit tests of its room. {mutants_message(record)} Measured {record.info.started[:10]}, commit "
-        f"{record.info.commit or 'unknown'}, {seconds(record.seconds)} on one core. Only equivalent mutants, "
-        "which change no result, are left out of the share."
+    method = stated(
+        "mutants",
+        message=mutants_message(record),
+        date=record.info.started[:10],
+        commit=record.info.commit or "unknown",
+        time=seconds(record.seconds),
     )
     shown = [catch for catch in Noticer if any(trial.catch is catch for trial in record.trials)]
     scores = []
@@ -307,10 +304,6 @@ def self_tests_of(material: Material) -> Section | None:
             ("found", lambda test: words(test.found)),
         ],
     )
-    text = (
-        "Comparisons check the methods and references. These tests check the parts that read the cases, "
-        "sample the solutions, judge and store, against results worked out by hand."
-    )
     bad = [test for test in tests if not test.passed]
     failures = [f"{test.name}: {test.found}. The verdicts of this run are not valid." for test in bad]
-    return Section("self-tests", "Self-tests of the harness", [Part(text, [table])], failures)
+    return Section("self-tests", "Self-tests of the harness", [Part(stated("self_tests"), [table])], failures)

@@ -12,7 +12,7 @@ from verification.credibility.model_error import WORDS as NAMES
 from verification.evidence.assumption_maps import WORDS, AssumptionMap
 from verification.page.number_text import plain
 from verification.page.page_parts import Cell, Gallery, Panel, Part, Section, Table, number, row, written
-from verification.page.svg_plot import Axes, drawing
+from verification.page.svg_plot import level_map, tint
 from verification.problem.array_types import Array
 from verification.report.report_material import Material
 from verification.sources.assumptions.contact_change import SCALARS
@@ -21,8 +21,6 @@ LEVELS = (0.001, 0.01, 0.05)
 SHADES = (0.15, 0.4, 0.75)
 COLOUR, NO_ANSWER = "fem", 0.45
 ACROSS, UP = "thickness", "ratio"
-WIDTH, HEIGHT = 320, 250
-BOX = (48.0, 5.0, 266.0, 207.5)  # left, top, width, height
 SHORT = {"contact_radius": "a", "approach": "delta", "peak_pressure": "p0"}
 THICKNESSES = (0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2)  # ticks
 USUAL = {"nu": 0.3}  # coordinate of a panel, where the map has it
@@ -134,17 +132,17 @@ def _part(one: AssumptionMap) -> Part:
         if np.isfinite(plane).any()
     ]
     legend = [
-        (_tint(0.0), f"below {_percent(LEVELS[0])}"),
-        (_tint(NO_ANSWER, "muted"), "no answer of the model"),
+        (tint(COLOUR, 0.0), f"below {_percent(LEVELS[0])}"),
+        (tint("muted", NO_ANSWER), "no answer of the model"),
     ]
     legend += [
-        (_tint(shade), f"above {_percent(level)}") for level, shade in zip(LEVELS, SHADES, strict=True)
+        (tint(COLOUR, shade), f"above {_percent(level)}") for level, shade in zip(LEVELS, SHADES, strict=True)
     ]
     fixed = ", ".join(
         f"{WORDS[name]} = {at[name]:g}" for name in at if name in drawable and name not in (ACROSS, UP)
     )
     caption = f"Relative change{f' at {fixed}' if fixed else ''}, linear between the nodes."
-    return Part(text, [_largest(one)], Gallery(legend, panels, caption, _csv(one)), title)
+    return Part(text, [_largest(one)], Gallery(legend, panels, caption, written(_rows(one))), title)
 
 
 def _slice(one: AssumptionMap) -> dict[str, float]:
@@ -163,19 +161,14 @@ def _slice(one: AssumptionMap) -> dict[str, float]:
 
 
 def _draw(x: Array, y: Array, plane: Array, label: str) -> Markup:
-    axes, size = Axes(BOX, (x[0], x[-1]), (y[0], y[-1])), np.ma.masked_invalid(np.abs(plane))
-    known = np.where(size.mask, 0.0, 1.0) if np.ma.is_masked(size) else np.ones_like(plane)
-    if not known.all():
-        axes.filled(x, y, known, -1.0, 0.999, "muted", NO_ANSWER)
-    for (low, high), shade in zip(pairwise((*LEVELS, 1e9)), SHADES, strict=True):
-        if (size > low).any():
-            axes.filled(x, y, size, low, high, COLOUR, shade)
-    for level in LEVELS:
-        if size.min() < level < size.max():
-            axes.contour(x, y, size, level, _percent(level))
-    axes.ticks(_ticks(THICKNESSES, x), _ticks((0.1, 0.25, 1, 4, 10), y), WORDS[ACROSS])
-    axes.text(x[0], y[-1], WORDS[UP], by=(4, 13))
-    return drawing(WIDTH, HEIGHT, f"{label} over {WORDS[ACROSS]} and {WORDS[UP]}", axes)
+    size = np.ma.masked_invalid(np.abs(plane))
+    known = np.where(np.ma.getmaskarray(size), 0.0, 1.0)
+    bands = zip(pairwise((*LEVELS, 1e9)), SHADES, strict=True)
+    areas = [(known, -1.0, 0.999, "muted", NO_ANSWER)]
+    areas += [(size, low, high, COLOUR, shade) for (low, high), shade in bands]
+    contours = [(size, level, _percent(level)) for level in LEVELS]
+    ticks = (_ticks(THICKNESSES, x), _ticks((0.1, 0.25, 1, 4, 10), y))
+    return level_map(label, x, y, areas, contours, ticks, (WORDS[ACROSS], WORDS[UP]))
 
 
 def _ticks(values: tuple[float, ...], shown: Array) -> list[tuple[float, str]]:
@@ -201,13 +194,6 @@ def _percent(value: float) -> str:
     return f"{100 * value:.2g} %".replace("-", "−")
 
 
-def _tint(shade: float, colour: str = COLOUR) -> Markup:
-    return Markup(
-        '<svg class="swatch" viewBox="0 0 36 10" aria-hidden="true"><rect x="1" y="0" width="34" height="10" '
-        'class="f-{} s-muted" stroke-width="1" fill-opacity="{}"/></svg>'
-    ).format(colour, shade)
-
-
 def _rows(one: AssumptionMap) -> list[list[str]]:
     """Heads, then coordinates, changes, uncertainties of every place of the map."""
     heads = [WORDS[axis.name] for axis in one.axes]
@@ -220,10 +206,6 @@ def _rows(one: AssumptionMap) -> list[list[str]]:
         heads,
         *([f"{v:g}" for v in (*at, *values)] for at, values in zip(places, columns.T, strict=True)),
     ]
-
-
-def _csv(one: AssumptionMap) -> str:
-    return written(_rows(one))
 
 
 def _numbers(one: AssumptionMap) -> Table:

@@ -27,6 +27,7 @@ from verification.page.svg_plot import Axes, polyline, power_of_ten, round_ticks
 from verification.page.symbol_text import drawn, unicode
 from verification.problem.array_types import Array
 from verification.problem.quantity import IN_PLANE, von_mises
+from verification.report.report_words import stated
 from verification.report.tables.case_lookup import scale as scale_of
 from verification.report.tables.case_lookup import slug
 from verification.running.case_result import CaseResult
@@ -288,7 +289,7 @@ def pictures(result: CaseResult, plane: Plane | None) -> Pictures | None:
             gaps.append(panel(exponents, colours, f"difference in {title}", label, note))
     return Pictures(
         (*fields, *gaps),
-        _caption(sources, frame),
+        stated("pictures", stretched=frame.stretched, both=len(sources) == 2),
         plane_csv(plane),
         f"{slug(result.name)}-plane.csv",
         tuple((source_label(name), message) for name, message in plane.failures.items()),
@@ -335,17 +336,3 @@ def _colours(quantity: str, values: Sequence[Array]) -> Scale:
     if quantity == "von_mises":
         return Scale(0.0, largest, SEQUENTIAL)
     return Scale(-largest, largest, DIVERGING)
-
-
-def _caption(sources: Sequence[str], frame: Frame) -> str:
-    text = (
-        "Plane y = 0; the red bar is the contact, lines across are interfaces, where stresses may jump. "
-        "Level lines at the ticks of the colour bar. "
-    )
-    if frame.stretched:
-        text += "Thin layers are drawn thicker than they are: read z off the axis. "
-    if len(sources) == 2:
-        text += (
-            "Below, the difference of the methods at the same points, on one logarithmic scale in every case."
-        )
-    return text

@@ -14,6 +14,7 @@ from verification.page.svg_curves import Curve, Difference, draw
 from verification.page.svg_plot import MARKS
 from verification.problem.line_profile import ON_BALL
 from verification.problem.quantity import QUANTITIES
+from verification.report.report_words import stated
 from verification.report.tables.case_lookup import (
     contact_radius,
     coordinate,
@@ -168,15 +169,5 @@ def _caption(result: CaseResult, places: Sequence[tuple[str, str]]) -> str:
     """What to see in the panels."""
     verdicts = [v for c, v in result.verdicts if (c.quantity, c.line) in places]
     together = all(v.outcome is Outcome.AGREES for v in verdicts)
-    text = (
-        "Above, the sources coincide to the width of the line: the grey line is the reference, the marks are "
-        "the methods. Below, on a logarithmic scale, every difference lies under the thin line that bounds "
-        "its tint, U = U_A + U_B, and that line under the cap (red dashes)."
-        if together
-        else "Above, the values of every source; below, on a logarithmic scale, their differences. A "
-        "difference above the thin line that bounds its tint, U = U_A + U_B, disagrees; a tint above the cap "
-        "(red dashes) is inconclusive. A red ring marks the point that decides."
-    )
-    if any(claim.edge for claim, _ in result.verdicts if (claim.quantity, claim.line) in places):
-        text += " Grey: next to the contact edge, not judged."
-    return f"{text} Lengths over a_h, tension positive; differences over the smaller of p_h and p0."
+    edge = any(claim.edge for claim, _ in result.verdicts if (claim.quantity, claim.line) in places)
+    return stated("panels", together=together, edge=edge)

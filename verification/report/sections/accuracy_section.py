@@ -12,6 +12,7 @@ from verification.page.page_parts import Cell, Part, Section, Table, number, row
 from verification.page.source_labels import source_label, symbol_of
 from verification.problem.quantity import PEAKS, QUANTITIES, SCALARS, SLOPES
 from verification.report.report_material import Material
+from verification.report.report_words import stated
 from verification.report.tables.case_lookup import (
     GROUPS,
     case_cell,
@@ -157,7 +158,7 @@ def coverage_table(results: Sequence[CaseResult]) -> Table:
                 continue
             share = sum(item.covered for _, item in found) / len(found)
             case, worst = min(found, key=lambda pair: -1.0 if pair[1].ratio is None else pair[1].ratio)
-            stated = [item.ratio for _, item in found if item.ratio is not None and np.isfinite(item.ratio)]
+            ratios = [item.ratio for _, item in found if item.ratio is not None and np.isfinite(item.ratio)]
             rows.append(
                 row(
                     source_label(source),
@@ -168,14 +169,12 @@ def coverage_table(results: Sequence[CaseResult]) -> Table:
                     ),
                     number(1 / worst.ratio, partial(plain, digits=2)) if worst.ratio else "not stated",
                     words(f"{symbol_of(worst.quantity)} on {worst.line}, {case.title}"),
-                    number(float(np.median(stated)) if stated else None, partial(factor, better=1.0)),
+                    number(float(np.median(ratios)) if ratios else None, partial(factor, better=1.0)),
                     number(max(item.error for _, item in found)),
                 )
             )
     return Table(
-        "Quantities on all lines of all cases whose true error, known from the exact reference, lies within "
-        f"the stated uncertainty U at every judged point; {100 * COVERED:.0f} % are required. Largest "
-        "ratio of error to U with its place; median of the smallest ratios of U to the error; largest error.",
+        stated("coverage", share=f"{100 * COVERED:.0f}"),
         [*columns, "there", "median U / error", "largest error"],
         rows,
         css="overview",

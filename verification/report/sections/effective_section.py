@@ -22,15 +22,14 @@ from verification.page.page_parts import (
     table_of,
     written,
 )
-from verification.page.svg_plot import Axes, drawing, power_of_ten
+from verification.page.svg_plot import level_map, power_of_ten, tint
 from verification.problem.array_types import Array
 from verification.report.report_material import Material
+from verification.report.report_words import stated
 from verification.sources.references.effective_modulus import PERRIOT_BARTHEL_N
 from verification.study.formula_errors import EffectiveStudy
 from verification.study.usual_correction import FRICTION, BallCurve
 
-WIDTH, HEIGHT = 320, 250
-BOX = (48.0, 5.0, 266.0, 207.5)  # left, top, width, height
 LEVELS = (0.01, 0.05, 0.1, 0.2, 0.5)
 # One shade more for each level passed; two colours for too stiff and too compliant.
 SHADES = (0.12, 0.26, 0.42, 0.6, 0.85)
@@ -54,18 +53,10 @@ def _map_part(study: EffectiveStudy) -> Part:
         Panel(name, _draw_map(study, e, name), f"from {_percent(e.min())} to {_percent(e.max())}", "")
         for name, e in errors.items()
     ]
-    text = (
-        "Formulas that correct the contact stiffness of nanoindentation for the substrate, each compared "
-        "with the exact solution over E1/E2 and h/a: S = 2 a E_eff at contact radius a, which of a "
-        "sphere is that of a flat punch, from the integral equation. nu = 0.3 in film and substrate. "
-        "Perriot and Barthel's exponent is fitted to each ratio of moduli, between "
-        f"{PERRIOT_BARTHEL_N[0]:g} and {PERRIOT_BARTHEL_N[1]:g}; drawn is the best one. Formulas "
-        "with a coefficient that each experiment fits anew (Doerner and Nix, King, Saha and Nix, Hu and "
-        "Lawn, Jung) are not predictive and have no map. No primary source was available; tests confirm "
-        "Gao's weights and Perriot and Barthel's x0 by the exact solution."
-    )
+    low, high = PERRIOT_BARTHEL_N
+    text = stated("formulas", low=f"{low:g}", high=f"{high:g}")
     legend = [
-        (_tint(colour, shade), f"{word} {_percent(level)[1:]}")
+        (tint(colour, shade), f"{word} {_percent(level)[1:]}")
         for colour, word in ((STIFF, "too stiff by more than"), (SOFT, "too compliant by more than"))
         for level, shade in zip(LEVELS, SHADES, strict=True)
     ]
@@ -74,8 +65,7 @@ def _map_part(study: EffectiveStudy) -> Part:
         "upwards stiff ones."
     )
     numbers = Table(
-        "Departure from the exact solution over the whole map, E1/E2 from 0.01 to 100 and h/a from 0.05 to "
-        "20, and over its middle, E1/E2 from 0.1 to 10; the share of either that is within 10 %.",
+        stated("formula_table"),
         ["formula", *["most compliant", "stiffest", "median", "within 10 %"] * 2],
         [_formula_row(study, name, error) for name, error in errors.items()],
         [("", 1), ("whole map", 4), ("E1/E2 from 0.1 to 10", 4)],
@@ -96,14 +86,12 @@ def _formula_row(study: EffectiveStudy, name: str, error: Array) -> Row:
 def _ball_part(balls: Sequence[BallCurve]) -> Part:
     reach = max((ratio for one in balls if (ratio := _first_beyond(one, 0.01))), default=0.0)
     worst = max(balls, key=lambda one: abs(one.usual / one.value[0] - 1))
-    text = (
-        "An elastic, uncoated ball on a coated flat by the integral equation, "
-        f"f = {FRICTION:g}, nu = 0.3, over the scales of both bodies uncoated. The usual correction "
-        "puts E* of the substrates into the scales, keeping the numbers of the rigid ball: it is exact where "
-        "a body is rigid or no coating is present. It takes the coating for as important as under a rigid "
-        "ball, though the ball's own compliance lessens its part. At E_ball = E_flat/10 its largest error is "
-        f"{_percent(worst.usual / worst.value[0] - 1)}, of {worst.quantity} with E1/E2 = {worst.coating:g}, "
-        f"h = {worst.thickness:g} a_h; more than 1 % remains up to E_ball = {plain(reach, 2)} E_flat."
+    text = stated(
+        "usual_correction",
+        friction=f"{FRICTION:g}",
+        error=_percent(worst.usual / worst.value[0] - 1),
+        worst=f"{worst.quantity} with E1/E2 = {worst.coating:g}, h = {worst.thickness:g} a_h",
+        reach=plain(reach, 2),
     )
     ratios = balls[0].ratio
     at = [min(range(len(ratios)), key=lambda i: abs(ratios[i] - r)) for r in (0.1, 1.0, 10.0)]
@@ -131,18 +119,15 @@ def _first_beyond(curve: BallCurve, share: float) -> float | None:
 
 def _draw_map(study: EffectiveStudy, error: Array, name: str) -> Markup:
     x, y = np.log10(study.thickness), np.log10(study.ratio)
-    axes = Axes(BOX, (x[0], x[-1]), (y[0], y[-1]))
-    for sign, colour in ((1, STIFF), (-1, SOFT)):
-        for (level, above), shade in zip(pairwise([*LEVELS, 1e9]), SHADES, strict=True):
-            if (sign * error > level).any():
-                axes.filled(x, y, sign * error, level, above, colour, shade)
-    for level in (0.1, -0.1):
-        if error.min() < level < error.max():
-            axes.contour(x, y, error, level, _percent(level))
-    axes.ticks(_decades(x[0], x[-1]), _decades(y[0], y[-1]), "h / a")
-    axes.text(x[0], y[-1], "E1/E2", by=(4, 13))
-    label = f"{name}: departure from the exact effective modulus over h/a and E1/E2"
-    return drawing(WIDTH, HEIGHT, label, axes)
+    areas = [
+        (sign * error, level, above, colour, shade)
+        for sign, colour in ((1, STIFF), (-1, SOFT))
+        for (level, above), shade in zip(pairwise([*LEVELS, 1e9]), SHADES, strict=True)
+    ]
+    contours = [(error, level, _percent(level)) for level in (0.1, -0.1)]
+    label = f"{name}: departure from the exact effective modulus"
+    ticks = (_decades(x[0], x[-1]), _decades(y[0], y[-1]))
+    return level_map(label, x, y, areas, contours, ticks, ("h / a", "E1/E2"))
 
 
 def _decades(low: float, high: float) -> list[tuple[float, str]]:
@@ -150,13 +135,6 @@ def _decades(low: float, high: float) -> list[tuple[float, str]]:
     step = max(1, ceil((high - low) / 6))
     exponents = range(ceil(low), floor(high) + 1, step)
     return [(m, f"{10.0**m:g}" if -3 < m < 4 else power_of_ten(m)) for m in exponents]
-
-
-def _tint(colour: str, shade: float) -> Markup:
-    return Markup(
-        '<svg class="swatch" viewBox="0 0 36 10" aria-hidden="true"><rect x="1" y="0" width="34" height="10" '
-        'class="f-{}" fill-opacity="{}"/></svg>'
-    ).format(colour, shade)
 
 
 def _percent(value: float) -> str:

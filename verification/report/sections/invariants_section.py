@@ -10,6 +10,7 @@ from verification.page.number_text import plain, scientific
 from verification.page.page_parts import Cell, Part, Section, Table, number, row, tally
 from verification.page.source_labels import OUTCOMES, row_css, source_label
 from verification.report.report_material import Material
+from verification.report.report_words import stated
 from verification.running.case_result import CaseResult
 
 _NUMBERED = re.compile(r", (?:coating|interface|layer) \d+$|, substrate$")
@@ -27,9 +28,7 @@ def invariant_table(found: Sequence[Invariant]) -> Table | None:
         cells = [_share_cell(mine.get(source)) for source in sources]
         rows.append(row(name, Cell(first.message, css="reason"), *cells, css=row_css(first.outcome)))
     return Table(
-        "Conditions that a solution satisfies by itself. The residual as a share of its bound, which follows "
-        "from the uncertainty stated there, the error of the differences or quadrature, and rounding: beyond "
-        "100 % the invariant is violated. The condition is that of the source closest to its bound.",
+        stated("invariant_rows"),
         ["invariant", "condition", *(source_label(source) for source in sources)],
         rows,
         css="verdicts",

@@ -8,6 +8,7 @@ from verification.page.number_text import plain
 from verification.page.page_parts import Cell, Part, Section, Table, number, row
 from verification.page.source_labels import source_label
 from verification.report.report_material import Material
+from verification.report.report_words import stated
 
 
 def section(material: Material) -> Section | None:
@@ -47,18 +48,7 @@ def _totals(one: Stated, sweeps: Sequence[Sweep]) -> Table:
         fitted = [number(None if fit is None else fit.uncertainty) for fit in found]
         total = [_held(_sum(sweeps, name), error)] if sweeps else []
         rows.append(row(name, number(error), _held(U, error), *total, *fitted))
-    caption = "True error at the default numerics, the uncertainty stated"
-    if sweeps:
-        caption += (
-            ", and the fitted one: the sum over the parameters, then each parameter, by least squares over "
-            "four levels or more (Eca and Hoekstra 2014), by the grid convergence index where there are three"
-        )
-    caption += ". All over the scales of the bare substrate."
-    if sweeps:
-        caption += (
-            " The order of the elements is another way to lower the error of their size: it is shown and "
-            "not added."
-        )
+    caption = stated("fitted", sweeps=bool(sweeps))
     head = ["quantity", "true error", "stated U", *(["fitted U"] if sweeps else [])]
     return Table(caption, [*head, *(sweep.parameter for sweep in sweeps)], rows, css="overview")
 

@@ -13,6 +13,7 @@ from verification.page.source_labels import row_css, source_label
 from verification.problem.line_profile import Profile
 from verification.problem.quantity import QUANTITIES
 from verification.report.report_material import Material
+from verification.report.report_words import stated
 from verification.running.case_result import CaseResult
 from verification.running.published_counts import counts
 from verification.sources.source_registry import EXACT, METHODS, PUBLISHED, REFERENCES
@@ -56,14 +57,7 @@ def _overview(material: Material) -> Table:
         rows.append(row(head, *cells, css=row_css(result.outcome)))
     counted, departing, recomputed = counts(material.published)
     return Table(
-        f"{counted} published values count. {departing} more are off by more than half of their last digit: "
-        "departures of the source, listed below with their size, compared after correction by it and not "
-        f"counted. {recomputed} values are recomputed from a published formula or for a published "
-        "configuration; they are compared and do not count as published. A value is met when the "
-        "difference is within its uncertainty plus that of the method. Differences are over the pressure for "
-        "stresses, over the largest published value for displacements, strains and loading curves, over the "
-        "value for scalars of a contact. Seen: the primary source; a second source that reproduces it; "
-        "quoted, where neither was at hand; recomputed.",
+        stated("published", counted=counted, departing=departing, recomputed=recomputed),
         ["source", "verdict", "year", "seen", "counted", "depart", "recomputed"]
         + ["met", "largest difference"] * len(sources),
         rows,
@@ -97,9 +91,7 @@ def _departures(material: Material) -> Table:
                 )
             )
     return Table(
-        "Values that differ from the exact solution by more than half of their last digit, as listed in the "
-        "tables. Largest: exact less published value, in the unit of the source, and as a fraction of the "
-        "scale of the comparison. A value that departs without being listed disagrees.",
+        stated("departures"),
         ["source", "column", "kind", "depart", "largest", "of the scale", "published there"],
         rows,
         css="verdicts",
@@ -128,9 +120,7 @@ def _digits(material: Material) -> Table:
         for group, (good, total) in totals.items()
     )
     return Table(
-        "Each digit of each value is replaced by each other digit; the changes of at least ten times the "
-        "uncertainty of the value are judged with the solutions of this run. Noticed, a verdict turns from "
-        f"agreement to disagreement: {summary}. Pointing at a source names the first changes that pass.",
+        stated("digits", summary=summary),
         ["source", "values", "cells", "noticed", *(f"by {source_label(s)}" for s in METHODS + EXACT)],
         rows,
     )

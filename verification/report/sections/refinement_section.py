@@ -15,6 +15,7 @@ from verification.problem.quantity import QUANTITIES as QUANTITY
 from verification.problem.quantity import SCALARS
 from verification.report.figures.line_panels import swatch
 from verification.report.report_material import Material
+from verification.report.report_words import stated
 from verification.sources.source_record import Style
 
 _SCALARS = [QUANTITY[name] for name in SCALARS]
@@ -43,15 +44,8 @@ def semianalytic_section(material: Material) -> Section | None:
     grids = [one for one in study.refinements if one.method == "semianalytic"]
     parts = _judged_parts(study.verdicts)
     if any(one.levels for one in grids):
-        text = (
-            f"{PROBLEM[0].upper()}{PROBLEM[1:]}. With the corrected edge a smooth pressure is fitted to the "
-            "patches near the contact edge; the curves named staircase edge are of constant patches alone."
-        )
-        caption = (
-            "Error against the integral equation over N, the number of patches along a side of the grid, "
-            "which is 1.12 times as wide as the contact. Beside each curve its observed slope, as far as the "
-            "error falls; a dash where it falls less than threefold, or over less than a doubling of N."
-        )
+        text = stated("grids", problem=f"{PROBLEM[0].upper()}{PROBLEM[1:]}")
+        caption = stated("grid_caption")
         gallery = _refinement_gallery(grids, "N", (33, 49, 65, 97, 129, 257), caption)
         parts.append(Part(text, [_refinement_table(grids, "patches per side")], gallery))
     if study.conversions:
@@ -69,10 +63,7 @@ def finite_element_section(material: Material) -> Section | None:
         return None
     parts = []
     if any(one.levels for one in elements):
-        caption = (
-            "Error against the integral equation over the square root of the number of degrees of freedom, "
-            "which grows as the elements shrink: its slope is the order in the size of the elements."
-        )
+        caption = stated("mesh_caption")
         ticks = (50, 70, 100, 150, 200, 300)
         gallery = _refinement_gallery(elements, "√(degrees of freedom)", ticks, caption)
         parts = [Part("", [_refinement_table(elements, "mesh")], gallery)]
@@ -85,11 +76,7 @@ def _judged_parts(found: Sequence[Invariant]) -> list[Part]:
     if not found:
         return []
     held = sum(one.outcome is Outcome.AGREES for one in found)
-    text = (
-        f"{held} of {len(found)} judged errors of the method's parts are within their limits: patches alone, "
-        "patches with a corrected edge, given pressures on a disc, influence coefficients, each against an "
-        "exact solution. A limit that is exceeded makes the run exit with 1."
-    )
+    text = stated("judged_studies", held=held, total=len(found))
     table = table_of(
         "The parts of the method beside their limits.",
         sorted(found, key=lambda one: OUTCOMES[one.outcome].rank),
@@ -111,10 +98,7 @@ def _judged_parts(found: Sequence[Invariant]) -> list[Part]:
 
 def _conversion_table(found: Sequence[ConversionError]) -> Table:
     return table_of(
-        "Influence coefficients of the surface displacement by each conversion from the Fourier domain: "
-        "errors against direct quadrature over the coefficient itself and, for the largest of all, over the "
-        "largest coefficient. The solver uses the split conversion; the plain one is that of the source "
-        "paper.",
+        stated("conversions"),
         found,
         [
             ("conversion", lambda one: one.conversion),
@@ -172,8 +156,7 @@ def _refinement_table(studies: Sequence[Refinement], level_name: str) -> Table:
         cells = [Cell("–" if o is None else f"{o:.1f}", -1.0 if o is None else o) for o in orders]
         rows.append(row(name, "observed order", *cells, "", css="order"))
     return Table(
-        "Errors against the integral equation: p0, a and approach relative, pressure in L2 over the contact "
-        "over p0, stress the largest on the axis and on both sides of each interface over p_h.",
+        stated("refinement_table"),
         ["solid and setting", level_name, *QUANTITIES, "time"],
         rows,
     )

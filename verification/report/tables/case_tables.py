@@ -13,6 +13,7 @@ from verification.page.page_parts import Cell, Table, number, outcome_cell, row,
 from verification.page.source_labels import OUTCOMES, pair_label, row_css, source_label, symbol_of
 from verification.problem.coated_contact import BALL, FLAT
 from verification.problem.quantity import BALL_PEAKS, PEAKS, QUANTITIES, SCALARS, SLOPES, unit_of
+from verification.report.report_words import stated
 from verification.report.tables.case_lookup import coordinate, layers, scalar, scale
 from verification.running.case_result import CaseResult
 
@@ -120,9 +121,7 @@ def comparison_table(result: CaseResult) -> Table:
             cells += [_judged_cell(one[1], one[1].difference), one[1].uncertainty] if one else ["", ""]
         rows.append(row(symbol_of(quantity), *cells))
     return Table(
-        "Largest |A − B| and largest U = U_A + U_B over the judged points, over the scale of the comparison: "
-        "the value (p0, a, approach, dW/d delta), a (places), the smaller of delta_h and approach "
-        "(displacements) or of p_h and p0.",
+        stated("compared"),
         ["quantity", "line", "cap on U", *["|A − B|", "U"] * len(pairs)],
         rows,
         [("", 3), *((pair_label(pair), 2) for pair in pairs)],

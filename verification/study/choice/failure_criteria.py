@@ -13,7 +13,6 @@ from dataclasses import dataclass
 from typing import Annotated
 
 import numpy as np
-from numpy.typing import NDArray
 from pydantic import Field, model_validator
 from scipy.interpolate import PchipInterpolator
 
@@ -103,8 +102,7 @@ class Judged:
     """A criterion evaluated on one curve; thicknesses over a_h.
 
     modes : of the criterion.   utilisation : (modes, points of the curve).   limited : strengths were given.
-    h, largest, governing : dense samples, the largest utilisation there, the number of its mode.
-    admissible : ranges of h.   preferable : (h, largest utilisation, mode).
+    admissible : ranges of h.
     interpolation_error : largest change of a utilisation at points left out one by one, over the largest
     utilisation.
     """
@@ -113,11 +111,7 @@ class Judged:
     modes: tuple[str, ...]
     utilisation: Array
     limited: bool
-    h: Array
-    largest: Array
-    governing: NDArray[np.int_]
     admissible: tuple[tuple[float, float], ...]
-    preferable: tuple[float, float, str]
     interpolation_error: float
 
 
@@ -136,20 +130,12 @@ def judged(curve: Curve, criteria: Criteria) -> Judged:
     s = np.log(curve.h)
     h = np.geomspace(curve.h[0], curve.h[-1], SAMPLES)
     h[0], h[-1] = curve.h[0], curve.h[-1]
-    interpolated = PchipInterpolator(s, used, axis=1)(np.log(h))
-    largest, governing = interpolated.max(axis=0), interpolated.argmax(axis=0)
-    best = int(largest.argmin())
-    modes = tuple(strengths)
     return Judged(
         curve,
-        modes,
+        tuple(strengths),
         used,
         criteria.strength is not None,
-        h,
-        largest,
-        governing,
         _ranges(h, PchipInterpolator(s, bound, axis=1)(np.log(h)).max(axis=0)),
-        (float(h[best]), float(largest[best]), modes[governing[best]]),
         _interpolation_error(s, used),
     )
 

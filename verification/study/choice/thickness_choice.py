@@ -123,7 +123,7 @@ def strengths_drawn(strengths: Mapping[str, Strength], drawn: int = DRAWN) -> Ar
 def choice(judgements: Sequence[Judged], criteria: Criteria) -> Choice:
     """The choice from the curves of one modulus, one for each friction."""
     members = tuple(sorted(judgements, key=lambda j: j.curve.friction))
-    low, high = max(j.h[0] for j in members), min(j.h[-1] for j in members)
+    low, high = max(j.curve.h[0] for j in members), min(j.curve.h[-1] for j in members)
     h = np.geomspace(low, high, SAMPLES)
     h[0], h[-1] = low, high
     use = np.stack([PchipInterpolator(np.log(j.curve.h), j.utilisation, axis=1)(np.log(h)) for j in members])

@@ -47,12 +47,12 @@ def near(judgement: Judged, h: float, mode: str) -> tuple[Near, ...]:
     return tuple(found)
 
 
-def rounded(value: float, uncertainty: float, upwards: bool | None = None, digits: int = DIGITS) -> str:
-    """A positive ``value`` in at most ``digits`` digits, the last no finer than its ``uncertainty``.
+def rounded(value: float, uncertainty: float, upwards: bool | None = None) -> str:
+    """A positive ``value`` in at most ``DIGITS`` digits, the last no finer than its ``uncertainty``.
 
     upwards : whether it is rounded up or down; to the nearest for None.
     """
-    last = math.floor(math.log10(value)) - digits + 1
+    last = math.floor(math.log10(value)) - DIGITS + 1
     if uncertainty > 0 and math.isfinite(uncertainty):
         last = max(last, math.ceil(math.log10(uncertainty)))
     last = min(last, math.floor(math.log10(value)))

@@ -1,0 +1,24 @@
+"""Exams for tests of guests: a shipped case with its exact reference, the question that a guest is asked."""
+
+from verification.cases.case_file import read_case, shipped_cases
+from verification.guests.case_exam import claims_of, exam_path, prepare, question_of
+from verification.guests.exam_subjects import subject_of
+from verification.guests.guest_description import Guest, Supports
+from verification.running.case_result import from_json
+from verification.running.checked_files import read_checked
+
+GUEST = Guest.model_construct(
+    folder=None, text="", name="g", claim=0.01, supports=Supports(coatings=9, friction=True, stress=True)
+)
+
+
+def prepared(name, folder):
+    """The case with its exact reference, stored below ``folder``."""
+    case = subject_of(read_case(shipped_cases()[name]))
+    path = exam_path(folder, case)
+    prepare(case, path)
+    return case, from_json(read_checked(path))
+
+
+def question(case, exam, guest=GUEST):
+    return question_of(case, exam, guest, claims_of(case, guest), {})
